@@ -1,0 +1,257 @@
+//! Run-time fixed-point formats, rounding and overflow.
+//!
+//! A format is written `uI.F` or `sI.F`: I integer bits, F fraction bits and, for a signed format,
+//! one sign bit more. The width is therefore I + F, or 1 + I + F. A *raw* value is the integer that
+//! the bits denote; the value is `raw · 2⁻ᶠ`. One ulp is `2⁻ᶠ`. Raw values travel as `i128`, bit
+//! patterns (what a wire carries) as `u64`.
+
+use std::fmt;
+use std::str::FromStr;
+
+/// The widest net that Glint handles, in bits.
+pub const MAX_WIDTH: u32 = 64;
+
+/// A fixed-point format, `uI.F` or `sI.F`.
+///
+/// I and F may be negative as long as the width stays positive: `u-3.15` is a 12-bit fraction whose
+/// three leading bits are known to be zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Format {
+    /// Two's complement, with a sign bit above the integer bits.
+    pub signed: bool,
+    /// Integer bits, the sign bit not counted.
+    pub int: i32,
+    /// Fraction bits.
+    pub frac: i32,
+}
+
+impl Format {
+    /// The unsigned format `uI.F`.
+    pub const fn unsigned(int: i32, frac: i32) -> Self {
+        Self {
+            signed: false,
+            int,
+            frac,
+        }
+    }
+
+    /// The signed format `sI.F`.
+    pub const fn signed(int: i32, frac: i32) -> Self {
+        Self {
+            signed: true,
+            int,
+            frac,
+        }
+    }
+
+    /// One bit without a point: a flag, an enable, a select line.
+    pub const BIT: Self = Self::unsigned(1, 0);
+
+    /// The smallest format with `frac` fraction bits that holds every raw value from `low` to `high`.
+    pub fn holding(low: i128, high: i128, frac: i32) -> Self {
+        let magnitude = |raw: i128| 128 - if raw < 0 { !raw } else { raw }.leading_zeros() as i32;
+        let signed = low < 0;
+        let bits = magnitude(low).max(magnitude(high));
+        // A net has at least one bit, even when it is known to be zero.
+        let bits = if signed { bits } else { bits.max(1) };
+        Self {
+            signed,
+            int: bits - frac,
+            frac,
+        }
+    }
+
+    /// Width in bits.
+    ///
+    /// # Panics
+    /// Never for a format that a constructor of the DSL or the configuration accepted; a format of
+    /// no or negative width is a programming error.
+    pub fn width(self) -> u32 {
+        u32::try_from(self.int + self.frac + i32::from(self.signed)).expect("a positive width")
+    }
+
+    /// The smallest raw value.
+    pub fn min_raw(self) -> i128 {
+        if self.signed {
+            -(1i128 << (self.width() - 1))
+        } else {
+            0
+        }
+    }
+
+    /// The largest raw value.
+    pub fn max_raw(self) -> i128 {
+        (1i128 << (self.width() - u32::from(self.signed))) - 1
+    }
+
+    /// Whether `raw` is representable.
+    pub fn holds(self, raw: i128) -> bool {
+        (self.min_raw()..=self.max_raw()).contains(&raw)
+    }
+
+    /// The value of `raw` as a real number (exact up to 53 significant bits).
+    pub fn to_f64(self, raw: i128) -> f64 {
+        raw as f64 * exp2(-self.frac)
+    }
+
+    /// The raw value nearest to `x`, ties upward, saturated to the format.
+    pub fn quantise(self, x: f64) -> i128 {
+        let scaled = (x * exp2(self.frac) + 0.5).floor();
+        let (low, high) = (self.min_raw(), self.max_raw());
+        if scaled.is_nan() || scaled <= low as f64 {
+            low
+        } else if scaled >= high as f64 {
+            high
+        } else {
+            scaled as i128
+        }
+    }
+
+    /// The bit pattern of `raw`, wrapped to the width.
+    pub fn bits(self, raw: i128) -> u64 {
+        raw as u64 & mask(self.width())
+    }
+
+    /// The raw value that a bit pattern denotes; bits above the width are ignored.
+    pub fn raw(self, bits: u64) -> i128 {
+        let width = self.width();
+        let bits = bits & mask(width);
+        if self.signed && bits >> (width - 1) & 1 == 1 {
+            i128::from(bits) - (1i128 << width)
+        } else {
+            i128::from(bits)
+        }
+    }
+
+    /// `raw`, which has `from_frac` fraction bits, brought to this format.
+    pub fn narrow(self, raw: i128, from_frac: i32, rounding: Rounding, overflow: Overflow) -> i128 {
+        let shifted = rounding.shift(raw, from_frac - self.frac);
+        match overflow {
+            Overflow::Saturate => shifted.clamp(self.min_raw(), self.max_raw()),
+            Overflow::Wrap => {
+                let modulus = 1i128 << self.width();
+                let wrapped = shifted.rem_euclid(modulus);
+                if wrapped > self.max_raw() {
+                    wrapped - modulus
+                } else {
+                    wrapped
+                }
+            }
+        }
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        let sign = if self.signed { 's' } else { 'u' };
+        write!(f, "{sign}{}.{}", self.int, self.frac)
+    }
+}
+
+impl FromStr for Format {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wrong = || format!("`{text}` is not a format; write u1.20 or s1.20");
+        let (signed, rest) = match text.split_at_checked(1) {
+            Some(("u", rest)) => (false, rest),
+            Some(("s", rest)) => (true, rest),
+            _ => return Err(wrong()),
+        };
+        let (int, frac) = rest.split_once('.').ok_or_else(wrong)?;
+        let (int, frac): (i32, i32) = (
+            int.parse().map_err(|_| wrong())?,
+            frac.parse().map_err(|_| wrong())?,
+        );
+        let width = i64::from(int) + i64::from(frac) + i64::from(signed);
+        if !(1..=i64::from(MAX_WIDTH)).contains(&width) {
+            return Err(format!("`{text}` is {width} bits wide; 1 to {MAX_WIDTH} are possible"));
+        }
+        Ok(Self { signed, int, frac })
+    }
+}
+
+/// What happens to fraction bits that are dropped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rounding {
+    /// Drop them: toward minus infinity. Costs nothing.
+    Truncate,
+    /// To the nearest value, ties upward. Costs an incrementer.
+    Nearest,
+}
+
+impl Rounding {
+    /// `raw` divided by `2^places` and rounded; a negative `places` multiplies (exactly).
+    pub fn shift(self, raw: i128, places: i32) -> i128 {
+        match (self, places) {
+            (_, ..=0) => raw << -places,
+            (Self::Truncate, _) => raw >> places,
+            (Self::Nearest, _) => (raw + (1i128 << (places - 1))) >> places,
+        }
+    }
+}
+
+/// What happens to a value beyond the range of its format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Overflow {
+    /// The upper bits are dropped: arithmetic modulo the width.
+    Wrap,
+    /// The nearest representable value is taken.
+    Saturate,
+}
+
+/// The mask of `width` low bits.
+pub const fn mask(width: u32) -> u64 {
+    if width >= 64 { u64::MAX } else { (1 << width) - 1 }
+}
+
+/// `2^exponent`, exact.
+pub fn exp2(exponent: i32) -> f64 {
+    libm::ldexp(1.0, exponent)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formats_read_and_print() {
+        for text in ["u1.20", "s0.16", "u-3.15", "u10.0", "s-1.8"] {
+            assert_eq!(text.parse::<Format>().unwrap().to_string(), text);
+        }
+        for text in ["", "x1.2", "u1", "u0.0", "u60.20", "s-3.2", "ї1.2"] {
+            assert!(text.parse::<Format>().is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn smallest_format_holds_the_range() {
+        assert_eq!(Format::holding(0, 1 << 20, 20), Format::unsigned(1, 20));
+        assert_eq!(Format::holding(0, (1 << 20) - 1, 20), Format::unsigned(0, 20));
+        assert_eq!(Format::holding(-(1 << 20), 5, 20), Format::signed(0, 20));
+        assert_eq!(Format::holding(0, 0, 4).width(), 1);
+        assert_eq!(Format::holding(-1, 0, 0).width(), 1);
+    }
+
+    #[test]
+    fn narrowing_rounds_and_saturates() {
+        let to = Format::signed(0, 2);
+        assert_eq!(to.narrow(-5, 4, Rounding::Truncate, Overflow::Wrap), -2);
+        assert_eq!(to.narrow(-5, 4, Rounding::Nearest, Overflow::Wrap), -1);
+        assert_eq!(to.narrow(100, 4, Rounding::Truncate, Overflow::Saturate), 3);
+        assert_eq!(to.narrow(-100, 4, Rounding::Truncate, Overflow::Saturate), -4);
+        assert_eq!(to.narrow(20, 4, Rounding::Truncate, Overflow::Wrap), -3);
+        assert_eq!(to.narrow(1, 0, Rounding::Truncate, Overflow::Wrap), -4);
+    }
+
+    #[test]
+    fn bits_and_raw_are_inverse() {
+        for format in [Format::signed(2, 3), Format::unsigned(2, 3), Format::signed(63, 0)] {
+            for raw in [format.min_raw(), -1, 0, 1, format.max_raw()] {
+                if format.holds(raw) {
+                    assert_eq!(format.raw(format.bits(raw)), raw);
+                }
+            }
+        }
+    }
+}

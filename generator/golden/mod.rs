@@ -1,0 +1,97 @@
+//! Golden models: each device a second time, by its formula and the source's narrative.
+//!
+//! A golden model uses [`crate::fixed`] and [`crate::config`] alone. It never sees the description,
+//! the netlist or the microcode, and it computes its own tables; that is what makes the comparison
+//! with the simulated hardware worth something.
+
+use crate::fixed::Format;
+
+/// A clock-by-clock model of a device.
+///
+/// Values are bit patterns. All state is zero before the first clock, as the built-in simulator's is.
+pub trait Model: Send {
+    /// The names of the inputs, in the order in which [`Model::clock`] takes them; `rst_n` and
+    /// `start` are among them.
+    fn inputs(&self) -> &[String];
+
+    /// The names of everything predicted: the outputs of the device and its architectural registers.
+    fn signals(&self) -> &[String];
+
+    /// One rising edge, with the inputs as they stand just before it.
+    fn clock(&mut self, inputs: &[u64]);
+
+    /// The values after the latest edge, in the order of [`Model::signals`].
+    fn values(&self) -> &[u64];
+}
+
+/// An operand of a device as its accuracy contract sees it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Operand {
+    /// The input port.
+    pub name: String,
+    /// Its format.
+    pub format: Format,
+    /// The smallest and largest raw value for which the contract is stated.
+    pub domain: (i64, i64),
+    /// A colour operand multiplies `f`; the others determine it.
+    pub colour: bool,
+    /// One line: what it is.
+    pub doc: String,
+}
+
+/// The accuracy contract of a device: `|out − K·f| < 1` unit for each colour output.
+///
+/// It is factored as the hardware is: control operands determine the word `f`, and each colour
+/// output is `f` times one colour operand.
+pub trait Contract: Send + Sync {
+    /// Control operands, then colour operands, in the order in which values are passed.
+    fn operands(&self) -> &[Operand];
+
+    /// The colour outputs, each from the colour operand of the same position.
+    fn outputs(&self) -> &[String];
+
+    /// The format of the word `f`.
+    fn f_format(&self) -> Format;
+
+    /// The word `f` that the device computes from the raw control operands.
+    fn f(&self, control: &[i64]) -> i64;
+
+    /// The raw output for a word `f` and a raw colour operand.
+    fn colour(&self, f: i64, colour: i64) -> i64;
+
+    /// The source's formula in f64, unrounded, at the raw (that is, quantised) control operands.
+    fn reference(&self, control: &[i64]) -> f64;
+
+    /// A proven bound on the error, stated before anything is simulated.
+    fn bound(&self) -> Bound;
+}
+
+/// A bound on `|out − K·f|` over the domain, and what it is made of.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bound {
+    /// On the error of `f`.
+    pub f: f64,
+    /// On the error of an output, in output units, for the largest colour operand.
+    pub units: f64,
+    /// The contributions, in output units, each with the configuration key that governs it. They
+    /// add up to `units`.
+    pub terms: Vec<Term>,
+}
+
+/// One contribution to a [`Bound`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Term {
+    /// The configuration key that governs it.
+    pub key: &'static str,
+    /// What rounds or approximates.
+    pub what: &'static str,
+    /// Its share, in output units.
+    pub units: f64,
+}
+
+impl Bound {
+    /// The largest contribution: the key to change first.
+    pub fn limiting(&self) -> Option<&Term> {
+        self.terms.iter().max_by(|a, b| a.units.total_cmp(&b.units))
+    }
+}
