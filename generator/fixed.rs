@@ -84,6 +84,11 @@ impl Format {
         (1i128 << (self.width() - u32::from(self.signed))) - 1
     }
 
+    /// The smallest and the largest raw value.
+    pub fn range(self) -> (i128, i128) {
+        (self.min_raw(), self.max_raw())
+    }
+
     /// Whether `raw` is representable.
     pub fn holds(self, raw: i128) -> bool {
         (self.min_raw()..=self.max_raw()).contains(&raw)

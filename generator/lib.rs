@@ -1,6 +1,10 @@
 //! Glint: specular-shading hardware from Rust descriptions.
 
+pub mod check;
 pub mod config;
+pub mod dsl;
 pub mod fixed;
 pub mod golden;
+pub mod identifier;
+pub mod microcode;
 pub mod netlist;

@@ -1,0 +1,95 @@
+//! Keys that several devices share, so that one name means one thing everywhere.
+
+use crate::config::{Config, Key, Problems};
+
+/// The names of the roundings.
+pub const ROUNDINGS: [&str; 2] = ["truncate", "nearest"];
+
+/// `cosine.fraction`.
+pub fn cosine_fraction(default: i64) -> Key {
+    Key::integer(
+        "cosine.fraction",
+        default,
+        8..=24,
+        "fraction bits of the cosine operands; 1.0 is representable",
+    )
+}
+
+/// `cosine.signed`.
+pub fn cosine_signed() -> Key {
+    Key::flag(
+        "cosine.signed",
+        false,
+        "the cosine port has a sign bit; a negative cosine gives 0",
+    )
+}
+
+/// `exponent.bits`.
+pub fn exponent_bits() -> Key {
+    Key::integer("exponent.bits", 10, 1..=12, "bits of the specular exponent n")
+}
+
+/// `colour.bits`.
+pub fn colour_bits() -> Key {
+    Key::integer("colour.bits", 8, 1..=12, "bits of a colour operand, and of an output")
+}
+
+/// `intensity.fraction`.
+pub fn intensity_fraction(default: i64) -> Key {
+    Key::integer(
+        "intensity.fraction",
+        default,
+        6..=24,
+        "fraction bits of the reflectance f, which multiplies the colours",
+    )
+}
+
+/// `intensity.rounding`.
+pub fn intensity_rounding() -> Key {
+    Key::choice("intensity.rounding", "truncate", &ROUNDINGS, "rounding into the register that holds f")
+}
+
+/// `output.rounding`.
+pub fn output_rounding() -> Key {
+    Key::choice("output.rounding", "nearest", &ROUNDINGS, "rounding of the colour outputs to integers")
+}
+
+/// `domain.exponent_min`.
+pub fn exponent_min() -> Key {
+    Key::integer(
+        "domain.exponent_min",
+        1,
+        0..=4095,
+        "the smallest n for which the accuracy contract is stated",
+    )
+}
+
+/// `domain.exponent_max`.
+pub fn exponent_max() -> Key {
+    Key::integer(
+        "domain.exponent_max",
+        1000,
+        1..=4095,
+        "the largest n for which the accuracy contract is stated",
+    )
+}
+
+/// The domain of n is not empty and fits the operand.
+pub fn check_exponents(config: &Config, problems: &mut Problems) {
+    let (min, max) = (config.integer("domain.exponent_min"), config.integer("domain.exponent_max"));
+    let bits = config.integer("exponent.bits");
+    if min > max {
+        problems.push(
+            "domain.exponent_min",
+            format!("{min} is above domain.exponent_max, {max}"),
+            format!("at most {max}"),
+        );
+    }
+    if max >= 1 << bits {
+        problems.push(
+            "domain.exponent_max",
+            format!("{max} does not fit the {bits} bits of the exponent"),
+            format!("at most {}, or a larger exponent.bits", (1 << bits) - 1),
+        );
+    }
+}

@@ -1,0 +1,151 @@
+//! `cosine-power` — seed 002: the paper's W(n,γ) = `(n/m·(cos γ − 1) + 1)^m`, m ∈ {2, 4, 8, 16}.
+//!
+//! The paper gives no circuit; this is the least that its formula asks for: one multiplier, one
+//! accumulator. n/m is a shift by wiring. The sum is formed as a complement, `1 − n/m·(1 − cos γ)`, so that
+//! every number is a fraction from 0 to 1 and the clamp at the zero of W is the saturation of the
+//! first product.
+
+use crate::config::{Config, Key, Problems, Schema};
+use crate::dsl::blocks::colour::Colours;
+use crate::dsl::{Designer, Signal, end, loop_while, step, valid};
+use crate::fixed::{Format, Overflow};
+use crate::netlist::About;
+
+use super::{common, rounding};
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    Schema {
+        device: "cosine-power",
+        keys: vec![
+            Key::choice("power", "16", &["2", "4", "8", "16"], "the power m: the larger, the closer to cos^n, and the more squarings"),
+            common::cosine_fraction(20),
+            common::cosine_signed(),
+            common::exponent_bits(),
+            common::colour_bits(),
+            common::intensity_fraction(16),
+            common::intensity_rounding(),
+            common::output_rounding(),
+            common::exponent_min(),
+            common::exponent_max(),
+        ],
+        check,
+    }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    common::check_exponents(config, problems);
+}
+
+/// The device.
+pub fn describe(d: &Designer, config: &Config) {
+    let integer = |key: &str| config.integer(key) as i32;
+    let squarings = match config.choice("power") {
+        "2" => 1,
+        "4" => 2,
+        "8" => 3,
+        _ => 4,
+    };
+    let cosine = Format {
+        signed: config.flag("cosine.signed"),
+        int: 1,
+        frac: integer("cosine.fraction"),
+    };
+    let f = Format::unsigned(0, integer("intensity.fraction"));
+    d.about(about(config));
+
+    let cos_gamma = d
+        .operand_clamped("cos_gamma", cosine, 0.0, 1.0)
+        .doc("cosine of the angle between normal and half vector")
+        .q();
+    let exponent = d
+        .operand("exponent", Format::unsigned(integer("exponent.bits"), 0))
+        .doc("specular exponent n")
+        .q();
+    let colours = Colours::new(d, integer("colour.bits"), None);
+
+    let operand_select = d.select("operand_select", 3);
+    let accumulator = d
+        .register("accumulator", f)
+        .doc("n/m*(1 - cos gamma), then the powers of W's base");
+    // The squarings after the first are one word, executed again and again.
+    let remaining = (squarings > 1).then(|| {
+        let start = d.raw_constant("squarings", squarings - 1, Format::unsigned(2, 0));
+        d.down_counter("remaining", start).doc("squarings to come")
+    });
+
+    let one = d.constant("one", 1.0, Format::unsigned(1, integer("cosine.fraction")));
+    let complement = d.sub("complement", one, cos_gamma).doc("1.0 - cos gamma");
+    let zeta = exponent.shift_right(squarings as i32).named("zeta").doc("n/m, by wiring");
+    let base = base(d, cos_gamma, accumulator.q());
+
+    let first = d
+        .bus("first", operand_select, [complement, base, accumulator.q()])
+        .doc("first operand of the multiplier");
+    let second = d
+        .bus("second", operand_select, [zeta, base, accumulator.q()])
+        .doc("second operand of the multiplier");
+    let product = d.shared_mul("product", &first, &second).doc("its point depends on the operands");
+    let rounding_f = rounding(config, "intensity.rounding");
+    let distance = d.narrow("distance", product.of(complement, zeta), f, rounding_f, Overflow::Saturate);
+    let square = product.of_any(&[(base, base), (accumulator.q(), accumulator.q())]);
+    let square = d.narrow("square", square, f, rounding_f, Overflow::Saturate);
+    let next = d.mux_on("accumulator_next", operand_select, [distance, square, square]);
+    accumulator.takes(next.out());
+    colours.outputs(accumulator.q(), rounding(config, "output.rounding"));
+
+    let mut steps = vec![
+        step("operands 1 - cos gamma, n/m", []),
+        step(
+            "accumulator <- n/m * (1 - cos gamma)",
+            [accumulator.load()].into_iter().chain(remaining.map(|counter| counter.load())),
+        ),
+        step(
+            "accumulator <- base^2",
+            [first.pick(base), second.pick(base), accumulator.load()],
+        ),
+    ];
+    if let Some(remaining) = remaining {
+        let one = d.raw_constant("one_left", 1, remaining.q().format());
+        let more = d.less("more", one, remaining.q()).doc("not the last squaring");
+        steps.push(step(
+            "accumulator <- accumulator^2",
+            [
+                first.pick(accumulator.q()),
+                second.pick(accumulator.q()),
+                accumulator.load(),
+                remaining.count(),
+                loop_while(more, "accumulator <- accumulator^2"),
+            ],
+        ));
+    }
+    steps.push(step("result", [valid(), end()]));
+    d.microprogram(steps);
+}
+
+/// `1 − n/m·(1 − cos γ)` as the complement of the accumulator: an ulp too small, which is what keeps it
+/// a fraction. 0 when cos γ ≤ 0.
+fn base<'d>(d: &'d Designer, cos_gamma: Signal<'d>, accumulator: Signal<'d>) -> Signal<'d> {
+    let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
+    let inverse = d.not("inverse", accumulator).doc("1.0 - accumulator, less an ulp");
+    let zero = d.raw_constant("zero", 0, accumulator.format());
+    d.choose("base", facing, [zero, inverse]).doc("base of the power")
+}
+
+fn about(config: &Config) -> About {
+    let m = config.choice("power");
+    About {
+        device: "cosine-power".to_owned(),
+        title: format!("Specular intensity by the cosine-power function, m = {m}"),
+        formula: format!("out = colour * (n/{m} * (cos(gamma) - 1) + 1)^{m}"),
+        source: "Seed 002, the paper's W(n, gamma) with zeta = n/m".to_owned(),
+        notes: vec![
+            "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0, and so does everything \
+             beyond the zero of W at cos gamma = (n - m)/n."
+                .to_owned(),
+            "Writes while busy are ignored. The outputs follow the accumulator and the colour registers: they \
+             hold from valid until a colour is written or the next computation begins."
+                .to_owned(),
+        ],
+    }
+}

@@ -1,0 +1,502 @@
+//! `rough` — UA 60139 (seed 001): the highlight of a rough surface, `(n/2·(cos(γ±dγ) − 1) + 1)²`.
+//!
+//! Block numbers are the patent's. One multiplier (10) serves four products under the select lines
+//! V1 V2; the microprogram is the patent's table 1, word by word.
+
+use crate::config::{Config, Key, Problems, Schema};
+use crate::dsl::blocks::colour::{ChannelBlocks, Colours};
+use crate::dsl::blocks::segmented::{self, Entry, Segment, Segmentation, Shape};
+use crate::dsl::{Designer, Register, Signal, end, hold, step, valid};
+use crate::fixed::{Format, Overflow, Rounding};
+use crate::netlist::About;
+
+use super::{common, rounding};
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    let exact = ("arithmetic", "exact");
+    let segmented = ("sine.scheme", "segmented");
+    Schema {
+        device: "rough",
+        keys: vec![
+            Key::choice("arithmetic", "exact", &["exact", "patent"], "exact: words with an integer position; patent: words modulo 1.0, as in UA 60139"),
+            Key::flag("clamp", true, "clamp a negative n/2·(cos - 1) + 1 to 0; without it a ring appears around the highlight").only_when(exact.0, exact.1),
+            common::cosine_fraction(20),
+            common::cosine_signed().only_when(exact.0, exact.1),
+            common::exponent_bits(),
+            common::colour_bits(),
+            Key::integer("product.fraction", 22, 8..=28, "fraction bits of registers 11 and 12, the products of cosines and sines").only_when(exact.0, exact.1),
+            Key::choice("product.rounding", "truncate", &common::ROUNDINGS, "rounding into registers 11 and 12").only_when(exact.0, exact.1),
+            common::intensity_fraction(16).only_when(exact.0, exact.1),
+            common::intensity_rounding().only_when(exact.0, exact.1),
+            common::output_rounding(),
+            Key::choice("sine.scheme", "segmented", &["segmented", "direct"], "ROM 18: segments that shrink toward cos = 1, with interpolation; or one entry a bucket, as in the patent"),
+            Key::integer("sine.fraction", 22, 8..=28, "fraction bits of the sine").only_when(exact.0, exact.1),
+            Key::flag("sine.synchronous", true, "ROM 18 reads on the clock edge (block RAM) instead of at once (logic)"),
+            Key::integer("sine.address", 12, 4..=16, "address bits of the direct table").only_when("sine.scheme", "direct"),
+            Key::integers("sine.segments", &[7, 8, 7, 6, 6, 5, 5, 4, 4], 2..=10, 1..=11, "log2 of the segments of each factor of four of 1 - cos, from the top").only_when(segmented.0, segmented.1),
+            Key::integer("sine.slope_fraction", 20, 8..=28, "fraction bits of the rise over a segment").only_when(segmented.0, segmented.1),
+            common::exponent_min(),
+            common::exponent_max(),
+            Key::number("domain.deviation", 30.0, 0.0..=90.0, "the largest angle between the normal and the perturbed normal, in degrees"),
+        ],
+        check,
+    }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    common::check_exponents(config, problems);
+    let cosine = config.integer("cosine.fraction");
+    let (fraction, product) = if config.choice("arithmetic") == "exact" {
+        (config.integer("sine.fraction"), config.integer("product.fraction"))
+    } else {
+        (cosine, cosine)
+    };
+    if product > 2 * fraction.min(cosine) {
+        problems.push(
+            "product.fraction",
+            format!("{product} fraction bits are more than the products have"),
+            format!("at most {}", 2 * fraction.min(cosine)),
+        );
+    }
+    if config.choice("sine.scheme") == "direct" {
+        if config.integer("sine.address") > cosine {
+            problems.push(
+                "sine.address",
+                "more address bits than the cosine has fraction bits".to_owned(),
+                format!("at most {cosine}, or a larger cosine.fraction"),
+            );
+        }
+        return;
+    }
+    let mut most = 0;
+    for (range, &prefix) in (0i64..).zip(config.integers("sine.segments")) {
+        let bits = cosine - 2 * range;
+        if prefix > bits {
+            problems.push(
+                "sine.segments",
+                format!("range {range} has {bits} bits of 1 - cos, which cannot be cut into 2^{prefix} segments"),
+                "fewer ranges or smaller entries, or a larger cosine.fraction".to_owned(),
+            );
+            return;
+        }
+        most = most.max(bits - prefix);
+    }
+    let rest = cosine - 2 * config.integers("sine.segments").len() as i64;
+    if rest < 0 || rest > 12 {
+        problems.push(
+            "sine.segments",
+            format!("2^{rest} exact entries would remain below the last range"),
+            "as many ranges as leave 0 to 12 bits of cosine.fraction, two bits a range".to_owned(),
+        );
+    }
+    let slope = config.integer("sine.slope_fraction");
+    if slope > fraction || most + slope < fraction {
+        problems.push(
+            "sine.slope_fraction",
+            format!("{slope} fraction bits of the slope do not go with {fraction} of the sine"),
+            format!("{} to {fraction}", (fraction - most).max(8)),
+        );
+    }
+}
+
+/// The patent's numbers of the colour channels.
+const CHANNELS: [ChannelBlocks; 3] = [
+    ChannelBlocks {
+        inputs: (32, 33),
+        register: 5,
+        multiplier: 20,
+        output: 40,
+    },
+    ChannelBlocks {
+        inputs: (34, 35),
+        register: 6,
+        multiplier: 21,
+        output: 41,
+    },
+    ChannelBlocks {
+        inputs: (36, 37),
+        register: 7,
+        multiplier: 22,
+        output: 42,
+    },
+];
+
+/// The formats that a configuration chooses.
+struct Formats {
+    cosine: Format,
+    sine: Format,
+    cos_cos: Format,
+    sin_sin: Format,
+    result: Format,
+    /// The word `f`: the low bits of register 13.
+    f: Format,
+    product_rounding: Rounding,
+    result_rounding: Rounding,
+    patent: bool,
+}
+
+impl Formats {
+    fn of(config: &Config) -> Self {
+        let integer = |key: &str| config.integer(key) as i32;
+        let cosine = integer("cosine.fraction");
+        if config.choice("arithmetic") == "patent" {
+            let word = Format::unsigned(0, cosine);
+            return Self {
+                cosine: word,
+                sine: word,
+                cos_cos: word,
+                sin_sin: word,
+                result: word,
+                f: word,
+                product_rounding: Rounding::Truncate,
+                result_rounding: Rounding::Truncate,
+                patent: true,
+            };
+        }
+        let f = integer("intensity.fraction");
+        Self {
+            cosine: Format {
+                signed: config.flag("cosine.signed"),
+                int: 1,
+                frac: cosine,
+            },
+            sine: Format::unsigned(0, integer("sine.fraction")),
+            cos_cos: Format::unsigned(1, integer("product.fraction")),
+            sin_sin: Format::unsigned(0, integer("product.fraction")),
+            // From -1.0, where the parabola has its zero and the clamp holds; without the clamp from
+            // -2.0, which is as far as the square can rise again.
+            result: Format::signed(i32::from(!config.flag("clamp")), f),
+            f: Format::unsigned(0, f),
+            product_rounding: rounding(config, "product.rounding"),
+            result_rounding: rounding(config, "intensity.rounding"),
+            patent: false,
+        }
+    }
+}
+
+/// The device.
+pub fn describe(d: &Designer, config: &Config) {
+    let formats = Formats::of(config);
+    d.about(about(config));
+
+    let (cos_gamma, cos_dgamma) = operands(d, &formats);
+    let r3 = d
+        .operand("exponent", Format::unsigned(config.integer("exponent.bits") as i32, 0))
+        .block(3)
+        .inputs(59, 60)
+        .doc("specular exponent n");
+    let r4 = d
+        .operand("dgamma_negative", Format::BIT)
+        .block(4)
+        .inputs(61, 62)
+        .doc("trigger 4: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)");
+    let colours = Colours::new(d, config.integer("colour.bits") as i32, Some(CHANNELS));
+
+    // V1 V2, then V3, then the load lines V4 to V7: in the order of the patent's table.
+    let operand_select = d.select("operand_select", 4).lines(&[45, 46]);
+    let sine_of = d
+        .mux("mux17", [cos_gamma, cos_dgamma])
+        .block(17)
+        .line(47)
+        .doc("the cosine whose sine is looked up");
+    let r19 = d
+        .register("reg19_sin_gamma", formats.sine)
+        .block(19)
+        .line(48)
+        .doc("sin gamma");
+    let r11 = d
+        .register("reg11_cos_cos", formats.cos_cos)
+        .block(11)
+        .line(49)
+        .doc("cos gamma * cos dgamma");
+    let r12 = d
+        .register("reg12_sin_sin", formats.sin_sin)
+        .block(12)
+        .line(50)
+        .doc("sin gamma * sin dgamma");
+    let r13 = d
+        .register("reg13_result", formats.result)
+        .block(13)
+        .line(51)
+        .doc("n/2*(cos(gamma +- dgamma) - 1), then f");
+
+    let sine = sine_rom(d, config, &formats, sine_of.out());
+    r19.takes(sine);
+    let (adder15, half_n, adder16) = if formats.patent {
+        patent_sums(d, r4.q(), r3.q(), [r11, r12, r13])
+    } else {
+        exact_sums(d, r4.q(), r3.q(), [r11, r12, r13])
+    };
+
+    // Both products that register 13 takes must have their point in one place: zeros are appended to
+    // n/2, or to one side of the square, whichever falls short.
+    let sum_frac = adder15.format().frac + half_n.format().frac;
+    let square_frac = 2 * adder16.format().frac;
+    let half_n = half_n.with_fraction(half_n.format().frac + (square_frac - sum_frac).max(0));
+    let base = adder16.with_fraction(adder16.format().frac + (sum_frac - square_frac).max(0));
+    let half_n = half_n.named("half_exponent").doc("n/2, by wiring");
+
+    let mux8 = d
+        .bus("mux8", operand_select, [cos_gamma, sine, adder15, base])
+        .block(8)
+        .doc("first operand of multiplier 10");
+    let mux9 = d
+        .bus("mux9", operand_select, [cos_dgamma, r19.q(), half_n, adder16])
+        .block(9)
+        .doc("second operand of multiplier 10");
+    let product = d
+        .shared_mul("multiplier10", &mux8, &mux9)
+        .block(10)
+        .doc("the shared product; its point depends on the operands");
+    let take = |name: &str, register: Register, product: Signal, rounding: Rounding| {
+        let overflow = if formats.patent { Overflow::Wrap } else { Overflow::Saturate };
+        d.narrow(name, product, register.format(), rounding, overflow)
+    };
+    let cos_cos = product.of(cos_gamma, cos_dgamma);
+    r11.takes(take("cos_cos", r11, cos_cos, formats.product_rounding));
+    let sin_sin = product.of(sine, r19.q());
+    r12.takes(take("sin_sin", r12, sin_sin, formats.product_rounding));
+    let both = product.of_any(&[(adder15, half_n), (base, adder16)]);
+    let result = take("result", r13, both, formats.result_rounding);
+    r13.takes(if formats.patent {
+        result
+    } else {
+        facing_only(d, cos_gamma, result)
+    });
+
+    let f = r13.q().bits(0, formats.f).named("f").doc("the reflectance, once register 13 holds the square");
+    colours.outputs(f, rounding(config, "output.rounding"));
+
+    d.microprogram([
+        step("operands cos gamma, cos dgamma; sine of gamma addressed", []),
+        step("19 <- sin gamma; 11 <- cos gamma * cos dgamma", [hold(), r19.load(), r11.load()]),
+        step(
+            "operands sin dgamma, sin gamma",
+            [mux8.pick(sine), mux9.pick(r19.q()), sine_of.pick(cos_dgamma)],
+        ),
+        step("12 <- sin gamma * sin dgamma", [hold(), r12.load()]),
+        step(
+            "operands adder 15, n/2",
+            [mux8.pick(adder15), mux9.pick(half_n), sine_of.pick(cos_dgamma)],
+        ),
+        step("13 <- n/2 * (cos(gamma +- dgamma) - 1)", [hold(), r13.load()]),
+        step(
+            "operands adder 16, adder 16",
+            [mux8.pick(base), mux9.pick(adder16), sine_of.pick(cos_dgamma)],
+        ),
+        step("13 <- (... + 1)^2", [hold(), r13.load()]),
+        step(
+            "valid: intensities on the outputs",
+            [mux8.pick(adder15), mux9.pick(half_n), sine_of.pick(cos_dgamma), valid()],
+        ),
+        step("end: clears the triggers and counter 29", [end()]),
+    ]);
+}
+
+/// Registers 1 and 2. Exact arithmetic limits both to 0 … 1.0 as they are written; a negative cos γ
+/// becomes 0, which [`facing_only`] turns into f = 0.
+fn operands<'d>(d: &'d Designer, formats: &Formats) -> (Signal<'d>, Signal<'d>) {
+    let operand = |name: &str, format: Format| {
+        if formats.patent {
+            d.operand(name, format)
+        } else {
+            d.operand_clamped(name, format, 0.0, 1.0)
+        }
+    };
+    let unsigned = Format {
+        signed: false,
+        ..formats.cosine
+    };
+    let r1 = operand("cos_gamma", formats.cosine)
+        .block(1)
+        .inputs(55, 56)
+        .doc("cosine of the angle between normal and half vector");
+    let r2 = operand("cos_dgamma", unsigned)
+        .block(2)
+        .inputs(57, 58)
+        .doc("cosine of the angle by which the normal is perturbed");
+    (r1.q(), r2.q())
+}
+
+/// Adder 15, n/2 and adder 16 with integer positions.
+///
+/// Adder 15 = register 11 ∓ register 12 − 1.0. Mux 14 feeds it the inverse of 1.0 + register 12, to
+/// which the carry-in adds the missing ulp, or adder 31's register 12 − 1.0.
+fn exact_sums<'d>(
+    d: &'d Designer,
+    negative: Signal<'d>,
+    exponent: Signal<'d>,
+    [r11, r12, r13]: [Register<'d>; 3],
+) -> (Signal<'d>, Signal<'d>, Signal<'d>) {
+    let one = d.constant("one", 1.0, Format::unsigned(1, r12.format().frac));
+    let adder31 = d.sub("adder31", r12.q(), one).block(31).doc("register 12 - 1.0");
+    let raised = d.add("raised12", r12.q(), one).doc("register 12 + 1.0, by wiring");
+    let inverse = d.not("inverse12", raised.as_signed()).doc("-(register 12) - 1.0, less an ulp");
+    let mux14 = d
+        .choose("mux14", negative, [inverse, adder31])
+        .block(14)
+        .doc("what adder 15 adds to register 11");
+    let positive = d.not("subtracts", negative).doc("carry-in of adder 15");
+    let adder15 = d
+        .add_carry("adder15", r11.q(), mux14, positive)
+        .block(15)
+        .doc("cos(gamma +- dgamma) - 1.0");
+    let one = d.constant("one", 1.0, Format::unsigned(1, r13.format().frac));
+    let adder16 = d.add("adder16", r13.q(), one).block(16).doc("register 13 + 1.0");
+    (adder15, exponent.shift_right(1), adder16)
+}
+
+/// Adder 15, n/2 and adder 16 as the patent has them: fractions modulo 1.0, where every "− 1" is the
+/// missing carry and the low bit of n is dropped.
+///
+/// Adder 31's second input is all ones in the claim and in the description, zeros in the summary: ones.
+fn patent_sums<'d>(
+    d: &'d Designer,
+    negative: Signal<'d>,
+    exponent: Signal<'d>,
+    [r11, r12, r13]: [Register<'d>; 3],
+) -> (Signal<'d>, Signal<'d>, Signal<'d>) {
+    let word = r12.format();
+    let ones = d.raw_constant("ones", word.max_raw(), word);
+    let zeros = d.raw_constant("zeros", 0, word);
+    let carry = d.raw_constant("carry52", 1, Format::BIT).block(52);
+    let adder31 = d
+        .add_modulo("adder31", r12.q(), ones, None)
+        .block(31)
+        .doc("register 12 - 1 ulp");
+    let inverse = d.not("inverse12", r12.q()).doc("inverse of register 12");
+    let mux14 = d
+        .choose("mux14", negative, [inverse, adder31])
+        .block(14)
+        .doc("what adder 15 adds to register 11");
+    let adder15 = d
+        .add_modulo("adder15", r11.q(), mux14, Some(negative))
+        .block(15)
+        .doc("cos(gamma +- dgamma) - 1 ulp, modulo 1.0");
+    let adder16 = d
+        .add_modulo("adder16", r13.q(), zeros, Some(carry))
+        .block(16)
+        .doc("register 13 + 1 ulp, modulo 1.0");
+    let bits = exponent.format().width();
+    let half = exponent.bits(1, Format::unsigned(bits as i32 - 1, 0));
+    (adder15, half, adder16)
+}
+
+/// What register 13 takes: the product, or −1.0, which makes f = 0, when cos γ ≤ 0.
+fn facing_only<'d>(d: &'d Designer, cos_gamma: Signal<'d>, result: Signal<'d>) -> Signal<'d> {
+    let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
+    let dark = d.constant("minus_one", -1.0, Format::signed(0, result.format().frac));
+    d.choose("facing_result", facing, [dark, result])
+}
+
+/// ROM 18: sin = √(1 − cos²).
+fn sine_rom<'d>(d: &'d Designer, config: &Config, formats: &Formats, cosine: Signal<'d>) -> Signal<'d> {
+    let fraction = config.integer("cosine.fraction") as u32;
+    let synchronous = config.flag("sine.synchronous");
+    if config.choice("sine.scheme") == "direct" {
+        return direct_sine(d, config, formats, cosine);
+    }
+    let one = d.constant("one", 1.0, Format::unsigned(1, fraction as i32));
+    let complement = d.sub("complement", one, cosine).doc("1.0 - cos");
+    let u = complement.shift_left(fraction as i32);
+    let cut = Segmentation {
+        operand_bits: fraction,
+        segments: config.integers("sine.segments").iter().map(|&k| k as u32).collect(),
+    };
+    let shape = Shape {
+        fraction: formats.sine.frac,
+        slope_fraction: config.integer("sine.slope_fraction") as i32,
+        synchronous,
+    };
+    let entry = |segment: Segment| sine_entry(segment, fraction, shape);
+    segmented::interpolate(d, "sine", u, &cut, shape, entry, Some(18)).doc("sine of the addressed cosine")
+}
+
+/// The patent's own: one entry for each bucket of the cosine, the sine at its middle.
+fn direct_sine<'d>(d: &'d Designer, config: &Config, formats: &Formats, cosine: Signal<'d>) -> Signal<'d> {
+    let fraction = config.integer("cosine.fraction") as u32;
+    let bits = config.integer("sine.address") as u32;
+    let mut address = cosine.bits(fraction - bits, Format::unsigned(bits as i32, 0));
+    if !formats.patent {
+        // 1.0 has no bucket of its own: it reads the last one.
+        let last = d.raw_constant("last_bucket", (1 << bits) - 1, address.format());
+        address = d.choose("sine_address", cosine.bit(fraction), [address, last]);
+    }
+    let words: Vec<i128> = (0..1u32 << bits)
+        .map(|bucket| {
+            let x = (f64::from(bucket) + 0.5) / f64::from(1u32 << bits);
+            formats.sine.quantise((1.0 - x * x).sqrt())
+        })
+        .collect();
+    let rom = d
+        .rom("sine", address, formats.sine, &words, config.flag("sine.synchronous"))
+        .block(18)
+        .doc(&format!("sine ({}) at the middle of a bucket of the cosine", formats.sine));
+    rom.out().doc("sine of the addressed cosine")
+}
+
+/// The straight line through a segment of s(u) = √(1 − (1 − u)²) with the least error: the slope of
+/// the chord, and the base that puts the error of the segment's points symmetrically about 0.
+fn sine_entry(segment: Segment, fraction: u32, shape: Shape) -> Entry {
+    let one = f64::from(1u32 << fraction);
+    let sine = |u: f64| {
+        let x = (one - u) / one;
+        (1.0 - x * x).max(0.0).sqrt()
+    };
+    let value = Format::unsigned(0, shape.fraction);
+    let (from, length) = (segment.from as f64, segment.length as f64);
+    if segment.length == 1 {
+        return Entry {
+            base: value.quantise(sine(from)),
+            slope: 0,
+        };
+    }
+    let scale = f64::from(1u32 << shape.slope_fraction);
+    let slope = ((sine(from + length) - sine(from)) * scale + 0.5).floor();
+    let residual = |at: f64| sine(from + at) - slope / scale * at / length;
+    // Concave: the least residual is at an end, the greatest where the line is parallel.
+    let last = length - 1.0;
+    let least = residual(0.0).min(residual(last));
+    let (mut low, mut high) = (0.0, last);
+    while high - low > 2.0 {
+        let (a, b) = ((low + (high - low) / 3.0).floor(), (high - (high - low) / 3.0).ceil());
+        if residual(a) < residual(b) {
+            low = a;
+        } else {
+            high = b;
+        }
+    }
+    let middle = ((low + high) / 2.0).floor();
+    let most = [low, middle, high].into_iter().map(residual).fold(f64::MIN, f64::max);
+    Entry {
+        base: value.quantise((least + most) / 2.0),
+        slope: slope as i128,
+    }
+}
+
+fn about(config: &Config) -> About {
+    let patent = config.choice("arithmetic") == "patent";
+    let mut notes = vec![
+        "Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1; the control \
+         ROM is its table 1, bit for bit."
+            .to_owned(),
+        "Writes while busy are ignored. The outputs follow register 13 and the colour registers: they hold \
+         from valid until a colour is written or the next computation reaches its word 5."
+            .to_owned(),
+    ];
+    notes.push(if patent {
+        "Words are fractions modulo 1.0, as in the patent: every '- 1' is a missing carry, n loses its low \
+         bit, and nothing is clamped."
+            .to_owned()
+    } else {
+        "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.".to_owned()
+    });
+    About {
+        device: "rough".to_owned(),
+        title: "Specular intensity of a rough surface".to_owned(),
+        formula: "out = colour * (n/2 * (cos(gamma +- dgamma) - 1) + 1)^2".to_owned(),
+        source: "UA 60139, claim 1, figures 1, 2 and 4".to_owned(),
+        notes,
+    }
+}

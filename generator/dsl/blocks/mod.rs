@@ -1,0 +1,4 @@
+//! Blocks that several devices share, and that a device of your own can take too.
+
+pub mod colour;
+pub mod segmented;
