@@ -351,6 +351,8 @@ impl Designer {
             format = Format::unsigned(1 - format.frac, format.frac);
             range = (0, 1);
         }
+        // Inside the closure the caller would be this file.
+        let location = Location::caller();
         self.with(|inner| {
             let id = NetId(inner.design.nets.len() as u32);
             inner.design.nets.push(Net {
@@ -362,7 +364,7 @@ impl Designer {
                 doc: String::new(),
                 named,
                 unit: inner.unit,
-                location: Location::caller(),
+                location,
             });
             id
         })

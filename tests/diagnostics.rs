@@ -1,0 +1,304 @@
+//! Every mistake that a description can make, with the message that names signals and source line.
+
+use glint::dsl::{Designer, Setting, end, loop_while, next, step, valid};
+use glint::fixed::{Format, Overflow, Rounding};
+
+const BYTE: Format = Format::unsigned(0, 8);
+
+/// A small device that is right but for what `wrong` adds.
+fn mistakes(wrong: impl FnOnce(&Designer)) -> Vec<String> {
+    let d = Designer::new("device");
+    let x = d.operand("x", BYTE);
+    let y = d.register("y", BYTE);
+    y.takes(x.q());
+    d.output("y_out", y.q());
+    wrong(&d);
+    d.microprogram([step("idle", []), step("load", [y.load()]), step("result", [valid(), end()])]);
+    finish(d)
+}
+
+fn finish(d: Designer) -> Vec<String> {
+    match d.finish() {
+        Ok(_) => Vec::new(),
+        Err(diagnostics) => diagnostics
+            .0
+            .iter()
+            .map(|diagnostic| {
+                assert_eq!(diagnostic.location.file(), file!(), "{diagnostic}");
+                assert!(diagnostic.location.line() > 1);
+                diagnostic.message.clone()
+            })
+            .collect(),
+    }
+}
+
+fn program(steps: impl FnOnce(&Designer, Setting) -> Vec<glint::dsl::Step>) -> Vec<String> {
+    let d = Designer::new("device");
+    let x = d.operand("x", BYTE);
+    let y = d.register("y", BYTE);
+    y.takes(x.q());
+    d.output("y_out", y.q());
+    let steps = steps(&d, y.load());
+    d.microprogram(steps);
+    finish(d)
+}
+
+#[test]
+fn a_right_description_has_no_mistakes() {
+    assert_eq!(mistakes(|_| ()), Vec::<String>::new());
+}
+
+#[test]
+fn two_drivers() {
+    let found = mistakes(|d| {
+        let w = d.wire("w", BYTE);
+        let a = d.operand("a", BYTE);
+        d.drive(w, a.q());
+        d.drive(w, a.q());
+        let r = d.register("r", BYTE);
+        r.takes(a.q());
+        r.takes(w);
+    });
+    assert_eq!(found, ["`w` has two drivers: `a_reg` is the second", "`r` has two drivers: `w` is the second"]);
+}
+
+#[test]
+fn the_line_of_a_mistake_is_that_of_the_description() {
+    let d = Designer::new("device");
+    let a = d.operand("a", BYTE);
+    let w = d.wire("w", BYTE);
+    d.drive(w, a.q());
+    let line = line!() + 1;
+    d.drive(w, a.q());
+    d.microprogram([step("idle", []), step("end", [end()])]);
+    let found = d.finish().unwrap_err();
+    assert_eq!(found.0[0].location.line(), line);
+    assert!(found.to_string().contains(&format!("--> tests/diagnostics.rs:{line}:")), "{found}");
+}
+
+#[test]
+fn missing_drivers() {
+    let found = mistakes(|d| {
+        d.wire("floating", BYTE);
+        let r = d.register("idle_register", BYTE);
+        let _ = r;
+    });
+    assert_eq!(
+        found,
+        ["nothing drives `floating`", "nothing drives the data input of register `idle_register`"]
+    );
+}
+
+#[test]
+fn combinational_loops() {
+    let found = mistakes(|d| {
+        let a = d.operand("a", BYTE);
+        let w = d.wire("w", BYTE);
+        let sum = d.add_modulo("sum", w, a.q(), None);
+        let back = d.not("back", sum);
+        d.drive(w, back);
+    });
+    assert_eq!(found.len(), 1);
+    assert!(found[0].starts_with("combinational loop: `"), "{found:?}");
+    for name in ["`w`", "`sum`", "`back`"] {
+        assert!(found[0].contains(name), "{found:?}");
+    }
+}
+
+#[test]
+fn formats_that_do_not_match() {
+    let found = mistakes(|d| {
+        let a = d.operand("a", Format::unsigned(2, 3));
+        let b = d.operand("b", Format::unsigned(1, 7));
+        let r = d.register("r", BYTE);
+        r.takes(a.q());
+        d.mux("m", [a.q(), b.q()]);
+        d.add_modulo("s", a.q(), b.q(), None);
+        let _ = b.q().with_fraction(3);
+        let _ = a.q().bits(3, BYTE);
+        d.and("both", a.q(), b.q());
+    });
+    let expected = [
+        "register `r` is u0.8, but `a_reg` is u2.3 with values from 0 to 31 ulp: narrow it or change the format",
+        "mux `m`: `a_reg` is u2.3 and `b_reg` is u1.7; their points differ (with_fraction aligns them, a bus carries both)",
+        "`s` adds `a_reg` (u2.3) and `b_reg` (u1.7) modulo the width: the formats must be equal",
+        "`b_reg` is u1.7: 3 fraction bits would drop some; narrow it",
+        "bits 3 to 10 of `a_reg`, which has 5",
+        "`a_reg` is u2.3: one bit is wanted here",
+        "`b_reg` is u1.7: one bit is wanted here",
+    ];
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn clashing_fields() {
+    let found = program(|d, load| {
+        let a = d.operand("a", BYTE);
+        let b = d.operand("b", BYTE);
+        let select = d.select("select", 2);
+        let first = d.mux_on("first", select, [a.q(), b.q()]);
+        let second = d.mux_on("second", select, [b.q(), a.q()]);
+        vec![
+            step("idle", []),
+            step("both", [first.pick(a.q()), second.pick(a.q()), load]),
+            step("end", [end()]),
+        ]
+    });
+    assert_eq!(
+        found,
+        ["word `both`: `second.pick(a_reg)` clashes with `first.pick(a_reg)`: they share select lines"]
+    );
+}
+
+#[test]
+fn picks_of_what_a_mux_does_not_pass_on() {
+    let found = program(|d, load| {
+        let a = d.operand("a", BYTE);
+        let b = d.operand("b", BYTE);
+        let m = d.mux("m", [a.q(), a.q()]);
+        vec![step("idle", [m.pick(b.q())]), step("x", [m.pick(a.q()), load]), step("end", [end()])]
+    });
+    assert_eq!(found, ["`b_reg` is no input of `m`", "`a_reg` is more than one input of `m`"]);
+}
+
+#[test]
+fn words_out_of_order() {
+    let found = program(|_, load| vec![step("idle", []), step("end", [load.clone(), end()]), step("after", [load])]);
+    assert_eq!(found, ["word `after` cannot be reached"]);
+
+    let found = program(|_, load| vec![step("idle", []), step("load", [load])]);
+    assert_eq!(found, ["the last word, `load`, does not end"]);
+
+    let found = program(|_, load| vec![step("idle", [load.clone()]), step("load", [load, end()])]);
+    assert_eq!(found, ["word `idle` turns `y_load`, but the device also waits for start in it"]);
+
+    let found = program(|_, load| vec![step("idle", []), step("two ways", [load, next(), end()])]);
+    assert_eq!(found, ["word `two ways` goes on in two ways"]);
+
+    let found = program(|_, load| vec![step("idle", []), step("twice", [load.clone()]), step("twice", [load, end()])]);
+    assert_eq!(found, ["two words are named `twice`"]);
+
+    let found = program(|_, _| vec![step("idle", []), step("end", [end()])]);
+    assert_eq!(found, ["no word turns `y_load`"]);
+
+    let found = program(|_, load| vec![step("only", [load, end()])]);
+    assert_eq!(found, ["a microprogram has at least two words: where it waits, and where it ends"]);
+
+    let found = program(|d, load| {
+        let bit = d.operand("more", Format::BIT);
+        vec![step("idle", []), step("load", [load, loop_while(bit.q(), "nowhere")]), step("end", [end()])]
+    });
+    assert_eq!(found, ["word `load` loops to `nowhere`, but no word has that name"]);
+}
+
+#[test]
+fn no_or_two_microprograms() {
+    let d = Designer::new("device");
+    assert_eq!(finish(d), ["the design has no microprogram"]);
+    let d = Designer::new("device");
+    for _ in 0..2 {
+        d.microprogram([step("idle", []), step("end", [end()])]);
+    }
+    assert_eq!(finish(d), ["a second microprogram"]);
+}
+
+#[test]
+fn products_taken_under_another_selection() {
+    let d = Designer::new("device");
+    let a = d.operand("a", BYTE);
+    let b = d.operand("b", Format::unsigned(2, 6));
+    let select = d.select("operands", 2);
+    let first = d.bus("first", select, [a.q(), b.q()]);
+    let second = d.bus("second", select, [a.q(), b.q()]);
+    let product = d.shared_mul("product", &first, &second);
+    let y = d.register("y", BYTE);
+    let square = product.of(a.q(), a.q());
+    y.takes(d.narrow("square", square, BYTE, Rounding::Truncate, Overflow::Saturate));
+    d.output("y_out", y.q());
+    d.microprogram([
+        step("idle", []),
+        step("wrong", [first.pick(b.q()), y.load()]),
+        step("end", [end()]),
+    ]);
+    assert_eq!(
+        finish(d),
+        ["word `wrong` loads `y` with the product of (a_reg), but selects (b_reg)"]
+    );
+}
+
+#[test]
+fn products_that_are_never_formed() {
+    let found = mistakes(|d| {
+        let a = d.operand("a", BYTE);
+        let b = d.operand("b", Format::unsigned(2, 6));
+        let select = d.select("operands", 2);
+        let first = d.bus("first", select, [a.q(), b.q()]);
+        let second = d.bus("second", select, [a.q(), b.q()]);
+        let product = d.shared_mul("product", &first, &second);
+        let _ = product.of(a.q(), b.q());
+        let _ = product.of_any(&[(a.q(), a.q()), (b.q(), b.q())]);
+    });
+    assert_eq!(
+        found,
+        [
+            "`product` never multiplies `a_reg` by `b_reg`",
+            "the products of `product` that are taken together have [16, 12] fraction bits: append zeros to an operand",
+        ]
+    );
+}
+
+#[test]
+fn nets_that_are_too_wide() {
+    let found = mistakes(|d| {
+        let a = d.operand("a", Format::unsigned(0, 40));
+        d.mul("square", a.q(), a.q());
+    });
+    assert_eq!(found, ["`square` would be 80 bits wide (u0.80); a net has 1 to 64"]);
+}
+
+#[test]
+fn roms_that_do_not_fit() {
+    let found = mistakes(|d| {
+        let a = d.operand("a", Format::unsigned(3, 0));
+        d.rom("short", a.q(), BYTE, &[1, 2, 3], false);
+        d.rom("wide", a.q(), BYTE, &[0, 1, 2, 3, 4, 5, 6, 256], false);
+    });
+    assert_eq!(
+        found,
+        [
+            "ROM `short` has 3 words, but its address `a_reg` (u3.0) runs from 0 to 7",
+            "ROM `wide`: word 7 is 256, which does not fit u0.8",
+        ]
+    );
+}
+
+#[test]
+fn constants_that_are_not_representable() {
+    let found = mistakes(|d| {
+        d.constant("third", 1.0 / 3.0, BYTE);
+        d.raw_constant("many", 256, BYTE);
+    });
+    assert_eq!(
+        found,
+        ["constant `third`: 0.3333333333333333 is not representable in u0.8", "constant `many`: 256 does not fit u0.8"]
+    );
+}
+
+#[test]
+fn names_that_verilog_does_not_take() {
+    let found = mistakes(|d| {
+        d.operand("a", BYTE);
+        d.operand("a", BYTE);
+        d.operand("module", BYTE);
+        d.operand("two words", BYTE);
+        d.operand("clk", BYTE);
+    });
+    let twice = ["a", "a_write", "a_load", "a_reg"].map(|name| format!("the name `{name}` is used twice"));
+    for message in twice {
+        assert!(found.contains(&message), "{found:#?}");
+    }
+    let has = |start: &str| found.iter().any(|message| message.starts_with(start));
+    assert!(has("`module` cannot be a Verilog name: "), "{found:#?}");
+    assert!(has("`two words` cannot be a Verilog name: "), "{found:#?}");
+    assert!(has("`clk` is the clock of every design"), "{found:#?}");
+}
