@@ -1,0 +1,9 @@
+//! Co-simulation: stimulus, golden model against built-in simulator, external simulators.
+
+pub mod external;
+mod lockstep;
+mod stimulus;
+pub mod trial;
+
+pub use lockstep::{Lockstep, Mismatch, Outcome, Worst};
+pub use stimulus::{Random, Stimulus};

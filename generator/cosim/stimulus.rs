@@ -1,0 +1,290 @@
+//! What the inputs do, clock by clock.
+//!
+//! A stimulus is a mix of everything that a device meets: points with idle gaps and back to back,
+//! operands written one after another, all at once or together with `start`, some left from the point
+//! before, writes and starts while busy, and resets in the middle of a computation. It reacts to `busy`,
+//! as a host does, and is a function of its seed.
+
+use crate::golden::Operand;
+use crate::netlist::{Design, NetId, Role};
+
+/// A small deterministic generator (SplitMix64): the same numbers on every machine, and fast enough
+/// not to matter beside the simulation.
+#[derive(Clone, Debug)]
+pub struct Random(u64);
+
+impl Random {
+    /// The sequence of a seed.
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    /// The next 64 bits.
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    /// An integer from 0 to `below - 1`.
+    pub fn below(&mut self, below: u64) -> u64 {
+        ((u128::from(self.bits()) * u128::from(below)) >> 64) as u64
+    }
+
+    /// True once in `times`.
+    pub fn once_in(&mut self, times: u64) -> bool {
+        self.below(times) == 0
+    }
+
+    /// An integer from `low` to `high`.
+    pub fn within(&mut self, low: i64, high: i64) -> i64 {
+        let span = (i128::from(high) - i128::from(low) + 1) as u64;
+        if span == 0 { self.bits() as i64 } else { low.wrapping_add(self.below(span) as i64) }
+    }
+}
+
+/// An operand as the stimulus drives it.
+struct Driven {
+    /// Positions of data and strobe among the inputs.
+    data: usize,
+    strobe: usize,
+    operand: Operand,
+    /// The raw value that the register was last given while the device could take it.
+    accepted: i64,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Phase {
+    /// `rst_n` low for so many clocks more.
+    Reset(u32),
+    /// Writing; the operands still to be written, as a mask.
+    Writing(u64),
+    /// `start` is due after so many idle clocks.
+    Starting(u32),
+    /// A computation runs.
+    Running,
+}
+
+/// The inputs of a device, clock by clock.
+pub struct Stimulus {
+    random: Random,
+    operands: Vec<Driven>,
+    reset: usize,
+    start: usize,
+    phase: Phase,
+    inputs: Vec<u64>,
+    /// Whether a reset has come between the start of the current computation and now.
+    disturbed: bool,
+    first: bool,
+}
+
+impl Stimulus {
+    /// The inputs of `design` in the order of its ports; `operands` give the domains.
+    ///
+    /// Operands of the design that `operands` does not mention take any bit pattern.
+    pub fn new(design: &Design, operands: &[Operand], seed: u64) -> Self {
+        let names: Vec<&str> = design.inputs().map(|port| design.net(port.net).name.as_str()).collect();
+        let position = |net: NetId| {
+            let name = &design.net(net).name;
+            names.iter().position(|other| other == name).unwrap_or(0)
+        };
+        let mut driven = Vec::new();
+        let (mut reset, mut start) = (0, 0);
+        for port in design.inputs() {
+            let net = design.net(port.net);
+            match port.role {
+                Role::Reset => reset = position(port.net),
+                Role::Start => start = position(port.net),
+                Role::Operand { strobe } => {
+                    let known = operands.iter().find(|operand| operand.name == net.name);
+                    let operand = known.cloned().unwrap_or_else(|| Operand {
+                        name: net.name.clone(),
+                        format: net.format,
+                        domain: (net.format.min_raw() as i64, net.format.max_raw() as i64),
+                        colour: false,
+                        doc: String::new(),
+                    });
+                    driven.push(Driven {
+                        data: position(port.net),
+                        strobe: position(strobe),
+                        operand,
+                        accepted: 0,
+                    });
+                }
+                _ => {}
+            }
+        }
+        Self {
+            random: Random::new(seed),
+            operands: driven,
+            reset,
+            start,
+            phase: Phase::Reset(2),
+            inputs: vec![0; names.len()],
+            disturbed: false,
+            first: true,
+        }
+    }
+
+    /// The position of an operand among those of the design, for [`Stimulus::accepted`].
+    pub fn position(&self, name: &str) -> Option<usize> {
+        self.operands.iter().position(|driven| driven.operand.name == name)
+    }
+
+    /// The raw value that was last written to an operand while the device could take it.
+    pub fn accepted(&self, position: usize) -> i64 {
+        self.operands[position].accepted
+    }
+
+    /// Whether the computation that runs was started by this stimulus and not reset since.
+    pub fn undisturbed(&self) -> bool {
+        !self.disturbed
+    }
+
+    /// The inputs of the next clock, given `busy` as it stands before the edge.
+    pub fn next(&mut self, busy: bool) -> &[u64] {
+        self.inputs.fill(0);
+        self.inputs[self.reset] = 1;
+        match self.phase {
+            Phase::Reset(left) => {
+                self.inputs[self.reset] = 0;
+                self.disturbed = true;
+                if !self.first {
+                    self.noise(busy);
+                }
+                self.phase = if left > 0 { Phase::Reset(left - 1) } else { self.next_point() };
+            }
+            Phase::Writing(left) => self.write(left),
+            Phase::Starting(idle) => {
+                if idle == 0 {
+                    self.begin();
+                } else {
+                    self.phase = Phase::Starting(idle - 1);
+                }
+            }
+            Phase::Running => self.run(busy),
+        }
+        self.accept(busy);
+        &self.inputs
+    }
+
+    fn begin(&mut self) {
+        self.inputs[self.start] = 1;
+        self.disturbed = false;
+        self.first = false;
+        self.phase = Phase::Running;
+    }
+
+    /// A clock after `start`: until the device has ended, now and then something that it must ignore,
+    /// or a reset.
+    fn run(&mut self, busy: bool) {
+        if busy {
+            if self.random.once_in(6) {
+                self.noise(true);
+            }
+            if self.random.once_in(400) {
+                self.inputs[self.reset] = 0;
+                self.disturbed = true;
+                self.phase = Phase::Reset(self.random.below(3) as u32);
+            }
+            return;
+        }
+        // Ended, and the device takes operands again in this very clock.
+        self.phase = self.next_point();
+        match self.phase {
+            Phase::Writing(left) => self.write(left),
+            Phase::Starting(0) => self.begin(),
+            Phase::Starting(idle) => self.phase = Phase::Starting(idle - 1),
+            _ => {}
+        }
+    }
+
+    /// What to do for the next point.
+    fn next_point(&mut self) -> Phase {
+        let all = (1u64 << self.operands.len()) - 1;
+        if self.first {
+            return Phase::Writing(all);
+        }
+        match self.random.below(8) {
+            // The same operands once more.
+            0 => Phase::Starting(self.random.below(4) as u32),
+            // Some of them.
+            1 | 2 => Phase::Writing(self.random.bits() & all),
+            _ => Phase::Writing(all),
+        }
+    }
+
+    /// Writes of the operands in `left`: one, or all at once, perhaps together with `start`.
+    fn write(&mut self, left: u64) {
+        let now = match self.random.below(4) {
+            0 if left != 0 => 1 << left.trailing_zeros(),
+            1 => left & self.random.bits(),
+            _ => left,
+        };
+        for at in 0..self.operands.len() {
+            if now >> at & 1 == 1 {
+                let bits = self.value(at);
+                let driven = &self.operands[at];
+                self.inputs[driven.data] = bits;
+                self.inputs[driven.strobe] = 1;
+            }
+        }
+        let left = left & !now;
+        self.phase = if left != 0 {
+            Phase::Writing(left)
+        } else if self.random.once_in(3) {
+            // Together with the last write.
+            self.begin();
+            Phase::Running
+        } else {
+            Phase::Starting(if self.random.once_in(4) { self.random.below(6) as u32 } else { 0 })
+        };
+    }
+
+    /// Strobes, data and `start` at random: ignored while busy.
+    fn noise(&mut self, busy: bool) {
+        for at in 0..self.operands.len() {
+            let bits = self.value(at);
+            let strobe = self.random.once_in(3);
+            let driven = &self.operands[at];
+            self.inputs[driven.data] = bits;
+            self.inputs[driven.strobe] = u64::from(strobe);
+        }
+        if busy {
+            self.inputs[self.start] = u64::from(self.random.once_in(2));
+        }
+    }
+
+    /// A bit pattern for an operand: mostly of its domain, often at its ends, sometimes anything.
+    fn value(&mut self, at: usize) -> u64 {
+        let (format, (low, high)) = (self.operands[at].operand.format, self.operands[at].operand.domain);
+        let raw = match self.random.below(16) {
+            0 => i128::from(low),
+            1 => i128::from(high),
+            2 => return self.random.bits() & crate::fixed::mask(format.width()),
+            // Close to an end of the domain, by a random power of two.
+            3..=6 => {
+                let reach = (i128::from(high) - i128::from(low)).max(1) as u64;
+                let bits = self.random.below(u64::from(64 - reach.leading_zeros()) + 1);
+                let back = self.random.below(1 << bits.min(62)).min(reach);
+                i128::from(high) - i128::from(back)
+            }
+            _ => i128::from(self.random.within(low, high)),
+        };
+        format.bits(raw)
+    }
+
+    /// Notes what the registers take at this edge.
+    fn accept(&mut self, busy: bool) {
+        if busy {
+            return;
+        }
+        for driven in &mut self.operands {
+            if self.inputs[driven.strobe] == 1 {
+                driven.accepted = driven.operand.format.raw(self.inputs[driven.data]) as i64;
+            }
+        }
+    }
+}

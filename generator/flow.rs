@@ -1,0 +1,95 @@
+//! From a configuration to everything that is made of it.
+
+use anyhow::{Context, Result, ensure};
+
+use crate::config::Config;
+use crate::cosim::{Lockstep, trial};
+use crate::emit::{self, EmitInputs, OutputFile, Timing, Vectors};
+use crate::golden::Contract;
+use crate::netlist::Design;
+use crate::registry::Device;
+use crate::sim::Simulator;
+
+/// Results in the stimulus of a committed bench.
+pub const BENCH_POINTS: u64 = 24;
+
+/// The seed of the stimulus of a committed bench.
+pub const BENCH_SEED: u64 = 1;
+
+/// A configuration with its design.
+pub struct Unit {
+    /// The device.
+    pub device: Device,
+    /// Its configuration.
+    pub config: Config,
+    /// The design that the description makes of it.
+    pub design: Design,
+    /// The accuracy contract.
+    pub contract: Box<dyn Contract>,
+}
+
+impl Unit {
+    /// Builds and checks the design.
+    ///
+    /// # Errors
+    /// The mistakes of the description.
+    pub fn new(device: Device, config: Config) -> Result<Self> {
+        let design = device
+            .design(&config)
+            .with_context(|| format!("the description of `{}` is wrong", device.name))?;
+        let contract = (device.contract)(&config);
+        Ok(Self {
+            device,
+            config,
+            design,
+            contract,
+        })
+    }
+
+    /// Golden model and built-in simulator, side by side.
+    ///
+    /// # Errors
+    /// Model and design do not name the same signals.
+    pub fn lockstep(&self, seed: u64) -> Result<Lockstep<'_>> {
+        let model = (self.device.model)(&self.config);
+        Lockstep::new(&self.design, model, self.contract.as_ref(), Simulator::new(&self.design)?, seed)
+    }
+
+    /// Clocks between the events of the handshake.
+    ///
+    /// # Errors
+    /// A device that does not end.
+    pub fn timing(&self) -> Result<Timing> {
+        trial::timing(&self.design, self.contract.as_ref())
+    }
+
+    /// Stimulus and expected outputs for a bench; the golden model and the built-in simulator agree on
+    /// them.
+    ///
+    /// # Errors
+    /// They do not agree.
+    pub fn vectors(&self, points: u64, seed: u64) -> Result<Vectors> {
+        let mut vectors = Vectors::default();
+        let outcome = self.lockstep(seed)?.run(points, Some(&mut vectors), &mut |_| ())?;
+        ensure!(
+            outcome.mismatch.is_none(),
+            "golden model and simulation differ: {:?}",
+            outcome.mismatch
+        );
+        Ok(vectors)
+    }
+
+    /// Every file of the configuration, which the command line knows as `config`.
+    ///
+    /// # Errors
+    /// Golden model and simulation do not agree, or the design cannot be written as Verilog.
+    pub fn files(&self, config: &str, vectors: Vectors) -> Result<Vec<OutputFile>> {
+        let inputs = EmitInputs {
+            config: config.to_owned(),
+            timing: self.timing()?,
+            example: Some(trial::example(&self.design, self.contract.as_ref())?),
+            vectors: Some(vectors),
+        };
+        emit::emit(&self.design, &inputs)
+    }
+}

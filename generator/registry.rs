@@ -1,0 +1,92 @@
+//! What a device is to the command line: keys, description, golden model, contract.
+
+use crate::check::Diagnostics;
+use crate::config::{Config, Schema};
+use crate::devices;
+use crate::dsl::Designer;
+use crate::golden::{self, Contract, Model};
+use crate::netlist::Design;
+
+/// A device that Glint can generate, simulate and check.
+#[derive(Clone, Copy)]
+pub struct Device {
+    /// As the key `device` names it.
+    pub name: &'static str,
+    /// One line for `glint list`.
+    pub summary: &'static str,
+    /// Its configuration keys.
+    pub schema: fn() -> Schema,
+    /// Its description.
+    pub describe: fn(&Designer, &Config),
+    /// Its golden model.
+    pub model: fn(&Config) -> Box<dyn Model>,
+    /// Its accuracy contract.
+    pub contract: fn(&Config) -> Box<dyn Contract>,
+}
+
+impl Device {
+    /// The design that a configuration asks for.
+    ///
+    /// # Errors
+    /// The mistakes of the description.
+    pub fn design(&self, config: &Config) -> Result<Design, Diagnostics> {
+        let designer = Designer::new(&config.name);
+        (self.describe)(&designer, config);
+        designer.finish()
+    }
+}
+
+/// The devices that a command line knows.
+#[derive(Clone)]
+pub struct Registry(Vec<Device>);
+
+impl Registry {
+    /// No device at all: for a command line of your own devices.
+    pub fn empty() -> Self {
+        Self(Vec::new())
+    }
+
+    /// The devices of the seeds.
+    pub fn catalogue() -> Self {
+        Self(vec![
+            Device {
+                name: "rough",
+                summary: "rough surface, (n/2*(cos(gamma +- dgamma) - 1) + 1)^2 (UA 60139)",
+                schema: devices::rough::schema,
+                describe: devices::rough::describe,
+                model: |config| Box::new(golden::rough::RoughModel::new(config)),
+                contract: |config| Box::new(golden::rough::RoughContract::new(config)),
+            },
+            Device {
+                name: "cosine-power",
+                summary: "W(n, gamma) = (n/m*(cos gamma - 1) + 1)^m, m = 2, 4, 8, 16 (seed 002)",
+                schema: devices::cosine_power::schema,
+                describe: devices::cosine_power::describe,
+                model: |config| Box::new(golden::cosine_power::CosinePowerModel::new(config)),
+                contract: |config| Box::new(golden::cosine_power::CosinePowerContract::new(config)),
+            },
+        ])
+    }
+
+    /// The registry with one device more.
+    #[must_use]
+    pub fn with(mut self, device: Device) -> Self {
+        self.0.push(device);
+        self
+    }
+
+    /// All devices, in order.
+    pub fn devices(&self) -> &[Device] {
+        &self.0
+    }
+
+    /// The device of a configuration, which was read with the schemas of this registry.
+    pub fn device(&self, name: &str) -> Option<&Device> {
+        self.0.iter().find(|device| device.name == name)
+    }
+
+    /// The keys of all devices.
+    pub fn schemas(&self) -> Vec<Schema> {
+        self.0.iter().map(|device| (device.schema)()).collect()
+    }
+}
