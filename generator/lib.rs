@@ -8,3 +8,4 @@ pub mod golden;
 pub mod identifier;
 pub mod microcode;
 pub mod netlist;
+pub mod sim;

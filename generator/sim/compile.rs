@@ -1,0 +1,529 @@
+//! From [`Design`] to [`Program`].
+
+use std::collections::{BTreeMap, HashMap};
+
+use anyhow::{Context, Result, anyhow, bail, ensure};
+
+use crate::fixed::{MAX_WIDTH, mask};
+use crate::netlist::{Design, Driver, NetId, Op, Role, RomId};
+use crate::sim::machine::execute;
+use crate::sim::program::{Instruction, Program, ReadEdge, RegisterEdge, Slot, Span};
+
+/// Compiles a design. The errors are those of [`Program::new`].
+pub(super) fn compile(design: &Design) -> Result<Program> {
+    check_ids(design)?;
+    let mut compiler = Compiler::new(design)?;
+    let order = design.levelise().map_err(|nets| {
+        let names: Vec<_> = nets
+            .iter()
+            .map(|net| design.net(*net).name.as_str())
+            .collect();
+        anyhow!("combinational loop through `{}`", names.join("`, `"))
+    })?;
+    for net in order {
+        let slot = compiler.net(net).with_context(|| {
+            let net = design.net(net);
+            format!("net `{}` ({})", net.name, net.location)
+        })?;
+        compiler.of_net[net.index()] = slot;
+    }
+    compiler.finish()
+}
+
+/// What a slot's value depends on within one clock; an operation depends on the most variable of its
+/// operands.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Source {
+    Constant,
+    State,
+    Input,
+}
+
+struct Compiler<'a> {
+    design: &'a Design,
+    /// For each slot.
+    sources: Vec<Source>,
+    /// For each slot; the only lane is that of the folded constants.
+    initial: Vec<[u64; 1]>,
+    constants: BTreeMap<u64, Slot>,
+    /// Instructions already there, written to slot 0, and the slots that have their results.
+    known: HashMap<Instruction, Slot>,
+    on_state: Vec<Instruction>,
+    on_inputs: Vec<Instruction>,
+    choices: Vec<Slot>,
+    words: Vec<u64>,
+    roms: Vec<Span>,
+    /// For each net; meaningful once the net has been compiled.
+    of_net: Vec<Slot>,
+    input_masks: Vec<u64>,
+    /// The bits of each control field in the control word: the lowest.
+    fields: Vec<u32>,
+}
+
+impl<'a> Compiler<'a> {
+    fn new(design: &'a Design) -> Result<Self> {
+        let mut compiler = Self {
+            design,
+            sources: Vec::new(),
+            initial: Vec::new(),
+            constants: BTreeMap::new(),
+            known: HashMap::new(),
+            on_state: Vec::new(),
+            on_inputs: Vec::new(),
+            choices: Vec::new(),
+            words: Vec::new(),
+            roms: Vec::new(),
+            of_net: vec![Slot::MAX; design.nets.len()],
+            input_masks: Vec::new(),
+            fields: Vec::new(),
+        };
+        for port in design.inputs() {
+            let net = design.net(port.net);
+            let new = compiler.of_net[port.net.index()] == Slot::MAX;
+            ensure!(
+                new && net.driver == Driver::Input,
+                "`{}` ({}) is not an input port, or is one twice",
+                net.name,
+                net.location
+            );
+            compiler.of_net[port.net.index()] = compiler.fresh(Source::Input);
+            compiler.input_masks.push(mask(design.width(port.net)));
+        }
+        for rom in &design.roms {
+            let mask = mask(design.width(rom.data));
+            let start = u32::try_from(compiler.words.len()).context("the ROMs are too large")?;
+            let len = u32::try_from(rom.words.len()).context("the ROMs are too large")?;
+            compiler.roms.push(Span { start, len });
+            compiler
+                .words
+                .extend(rom.words.iter().map(|word| word & mask));
+        }
+        if !design.control.fields.is_empty() {
+            let fields = &design.control.fields;
+            let wide: u32 = fields.iter().map(|field| design.width(field.net)).sum();
+            let word = design.width(design.rom(design.control.rom).data);
+            ensure!(
+                wide <= word,
+                "the fields take {wide} bits of a control word of {word}"
+            );
+            compiler.fields = design.field_positions();
+        }
+        Ok(compiler)
+    }
+
+    fn fresh(&mut self, source: Source) -> Slot {
+        self.sources.push(source);
+        self.initial.push([0]);
+        (self.sources.len() - 1) as Slot
+    }
+
+    fn constant(&mut self, bits: u64) -> Slot {
+        if let Some(slot) = self.constants.get(&bits) {
+            return *slot;
+        }
+        let slot = self.fresh(Source::Constant);
+        self.initial[slot as usize] = [bits];
+        self.constants.insert(bits, slot);
+        slot
+    }
+
+    /// The value of a slot that is known already.
+    fn known_value(&self, slot: Slot) -> Option<u64> {
+        let constant = self.sources[slot as usize] == Source::Constant;
+        constant.then(|| self.initial[slot as usize][0])
+    }
+
+    /// The slot with the result of an instruction, which `make` builds for a given destination.
+    fn emit(&mut self, operands: &[Slot], make: impl Fn(Slot) -> Instruction) -> Slot {
+        if let Some(slot) = self.known.get(&make(0)) {
+            return *slot;
+        }
+        let source = operands
+            .iter()
+            .map(|slot| self.sources[*slot as usize])
+            .max();
+        let source = source.unwrap_or(Source::Constant);
+        let to = self.fresh(source);
+        match source {
+            Source::Constant => {
+                execute(make(to), &self.choices, &self.words, &mut self.initial);
+                let [bits] = self.initial.pop().unwrap_or_default();
+                self.sources.pop();
+                return self.constant(bits);
+            }
+            Source::State => self.on_state.push(make(to)),
+            Source::Input => self.on_inputs.push(make(to)),
+        }
+        self.known.insert(make(0), to);
+        to
+    }
+
+    /// The slot of a net whose inputs have been compiled.
+    fn net(&mut self, id: NetId) -> Result<Slot> {
+        let design = self.design;
+        let width = design.width(id);
+        match &design.net(id).driver {
+            Driver::Undriven => bail!("it has no driver"),
+            Driver::Input => {
+                let slot = self.of_net[id.index()];
+                ensure!(slot != Slot::MAX, "it is an input, but not among the ports");
+                Ok(slot)
+            }
+            Driver::Constant(bits) => Ok(self.constant(bits & mask(width))),
+            Driver::Register(register) => {
+                ensure!(
+                    design.register(*register).q == id,
+                    "its register drives another net"
+                );
+                Ok(self.fresh(Source::State))
+            }
+            Driver::Rom(rom) => {
+                ensure!(design.rom(*rom).data == id, "its ROM drives another net");
+                if design.rom(*rom).synchronous {
+                    return Ok(self.fresh(Source::State));
+                }
+                let address = self.of_net[design.rom(*rom).address.index()];
+                let words = self.roms[rom.index()];
+                let read = |to| Instruction::Read { to, address, words };
+                // The table is an operand too: a read from it is not the more constant for being
+                // the same in every clock, but a constant address does make a constant.
+                Ok(self.emit(&[address], read))
+            }
+            Driver::Field(field) => {
+                ensure!(
+                    design.control.fields[field.index()].net == id,
+                    "its field drives another net"
+                );
+                let word = design.rom(design.control.rom).data;
+                self.slice(word, self.fields[field.index()], width)
+            }
+            Driver::Op(op) => self.op(op, id),
+        }
+    }
+
+    fn op(&mut self, op: &Op, id: NetId) -> Result<Slot> {
+        let design = self.design;
+        let width = design.width(id);
+        let slot = |net: NetId| self.of_net[net.index()];
+        let wide = |net: NetId, wanted: u32| {
+            ensure!(
+                design.width(net) == wanted,
+                "operand `{}` is {} bits wide, not {wanted}",
+                design.net(net).name,
+                design.width(net)
+            );
+            Ok(())
+        };
+        let result_wide = |wanted: u32| {
+            ensure!(width == wanted, "it is {width} bits wide, not {wanted}");
+            Ok(())
+        };
+        let signed = |net: NetId| design.net(net).format.signed;
+        let same_sign = |a: NetId, b: NetId| {
+            ensure!(
+                signed(a) == signed(b),
+                "one of `{}` and `{}` is signed, the other is not",
+                design.net(a).name,
+                design.net(b).name
+            );
+            Ok(signed(a))
+        };
+        let drop = drop_of(width);
+        Ok(match op {
+            Op::Relabel(a) => {
+                wide(*a, width)?;
+                slot(*a)
+            }
+            Op::Extend(of) => {
+                let narrow = design.width(*of);
+                ensure!(narrow <= width, "the operand is wider");
+                let (a, from) = (slot(*of), drop_of(narrow));
+                // A pattern is masked to its width, so zeros are above it already.
+                if narrow == width || !signed(*of) {
+                    a
+                } else {
+                    self.emit(&[a], |to| Instruction::SignExtend { to, a, from, drop })
+                }
+            }
+            Op::Slice { of, low } => self.slice(*of, *low, width)?,
+            Op::Concat(parts) => {
+                result_wide(parts.iter().map(|part| design.width(*part)).sum())?;
+                self.concat(parts)
+            }
+            Op::Not(of) => {
+                wide(*of, width)?;
+                let (a, b) = (slot(*of), self.constant(mask(width)));
+                self.emit(&[a], |to| Instruction::Xor { to, a, b })
+            }
+            Op::And(a, b) | Op::Or(a, b) | Op::Xor(a, b) | Op::Sub(a, b) => {
+                wide(*a, width)?;
+                wide(*b, width)?;
+                let (a, b) = (slot(*a), slot(*b));
+                self.emit(&[a, b], |to| match op {
+                    Op::And(..) => Instruction::And { to, a, b },
+                    Op::Or(..) => Instruction::Or { to, a, b },
+                    Op::Xor(..) => Instruction::Xor { to, a, b },
+                    _ => Instruction::Sub { to, a, b, drop },
+                })
+            }
+            Op::Add { a, b, carry } => {
+                wide(*a, width)?;
+                wide(*b, width)?;
+                let (a, b) = (slot(*a), slot(*b));
+                match carry {
+                    None => self.emit(&[a, b], |to| Instruction::Add { to, a, b, drop }),
+                    Some(carry) => {
+                        wide(*carry, 1)?;
+                        let carry = slot(*carry);
+                        self.emit(&[a, b, carry], |to| Instruction::AddCarry {
+                            to,
+                            a,
+                            b,
+                            carry,
+                            drop,
+                        })
+                    }
+                }
+            }
+            Op::Mul(a, b) => {
+                result_wide(design.width(*a) + design.width(*b))?;
+                let signed = same_sign(*a, *b)?;
+                let (drop_a, drop_b) = (drop_of(design.width(*a)), drop_of(design.width(*b)));
+                let (a, b) = (slot(*a), slot(*b));
+                self.emit(&[a, b], |to| match signed {
+                    false => Instruction::MulUnsigned { to, a, b },
+                    true => Instruction::MulSigned {
+                        to,
+                        a,
+                        b,
+                        drop_a,
+                        drop_b,
+                        drop,
+                    },
+                })
+            }
+            Op::Equal(a, b) | Op::Less(a, b) => {
+                result_wide(1)?;
+                wide(*b, design.width(*a))?;
+                let drop = drop_of(design.width(*a));
+                let less = matches!(op, Op::Less(..));
+                let signed = less && same_sign(*a, *b)?;
+                let (a, b) = (slot(*a), slot(*b));
+                self.emit(&[a, b], |to| match (less, signed) {
+                    (false, _) => Instruction::Equal { to, a, b },
+                    (true, false) => Instruction::LessUnsigned { to, a, b },
+                    (true, true) => Instruction::LessSigned { to, a, b, drop },
+                })
+            }
+            Op::Any(of) | Op::All(of) => {
+                result_wide(1)?;
+                let a = slot(*of);
+                if design.width(*of) == 1 {
+                    a
+                } else if let Op::Any(_) = op {
+                    self.emit(&[a], |to| Instruction::Any { to, a })
+                } else {
+                    let b = self.constant(mask(design.width(*of)));
+                    self.emit(&[a], |to| Instruction::Equal { to, a, b })
+                }
+            }
+            Op::Mux { select, inputs } => {
+                for input in inputs {
+                    wide(*input, width)?;
+                }
+                let inputs: Vec<_> = inputs.iter().map(|net| slot(*net)).collect();
+                self.mux(slot(*select), &inputs)?
+            }
+        })
+    }
+
+    /// `width` bits of `of` from `low` up.
+    fn slice(&mut self, of: NetId, low: u32, width: u32) -> Result<Slot> {
+        let whole = self.design.width(of);
+        ensure!(
+            low.checked_add(width).is_some_and(|top| top <= whole),
+            "{width} bits from bit {low} are not within the {whole} of `{}`",
+            self.design.net(of).name
+        );
+        let (a, low, drop) = (self.of_net[of.index()], low as u8, drop_of(width));
+        if width == whole {
+            return Ok(a);
+        }
+        Ok(self.emit(&[a], |to| Instruction::Slice { to, a, low, drop }))
+    }
+
+    /// The operands side by side; together they are no wider than a net.
+    fn concat(&mut self, parts: &[NetId]) -> Slot {
+        let mut all = self.constant(0);
+        for part in parts {
+            let (a, b) = (all, self.of_net[part.index()]);
+            let shift = self.design.width(*part) as u8;
+            all = if self.known_value(a) == Some(0) {
+                b
+            } else {
+                self.emit(&[a, b], |to| Instruction::Concat { to, a, b, shift })
+            };
+        }
+        all
+    }
+
+    fn mux(&mut self, select: Slot, inputs: &[Slot]) -> Result<Slot> {
+        let [.., last] = inputs else {
+            bail!("the mux has no inputs");
+        };
+        if let Some(value) = self.known_value(select) {
+            let chosen = usize::try_from(value).ok().and_then(|at| inputs.get(at));
+            return Ok(*chosen.unwrap_or(last));
+        }
+        if inputs.iter().all(|input| input == last) {
+            return Ok(*last);
+        }
+        let mut operands = vec![select];
+        operands.extend(inputs);
+        if let [a, b] = *inputs {
+            return Ok(self.emit(&operands, |to| Instruction::Choose { to, select, a, b }));
+        }
+        let first = u32::try_from(self.choices.len()).context("too many muxes")?;
+        let last = first + (inputs.len() - 1) as u32;
+        self.choices.extend(inputs);
+        Ok(self.emit(&operands, |to| Instruction::Mux {
+            to,
+            select,
+            first,
+            last,
+        }))
+    }
+
+    /// The clock edge, and everything together.
+    fn finish(mut self) -> Result<Program> {
+        let design = self.design;
+        let one = self.constant(1);
+        let reset = design.port(|role| role == Role::Reset);
+        let mut written = Vec::new();
+        let mut reads = Vec::new();
+        for (at, rom) in design.roms.iter().enumerate() {
+            if rom.synchronous {
+                let to = self.of_net[rom.data.index()];
+                let address = self.stable(self.of_net[rom.address.index()], &written);
+                written.push(to);
+                reads.push(ReadEdge {
+                    to,
+                    address,
+                    words: self.roms[RomId(at as u32).index()],
+                });
+            }
+        }
+        let mut registers = Vec::new();
+        for register in &design.registers {
+            let net = design.net(register.q);
+            let what = || format!("register `{}` ({})", net.name, net.location);
+            let q = self.of_net[register.q.index()];
+            let data = register
+                .data
+                .context("it takes nothing")
+                .with_context(what)?;
+            ensure!(
+                design.width(data) == design.width(register.q),
+                "{} takes data of another width",
+                what()
+            );
+            let keep = match (register.reset, reset) {
+                (None, _) => one,
+                (Some(_), Some(port)) => self.of_net[port.net.index()],
+                (Some(_), None) => bail!("{} is reset, but there is no reset port", what()),
+            };
+            let enable = register.enable.map_or(one, |net| self.of_net[net.index()]);
+            let data = self.stable(self.of_net[data.index()], &written);
+            let enable = self.stable(enable, &written);
+            written.push(q);
+            registers.push(RegisterEdge {
+                q,
+                data,
+                enable,
+                keep,
+                reset: register.reset.unwrap_or(0) & mask(design.width(register.q)),
+            });
+        }
+        let inputs_from = self.on_state.len();
+        let mut instructions = self.on_state;
+        instructions.append(&mut self.on_inputs);
+        Ok(Program {
+            instructions,
+            inputs_from,
+            reads,
+            registers,
+            choices: self.choices,
+            words: self.words,
+            initial: self.initial.into_iter().map(|[bits]| bits).collect(),
+            slots: self.of_net,
+            input_masks: self.input_masks,
+        })
+    }
+
+    /// A slot that holds the value of `a` until the edge is over, although the edge has written the
+    /// slots `written` before: the edge happens everywhere at once.
+    fn stable(&mut self, a: Slot, written: &[Slot]) -> Slot {
+        if written.contains(&a) {
+            self.emit(&[a], |to| Instruction::Copy { to, a })
+        } else {
+            a
+        }
+    }
+}
+
+/// How much narrower than 64 bits a width is.
+fn drop_of(width: u32) -> u8 {
+    (MAX_WIDTH - width) as u8
+}
+
+/// Everything that is referred to exists, and widths are possible.
+fn check_ids(design: &Design) -> Result<()> {
+    let nets = design.nets.len();
+    let exists = |net: NetId| ensure_index(net.index(), nets, "net");
+    for net in &design.nets {
+        let format = net.format;
+        let width =
+            i64::from(format.int) + i64::from(format.frac) + i64::from(u8::from(format.signed));
+        ensure!(
+            (1..=i64::from(MAX_WIDTH)).contains(&width),
+            "net `{}` is {width} bits wide; 1 to {MAX_WIDTH} are possible",
+            net.name
+        );
+        match &net.driver {
+            Driver::Register(id) => ensure_index(id.index(), design.registers.len(), "register")?,
+            Driver::Rom(id) => ensure_index(id.index(), design.roms.len(), "ROM")?,
+            Driver::Field(id) => {
+                ensure_index(id.index(), design.control.fields.len(), "field")?;
+            }
+            Driver::Op(op) => op.operands().into_iter().try_for_each(exists)?,
+            Driver::Undriven | Driver::Input | Driver::Constant(_) => {}
+        }
+    }
+    for register in &design.registers {
+        [Some(register.q), register.data, register.enable]
+            .into_iter()
+            .flatten()
+            .try_for_each(exists)?;
+    }
+    for rom in &design.roms {
+        [rom.address, rom.data].into_iter().try_for_each(exists)?;
+    }
+    for port in &design.ports {
+        exists(port.net)?;
+    }
+    if !design.control.fields.is_empty() {
+        ensure_index(design.control.rom.index(), design.roms.len(), "ROM")?;
+    }
+    for field in &design.control.fields {
+        exists(field.net)?;
+    }
+    Ok(())
+}
+
+fn ensure_index(index: usize, len: usize, what: &str) -> Result<()> {
+    ensure!(
+        index < len,
+        "{what} {index} is referred to, but there are {len}"
+    );
+    Ok(())
+}

@@ -1,0 +1,119 @@
+//! Waveforms: rust_hdl's VCD output, streamed.
+
+use std::io::{self, Write};
+use std::mem;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use anyhow::{Context, Result};
+use rust_hdl::core::block::Block;
+use rust_hdl::core::logic::Logic;
+use rust_hdl::core::probe::Probe;
+use rust_hdl::core::vcd_probe::{VCDProbe, write_vcd_change, write_vcd_dump, write_vcd_header};
+
+/// Writes the waveform of a circuit as it is simulated, a step at a time; times are picoseconds.
+///
+/// rust_hdl panics when a write fails. It therefore writes to a page in memory, which takes
+/// everything; after each step the page goes to the file.
+pub struct VcdWriter<W: Write> {
+    /// Absent only while rust_hdl writes.
+    probe: Option<VCDProbe<Page>>,
+    page: Page,
+    file: W,
+}
+
+impl<W: Write> VcdWriter<W> {
+    /// Writes the header, in which the outermost scope is called `name`, and all values at `time`.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn new(file: W, name: &str, time: u64, circuit: &dyn Block) -> Result<Self> {
+        let page = Page::default();
+        let mut probe = write_vcd_header(page.clone(), &Named { name, circuit });
+        probe.timestamp(time)?;
+        let mut writer = Self {
+            probe: Some(write_vcd_dump(probe, circuit)),
+            page,
+            file,
+        };
+        writer.turn()?;
+        Ok(writer)
+    }
+
+    /// Writes what has changed since the last step.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn step(&mut self, time: u64, circuit: &dyn Block) -> Result<()> {
+        if let Some(mut probe) = self.probe.take() {
+            probe.timestamp(time)?;
+            self.probe = Some(write_vcd_change(probe, circuit));
+        }
+        self.turn()
+    }
+
+    /// Ends the waveform at `time` and hands the file back, flushed.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn finish(mut self, time: u64) -> Result<W> {
+        if let Some(probe) = &mut self.probe {
+            probe.timestamp(time)?;
+        }
+        self.turn()?;
+        self.file.flush().context(CANNOT_WRITE)?;
+        Ok(self.file)
+    }
+
+    /// Brings the page to the file.
+    fn turn(&mut self) -> Result<()> {
+        self.file.write_all(&self.page.take()).context(CANNOT_WRITE)
+    }
+}
+
+const CANNOT_WRITE: &str = "cannot write the waveform";
+
+/// Text that is yet to be written; its copies share it.
+#[derive(Clone, Default)]
+struct Page(Arc<Mutex<Vec<u8>>>);
+
+impl Page {
+    fn take(&self) -> Vec<u8> {
+        mem::take(&mut *self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+impl Write for Page {
+    fn write(&mut self, text: &[u8]) -> io::Result<usize> {
+        let mut page = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        page.extend_from_slice(text);
+        Ok(text.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+/// A circuit under a name of its own; rust_hdl calls whatever it traces `uut`.
+struct Named<'a> {
+    name: &'a str,
+    circuit: &'a dyn Block,
+}
+
+impl Logic for Named<'_> {
+    fn update(&mut self) {}
+}
+
+impl Block for Named<'_> {
+    fn connect_all(&mut self) {}
+
+    fn update_all(&mut self) {}
+
+    fn has_changed(&self) -> bool {
+        self.circuit.has_changed()
+    }
+
+    fn accept(&self, _name: &str, probe: &mut dyn Probe) {
+        self.circuit.accept(self.name, probe);
+    }
+}
