@@ -4,3 +4,4 @@ pub mod config;
 pub mod fixed;
 pub mod golden;
 pub mod netlist;
+pub mod reference;
