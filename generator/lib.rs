@@ -9,3 +9,4 @@ pub mod identifier;
 pub mod microcode;
 pub mod netlist;
 pub mod sim;
+pub mod reference;

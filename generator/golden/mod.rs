@@ -4,6 +4,10 @@
 //! the netlist or the microcode, and it computes its own tables; that is what makes the comparison
 //! with the simulated hardware worth something.
 
+pub mod handshake;
+pub mod narrow;
+pub mod sine;
+
 use crate::fixed::Format;
 
 /// A clock-by-clock model of a device.

@@ -1,0 +1,76 @@
+//! Narrowing with the constants worked out beforehand: the models' inner loop.
+
+use crate::fixed::{Format, Rounding};
+
+/// Brings raw values of a fixed number of fraction bits to one format, saturating.
+///
+/// The same as [`Format::narrow`] with `Overflow::Saturate`, on `i64`.
+#[derive(Clone, Copy, Debug)]
+pub struct Narrow {
+    /// Added before the shift: half an ulp of the result, or 0.
+    half: i64,
+    right: u32,
+    left: u32,
+    min: i64,
+    max: i64,
+}
+
+impl Narrow {
+    /// From values with `from_frac` fraction bits to `format`, which is at most 63 bits wide.
+    pub fn new(from_frac: u32, format: Format, rounding: Rounding) -> Self {
+        let places = from_frac as i32 - format.frac;
+        let right = places.max(0) as u32;
+        Self {
+            half: match rounding {
+                Rounding::Nearest if right > 0 => 1 << (right - 1),
+                _ => 0,
+            },
+            right,
+            left: (-places).max(0) as u32,
+            min: format.min_raw() as i64,
+            max: format.max_raw() as i64,
+        }
+    }
+
+    /// The raw value of the result.
+    #[inline]
+    pub fn apply(&self, raw: i64) -> i64 {
+        (((raw + self.half) >> self.right) << self.left).clamp(self.min, self.max)
+    }
+}
+
+/// The largest error of rounding away fraction bits, in the value's own unit: from `from_frac`
+/// fraction bits to `frac`, saturation not counted.
+pub fn rounding_error(from_frac: u32, frac: u32, rounding: Rounding) -> f64 {
+    let ulp = crate::fixed::exp2(-(frac as i32));
+    match rounding {
+        _ if from_frac <= frac => 0.0,
+        Rounding::Truncate => ulp,
+        Rounding::Nearest => ulp / 2.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rounds_and_saturates_by_hand() {
+        // s1.3 to s0.1: 5/8 → 1/2, −5/8 → −1 (truncate) or −1/2 (nearest), 12/8 → the largest, 1/2.
+        let truncate = Narrow::new(3, Format::signed(0, 1), Rounding::Truncate);
+        let nearest = Narrow::new(3, Format::signed(0, 1), Rounding::Nearest);
+        assert_eq!([5, -5, 12, -12].map(|raw| truncate.apply(raw)), [1, -2, 1, -2]);
+        assert_eq!([5, -5, -6, 12].map(|raw| nearest.apply(raw)), [1, -1, -1, 1]);
+        // One fraction bit to three: exact.
+        let finer = Narrow::new(1, Format::unsigned(1, 3), Rounding::Nearest);
+        assert_eq!(finer.apply(3), 12);
+        assert_eq!(finer.apply(4), 15);
+    }
+
+    #[test]
+    fn error_vanishes_where_nothing_is_dropped() {
+        assert_eq!(rounding_error(4, 4, Rounding::Truncate), 0.0);
+        assert_eq!(rounding_error(5, 4, Rounding::Truncate), 0.0625);
+        assert_eq!(rounding_error(5, 4, Rounding::Nearest), 0.03125);
+    }
+}

@@ -1,0 +1,426 @@
+//! The sine `x ↦ √(1 − x²)` of ROM 18, direct or in octave segments, computed afresh.
+//!
+//! Operands are raw values with C fraction bits, 0 … 2^C; a sine is a raw u0.S.
+
+use crate::fixed::exp2;
+
+/// How the table is organised.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Scheme {
+    /// One entry per value of the `address` leading fraction bits of the operand.
+    Direct {
+        /// Address bits, A.
+        address: u32,
+    },
+    /// Ranges of `u = 1.0 − x`, each a quarter of the one before, cut uniformly and interpolated
+    /// linearly; what remains next to u = 0 has an entry for every operand.
+    Segmented {
+        /// log₂ of the number of prefixes in each range, k_j; a quarter of them lies below it.
+        segments: Vec<u32>,
+        /// Fraction bits of a slope, D; a slope is the rise over a whole segment.
+        slope_fraction: u32,
+    },
+}
+
+/// What determines the table.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Params {
+    /// Fraction bits of the operand, C.
+    pub operand_fraction: u32,
+    /// Fraction bits of the sine, S.
+    pub fraction: u32,
+    /// The organisation.
+    pub scheme: Scheme,
+}
+
+/// A contiguous set of operands over which the table's error is bounded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// The smallest and largest operand, as cosines.
+    pub cosines: (f64, f64),
+    /// The largest `|table − √(1 − x²)|` among its operands.
+    pub error: f64,
+}
+
+/// The sine as the hardware computes it.
+#[derive(Clone, Debug)]
+pub struct Sine {
+    operand_fraction: u32,
+    fraction: u32,
+    table: Table,
+}
+
+#[derive(Clone, Debug)]
+enum Table {
+    Direct {
+        address: u32,
+        entries: Vec<i64>,
+    },
+    Segmented {
+        ranges: Vec<Range>,
+        /// The exact block: the sine of u = 0, 1, 2, ….
+        rest: Vec<i64>,
+        /// Bits of the left-justified remainder, R.
+        remainder: u32,
+        slope_fraction: u32,
+    },
+}
+
+#[derive(Clone, Debug)]
+struct Range {
+    /// Bits of u below the prefix, w_j.
+    width: u32,
+    /// The smallest prefix that occurs, 2^k_j / 4.
+    first: i64,
+    /// From prefix `first` on.
+    segments: Vec<Segment>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Segment {
+    base: i64,
+    slope: i64,
+}
+
+impl Params {
+    /// Whether the table is defined.
+    ///
+    /// # Errors
+    /// Says which parameter is out of its range, by its configuration key.
+    pub fn check(&self) -> Result<(), String> {
+        let (operand, fraction) = (self.operand_fraction, self.fraction);
+        if !(1..=26).contains(&operand) {
+            return Err(format!("cosine.fraction is {operand}; a sine table takes 1 to 26"));
+        }
+        if !(1..=30).contains(&fraction) {
+            return Err(format!("sine.fraction is {fraction}; 1 to 30 are possible"));
+        }
+        match &self.scheme {
+            Scheme::Direct { address } if !(1..=operand).contains(address) => Err(format!(
+                "sine.address is {address}; 1 to cosine.fraction, {operand}, are possible"
+            )),
+            Scheme::Direct { .. } => Ok(()),
+            Scheme::Segmented {
+                segments,
+                slope_fraction,
+            } => {
+                if segments.is_empty() {
+                    return Err("sine.segments is empty; one range is the least".to_string());
+                }
+                for (j, &bits) in segments.iter().enumerate() {
+                    let most = i64::from(operand) - 2 * j as i64;
+                    if bits < 2 || i64::from(bits) > most {
+                        return Err(format!(
+                            "sine.segments[{j}] is {bits}; 2 to {most} are possible there"
+                        ));
+                    }
+                }
+                let remainder = remainder_bits(operand, segments);
+                if *slope_fraction > fraction || slope_fraction + remainder <= fraction {
+                    return Err(format!(
+                        "sine.slope_fraction is {slope_fraction}; {} to {fraction} are possible",
+                        (fraction + 1).saturating_sub(remainder)
+                    ));
+                }
+                Ok(())
+            }
+        }
+    }
+}
+
+/// R: the bits of u below the prefix in the range that has most of them.
+fn remainder_bits(operand: u32, segments: &[u32]) -> u32 {
+    let bits = |(j, &k): (usize, &u32)| operand - 2 * j as u32 - k;
+    segments.iter().enumerate().map(bits).max().unwrap_or(0)
+}
+
+impl Sine {
+    /// Builds the table.
+    ///
+    /// # Errors
+    /// As [`Params::check`].
+    pub fn new(params: &Params) -> Result<Self, String> {
+        params.check()?;
+        let (operand, fraction) = (params.operand_fraction, params.fraction);
+        let table = match &params.scheme {
+            Scheme::Direct { address } => Table::Direct {
+                address: *address,
+                entries: (0..1 << address).map(|a| direct_entry(a, *address, fraction)).collect(),
+            },
+            Scheme::Segmented {
+                segments,
+                slope_fraction,
+            } => {
+                let range = |(j, &bits): (usize, &u32)| {
+                    let width = operand - 2 * j as u32 - bits;
+                    let first = 1i64 << (bits - 2);
+                    let fit = |prefix| fit(operand, fraction, *slope_fraction, prefix << width, width).0;
+                    Range {
+                        width,
+                        first,
+                        segments: (first..1 << bits).map(fit).collect(),
+                    }
+                };
+                let block = 1i64 << (operand - 2 * segments.len() as u32);
+                Table::Segmented {
+                    ranges: segments.iter().enumerate().map(range).collect(),
+                    rest: (0..block).map(|u| to_raw(sine_of(operand, u), fraction)).collect(),
+                    remainder: remainder_bits(operand, segments),
+                    slope_fraction: *slope_fraction,
+                }
+            }
+        };
+        Ok(Self {
+            operand_fraction: operand,
+            fraction,
+            table,
+        })
+    }
+
+    /// The raw sine of the raw operand `x`, 0 … 2^C.
+    #[inline]
+    pub fn at(&self, x: i64) -> i64 {
+        let one = 1i64 << self.operand_fraction;
+        let largest = (1i64 << self.fraction) - 1;
+        match &self.table {
+            Table::Direct { address, entries } => {
+                // 1.0 has no fraction bits; it goes to the last bucket.
+                let fraction = x.min(one - 1);
+                entries[(fraction >> (self.operand_fraction - address)) as usize]
+            }
+            Table::Segmented {
+                ranges,
+                rest,
+                remainder,
+                slope_fraction,
+            } => {
+                let u = one - x;
+                if u == one {
+                    return largest;
+                }
+                // Range j holds the u whose leading one is bit C − 2j − 1 or C − 2j − 2.
+                let j = (u.leading_zeros() - (64 - self.operand_fraction)) / 2;
+                let Some(range) = ranges.get(j as usize) else {
+                    return rest[u as usize];
+                };
+                let segment = range.segments[((u >> range.width) - range.first) as usize];
+                let t = (u & ((1 << range.width) - 1)) << (remainder - range.width);
+                let rise = (segment.slope * t) >> (remainder + slope_fraction - self.fraction);
+                (segment.base + rise).min(largest)
+            }
+        }
+    }
+
+    /// Words and bits per word of the ROM, the unused entries counted.
+    pub fn rom_size(&self) -> (u64, u32) {
+        match &self.table {
+            Table::Direct { entries, .. } => (entries.len() as u64, self.fraction),
+            Table::Segmented { ranges, rest, .. } => {
+                let slopes = ranges.iter().flat_map(|range| &range.segments).map(|it| it.slope);
+                let largest = slopes.max().unwrap_or(0).max(1);
+                let prefixes: i64 = ranges.iter().map(|range| 4 * range.first).sum();
+                (prefixes as u64 + rest.len() as u64, self.fraction + largest.ilog2() + 1)
+            }
+        }
+    }
+
+    /// Visits sets of operands that together are all of 0 … 2^C, with the error of each.
+    ///
+    /// A segment's error follows from its entry: with e(i) = sine − slope·i, concave, the table is
+    /// base + slope·i − (what the floor takes, less than an ulp), so that its error lies between
+    /// base − max e − ulp and base − min e. A bucket's sine is monotonic, and so is worst at an end.
+    pub fn for_each_piece(&self, mut visit: impl FnMut(Piece)) {
+        let operand = self.operand_fraction;
+        let (one, ulp) = (1i64 << operand, exp2(-(self.fraction as i32)));
+        let cosine = |x: i64| x as f64 * exp2(-(operand as i32));
+        match &self.table {
+            Table::Direct { address, entries } => {
+                let bucket = one >> address;
+                for (&entry, a) in entries.iter().zip(0i64..) {
+                    let first = a * bucket;
+                    let last = if first + bucket == one { one } else { first + bucket - 1 };
+                    let error = |x| (entry as f64 * ulp - sine_of(operand, one - x)).abs();
+                    visit(Piece {
+                        cosines: (cosine(first), cosine(last)),
+                        error: error(first).max(error(last)),
+                    });
+                }
+            }
+            Table::Segmented {
+                ranges,
+                rest,
+                slope_fraction,
+                ..
+            } => {
+                // x = 0 reads 1 − ulp.
+                visit(Piece {
+                    cosines: (0.0, 0.0),
+                    error: ulp,
+                });
+                for range in ranges {
+                    for prefix in range.first..4 * range.first {
+                        let u = prefix << range.width;
+                        let (_, error) = fit(operand, self.fraction, *slope_fraction, u, range.width);
+                        visit(Piece {
+                            cosines: (cosine(one - u - (1 << range.width) + 1), cosine(one - u)),
+                            error,
+                        });
+                    }
+                }
+                // These sines are below √7/4, so that no entry saturates.
+                visit(Piece {
+                    cosines: (cosine(one - rest.len() as i64 + 1), 1.0),
+                    error: ulp / 2.0,
+                });
+            }
+        }
+    }
+}
+
+/// `√(1 − x²)` at u = 1.0 − x, an integer 0 … 2^C. The radicand is exact for C ≤ 26.
+fn sine_of(operand: u32, u: i64) -> f64 {
+    let one = 1i64 << operand;
+    let x = one - u;
+    ((one * one - x * x) as f64).sqrt() * exp2(-(operand as i32))
+}
+
+/// The raw u0.S nearest to a sine, saturated.
+fn to_raw(sine: f64, fraction: u32) -> i64 {
+    let raw = (sine * exp2(fraction as i32) + 0.5).floor() as i64;
+    raw.clamp(0, (1 << fraction) - 1)
+}
+
+/// The sine at the middle of bucket `a`.
+fn direct_entry(a: i64, address: u32, fraction: u32) -> i64 {
+    let x = (a as f64 + 0.5) * exp2(-(address as i32));
+    to_raw((1.0 - x * x).sqrt(), fraction)
+}
+
+/// The entry for the segment u … u + 2^width, and the largest error of an operand in it.
+fn fit(operand: u32, fraction: u32, slope_fraction: u32, u: i64, width: u32) -> (Segment, f64) {
+    let (start, length) = (sine_of(operand, u), 1i64 << width);
+    let ulp = exp2(-(fraction as i32));
+    if width == 0 {
+        let base = to_raw(start, fraction);
+        return (Segment { base, slope: 0 }, (base as f64 * ulp - start).abs());
+    }
+    let rise = sine_of(operand, u + length) - start;
+    let slope = (rise * exp2(slope_fraction as i32) + 0.5).floor() as i64;
+    let line = slope as f64 * exp2(-(slope_fraction as i32)) * exp2(-(width as i32));
+    let above = |i: i64| sine_of(operand, u + i) - line * i as f64;
+    // The sine is concave in u: bisect for the first i after which it no longer rises above the line.
+    let (mut low, mut high) = (0, length - 1);
+    while low < high {
+        let middle = (low + high) / 2;
+        if above(middle + 1) > above(middle) {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    let (most, least) = (above(low), above(0).min(above(length - 1)));
+    let base = to_raw((least + most) / 2.0, fraction);
+    let height = base as f64 * ulp;
+    let below = most + ulp - height;
+    // Saturation to 1 − ulp is off by up to an ulp, which `below` covers.
+    (Segment { base, slope }, below.max(height - least).max(ulp))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sine(operand_fraction: u32, fraction: u32, scheme: Scheme) -> Sine {
+        Sine::new(&Params {
+            operand_fraction,
+            fraction,
+            scheme,
+        })
+        .unwrap()
+    }
+
+    fn segmented(segments: &[u32], slope_fraction: u32) -> Scheme {
+        Scheme::Segmented {
+            segments: segments.to_vec(),
+            slope_fraction,
+        }
+    }
+
+    #[test]
+    fn a_direct_table_by_hand() {
+        // Buckets of a quarter: x = 1/8, 3/8, 5/8, 7/8; sines 0.9922, 0.9270, 0.7806, 0.4841; in
+        // sixteenths 15.87 (saturated), 14.83, 12.49, 7.75.
+        let it = sine(3, 4, Scheme::Direct { address: 2 });
+        let sines = [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|x| it.at(x));
+        assert_eq!(sines, [15, 15, 15, 15, 12, 12, 8, 8, 8]);
+        assert_eq!(it.rom_size(), (4, 4));
+    }
+
+    #[test]
+    fn a_segmented_table_by_hand() {
+        // C = 4, one range of four prefixes: u = 4…7, 8…11, 12…15 in sixteenths, and exact entries
+        // for u = 0…3. S = 6 and D = 5: slopes in 1/32, sines in 1/64.
+        // Sines at u = 0, 1, …: 0, 0.3480, 0.4841, 0.5830; 0.6614, 0.7262, 0.7806, 0.8268; 0.8660,
+        // 0.8992, 0.9270, 0.9499; 0.9682, 0.9823, 0.9922, 0.9980; 1.
+        // Segment 4: slope = 32·(0.8660 − 0.6614) = 6.55 → 7; e = 0.6614, 0.6715, 0.6712, 0.6627;
+        //   base = 64·(0.6614 + 0.6715)/2 = 42.65 → 43. A quarter of the slope is 3.5 of 1/64.
+        // Segment 8: slope = 32·0.1022 = 3.27 → 3; e = 0.8660, 0.8758, 0.8801, 0.8796; base = 55.87 → 56.
+        // Segment 12: slope = 32·0.0318 = 1.02 → 1; e = 0.9682, 0.9745, 0.9766, 0.9746; base = 62.23 → 62.
+        let it = sine(4, 6, segmented(&[2], 5));
+        let sines: Vec<i64> = (0..=16).map(|u| it.at(16 - u)).collect();
+        let rest = [0, 22, 31, 37];
+        let ranges = [43, 46, 50, 53, 56, 57, 59, 60, 62, 62, 63, 63];
+        assert_eq!(sines[..4], rest);
+        assert_eq!(sines[4..16], ranges);
+        assert_eq!(sines[16], 63);
+        // Four prefixes (one of them unused) and four exact entries; the largest slope has 3 bits.
+        assert_eq!(it.rom_size(), (8, 9));
+    }
+
+    /// Every operand of several tables is within its piece's error, and the pieces cover them all.
+    #[test]
+    fn pieces_bound_every_operand() {
+        let tables = [
+            sine(10, 12, Scheme::Direct { address: 5 }),
+            sine(10, 12, Scheme::Direct { address: 10 }),
+            sine(12, 14, segmented(&[4, 5, 4, 3], 12)),
+            sine(12, 9, segmented(&[2, 2], 8)),
+            sine(9, 9, segmented(&[9, 3], 9)),
+        ];
+        for it in &tables {
+            let one = 1i64 << it.operand_fraction;
+            let mut pieces = Vec::new();
+            it.for_each_piece(|piece| pieces.push(piece));
+            for x in 0..=one {
+                let cosine = x as f64 / one as f64;
+                let exact = (1.0 - cosine * cosine).sqrt();
+                let error = (it.at(x) as f64 * exp2(-(it.fraction as i32)) - exact).abs();
+                let holds = |piece: &&Piece| piece.cosines.0 <= cosine && cosine <= piece.cosines.1;
+                let piece = pieces.iter().find(holds).expect("a piece");
+                assert!(error <= piece.error, "{x} of {it:?}: {error} > {}", piece.error);
+                // Not idle either: no piece allows more than the table could need.
+                assert!(piece.error <= 0.25);
+            }
+        }
+    }
+
+    #[test]
+    fn undefined_tables_are_refused_by_key() {
+        let refusal = |operand_fraction, fraction, scheme| {
+            let params = Params {
+                operand_fraction,
+                fraction,
+                scheme,
+            };
+            Sine::new(&params).unwrap_err()
+        };
+        assert!(refusal(8, 8, Scheme::Direct { address: 9 }).contains("sine.address"));
+        assert!(refusal(8, 8, segmented(&[], 8)).contains("sine.segments"));
+        assert!(refusal(8, 8, segmented(&[4, 7], 8)).contains("sine.segments[1]"));
+        assert!(refusal(8, 8, segmented(&[1], 8)).contains("sine.segments[0]"));
+        assert!(refusal(8, 8, segmented(&[4], 4)).contains("sine.slope_fraction"));
+        assert!(refusal(8, 8, segmented(&[4], 9)).contains("sine.slope_fraction"));
+        assert!(refusal(27, 8, segmented(&[4], 8)).contains("cosine.fraction"));
+        assert!(refusal(8, 31, segmented(&[4], 8)).contains("sine.fraction"));
+    }
+}

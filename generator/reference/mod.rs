@@ -1,0 +1,94 @@
+//! The formulas of the seeds in f64: what the hardware approximates, unrounded.
+//!
+//! Everything takes cosines and exponents as plain numbers and returns the reflectance `f`, in 0 … 1.
+//! A surface that faces away (`c ≤ 0`) reflects nothing. Transcendentals come from `libm`, so a
+//! figure is the same on every machine.
+
+/// Blinn's function `cⁿ` itself (seeds 000–002), which all the others approximate.
+///
+/// `c` is the cosine of the angle between the normal and the half vector, `n` the exponent.
+pub fn blinn(c: f64, n: f64) -> f64 {
+    if c <= 0.0 { 0.0 } else { libm::pow(c, n) }
+}
+
+/// The cosine of `γ + dγ`, or of `γ − dγ` when `dgamma_negative`, from `c = cos γ` and `cd = cos dγ`
+/// with both angles in 0 … 90°.
+pub fn turned_cosine(c: f64, cd: f64, dgamma_negative: bool) -> f64 {
+    let sines = ((1.0 - c * c) * (1.0 - cd * cd)).max(0.0).sqrt();
+    if dgamma_negative {
+        // In real numbers a cosine never exceeds 1; in f64 the sum may, by an ulp.
+        (c * cd + sines).min(1.0)
+    } else {
+        c * cd - sines
+    }
+}
+
+/// The base of `rough`, `n/2·(cos(γ ± dγ) − 1) + 1`, before clamp and square.
+fn rough_base(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
+    n / 2.0 * (turned_cosine(c, cd, dgamma_negative) - 1.0) + 1.0
+}
+
+/// UA 60139 (seed 001): `(n/2·(cos(γ ± dγ) − 1) + 1)²`, 0 where the base is negative.
+///
+/// `c = cos γ`, `cd = cos dγ`; `dgamma_negative` is trigger 4 (false: `cos(γ + dγ)`).
+pub fn rough(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
+    if c <= 0.0 {
+        return 0.0;
+    }
+    let base = rough_base(c, cd, dgamma_negative, n).max(0.0);
+    base * base
+}
+
+/// [`rough`] without the clamp of the base: the parabola rises again beyond its zero, and stays at 1
+/// where it would exceed it.
+pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
+    if c <= 0.0 {
+        return 0.0;
+    }
+    let base = rough_base(c, cd, dgamma_negative, n);
+    (base * base).min(1.0)
+}
+
+/// The paper's W (seed 002): `(n/m·(c − 1) + 1)^m`, 0 where the base is negative.
+///
+/// `m` is a power of two, 2 … 16 in the seed.
+pub fn cosine_power(c: f64, n: f64, m: u32) -> f64 {
+    if c <= 0.0 {
+        return 0.0;
+    }
+    let base = (n / f64::from(m) * (c - 1.0) + 1.0).max(0.0);
+    (0..m.ilog2()).fold(base, |power, _| power * power)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIN_COS_30: (f64, f64) = (0.5, 0.866_025_403_784_438_6);
+
+    #[test]
+    fn turned_cosine_adds_and_subtracts_angles() {
+        let (sin, cos) = SIN_COS_30;
+        // cos(60° + 30°) = 0, cos(60° − 30°) = cos 30°.
+        assert!(turned_cosine(sin, cos, false).abs() < 1e-15);
+        assert!((turned_cosine(sin, cos, true) - cos).abs() < 1e-15);
+    }
+
+    #[test]
+    fn peaks_and_zeros() {
+        assert_eq!(blinn(1.0, 1000.0), 1.0);
+        assert_eq!(blinn(-0.1, 2.0), 0.0);
+        assert_eq!(blinn(0.5, 3.0), 0.125);
+        // n = 2, dγ = 0: the base is c itself.
+        assert_eq!(rough(0.25, 1.0, false, 2.0), 0.0625);
+        // n = 8, c = 1/2: the base is 4·(−1/2) + 1 = −1.
+        assert_eq!(rough(0.5, 1.0, true, 8.0), 0.0);
+        assert_eq!(rough_unclamped(0.5, 1.0, true, 8.0), 1.0);
+        assert_eq!(rough_unclamped(0.0, 1.0, true, 8.0), 0.0);
+        // The zero of W is at c = (n − m)/n.
+        assert_eq!(cosine_power(0.75, 16.0, 4), 0.0);
+        // n = 4, m = 4: the base is c.
+        assert_eq!(cosine_power(0.5, 4.0, 4), 0.0625);
+        assert_eq!(cosine_power(0.5, 1.0, 2), 0.5625);
+    }
+}
