@@ -3,6 +3,7 @@
 pub mod check;
 pub mod config;
 pub mod dsl;
+pub mod emit;
 pub mod fixed;
 pub mod golden;
 pub mod identifier;

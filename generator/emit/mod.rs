@@ -1,0 +1,188 @@
+//! From a checked [`Design`] to files: Verilog, ROM contents, manifest, FuseSoC cores, test bench.
+//!
+//! Names and expressions become strings first ([`plan`], [`expression`]), views collect them, and
+//! the templates in `templates/` print views and decide nothing. Emission is pure: it returns files
+//! and writes none, and the same design gives the same bytes.
+
+mod bench;
+mod bits;
+mod core;
+mod expression;
+mod header;
+mod interface;
+mod manifest;
+mod memory;
+mod module;
+mod naming;
+mod plan;
+mod text;
+mod top;
+mod view;
+
+use anyhow::{Result, ensure};
+use askama::Template;
+use serde::Serialize;
+
+use crate::netlist::{Design, RomId, Unit};
+use interface::Interface;
+use naming::Naming;
+use plan::Plan;
+
+/// A file to be written.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct OutputFile {
+    /// Relative to the output directory, with `/`: `rtl_out/<name>/<name>.v`.
+    pub path: String,
+    /// The whole text, ending with a newline.
+    pub contents: String,
+}
+
+/// What the files say beyond the design.
+#[derive(Clone, Debug, Default)]
+pub struct EmitInputs {
+    /// The configuration as the command line names it, `configs/<name>.toml`.
+    pub config: String,
+    /// Clocks, for header and manifest.
+    pub timing: Timing,
+    /// One computation with all its numbers, for the manifest.
+    pub example: Option<WorkedExample>,
+    /// Stimulus and expected outputs; without them there is no bench.
+    pub vectors: Option<Vectors>,
+}
+
+/// Clocks between the events of the handshake; `None` where they depend on the data.
+///
+/// The clock in which `start` is taken is number 0.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Timing {
+    /// The number of the first clock in which `valid` is high.
+    pub start_to_valid: Option<u32>,
+    /// The number of the clock in which `done` is high.
+    pub start_to_done: Option<u32>,
+    /// The number of the first clock in which the next `start` is taken.
+    pub start_to_start: Option<u32>,
+}
+
+/// A computation with all its numbers.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct WorkedExample {
+    /// In the order of the operand ports.
+    pub operands: Vec<Quantity>,
+    /// In the order of the result ports.
+    pub outputs: Vec<Quantity>,
+}
+
+/// A number on a port.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// The port.
+    pub name: String,
+    /// The integer that its bits denote.
+    pub raw: i128,
+    /// `raw · 2^-F`.
+    pub value: f64,
+}
+
+/// Stimulus and expected outputs, clock by clock.
+///
+/// The inputs of a clock are applied on the falling edge that begins it; its outputs are those just
+/// before the rising edge in its middle, with these inputs applied.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Vectors {
+    /// For each clock the bit patterns of all input ports but `clk`, in port order.
+    pub inputs: Vec<Vec<u64>>,
+    /// For each clock the bit patterns of all output ports, in port order.
+    pub expected: Vec<Vec<u64>>,
+    /// The first clock from which results and status are compared. Handshake outputs are compared from the
+    /// first clock after one with reset.
+    pub known_from: usize,
+}
+
+/// Every file of a design.
+///
+/// # Errors
+/// A design that `check` would have refused (a loop, an undriven net, a name twice or in the way of
+/// `clk`); vectors that do not fit the ports.
+pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
+    ensure!(
+        design.find("clk").is_none(),
+        "`clk` is the clock; no other net can have that name"
+    );
+    let plan = Plan::new(design)?;
+    let naming = Naming::new(design);
+    let name = &design.name;
+    let control = Interface::new(&plan, Unit::Control);
+    let datapath = Interface::new(&plan, Unit::Datapath);
+    let units = [(Unit::Control, &control), (Unit::Datapath, &datapath)];
+
+    let mut rtl = vec![(
+        format!("{name}.v"),
+        render(&top::module(&plan, &naming, units, inputs))?,
+    )];
+    for (unit, interface) in units {
+        let module = module::Builder::new(&plan, &naming, interface, unit).module(inputs);
+        rtl.push((format!("{}.v", naming.module(unit)), render(&module)?));
+    }
+    let mut memories = Vec::new();
+    for (at, file) in naming.files.iter().enumerate() {
+        memories.push((file.clone(), memory::contents(design, RomId(at as u32))?));
+    }
+    let mut testbench = Vec::new();
+    if let Some(vectors) = &inputs.vectors {
+        testbench = bench::files(design, &naming, vectors)?;
+        let names = names_of(&testbench);
+        testbench.push((
+            format!("{name}_tb.core"),
+            core::bench(name, &names[0], &names[1..])?,
+        ));
+    }
+
+    let (rtl_names, memory_names) = (names_of(&rtl), names_of(&memories));
+    let mut cores = vec![format!("{name}.core")];
+    let mut bench_names = names_of(&testbench);
+    cores.extend(bench_names.pop());
+    let files = manifest::Files {
+        rtl: &rtl_names,
+        memories: &memory_names,
+        cores: &cores,
+        testbench: &bench_names,
+    };
+    let manifest = manifest::contents(design, inputs, &naming, &files)?;
+    let has_bench = !testbench.is_empty();
+    let core = core::device(
+        name,
+        &design.about.title,
+        &rtl_names,
+        &memory_names,
+        has_bench,
+    )?;
+    let device = rtl
+        .into_iter()
+        .chain(memories)
+        .chain([
+            (format!("{name}.json"), manifest),
+            (format!("{name}.core"), core),
+        ])
+        .map(|(file, contents)| OutputFile {
+            path: format!("rtl_out/{name}/{file}"),
+            contents,
+        });
+    let bench = testbench.into_iter().map(|(file, contents)| OutputFile {
+        path: format!("testbench/{name}/{file}"),
+        contents,
+    });
+    Ok(device.chain(bench).collect())
+}
+
+fn names_of(files: &[(String, String)]) -> Vec<String> {
+    files.iter().map(|(name, _)| name.clone()).collect()
+}
+
+/// A template's text. Askama drops the newline that ends a template.
+fn render(template: &impl Template) -> Result<String> {
+    let mut text = template.render()?;
+    if !text.ends_with('\n') {
+        text.push('\n');
+    }
+    Ok(text)
+}

@@ -1,0 +1,111 @@
+//! What the Verilog templates print: strings and lists of strings, every decision taken.
+
+use askama::Template;
+
+/// A titled block of declarations.
+pub struct Section {
+    /// Its comment.
+    pub title: &'static str,
+    /// Its lines, indented.
+    pub lines: Vec<String>,
+}
+
+/// The control unit or the datapath.
+#[derive(Template)]
+#[template(path = "module.v")]
+pub struct Module {
+    /// Comment lines.
+    pub header: Vec<String>,
+    /// Its name.
+    pub name: String,
+    /// Parameters with default and comma.
+    pub parameters: Vec<String>,
+    /// Ports with comma and comment.
+    pub ports: Vec<String>,
+    /// Localparams, registers.
+    pub declarations: Vec<Section>,
+    /// Combinational cells and ROMs, operands first.
+    pub items: Vec<Item>,
+    /// The bodies of the clocked blocks.
+    pub groups: Vec<Vec<String>>,
+    /// The net that takes the bits that nobody reads, or nothing.
+    pub unused: Vec<String>,
+}
+
+/// A net with what drives it.
+pub enum Item {
+    /// A continuous assignment.
+    Assign {
+        /// Comment lines.
+        comment: Vec<String>,
+        /// The statement.
+        lines: Vec<String>,
+    },
+    /// A mux of more than two inputs.
+    Case {
+        /// Comment lines.
+        comment: Vec<String>,
+        /// The `reg`, unless it is a port.
+        declaration: Vec<String>,
+        /// The select expression.
+        select: String,
+        /// One a value.
+        arms: Vec<String>,
+        /// The last arm.
+        default: Vec<String>,
+    },
+    /// A memory and its read port.
+    Rom(RomItem),
+}
+
+/// A memory and its read port.
+pub struct RomItem {
+    /// Comment lines.
+    pub comment: Vec<String>,
+    /// `[7:0]`.
+    pub range: String,
+    /// The memory's name.
+    pub memory: String,
+    /// The number of the last word.
+    pub last: usize,
+    /// `b` or `h`.
+    pub radix: char,
+    /// The parameter with the file name.
+    pub parameter: String,
+    /// Reads on the clock.
+    pub synchronous: bool,
+    /// What takes the word: a name (synchronous), `assign x` or `wire [7:0] x`.
+    pub data: String,
+    /// The address.
+    pub address: String,
+}
+
+/// The top module.
+#[derive(Template)]
+#[template(path = "top.v")]
+pub struct Top {
+    /// Comment lines.
+    pub header: Vec<String>,
+    /// Its name.
+    pub name: String,
+    /// Parameters with default and comma.
+    pub parameters: Vec<String>,
+    /// Ports with comma and comment.
+    pub ports: Vec<String>,
+    /// The wires between the two units.
+    pub declarations: Vec<Section>,
+    /// The two units.
+    pub instances: Vec<Instance>,
+}
+
+/// An instance of a unit.
+pub struct Instance {
+    /// The module.
+    pub module: String,
+    /// The instance.
+    pub name: String,
+    /// Parameters with comma.
+    pub parameters: Vec<String>,
+    /// Ports with comma.
+    pub connections: Vec<String>,
+}

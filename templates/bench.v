@@ -1,0 +1,88 @@
+// ${ name }$: self-checking bench of ${ module }$
+//
+// Run it with any simulator from a directory that holds the files of both folders, for example
+//   iverilog -g2012 -o ${ name }$ ${ module }$*.v && ./${ name }$
+//   verilator --binary --timing --top-module ${ name }$ ${ module }$*.v && obj_dir/V${ name }$
+// Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
+//
+// Generated files belong to their user, without conditions.
+
+`timescale 1ns / 1ps
+`default_nettype none
+
+module ${ name }$ #(
+    parameter STIMULUS_FILE = "${ stimulus_file }$",
+    parameter EXPECTED_FILE = "${ expected_file }$"
+);
+    localparam CLOCKS     = ${ clocks }$;
+    localparam KNOWN_FROM = ${ known_from }$;  // results are compared from this clock on
+    localparam REPORTED   = 20;  // differences that are printed
+
+    reg [${ stimulus_last }$:0] ${ names.stimulus }$ [0:CLOCKS-1];
+    reg [${ expected_last }$:0] ${ names.expected }$ [0:CLOCKS-1];
+    reg [${ expected_last }$:0] ${ names.want }$;
+
+    reg clk;
+<%- for line in inputs %>
+    ${ line }$
+<%- endfor %>
+<%- for line in outputs %>
+    ${ line }$
+<%- endfor %>
+
+    integer ${ names.clock }$;
+    integer ${ names.errors }$;
+    reg ${ names.was_reset }$;  // the control unit is in a known state
+
+    ${ module }$ ${ names.dut }$ (
+<%- for line in connections %>
+        ${ line }$
+<%- endfor %>
+    );
+
+    // The name of a word of the microprogram.
+    function [${ word_bits }$-1:0] ${ names.word_name }$(input ${ address_range }$ address);
+        case (address)
+<%- for word in words %>
+            ${ word.label }$: ${ names.word_name }$ = "${ word.name }$";
+<%- endfor %>
+            default: ${ names.word_name }$ = "?";
+        endcase
+    endfunction
+
+    initial begin
+        $readmemh(STIMULUS_FILE, ${ names.stimulus }$);
+        $readmemh(EXPECTED_FILE, ${ names.expected }$);
+        ${ names.errors }$ = 0;
+        ${ names.was_reset }$ = <% if reset.is_some() %>1'b0<% else %>1'b1<% endif %>;
+        clk = 1'b0;
+        for (${ names.clock }$ = 0; ${ names.clock }$ < CLOCKS; ${ names.clock }$ = ${ names.clock }$ + 1) begin
+            {${ stimulus }$} = ${ names.stimulus }$[${ names.clock }$];
+            ${ names.want }$ = ${ names.expected }$[${ names.clock }$];
+            #4;
+            if (${ names.was_reset }$) begin
+<%- for output in handshake %>
+<% include "compare.v" %>
+<%- endfor %>
+            end
+            if (${ names.clock }$ >= KNOWN_FROM) begin
+<%- for output in results %>
+<% include "compare.v" %>
+<%- endfor %>
+            end
+<%- if let Some(reset) = reset %>
+            if (!${ reset }$) ${ names.was_reset }$ = 1'b1;
+<%- endif %>
+            #1 clk = 1'b1;
+            #5 clk = 1'b0;
+        end
+        if (${ names.errors }$ != 0) begin
+            $display("FAIL ${ module }$: %0d differences in %0d clocks", ${ names.errors }$, CLOCKS);
+            $fatal;
+        end
+        $display("PASS ${ module }$: %0d clocks, no difference", CLOCKS);
+        $finish;
+    end
+endmodule
+
+`default_nettype wire
