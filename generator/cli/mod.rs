@@ -1,0 +1,188 @@
+//! The command line: the only code that prints and exits.
+
+mod commands;
+mod failure;
+mod progress;
+mod store;
+mod tables;
+
+use std::ffi::OsString;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+use crate::registry::Registry;
+
+/// The points that the main job and `cosim` check of each configuration.
+const POINTS: u64 = 100_000;
+
+/// Specular-shading hardware from Rust descriptions: Verilog, co-simulation, accuracy.
+///
+/// Without a command, Glint does its main job: it generates every configuration in `configs/` into
+/// `rtl_out/` and `testbench/`, co-simulates each with the built-in simulator against its golden model,
+/// clock by clock, and prints what it found. The exit code is 0 only if everything holds.
+#[derive(Parser)]
+#[command(name = "glint", version, after_help = EXAMPLES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    #[command(flatten)]
+    output: Output,
+}
+
+const EXAMPLES: &str = "\
+Examples:
+  glint                                         generate and check everything in configs/
+  glint new rough > my_core.toml                a commented configuration to edit
+  glint generate my_core.toml --out build       Verilog, ROMs, manifest and bench into build/
+  glint cosim my_core.toml --points 1000000     golden model against hardware, every clock
+  glint cosim my_core.toml --simulator icarus   the emitted Verilog in Icarus Verilog
+  glint cosim my_core.toml --points 20 --vcd wave.vcd
+  glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
+
+Exit codes: 0 everything holds; 1 something does not hold or could not be done; 2 wrong usage.";
+
+#[derive(Subcommand)]
+enum Command {
+    /// Write Verilog, ROM contents, manifest, FuseSoC core and test bench
+    ///
+    /// Each configuration gets the directories `rtl_out/<name>/` and `testbench/<name>/`. They are replaced
+    /// as a whole or not at all. Files that Glint did not write, or that were edited since, are left alone
+    /// unless --force is given.
+    Generate {
+        #[command(flatten)]
+        configs: Configs,
+        /// Where `rtl_out/` and `testbench/` are
+        #[arg(long, value_name = "DIR", default_value = ".")]
+        out: PathBuf,
+        /// Write nothing; fail if what is there differs from what would be written
+        #[arg(long)]
+        check: bool,
+        /// Replace files that Glint did not write or that were edited since
+        #[arg(long)]
+        force: bool,
+    },
+    /// Compare the golden model with the simulated hardware, every register on every clock
+    Cosim {
+        #[command(flatten)]
+        configs: Configs,
+        /// Results to check of each configuration [default: 100000, or 200 with an external simulator]
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+        points: Option<u64>,
+        /// Seed of the stimulus
+        #[arg(long, value_name = "S", default_value_t = 1)]
+        seed: u64,
+        /// What simulates the hardware
+        #[arg(long, value_enum, default_value_t = Simulator::RustHdl)]
+        simulator: Simulator,
+        /// Write a waveform of one configuration (built-in simulator)
+        #[arg(long, value_name = "FILE")]
+        vcd: Option<PathBuf>,
+        /// Seconds after which an external simulator is given up
+        #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..))]
+        time_limit: u64,
+    },
+    /// Compute one point: golden registers, outputs and the formula in f64
+    Eval {
+        /// A configuration
+        config: PathBuf,
+        /// Operands: `cos_gamma=0.99` is a value, `cos_gamma=#1038090` a raw integer. What is not given is
+        /// taken from the middle of its domain, colours from the top
+        #[arg(value_name = "OPERAND=VALUE")]
+        operands: Vec<String>,
+    },
+    /// Name the devices, and the configurations in configs/
+    List,
+    /// Print a commented configuration of a device
+    New {
+        /// A device, as `glint list` names it
+        device: String,
+        /// The name of the top module [default: the device's, with _ for -]
+        #[arg(long)]
+        name: Option<String>,
+    },
+}
+
+#[derive(Args)]
+struct Configs {
+    /// Configurations [default: all in configs/]
+    #[arg(value_name = "CONFIG")]
+    configs: Vec<PathBuf>,
+}
+
+#[derive(Args, Clone, Copy)]
+struct Output {
+    /// Print JSON, for scripts
+    #[arg(long, global = true)]
+    json: bool,
+    /// No progress bars
+    #[arg(long, short, global = true)]
+    quiet: bool,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Simulator {
+    /// Built in: rust_hdl, inside this program
+    RustHdl,
+    /// Icarus Verilog, on the emitted files
+    Icarus,
+    /// Verilator, on the emitted files
+    Verilator,
+}
+
+/// Runs the command line of this process with the devices of `registry`.
+pub fn run(registry: &Registry) -> ExitCode {
+    run_from(registry, std::env::args_os())
+}
+
+/// Runs the command line `arguments`, the program's name first.
+pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let cli = match Cli::try_parse_from(arguments) {
+        Ok(cli) => cli,
+        Err(error) => {
+            // Help and version go to standard output with exit code 0, the rest to standard error
+            // with 2; a closed pipe is nobody's error.
+            let _ = error.print();
+            return ExitCode::from(error.exit_code() as u8);
+        }
+    };
+    let output = cli.output;
+    let done = match cli.command {
+        None => commands::everything(registry, output),
+        Some(Command::Generate {
+            configs,
+            out,
+            check,
+            force,
+        }) => commands::generate(registry, output, &configs.configs, &out, check, force),
+        Some(Command::Cosim {
+            configs,
+            points,
+            seed,
+            simulator,
+            vcd,
+            time_limit,
+        }) => {
+            let request = commands::CosimRequest {
+                points,
+                seed,
+                simulator,
+                vcd,
+                time_limit: std::time::Duration::from_secs(time_limit),
+            };
+            commands::cosim(registry, output, &configs.configs, &request)
+        }
+        Some(Command::Eval { config, operands }) => commands::eval(registry, output, &config, &operands),
+        Some(Command::List) => commands::list(registry, output),
+        Some(Command::New { device, name }) => commands::new(registry, &device, name.as_deref()),
+    };
+    match done {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            failure::print(&error, output.json);
+            ExitCode::FAILURE
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! Tables for people, JSON for scripts.
+
+use std::io::Write;
+
+use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+use serde_json::Value;
+
+/// Prints rows under headings; columns named in `right` are aligned to the right.
+pub fn print(headings: &[&str], right: &[&str], rows: impl IntoIterator<Item = Vec<String>>) {
+    let mut table = Table::new();
+    table
+        .load_preset(presets::UTF8_HORIZONTAL_ONLY)
+        .set_content_arrangement(ContentArrangement::Dynamic)
+        .set_header(headings);
+    for row in rows {
+        table.add_row(row);
+    }
+    for (at, heading) in headings.iter().enumerate() {
+        if right.contains(heading)
+            && let Some(column) = table.column_mut(at)
+        {
+            column.set_cell_alignment(CellAlignment::Right);
+        }
+    }
+    print_line(&table.to_string());
+}
+
+/// Prints a JSON value, indented.
+pub fn print_json(value: &Value) {
+    print_line(&format!("{value:#}"));
+}
+
+/// Prints a line; a reader that went away is nobody's error.
+pub fn print_line(line: &str) {
+    let _ = writeln!(std::io::stdout().lock(), "{line}");
+}
+
+/// An integer with spaces between the thousands.
+pub fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
