@@ -170,7 +170,9 @@ impl FromStr for Format {
         );
         let width = i64::from(int) + i64::from(frac) + i64::from(signed);
         if !(1..=i64::from(MAX_WIDTH)).contains(&width) {
-            return Err(format!("`{text}` is {width} bits wide; 1 to {MAX_WIDTH} are possible"));
+            return Err(format!(
+                "`{text}` is {width} bits wide; 1 to {MAX_WIDTH} are possible"
+            ));
         }
         Ok(Self { signed, int, frac })
     }
@@ -207,7 +209,11 @@ pub enum Overflow {
 
 /// The mask of `width` low bits.
 pub const fn mask(width: u32) -> u64 {
-    if width >= 64 { u64::MAX } else { (1 << width) - 1 }
+    if width >= 64 {
+        u64::MAX
+    } else {
+        (1 << width) - 1
+    }
 }
 
 /// `2^exponent`, exact.
@@ -232,7 +238,10 @@ mod tests {
     #[test]
     fn smallest_format_holds_the_range() {
         assert_eq!(Format::holding(0, 1 << 20, 20), Format::unsigned(1, 20));
-        assert_eq!(Format::holding(0, (1 << 20) - 1, 20), Format::unsigned(0, 20));
+        assert_eq!(
+            Format::holding(0, (1 << 20) - 1, 20),
+            Format::unsigned(0, 20)
+        );
         assert_eq!(Format::holding(-(1 << 20), 5, 20), Format::signed(0, 20));
         assert_eq!(Format::holding(0, 0, 4).width(), 1);
         assert_eq!(Format::holding(-1, 0, 0).width(), 1);
@@ -244,14 +253,21 @@ mod tests {
         assert_eq!(to.narrow(-5, 4, Rounding::Truncate, Overflow::Wrap), -2);
         assert_eq!(to.narrow(-5, 4, Rounding::Nearest, Overflow::Wrap), -1);
         assert_eq!(to.narrow(100, 4, Rounding::Truncate, Overflow::Saturate), 3);
-        assert_eq!(to.narrow(-100, 4, Rounding::Truncate, Overflow::Saturate), -4);
+        assert_eq!(
+            to.narrow(-100, 4, Rounding::Truncate, Overflow::Saturate),
+            -4
+        );
         assert_eq!(to.narrow(20, 4, Rounding::Truncate, Overflow::Wrap), -3);
         assert_eq!(to.narrow(1, 0, Rounding::Truncate, Overflow::Wrap), -4);
     }
 
     #[test]
     fn bits_and_raw_are_inverse() {
-        for format in [Format::signed(2, 3), Format::unsigned(2, 3), Format::signed(63, 0)] {
+        for format in [
+            Format::signed(2, 3),
+            Format::unsigned(2, 3),
+            Format::signed(63, 0),
+        ] {
             for raw in [format.min_raw(), -1, 0, 1, format.max_raw()] {
                 if format.holds(raw) {
                     assert_eq!(format.raw(format.bits(raw)), raw);

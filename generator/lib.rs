@@ -2,6 +2,7 @@
 
 pub mod check;
 pub mod config;
+pub mod devices;
 pub mod dsl;
 pub mod emit;
 pub mod fixed;
@@ -9,5 +10,5 @@ pub mod golden;
 pub mod identifier;
 pub mod microcode;
 pub mod netlist;
-pub mod sim;
 pub mod reference;
+pub mod sim;

@@ -160,7 +160,9 @@ impl Op {
     /// Every operand, in order of writing.
     pub fn operands(&self) -> Vec<NetId> {
         match self {
-            Self::Relabel(a) | Self::Extend(a) | Self::Not(a) | Self::Any(a) | Self::All(a) => vec![*a],
+            Self::Relabel(a) | Self::Extend(a) | Self::Not(a) | Self::Any(a) | Self::All(a) => {
+                vec![*a]
+            }
             Self::Slice { of, .. } => vec![*of],
             Self::Concat(parts) => parts.clone(),
             Self::And(a, b)
@@ -170,8 +172,13 @@ impl Op {
             | Self::Mul(a, b)
             | Self::Equal(a, b)
             | Self::Less(a, b) => vec![*a, *b],
-            Self::Add { a, b, carry } => [Some(*a), Some(*b), *carry].into_iter().flatten().collect(),
-            Self::Mux { select, inputs } => [*select].into_iter().chain(inputs.iter().copied()).collect(),
+            Self::Add { a, b, carry } => {
+                [Some(*a), Some(*b), *carry].into_iter().flatten().collect()
+            }
+            Self::Mux { select, inputs } => [*select]
+                .into_iter()
+                .chain(inputs.iter().copied())
+                .collect(),
         }
     }
 
@@ -287,7 +294,10 @@ pub enum Role {
 impl Role {
     /// Whether the port is an input.
     pub fn is_input(self) -> bool {
-        matches!(self, Self::Reset | Self::Start | Self::Operand { .. } | Self::Strobe)
+        matches!(
+            self,
+            Self::Reset | Self::Start | Self::Operand { .. } | Self::Strobe
+        )
     }
 }
 
@@ -429,7 +439,10 @@ impl Design {
 
     /// Every net with its id.
     pub fn iter(&self) -> impl Iterator<Item = (NetId, &Net)> {
-        self.nets.iter().enumerate().map(|(at, net)| (NetId(at as u32), net))
+        self.nets
+            .iter()
+            .enumerate()
+            .map(|(at, net)| (NetId(at as u32), net))
     }
 
     /// Ports that are inputs, in order.
@@ -499,7 +512,10 @@ impl Design {
                     }
                     Mark::Open => {
                         let from = path.iter().position(|(net, _)| *net == input);
-                        return Err(path[from.unwrap_or(0)..].iter().map(|(net, _)| *net).collect());
+                        return Err(path[from.unwrap_or(0)..]
+                            .iter()
+                            .map(|(net, _)| *net)
+                            .collect());
                     }
                 }
             }
@@ -535,7 +551,11 @@ impl fmt::Display for Design {
         let name = |id: NetId| self.net(id).name.as_str();
         writeln!(f, "design {}", self.name)?;
         for port in &self.ports {
-            let direction = if port.role.is_input() { "input" } else { "output" };
+            let direction = if port.role.is_input() {
+                "input"
+            } else {
+                "output"
+            };
             writeln!(f, "{direction} {} {:?}", name(port.net), port.role)?;
         }
         for net in &self.nets {
@@ -551,9 +571,17 @@ impl fmt::Display for Design {
                 Driver::Rom(rom) => {
                     let rom = self.rom(*rom);
                     let edge = if rom.synchronous { " on the clock" } else { "" };
-                    write!(f, " = rom {}[{}]{edge}, {} words", rom.name, name(rom.address), rom.words.len())?;
+                    write!(
+                        f,
+                        " = rom {}[{}]{edge}, {} words",
+                        rom.name,
+                        name(rom.address),
+                        rom.words.len()
+                    )?;
                 }
-                Driver::Field(field) => write!(f, " = field {}", self.control.fields[field.index()].name)?,
+                Driver::Field(field) => {
+                    write!(f, " = field {}", self.control.fields[field.index()].name)?
+                }
                 Driver::Register(id) => {
                     let register = self.register(*id);
                     write!(f, " <= {}", register.data.map_or("nothing", name))?;
@@ -577,7 +605,11 @@ impl fmt::Display for Design {
             f.write_char('\n')?;
         }
         for (at, word) in self.control.words.iter().enumerate() {
-            writeln!(f, "word {at} {:?} {:?} {:?}", word.name, word.values, word.sequence)?;
+            writeln!(
+                f,
+                "word {at} {:?} {:?} {:?}",
+                word.name, word.values, word.sequence
+            )?;
         }
         Ok(())
     }

@@ -1,1 +1,43 @@
+//! Configuration: TOML to validated values, with all problems of a file reported at once.
+//!
+//! A device states its keys as a [`Schema`]; nothing here knows a device. [`read()`] and [`parse()`]
+//! turn a file into a [`Config`], whose values need no further checks, or into [`Problems`], each
+//! with its place and a remedy. [`commented`] writes the file to start from, and [`sample()`] draws
+//! valid configurations for tests.
 
+mod keywords;
+mod module_name;
+mod nearest;
+mod parse;
+mod problems;
+mod read;
+mod sample;
+mod schema;
+mod validate;
+mod values;
+mod write;
+
+pub use keywords::is_keyword;
+pub use nearest::nearest;
+pub use parse::parse;
+pub use problems::{Problem, Problems};
+pub use read::read;
+pub use sample::sample;
+pub use schema::{Key, Kind, Schema, Value};
+pub use values::Config;
+pub use write::commented;
+
+/// The keys of every device, with what they govern.
+const COMMON: [(&str, &str); 3] = [
+    ("device", "The device that is generated."),
+    (
+        "name",
+        "The name of the Verilog module and of its files: a Verilog identifier of at most 60 \
+         characters. By default the name of this file, with _ for -.",
+    ),
+    (
+        "strict",
+        "Refuse a configuration that misses the accuracy contract, rather than warn of it. True \
+         or false.",
+    ),
+];

@@ -1,0 +1,72 @@
+//! Names of Verilog modules: which are legal, and what is wrong with the others.
+
+use super::keywords::is_keyword;
+use super::validate::{Fault, quoted};
+
+/// The longest name; the modules and files derived from it append to it.
+const LONGEST: usize = 60;
+
+/// What is wrong with a module name; nothing if it is an identifier of Verilog and SystemVerilog
+/// that every tool takes, and a plain file name.
+pub(super) fn fault(name: &str) -> Option<Fault> {
+    let message = complaint(name)?;
+    Some(Fault {
+        entry: None,
+        message,
+        remedy: format!(
+            "give a Verilog identifier of at most {LONGEST} letters, digits and _, as \"{}\"",
+            legalised(name)
+        ),
+    })
+}
+
+fn complaint(name: &str) -> Option<String> {
+    let quoted = quoted(name);
+    let is_word = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let length = name.chars().count();
+    if name.is_empty() {
+        Some("the module name is empty".to_owned())
+    } else if name.contains(['/', '\\']) || name.chars().all(|c| c == '.') {
+        Some(format!("the module name {quoted} looks like a path"))
+    } else if let Some(odd) = name.chars().find(|c| !c.is_ascii()) {
+        let odd = odd.escape_debug();
+        Some(format!(
+            "the module name {quoted} has a character outside ASCII, `{odd}`"
+        ))
+    } else if let Some(odd) = name.chars().find(|c| !is_word(*c)) {
+        let odd = odd.escape_debug();
+        Some(format!(
+            "the module name {quoted} has the character `{odd}`"
+        ))
+    } else if name.starts_with(|c: char| c.is_ascii_digit()) {
+        Some(format!("the module name {quoted} starts with a digit"))
+    } else if length > LONGEST {
+        Some(format!("the module name {quoted} has {length} characters"))
+    } else if is_keyword(name) {
+        Some(format!(
+            "the module name {quoted} is a keyword of Verilog or SystemVerilog"
+        ))
+    } else {
+        None
+    }
+}
+
+/// A legal name that resembles the given one.
+fn legalised(name: &str) -> String {
+    let file = name
+        .rsplit(['/', '\\'])
+        .find(|part| !part.is_empty())
+        .unwrap_or("");
+    let stem = file.split('.').find(|part| !part.is_empty()).unwrap_or("");
+    let keep = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+    let words: String = stem.chars().map(keep).collect();
+    let words = words.trim_matches('_');
+    let words = &words[..words.len().min(LONGEST - "glint_".len())];
+    let illegal =
+        words.is_empty() || words.starts_with(|c: char| c.is_ascii_digit()) || is_keyword(words);
+    match (illegal, words) {
+        (true, "") => "glint_device".to_owned(),
+        (true, words) => format!("glint_{words}"),
+        (false, words) => words.to_owned(),
+    }
+}

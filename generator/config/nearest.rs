@@ -1,0 +1,35 @@
+//! The valid word that somebody meant.
+
+/// The candidate closest to `word`, if it is close enough to be a slip of the pen.
+///
+/// Case and the choice between `-` and `_` do not count. Among equals the first wins.
+pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let fold = |text: &str| text.to_lowercase().replace('-', "_");
+    // Nothing that long is a slip of the pen, and the distance takes quadratic time.
+    if word.len() > 100 {
+        return None;
+    }
+    let word = fold(word);
+    let (distance, best) = candidates
+        .into_iter()
+        .map(|candidate| {
+            let distance = strsim::damerau_levenshtein(&word, &fold(candidate));
+            (distance, candidate)
+        })
+        .min_by_key(|(distance, _)| *distance)?;
+    let longest = word.chars().count().max(best.chars().count());
+    // A third of the letters wrong, and one in words of two.
+    (distance * 3 <= longest.max(3)).then_some(best)
+}
+
+/// Words for a sentence: `a, b and c`.
+pub fn listed<S: AsRef<str>>(words: &[S]) -> String {
+    match words {
+        [] => String::new(),
+        [only] => only.as_ref().to_owned(),
+        [start @ .., last] => {
+            let start: Vec<&str> = start.iter().map(AsRef::as_ref).collect();
+            format!("{} and {}", start.join(", "), last.as_ref())
+        }
+    }
+}

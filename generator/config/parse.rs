@@ -1,0 +1,394 @@
+//! From the text of a TOML file to a [`Config`].
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+use std::path::Path;
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue, Error};
+
+use super::module_name;
+use super::nearest::{listed, nearest};
+use super::problems::Problems;
+use super::schema::{Key, Kind, Schema, Value};
+use super::validate::{Draft, Fault, keys_of, out_of_range, quoted, shown};
+use super::values::Config;
+
+/// Reads a configuration from its text.
+///
+/// `file_name` is shown in messages, and its stem (with `_` for `-`) is the module name unless the
+/// text gives one. `schemas` are those of all devices.
+///
+/// # Errors
+/// All problems of the text at once. Conditions between keys are examined only if the text is
+/// valid TOML, for otherwise it is not known which keys it gives.
+pub fn parse(file_name: &str, text: &str, schemas: &[Schema]) -> Result<Config, Problems> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let mut problems = Problems::of_file(file_name, text);
+    if text.trim().is_empty() {
+        problems.push("", "the file is empty", start_from(schemas));
+        return Err(problems);
+    }
+    let (document, errors) = DeTable::parse_recoverable(text);
+    let mut reader = Reader {
+        broken: errors.iter().flat_map(|error| lines(text, error)).collect(),
+        valid_toml: errors.is_empty(),
+        text,
+        problems,
+    };
+    for error in &errors {
+        reader.syntax_error(error);
+    }
+    reader.read(document.get_ref(), file_name, schemas)
+}
+
+/// The lines, counted from 0, that a syntax error touches.
+fn lines(text: &str, error: &Error) -> Range<usize> {
+    let line = |offset: usize| text[..offset].matches('\n').count();
+    match error.span() {
+        Some(span) => line(span.start)..line(span.end) + 1,
+        None => 0..0,
+    }
+}
+
+struct Reader<'t> {
+    text: &'t str,
+    problems: Problems,
+    /// Lines with a syntax error: what the parser made of them is not worth a message.
+    broken: BTreeSet<usize>,
+    valid_toml: bool,
+}
+
+impl Reader<'_> {
+    fn syntax_error(&mut self, error: &Error) {
+        let span = error.span().unwrap_or(0..0);
+        let found = self.text.get(span.clone()).unwrap_or("");
+        let message = error.message();
+        let (message, remedy) = if message == "duplicate key" {
+            let message = format!("`{}` is given twice", shown(found));
+            (message, "keep one of the two; a table has one heading")
+        } else if message.contains("recursion") || message.contains("recurse") {
+            let message = "tables or lists are nested too deeply".to_owned();
+            (message, "a configuration has tables of plain values")
+        } else if message.starts_with("string values must be quoted") {
+            let message = format!("not valid TOML: `{}` is not a value", shown(found));
+            (message, "put a word in double quotes")
+        } else {
+            let message = format!("not valid TOML: {message}");
+            (message, "write `key = value` or `[table]`, one to a line")
+        };
+        self.problems.push_at(span, "", message, remedy);
+    }
+
+    fn read(
+        mut self,
+        document: &DeTable,
+        file_name: &str,
+        schemas: &[Schema],
+    ) -> Result<Config, Problems> {
+        let schema = self.device(document, schemas);
+        let name = self.name(document, file_name);
+        let strict = self.strict(document);
+        let Some(schema) = schema else {
+            return Err(self.problems);
+        };
+        let mut draft = Draft::new(schema, &name);
+        draft.config.strict = strict;
+        self.table(document, "", schema, &mut draft);
+        match self.valid_toml {
+            true => draft.finish(schema, self.problems),
+            false => Err(self.problems),
+        }
+    }
+
+    /// The schema of the device that the file names, or else the one that it seems to mean.
+    fn device<'s>(&mut self, document: &DeTable, schemas: &'s [Schema]) -> Option<&'s Schema> {
+        let devices: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
+        let remedy = format!("the devices are {}", listed(&devices));
+        let Some(value) = document.get("device") else {
+            // After a syntax error it may be there, unread.
+            if self.valid_toml {
+                let message = "the file does not say which device it configures";
+                let remedy = format!("add `device = \"…\"`; {remedy}");
+                self.problems.push("device", message, remedy);
+            }
+            return None;
+        };
+        let DeValue::String(given) = value.get_ref() else {
+            let message = format!("`device` must be a string, not {}", described(value));
+            self.report("device", value.span(), message, remedy);
+            return None;
+        };
+        let meant = nearest(given, devices.iter().copied());
+        if !devices.contains(&&**given) {
+            let message = format!("there is no device {}", quoted(given));
+            let remedy = match meant {
+                Some(meant) => format!("did you mean \"{meant}\"? {remedy}"),
+                None => remedy,
+            };
+            self.report("device", value.span(), message, remedy);
+        }
+        let exact = schemas.iter().find(|schema| schema.device == &**given);
+        exact.or_else(|| schemas.iter().find(|schema| Some(schema.device) == meant))
+    }
+
+    fn name(&mut self, document: &DeTable, file_name: &str) -> String {
+        match document.get("name") {
+            None => {
+                let stem = Path::new(file_name).file_stem().unwrap_or_default();
+                let name = stem.to_string_lossy().replace('-', "_");
+                if let Some(fault) = module_name::fault(&name) {
+                    let message = format!("{}; it comes from the name of the file", fault.message);
+                    let remedy = format!("set `name`: {}", fault.remedy);
+                    self.problems.push("name", message, remedy);
+                }
+                name
+            }
+            Some(value) => match value.get_ref() {
+                DeValue::String(name) => {
+                    if let Some(fault) = module_name::fault(name) {
+                        self.report("name", value.span(), fault.message, fault.remedy);
+                    }
+                    name.clone().into_owned()
+                }
+                _ => {
+                    let message = format!("`name` must be a string, not {}", described(value));
+                    let remedy = "give the name of the Verilog module in double quotes";
+                    self.report("name", value.span(), message, remedy.to_owned());
+                    String::new()
+                }
+            },
+        }
+    }
+
+    fn strict(&mut self, document: &DeTable) -> bool {
+        match document.get("strict").map(|value| (value, value.get_ref())) {
+            None => false,
+            Some((_, DeValue::Boolean(strict))) => *strict,
+            Some((value, _)) => {
+                let message = format!("`strict` must be true or false, not {}", described(value));
+                let remedy = "give true or false (default false)".to_owned();
+                self.report("strict", value.span(), message, remedy);
+                false
+            }
+        }
+    }
+
+    /// Reads a table; `prefix` is its name with a dot, or empty.
+    fn table<'s>(
+        &mut self,
+        table: &DeTable,
+        prefix: &str,
+        schema: &'s Schema,
+        draft: &mut Draft<'s>,
+    ) {
+        for (key, value) in table {
+            // A quoted key with a dot in it is not a path; with its quotes it matches no name.
+            let name = match is_bare(key.get_ref()) {
+                true => format!("{prefix}{}", key.get_ref()),
+                false => format!("{prefix}{}", quoted(key.get_ref())),
+            };
+            if prefix.is_empty() && super::COMMON.iter().any(|(common, _)| *common == name) {
+                continue;
+            }
+            let as_table = format!("{name}.");
+            // The span of a table is that of its heading, or of one of its keys.
+            let span = match value.get_ref() {
+                DeValue::Table(_) => key.span(),
+                _ => value.span(),
+            };
+            if let Some(key) = schema.key(&name) {
+                self.value(key, value, span, draft);
+            } else if !schema
+                .keys
+                .iter()
+                .any(|key| key.name.starts_with(&as_table))
+            {
+                self.unknown(&name, key.span(), value, schema, draft);
+            } else if let DeValue::Table(inner) = value.get_ref() {
+                self.table(inner, &as_table, schema, draft);
+            } else {
+                let message = format!("`{name}` is a table, not {}", described(value));
+                self.report(&name, span, message, keys_of(schema, &name));
+            }
+        }
+    }
+
+    fn value<'s>(
+        &mut self,
+        key: &'s Key,
+        value: &Spanned<DeValue>,
+        span: Range<usize>,
+        draft: &mut Draft<'s>,
+    ) {
+        self.problems.locate(key.name, span.clone());
+        match converted(key, value) {
+            Ok(value) => draft.give(key, Some(value)),
+            Err(faults) => {
+                draft.give(key, None);
+                for fault in faults {
+                    let entry = fault.entry.zip(value.get_ref().as_array());
+                    let entry = entry.and_then(|(index, entries)| entries.get(index));
+                    let span = entry.map_or_else(|| span.clone(), Spanned::span);
+                    self.report(key.name, span, fault.message, fault.remedy);
+                }
+            }
+        }
+    }
+
+    fn unknown<'s>(
+        &mut self,
+        name: &str,
+        span: Range<usize>,
+        value: &Spanned<DeValue>,
+        schema: &'s Schema,
+        draft: &mut Draft<'s>,
+    ) {
+        let (table, leaf) = name.rsplit_once('.').unwrap_or(("", name));
+        let is_table = value.get_ref().is_table();
+        let (what, meant) = match is_table {
+            true => (
+                "table",
+                nearest(name, schema.keys.iter().map(|key| key.table_and_leaf().0)),
+            ),
+            false => {
+                let common = super::COMMON.iter().map(|(common, _)| *common);
+                let keys = common.chain(schema.keys.iter().map(|key| key.name));
+                ("key", nearest(name, keys))
+            }
+        };
+        let elsewhere: Vec<String> = schema
+            .keys
+            .iter()
+            .filter(|key| key.table_and_leaf().1 == leaf)
+            .map(|key| format!("`{}`", key.name))
+            .collect();
+        let remedy = match meant {
+            Some(meant) => {
+                // What the true value of the key that was meant is to be is not known.
+                let within = format!("{meant}.");
+                let keys = schema.keys.iter();
+                for key in keys.filter(|key| key.name == meant || key.name.starts_with(&within)) {
+                    draft.doubtful.insert(key.name);
+                }
+                format!("did you mean `{meant}`?")
+            }
+            None if elsewhere.is_empty() || is_table => {
+                let known = schema
+                    .keys
+                    .iter()
+                    .any(|key| key.table_and_leaf().0 == table);
+                keys_of(schema, if known { table } else { "" })
+            }
+            None => format!("there is {}", listed(&elsewhere)),
+        };
+        let message = format!("device `{}` has no {what} `{name}`", schema.device);
+        self.report(name, span, message, remedy);
+    }
+
+    /// Adds a problem, unless what it is about was spoilt by a syntax error.
+    fn report(&mut self, key: &str, span: Range<usize>, message: String, remedy: String) {
+        let line = self.text[..span.start].matches('\n').count();
+        if !self.broken.contains(&line) {
+            self.problems.push_at(span, key, message, remedy);
+        }
+    }
+}
+
+/// A value as its key wants it, or all that is wrong with it.
+fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Fault>> {
+    let wrong_type = || vec![key.wrong_type(&described(value))];
+    let too_large = || vec![key.fault(out_of_range(key.name, written(value)))];
+    let converted = match (&key.kind, value.get_ref()) {
+        (Kind::Integer { .. }, DeValue::Integer(_)) => {
+            Value::Integer(integer(value).ok_or_else(too_large)?)
+        }
+        (Kind::Number { .. }, DeValue::Integer(_)) => {
+            Value::Number(integer(value).ok_or_else(too_large)? as f64)
+        }
+        (Kind::Number { .. }, DeValue::Float(number)) => {
+            Value::Number(number.as_str().parse().map_err(|_| too_large())?)
+        }
+        (Kind::Choice(_), DeValue::String(text)) if !key.kind.is_integer_choice() => {
+            Value::Text(text.clone().into_owned())
+        }
+        (Kind::Choice(_), DeValue::Integer(_)) if key.kind.is_integer_choice() => {
+            Value::Text(integer(value).ok_or_else(too_large)?.to_string())
+        }
+        (Kind::Flag, DeValue::Boolean(flag)) => Value::Flag(*flag),
+        (Kind::Integers { .. }, DeValue::Array(entries)) => {
+            let mut values = Vec::new();
+            let mut faults = Vec::new();
+            for (index, entry) in entries.iter().enumerate() {
+                let place = format!("{}[{index}]", key.name);
+                let message = match (integer(entry), entry.get_ref()) {
+                    (Some(value), _) => {
+                        values.push(value);
+                        continue;
+                    }
+                    (None, DeValue::Integer(_)) => out_of_range(&place, written(entry)),
+                    (None, _) => format!("`{place}` must be an integer, not {}", described(entry)),
+                };
+                faults.push(Fault {
+                    entry: Some(index),
+                    ..key.fault(message)
+                });
+            }
+            if !faults.is_empty() {
+                return Err(faults);
+            }
+            Value::Integers(values)
+        }
+        _ => return Err(wrong_type()),
+    };
+    let faults = key.faults_of(&converted);
+    match faults.is_empty() {
+        true => Ok(converted),
+        false => Err(faults),
+    }
+}
+
+/// The value of an integer that fits 64 bits.
+fn integer(value: &Spanned<DeValue>) -> Option<i64> {
+    let integer = value.get_ref().as_integer()?;
+    i64::from_str_radix(integer.as_str(), integer.radix()).ok()
+}
+
+/// A number as the file writes it.
+fn written(value: &Spanned<DeValue>) -> String {
+    match value.get_ref() {
+        DeValue::Integer(integer) => integer.to_string(),
+        other => other
+            .as_float()
+            .map(ToString::to_string)
+            .unwrap_or_default(),
+    }
+}
+
+/// Type and value for a message: `the integer 7`.
+fn described(value: &Spanned<DeValue>) -> String {
+    match value.get_ref() {
+        DeValue::String(text) => format!("the string {}", quoted(text)),
+        DeValue::Integer(integer) => format!("the integer {}", shown(&integer.to_string())),
+        DeValue::Float(float) => format!("the float {}", shown(&float.to_string())),
+        DeValue::Boolean(flag) => format!("the boolean {flag}"),
+        DeValue::Datetime(_) => "a date".to_owned(),
+        DeValue::Array(_) => "a list".to_owned(),
+        DeValue::Table(_) => "a table".to_owned(),
+    }
+}
+
+fn is_bare(key: &str) -> bool {
+    !key.is_empty()
+        && key
+            .chars()
+            .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
+}
+
+fn start_from(schemas: &[Schema]) -> String {
+    let devices: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
+    format!(
+        "`glint new DEVICE` writes a file to start from; the devices are {}",
+        listed(&devices)
+    )
+}

@@ -1,0 +1,178 @@
+//! Everything that is wrong with a configuration, with the place and a remedy for each.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::Range;
+
+use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
+use serde_json::{Value as Json, json};
+
+/// All problems of one configuration file, in the order of their places.
+///
+/// Displays each as a snippet of the file in plain text; [`Problems::to_json`] is for scripts.
+#[derive(Clone, Debug, Default)]
+pub struct Problems {
+    file: String,
+    text: String,
+    /// Where the file gives each key: what [`Problems::push`] points at.
+    places: BTreeMap<String, Range<usize>>,
+    list: Vec<Problem>,
+}
+
+/// One problem.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Problem {
+    /// The dotted name of the key; empty if the problem is one of the whole file.
+    pub key: String,
+    /// What is wrong.
+    pub message: String,
+    /// What to do about it.
+    pub remedy: String,
+    /// The bytes of the file that it is about, if the file has any such.
+    span: Option<Range<usize>>,
+}
+
+impl Problems {
+    /// No problems yet, of a file with this text.
+    pub(super) fn of_file(file: &str, text: &str) -> Self {
+        Problems {
+            file: file.to_owned(),
+            text: text.to_owned(),
+            ..Problems::default()
+        }
+    }
+
+    /// Adds a problem of a key. It is shown where the file gives the key; if the file does not,
+    /// then with the file's name alone.
+    pub fn push(&mut self, key: &str, message: impl Into<String>, remedy: impl Into<String>) {
+        let span = self.places.get(key).cloned();
+        self.insert(key, message.into(), remedy.into(), span);
+    }
+
+    /// Adds a problem at a place in the text.
+    pub(super) fn push_at(
+        &mut self,
+        span: Range<usize>,
+        key: &str,
+        message: impl Into<String>,
+        remedy: impl Into<String>,
+    ) {
+        self.insert(key, message.into(), remedy.into(), Some(span));
+    }
+
+    /// Notes where the file gives a key.
+    pub(super) fn locate(&mut self, key: &str, span: Range<usize>) {
+        self.places.insert(key.to_owned(), span);
+    }
+
+    /// The same file and places, no problems: for a trial run of a check.
+    pub(super) fn cleared(&self) -> Self {
+        Problems {
+            list: Vec::new(),
+            ..self.clone()
+        }
+    }
+
+    /// Adds problems found elsewhere, as they are.
+    pub(super) fn extend(&mut self, problems: impl IntoIterator<Item = Problem>) {
+        for problem in problems {
+            self.insert(&problem.key, problem.message, problem.remedy, problem.span);
+        }
+    }
+
+    /// Keeps the list sorted by place, those without a place last, and free of repetitions.
+    fn insert(&mut self, key: &str, message: String, remedy: String, span: Option<Range<usize>>) {
+        let problem = Problem {
+            key: key.to_owned(),
+            message,
+            remedy,
+            span,
+        };
+        if !self.list.contains(&problem) {
+            let rank = |problem: &Problem| problem.start().unwrap_or(usize::MAX);
+            let place = self
+                .list
+                .partition_point(|other| rank(other) <= rank(&problem));
+            self.list.insert(place, problem);
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// The problems, in the order of their places; those without a place last.
+    pub fn iter(&self) -> impl Iterator<Item = &Problem> {
+        self.list.iter()
+    }
+
+    /// The name of the file, as it was given; empty if there is none.
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Line and column of a problem of this list, both counted from 1, columns in characters.
+    pub fn position(&self, problem: &Problem) -> Option<(usize, usize)> {
+        let before = self.text.get(..problem.start()?)?;
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        let line = before.matches('\n').count() + 1;
+        Some((line, before[line_start..].chars().count() + 1))
+    }
+
+    /// A list with one object per problem: `file`, `line`, `column` (null without a place), `key`
+    /// (null for the whole file), `message`, `remedy`.
+    pub fn to_json(&self) -> Json {
+        let each = |problem: &Problem| {
+            let (line, column) = self.position(problem).unzip();
+            json!({
+                "file": self.file,
+                "line": line,
+                "column": column,
+                "key": (!problem.key.is_empty()).then_some(&problem.key),
+                "message": problem.message,
+                "remedy": problem.remedy,
+            })
+        };
+        Json::Array(self.list.iter().map(each).collect())
+    }
+
+    /// The human report; a styled renderer adds colours.
+    pub fn render(&self, renderer: &Renderer) -> String {
+        let each = |problem: &Problem| {
+            let title = Level::ERROR.primary_title(&problem.message);
+            let help = Level::HELP.message(&problem.remedy);
+            let group = match problem.span.clone() {
+                Some(span) => {
+                    let annotation = AnnotationKind::Primary.span(span);
+                    let snippet = Snippet::source(&self.text).path(&self.file);
+                    title.element(snippet.annotation(annotation)).element(help)
+                }
+                None if self.file.is_empty() => title.element(help),
+                None => title.element(Origin::path(&self.file)).element(help),
+            };
+            renderer.render(&[group])
+        };
+        let reports: Vec<String> = self.list.iter().map(each).collect();
+        reports.join("\n\n")
+    }
+}
+
+impl Problem {
+    fn start(&self) -> Option<usize> {
+        self.span.as_ref().map(|span| span.start)
+    }
+}
+
+impl fmt::Display for Problems {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.render(&Renderer::plain()))
+    }
+}
+
+impl std::error::Error for Problems {}

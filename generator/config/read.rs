@@ -1,0 +1,94 @@
+//! Reading a configuration file from disk.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use super::nearest::nearest;
+use super::parse::parse;
+use super::problems::Problems;
+use super::schema::Schema;
+use super::values::Config;
+
+/// Far beyond any configuration, and far below what would exhaust the memory.
+const LARGEST: u64 = 1 << 20;
+
+/// Reads a configuration file.
+///
+/// # Errors
+/// All problems of the file at once: that it cannot be read, that it is not text, or what
+/// [`parse`] finds.
+pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
+    let file_name = path.display().to_string();
+    let bytes = contents(path).map_err(|(message, remedy)| {
+        let mut problems = Problems::of_file(&file_name, "");
+        problems.push("", message, remedy);
+        problems
+    })?;
+    match std::str::from_utf8(&bytes) {
+        Ok(text) => parse(&file_name, text, schemas),
+        Err(error) => {
+            // Up to the fault the lossy text is the file's own, so the place is right in it.
+            let lossy = String::from_utf8_lossy(&bytes);
+            let start = error.valid_up_to();
+            let end = start + char::REPLACEMENT_CHARACTER.len_utf8();
+            let mut problems = Problems::of_file(&file_name, &lossy);
+            let message = format!(
+                "the file is not UTF-8: byte {start} is {:#04x}",
+                bytes[start]
+            );
+            let remedy = match bytes.as_slice() {
+                [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "it looks like UTF-16; save it as UTF-8",
+                _ => "save it as UTF-8 text",
+            };
+            problems.push_at(start..end, "", message, remedy);
+            Err(problems)
+        }
+    }
+}
+
+/// The bytes of a file, or message and remedy.
+fn contents(path: &Path) -> Result<Vec<u8>, (String, String)> {
+    if path.is_dir() {
+        let remedy = "give the path of a TOML file".to_owned();
+        return Err(("this is a directory".to_owned(), remedy));
+    }
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes));
+    match read {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            let remedy = match neighbour(path) {
+                Some(neighbour) => format!("did you mean `{neighbour}`?"),
+                None => "`glint new DEVICE` writes a file to start from".to_owned(),
+            };
+            Err(("there is no such file".to_owned(), remedy))
+        }
+        Err(error) => {
+            let remedy = "check the path and its permissions".to_owned();
+            Err((format!("the file cannot be read: {error}"), remedy))
+        }
+        Ok(size) if size as u64 > LARGEST => {
+            let message = format!("the file has more than {LARGEST} bytes");
+            Err((message, "give the path of a TOML file".to_owned()))
+        }
+        Ok(_) => Ok(bytes),
+    }
+}
+
+/// The path of the file in the same directory whose name is nearest to one that is not there.
+fn neighbour(path: &Path) -> Option<String> {
+    let wanted = path.file_name()?.to_str()?;
+    let parent = path.parent()?;
+    let directory = match parent.as_os_str().is_empty() {
+        true => Path::new("."),
+        false => parent,
+    };
+    let entries = std::fs::read_dir(directory).ok()?;
+    let mut names: Vec<String> = entries
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .filter(|name| name.ends_with(".toml"))
+        .collect();
+    names.sort();
+    let near = nearest(wanted, names.iter().map(String::as_str))?;
+    Some(parent.join(near).display().to_string())
+}

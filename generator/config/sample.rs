@@ -1,0 +1,106 @@
+//! Random valid configurations, for tests of everything that accepts one.
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
+
+use super::problems::Problems;
+use super::schema::{Key, Kind, Schema, Value};
+use super::values::Config;
+
+/// Draws of a whole configuration before the search for a valid one is given up.
+const DRAWS: usize = 1000;
+/// Attempts to mend one draw by drawing again the keys that the check complains about.
+const REPAIRS: usize = 100;
+
+/// A valid configuration drawn from the whole stated ranges; the same for the same seed.
+///
+/// Ends of ranges come up far more often than a uniform draw would give. Keys that do not apply
+/// keep their defaults. Combinations that the device refuses are drawn again, the offending key
+/// first, so that keys with narrow conditions vary too. Its name is the device's, with `_` for `-`,
+/// and the seed.
+///
+/// # Panics
+/// If the device refuses every one of a great many draws: its schema states ranges that are
+/// almost nowhere valid.
+pub fn sample(schema: &Schema, seed: u64) -> Config {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let name = format!("{}_{seed}", schema.device.replace('-', "_"));
+    for _ in 0..DRAWS {
+        let mut config = Config::defaults(schema, &name);
+        for key in &schema.keys {
+            config.set(key.name, draw(key, &mut rng));
+        }
+        for _ in 0..REPAIRS {
+            settle(schema, &mut config);
+            let mut problems = Problems::default();
+            (schema.check)(&config, &mut problems);
+            if problems.is_empty() {
+                return config;
+            }
+            for problem in problems.iter() {
+                match schema.key(&problem.key) {
+                    Some(key) if config.applies(schema, key.name) => {
+                        config.set(key.name, draw(key, &mut rng));
+                    }
+                    // Not a key that a new value would mend.
+                    _ => {}
+                }
+            }
+        }
+    }
+    panic!("no valid configuration of `{}` was found", schema.device)
+}
+
+/// Gives the keys that do not apply their defaults.
+fn settle(schema: &Schema, config: &mut Config) {
+    for key in &schema.keys {
+        if !config.applies(schema, key.name) {
+            config.set(key.name, key.default.clone());
+        }
+    }
+}
+
+fn draw(key: &Key, rng: &mut ChaCha8Rng) -> Value {
+    match &key.kind {
+        Kind::Integer { min, max } => Value::Integer(integer(*min, *max, rng)),
+        Kind::Number { min, max } => Value::Number(number(*min, *max, rng)),
+        Kind::Choice(options) => {
+            let index = integer(0, options.len() as i64 - 1, rng) as usize;
+            Value::Text(options[index].to_owned())
+        }
+        Kind::Flag => Value::Flag(rng.next_u32() & 1 == 1),
+        Kind::Integers {
+            min,
+            max,
+            len_min,
+            len_max,
+        } => {
+            let len = integer(*len_min as i64, *len_max as i64, rng);
+            Value::Integers((0..len).map(|_| integer(*min, *max, rng)).collect())
+        }
+    }
+}
+
+/// The smallest and the largest each once in eight draws, otherwise uniform.
+fn integer(min: i64, max: i64, rng: &mut ChaCha8Rng) -> i64 {
+    match rng.next_u32() % 8 {
+        0 => min,
+        1 => max,
+        _ => {
+            // The remainder favours small values by less than 2^-64 of the range's size.
+            let size = (i128::from(max) - i128::from(min) + 1) as u128;
+            (i128::from(min) + (u128::from(rng.next_u64()) % size) as i128) as i64
+        }
+    }
+}
+
+fn number(min: f64, max: f64, rng: &mut ChaCha8Rng) -> f64 {
+    match rng.next_u32() % 8 {
+        0 => min,
+        1 => max,
+        _ => {
+            let unit = rng.next_u32() as f64 / u32::MAX as f64;
+            (min * (1.0 - unit) + max * unit).clamp(min, max)
+        }
+    }
+}

@@ -1,0 +1,382 @@
+//! From values to a [`Config`]: ranges, conditions on keys, and the device's own check.
+
+use std::collections::BTreeSet;
+
+use super::module_name;
+use super::nearest::{listed, nearest};
+use super::problems::{Problem, Problems};
+use super::schema::{Key, Kind, Schema, Value};
+use super::values::Config;
+
+/// What is wrong with a value, before it is known where it stands.
+pub(super) struct Fault {
+    /// The entry of a list that it is about.
+    pub entry: Option<usize>,
+    pub message: String,
+    pub remedy: String,
+}
+
+impl Key {
+    /// What is wrong with a value; empty if the key accepts it.
+    pub(super) fn faults_of(&self, value: &Value) -> Vec<Fault> {
+        let name = self.name;
+        match (&self.kind, value) {
+            (Kind::Integer { min, max }, Value::Integer(given)) => {
+                self.unless((min..=max).contains(&given), || out_of_range(name, given))
+            }
+            (Kind::Number { min, max }, Value::Number(given)) => {
+                let given_text = value.bare();
+                self.unless((min..=max).contains(&given), || {
+                    out_of_range(name, given_text)
+                })
+            }
+            (Kind::Choice(options), Value::Text(given)) => self
+                .unless(options.contains(&given.as_str()), || {
+                    format!("`{name}` cannot be {}", shown(&value.toml()))
+                })
+                .into_iter()
+                .map(|fault| self.with_suggestion(fault, given))
+                .collect(),
+            (Kind::Flag, Value::Flag(_)) => Vec::new(),
+            (
+                Kind::Integers {
+                    min,
+                    max,
+                    len_min,
+                    len_max,
+                },
+                Value::Integers(given),
+            ) => {
+                let mut faults = self.unless((len_min..=len_max).contains(&&given.len()), || {
+                    let plural = if given.len() == 1 { "y" } else { "ies" };
+                    format!("`{name}` has {} entr{plural}", given.len())
+                });
+                for (index, entry) in given.iter().enumerate() {
+                    let inside = (min..=max).contains(&entry);
+                    let place = format!("{name}[{index}]");
+                    let found = self.unless(inside, || out_of_range(&place, entry));
+                    faults.extend(found.into_iter().map(|fault| Fault {
+                        entry: Some(index),
+                        ..fault
+                    }));
+                }
+                faults
+            }
+            (_, other) => vec![self.wrong_type(&other.described())],
+        }
+    }
+
+    /// The fault of a value of another type, which `found` describes.
+    pub(super) fn wrong_type(&self, found: &str) -> Fault {
+        let wanted = match self.kind {
+            Kind::Integer { .. } => "an integer",
+            Kind::Number { .. } => "a number",
+            Kind::Choice(_) if self.kind.is_integer_choice() => "an integer",
+            Kind::Choice(_) => "a string",
+            Kind::Flag => "true or false",
+            Kind::Integers { .. } => "a list of integers",
+        };
+        self.fault(format!("`{}` must be {wanted}, not {found}", self.name))
+    }
+
+    /// A fault with the usual remedy: what the key accepts.
+    pub(super) fn fault(&self, message: String) -> Fault {
+        Fault {
+            entry: None,
+            message,
+            remedy: format!("give {} (default {})", self.accepts(), self.default.toml()),
+        }
+    }
+
+    fn unless(&self, good: bool, message: impl FnOnce() -> String) -> Vec<Fault> {
+        match good {
+            true => Vec::new(),
+            false => vec![self.fault(message())],
+        }
+    }
+
+    fn with_suggestion(&self, fault: Fault, given: &str) -> Fault {
+        let Kind::Choice(options) = self.kind else {
+            return fault;
+        };
+        // Among numbers the nearest spelling means nothing.
+        let near =
+            nearest(given, options.iter().copied()).filter(|_| !self.kind.is_integer_choice());
+        match near {
+            None => fault,
+            Some(near) => Fault {
+                remedy: format!("did you mean \"{near}\"? {}", fault.remedy),
+                ..fault
+            },
+        }
+    }
+
+    /// The values that the key accepts, in words: `an integer from 4 to 30`.
+    pub(super) fn accepts(&self) -> String {
+        match &self.kind {
+            Kind::Integer { min, max } => format!("an integer from {min} to {max}"),
+            Kind::Number { min, max } => format!("a number from {min:?} to {max:?}"),
+            Kind::Choice(options) => {
+                let options: Vec<String> = options
+                    .iter()
+                    .map(|option| Value::Text((*option).to_owned()).toml())
+                    .collect();
+                match options.as_slice() {
+                    [one] => one.clone(),
+                    [start @ .., last] => format!("{} or {last}", start.join(", ")),
+                    [] => "nothing".to_owned(),
+                }
+            }
+            Kind::Flag => "true or false".to_owned(),
+            Kind::Integers {
+                min,
+                max,
+                len_min,
+                len_max,
+            } => match len_min == len_max {
+                true => format!("{len_min} integers from {min} to {max}"),
+                false => format!("{len_min} to {len_max} integers from {min} to {max}"),
+            },
+        }
+    }
+
+    /// Values that stand in for one that is not known, to see what a check says of each.
+    fn stand_ins(&self) -> Vec<Value> {
+        let ends: Vec<Value> = match &self.kind {
+            Kind::Integer { min, max } => vec![Value::Integer(*min), Value::Integer(*max)],
+            Kind::Number { min, max } => vec![Value::Number(*min), Value::Number(*max)],
+            Kind::Choice(options) => options
+                .iter()
+                .map(|option| Value::Text((*option).to_owned()))
+                .collect(),
+            Kind::Flag => vec![Value::Flag(false), Value::Flag(true)],
+            Kind::Integers {
+                min,
+                max,
+                len_min,
+                len_max,
+            } => vec![
+                Value::Integers(vec![*min; *len_min]),
+                Value::Integers(vec![*max; *len_max]),
+            ],
+        };
+        let mut values = vec![self.default.clone()];
+        values.extend(ends);
+        values
+    }
+}
+
+impl Value {
+    /// Type and value, for a message: `the integer 7`.
+    fn described(&self) -> String {
+        let kind = match self {
+            Value::Integer(_) => "integer",
+            Value::Number(_) => "number",
+            Value::Text(text) => return format!("the string {}", quoted(text)),
+            Value::Flag(_) => "flag",
+            Value::Integers(_) => "list",
+        };
+        format!("the {kind} {}", shown(&self.bare()))
+    }
+}
+
+pub(super) fn out_of_range(name: &str, given: impl std::fmt::Display) -> String {
+    format!("`{name}` = {} is out of range", shown(&given.to_string()))
+}
+
+/// A text that may be of any length, fit for a message.
+pub(super) fn shown(text: &str) -> String {
+    const LIMIT: usize = 40;
+    match text.char_indices().nth(LIMIT) {
+        None => text.to_owned(),
+        Some((end, _)) => format!("{}…", &text[..end]),
+    }
+}
+
+/// A string from a file, fit for a message: quoted, control characters escaped.
+pub(super) fn quoted(text: &str) -> String {
+    format!("\"{}\"", shown(&text.escape_debug().to_string()))
+}
+
+/// A configuration in the making.
+pub(super) struct Draft<'a> {
+    /// The values so far; defaults where none was given, or none that is in range.
+    pub config: Config,
+    /// The keys that were given.
+    pub given: BTreeSet<&'a str>,
+    /// Those of them whose true value is not known, since what was given is wrong.
+    pub doubtful: BTreeSet<&'a str>,
+}
+
+/// The conditions that hold between keys: those of `only_when`, and the device's own.
+///
+/// A condition is reported only if it fails whatever the doubtful values may turn out to be (as
+/// far as the ends of their ranges tell), so that one mistake raises no messages about others.
+fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
+    for key in &schema.keys {
+        let governors = chain(schema, key);
+        let doubtful = governors.iter().any(|(k, _)| draft.doubtful.contains(k));
+        if !draft.given.contains(key.name) || doubtful {
+            continue;
+        }
+        let blocking = governors
+            .iter()
+            .rev()
+            .find(|(other, value)| draft.config.value(other).bare() != *value);
+        if let Some((other, needed)) = blocking {
+            let needed = match draft.config.value(other) {
+                Value::Text(_) => Value::Text((*needed).to_owned()).toml(),
+                _ => (*needed).to_owned(),
+            };
+            let actual = draft.config.value(other).toml();
+            problems.push(
+                key.name,
+                format!("`{}` has no effect with {other} = {actual}", key.name),
+                format!("remove it, or set {other} = {needed}"),
+            );
+        }
+    }
+
+    let mut certain: Option<Vec<Problem>> = None;
+    for trial in trials(schema, draft) {
+        let mut found = problems.cleared();
+        (schema.check)(&trial, &mut found);
+        let found: Vec<Problem> = found.iter().cloned().collect();
+        certain = Some(match certain {
+            None => found,
+            Some(before) => before.into_iter().filter(|p| found.contains(p)).collect(),
+        });
+    }
+    problems.extend(certain.unwrap_or_default());
+}
+
+/// The keys that decide whether `key` applies, nearest first, with the values that it needs.
+fn chain(schema: &Schema, key: &Key) -> Vec<(&'static str, &'static str)> {
+    let mut conditions = Vec::new();
+    let mut condition = key.only_when;
+    while let Some(next) = condition {
+        // A schema with a cycle is faulty; do not hang on it.
+        if conditions.contains(&next) {
+            break;
+        }
+        conditions.push(next);
+        condition = schema.key(next.0).and_then(|key| key.only_when);
+    }
+    conditions
+}
+
+/// The configuration with its doubtful values replaced by each of their stand-ins in turn.
+fn trials(schema: &Schema, draft: &Draft) -> Vec<Config> {
+    let stand_ins: Vec<(&str, Vec<Value>)> = schema
+        .keys
+        .iter()
+        .filter(|key| draft.doubtful.contains(key.name))
+        .map(|key| (key.name, key.stand_ins()))
+        .collect();
+    let count = stand_ins.iter().map(|(_, values)| values.len()).max();
+    (0..count.unwrap_or(1))
+        .map(|turn| {
+            let mut trial = draft.config.clone();
+            for (name, values) in &stand_ins {
+                trial.set(name, values[turn % values.len()].clone());
+            }
+            trial
+        })
+        .collect()
+}
+
+/// [`Config::from_values`].
+pub(super) fn from_values(
+    schema: &Schema,
+    name: &str,
+    values: Vec<(String, Value)>,
+) -> Result<Config, Problems> {
+    let mut problems = Problems::default();
+    let mut draft = Draft::new(schema, name);
+    if let Some(fault) = module_name::fault(name) {
+        problems.push("name", fault.message, fault.remedy);
+    }
+    for (name, value) in values {
+        let Some(key) = schema.key(&name) else {
+            let message = format!("device `{}` has no key {}", schema.device, quoted(&name));
+            problems.push(&name, message, keys_of(schema, ""));
+            continue;
+        };
+        let faults = key.faults_of(&value);
+        draft.give(key, faults.is_empty().then_some(value));
+        for fault in faults {
+            problems.push(key.name, fault.message, fault.remedy);
+        }
+    }
+    draft.finish(schema, problems)
+}
+
+impl<'a> Draft<'a> {
+    /// The defaults; nothing given.
+    pub(super) fn new(schema: &Schema, name: &str) -> Self {
+        Draft {
+            config: Config::defaults(schema, name),
+            given: BTreeSet::new(),
+            doubtful: BTreeSet::new(),
+        }
+    }
+
+    /// Notes that a key was given, with its value if that is in range.
+    pub(super) fn give(&mut self, key: &'a Key, value: Option<Value>) {
+        self.given.insert(key.name);
+        match value {
+            Some(value) => self.config.set(key.name, value),
+            None => {
+                self.doubtful.insert(key.name);
+            }
+        }
+    }
+
+    /// Checks the conditions between keys, and gives the configuration if nothing is wrong.
+    pub(super) fn finish(
+        self,
+        schema: &Schema,
+        mut problems: Problems,
+    ) -> Result<Config, Problems> {
+        check(schema, &self, &mut problems);
+        match problems.is_empty() {
+            true => Ok(self.config),
+            false => Err(problems),
+        }
+    }
+}
+
+/// A sentence with the keys of a table; the table of the keys at the top is empty.
+pub(super) fn keys_of(schema: &Schema, table: &str) -> String {
+    let mut keys: Vec<&str> = schema
+        .keys
+        .iter()
+        .map(Key::table_and_leaf)
+        .filter(|(of, _)| *of == table)
+        .map(|(_, leaf)| leaf)
+        .collect();
+    if table.is_empty() {
+        keys = super::COMMON
+            .iter()
+            .map(|(name, _)| *name)
+            .chain(keys)
+            .collect();
+        let mut tables: Vec<&str> = Vec::new();
+        for key in &schema.keys {
+            let (table, _) = key.table_and_leaf();
+            if !table.is_empty() && !tables.contains(&table) {
+                tables.push(table);
+            }
+        }
+        match tables.is_empty() {
+            true => format!("the keys are {}", listed(&keys)),
+            false => format!(
+                "the keys outside tables are {}; the tables are {}",
+                listed(&keys),
+                listed(&tables)
+            ),
+        }
+    } else {
+        format!("the keys of [{table}] are {}", listed(&keys))
+    }
+}

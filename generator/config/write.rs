@@ -1,0 +1,112 @@
+//! Configurations as TOML text.
+
+use super::schema::{Key, Schema, Value};
+use super::values::Config;
+
+/// The widest line of a comment.
+const WIDTH: usize = 90;
+
+/// The file that `glint new` writes: every key with its default, what it governs and what it
+/// accepts. It reads back as the defaults; keys that do not apply to them are commented out.
+pub fn commented(schema: &Schema, name: &str) -> String {
+    let config = Config::defaults(schema, name);
+    let mut text = comment(&format!(
+        "Glint configuration of the device \"{}\". All keys are shown with their defaults; those \
+         that you do not change may be deleted.",
+        schema.device
+    ));
+    for ((key, value), doc) in common(&config).into_iter().zip(super::COMMON.map(|c| c.1)) {
+        text += &format!("\n{}{key} = {value}\n", comment(doc));
+    }
+    for (table, keys) in tables(schema) {
+        if !table.is_empty() {
+            text += &format!("\n[{table}]\n");
+        }
+        for (index, key) in keys.into_iter().enumerate() {
+            if index > 0 || table.is_empty() {
+                text.push('\n');
+            }
+            let default = config.value(key.name).toml();
+            text += &comment(&format!("{} {}.", key.doc, capitalised(&key.accepts())));
+            let mut off = "";
+            if let Some((other, value)) = key.only_when {
+                let value = match config.value(other) {
+                    Value::Text(_) => Value::Text(value.to_owned()).toml(),
+                    _ => value.to_owned(),
+                };
+                text += &comment(&format!("Only with {other} = {value}."));
+                if !config.applies(schema, key.name) {
+                    off = "# ";
+                }
+            }
+            text += &format!("{off}{} = {default}\n", key.table_and_leaf().1);
+        }
+    }
+    text
+}
+
+/// All keys of a configuration that apply, without comments.
+pub(super) fn plain(schema: &Schema, config: &Config) -> String {
+    let mut text = String::new();
+    for (key, value) in common(config) {
+        text += &format!("{key} = {value}\n");
+    }
+    for (table, keys) in tables(schema) {
+        if !table.is_empty() {
+            text += &format!("\n[{table}]\n");
+        }
+        for key in keys {
+            if config.applies(schema, key.name) {
+                let value = config.value(key.name).toml();
+                text += &format!("{} = {value}\n", key.table_and_leaf().1);
+            }
+        }
+    }
+    text
+}
+
+/// The keys that every device has, in the order of [`super::COMMON`], with their values as TOML.
+fn common(config: &Config) -> [(&'static str, String); 3] {
+    [
+        ("device", format!("\"{}\"", config.device)),
+        ("name", format!("\"{}\"", config.name)),
+        ("strict", config.strict.to_string()),
+    ]
+}
+
+/// The keys by table, that of the keys at the top first; otherwise in the order of the schema.
+fn tables(schema: &Schema) -> Vec<(&'static str, Vec<&Key>)> {
+    let mut tables: Vec<(&str, Vec<&Key>)> = vec![("", Vec::new())];
+    for key in &schema.keys {
+        let (table, _) = key.table_and_leaf();
+        match tables.iter_mut().find(|(name, _)| *name == table) {
+            Some((_, keys)) => keys.push(key),
+            None => tables.push((table, vec![key])),
+        }
+    }
+    tables
+}
+
+/// A text as comment lines.
+fn comment(text: &str) -> String {
+    let mut lines = String::new();
+    let mut line = String::from("#");
+    for word in text.split_whitespace() {
+        if line.len() + 1 + word.len() > WIDTH {
+            lines += &line;
+            lines.push('\n');
+            line = String::from("#");
+        }
+        line.push(' ');
+        line += word;
+    }
+    lines + &line + "\n"
+}
+
+fn capitalised(text: &str) -> String {
+    let mut letters = text.chars();
+    match letters.next() {
+        Some(first) => first.to_uppercase().chain(letters).collect(),
+        None => String::new(),
+    }
+}
