@@ -249,16 +249,14 @@ pub fn describe(d: &Designer, config: &Config) {
         .shared_mul("multiplier10", &mux8, &mux9)
         .block(10)
         .doc("the shared product; its point depends on the operands");
-    let take = |name: &str, register: Register, product: Signal, rounding: Rounding| {
-        let overflow = if formats.patent { Overflow::Wrap } else { Overflow::Saturate };
-        d.narrow(name, product, register.format(), rounding, overflow)
-    };
+    let overflow = if formats.patent { Overflow::Wrap } else { Overflow::Saturate };
+    let (rounding_products, rounding_result) = (formats.product_rounding, formats.result_rounding);
     let cos_cos = product.of(cos_gamma, cos_dgamma);
-    r11.takes(take("cos_cos", r11, cos_cos, formats.product_rounding));
+    r11.takes(d.narrow("cos_cos", cos_cos, r11.format(), rounding_products, overflow));
     let sin_sin = product.of(sine, r19.q());
-    r12.takes(take("sin_sin", r12, sin_sin, formats.product_rounding));
+    r12.takes(d.narrow("sin_sin", sin_sin, r12.format(), rounding_products, overflow));
     let both = product.of_any(&[(adder15, half_n), (base, adder16)]);
-    let result = take("result", r13, both, formats.result_rounding);
+    let result = d.narrow("result", both, r13.format(), rounding_result, overflow);
     r13.takes(if formats.patent {
         result
     } else {

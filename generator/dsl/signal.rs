@@ -393,7 +393,8 @@ impl Designer {
         (self.resized(a, format), self.resized(b, format))
     }
 
-    /// `a` as a net of exactly `format`, which has the same point and holds the range of `a`.
+    /// `a` as a net of exactly `format`, which has the same point. Where the format does not hold the
+    /// range of `a`, the upper bits are dropped: an operand of a sum whose result the format holds.
     #[track_caller]
     pub(crate) fn resized(&self, a: Signal<'_>, format: Format) -> NetId {
         let have = a.format();
@@ -407,7 +408,10 @@ impl Designer {
             std::cmp::Ordering::Equal => ("same", Op::Relabel(a.id())),
             std::cmp::Ordering::Less => ("low", Op::Slice { of: a.id(), low: 0 }),
         };
-        a.wiring(suffix, format, a.range(), op).id()
+        let (low, high) = a.range();
+        let fits = format.holds(low) && format.holds(high);
+        let range = if fits { (low, high) } else { format.range() };
+        a.wiring(suffix, format, range, op).id()
     }
 }
 
