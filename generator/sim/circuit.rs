@@ -168,10 +168,8 @@ impl<const LANES: usize> Logic for Circuit<LANES> {
         if self.input_changed {
             self.machine.set_inputs(&self.inputs);
         }
-        if edge {
+        if edge | self.input_changed {
             self.machine.settle();
-        } else if self.input_changed {
-            self.machine.settle_inputs();
         }
         self.changed = edge | self.input_changed;
         self.input_changed = false;

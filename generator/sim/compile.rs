@@ -7,7 +7,9 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 use crate::fixed::{MAX_WIDTH, mask};
 use crate::netlist::{Design, Driver, NetId, Op, Role, RomId};
 use crate::sim::machine::execute;
-use crate::sim::program::{Instruction, Program, ReadEdge, RegisterEdge, Slot, Span};
+use crate::sim::program::{
+    InputPort, Instruction, Program, ReadEdge, RegisterEdge, Segment, Slot, Sources, Span,
+};
 
 /// Compiles a design. The errors are those of [`Program::new`].
 pub(super) fn compile(design: &Design) -> Result<Program> {
@@ -30,32 +32,25 @@ pub(super) fn compile(design: &Design) -> Result<Program> {
     compiler.finish()
 }
 
-/// What a slot's value depends on within one clock; an operation depends on the most variable of its
-/// operands.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Source {
-    Constant,
-    State,
-    Input,
-}
-
 struct Compiler<'a> {
     design: &'a Design,
-    /// For each slot.
-    sources: Vec<Source>,
+    /// For each slot: the [`Sources`] it depends on within one clock; none for constants.
+    sources: Vec<Sources>,
+    /// How many sources there are so far.
+    numbered: u32,
     /// For each slot; the only lane is that of the folded constants.
     initial: Vec<[u64; 1]>,
     constants: BTreeMap<u64, Slot>,
     /// Instructions already there, written to slot 0, and the slots that have their results.
     known: HashMap<Instruction, Slot>,
-    on_state: Vec<Instruction>,
-    on_inputs: Vec<Instruction>,
+    /// In an order of evaluation, each with what it depends on.
+    instructions: Vec<(Sources, Instruction)>,
     choices: Vec<Slot>,
     words: Vec<u64>,
     roms: Vec<Span>,
     /// For each net; meaningful once the net has been compiled.
     of_net: Vec<Slot>,
-    input_masks: Vec<u64>,
+    inputs: Vec<InputPort>,
     /// The bits of each control field in the control word: the lowest.
     fields: Vec<u32>,
 }
@@ -65,16 +60,16 @@ impl<'a> Compiler<'a> {
         let mut compiler = Self {
             design,
             sources: Vec::new(),
+            numbered: 0,
             initial: Vec::new(),
             constants: BTreeMap::new(),
             known: HashMap::new(),
-            on_state: Vec::new(),
-            on_inputs: Vec::new(),
+            instructions: Vec::new(),
             choices: Vec::new(),
             words: Vec::new(),
             roms: Vec::new(),
             of_net: vec![Slot::MAX; design.nets.len()],
-            input_masks: Vec::new(),
+            inputs: Vec::new(),
             fields: Vec::new(),
         };
         for port in design.inputs() {
@@ -86,8 +81,13 @@ impl<'a> Compiler<'a> {
                 net.name,
                 net.location
             );
-            compiler.of_net[port.net.index()] = compiler.fresh(Source::Input);
-            compiler.input_masks.push(mask(design.width(port.net)));
+            let slot = compiler.source();
+            compiler.of_net[port.net.index()] = slot;
+            compiler.inputs.push(InputPort {
+                slot,
+                source: compiler.sources[slot as usize],
+                mask: mask(design.width(port.net)),
+            });
         }
         for rom in &design.roms {
             let mask = mask(design.width(rom.data));
@@ -111,17 +111,24 @@ impl<'a> Compiler<'a> {
         Ok(compiler)
     }
 
-    fn fresh(&mut self, source: Source) -> Slot {
-        self.sources.push(source);
+    fn fresh(&mut self, sources: Sources) -> Slot {
+        self.sources.push(sources);
         self.initial.push([0]);
         (self.sources.len() - 1) as Slot
+    }
+
+    /// A slot that changes from outside settling.
+    fn source(&mut self) -> Slot {
+        let sources = 1 << (self.numbered % Sources::BITS);
+        self.numbered += 1;
+        self.fresh(sources)
     }
 
     fn constant(&mut self, bits: u64) -> Slot {
         if let Some(slot) = self.constants.get(&bits) {
             return *slot;
         }
-        let slot = self.fresh(Source::Constant);
+        let slot = self.fresh(0);
         self.initial[slot as usize] = [bits];
         self.constants.insert(bits, slot);
         slot
@@ -129,7 +136,7 @@ impl<'a> Compiler<'a> {
 
     /// The value of a slot that is known already.
     fn known_value(&self, slot: Slot) -> Option<u64> {
-        let constant = self.sources[slot as usize] == Source::Constant;
+        let constant = self.sources[slot as usize] == 0;
         constant.then(|| self.initial[slot as usize][0])
     }
 
@@ -138,22 +145,17 @@ impl<'a> Compiler<'a> {
         if let Some(slot) = self.known.get(&make(0)) {
             return *slot;
         }
-        let source = operands
+        let sources = operands
             .iter()
-            .map(|slot| self.sources[*slot as usize])
-            .max();
-        let source = source.unwrap_or(Source::Constant);
-        let to = self.fresh(source);
-        match source {
-            Source::Constant => {
-                execute(make(to), &self.choices, &self.words, &mut self.initial);
-                let [bits] = self.initial.pop().unwrap_or_default();
-                self.sources.pop();
-                return self.constant(bits);
-            }
-            Source::State => self.on_state.push(make(to)),
-            Source::Input => self.on_inputs.push(make(to)),
+            .fold(0, |all, slot| all | self.sources[*slot as usize]);
+        let to = self.fresh(sources);
+        if sources == 0 {
+            execute(make(to), &self.choices, &self.words, &mut self.initial);
+            let [bits] = self.initial.pop().unwrap_or_default();
+            self.sources.pop();
+            return self.constant(bits);
         }
+        self.instructions.push((sources, make(to)));
         self.known.insert(make(0), to);
         to
     }
@@ -175,12 +177,12 @@ impl<'a> Compiler<'a> {
                     design.register(*register).q == id,
                     "its register drives another net"
                 );
-                Ok(self.fresh(Source::State))
+                Ok(self.source())
             }
             Driver::Rom(rom) => {
                 ensure!(design.rom(*rom).data == id, "its ROM drives another net");
                 if design.rom(*rom).synchronous {
-                    return Ok(self.fresh(Source::State));
+                    return Ok(self.source());
                 }
                 let address = self.of_net[design.rom(*rom).address.index()];
                 let words = self.roms[rom.index()];
@@ -408,6 +410,7 @@ impl<'a> Compiler<'a> {
                 written.push(to);
                 reads.push(ReadEdge {
                     to,
+                    source: self.sources[to as usize],
                     address,
                     words: self.roms[RomId(at as u32).index()],
                 });
@@ -438,25 +441,34 @@ impl<'a> Compiler<'a> {
             written.push(q);
             registers.push(RegisterEdge {
                 q,
+                source: self.sources[q as usize],
                 data,
                 enable,
                 keep,
                 reset: register.reset.unwrap_or(0) & mask(design.width(register.q)),
             });
         }
-        let inputs_from = self.on_state.len();
-        let mut instructions = self.on_state;
-        instructions.append(&mut self.on_inputs);
+        // An operand depends on no more sources than the result, so this is an order of evaluation.
+        self.instructions
+            .sort_by_key(|(sources, _)| (sources.count_ones(), *sources));
+        let segments = self
+            .instructions
+            .chunk_by(|(a, _), (b, _)| a == b)
+            .map(|chunk| Segment {
+                sources: chunk[0].0,
+                len: chunk.len() as u32,
+            })
+            .collect();
         Ok(Program {
-            instructions,
-            inputs_from,
+            instructions: self.instructions.into_iter().map(|(_, i)| i).collect(),
+            segments,
             reads,
             registers,
             choices: self.choices,
             words: self.words,
             initial: self.initial.into_iter().map(|[bits]| bits).collect(),
             slots: self.of_net,
-            input_masks: self.input_masks,
+            inputs: self.inputs,
         })
     }
 

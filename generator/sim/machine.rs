@@ -4,7 +4,7 @@ use std::array;
 use std::sync::Arc;
 
 use crate::netlist::NetId;
-use crate::sim::program::{Instruction, Program, Slot, Span};
+use crate::sim::program::{Instruction, Program, Slot, Sources, Span};
 
 /// The state of `LANES` independent instances of a design, which one pass over the [`Program`]
 /// advances together.
@@ -12,13 +12,19 @@ use crate::sim::program::{Instruction, Program, Slot, Span};
 pub struct Machine<const LANES: usize = 1> {
     program: Arc<Program>,
     slots: Vec<[u64; LANES]>,
+    /// The sources that have changed since the machine was last settled.
+    changed: Sources,
 }
 
 impl<const LANES: usize> Machine<LANES> {
     /// Power-up: registers, outputs of synchronous ROMs and inputs are 0; settled.
     pub fn new(program: Arc<Program>) -> Self {
         let slots = program.initial.iter().map(|bits| [*bits; LANES]).collect();
-        let mut machine = Self { program, slots };
+        let mut machine = Self {
+            program,
+            slots,
+            changed: Sources::MAX,
+        };
         machine.settle();
         machine
     }
@@ -28,33 +34,66 @@ impl<const LANES: usize> Machine<LANES> {
         &self.program
     }
 
-    /// Takes the bit patterns of all input ports, in order of declaration; bits beyond the width of
-    /// a port are ignored. [`Machine::settle_inputs`] is then due.
-    ///
-    /// # Panics
-    /// When there are fewer patterns than ports.
+    /// Takes the bit patterns of the input ports, in order of declaration; bits beyond the width of
+    /// a port are ignored. [`Machine::settle`] is then due.
     pub fn set_inputs(&mut self, inputs: &[[u64; LANES]]) {
-        let masks = &self.program.input_masks;
-        for ((slot, bits), mask) in self.slots.iter_mut().zip(&inputs[..masks.len()]).zip(masks) {
-            *slot = bits.map(|bits| bits & mask);
+        for (port, bits) in self.program.inputs.iter().zip(inputs) {
+            let bits = bits.map(|bits| bits & port.mask);
+            let slot = &mut self.slots[port.slot as usize];
+            self.changed |= changed(slot, &bits, port.source);
+            *slot = bits;
         }
     }
 
-    /// Brings all nets up to date.
+    /// Brings all nets up to date with inputs, registers and synchronous ROMs.
     pub fn settle(&mut self) {
-        self.program.settle(0, &mut self.slots);
-    }
-
-    /// Brings all nets up to date when only inputs have changed since they were.
-    pub fn settle_inputs(&mut self) {
-        self.program
-            .settle(self.program.inputs_from, &mut self.slots);
+        let Program {
+            instructions,
+            segments,
+            choices,
+            words,
+            ..
+        } = &*self.program;
+        let mut rest = instructions.as_slice();
+        for segment in segments {
+            let (here, after) = rest.split_at(segment.len as usize);
+            rest = after;
+            if self.changed & segment.sources != 0 {
+                for instruction in here {
+                    execute(*instruction, choices, words, &mut self.slots);
+                }
+            }
+        }
+        self.changed = 0;
     }
 
     /// The rising edge: registers and synchronous ROMs take what their operands carry.
     /// [`Machine::settle`] is then due.
     pub fn edge(&mut self) {
-        self.program.edge(&mut self.slots);
+        let slots = self.slots.as_mut_slice();
+        for edge in &self.program.reads {
+            let address = slots[edge.address as usize];
+            let word = address.map(|address| read(&self.program.words, edge.words, address));
+            let to = &mut slots[edge.to as usize];
+            self.changed |= changed(to, &word, edge.source);
+            *to = word;
+        }
+        for edge in &self.program.registers {
+            let data = slots[edge.data as usize];
+            let enable = slots[edge.enable as usize];
+            let keep = slots[edge.keep as usize];
+            let q = &mut slots[edge.q as usize];
+            let next = array::from_fn(|lane| {
+                let loaded = if enable[lane] == 0 {
+                    q[lane]
+                } else {
+                    data[lane]
+                };
+                if keep[lane] == 0 { edge.reset } else { loaded }
+            });
+            self.changed |= changed(q, &next, edge.source);
+            *q = next;
+        }
     }
 
     /// The bit pattern of a net in each lane.
@@ -63,34 +102,14 @@ impl<const LANES: usize> Machine<LANES> {
     }
 }
 
-impl Program {
-    fn settle<const LANES: usize>(&self, from: usize, slots: &mut [[u64; LANES]]) {
-        for instruction in &self.instructions[from..] {
-            execute(*instruction, &self.choices, &self.words, slots);
-        }
-    }
-
-    fn edge<const LANES: usize>(&self, slots: &mut [[u64; LANES]]) {
-        for edge in &self.reads {
-            unary(slots, edge.to, edge.address, |address| {
-                read(&self.words, edge.words, address)
-            });
-        }
-        for edge in &self.registers {
-            let data = slots[edge.data as usize];
-            let enable = slots[edge.enable as usize];
-            let keep = slots[edge.keep as usize];
-            let q = &mut slots[edge.q as usize];
-            for lane in 0..LANES {
-                let loaded = if enable[lane] == 0 {
-                    q[lane]
-                } else {
-                    data[lane]
-                };
-                q[lane] = if keep[lane] == 0 { edge.reset } else { loaded };
-            }
-        }
-    }
+/// `source` when a slot is going to change in any lane.
+#[inline(always)]
+fn changed<const LANES: usize>(old: &[u64; LANES], new: &[u64; LANES], source: Sources) -> Sources {
+    let differences = old
+        .iter()
+        .zip(new)
+        .fold(0, |all, (old, new)| all | (old ^ new));
+    if differences == 0 { 0 } else { source }
 }
 
 /// Executes one instruction.

@@ -6,8 +6,9 @@
 //! zero extensions, whole slices) share a slot, constants are folded, and equal instructions are
 //! merged, so there are fewer instructions than cells.
 //!
-//! The instructions that depend on input ports come last: after a change of inputs alone, running
-//! these settles the design.
+//! What changes from outside settling, input ports and what the edge writes, is a *source*.
+//! Instructions that depend on the same sources form a segment, and settling skips segments whose
+//! sources have not changed.
 
 use anyhow::Result;
 
@@ -16,6 +17,9 @@ use crate::sim::compile;
 
 /// The number of a slot.
 pub(super) type Slot = u32;
+
+/// A set of sources, one bit each; when there are more than 64, several share a bit.
+pub(super) type Sources = u64;
 
 /// One step of settling: `to` from `a`, `b`, ….
 ///
@@ -127,10 +131,26 @@ pub(super) struct Span {
     pub len: u32,
 }
 
+/// Consecutive instructions that depend on the same sources.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Segment {
+    pub sources: Sources,
+    pub len: u32,
+}
+
+/// An input port.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct InputPort {
+    pub slot: Slot,
+    pub source: Sources,
+    pub mask: u64,
+}
+
 /// A synchronous ROM: at the edge, `to` takes word `address`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ReadEdge {
     pub to: Slot,
+    pub source: Sources,
     pub address: Slot,
     pub words: Span,
 }
@@ -139,6 +159,7 @@ pub(super) struct ReadEdge {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RegisterEdge {
     pub q: Slot,
+    pub source: Sources,
     pub data: Slot,
     /// The constant 1 when the register has no enable.
     pub enable: Slot,
@@ -152,8 +173,8 @@ pub(super) struct RegisterEdge {
 pub struct Program {
     /// In an order in which each stands after those that compute its operands.
     pub(super) instructions: Vec<Instruction>,
-    /// From here on instructions depend on input ports.
-    pub(super) inputs_from: usize,
+    /// They cover the instructions.
+    pub(super) segments: Vec<Segment>,
     /// To be performed before `registers`; no operand of either is written by an earlier one.
     pub(super) reads: Vec<ReadEdge>,
     pub(super) registers: Vec<RegisterEdge>,
@@ -161,12 +182,12 @@ pub struct Program {
     pub(super) choices: Vec<Slot>,
     /// The contents of all ROMs.
     pub(super) words: Vec<u64>,
-    /// What the slots hold at power-up: input ports from slot 0 on, then everything else.
+    /// What the slots hold at power-up, before settling.
     pub(super) initial: Vec<u64>,
     /// The slot of each net.
     pub(super) slots: Vec<Slot>,
-    /// The mask of each input port.
-    pub(super) input_masks: Vec<u64>,
+    /// In order of declaration.
+    pub(super) inputs: Vec<InputPort>,
 }
 
 impl Program {
@@ -186,7 +207,7 @@ impl Program {
 
     /// The number of input ports.
     pub fn inputs(&self) -> usize {
-        self.input_masks.len()
+        self.inputs.len()
     }
 
     /// The slot of a net.
