@@ -29,7 +29,7 @@ use crate::golden::narrow::rounding_error;
 use crate::golden::sine::{Scheme, Sine};
 
 /// Bins of the quarter circle: fine against the narrowest highlight, 3.6° at n = 1000.
-const BINS: usize = 1024;
+const BINS: usize = 512;
 const BIN: f64 = FRAC_PI_2 / BINS as f64;
 
 /// A slack that covers the rounding of angles in f64.
