@@ -4,8 +4,11 @@
 //! the netlist or the microcode, and it computes its own tables; that is what makes the comparison
 //! with the simulated hardware worth something.
 
+pub mod contract;
+pub mod cosine_power;
 pub mod handshake;
 pub mod narrow;
+pub mod rough;
 pub mod sine;
 
 use crate::fixed::Format;

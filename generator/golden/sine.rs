@@ -90,7 +90,9 @@ impl Params {
     pub fn check(&self) -> Result<(), String> {
         let (operand, fraction) = (self.operand_fraction, self.fraction);
         if !(1..=26).contains(&operand) {
-            return Err(format!("cosine.fraction is {operand}; a sine table takes 1 to 26"));
+            return Err(format!(
+                "cosine.fraction is {operand}; a sine table takes 1 to 26"
+            ));
         }
         if !(1..=30).contains(&fraction) {
             return Err(format!("sine.fraction is {fraction}; 1 to 30 are possible"));
@@ -145,7 +147,9 @@ impl Sine {
         let table = match &params.scheme {
             Scheme::Direct { address } => Table::Direct {
                 address: *address,
-                entries: (0..1 << address).map(|a| direct_entry(a, *address, fraction)).collect(),
+                entries: (0..1 << address)
+                    .map(|a| direct_entry(a, *address, fraction))
+                    .collect(),
             },
             Scheme::Segmented {
                 segments,
@@ -154,7 +158,8 @@ impl Sine {
                 let range = |(j, &bits): (usize, &u32)| {
                     let width = operand - 2 * j as u32 - bits;
                     let first = 1i64 << (bits - 2);
-                    let fit = |prefix| fit(operand, fraction, *slope_fraction, prefix << width, width).0;
+                    let fit =
+                        |prefix| fit(operand, fraction, *slope_fraction, prefix << width, width).0;
                     Range {
                         width,
                         first,
@@ -164,7 +169,9 @@ impl Sine {
                 let block = 1i64 << (operand - 2 * segments.len() as u32);
                 Table::Segmented {
                     ranges: segments.iter().enumerate().map(range).collect(),
-                    rest: (0..block).map(|u| to_raw(sine_of(operand, u), fraction)).collect(),
+                    rest: (0..block)
+                        .map(|u| to_raw(sine_of(operand, u), fraction))
+                        .collect(),
                     remainder: remainder_bits(operand, segments),
                     slope_fraction: *slope_fraction,
                 }
@@ -216,10 +223,16 @@ impl Sine {
         match &self.table {
             Table::Direct { entries, .. } => (entries.len() as u64, self.fraction),
             Table::Segmented { ranges, rest, .. } => {
-                let slopes = ranges.iter().flat_map(|range| &range.segments).map(|it| it.slope);
+                let slopes = ranges
+                    .iter()
+                    .flat_map(|range| &range.segments)
+                    .map(|it| it.slope);
                 let largest = slopes.max().unwrap_or(0).max(1);
                 let prefixes: i64 = ranges.iter().map(|range| 4 * range.first).sum();
-                (prefixes as u64 + rest.len() as u64, self.fraction + largest.ilog2() + 1)
+                (
+                    prefixes as u64 + rest.len() as u64,
+                    self.fraction + largest.ilog2() + 1,
+                )
             }
         }
     }
@@ -238,7 +251,11 @@ impl Sine {
                 let bucket = one >> address;
                 for (&entry, a) in entries.iter().zip(0i64..) {
                     let first = a * bucket;
-                    let last = if first + bucket == one { one } else { first + bucket - 1 };
+                    let last = if first + bucket == one {
+                        one
+                    } else {
+                        first + bucket - 1
+                    };
                     let error = |x| (entry as f64 * ulp - sine_of(operand, one - x)).abs();
                     visit(Piece {
                         cosines: (cosine(first), cosine(last)),
@@ -260,7 +277,8 @@ impl Sine {
                 for range in ranges {
                     for prefix in range.first..4 * range.first {
                         let u = prefix << range.width;
-                        let (_, error) = fit(operand, self.fraction, *slope_fraction, u, range.width);
+                        let (_, error) =
+                            fit(operand, self.fraction, *slope_fraction, u, range.width);
                         visit(Piece {
                             cosines: (cosine(one - u - (1 << range.width) + 1), cosine(one - u)),
                             error,
@@ -302,7 +320,10 @@ fn fit(operand: u32, fraction: u32, slope_fraction: u32, u: i64, width: u32) -> 
     let ulp = exp2(-(fraction as i32));
     if width == 0 {
         let base = to_raw(start, fraction);
-        return (Segment { base, slope: 0 }, (base as f64 * ulp - start).abs());
+        return (
+            Segment { base, slope: 0 },
+            (base as f64 * ulp - start).abs(),
+        );
     }
     let rise = sine_of(operand, u + length) - start;
     let slope = (rise * exp2(slope_fraction as i32) + 0.5).floor() as i64;
@@ -397,7 +418,11 @@ mod tests {
                 let error = (it.at(x) as f64 * exp2(-(it.fraction as i32)) - exact).abs();
                 let holds = |piece: &&Piece| piece.cosines.0 <= cosine && cosine <= piece.cosines.1;
                 let piece = pieces.iter().find(holds).expect("a piece");
-                assert!(error <= piece.error, "{x} of {it:?}: {error} > {}", piece.error);
+                assert!(
+                    error <= piece.error,
+                    "{x} of {it:?}: {error} > {}",
+                    piece.error
+                );
                 // Not idle either: no piece allows more than the table could need.
                 assert!(piece.error <= 0.25);
             }

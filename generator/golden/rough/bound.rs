@@ -1,0 +1,233 @@
+//! The proof of the error bound of `rough`.
+//!
+//! **Notation.** b = n/2·(cos(γ ± dγ) − 1) + 1 is the formula's base, b′ the hardware's (adder 16 in
+//! word 6), and E ≥ |b′ − b|. Operands are exact, for the formula is taken at the quantised ones.
+//!
+//! **The base.** Registers 11 and 12 hold cos γ·cos dγ and sin γ·sin dγ with rounding errors e₁₁, e₁₂ and
+//! the sine's errors δ: with s = sin γ, t = sin dγ, register 12 is off by s·δ(dγ) + (t + δ(dγ))·δ(γ) at
+//! most. Adder 15 is exact, the product by n/2 is exact, and register 13 rounds by e₁₃. Hence
+//! E = n/2·(e₁₁ + e₁₂ + s·δ(dγ) + (t + δ(dγ))·δ(γ)) + e₁₃. Saturation of register 13 moves b′ towards
+//! 0 … 1 only (clamped) or −1 … 1 (not clamped), within which alone it matters.
+//!
+//! **The square.** Both bases clamped to 0 … 1, |b′² − b²| ≤ 2·b·E + E², which vanishes where b < −E. So a
+//! cosine's error e counts n·b·e. As b ≤ 1 − n·q/2 with q = 1 − cos(γ − dγ), which is the smaller for the
+//! nearer of the two signs, the weight n·b is the largest at n = 1/q, and small where γ and dγ
+//! are far apart: there the table may be coarse. Without the clamp |b| ≤ 1 and n·q/2 ≤ 2 + E count
+//! instead. Register 13 rounds the square by less than an ulp, or saturates 1.0 to 1.0 − ulp.
+//!
+//! **The maximum.** The quarter circle is cut into equal bins, in each of which the largest error of the
+//! table's entries is known; the smallest γ − dγ of two bins depends on their distance alone. All
+//! pairs of bins are tried.
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::{Kind, Params};
+use crate::fixed::{Rounding, exp2};
+use crate::golden::Bound;
+use crate::golden::contract::{self, Share};
+use crate::golden::narrow::rounding_error;
+use crate::golden::sine::{Scheme, Sine};
+
+/// Bins of the quarter circle: fine against the narrowest highlight, 3.6° at n = 1000.
+const BINS: usize = 512;
+const BIN: f64 = FRAC_PI_2 / BINS as f64;
+
+/// A slack that covers the rounding of angles in f64.
+const SLACK: f64 = 1e-9;
+
+/// The bound of a configuration, whose ROM 18 is `sine`.
+pub fn bound(params: &Params, sine: &Sine) -> Bound {
+    let shares = match params.arithmetic {
+        Kind::Patent => vec![(
+            "arithmetic",
+            "words modulo 1.0 wrap where the base is negative",
+            1.0,
+        )],
+        Kind::Exact => exact(params, sine),
+    };
+    contract::bound(
+        &shares,
+        params.f_fraction(),
+        params.colour_bits,
+        params.output_rounding,
+    )
+}
+
+/// The table's error by angle.
+struct Errors {
+    /// The largest error of an operand in each bin.
+    errors: Vec<f64>,
+    /// The largest sine in each bin.
+    sines: Vec<f64>,
+}
+
+impl Errors {
+    fn new(sine: &Sine) -> Self {
+        let mut errors = vec![0.0f64; BINS];
+        sine.for_each_piece(|piece| {
+            let (low, high) = piece.cosines;
+            let first = bin(libm::acos(high) - SLACK);
+            let last = bin(libm::acos(low) + SLACK);
+            for error in &mut errors[first..=last] {
+                *error = error.max(piece.error);
+            }
+        });
+        let sines = (1..=BINS)
+            .map(|edge| libm::sin(edge as f64 * BIN))
+            .collect();
+        Self { errors, sines }
+    }
+
+    /// The largest error of register 12 from the table, for γ in bin `i` and dγ in bin `j`; of each
+    /// entry's error `part` takes the part in question.
+    fn product(&self, i: usize, j: usize, part: impl Fn(f64) -> f64) -> f64 {
+        let (gamma, dgamma) = (self.errors[i], self.errors[j]);
+        self.sines[i] * part(dgamma) + (self.sines[j] + dgamma) * part(gamma)
+    }
+}
+
+/// What an error counts when γ and dγ are a number of bins apart.
+struct Weight {
+    /// The largest n·b.
+    linear: f64,
+    /// The largest n for which the square is not constant.
+    exponent: f64,
+}
+
+impl Weight {
+    /// `anywhere` is the largest error of the base for whatever angles.
+    fn new(params: &Params, distance: usize, anywhere: f64) -> Self {
+        let (least, most) = exponents(params);
+        let sine = libm::sin((distance.saturating_sub(1)) as f64 * BIN / 2.0);
+        let q = 2.0 * sine * sine;
+        // The square is constant beyond n·q/2 = 1 + E, or, where |b| counts, 2 + E.
+        let reach = if params.clamp { 1.0 } else { 2.0 };
+        let limit = most.min(2.0 * (reach + anywhere) / q);
+        if limit < least {
+            return Self {
+                linear: 0.0,
+                exponent: 0.0,
+            };
+        }
+        let linear = if params.clamp {
+            let best = (1.0 / q).clamp(least, most);
+            best * (1.0 - best * q / 2.0).max(0.0)
+        } else {
+            limit
+        };
+        Self {
+            linear,
+            exponent: limit,
+        }
+    }
+}
+
+fn exponents(params: &Params) -> (f64, f64) {
+    (params.exponents.0 as f64, params.exponents.1 as f64)
+}
+
+fn bin(angle: f64) -> usize {
+    ((angle.max(0.0) / BIN) as usize).min(BINS - 1)
+}
+
+fn exact(params: &Params, sine: &Sine) -> Vec<Share> {
+    let errors = Errors::new(sine);
+    let whole = |error: f64| error;
+    let deviation = bin(params.deviation.to_radians() + SLACK);
+    let (p, f, s) = (
+        params.product_fraction,
+        params.intensity_fraction,
+        params.sine_fraction,
+    );
+
+    let cos_cos = rounding_error(2 * params.cosine_fraction, p, params.product_rounding);
+    let mut sin_sin = rounding_error(2 * s, p, params.product_rounding);
+    let largest_product = errors.sines[deviation] + errors.errors[deviation];
+    if params.product_rounding == Rounding::Nearest && largest_product >= 1.0 - exp2(-(p as i32)) {
+        // What would round to 1.0 saturates to 1.0 − ulp.
+        sin_sin = sin_sin.max(exp2(-(p as i32)));
+    }
+    let products = cos_cos + sin_sin;
+    let base = rounding_error(p + 1, f, params.intensity_rounding);
+
+    let pairs = || (0..BINS).flat_map(move |i| (0..=deviation).map(move |j| (i, j)));
+    let largest = pairs()
+        .map(|(i, j)| errors.product(i, j, whole))
+        .fold(0.0, f64::max);
+    let (_, most) = exponents(params);
+    let anywhere = most / 2.0 * (largest + products) + base;
+    let weights: Vec<Weight> = (0..BINS)
+        .map(|distance| Weight::new(params, distance, anywhere))
+        .collect();
+
+    let (mut worst, mut at, mut square) = (0.0, (0, 0), 0.0f64);
+    for (i, j) in pairs() {
+        let weight = &weights[i.abs_diff(j)];
+        let error = errors.product(i, j, whole);
+        if weight.linear * error > worst {
+            (worst, at) = (weight.linear * error, (i, j));
+        }
+        square = square.max(weight.exponent / 2.0 * (error + products));
+    }
+
+    let linear = weights[at.0.abs_diff(at.1)].linear;
+    let ulp = exp2(-(f as i32));
+    let mut shares: Vec<Share> = sine_terms(params)
+        .iter()
+        .enumerate()
+        .map(|(k, &(key, what))| {
+            let part = |error| split(params, error)[k];
+            (key, what, linear * errors.product(at.0, at.1, part))
+        })
+        .collect();
+    shares.extend([
+        (
+            "product.fraction",
+            "rounding of registers 11 and 12, times n",
+            most * products,
+        ),
+        (
+            "intensity.fraction",
+            "rounding of register 13, twice",
+            2.0 * base + ulp,
+        ),
+        (
+            "domain.exponent_max",
+            "square of the base's error",
+            (square + base) * (square + base),
+        ),
+    ]);
+    shares
+}
+
+/// The keys that govern the parts which [`split`] tells apart.
+fn sine_terms(params: &Params) -> &'static [(&'static str, &'static str)] {
+    match params.sine_scheme {
+        Scheme::Direct { .. } => &[
+            ("sine.fraction", "rounding of the sine, times n"),
+            ("sine.address", "one sine for a whole bucket, times n"),
+        ],
+        Scheme::Segmented { .. } => &[
+            ("sine.fraction", "rounding of the sine, times n"),
+            ("sine.segments", "straight segments for the sine, times n"),
+            ("sine.slope_fraction", "rounding of the slopes, times n"),
+        ],
+    }
+}
+
+/// An entry's error, which is known as a whole, in its parts: as much as rounding (and the floor after
+/// interpolation) and the slope can be guilty of; the rest is the shape's.
+fn split(params: &Params, error: f64) -> [f64; 3] {
+    let ulp = exp2(-(params.sine_fraction as i32));
+    match params.sine_scheme {
+        Scheme::Direct { .. } => {
+            let rounding = error.min(ulp / 2.0);
+            [rounding, error - rounding, 0.0]
+        }
+        Scheme::Segmented { slope_fraction, .. } => {
+            let rounding = error.min(1.5 * ulp);
+            let slope = (error - rounding).min(exp2(-(slope_fraction as i32)) / 4.0);
+            [rounding, error - rounding - slope, slope]
+        }
+    }
+}

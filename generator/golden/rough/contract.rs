@@ -1,0 +1,128 @@
+//! The accuracy contract of `rough`.
+
+use super::{Arithmetic, Kind, Params, bound};
+use crate::fixed::{Format, exp2};
+use crate::golden::{Bound, Contract, Operand, contract};
+use crate::reference;
+
+/// The accuracy contract. Control operands: `cos_gamma`, `cos_dgamma`, `exponent`, `dgamma_negative`.
+#[derive(Clone, Debug)]
+pub struct Accuracy {
+    params: Params,
+    arithmetic: Arithmetic,
+    operands: Vec<Operand>,
+    outputs: Vec<String>,
+}
+
+impl Accuracy {
+    /// The contract of a configuration.
+    ///
+    /// # Errors
+    /// As [`Params::check`].
+    pub fn new(params: &Params) -> Result<Self, String> {
+        let arithmetic = Arithmetic::new(params)?;
+        let largest = params.largest_cosine();
+        let cos_gamma = params.cos_gamma_format();
+        let lowest = if cos_gamma.signed { -largest } else { 0 };
+        let cosine = libm::cos(params.deviation.to_radians());
+        // The smallest cosine whose angle is within the deviation.
+        let steepest = (cosine * exp2(params.cosine_fraction as i32)).ceil() as i64;
+        let operand = |name: &str, format, domain, doc: &str| Operand {
+            name: name.to_string(),
+            format,
+            domain,
+            colour: false,
+            doc: doc.to_string(),
+        };
+        let mut operands = vec![
+            operand(
+                "cos_gamma",
+                cos_gamma,
+                (lowest, largest),
+                "cosine of the angle between the normal and the half vector",
+            ),
+            operand(
+                "cos_dgamma",
+                params.cos_dgamma_format(),
+                (steepest.min(largest), largest),
+                "cosine of the deviation of the microfacet",
+            ),
+            operand(
+                "exponent",
+                params.exponent_format(),
+                params.exponents,
+                "specular exponent n",
+            ),
+            operand(
+                "dgamma_negative",
+                Format::BIT,
+                (0, 1),
+                "1: the deviation is taken from the angle; 0: added to it",
+            ),
+        ];
+        operands.extend(contract::colour_operands(params.colour_format()));
+        Ok(Self {
+            arithmetic,
+            params: params.clone(),
+            operands,
+            outputs: contract::colour_outputs(),
+        })
+    }
+
+    /// Words and bits per word of ROM 18.
+    pub fn rom_size(&self) -> (u64, u32) {
+        self.arithmetic.sine.rom_size()
+    }
+
+    fn clamped(&self, cosine: i64) -> i64 {
+        cosine.clamp(0, self.params.largest_cosine())
+    }
+}
+
+impl Contract for Accuracy {
+    fn operands(&self) -> &[Operand] {
+        &self.operands
+    }
+
+    fn outputs(&self) -> &[String] {
+        &self.outputs
+    }
+
+    fn f_format(&self) -> Format {
+        Format::unsigned(0, self.params.f_fraction() as i32)
+    }
+
+    #[inline]
+    fn f(&self, control: &[i64]) -> i64 {
+        let it = &self.arithmetic;
+        let (cos_gamma, cos_dgamma) = (self.clamped(control[0]), self.clamped(control[1]));
+        let sin_sin = it.sin_sin(it.sine.at(cos_gamma), it.sine.at(cos_dgamma));
+        let adder_15 = it.adder_15(it.cos_cos(cos_gamma, cos_dgamma), sin_sin, control[3]);
+        let scaled = it.scaled(adder_15, control[2], cos_gamma);
+        it.f(it.squared(scaled, cos_gamma))
+    }
+
+    #[inline]
+    fn colour(&self, f: i64, colour: i64) -> i64 {
+        self.arithmetic.colour(f, colour)
+    }
+
+    /// The patent's arithmetic is held against the clamped formula, which shows what it costs.
+    fn reference(&self, control: &[i64]) -> f64 {
+        let cosine = |raw| self.clamped(raw) as f64 * exp2(-(self.params.cosine_fraction as i32));
+        let formula = match (self.params.arithmetic, self.params.clamp) {
+            (Kind::Exact, false) => reference::rough_unclamped,
+            _ => reference::rough,
+        };
+        formula(
+            cosine(control[0]),
+            cosine(control[1]),
+            control[3] == 1,
+            control[2] as f64,
+        )
+    }
+
+    fn bound(&self) -> Bound {
+        bound::bound(&self.params, &self.arithmetic.sine)
+    }
+}
