@@ -1,0 +1,3 @@
+//! Co-simulation: the same stimulus through independent simulators, compared clock by clock.
+
+pub mod external;
