@@ -5,6 +5,7 @@ pub mod config;
 pub mod devices;
 pub mod dsl;
 pub mod emit;
+pub mod cosim;
 pub mod fixed;
 pub mod golden;
 pub mod identifier;

@@ -1,0 +1,185 @@
+//! Self-checking Verilog benches under external simulators.
+
+use std::env;
+use std::ffi::OsStr;
+use std::fmt;
+use std::fs;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, bail, ensure};
+
+use super::{Tool, capture};
+
+/// An event-driven or compiling Verilog simulator.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Simulator {
+    /// Icarus Verilog: starts at once, runs slowly.
+    Icarus,
+    /// Verilator: compiles for seconds, runs fast, knows two states only.
+    Verilator,
+}
+
+/// What came of a bench.
+#[derive(Clone, Debug)]
+pub struct BenchOutcome {
+    /// The bench printed a PASS line, no FAIL line, and ended without an error.
+    pub passed: bool,
+    /// What the compiler said. Empty when it had nothing to warn of (Icarus), or the protocol of
+    /// the build (Verilator, which takes a warning for an error).
+    pub build: String,
+    /// What the bench printed.
+    pub transcript: String,
+}
+
+impl fmt::Display for Simulator {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(match self {
+            Self::Icarus => "Icarus Verilog",
+            Self::Verilator => "Verilator",
+        })
+    }
+}
+
+/// Builds the bench `top` from `files`, pairs of a plain file name and contents, in a temporary
+/// directory and runs it there. Files that end in `.v` or `.sv` are compiled, in the given order;
+/// others, such as `.mem`, only stand beside. The bench ends by itself after a line that begins with
+/// `PASS` or `FAIL`.
+///
+/// # Errors
+/// The simulator is missing; it rejects the sources (Verilator: or warns of them); building and
+/// running take more than `limit` in all; the bench crashes, or ends without a verdict. A bench
+/// that fails is no error but an outcome.
+pub fn run_bench<N: AsRef<str>, C: AsRef<[u8]>>(
+    simulator: Simulator,
+    files: &[(N, C)],
+    top: &str,
+    limit: Duration,
+) -> Result<BenchOutcome> {
+    let search = env::var_os("PATH").unwrap_or_default();
+    run_bench_in(&search, simulator, files, top, limit)
+}
+
+/// [`run_bench`] with another search path than `PATH` for the simulator.
+pub(super) fn run_bench_in<N: AsRef<str>, C: AsRef<[u8]>>(
+    search: &OsStr,
+    simulator: Simulator,
+    files: &[(N, C)],
+    top: &str,
+    limit: Duration,
+) -> Result<BenchOutcome> {
+    let deadline = Instant::now() + limit;
+    let remaining = || deadline.saturating_duration_since(Instant::now());
+    // Missing tools are reported before anything is written.
+    let (compiler, runner) = match simulator {
+        Simulator::Icarus => (
+            Tool::find_in("iverilog", search)?,
+            Some(Tool::find_in("vvp", search)?),
+        ),
+        Simulator::Verilator => (Tool::find_in("verilator", search)?, None),
+    };
+    let place = tempfile::Builder::new()
+        .prefix("glint-bench-")
+        .tempdir()
+        .context("cannot make a temporary directory")?;
+    let directory = place.path();
+    let sources = write_files(directory, files)?;
+
+    let mut arguments: Vec<&str> = match simulator {
+        Simulator::Icarus => vec!["-g2012", "-Wall", "-s", top, "-o", "bench.vvp"],
+        Simulator::Verilator => vec![
+            "--binary",
+            "--timing",
+            // For sources without `timescale, which may stand beside some that have it.
+            "--timescale",
+            "1ns/1ps",
+            "-j",
+            "1",
+            "--top-module",
+            top,
+            "--Mdir",
+            "build",
+            "-o",
+            "bench",
+        ],
+    };
+    arguments.extend(sources);
+    let build = compiler
+        .run_to_success(arguments, directory, remaining())
+        .with_context(|| format!("{simulator} cannot build the bench `{top}`"))?;
+
+    let run = match runner {
+        // -n: a $stop ends the run instead of asking the terminal.
+        Some(vvp) => vvp.run(["-n", "bench.vvp"], directory, remaining()),
+        None => Tool::find_in("bench", directory.join("build").as_os_str())?.run(
+            [] as [&str; 0],
+            directory,
+            remaining(),
+        ),
+    }
+    .with_context(|| format!("the bench `{top}` under {simulator}"))?;
+    let transcript = run.output;
+    let passed = match verdict(&transcript) {
+        Some(passed) if run.status.success() => passed,
+        // $fatal ends the simulation with an error status.
+        Some(false) => false,
+        Some(true) => bail!(
+            "the bench `{top}` under {simulator} printed PASS and then ended badly ({}){}",
+            run.status,
+            capture::quote(&transcript)
+        ),
+        None => bail!(
+            "the bench `{top}` under {simulator} ended without a PASS or FAIL line ({}){}",
+            run.status,
+            capture::quote(&transcript)
+        ),
+    };
+    Ok(BenchOutcome {
+        passed,
+        build,
+        transcript,
+    })
+}
+
+/// Writes the files and returns the names of those to compile.
+fn write_files<'a, N: AsRef<str>, C: AsRef<[u8]>>(
+    directory: &Path,
+    files: &'a [(N, C)],
+) -> Result<Vec<&'a str>> {
+    let mut sources = Vec::new();
+    for (name, contents) in files {
+        let name = name.as_ref();
+        let plain = Path::new(name).file_name() == Some(OsStr::new(name));
+        // A leading dash would be an option to the compiler.
+        ensure!(
+            plain && !name.starts_with('-'),
+            "`{name}` is not a plain file name"
+        );
+        let path = directory.join(name);
+        ensure!(!path.exists(), "there are two files named `{name}`");
+        fs::write(&path, contents).with_context(|| format!("cannot write {}", path.display()))?;
+        if name.ends_with(".v") || name.ends_with(".sv") {
+            sources.push(name);
+        }
+    }
+    ensure!(
+        !sources.is_empty(),
+        "there is no Verilog file among those given"
+    );
+    Ok(sources)
+}
+
+/// Whether there is a PASS line and no FAIL line; `None` when there is neither.
+fn verdict(transcript: &str) -> Option<bool> {
+    let says = |word| {
+        let first = |line: &str| line.split(|c: char| !c.is_alphanumeric()).next() == Some(word);
+        transcript.lines().any(first)
+    };
+    if says("FAIL") {
+        Some(false)
+    } else if says("PASS") {
+        Some(true)
+    } else {
+        None
+    }
+}

@@ -1,0 +1,93 @@
+//! The output of a child process, kept within bounds.
+
+use std::collections::VecDeque;
+use std::io::Read;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Of a long output, this many bytes of the beginning are kept ...
+const KEEP_FIRST: usize = 64 << 10;
+/// ... and this many of the end, where verdicts and errors stand.
+const KEEP_LAST: usize = 1 << 20;
+/// Lines of output that an error quotes.
+const QUOTED_LINES: usize = 12;
+/// Characters of a line that an error quotes.
+const QUOTED_CHARACTERS: usize = 200;
+
+/// Output as far as it has come; clones share it.
+#[derive(Clone, Default)]
+pub(super) struct Capture(Arc<Mutex<Kept>>);
+
+#[derive(Default)]
+struct Kept {
+    first: Vec<u8>,
+    last: VecDeque<u8>,
+    left_out: u64,
+}
+
+impl Capture {
+    /// Reads to the end, or to an error, which ends the output too.
+    pub(super) fn drain(&self, reader: &mut impl Read) {
+        let mut buffer = vec![0; 64 << 10];
+        while let Ok(count @ 1..) = reader.read(&mut buffer) {
+            let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+            kept.push(&buffer[..count]);
+        }
+    }
+
+    /// What has been kept; bytes that are not UTF-8 are replaced.
+    pub(super) fn text(&self) -> String {
+        let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut bytes = kept.first.clone();
+        if kept.left_out > 0 {
+            let note = format!("\n... {} bytes left out ...\n", kept.left_out);
+            bytes.extend_from_slice(note.as_bytes());
+        }
+        bytes.extend(&kept.last);
+        String::from_utf8_lossy(&bytes).into_owned()
+    }
+
+    /// The end of what has been kept, as [`quote`] gives it.
+    pub(super) fn quote(&self) -> String {
+        quote(&self.text())
+    }
+}
+
+impl Kept {
+    fn push(&mut self, bytes: &[u8]) {
+        let (first, rest) = bytes.split_at(bytes.len().min(KEEP_FIRST - self.first.len()));
+        self.first.extend_from_slice(first);
+        self.last.extend(rest);
+        let excess = self.last.len().saturating_sub(KEEP_LAST);
+        self.last.drain(..excess);
+        self.left_out += excess as u64;
+    }
+}
+
+/// The last lines of `output` as the end of an error message, indented and without control
+/// characters.
+pub(super) fn quote(output: &str) -> String {
+    let lines: Vec<&str> = output
+        .lines()
+        .filter(|line| !line.trim().is_empty())
+        .collect();
+    if lines.is_empty() {
+        return "; it printed nothing".to_owned();
+    }
+    let from = lines.len().saturating_sub(QUOTED_LINES);
+    let mut text = String::from("; its last lines:");
+    for line in &lines[from..] {
+        text.push_str("\n    ");
+        let printable = |c: char| {
+            if c.is_control() && c != '\t' {
+                '\u{fffd}'
+            } else {
+                c
+            }
+        };
+        text.extend(line.chars().take(QUOTED_CHARACTERS).map(printable));
+        if line.chars().nth(QUOTED_CHARACTERS).is_some() {
+            text.push_str(" ...");
+        }
+    }
+    text
+}

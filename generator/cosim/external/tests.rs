@@ -1,0 +1,281 @@
+//! Fake tools, which are shell scripts, misbehave in every way that a real one might.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use super::bench::run_bench_in;
+use super::*;
+
+/// A directory of scripts that stands for `PATH`.
+struct Fakes(tempfile::TempDir);
+
+impl Fakes {
+    fn new(scripts: &[(&str, &str)]) -> Self {
+        let place = tempfile::tempdir().unwrap();
+        for (name, script) in scripts {
+            // A shell writes the file: while this process had it open for writing, another test's
+            // fork could inherit it, and then the file is busy and does not run.
+            let mut shell = Command::new("/bin/sh")
+                .args(["-c", "cat > \"$0\" && chmod +x \"$0\"", name])
+                .current_dir(&place)
+                .stdin(Stdio::piped())
+                .spawn()
+                .unwrap();
+            let mut input = shell.stdin.take().unwrap();
+            write!(input, "#!/bin/sh\n{script}\n").unwrap();
+            drop(input);
+            assert!(shell.wait().unwrap().success());
+        }
+        Self(place)
+    }
+
+    fn run(&self, name: &str, limit: Duration) -> Result<Run> {
+        let tool = Tool::find_in(name, self.0.path().as_os_str())?;
+        tool.run([] as [&str; 0], self.0.path(), limit)
+    }
+
+    fn bench(&self, simulator: Simulator) -> Result<BenchOutcome> {
+        let files = [("tb.v", "module tb; endmodule\n"), ("rom.mem", "0\n")];
+        run_bench_in(self.0.path().as_os_str(), simulator, &files, "tb", LIMIT)
+    }
+
+    fn file(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+}
+
+const LIMIT: Duration = Duration::from_secs(60);
+
+fn message<T>(result: Result<T>) -> String {
+    match result {
+        Ok(_) => panic!("this should have failed"),
+        Err(error) => format!("{error:#}"),
+    }
+}
+
+#[test]
+fn a_missing_tool_is_named_with_its_remedy() {
+    let fakes = Fakes::new(&[]);
+    std::fs::write(fakes.file("iverilog"), "not executable").unwrap();
+    for simulator in [Simulator::Icarus, Simulator::Verilator] {
+        let text = message(fakes.bench(simulator));
+        let name = if simulator == Simulator::Icarus {
+            "`iverilog`"
+        } else {
+            "`verilator`"
+        };
+        assert!(
+            text.contains(name) && text.contains("bash tools/install"),
+            "{text}"
+        );
+    }
+}
+
+#[test]
+fn a_file_that_is_no_program_does_not_start() {
+    let fakes = Fakes::new(&[("tool", "")]);
+    std::fs::write(fakes.file("tool"), [0x7f, b'E', b'L', b'F', 0, 0]).unwrap();
+    let text = message(fakes.run("tool", LIMIT));
+    assert!(
+        text.contains("cannot start") && text.contains("tool"),
+        "{text}"
+    );
+}
+
+#[test]
+fn a_failing_tool_is_quoted_to_its_last_line() {
+    let script = "seq 1 100\necho 'to standard error' >&2\nexit 3";
+    let fakes = Fakes::new(&[("tool", script)]);
+    let run = fakes.run("tool", LIMIT).unwrap();
+    assert_eq!(run.status.code(), Some(3));
+    let tool = Tool::find_in("tool", fakes.0.path().as_os_str()).unwrap();
+    let text = message(tool.run_to_success([] as [&str; 0], fakes.0.path(), LIMIT));
+    assert!(text.contains("`tool` failed (exit status: 3)"), "{text}");
+    assert!(
+        text.contains("\n    99\n    100\n    to standard error"),
+        "{text}"
+    );
+    assert!(!text.contains("    50\n"), "only the last lines: {text}");
+}
+
+#[test]
+fn a_hanging_tool_is_killed_with_its_children() {
+    let script = "sleep 600 &\necho $! > child\necho started\nwait";
+    let fakes = Fakes::new(&[("tool", script)]);
+    let before = Instant::now();
+    let text = message(fakes.run("tool", Duration::from_secs(1)));
+    assert!(
+        before.elapsed() < Duration::from_secs(5),
+        "{:?}",
+        before.elapsed()
+    );
+    assert!(text.contains("`tool` did not end within 1s"), "{text}");
+    assert!(text.contains("\n    started"), "{text}");
+    let child = std::fs::read_to_string(fakes.file("child")).unwrap();
+    let alive = || {
+        // A killed orphan may stay a zombie until whoever adopted it collects it.
+        std::fs::read_to_string(format!("/proc/{}/stat", child.trim()))
+            .is_ok_and(|stat| !stat.contains(") Z "))
+    };
+    let deadline = Instant::now() + Duration::from_secs(5);
+    while alive() && Instant::now() < deadline {
+        thread::sleep(Duration::from_millis(10));
+    }
+    assert!(!alive(), "process {child} is still there");
+}
+
+#[test]
+fn a_tool_that_closes_its_output_and_stays_is_killed_too() {
+    let fakes = Fakes::new(&[("tool", "exec > /dev/null 2>&1\nsleep 600")]);
+    let text = message(fakes.run("tool", Duration::from_millis(300)));
+    assert!(text.contains("did not end within 300ms"), "{text}");
+    assert!(text.contains("printed nothing"), "{text}");
+}
+
+#[test]
+fn endless_output_ends_with_the_time_limit() {
+    let fakes = Fakes::new(&[("tool", "exec yes endless")]);
+    let text = message(fakes.run("tool", Duration::from_millis(500)));
+    assert!(text.contains("did not end within 500ms"), "{text}");
+    assert!(text.len() < 5000, "{} bytes", text.len());
+}
+
+#[test]
+fn of_enormous_output_both_ends_are_kept() {
+    let script = "echo beginning\nyes 0123456789 | head -c 50000000\necho\necho the end";
+    let fakes = Fakes::new(&[("tool", script)]);
+    let run = fakes.run("tool", LIMIT).unwrap();
+    assert!(run.status.success());
+    assert!(run.output.starts_with("beginning\n0123456789\n"));
+    assert!(run.output.ends_with("\nthe end\n"));
+    assert!(run.output.len() < 1_200_000, "{}", run.output.len());
+    // Everything is either kept or counted: 10 + 50 000 000 + 1 + 8 bytes.
+    let note = run
+        .output
+        .lines()
+        .find(|line| line.contains("left out"))
+        .unwrap();
+    let left_out: usize = note.split(' ').nth(1).unwrap().parse().unwrap();
+    assert_eq!(run.output.len() - note.len() - 2 + left_out, 50_000_019);
+}
+
+#[test]
+fn garbage_is_kept_readable() {
+    let script = "printf '\\377\\376\\033[31m\\000 garbage \\007\\n'\nexit 1";
+    let fakes = Fakes::new(&[("iverilog", script), ("vvp", "")]);
+    let text = message(fakes.bench(Simulator::Icarus));
+    assert!(
+        text.contains("Icarus Verilog cannot build the bench `tb`"),
+        "{text}"
+    );
+    assert!(
+        text.contains(" garbage ") && text.contains('\u{fffd}'),
+        "{text}"
+    );
+    assert!(
+        text.chars().all(|c| c == '\n' || !c.is_control()),
+        "{text:?}"
+    );
+}
+
+#[test]
+fn the_verdict_is_a_line_and_the_exit_status_counts() {
+    let verdict =
+        |vvp: &str| Fakes::new(&[("iverilog", ""), ("vvp", vvp)]).bench(Simulator::Icarus);
+    for (script, passed) in [
+        ("echo PASS", true),
+        ("echo 'PASS: rough, 1000 clocks'; echo done", true),
+        ("echo 'FAIL: clock 7'; exit 1", false),
+        ("echo FAIL", false),
+        ("echo PASS; echo FAIL", false),
+    ] {
+        let outcome = verdict(script).unwrap();
+        assert_eq!(outcome.passed, passed, "{script}");
+        assert!(
+            outcome
+                .transcript
+                .contains(if passed { "PASS" } else { "FAIL" })
+        );
+        assert!(outcome.build.is_empty());
+    }
+    for (script, expected) in [
+        ("echo PASS; exit 1", "printed PASS and then ended badly"),
+        ("echo PASSED", "without a PASS or FAIL line"),
+        ("echo 'no PASS here'", "without a PASS or FAIL line"),
+        ("", "printed nothing"),
+        ("kill -SEGV $$", "signal: 11"),
+    ] {
+        let text = message(verdict(script));
+        assert!(text.contains(expected), "{script}: {text}");
+    }
+}
+
+#[test]
+fn verilator_s_program_is_run_and_its_verdict_read() {
+    let build =
+        "mkdir build\nprintf '#!/bin/sh\\necho PASS\\n' > build/bench\nchmod +x build/bench";
+    let fakes = Fakes::new(&[("verilator", &format!("{build}\necho \"$@\""))]);
+    let outcome = fakes.bench(Simulator::Verilator).unwrap();
+    assert!(outcome.passed);
+    assert!(
+        outcome.build.ends_with(" tb.v\n"),
+        "only sources are compiled: {}",
+        outcome.build
+    );
+    let text = message(Fakes::new(&[("verilator", "")]).bench(Simulator::Verilator));
+    assert!(text.contains("bench"), "{text}");
+}
+
+#[test]
+fn only_plain_distinct_names_are_written() {
+    let fakes = Fakes::new(&[("iverilog", ""), ("vvp", "echo PASS")]);
+    let run = |names: &[&str]| {
+        let files: Vec<_> = names.iter().map(|name| (name, "")).collect();
+        run_bench_in(
+            fakes.0.path().as_os_str(),
+            Simulator::Icarus,
+            &files,
+            "tb",
+            LIMIT,
+        )
+    };
+    assert!(run(&["a.v", "b.mem"]).is_ok());
+    for names in [
+        &["../a.v"][..],
+        &["/tmp/a.v"],
+        &["-o.v"],
+        &[""],
+        &[".."],
+        &["a/b.v"],
+    ] {
+        assert!(
+            message(run(names)).contains("not a plain file name"),
+            "{names:?}"
+        );
+    }
+    assert!(message(run(&["a.v", "a.v"])).contains("two files"));
+    assert!(message(run(&["a.mem"])).contains("no Verilog file"));
+}
+
+#[test]
+fn the_version_is_the_first_line() {
+    let fakes = Fakes::new(&[
+        (
+            "yosys",
+            "[ \"$1\" = --version ] && printf '\\nYosys 0.23\\nmore\\n'",
+        ),
+        (
+            "iverilog",
+            "[ \"$1\" = -V ] && echo 'Icarus Verilog version 11.0'",
+        ),
+        ("silent", ""),
+    ]);
+    let version = |name| {
+        Tool::find_in(name, fakes.0.path().as_os_str())
+            .unwrap()
+            .version()
+    };
+    assert_eq!(version("yosys").unwrap(), "Yosys 0.23");
+    assert_eq!(version("iverilog").unwrap(), "Icarus Verilog version 11.0");
+    assert!(message(version("silent")).contains("printed nothing"));
+}

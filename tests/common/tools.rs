@@ -1,0 +1,107 @@
+//! What tests need of outside tools.
+//!
+//! A missing tool fails the test, with the remedy: a test that skips itself proves nothing.
+
+// Each test crate uses a part of this.
+#![allow(dead_code)]
+
+use std::env;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use glint::cosim::external::{BenchOutcome, Simulator, Tool, run_bench};
+
+/// What a run of any tool may take.
+pub const LIMIT: Duration = Duration::from_secs(300);
+
+/// The tool of that name: from the Python environment that `tools/install` makes, or from `PATH`.
+///
+/// # Panics
+/// It is in neither.
+pub fn tool(name: &str) -> Tool {
+    let venv = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/tools/venv/bin");
+    let path = env::var_os("PATH").unwrap_or_default();
+    let places = std::iter::once(venv).chain(env::split_paths(&path));
+    let search: OsString = env::join_paths(places).expect("a search path");
+    Tool::find_in(name, &search).unwrap_or_else(|error| panic!("{error:#}"))
+}
+
+/// Runs a bench that is expected to pass; returns what came of it.
+///
+/// # Panics
+/// It cannot be built or run, warns under Icarus Verilog, or does not pass.
+pub fn assert_bench_passes(
+    simulator: Simulator,
+    files: &[(String, String)],
+    top: &str,
+) -> BenchOutcome {
+    let outcome =
+        run_bench(simulator, files, top, LIMIT).unwrap_or_else(|error| panic!("{error:#}"));
+    assert!(
+        outcome.passed,
+        "{top} under {simulator}:\n{}",
+        outcome.transcript
+    );
+    if simulator == Simulator::Icarus {
+        assert_eq!(outcome.build, "", "{top}: warnings of iverilog -Wall");
+    }
+    outcome
+}
+
+/// Checks that neither `verilator --lint-only -Wall` nor `iverilog -Wall` has anything to say about
+/// the Verilog files in `directory`.
+///
+/// # Panics
+/// One of them has.
+pub fn assert_lint_clean(directory: &Path, top: &str) {
+    let sources = verilog_files(directory);
+    let icarus = tool("iverilog");
+    let arguments = ["-g2005", "-Wall", "-t", "null", "-s", top];
+    let arguments = arguments
+        .into_iter()
+        .chain(sources.iter().map(String::as_str));
+    lint(&icarus, arguments.collect(), directory);
+    let verilator = tool("verilator");
+    let arguments = ["--lint-only", "-Wall", "--top-module", top];
+    let arguments = arguments
+        .into_iter()
+        .chain(sources.iter().map(String::as_str));
+    lint(&verilator, arguments.collect(), directory);
+}
+
+fn lint(tool: &Tool, arguments: Vec<&str>, directory: &Path) {
+    let output = tool
+        .run_to_success(arguments, directory, LIMIT)
+        .unwrap_or_else(|error| panic!("{}: {error:#}", directory.display()));
+    assert_eq!(output, "", "{tool} has remarks on {}", directory.display());
+}
+
+/// Runs Yosys commands in `directory`, with warnings as errors, and returns the protocol.
+///
+/// # Panics
+/// Yosys fails or warns.
+pub fn yosys(directory: &Path, commands: &str) -> String {
+    tool("yosys")
+        .run_to_success(["-e", ".*", "-p", commands], directory, LIMIT)
+        .unwrap_or_else(|error| panic!("{}: {error:#}", directory.display()))
+}
+
+/// The names of the Verilog files in `directory`, sorted.
+///
+/// # Panics
+/// It cannot be read, or there are none.
+pub fn verilog_files(directory: &Path) -> Vec<String> {
+    let entries = directory
+        .read_dir()
+        .unwrap_or_else(|error| panic!("{}: {error}", directory.display()));
+    let paths = entries.map(|entry| entry.expect("a directory entry").path());
+    let is_verilog = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "v");
+    let mut names: Vec<String> = paths
+        .filter(is_verilog)
+        .filter_map(|path| Some(path.file_name()?.to_str()?.to_owned()))
+        .collect();
+    assert!(!names.is_empty(), "no Verilog in {}", directory.display());
+    names.sort();
+    names
+}
