@@ -1,1 +1,7 @@
-fn main() {}
+//! The command line of the catalogue.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    glint::cli::run(&glint::registry::Registry::catalogue())
+}

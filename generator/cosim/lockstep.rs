@@ -194,9 +194,20 @@ impl<'a> Lockstep<'a> {
         Ok(outcome)
     }
 
-    /// The simulator, to end a VCD for example.
-    pub fn into_simulator(self) -> Simulator {
-        self.simulator
+    /// From now on, writes a waveform.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn trace(&mut self, file: impl std::io::Write + Send + 'static) -> Result<()> {
+        self.simulator.trace(file)
+    }
+
+    /// Ends the waveform.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn end_trace(&mut self) -> Result<()> {
+        self.simulator.end_trace()
     }
 
     fn address(&self) -> NetId {

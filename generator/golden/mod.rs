@@ -71,6 +71,12 @@ pub trait Contract: Send + Sync {
 
     /// A proven bound on the error, stated before anything is simulated.
     fn bound(&self) -> Bound;
+
+    /// What a user of this configuration should know of the formula itself, with figures: where in the
+    /// domain another choice of the same device would come closer to `cosⁿγ`.
+    fn remarks(&self) -> Vec<String> {
+        Vec::new()
+    }
 }
 
 /// A bound on `|out − K·f|` over the domain, and what it is made of.

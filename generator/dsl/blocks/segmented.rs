@@ -221,9 +221,14 @@ fn address_and_rest<'d>(
                 let low = block.bits - 2;
                 let top = u.format().width() - low;
                 let here = d.any(&format!("{name}_in_range{at}"), u.bits(low, Format::unsigned(top as i32, 0)));
+                let no_rest = lower_rest.range() == (0, 0) && remainder.range() == (0, 0);
                 (
                     d.choose(&format!("{name}_word{at}"), here, [lower_word, word]),
-                    d.choose(&format!("{name}_rest{at}"), here, [lower_rest, remainder]),
+                    if no_rest {
+                        remainder
+                    } else {
+                        d.choose(&format!("{name}_rest{at}"), here, [lower_rest, remainder])
+                    },
                 )
             }
         });

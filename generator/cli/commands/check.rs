@@ -1,0 +1,114 @@
+//! The main job: generate everything, co-simulate everything, say what was found.
+
+use std::path::Path;
+
+use anyhow::Result;
+use rayon::prelude::*;
+use serde_json::{Value, json};
+
+use super::{Loaded, cosim, generate, load};
+use crate::cli::{Output, POINTS, progress, tables};
+use crate::cosim::Outcome;
+use crate::emit::Timing;
+use crate::flow::BENCH_SEED;
+use crate::golden::Bound;
+use crate::registry::Registry;
+
+/// What the main job found of one configuration.
+struct Finding {
+    timing: Timing,
+    bound: Bound,
+    outcome: Outcome,
+    /// What does not hold.
+    faults: Vec<String>,
+}
+
+/// The main job.
+pub fn everything(registry: &Registry, output: Output) -> Result<bool> {
+    let loaded = load(registry, &[])?;
+    for one in &loaded {
+        one.contract()?;
+        let files = generate::files(one)?;
+        generate::write(Path::new("."), one, &files, false)?;
+    }
+    let bar = progress::bar(output, POINTS * loaded.len() as u64, "points checked");
+    let findings: Vec<Finding> = loaded
+        .par_iter()
+        .map(|one| finding(one, &bar))
+        .collect::<Result<_>>()?;
+    bar.finish_and_clear();
+    let holds = findings.iter().all(|finding| finding.faults.is_empty());
+    if output.json {
+        let list: Vec<Value> = loaded.iter().zip(&findings).map(|(one, finding)| as_json(one, finding)).collect();
+        tables::print_json(&json!({ "ok": holds, "configurations": list }));
+        return Ok(holds);
+    }
+    print(&loaded, &findings);
+    Ok(holds)
+}
+
+fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<Finding> {
+    let mut shown = 0;
+    let outcome = one.unit.lockstep(BENCH_SEED)?.run(POINTS, None, &mut |points| {
+        bar.inc(points - shown);
+        shown = points;
+    })?;
+    let bound = one.unit.contract.bound();
+    let faults = cosim::faults(&outcome, &bound);
+    Ok(Finding {
+        timing: one.unit.timing()?,
+        bound,
+        outcome,
+        faults,
+    })
+}
+
+fn print(loaded: &[Loaded], findings: &[Finding]) {
+    let headings = [
+        "device",
+        "configuration",
+        "clocks/point",
+        "points",
+        "clocks",
+        "registers",
+        "outputs",
+        "bound",
+        "largest error",
+        "verdict",
+    ];
+    let rows = loaded.iter().zip(findings).map(|(one, finding)| {
+        let clocks = finding.timing.start_to_start;
+        vec![
+            one.unit.device.name.to_owned(),
+            one.path.clone(),
+            clocks.map_or_else(|| "varies".to_owned(), |clocks| clocks.to_string()),
+            tables::grouped(finding.outcome.points),
+            tables::grouped(finding.outcome.clocks),
+            finding.outcome.registers.to_string(),
+            finding.outcome.outputs.to_string(),
+            format!("{:.3}", finding.bound.units),
+            finding
+                .outcome
+                .worst
+                .as_ref()
+                .map_or_else(|| "-".to_owned(), |worst| format!("{:.3}", worst.units)),
+            if finding.faults.is_empty() { "holds" } else { "FAILS" }.to_owned(),
+        ]
+    });
+    tables::print(&headings, &["clocks/point", "points", "clocks", "registers", "outputs", "bound", "largest error"], rows);
+    tables::print_line("Registers and outputs are compared with the golden model on every clock. Errors are in output units, against the formula in f64. The largest error is at:");
+    for (one, finding) in loaded.iter().zip(findings) {
+        if let Some(worst) = &finding.outcome.worst {
+            tables::print_line(&format!("  {}: {}", one.path, cosim::place(one, worst)));
+        }
+        for fault in &finding.faults {
+            tables::print_line(&format!("  {}: FAILS: {fault}", one.path));
+        }
+    }
+}
+
+fn as_json(one: &Loaded, finding: &Finding) -> Value {
+    let mut value = cosim::as_json(one, &finding.outcome, &finding.bound, &finding.faults);
+    value["clocks_per_point"] = json!(finding.timing.start_to_start);
+    value
+}

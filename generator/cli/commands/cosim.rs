@@ -1,0 +1,251 @@
+//! `cosim`.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use anyhow::{Context, Result, bail};
+use rayon::prelude::*;
+use serde_json::{Value, json};
+
+use super::{Loaded, load};
+use crate::cli::{Output, POINTS, Simulator, progress, tables};
+use crate::cosim::external::{self, BenchOutcome};
+use crate::cosim::{Outcome, Worst};
+use crate::golden::Bound;
+use crate::registry::Registry;
+
+/// Points when an external simulator runs.
+const EXTERNAL_POINTS: u64 = 200;
+
+/// What `cosim` was asked for.
+pub struct CosimRequest {
+    /// Results of each configuration.
+    pub points: Option<u64>,
+    /// Of the stimulus.
+    pub seed: u64,
+    /// What simulates.
+    pub simulator: Simulator,
+    /// Where the waveform goes.
+    pub vcd: Option<PathBuf>,
+    /// After which an external simulator is given up.
+    pub time_limit: Duration,
+}
+
+/// `glint cosim`.
+pub fn cosim(registry: &Registry, output: Output, configs: &[PathBuf], request: &CosimRequest) -> Result<bool> {
+    let loaded = load(registry, configs)?;
+    if request.vcd.is_some() && loaded.len() != 1 {
+        bail!("--vcd is for one configuration; {} are named", loaded.len());
+    }
+    let which = match request.simulator {
+        Simulator::RustHdl => return built_in(output, &loaded, request),
+        Simulator::Icarus => external::Simulator::Icarus,
+        Simulator::Verilator => external::Simulator::Verilator,
+    };
+    if request.vcd.is_some() {
+        bail!("--vcd is for the built-in simulator");
+    }
+    let points = request.points.unwrap_or(EXTERNAL_POINTS);
+    let bar = progress::bar(output, loaded.len() as u64, "benches run");
+    let runs: Vec<(usize, BenchOutcome)> = loaded
+        .par_iter()
+        .map(|one| {
+            let run = bench(one, which, points, request);
+            bar.inc(1);
+            run.with_context(|| format!("`{}`", one.path))
+        })
+        .collect::<Result<_>>()?;
+    bar.finish_and_clear();
+    let holds = runs.iter().all(|(_, run)| run.passed);
+    if output.json {
+        let list: Vec<Value> = loaded
+            .iter()
+            .zip(&runs)
+            .map(|(one, (clocks, run))| {
+                json!({
+                    "config": one.path,
+                    "simulator": format!("{:?}", request.simulator).to_lowercase(),
+                    "points": points,
+                    "clocks": clocks,
+                    "passed": run.passed,
+                    "transcript": run.transcript,
+                })
+            })
+            .collect();
+        tables::print_json(&json!({ "ok": holds, "configurations": list }));
+        return Ok(holds);
+    }
+    for (one, (clocks, run)) in loaded.iter().zip(&runs) {
+        let verdict = if run.passed { "holds" } else { "FAILS" };
+        tables::print_line(&format!("{}: {points} points, {clocks} clocks: {verdict}", one.path));
+        if !run.passed {
+            tables::print_line(&run.transcript);
+        }
+    }
+    Ok(holds)
+}
+
+/// The emitted bench in an external simulator. The expected values are those on which golden model
+/// and built-in simulator agree.
+fn bench(one: &Loaded, which: external::Simulator, points: u64, request: &CosimRequest) -> Result<(usize, BenchOutcome)> {
+    let vectors = one.unit.vectors(points, request.seed)?;
+    let clocks = vectors.inputs.len();
+    let files = one.unit.files(&one.path, vectors)?;
+    let files: Vec<(String, String)> = files
+        .into_iter()
+        .filter_map(|file| {
+            let name = file.path.rsplit('/').next()?.to_owned();
+            (name.ends_with(".v") || name.ends_with(".mem")).then_some((name, file.contents))
+        })
+        .collect();
+    let top = format!("{}_tb", one.unit.config.name);
+    let run = external::run_bench(which, &files, &top, request.time_limit)?;
+    Ok((clocks, run))
+}
+
+fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result<bool> {
+    let points = request.points.unwrap_or(POINTS);
+    let bar = progress::bar(output, points * loaded.len() as u64, "points checked");
+    let outcomes: Vec<Outcome> = loaded
+        .par_iter()
+        .map(|one| {
+            let mut shown = 0;
+            let mut progress = |points: u64| {
+                bar.inc(points - shown);
+                shown = points;
+            };
+            run(one, points, request, &mut progress).with_context(|| format!("`{}`", one.path))
+        })
+        .collect::<Result<_>>()?;
+    bar.finish_and_clear();
+    let mut holds = true;
+    let mut list = Vec::new();
+    for (one, outcome) in loaded.iter().zip(&outcomes) {
+        let bound = one.unit.contract.bound();
+        let faults = faults(outcome, &bound);
+        holds &= faults.is_empty();
+        if output.json {
+            list.push(as_json(one, outcome, &bound, &faults));
+            continue;
+        }
+        tables::print_line(&format!(
+            "{}: {} points, {} clocks; {} registers and {} outputs equal the golden model on each: {}",
+            one.path,
+            tables::grouped(outcome.points),
+            tables::grouped(outcome.clocks),
+            outcome.registers,
+            outcome.outputs,
+            if faults.is_empty() { "holds" } else { "FAILS" },
+        ));
+        if let Some(worst) = &outcome.worst {
+            tables::print_line(&format!(
+                "  largest error {:.3} units (bound {:.3}) at {}",
+                worst.units,
+                bound.units,
+                place(one, worst)
+            ));
+        }
+        for fault in faults {
+            tables::print_line(&format!("  FAILS: {fault}"));
+        }
+    }
+    if output.json {
+        tables::print_json(&json!({ "ok": holds, "configurations": list }));
+    }
+    Ok(holds)
+}
+
+fn run(one: &Loaded, points: u64, request: &CosimRequest, progress: &mut dyn FnMut(u64)) -> Result<Outcome> {
+    let mut lockstep = one.unit.lockstep(request.seed)?;
+    let Some(path) = &request.vcd else {
+        return lockstep.run(points, None, progress);
+    };
+    traced(&mut lockstep, path, points, progress)
+}
+
+/// A run with a waveform: written beside its place and moved there when it is whole.
+fn traced(
+    lockstep: &mut crate::cosim::Lockstep<'_>,
+    path: &Path,
+    points: u64,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Outcome> {
+    let cannot = || format!("cannot write the waveform `{}`", path.display());
+    let directory = match path.parent() {
+        Some(parent) if parent != Path::new("") => parent,
+        _ => Path::new("."),
+    };
+    let staged = tempfile::Builder::new()
+        .prefix(".glint-")
+        .tempfile_in(directory)
+        .with_context(cannot)?;
+    let file: File = staged.reopen().with_context(cannot)?;
+    lockstep.trace(BufWriter::new(file)).with_context(cannot)?;
+    let outcome = lockstep.run(points, None, progress).with_context(cannot)?;
+    lockstep.end_trace().with_context(cannot)?;
+    staged.persist(path).map_err(|error| error.error).with_context(cannot)?;
+    Ok(outcome)
+}
+
+/// What does not hold.
+pub fn faults(outcome: &Outcome, bound: &Bound) -> Vec<String> {
+    let mut faults = Vec::new();
+    if let Some(mismatch) = &outcome.mismatch {
+        faults.push(format!(
+            "after clock {}, word `{}`: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
+            mismatch.clock, mismatch.word, mismatch.signal, mismatch.simulated, mismatch.golden
+        ));
+    }
+    if let Some(worst) = &outcome.worst
+        && worst.units > bound.units
+    {
+        faults.push(format!(
+            "`{}` is off by {:.4} units, beyond the stated bound of {:.4}",
+            worst.output, worst.units, bound.units
+        ));
+    }
+    faults
+}
+
+/// The operands of the largest error, as values.
+pub fn place(one: &Loaded, worst: &Worst) -> String {
+    let operands = one.unit.contract.operands();
+    let values: Vec<String> = worst
+        .operands
+        .iter()
+        .filter_map(|(name, raw)| {
+            let operand = operands.iter().find(|operand| operand.name == *name)?;
+            Some(format!("{name}={}", operand.format.to_f64(i128::from(*raw))))
+        })
+        .collect();
+    format!("{} for {}", worst.output, values.join(" "))
+}
+
+/// An outcome for scripts.
+pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, faults: &[String]) -> Value {
+    let terms: Vec<Value> = bound
+        .terms
+        .iter()
+        .map(|term| json!({ "key": term.key, "what": term.what, "units": term.units }))
+        .collect();
+    json!({
+        "device": one.unit.device.name,
+        "config": one.path,
+        "name": one.unit.config.name,
+        "points": outcome.points,
+        "clocks": outcome.clocks,
+        "registers": outcome.registers,
+        "outputs": outcome.outputs,
+        "bound": { "units": bound.units, "f": bound.f, "terms": terms },
+        "largest_error": outcome.worst.as_ref().map(|worst| json!({
+            "units": worst.units,
+            "output": worst.output,
+            "operands": worst.operands.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
+        })),
+        "rom_bits": one.unit.design.rom_bits(),
+        "holds": faults.is_empty(),
+        "faults": faults,
+    })
+}

@@ -1,0 +1,96 @@
+//! `generate`.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use rayon::prelude::*;
+use serde_json::json;
+
+use super::{Loaded, load};
+use crate::cli::store::{self, Written};
+use crate::cli::{Output, progress, tables};
+use crate::emit::OutputFile;
+use crate::flow::{BENCH_POINTS, BENCH_SEED};
+use crate::registry::Registry;
+
+/// `glint generate`.
+pub fn generate(
+    registry: &Registry,
+    output: Output,
+    configs: &[PathBuf],
+    out: &Path,
+    check: bool,
+    force: bool,
+) -> Result<bool> {
+    let loaded = load(registry, configs)?;
+    for one in &loaded {
+        one.contract()?;
+    }
+    let bar = progress::bar(output, loaded.len() as u64, "generating");
+    let made: Vec<Vec<OutputFile>> = loaded
+        .par_iter()
+        .map(|one| {
+            let files = files(one);
+            bar.inc(1);
+            files
+        })
+        .collect::<Result<_>>()?;
+    bar.finish_and_clear();
+    if check {
+        return compare(output, out, &loaded, &made);
+    }
+    let mut report = Vec::new();
+    for (one, files) in loaded.iter().zip(&made) {
+        let written = write(out, one, files, force)?;
+        if output.json {
+            let paths: Vec<&str> = files.iter().map(|file| file.path.as_str()).collect();
+            report.push(json!({
+                "config": one.path,
+                "name": one.unit.config.name,
+                "written": written == Written::Replaced,
+                "files": paths,
+            }));
+        } else {
+            let what = match written {
+                Written::Unchanged => "up to date",
+                Written::Replaced => "written",
+            };
+            tables::print_line(&format!("{}: {} files {what}", one.path, files.len()));
+        }
+    }
+    if output.json {
+        tables::print_json(&json!({ "ok": true, "generated": report }));
+    }
+    Ok(true)
+}
+
+/// Every file of a configuration, with its bench.
+pub fn files(one: &Loaded) -> Result<Vec<OutputFile>> {
+    let vectors = one.unit.vectors(BENCH_POINTS, BENCH_SEED);
+    let vectors = vectors.with_context(|| format!("`{}`", one.path))?;
+    one.unit.files(&one.path, vectors).with_context(|| format!("`{}`", one.path))
+}
+
+/// Writes the files of a configuration.
+pub fn write(out: &Path, one: &Loaded, files: &[OutputFile], force: bool) -> Result<Written> {
+    store::write(out, &one.unit.config.name, files, force).with_context(|| format!("`{}` was not generated", one.path))
+}
+
+/// `--check`: what is there is what would be written.
+fn compare(output: Output, out: &Path, loaded: &[Loaded], made: &[Vec<OutputFile>]) -> Result<bool> {
+    let mut all = Vec::new();
+    for (one, files) in loaded.iter().zip(made) {
+        all.extend(store::differences(out, &one.unit.config.name, files)?);
+    }
+    if output.json {
+        tables::print_json(&json!({ "ok": all.is_empty(), "different": all }));
+    } else {
+        for path in &all {
+            tables::print_line(&format!("differs: {path}"));
+        }
+        if all.is_empty() {
+            tables::print_line("everything is as it would be generated");
+        }
+    }
+    Ok(all.is_empty())
+}

@@ -1,0 +1,123 @@
+//! What the commands do. Each returns whether everything holds.
+
+mod catalogue;
+mod check;
+mod cosim;
+mod eval;
+mod generate;
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, anyhow, bail};
+
+pub use catalogue::{list, new};
+pub use check::everything;
+pub use cosim::{CosimRequest, cosim};
+pub use eval::eval;
+pub use generate::generate;
+
+use super::failure;
+use crate::config;
+use crate::flow::Unit;
+use crate::registry::Registry;
+
+/// Where configurations are when none are named.
+const CONFIGS: &str = "configs";
+
+/// A configuration file with what it asks for.
+struct Loaded {
+    /// As the command line names it, with `/`.
+    path: String,
+    unit: Unit,
+}
+
+/// The configurations named, or all in `configs/`, sorted.
+fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    if !named.is_empty() {
+        return Ok(named.to_vec());
+    }
+    let entries = std::fs::read_dir(CONFIGS)
+        .with_context(|| format!("cannot read `{CONFIGS}/`; name a configuration, or `glint new DEVICE` for one"))?;
+    let mut paths = Vec::new();
+    for entry in entries {
+        let path = entry.with_context(|| format!("cannot read `{CONFIGS}/`"))?.path();
+        if path.extension().is_some_and(|extension| extension == "toml") {
+            paths.push(path);
+        }
+    }
+    paths.sort();
+    if paths.is_empty() {
+        bail!("there is no configuration in `{CONFIGS}/`; `glint new DEVICE` prints one");
+    }
+    Ok(paths)
+}
+
+/// Reads configurations and builds their designs.
+///
+/// The problems of all files are reported, not only those of the first.
+fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
+    let schemas = registry.schemas();
+    let mut loaded: Vec<Loaded> = Vec::new();
+    let mut failed: Vec<anyhow::Error> = Vec::new();
+    for path in paths(named)? {
+        match load_one(registry, &schemas, &path) {
+            Ok(one) => loaded.push(one),
+            Err(error) => failed.push(error),
+        }
+    }
+    for (at, one) in loaded.iter().enumerate() {
+        if let Some(other) = loaded[..at].iter().find(|other| other.unit.config.name == one.unit.config.name) {
+            failed.push(anyhow!(
+                "`{}` and `{}` both name their module `{}`; set another `name` in one of them",
+                other.path,
+                one.path,
+                one.unit.config.name
+            ));
+        }
+    }
+    let last = failed.pop();
+    match last {
+        None => Ok(loaded),
+        Some(last) => {
+            for error in failed {
+                failure::print(&error, false);
+            }
+            Err(last)
+        }
+    }
+}
+
+fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Result<Loaded> {
+    let config = config::read(path, schemas)?;
+    let device = registry
+        .device(&config.device)
+        .with_context(|| format!("no device `{}`", config.device))?;
+    let name = path.display().to_string().replace('\\', "/");
+    let unit = Unit::new(*device, config).with_context(|| format!("`{name}`"))?;
+    Ok(Loaded { path: name, unit })
+}
+
+impl Loaded {
+    /// Warns when the configuration misses the accuracy contract; refuses it when it is strict.
+    fn contract(&self) -> Result<()> {
+        let bound = self.unit.contract.bound();
+        if bound.units >= 1.0 {
+            let key = bound
+                .limiting()
+                .map(|term| format!("; `{}` ({}) limits it: {:.3} units", term.key, term.what, term.units))
+                .unwrap_or_default();
+            let message = format!(
+                "{}: outside the accuracy contract: the error bound is {:.3} units, not below 1{key}",
+                self.path, bound.units
+            );
+            if self.unit.config.strict {
+                bail!("{message}; `strict = true` refuses that");
+            }
+            failure::warn(&message);
+        }
+        for remark in self.unit.contract.remarks() {
+            failure::warn(&format!("{}: {remark}", self.path));
+        }
+        Ok(())
+    }
+}
