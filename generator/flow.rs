@@ -37,7 +37,7 @@ impl Unit {
         let design = device
             .design(&config)
             .with_context(|| format!("the description of `{}` is wrong", device.name))?;
-        let contract = (device.contract)(&config)?;
+        let contract = (device.contract)(&config);
         Ok(Self {
             device,
             config,
@@ -51,7 +51,7 @@ impl Unit {
     /// # Errors
     /// Model and design do not name the same signals.
     pub fn lockstep(&self, seed: u64) -> Result<Lockstep<'_>> {
-        let model = (self.device.model)(&self.config)?;
+        let model = (self.device.model)(&self.config);
         Lockstep::new(&self.design, model, self.contract.as_ref(), Simulator::new(&self.design)?, seed)
     }
 

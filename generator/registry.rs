@@ -1,7 +1,5 @@
 //! What a device is to the command line: keys, description, golden model, contract.
 
-use anyhow::Result;
-
 use crate::check::Diagnostics;
 use crate::config::{Config, Schema};
 use crate::devices;
@@ -20,10 +18,10 @@ pub struct Device {
     pub schema: fn() -> Schema,
     /// Its description.
     pub describe: fn(&Designer, &Config),
-    /// Its golden model. Fails for a configuration that the schema should have refused.
-    pub model: fn(&Config) -> Result<Box<dyn Model>>,
+    /// Its golden model.
+    pub model: fn(&Config) -> Box<dyn Model>,
     /// Its accuracy contract.
-    pub contract: fn(&Config) -> Result<Box<dyn Contract>>,
+    pub contract: fn(&Config) -> Box<dyn Contract>,
 }
 
 impl Device {
@@ -31,7 +29,7 @@ impl Device {
     ///
     /// # Errors
     /// The mistakes of the description.
-    pub fn design(&self, config: &Config) -> std::result::Result<Design, Diagnostics> {
+    pub fn design(&self, config: &Config) -> Result<Design, Diagnostics> {
         let designer = Designer::new(&config.name);
         (self.describe)(&designer, config);
         designer.finish()
@@ -56,16 +54,16 @@ impl Registry {
                 summary: "rough surface, (n/2*(cos(gamma +- dgamma) - 1) + 1)^2 (UA 60139)",
                 schema: devices::rough::schema,
                 describe: devices::rough::describe,
-                model: golden::rough::model,
-                contract: golden::rough::contract,
+                model: |config| Box::new(golden::rough::RoughModel::new(config)),
+                contract: |config| Box::new(golden::rough::RoughContract::new(config)),
             },
             Device {
                 name: "cosine-power",
                 summary: "W(n, gamma) = (n/m*(cos gamma - 1) + 1)^m, m = 2, 4, 8, 16 (seed 002)",
                 schema: devices::cosine_power::schema,
                 describe: devices::cosine_power::describe,
-                model: golden::cosine_power::model,
-                contract: golden::cosine_power::contract,
+                model: |config| Box::new(golden::cosine_power::CosinePowerModel::new(config)),
+                contract: |config| Box::new(golden::cosine_power::CosinePowerContract::new(config)),
             },
         ])
     }

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 use super::load_one;
 use crate::cli::{Output, tables};
 use crate::config;
-use crate::golden::{Contract, Model, Operand};
+use crate::golden::{Model, Operand};
 use crate::registry::Registry;
 
 /// More clocks than any device takes.
@@ -20,7 +20,7 @@ pub fn eval(registry: &Registry, output: Output, config: &Path, settings: &[Stri
     let contract = one.unit.contract.as_ref();
     let operands = contract.operands();
     let raw = operand_values(operands, settings)?;
-    let mut model = (one.unit.device.model)(&one.unit.config)?;
+    let mut model = (one.unit.device.model)(&one.unit.config);
     let signals = point(model.as_mut(), operands, &raw)?;
     let control = operands.iter().filter(|operand| !operand.colour).count();
     let inside = operands
