@@ -1,11 +1,15 @@
 //! `cosine-power`: the paper's W(n, γ) = (n/m·(cos γ − 1) + 1)^m (seed 002), by formula.
 
-use super::contract;
-use super::handshake::{After, Handshake, OperandRegister, bits};
-use super::narrow::{Narrow, rounding_error};
-use super::{Bound, Contract, Model, Operand};
-use crate::fixed::{Format, Rounding, exp2};
-use crate::reference;
+mod clock_model;
+mod contract;
+
+pub use clock_model::CosinePowerModel;
+pub use contract::CosinePowerContract;
+
+use super::keys;
+use super::narrow::Narrow;
+use crate::config::Config;
+use crate::fixed::{Format, Rounding};
 
 /// What a configuration of the device says.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +52,21 @@ impl Default for Params {
 }
 
 impl Params {
+    /// What a configuration of the device `cosine-power` says.
+    pub fn from_config(config: &Config) -> Self {
+        Self {
+            power: keys::bits(config, "power"),
+            cosine_fraction: keys::bits(config, "cosine.fraction"),
+            cosine_signed: config.flag("cosine.signed"),
+            exponent_bits: keys::bits(config, "exponent.bits"),
+            colour_bits: keys::bits(config, "colour.bits"),
+            intensity_fraction: keys::bits(config, "intensity.fraction"),
+            intensity_rounding: keys::rounding(config, "intensity.rounding"),
+            output_rounding: keys::rounding(config, "output.rounding"),
+            exponents: keys::exponents(config),
+        }
+    }
+
     /// Whether the model's 64-bit arithmetic holds every intermediate value.
     ///
     /// # Errors
@@ -146,283 +165,10 @@ impl Arithmetic {
     }
 }
 
-const INPUTS: [&str; 12] = [
-    "rst_n",
-    "start",
-    "cos_gamma",
-    "cos_gamma_write",
-    "exponent",
-    "exponent_write",
-    "red",
-    "red_write",
-    "green",
-    "green_write",
-    "blue",
-    "blue_write",
-];
-
-const SIGNALS: [&str; 15] = [
-    "valid",
-    "busy",
-    "done",
-    "red_out",
-    "green_out",
-    "blue_out",
-    "run",
-    "word_address",
-    "cos_gamma_reg",
-    "exponent_reg",
-    "red_reg",
-    "green_reg",
-    "blue_reg",
-    "accumulator",
-    "remaining",
-];
-
-/// The device, clock by clock.
-#[derive(Clone, Debug)]
-pub struct ClockModel {
-    arithmetic: Arithmetic,
-    handshake: Handshake,
-    cosine: OperandRegister,
-    exponent: OperandRegister,
-    colours: [OperandRegister; 3],
-    accumulator: i64,
-    remaining: i64,
-    inputs: Vec<String>,
-    signals: Vec<String>,
-    values: [u64; SIGNALS.len()],
-}
-
-impl ClockModel {
-    /// The device at power-up.
-    ///
-    /// # Errors
-    /// As [`Params::check`].
-    pub fn new(params: &Params) -> Result<Self, String> {
-        params.check()?;
-        let arithmetic = Arithmetic::new(params);
-        // A single squaring needs no count of the squarings that remain.
-        let signals = SIGNALS.len() - usize::from(arithmetic.squarings == 1);
-        Ok(Self {
-            cosine: OperandRegister::clamped(params.cosine_format(), 0, arithmetic.one),
-            exponent: OperandRegister::new(params.exponent_format()),
-            colours: [OperandRegister::new(params.colour_format()); 3],
-            arithmetic,
-            handshake: Handshake::default(),
-            accumulator: 0,
-            remaining: 0,
-            inputs: INPUTS.map(String::from).to_vec(),
-            signals: SIGNALS[..signals]
-                .iter()
-                .map(|&name| name.to_string())
-                .collect(),
-            values: [0; SIGNALS.len()],
-        })
-    }
-
-    /// The word in which the result stands, and in which the program ends.
-    fn result(&self) -> u32 {
-        if self.arithmetic.squarings == 1 { 3 } else { 4 }
-    }
-
-    /// What the word in force does to the datapath; what follows it.
-    fn execute(&mut self) -> After {
-        let cosine = self.cosine.value;
-        match self.handshake.word {
-            word if word == self.result() => After::End,
-            // The accumulator takes n/m·(1 − cos γ).
-            1 => {
-                self.accumulator = self.arithmetic.scaled(cosine, self.exponent.value);
-                self.remaining = i64::from(self.arithmetic.squarings) - 1;
-                After::Next
-            }
-            // It takes the square of its inverse …
-            2 => {
-                let base = self.arithmetic.base(cosine, self.accumulator);
-                self.accumulator = self.arithmetic.square(base);
-                After::Next
-            }
-            // … and then its own square, until log₂ m squarings are done.
-            3 => {
-                let again = self.remaining > 1;
-                self.accumulator = self.arithmetic.square(self.accumulator);
-                self.remaining = (self.remaining - 1) & 3;
-                if again { After::Again } else { After::Next }
-            }
-            // Word 0 does nothing, running or idle.
-            _ => After::Next,
-        }
-    }
-
-    fn refresh(&mut self) {
-        let Handshake { run, word } = self.handshake;
-        let result = word == self.result();
-        let [red, green, blue] = self.colours.map(|it| it.value);
-        let out = |colour| self.arithmetic.colour(self.accumulator, colour) as u64;
-        self.values = [
-            u64::from(result),
-            u64::from(run),
-            u64::from(run && result),
-            out(red),
-            out(green),
-            out(blue),
-            u64::from(run),
-            u64::from(word),
-            self.cosine.value as u64,
-            self.exponent.value as u64,
-            red as u64,
-            green as u64,
-            blue as u64,
-            self.accumulator as u64,
-            bits(self.remaining, 2),
-        ];
-    }
-}
-
-impl Model for ClockModel {
-    fn inputs(&self) -> &[String] {
-        &self.inputs
-    }
-
-    fn signals(&self) -> &[String] {
-        &self.signals
-    }
-
-    fn clock(&mut self, inputs: &[u64]) {
-        let run = self.handshake.run;
-        let after = self.execute();
-        self.cosine.clock(run, inputs[3], inputs[2]);
-        self.exponent.clock(run, inputs[5], inputs[4]);
-        for (register, pair) in self.colours.iter_mut().zip(inputs[6..].chunks_exact(2)) {
-            register.clock(run, pair[1], pair[0]);
-        }
-        self.handshake
-            .clock(inputs[0] & 1 == 1, inputs[1] & 1 == 1, after);
-        self.refresh();
-    }
-
-    fn values(&self) -> &[u64] {
-        &self.values[..self.signals.len()]
-    }
-}
-
-/// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
-#[derive(Clone, Debug)]
-pub struct Accuracy {
-    params: Params,
-    arithmetic: Arithmetic,
-    operands: Vec<Operand>,
-    outputs: Vec<String>,
-}
-
-impl Accuracy {
-    /// The contract of a configuration.
-    ///
-    /// # Errors
-    /// As [`Params::check`].
-    pub fn new(params: &Params) -> Result<Self, String> {
-        params.check()?;
-        let one = params.one();
-        let lowest = if params.cosine_signed { -one } else { 0 };
-        let mut operands = vec![
-            Operand {
-                name: "cos_gamma".to_string(),
-                format: params.cosine_format(),
-                domain: (lowest, one),
-                colour: false,
-                doc: "cosine of the angle between the normal and the half vector".to_string(),
-            },
-            Operand {
-                name: "exponent".to_string(),
-                format: params.exponent_format(),
-                domain: params.exponents,
-                colour: false,
-                doc: "specular exponent n".to_string(),
-            },
-        ];
-        operands.extend(contract::colour_operands(params.colour_format()));
-        Ok(Self {
-            arithmetic: Arithmetic::new(params),
-            params: params.clone(),
-            operands,
-            outputs: contract::colour_outputs(),
-        })
-    }
-}
-
-impl Contract for Accuracy {
-    fn operands(&self) -> &[Operand] {
-        &self.operands
-    }
-
-    fn outputs(&self) -> &[String] {
-        &self.outputs
-    }
-
-    fn f_format(&self) -> Format {
-        Format::unsigned(0, self.params.intensity_fraction as i32)
-    }
-
-    #[inline]
-    fn f(&self, control: &[i64]) -> i64 {
-        let it = &self.arithmetic;
-        let cosine = control[0].clamp(0, it.one);
-        let base = it.base(cosine, it.scaled(cosine, control[1]));
-        (0..it.squarings).fold(base, |power, _| it.square(power))
-    }
-
-    #[inline]
-    fn colour(&self, f: i64, colour: i64) -> i64 {
-        self.arithmetic.colour(f, colour)
-    }
-
-    fn reference(&self, control: &[i64]) -> f64 {
-        let cosine = control[0].clamp(0, self.arithmetic.one) as f64;
-        let cosine = cosine * exp2(-(self.params.cosine_fraction as i32));
-        reference::cosine_power(cosine, control[1] as f64, self.params.power)
-    }
-
-    /// Every quantity here lies in 0 … 1, hardware's and formula's alike, so by the mean value
-    /// theorem an error ε before a power p grows to at most p·ε.
-    ///
-    /// - Base: the inverse stands for 1.0 − ulp − t where 1.0 − t is meant. With t rounded by an error
-    ///   in (−ulp, 0] (truncated) the base is low by (0, ulp]; by ±ulp/2 (nearest), low by up to
-    ///   3/2 ulp. Saturation of t at 1.0 − ulp makes the base 0 where the formula has at most as much.
-    ///   The base is raised to m.
-    /// - The result of squaring number i is rounded, and then raised to m/2^i: m − 1 in sum.
-    /// - The output adds its own rounding; it cannot exceed the largest colour, for f < 1.
-    fn bound(&self) -> Bound {
-        let params = &self.params;
-        let (f, power) = (params.intensity_fraction, f64::from(params.power));
-        let ulp = exp2(-(f as i32));
-        let scaled_fraction = params.cosine_fraction + params.power.ilog2();
-        let scaled = rounding_error(scaled_fraction, f, params.intensity_rounding);
-        let base = match params.intensity_rounding {
-            // Truncation is upward in 1.0 − ulp − t, and so works against the missing ulp.
-            Rounding::Truncate => ulp,
-            Rounding::Nearest => ulp + scaled,
-        };
-        let squares = rounding_error(2 * f, f, params.intensity_rounding);
-        let shares = [
-            (
-                "intensity.fraction",
-                "the base, with the inverse for 1.0 − t",
-                base * power,
-            ),
-            (
-                "intensity.rounding",
-                "rounding of the squares",
-                squares * (power - 1.0),
-            ),
-        ];
-        contract::bound(&shares, f, params.colour_bits, params.output_rounding)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::golden::{Contract, Model};
 
     /// C = 4, F = 4, m = 4, small enough to follow by hand.
     fn small(power: u32) -> Params {
@@ -439,8 +185,11 @@ mod tests {
 
     #[test]
     fn f_by_hand() {
-        let f =
-            |power, cosine, exponent| Accuracy::new(&small(power)).unwrap().f(&[cosine, exponent]);
+        let f = |power, cosine, exponent| {
+            CosinePowerContract::from_params(&small(power))
+                .unwrap()
+                .f(&[cosine, exponent])
+        };
         // c = 15/16, n = 6, m = 4: t = 1/16·6/4 = 1.5/16 → 1/16; base 15 − 1 = 14; 14² = 196/256 →
         // 12/16; 144/256 → 9/16.
         assert_eq!(f(4, 15, 6), 9);
@@ -458,8 +207,8 @@ mod tests {
     /// One point with m = 8 followed clock by clock: words 0, 1, 2, 3, 3, 4 and idle.
     #[test]
     fn a_point_clock_by_clock() {
-        let mut model = ClockModel::new(&small(8)).unwrap();
-        let value = |model: &ClockModel, name: &str| {
+        let mut model = CosinePowerModel::from_params(&small(8)).unwrap();
+        let value = |model: &CosinePowerModel, name: &str| {
             model.values()[model.signals().iter().position(|it| it == name).unwrap()]
         };
         // c = 14/16, n = 12, red 15, written together with start: t = 2/16·12/8 = 3/16; base 12.
@@ -501,14 +250,16 @@ mod tests {
 
     #[test]
     fn the_default_is_proven() {
-        let bound = Accuracy::new(&Params::default()).unwrap().bound();
+        let bound = CosinePowerContract::from_params(&Params::default())
+            .unwrap()
+            .bound();
         // (16 + 15) ulps of 2⁻¹⁶ times 255, and half a unit.
         assert_eq!(bound.units, 31.0 * 255.0 / 65536.0 + 0.5);
     }
 
     #[test]
     fn parameters_out_of_range_are_named() {
-        let refused = |params: Params| Accuracy::new(&params).unwrap_err();
+        let refused = |params: Params| CosinePowerContract::from_params(&params).unwrap_err();
         assert!(
             refused(Params {
                 power: 3,

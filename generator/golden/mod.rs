@@ -7,6 +7,7 @@
 pub mod contract;
 pub mod cosine_power;
 pub mod handshake;
+pub mod keys;
 pub mod narrow;
 pub mod rough;
 pub mod sine;

@@ -4,11 +4,13 @@ mod bound;
 mod clock_model;
 mod contract;
 
-pub use clock_model::ClockModel;
-pub use contract::Accuracy;
+pub use clock_model::RoughModel;
+pub use contract::RoughContract;
 
+use super::keys;
 use super::narrow::Narrow;
 use super::sine::{self, Scheme, Sine};
+use crate::config::Config;
 use crate::fixed::{Format, Rounding};
 
 /// How sums and products are kept.
@@ -76,8 +78,8 @@ impl Default for Params {
             intensity_rounding: Rounding::Truncate,
             output_rounding: Rounding::Nearest,
             sine_scheme: Scheme::Segmented {
-                segments: vec![6, 8, 7, 6, 5, 4, 3, 2],
-                slope_fraction: 22,
+                segments: vec![6, 8, 7, 6, 5, 4, 3, 3, 2],
+                slope_fraction: 18,
             },
             sine_fraction: 22,
             sine_synchronous: true,
@@ -88,6 +90,45 @@ impl Default for Params {
 }
 
 impl Params {
+    /// What a configuration of the device `rough` says.
+    pub fn from_config(config: &Config) -> Self {
+        let sine_scheme = match config.choice("sine.scheme") {
+            "direct" => Scheme::Direct {
+                address: keys::bits(config, "sine.address"),
+            },
+            _ => Scheme::Segmented {
+                // The schema allows no negative entries.
+                segments: config
+                    .integers("sine.segments")
+                    .iter()
+                    .map(|&bits| bits as u32)
+                    .collect(),
+                slope_fraction: keys::bits(config, "sine.slope_fraction"),
+            },
+        };
+        Self {
+            cosine_fraction: keys::bits(config, "cosine.fraction"),
+            cosine_signed: config.flag("cosine.signed"),
+            exponent_bits: keys::bits(config, "exponent.bits"),
+            colour_bits: keys::bits(config, "colour.bits"),
+            arithmetic: match config.choice("arithmetic") {
+                "patent" => Kind::Patent,
+                _ => Kind::Exact,
+            },
+            clamp: config.flag("clamp"),
+            product_fraction: keys::bits(config, "product.fraction"),
+            product_rounding: keys::rounding(config, "product.rounding"),
+            intensity_fraction: keys::bits(config, "intensity.fraction"),
+            intensity_rounding: keys::rounding(config, "intensity.rounding"),
+            output_rounding: keys::rounding(config, "output.rounding"),
+            sine_scheme,
+            sine_fraction: keys::bits(config, "sine.fraction"),
+            sine_synchronous: config.flag("sine.synchronous"),
+            exponents: keys::exponents(config),
+            deviation: config.number("domain.deviation"),
+        }
+    }
+
     /// Whether the model's 64-bit arithmetic holds every intermediate value.
     ///
     /// # Errors

@@ -118,10 +118,10 @@ impl Params {
                     }
                 }
                 let remainder = remainder_bits(operand, segments);
-                if *slope_fraction > fraction || slope_fraction + remainder <= fraction {
+                if *slope_fraction > fraction || slope_fraction + remainder < fraction {
                     return Err(format!(
                         "sine.slope_fraction is {slope_fraction}; {} to {fraction} are possible",
-                        (fraction + 1).saturating_sub(remainder)
+                        fraction.saturating_sub(remainder)
                     ));
                 }
                 Ok(())
@@ -443,7 +443,7 @@ mod tests {
         assert!(refusal(8, 8, segmented(&[], 8)).contains("sine.segments"));
         assert!(refusal(8, 8, segmented(&[4, 7], 8)).contains("sine.segments[1]"));
         assert!(refusal(8, 8, segmented(&[1], 8)).contains("sine.segments[0]"));
-        assert!(refusal(8, 8, segmented(&[4], 4)).contains("sine.slope_fraction"));
+        assert!(refusal(8, 8, segmented(&[4], 3)).contains("sine.slope_fraction"));
         assert!(refusal(8, 8, segmented(&[4], 9)).contains("sine.slope_fraction"));
         assert!(refusal(27, 8, segmented(&[4], 8)).contains("cosine.fraction"));
         assert!(refusal(8, 31, segmented(&[4], 8)).contains("sine.fraction"));

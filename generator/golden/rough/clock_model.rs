@@ -1,6 +1,7 @@
 //! `rough` clock by clock.
 
 use super::{Arithmetic, Params};
+use crate::config::Config;
 use crate::fixed::Format;
 use crate::golden::Model;
 use crate::golden::handshake::{After, Handshake, OperandRegister, bits};
@@ -52,7 +53,7 @@ const END: u32 = 9;
 
 /// The device, clock by clock.
 #[derive(Clone, Debug)]
-pub struct ClockModel {
+pub struct RoughModel {
     arithmetic: Arithmetic,
     synchronous: bool,
     result_width: u32,
@@ -70,12 +71,21 @@ pub struct ClockModel {
     values: [u64; SIGNALS.len()],
 }
 
-impl ClockModel {
+impl RoughModel {
+    /// The device at power-up, of a configuration.
+    ///
+    /// # Panics
+    /// If the configuration is one that [`Params::check`] refuses and the device's schema does not.
+    pub fn new(config: &Config) -> Self {
+        Self::from_params(&Params::from_config(config))
+            .expect("a configuration that its schema accepts")
+    }
+
     /// The device at power-up.
     ///
     /// # Errors
     /// As [`Params::check`].
-    pub fn new(params: &Params) -> Result<Self, String> {
+    pub fn from_params(params: &Params) -> Result<Self, String> {
         let largest = params.largest_cosine();
         let colour = OperandRegister::new(params.colour_format());
         Ok(Self {
@@ -190,7 +200,7 @@ impl ClockModel {
     }
 }
 
-impl Model for ClockModel {
+impl Model for RoughModel {
     fn inputs(&self) -> &[String] {
         &self.inputs
     }

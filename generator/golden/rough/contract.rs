@@ -1,25 +1,35 @@
 //! The accuracy contract of `rough`.
 
 use super::{Arithmetic, Kind, Params, bound};
+use crate::config::Config;
 use crate::fixed::{Format, exp2};
 use crate::golden::{Bound, Contract, Operand, contract};
 use crate::reference;
 
 /// The accuracy contract. Control operands: `cos_gamma`, `cos_dgamma`, `exponent`, `dgamma_negative`.
 #[derive(Clone, Debug)]
-pub struct Accuracy {
+pub struct RoughContract {
     params: Params,
     arithmetic: Arithmetic,
     operands: Vec<Operand>,
     outputs: Vec<String>,
 }
 
-impl Accuracy {
+impl RoughContract {
     /// The contract of a configuration.
+    ///
+    /// # Panics
+    /// If the configuration is one that [`Params::check`] refuses and the device's schema does not.
+    pub fn new(config: &Config) -> Self {
+        Self::from_params(&Params::from_config(config))
+            .expect("a configuration that its schema accepts")
+    }
+
+    /// The contract from parameters.
     ///
     /// # Errors
     /// As [`Params::check`].
-    pub fn new(params: &Params) -> Result<Self, String> {
+    pub fn from_params(params: &Params) -> Result<Self, String> {
         let arithmetic = Arithmetic::new(params)?;
         let largest = params.largest_cosine();
         let cos_gamma = params.cos_gamma_format();
@@ -79,7 +89,7 @@ impl Accuracy {
     }
 }
 
-impl Contract for Accuracy {
+impl Contract for RoughContract {
     fn operands(&self) -> &[Operand] {
         &self.operands
     }

@@ -1,0 +1,131 @@
+//! The accuracy contract of `cosine-power`.
+
+use super::{Arithmetic, Params};
+use crate::config::Config;
+use crate::fixed::{Format, Rounding, exp2};
+use crate::golden::contract as shared;
+use crate::golden::narrow::rounding_error;
+use crate::golden::{Bound, Contract, Operand};
+use crate::reference;
+
+/// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
+#[derive(Clone, Debug)]
+pub struct CosinePowerContract {
+    params: Params,
+    arithmetic: Arithmetic,
+    operands: Vec<Operand>,
+    outputs: Vec<String>,
+}
+
+impl CosinePowerContract {
+    /// The contract of a configuration.
+    ///
+    /// # Panics
+    /// If the configuration is one that [`Params::check`] refuses and the device's schema does not.
+    pub fn new(config: &Config) -> Self {
+        Self::from_params(&Params::from_config(config))
+            .expect("a configuration that its schema accepts")
+    }
+
+    /// The contract from parameters.
+    ///
+    /// # Errors
+    /// As [`Params::check`].
+    pub fn from_params(params: &Params) -> Result<Self, String> {
+        params.check()?;
+        let one = params.one();
+        let lowest = if params.cosine_signed { -one } else { 0 };
+        let mut operands = vec![
+            Operand {
+                name: "cos_gamma".to_string(),
+                format: params.cosine_format(),
+                domain: (lowest, one),
+                colour: false,
+                doc: "cosine of the angle between the normal and the half vector".to_string(),
+            },
+            Operand {
+                name: "exponent".to_string(),
+                format: params.exponent_format(),
+                domain: params.exponents,
+                colour: false,
+                doc: "specular exponent n".to_string(),
+            },
+        ];
+        operands.extend(shared::colour_operands(params.colour_format()));
+        Ok(Self {
+            arithmetic: Arithmetic::new(params),
+            params: params.clone(),
+            operands,
+            outputs: shared::colour_outputs(),
+        })
+    }
+}
+
+impl Contract for CosinePowerContract {
+    fn operands(&self) -> &[Operand] {
+        &self.operands
+    }
+
+    fn outputs(&self) -> &[String] {
+        &self.outputs
+    }
+
+    fn f_format(&self) -> Format {
+        Format::unsigned(0, self.params.intensity_fraction as i32)
+    }
+
+    #[inline]
+    fn f(&self, control: &[i64]) -> i64 {
+        let it = &self.arithmetic;
+        let cosine = control[0].clamp(0, it.one);
+        let base = it.base(cosine, it.scaled(cosine, control[1]));
+        (0..it.squarings).fold(base, |power, _| it.square(power))
+    }
+
+    #[inline]
+    fn colour(&self, f: i64, colour: i64) -> i64 {
+        self.arithmetic.colour(f, colour)
+    }
+
+    fn reference(&self, control: &[i64]) -> f64 {
+        let cosine = control[0].clamp(0, self.arithmetic.one) as f64;
+        let cosine = cosine * exp2(-(self.params.cosine_fraction as i32));
+        reference::cosine_power(cosine, control[1] as f64, self.params.power)
+    }
+
+    /// Every quantity here lies in 0 … 1, hardware's and formula's alike, so by the mean value
+    /// theorem an error ε before a power p grows to at most p·ε.
+    ///
+    /// - Base: the inverse stands for 1.0 − ulp − t where 1.0 − t is meant. With t rounded by an error
+    ///   in (−ulp, 0] (truncated) the base is low by (0, ulp]; by ±ulp/2 (nearest), low by up to
+    ///   3/2 ulp. Saturation of t at 1.0 − ulp makes the base 0 where the formula has at most as much.
+    ///   The base is raised to m.
+    /// - The result of squaring number i is rounded, and then raised to m/2^i: m − 1 in sum.
+    /// - The output adds its own rounding; it cannot exceed the largest colour, for f < 1.
+    fn bound(&self) -> Bound {
+        let params = &self.params;
+        let (f, power) = (params.intensity_fraction, f64::from(params.power));
+        let ulp = exp2(-(f as i32));
+        let scaled_fraction = params.cosine_fraction + params.power.ilog2();
+        let scaled = rounding_error(scaled_fraction, f, params.intensity_rounding);
+        let base = match params.intensity_rounding {
+            // Truncation is upward in 1.0 − ulp − t, and so works against the missing ulp.
+            Rounding::Truncate => ulp,
+            Rounding::Nearest => ulp + scaled,
+        };
+        let squares = rounding_error(2 * f, f, params.intensity_rounding);
+        let shares = [
+            (
+                "intensity.fraction",
+                "the base, with the inverse for 1.0 − t",
+                base * power,
+            ),
+            (
+                "intensity.rounding",
+                "rounding of the squares",
+                squares * (power - 1.0),
+            ),
+        ];
+        shared::bound(&shares, f, params.colour_bits, params.output_rounding)
+    }
+}

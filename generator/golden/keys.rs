@@ -1,0 +1,28 @@
+//! Reading a configuration's values in the types that the models want.
+
+use crate::config::Config;
+use crate::fixed::Rounding;
+
+/// A number of bits.
+///
+/// # Panics
+/// If the value is negative or no integer: the schema of the device allows neither.
+pub fn bits(config: &Config, key: &str) -> u32 {
+    u32::try_from(config.integer(key)).expect("a number of bits")
+}
+
+/// `"truncate"` or `"nearest"`.
+pub fn rounding(config: &Config, key: &str) -> Rounding {
+    match config.choice(key) {
+        "nearest" => Rounding::Nearest,
+        _ => Rounding::Truncate,
+    }
+}
+
+/// `domain.exponent_min` and `domain.exponent_max`.
+pub fn exponents(config: &Config) -> (i64, i64) {
+    (
+        config.integer("domain.exponent_min"),
+        config.integer("domain.exponent_max"),
+    )
+}
