@@ -11,7 +11,7 @@ pub fn cosine_fraction(default: i64) -> Key {
         "cosine.fraction",
         default,
         8..=24,
-        "fraction bits of the cosine operands; 1.0 is representable",
+        "Fraction bits of the cosine operands; 1.0 is representable.",
     )
 }
 
@@ -20,18 +20,18 @@ pub fn cosine_signed() -> Key {
     Key::flag(
         "cosine.signed",
         false,
-        "the cosine port has a sign bit; a negative cosine gives 0",
+        "The cosine port has a sign bit; a negative cosine gives 0.",
     )
 }
 
 /// `exponent.bits`.
 pub fn exponent_bits() -> Key {
-    Key::integer("exponent.bits", 10, 1..=12, "bits of the specular exponent n")
+    Key::integer("exponent.bits", 10, 1..=12, "Bits of the specular exponent n.")
 }
 
 /// `colour.bits`.
 pub fn colour_bits() -> Key {
-    Key::integer("colour.bits", 8, 1..=12, "bits of a colour operand, and of an output")
+    Key::integer("colour.bits", 8, 1..=12, "Bits of a colour operand, and of an output.")
 }
 
 /// `intensity.fraction`.
@@ -40,18 +40,18 @@ pub fn intensity_fraction(default: i64) -> Key {
         "intensity.fraction",
         default,
         6..=24,
-        "fraction bits of the reflectance f, which multiplies the colours",
+        "Fraction bits of the reflectance f, which multiplies the colours.",
     )
 }
 
 /// `intensity.rounding`.
 pub fn intensity_rounding() -> Key {
-    Key::choice("intensity.rounding", "truncate", &ROUNDINGS, "rounding into the register that holds f")
+    Key::choice("intensity.rounding", "truncate", &ROUNDINGS, "Rounding into the register that holds f.")
 }
 
 /// `output.rounding`.
 pub fn output_rounding() -> Key {
-    Key::choice("output.rounding", "nearest", &ROUNDINGS, "rounding of the colour outputs to integers")
+    Key::choice("output.rounding", "nearest", &ROUNDINGS, "Rounding of the colour outputs to integers.")
 }
 
 /// `domain.exponent_min`.
@@ -60,7 +60,7 @@ pub fn exponent_min() -> Key {
         "domain.exponent_min",
         1,
         0..=4095,
-        "the smallest n for which the accuracy contract is stated",
+        "The smallest n for which the accuracy contract is stated.",
     )
 }
 
@@ -70,7 +70,7 @@ pub fn exponent_max() -> Key {
         "domain.exponent_max",
         1000,
         1..=4095,
-        "the largest n for which the accuracy contract is stated",
+        "The largest n for which the accuracy contract is stated.",
     )
 }
 

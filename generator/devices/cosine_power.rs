@@ -18,7 +18,7 @@ pub fn schema() -> Schema {
     Schema {
         device: "cosine-power",
         keys: vec![
-            Key::choice("power", "16", &["2", "4", "8", "16"], "the power m: the larger, the closer to cos^n, and the more squarings"),
+            Key::choice("power", "16", &["2", "4", "8", "16"], "The power m: the larger, the closer to cos^n, and the more squarings."),
             common::cosine_fraction(20),
             common::cosine_signed(),
             common::exponent_bits(),
