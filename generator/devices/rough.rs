@@ -7,7 +7,7 @@ use crate::config::{Config, Key, Problems, Schema};
 use crate::dsl::blocks::colour::{ChannelBlocks, Colours};
 use crate::dsl::blocks::segmented::{self, Entry, Segment, Segmentation, Shape};
 use crate::dsl::{Designer, Register, Signal, end, hold, step, valid};
-use crate::fixed::{Format, Overflow, Rounding};
+use crate::fixed::{Format, MAX_WIDTH, Overflow, Rounding};
 use crate::netlist::About;
 
 use super::{common, rounding};
@@ -47,6 +47,7 @@ pub fn schema() -> Schema {
 fn check(config: &Config, problems: &mut Problems) {
     common::check_exponents(config, problems);
     let cosine = config.integer("cosine.fraction");
+    check_multiplier(config, problems);
     let (fraction, product) = if config.choice("arithmetic") == "exact" {
         (config.integer("sine.fraction"), config.integer("product.fraction"))
     } else {
@@ -96,6 +97,42 @@ fn check(config: &Config, problems: &mut Problems) {
             "sine.slope_fraction",
             format!("{slope} fraction bits of the slope do not go with {fraction} of the sine"),
             format!("{} to {fraction}", (fraction - most).max(8)),
+        );
+    }
+}
+
+/// Multiplier 10 fits a net, and in the patent's arithmetic n/2 has a bit left.
+fn check_multiplier(config: &Config, problems: &mut Problems) {
+    let integer = |key: &str| config.integer(key);
+    if config.choice("arithmetic") == "patent" {
+        if integer("exponent.bits") < 2 {
+            problems.push(
+                "exponent.bits",
+                "the patent's wiring of n/2 drops the only bit of n".to_owned(),
+                "at least 2 with arithmetic = \"patent\"".to_owned(),
+            );
+        }
+        return;
+    }
+    let (cosine, sine) = (integer("cosine.fraction"), integer("sine.fraction"));
+    let (product, f) = (integer("product.fraction"), integer("intensity.fraction"));
+    // Zeros that bring n/2 * adder 15 and the square of adder 16 to one point.
+    let (half_pad, base_pad) = ((2 * f - product - 1).max(0), (product + 1 - 2 * f).max(0));
+    let first = (cosine + 2).max(sine + 1).max(product + 2).max(f + 2 + base_pad);
+    let second = (cosine + 2).max(sine + 1).max(integer("exponent.bits") + half_pad + 1).max(f + 2);
+    let width = first + second;
+    if width > i64::from(MAX_WIDTH) {
+        let keys = [
+            ("cosine.fraction", cosine),
+            ("sine.fraction", sine),
+            ("product.fraction", product),
+            ("intensity.fraction", f),
+        ];
+        let key = keys.iter().max_by_key(|(_, bits)| *bits).map_or("cosine.fraction", |(key, _)| *key);
+        problems.push(
+            key,
+            format!("multiplier 10 would be {first} by {second} bits; a product has at most {MAX_WIDTH}"),
+            "fewer bits here, or in cosine.fraction, sine.fraction, product.fraction or intensity.fraction".to_owned(),
         );
     }
 }
@@ -263,7 +300,13 @@ pub fn describe(d: &Designer, config: &Config) {
         facing_only(d, cos_gamma, result)
     });
 
-    let f = r13.q().bits(0, formats.f).named("f").doc("the reflectance, once register 13 holds the square");
+    let doc = "the reflectance, once register 13 holds the square";
+    let f = if r13.format().int == 0 {
+        r13.q().bits(0, formats.f).named("f").doc(doc)
+    } else {
+        // Without the clamp the square can be 1.0 or more, where f saturates.
+        d.narrow("f", r13.q(), formats.f, Rounding::Truncate, Overflow::Saturate).doc(doc)
+    };
     colours.outputs(f, rounding(config, "output.rounding"));
 
     d.microprogram([

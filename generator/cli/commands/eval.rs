@@ -145,7 +145,7 @@ fn operand_value(operand: &Operand, text: &str) -> Result<i64> {
 fn point(model: &mut dyn Model, operands: &[Operand], raw: &[i64]) -> Result<Vec<(String, u64)>> {
     let mut inputs = vec![0; model.inputs().len()];
     let names = model.inputs().to_vec();
-    let mut set = |inputs: &mut Vec<u64>, name: &str, bits: u64| {
+    let set = |inputs: &mut Vec<u64>, name: &str, bits: u64| {
         if let Some(at) = names.iter().position(|other| other == name) {
             inputs[at] = bits;
         }

@@ -87,9 +87,9 @@ impl Segmentation {
         blocks
     }
 
-    /// Bits of the remainder that the slope multiplies.
+    /// Bits of the remainder that the slope multiplies; one, a zero, when every entry is exact.
     fn rest_bits(&self) -> u32 {
-        self.blocks().iter().map(|block| block.bits - block.prefix).max().unwrap_or(0)
+        self.blocks().iter().map(|block| block.bits - block.prefix).max().unwrap_or(0).max(1)
     }
 
     /// Words of the table.
