@@ -118,8 +118,10 @@ fn check_multiplier(config: &Config, problems: &mut Problems) {
     let (product, f) = (integer("product.fraction"), integer("intensity.fraction"));
     // Zeros that bring n/2 * adder 15 and the square of adder 16 to one point.
     let (half_pad, base_pad) = ((2 * f - product - 1).max(0), (product + 1 - 2 * f).max(0));
-    let first = (cosine + 2).max(sine + 1).max(product + 2).max(f + 2 + base_pad);
-    let second = (cosine + 2).max(sine + 1).max(integer("exponent.bits") + half_pad + 1).max(f + 2);
+    // Adder 16, with its sign; without the clamp it needs an integer bit more.
+    let base = f + if config.flag("clamp") { 2 } else { 3 };
+    let first = (cosine + 2).max(sine + 1).max(product + 2).max(base + base_pad);
+    let second = (cosine + 2).max(sine + 1).max(integer("exponent.bits") + half_pad + 1).max(base);
     let width = first + second;
     if width > i64::from(MAX_WIDTH) {
         let keys = [
