@@ -1,8 +1,11 @@
 // ${ name }$: self-checking bench of ${ module }$
 //
 // Run it with any simulator from a directory that holds the files of both folders, for example
-//   iverilog -g2012 -o ${ name }$ ${ module }$*.v && ./${ name }$
-//   verilator --binary --timing --top-module ${ name }$ ${ module }$*.v && obj_dir/V${ name }$
+//   $ iverilog -g2012 -o ${ name }$ ${ module }$*.v
+//   $ ./${ name }$
+// or, with Verilator 5,
+//   $ verilator --binary --timing --top-module ${ name }$ ${ module }$*.v
+//   $ obj_dir/V${ name }$
 // Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
 //
 // Generated files belong to their user, without conditions.
@@ -22,12 +25,8 @@ module ${ name }$ #(
     reg [${ expected_last }$:0] ${ names.expected }$ [0:CLOCKS-1];
     reg [${ expected_last }$:0] ${ names.want }$;
 
-    reg clk;
-<%- for line in inputs %>
-    ${ line }$
-<%- endfor %>
-<%- for line in outputs %>
-    ${ line }$
+<%- for line in declarations %>
+${ line }$
 <%- endfor %>
 
     integer ${ names.clock }$;
@@ -40,15 +39,15 @@ module ${ name }$ #(
 <%- endfor %>
     );
 
-    // The name of a word of the microprogram.
-    function [${ word_bits }$-1:0] ${ names.word_name }$(input ${ address_range }$ address);
-        case (address)
+    // Prints the word of the microprogram that is executed.
+    task ${ names.write_word }$;
+        case (${ address }$)
 <%- for word in words %>
-            ${ word.label }$: ${ names.word_name }$ = "${ word.name }$";
+            ${ word.label }$: $write("word ${ word.address }$ (${ word.name }$)");
 <%- endfor %>
-            default: ${ names.word_name }$ = "?";
+            default: $write("no word");
         endcase
-    endfunction
+    endtask
 
     initial begin
         $readmemh(STIMULUS_FILE, ${ names.stimulus }$);
@@ -57,7 +56,9 @@ module ${ name }$ #(
         ${ names.was_reset }$ = <% if reset.is_some() %>1'b0<% else %>1'b1<% endif %>;
         clk = 1'b0;
         for (${ names.clock }$ = 0; ${ names.clock }$ < CLOCKS; ${ names.clock }$ = ${ names.clock }$ + 1) begin
-            {${ stimulus }$} = ${ names.stimulus }$[${ names.clock }$];
+<%- for line in stimulus %>
+${ line }$
+<%- endfor %>
             ${ names.want }$ = ${ names.expected }$[${ names.clock }$];
             #4;
             if (${ names.was_reset }$) begin

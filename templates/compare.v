@@ -1,8 +1,8 @@
                 if (${ output.name }$ !== ${ output.select }$) begin
                     ${ names.errors }$ = ${ names.errors }$ + 1;
-                    if (${ names.errors }$ <= REPORTED)
-                        $display("clock %0d, word %0d %0s: ${ output.name }$ is %h, expected %h",
-                            ${ names.clock }$, ${ address }$,
-                            ${ names.word_name }$(${ address }$),
-                            ${ output.name }$, ${ output.select }$);
+                    if (${ names.errors }$ <= REPORTED) begin
+                        $write("clock %0d, ", ${ names.clock }$);
+                        ${ names.write_word }$;
+                        $display(": ${ output.name }$ is %h, expected %h", ${ output.name }$, ${ output.select }$);
+                    end
                 end

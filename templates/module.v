@@ -18,12 +18,11 @@ ${ line }$
 ${ line }$
 <%- endfor %>
 <%- endfor %>
-<%- for item in items %>
-<% match item %>
-<%- when Item::Assign with { comment, lines } %>
-<%- for line in comment %>
-${ line }$
-<%- endfor %>
+<%- for spaced in items %>
+<%- if spaced.gap %>
+<% endif %>
+<%- match spaced.item %>
+<%- when Item::Assign with (lines) %>
 <%- for line in lines %>
 ${ line }$
 <%- endfor %>

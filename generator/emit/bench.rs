@@ -4,11 +4,11 @@ use anyhow::{Result, ensure};
 use askama::Template;
 
 use super::Vectors;
-use super::module::separated;
 use super::naming::Naming;
-use super::text::{Names, ascii, literal, range};
+use super::rows::{Row, separated};
+use super::text::{Names, ascii, literal, statement};
 use crate::fixed::mask;
-use crate::netlist::{Design, NetId, Port, Role};
+use crate::netlist::{Design, Port, Role};
 
 #[derive(Template)]
 #[template(path = "bench.v")]
@@ -22,16 +22,14 @@ struct Bench {
     expected_last: u32,
     clocks: usize,
     known_from: usize,
-    inputs: Vec<String>,
-    outputs: Vec<String>,
-    stimulus: String,
+    declarations: Vec<String>,
+    /// The assignment of a word of stimulus to the inputs.
+    stimulus: Vec<String>,
     connections: Vec<String>,
     reset: Option<String>,
     handshake: Vec<Output>,
     results: Vec<Output>,
     address: String,
-    address_range: String,
-    word_bits: usize,
     words: Vec<Word>,
 }
 
@@ -44,7 +42,7 @@ struct Variables {
     errors: String,
     was_reset: String,
     dut: String,
-    word_name: String,
+    write_word: String,
 }
 
 /// An output and its place in the expected word.
@@ -56,6 +54,7 @@ struct Output {
 /// A word of the microprogram.
 struct Word {
     label: String,
+    address: usize,
     name: String,
 }
 
@@ -122,22 +121,11 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
         errors: names.fresh("errors"),
         was_reset: names.fresh("was_reset"),
         dut: names.fresh("dut"),
-        word_name: names.fresh("word_name"),
+        write_word: names.fresh("write_word"),
     };
     let total = |ports: &[&Port]| ports.iter().map(|port| design.width(port.net)).sum::<u32>();
     let inputs: Vec<_> = design.inputs().collect();
     let outputs: Vec<_> = design.outputs().collect();
-    let declare = |kind: &str, net: NetId| {
-        let net = design.net(net);
-        let sign = if net.format.signed { "signed" } else { "" };
-        let words = [kind, sign, &range(net.format.width()), &net.name];
-        words
-            .into_iter()
-            .filter(|word| !word.is_empty())
-            .collect::<Vec<_>>()
-            .join(" ")
-            + ";"
-    };
     let mut low = total(&outputs);
     let (mut handshake, mut results) = (Vec::new(), Vec::new());
     for port in &outputs {
@@ -165,12 +153,28 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
         .enumerate()
         .map(|(at, word)| Word {
             label: literal(at as u64, address_width),
+            address: at,
             // Within a string literal of Verilog.
             name: ascii(&word.name)
                 .replace('\\', "/")
                 .replace('"', "'")
                 .replace('%', "%%"),
         })
+        .collect();
+    let clock = Row::port("", "reg", 1, false, "clk", "");
+    let declarations: Vec<_> = std::iter::once(clock)
+        .chain(design.ports.iter().map(|port| {
+            let format = design.net(port.net).format;
+            let kind = if port.role.is_input() { "reg" } else { "wire" };
+            Row::port(
+                "",
+                kind,
+                format.width(),
+                format.signed,
+                &port_name(port),
+                "",
+            )
+        }))
         .collect();
     let connected = design.ports.iter().map(port_name);
     let stimulus: Vec<_> = inputs.iter().map(|port| port_name(port)).collect();
@@ -183,12 +187,16 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
         expected_last: total(&outputs) - 1,
         clocks: vectors.inputs.len(),
         known_from: vectors.known_from,
-        inputs: inputs.iter().map(|port| declare("reg", port.net)).collect(),
-        outputs: outputs
-            .iter()
-            .map(|port| declare("wire", port.net))
-            .collect(),
-        stimulus: stimulus.join(", "),
+        declarations: Row::declarations(&declarations),
+        stimulus: statement(
+            12,
+            &format!(
+                "{{{}}} = {}[{}];",
+                stimulus.join(", "),
+                variables.stimulus,
+                variables.clock
+            ),
+        ),
         connections: separated(
             std::iter::once("clk".to_owned())
                 .chain(connected)
@@ -204,13 +212,6 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
             naming.control_instance,
             design.net(address).name
         ),
-        address_range: range(address_width),
-        word_bits: 8 * words
-            .iter()
-            .map(|word| word.name.len())
-            .max()
-            .unwrap_or(1)
-            .max(1),
         words,
         names: variables,
     }
@@ -237,12 +238,12 @@ fn vector_file(design: &Design, title: &str, ports: &[&Port], rows: &[Vec<u64>])
     }
     let columns = ports.iter().map(|port| {
         let net = design.net(port.net);
-        format!("{} ({} bits)", net.name, net.format.width())
+        format!("{} [{}]", net.name, net.format.width())
     });
     let columns = super::text::comment(
         0,
         &format!(
-            "From the top bit: {}",
+            "From the top bit, with widths: {}",
             columns.collect::<Vec<_>>().join(", ")
         ),
     );

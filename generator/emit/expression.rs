@@ -5,26 +5,42 @@
 //! whole right-hand side of a net of its full width, and the carry into an adder is extended to the
 //! adder's width. Signedness matters to products and comparisons alone, which state it.
 
-use std::collections::BTreeSet;
-
 use super::bits::{Bits, Piece};
 use super::plan::{Form, Plan, Reader};
-use super::text::literal;
+use super::text::{Names, constant_name, literal};
+use crate::fixed::mask;
 use crate::netlist::{Driver, NetId, Op, Rom};
+
+/// A number that is baked in: a localparam.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Constant {
+    /// The localparam.
+    pub name: String,
+    /// The name in the description, without a number at its end.
+    base: String,
+    /// The bit pattern.
+    pub bits: u64,
+    /// Its width.
+    pub width: u32,
+    /// Its value, unless that is the bit pattern.
+    pub note: String,
+}
 
 /// Writes the expressions of one module.
 pub struct Expressions<'a> {
     plan: &'a Plan<'a>,
-    /// The named constants that were used: they become localparams.
-    pub constants: BTreeSet<NetId>,
+    names: Names,
+    /// The constants that were used, in that order.
+    pub constants: Vec<Constant>,
 }
 
 impl<'a> Expressions<'a> {
     /// For a module in which nothing was written yet.
-    pub fn new(plan: &'a Plan<'a>) -> Self {
+    pub fn new(plan: &'a Plan<'a>, names: Names) -> Self {
         Self {
             plan,
-            constants: BTreeSet::new(),
+            names,
+            constants: Vec::new(),
         }
     }
 
@@ -51,10 +67,8 @@ impl<'a> Expressions<'a> {
 
     /// A net as an operand: a name, a selection, a concatenation, or a cell in parentheses.
     pub fn operand(&mut self, id: NetId) -> String {
-        let net = self.plan.design.net(id);
-        if net.named && matches!(net.driver, Driver::Constant(_)) && !self.plan.is_port(id) {
-            self.constants.insert(id);
-            return net.name.clone();
+        if let Some(constant) = self.constant(id) {
+            return constant;
         }
         match self.inline(id) {
             Some(cell) => {
@@ -67,6 +81,53 @@ impl<'a> Expressions<'a> {
             }
             None => self.bits(&self.plan.bits[id.index()]),
         }
+    }
+
+    /// The localparam for a net that is a constant, possibly extended or relabelled, unless a literal
+    /// says as much: 0, 1 ulp, all ones.
+    fn constant(&mut self, id: NetId) -> Option<String> {
+        let design = self.plan.design;
+        let Some(Piece::Constant { value, width }) = self.plan.bits[id.index()].single() else {
+            return None;
+        };
+        let mut origin = id;
+        while let Driver::Op(Op::Relabel(of) | Op::Extend(of)) = &design.net(origin).driver {
+            origin = *of;
+        }
+        let from = design.net(origin);
+        if !matches!(from.driver, Driver::Constant(_)) {
+            return None;
+        }
+        if !from.named && (value <= 1 || (value == mask(width) && width >= 8)) {
+            return None;
+        }
+        let (name, origin) = (&from.name, from.format);
+        // The DSL numbers constants of one name apart; here only different bits are.
+        let base = if from.named { name } else { unnumbered(name) };
+        let same = |constant: &&Constant| {
+            constant.base == base && (constant.bits, constant.width) == (value, width)
+        };
+        if let Some(known) = self.constants.iter().find(same) {
+            return Some(known.name.clone());
+        }
+        let name = match from.named {
+            true if width == origin.width() => name.clone(),
+            _ => self.names.fresh(&constant_name(base)),
+        };
+        let Driver::Constant(bits) = from.driver else {
+            return None;
+        };
+        self.constants.push(Constant {
+            name: name.clone(),
+            base: base.to_owned(),
+            bits: value,
+            width,
+            note: match origin.signed || origin.frac != 0 {
+                true => format!("{:?} in {origin}", origin.to_f64(origin.raw(bits))),
+                false => String::new(),
+            },
+        });
+        Some(name)
     }
 
     /// The word number for a ROM, exactly as wide as its depth asks.
@@ -160,6 +221,14 @@ impl<'a> Expressions<'a> {
             Op::Equal(a, b) => self.binary(*a, "==", *b),
             Op::Less(a, b) => match self.constant_comparison(*a, *b) {
                 Some(known) => literal(known, 1),
+                // A constant reads best on the right.
+                None if matches!(
+                    self.plan.bits[a.index()].single(),
+                    Some(Piece::Constant { .. })
+                ) =>
+                {
+                    format!("{} > {}", self.with_sign(*b), self.with_sign(*a))
+                }
                 None => format!("{} < {}", self.with_sign(*a), self.with_sign(*b)),
             },
             Op::Any(a) if self.plan.design.width(*a) == 1 => self.whole(*a),
@@ -221,6 +290,15 @@ impl<'a> Expressions<'a> {
             (None, Some(b)) if b == format.min_raw() => Some(0),
             _ => None,
         }
+    }
+}
+
+/// `one_2` without its number.
+fn unnumbered(name: &str) -> &str {
+    let base = name.trim_end_matches(|sign: char| sign.is_ascii_digit());
+    match base.strip_suffix('_') {
+        Some(base) if base.len() + 1 < name.len() => base,
+        _ => name,
     }
 }
 

@@ -3,6 +3,7 @@
 use super::naming::Naming;
 use super::text::comment;
 use super::{EmitInputs, Timing};
+use crate::fixed::Format;
 use crate::netlist::{Design, NetId, Role, Sequence, Unit};
 
 /// Of the top module: what it computes and all that its user must know.
@@ -103,7 +104,10 @@ fn ports(design: &Design) -> Vec<String> {
             Role::Result => "result".to_owned(),
             Role::Status => "status".to_owned(),
         };
-        let format = net.format.to_string();
+        let format = match net.format {
+            Format::BIT => String::new(),
+            format => format.to_string(),
+        };
         let text = format!("  {:width$}  {format:6}  {role}", net.name);
         lines.push(format!("//{}", text.trim_end()));
     }

@@ -39,11 +39,10 @@ pub fn contents(design: &Design, id: RomId) -> Result<String> {
             rom.words.len()
         ),
     );
-    for line in &rom.doc {
-        header.extend(comment(0, line));
-    }
     if control {
         header.extend(fields(design, width)?);
+    } else {
+        header.extend(rom.doc.iter().flat_map(|line| comment(0, line)));
     }
     let texts: Vec<_> = rom
         .words

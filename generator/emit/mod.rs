@@ -15,6 +15,7 @@ mod memory;
 mod module;
 mod naming;
 mod plan;
+mod rows;
 mod text;
 mod top;
 mod view;

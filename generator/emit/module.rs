@@ -8,8 +8,9 @@ use super::header;
 use super::interface::{Interface, unread};
 use super::naming::{Naming, is_control_rom, remark, rom_label};
 use super::plan::{Form, Plan};
+use super::rows::{Row, separated};
 use super::text::{annotated, comment, literal, range, statement};
-use super::view::{Item, Module, RomItem, Section};
+use super::view::{Item, Module, RomItem, Section, Spaced};
 use crate::netlist::{Driver, NetId, Op, RegId, RomId, Unit};
 
 /// Builds one unit.
@@ -36,7 +37,7 @@ impl<'a> Builder<'a> {
             naming,
             interface,
             unit,
-            expressions: Expressions::new(plan),
+            expressions: Expressions::new(plan, naming.names.clone()),
             labels: BTreeSet::new(),
         }
     }
@@ -118,15 +119,12 @@ impl<'a> Builder<'a> {
     fn constants(&self) -> Vec<String> {
         let design = self.plan.design;
         let mut lines = Vec::new();
-        for &net in &self.expressions.constants {
-            let Driver::Constant(value) = design.net(net).driver else {
-                continue;
-            };
+        for constant in &self.expressions.constants {
             lines.extend(localparam(
-                &design.net(net).name,
-                value,
-                design.width(net),
-                &remark(design, net),
+                &constant.name,
+                constant.bits,
+                constant.width,
+                &constant.note,
             ));
         }
         for &(field, value) in &self.labels {
@@ -137,7 +135,7 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    fn items(&mut self) -> Vec<Item> {
+    fn items(&mut self) -> Vec<Spaced> {
         let design = self.plan.design;
         let mut items = Vec::new();
         for &id in &self.plan.live {
@@ -149,11 +147,7 @@ impl<'a> Builder<'a> {
                     items.push(self.case(id, *select, inputs));
                 }
                 Driver::Op(_) | Driver::Field(_) | Driver::Constant(_) => {
-                    let right = self.expressions.driver(id);
-                    items.push(Item::Assign {
-                        comment: comment(4, &remark(design, id)),
-                        lines: statement(4, &format!("{} = {right};", self.target(id))),
-                    });
+                    items.push(self.assign(id))
                 }
                 Driver::Rom(rom) if !design.rom(*rom).synchronous => items.push(self.rom(*rom)),
                 _ => {}
@@ -164,7 +158,28 @@ impl<'a> Builder<'a> {
                 items.push(self.rom(rom));
             }
         }
-        items
+        // One-liners stand together.
+        let mut after_line = false;
+        let mut spaced = Vec::new();
+        for item in items {
+            let line = matches!(&item, Item::Assign(lines) if lines.len() == 1);
+            spaced.push(Spaced {
+                gap: !(line && after_line),
+                item,
+            });
+            after_line = line;
+        }
+        spaced
+    }
+
+    fn assign(&mut self, id: NetId) -> Item {
+        let note = remark(self.plan.design, id);
+        let right = self.expressions.driver(id);
+        let lines = statement(4, &format!("{} = {right};", self.target(id)));
+        if let [line] = &lines[..] {
+            return Item::Assign(annotated(line.trim_start(), 4, &note));
+        }
+        Item::Assign(comment(4, &note).into_iter().chain(lines).collect())
     }
 
     /// The left side of a continuous assignment: with the declaration, unless the net is a port.
@@ -198,8 +213,7 @@ impl<'a> Builder<'a> {
         let declaration = if self.interface.outputs.contains(&id) {
             Vec::new()
         } else {
-            let row = Row::net(self.plan, "", "reg", id).without_note();
-            Row::declarations(&[row])
+            Row::declarations(&[Row::net(self.plan, "", "reg", id).without_note()])
         };
         Item::Case {
             comment: comment(4, &remark(design, id)),
@@ -354,15 +368,6 @@ pub fn parameters(naming: &Naming, roms: &[RomId]) -> Vec<String> {
     separated(texts.collect())
 }
 
-/// A comma behind each text but the last.
-pub fn separated(mut texts: Vec<String>) -> Vec<String> {
-    let last = texts.len().saturating_sub(1);
-    for text in texts.iter_mut().take(last) {
-        text.push(',');
-    }
-    texts
-}
-
 fn localparam(name: &str, value: u64, width: u32, note: &str) -> Vec<String> {
     let range = range(width);
     let space = if range.is_empty() { "" } else { " " };
@@ -374,83 +379,4 @@ fn localparam(name: &str, value: u64, width: u32, note: &str) -> Vec<String> {
         4,
         note,
     )
-}
-
-/// A declaration that is set in columns with its neighbours.
-pub struct Row {
-    head: String,
-    range: String,
-    name: String,
-    note: String,
-}
-
-impl Row {
-    /// A declaration of a net; the direction is empty for one that is no port.
-    pub fn net(plan: &Plan, direction: &str, kind: &str, id: NetId) -> Self {
-        let net = plan.design.net(id);
-        let format = net.format;
-        let note = remark(plan.design, id);
-        Self::port(
-            direction,
-            kind,
-            format.width(),
-            format.signed,
-            &net.name,
-            &note,
-        )
-    }
-
-    /// A declaration.
-    pub fn port(
-        direction: &str,
-        kind: &str,
-        width: u32,
-        signed: bool,
-        name: &str,
-        note: &str,
-    ) -> Self {
-        let direction = match direction {
-            "" => String::new(),
-            _ => format!("{direction:6} "),
-        };
-        let sign = if signed { " signed" } else { "" };
-        Self {
-            head: format!("{direction}{kind:4}{sign}"),
-            range: range(width),
-            name: name.to_owned(),
-            note: note.to_owned(),
-        }
-    }
-
-    fn without_note(mut self) -> Self {
-        self.note.clear();
-        self
-    }
-
-    /// As ports, with commas.
-    pub fn ports(rows: &[Self]) -> Vec<String> {
-        Self::set(rows, |at| if at + 1 < rows.len() { "," } else { "" })
-    }
-
-    /// As declarations.
-    pub fn declarations(rows: &[Self]) -> Vec<String> {
-        Self::set(rows, |_| ";")
-    }
-
-    fn set(rows: &[Self], end: impl Fn(usize) -> &'static str) -> Vec<String> {
-        let head = rows.iter().map(|row| row.head.len()).max().unwrap_or(0);
-        let range = rows.iter().map(|row| row.range.len()).max().unwrap_or(0);
-        let name = rows.iter().map(|row| row.name.len() + 1).max().unwrap_or(0);
-        let mut lines = Vec::new();
-        for (at, row) in rows.iter().enumerate() {
-            let gap = if range == 0 { "" } else { " " };
-            let named = format!("{}{}", row.name, end(at));
-            let code = format!("{:head$}{gap}{:range$} {named:name$}", row.head, row.range);
-            lines.extend(annotated(&code, 4, &row.note));
-        }
-        for line in &mut lines {
-            line.truncate(line.trim_end().len());
-        }
-        lines
-    }
 }

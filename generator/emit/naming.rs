@@ -19,6 +19,8 @@ pub struct Naming {
     pub choices: Vec<Vec<String>>,
     /// The net that takes unread bits. Linters leave a net alone whose name contains `unused`.
     pub unused: String,
+    /// All names so far: a module may add its own.
+    pub names: Names,
     design: String,
 }
 
@@ -47,6 +49,7 @@ impl Naming {
                 .collect(),
             choices: choices(&design.control, &mut names),
             unused: names.fresh("unused"),
+            names,
             design: design.name.clone(),
         }
     }
@@ -87,16 +90,24 @@ pub fn is_control_rom(design: &Design, rom: RomId) -> bool {
 /// What to say of a net beside its declaration: `mux 8, s1.20: first operand`.
 pub fn remark(design: &Design, id: NetId) -> String {
     let net = design.net(id);
-    let format = if net.format.width() == 1 && !net.format.signed && net.format.frac == 0 {
-        String::new()
-    } else {
-        net.format.to_string()
+    // The width already says all of an unsigned integer.
+    let format = match net.format.signed || net.format.frac != 0 {
+        true => net.format.to_string(),
+        false => String::new(),
     };
     let label = match &net.driver {
         Driver::Field(field) => field_label(&design.control, field.index()),
         _ => net
             .block
-            .map(|number| format!("{} {number}", kind(design, net)))
+            .map(|number| {
+                let port = design.ports.iter().find(|port| port.net == id);
+                let kind = match port {
+                    Some(port) if port.role.is_input() => "input",
+                    Some(_) => "output",
+                    None => kind(design, net),
+                };
+                format!("{kind} {number}")
+            })
             .unwrap_or_default(),
     };
     let what: Vec<_> = [label, format]

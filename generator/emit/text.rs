@@ -104,7 +104,10 @@ pub fn statement(indent: usize, text: &str) -> Vec<String> {
 
 /// A comment of as many lines as it needs, or none for an empty text.
 pub fn comment(indent: usize, text: &str) -> Vec<String> {
-    let text = ascii(text);
+    // Tools take a comment that begins with their name for an order.
+    let text = ascii(text)
+        .replace("verilator", "Verilator")
+        .replace("synopsys", "Synopsys");
     if text.trim().is_empty() {
         return Vec::new();
     }

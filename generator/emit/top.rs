@@ -3,9 +3,10 @@
 use super::EmitInputs;
 use super::header;
 use super::interface::Interface;
-use super::module::{Row, parameters, separated};
+use super::module::parameters;
 use super::naming::Naming;
 use super::plan::Plan;
+use super::rows::{Row, separated};
 use super::view::{Instance, Section, Top};
 use crate::netlist::Unit;
 

@@ -25,22 +25,25 @@ pub struct Module {
     /// Localparams, registers.
     pub declarations: Vec<Section>,
     /// Combinational cells and ROMs, operands first.
-    pub items: Vec<Item>,
+    pub items: Vec<Spaced>,
     /// The bodies of the clocked blocks.
     pub groups: Vec<Vec<String>>,
     /// The net that takes the bits that nobody reads, or nothing.
     pub unused: Vec<String>,
 }
 
+/// A net with what drives it, and the space above it.
+pub struct Spaced {
+    /// An empty line comes first.
+    pub gap: bool,
+    /// The net.
+    pub item: Item,
+}
+
 /// A net with what drives it.
 pub enum Item {
     /// A continuous assignment.
-    Assign {
-        /// Comment lines.
-        comment: Vec<String>,
-        /// The statement.
-        lines: Vec<String>,
-    },
+    Assign(Vec<String>),
     /// A mux of more than two inputs.
     Case {
         /// Comment lines.
