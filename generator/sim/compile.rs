@@ -448,9 +448,9 @@ impl<'a> Compiler<'a> {
                 reset: register.reset.unwrap_or(0) & mask(design.width(register.q)),
             });
         }
-        // An operand depends on no more sources than the result, so this is an order of evaluation.
-        self.instructions
-            .sort_by_key(|(sources, _)| (sources.count_ones(), *sources));
+        // An operand depends on no source that the result does not depend on, so its set is the
+        // smaller number, and this remains an order of evaluation.
+        self.instructions.sort_by_key(|(sources, _)| *sources);
         let segments = self
             .instructions
             .chunk_by(|(a, _), (b, _)| a == b)
