@@ -5,15 +5,16 @@ use std::collections::{BTreeMap, HashMap};
 use anyhow::{Context, Result, anyhow, bail, ensure};
 
 use crate::fixed::{MAX_WIDTH, mask};
-use crate::netlist::{Design, Driver, NetId, Op, Role, RomId};
+use crate::netlist::{Design, Driver, NetId, Op, Role};
 use crate::sim::machine::execute;
 use crate::sim::program::{
     InputPort, Instruction, Program, ReadEdge, RegisterEdge, Segment, Slot, Sources, Span,
 };
+use crate::sim::references;
 
 /// Compiles a design. The errors are those of [`Program::new`].
 pub(super) fn compile(design: &Design) -> Result<Program> {
-    check_ids(design)?;
+    references::check(design)?;
     let mut compiler = Compiler::new(design)?;
     let order = design.levelise().map_err(|nets| {
         let names: Vec<_> = nets
@@ -48,10 +49,10 @@ struct Compiler<'a> {
     choices: Vec<Slot>,
     words: Vec<u64>,
     roms: Vec<Span>,
-    /// For each net; meaningful once the net has been compiled.
+    /// For each net; `Slot::MAX` until the net has been compiled.
     of_net: Vec<Slot>,
     inputs: Vec<InputPort>,
-    /// The bits of each control field in the control word: the lowest.
+    /// For each field of the control word, the number of its lowest bit.
     fields: Vec<u32>,
 }
 
@@ -187,8 +188,6 @@ impl<'a> Compiler<'a> {
                 let address = self.of_net[design.rom(*rom).address.index()];
                 let words = self.roms[rom.index()];
                 let read = |to| Instruction::Read { to, address, words };
-                // The table is an operand too: a read from it is not the more constant for being
-                // the same in every clock, but a constant address does make a constant.
                 Ok(self.emit(&[address], read))
             }
             Driver::Field(field) => {
@@ -412,7 +411,7 @@ impl<'a> Compiler<'a> {
                     to,
                     source: self.sources[to as usize],
                     address,
-                    words: self.roms[RomId(at as u32).index()],
+                    words: self.roms[at],
                 });
             }
         }
@@ -448,9 +447,9 @@ impl<'a> Compiler<'a> {
                 reset: register.reset.unwrap_or(0) & mask(design.width(register.q)),
             });
         }
-        // An operand depends on no more sources than the result, so this is an order of evaluation.
-        self.instructions
-            .sort_by_key(|(sources, _)| (sources.count_ones(), *sources));
+        // An operand depends on no source that the result does not depend on, so its set is the
+        // smaller number, and this remains an order of evaluation.
+        self.instructions.sort_by_key(|(sources, _)| *sources);
         let segments = self
             .instructions
             .chunk_by(|(a, _), (b, _)| a == b)
@@ -486,56 +485,4 @@ impl<'a> Compiler<'a> {
 /// How much narrower than 64 bits a width is.
 fn drop_of(width: u32) -> u8 {
     (MAX_WIDTH - width) as u8
-}
-
-/// Everything that is referred to exists, and widths are possible.
-fn check_ids(design: &Design) -> Result<()> {
-    let nets = design.nets.len();
-    let exists = |net: NetId| ensure_index(net.index(), nets, "net");
-    for net in &design.nets {
-        let format = net.format;
-        let width =
-            i64::from(format.int) + i64::from(format.frac) + i64::from(u8::from(format.signed));
-        ensure!(
-            (1..=i64::from(MAX_WIDTH)).contains(&width),
-            "net `{}` is {width} bits wide; 1 to {MAX_WIDTH} are possible",
-            net.name
-        );
-        match &net.driver {
-            Driver::Register(id) => ensure_index(id.index(), design.registers.len(), "register")?,
-            Driver::Rom(id) => ensure_index(id.index(), design.roms.len(), "ROM")?,
-            Driver::Field(id) => {
-                ensure_index(id.index(), design.control.fields.len(), "field")?;
-            }
-            Driver::Op(op) => op.operands().into_iter().try_for_each(exists)?,
-            Driver::Undriven | Driver::Input | Driver::Constant(_) => {}
-        }
-    }
-    for register in &design.registers {
-        [Some(register.q), register.data, register.enable]
-            .into_iter()
-            .flatten()
-            .try_for_each(exists)?;
-    }
-    for rom in &design.roms {
-        [rom.address, rom.data].into_iter().try_for_each(exists)?;
-    }
-    for port in &design.ports {
-        exists(port.net)?;
-    }
-    if !design.control.fields.is_empty() {
-        ensure_index(design.control.rom.index(), design.roms.len(), "ROM")?;
-    }
-    for field in &design.control.fields {
-        exists(field.net)?;
-    }
-    Ok(())
-}
-
-fn ensure_index(index: usize, len: usize, what: &str) -> Result<()> {
-    ensure!(
-        index < len,
-        "{what} {index} is referred to, but there are {len}"
-    );
-    Ok(())
 }

@@ -1,6 +1,7 @@
 //! The interpreter of simulation programs.
 
 use std::array;
+use std::hint::select_unpredictable;
 use std::sync::Arc;
 
 use crate::netlist::NetId;
@@ -84,12 +85,8 @@ impl<const LANES: usize> Machine<LANES> {
             let keep = slots[edge.keep as usize];
             let q = &mut slots[edge.q as usize];
             let next = array::from_fn(|lane| {
-                let loaded = if enable[lane] == 0 {
-                    q[lane]
-                } else {
-                    data[lane]
-                };
-                if keep[lane] == 0 { edge.reset } else { loaded }
+                let loaded = select_unpredictable(enable[lane] == 0, q[lane], data[lane]);
+                select_unpredictable(keep[lane] == 0, edge.reset, loaded)
             });
             self.changed |= changed(q, &next, edge.source);
             *q = next;
@@ -163,16 +160,9 @@ pub(super) fn execute<const LANES: usize>(
         I::LessSigned { to, a, b, drop } => binary(slots, to, a, b, |a, b| {
             u64::from(signed(a, drop) < signed(b, drop))
         }),
-        I::Choose { to, select, a, b } => {
-            ternary(
-                slots,
-                to,
-                [select, a, b],
-                |select, a, b| {
-                    if select == 0 { a } else { b }
-                },
-            )
-        }
+        I::Choose { to, select, a, b } => ternary(slots, to, [select, a, b], |select, a, b| {
+            select_unpredictable(select == 0, a, b)
+        }),
         I::Mux {
             to,
             select,

@@ -9,6 +9,7 @@ mod circuit;
 mod compile;
 mod machine;
 mod program;
+mod references;
 #[cfg(test)]
 mod tests;
 mod vcd;
