@@ -209,6 +209,10 @@ impl Reader<'_> {
                 false => format!("{prefix}{}", quoted(key.get_ref())),
             };
             let as_table = format!("{name}.");
+            // On a line with a syntax error the value is the parser's guess.
+            if self.broken.contains(&self.line(key.span().start)) {
+                continue;
+            }
             // The span of a table is that of its heading, or of one of its keys.
             let span = match value.get_ref() {
                 DeValue::Table(_) => key.span(),

@@ -62,6 +62,9 @@ impl Problems {
         message: impl Into<String>,
         remedy: impl Into<String>,
     ) {
+        // What is missing at the end of the text is missing in its last line, not below it.
+        let end = self.text.trim_end_matches(['\r', '\n']).len();
+        let span = span.start.min(end)..span.end.min(end);
         self.insert(key, message.into(), remedy.into(), Some(span));
     }
 

@@ -32,7 +32,10 @@ impl Key {
             }
             (Kind::Choice(options), Value::Text(given)) => self
                 .unless(options.contains(&given.as_str()), || {
-                    format!("`{name}` cannot be {}", shown(&value.toml()))
+                    match self.kind.is_integer_choice() {
+                        true => format!("`{name}` cannot be {}", shown(given)),
+                        false => format!("`{name}` cannot be {}", quoted(given)),
+                    }
                 })
                 .into_iter()
                 .map(|fault| self.with_suggestion(fault, given))
