@@ -27,8 +27,8 @@ pub fn commented(schema: &Schema, name: &str) -> String {
                 text.push('\n');
             }
             let default = config.value(key.name).toml();
-            text += &comment(key.doc);
-            let mut rule = format!("{}, default {default}", capitalised(&key.accepts()));
+            text += &comment(&sentence(key.doc));
+            let mut rule = format!("{}, default {default}", key.accepts());
             if let Some((other, value)) = key.only_when {
                 let value = match config.value(other) {
                     Value::Text(_) => Value::Text(value.to_owned()).toml(),
@@ -36,7 +36,7 @@ pub fn commented(schema: &Schema, name: &str) -> String {
                 };
                 rule += &format!("; only with {other} = {value}");
             }
-            text += &comment(&format!("{rule}."));
+            text += &comment(&sentence(&rule));
             let off = match config.applies(schema, key.name) {
                 true => "",
                 false => "# ",
@@ -108,10 +108,15 @@ fn comment(text: &str) -> String {
     lines + &line + "\n"
 }
 
-fn capitalised(text: &str) -> String {
+/// A text with a capital at its start and a full stop at its end.
+fn sentence(text: &str) -> String {
+    let text = text.trim_end_matches('.');
     let mut letters = text.chars();
-    match letters.next() {
-        Some(first) => first.to_uppercase().chain(letters).collect(),
-        None => String::new(),
-    }
+    let first = letters.next().map(char::to_uppercase);
+    first
+        .into_iter()
+        .flatten()
+        .chain(letters)
+        .chain(['.'])
+        .collect()
 }

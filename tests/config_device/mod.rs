@@ -33,7 +33,7 @@ pub fn lamp() -> Schema {
                 4..=30,
                 "Fraction bits of the cosines.",
             ),
-            Key::flag("cosine.signed", false, "Whether cosines may be negative."),
+            Key::flag("cosine.signed", false, "whether cosines may be negative"),
             Key::choice(
                 "sine.scheme",
                 "direct",
