@@ -37,7 +37,7 @@ const COMMON: [(&str, &str); 3] = [
     ),
     (
         "strict",
-        "Refuse a configuration that misses the accuracy contract, rather than warn of it. True \
-         or false.",
+        "Refuse a configuration that misses the accuracy contract, rather than warn of it. True or \
+         false, default false.",
     ),
 ];

@@ -31,30 +31,26 @@ pub fn parse(file_name: &str, text: &str, schemas: &[Schema]) -> Result<Config, 
     }
     let (document, errors) = DeTable::parse_recoverable(text);
     let mut reader = Reader {
-        broken: errors.iter().flat_map(|error| lines(text, error)).collect(),
-        valid_toml: errors.is_empty(),
         text,
+        newlines: text.match_indices('\n').map(|(offset, _)| offset).collect(),
         problems,
+        broken: BTreeSet::new(),
+        valid_toml: errors.is_empty(),
     };
     for error in &errors {
         reader.syntax_error(error);
     }
+    reader.spoil_below_broken_headings();
     reader.read(document.get_ref(), file_name, schemas)
-}
-
-/// The lines, counted from 0, that a syntax error touches.
-fn lines(text: &str, error: &Error) -> Range<usize> {
-    let line = |offset: usize| text[..offset].matches('\n').count();
-    match error.span() {
-        Some(span) => line(span.start)..line(span.end) + 1,
-        None => 0..0,
-    }
 }
 
 struct Reader<'t> {
     text: &'t str,
+    /// Where its lines end.
+    newlines: Vec<usize>,
     problems: Problems,
-    /// Lines with a syntax error: what the parser made of them is not worth a message.
+    /// Lines, counted from 0, that a syntax error spoils: what the parser made of them is not worth
+    /// a message.
     broken: BTreeSet<usize>,
     valid_toml: bool,
 }
@@ -62,6 +58,12 @@ struct Reader<'t> {
 impl Reader<'_> {
     fn syntax_error(&mut self, error: &Error) {
         let span = error.span().unwrap_or(0..0);
+        let lines = self.line(span.start)..=self.line(span.end);
+        // The first error of a line is the mistake, and further ones are its echo.
+        if self.broken.contains(lines.start()) {
+            return;
+        }
+        self.broken.extend(lines);
         let found = self.text.get(span.clone()).unwrap_or("");
         let message = error.message();
         let (message, remedy) = if message == "duplicate key" {
@@ -78,6 +80,24 @@ impl Reader<'_> {
             (message, "write `key = value` or `[table]`, one to a line")
         };
         self.problems.push_at(span, "", message, remedy);
+    }
+
+    /// The line of an offset, counted from 0.
+    fn line(&self, offset: usize) -> usize {
+        self.newlines.partition_point(|newline| *newline < offset)
+    }
+
+    /// Below a heading that could not be read it is not known to which table the keys belong.
+    fn spoil_below_broken_headings(&mut self) {
+        let mut spoilt = false;
+        for (number, line) in self.text.lines().enumerate() {
+            if line.trim_start().starts_with('[') {
+                spoilt = self.broken.contains(&number);
+            }
+            if spoilt {
+                self.broken.insert(number);
+            }
+        }
     }
 
     fn read(
@@ -104,7 +124,7 @@ impl Reader<'_> {
     /// The schema of the device that the file names, or else the one that it seems to mean.
     fn device<'s>(&mut self, document: &DeTable, schemas: &'s [Schema]) -> Option<&'s Schema> {
         let devices: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
-        let remedy = format!("the devices are {}", listed(&devices));
+        let remedy = format!("devices: {}", devices.join(", "));
         let Some(value) = document.get("device") else {
             // After a syntax error it may be there, unread.
             if self.valid_toml {
@@ -188,16 +208,19 @@ impl Reader<'_> {
                 true => format!("{prefix}{}", key.get_ref()),
                 false => format!("{prefix}{}", quoted(key.get_ref())),
             };
-            if prefix.is_empty() && super::COMMON.iter().any(|(common, _)| *common == name) {
+            let as_table = format!("{name}.");
+            // On a line with a syntax error the value is the parser's guess.
+            if self.broken.contains(&self.line(key.span().start)) {
                 continue;
             }
-            let as_table = format!("{name}.");
             // The span of a table is that of its heading, or of one of its keys.
             let span = match value.get_ref() {
                 DeValue::Table(_) => key.span(),
                 _ => value.span(),
             };
-            if let Some(key) = schema.key(&name) {
+            if is_common(&name) {
+                self.problems.locate(&name, span);
+            } else if let Some(key) = schema.key(&name) {
                 self.value(key, value, span, draft);
             } else if !schema
                 .keys
@@ -244,52 +267,53 @@ impl Reader<'_> {
         schema: &'s Schema,
         draft: &mut Draft<'s>,
     ) {
-        let (table, leaf) = name.rsplit_once('.').unwrap_or(("", name));
+        let keys = || schema.keys.iter();
+        let tables = || keys().map(|key| key.table_and_leaf().0);
+        let names = || keys().map(|key| key.name);
         let is_table = value.get_ref().is_table();
         let (what, meant) = match is_table {
-            true => (
-                "table",
-                nearest(name, schema.keys.iter().map(|key| key.table_and_leaf().0)),
-            ),
-            false => {
-                let common = super::COMMON.iter().map(|(common, _)| *common);
-                let keys = common.chain(schema.keys.iter().map(|key| key.name));
-                ("key", nearest(name, keys))
-            }
+            true => ("table", nearest(name, tables())),
+            false => ("key", nearest(name, common_names().chain(names()))),
         };
-        let elsewhere: Vec<String> = schema
-            .keys
-            .iter()
-            .filter(|key| key.table_and_leaf().1 == leaf)
-            .map(|key| format!("`{}`", key.name))
+        let (table, leaf) = name.rsplit_once('.').unwrap_or(("", name));
+        let (heading, below) = name.split_once('.').unwrap_or(("", name));
+        let elsewhere: Vec<String> = names()
+            .filter(|known| known.ends_with(&format!(".{leaf}")))
+            .map(|known| format!("`{known}`"))
             .collect();
-        let remedy = match meant {
-            Some(meant) => {
-                // What the true value of the key that was meant is to be is not known.
-                let within = format!("{meant}.");
-                let keys = schema.keys.iter();
-                for key in keys.filter(|key| key.name == meant || key.name.starts_with(&within)) {
-                    draft.doubtful.insert(key.name);
-                }
-                format!("did you mean `{meant}`?")
+        let remedy = if common_names()
+            .chain(names())
+            .chain(tables())
+            .any(|k| k == below)
+        {
+            format!("`{below}` is outside [{heading}]: move it above the first [table] heading")
+        } else if let Some(meant) = meant {
+            // What the true value of the key that was meant is to be is not known.
+            let within = format!("{meant}.");
+            for key in keys().filter(|key| key.name == meant || key.name.starts_with(&within)) {
+                draft.doubtful.insert(key.name);
             }
-            None if elsewhere.is_empty() || is_table => {
-                let known = schema
-                    .keys
-                    .iter()
-                    .any(|key| key.table_and_leaf().0 == table);
-                keys_of(schema, if known { table } else { "" })
-            }
-            None => format!("there is {}", listed(&elsewhere)),
+            format!("did you mean `{meant}`?")
+        } else if !is_table && !elsewhere.is_empty() {
+            format!("there is {}", listed(&elsewhere))
+        } else {
+            keys_of(
+                schema,
+                if tables().any(|known| known == table) {
+                    table
+                } else {
+                    ""
+                },
+            )
         };
+        let name = shown(name);
         let message = format!("device `{}` has no {what} `{name}`", schema.device);
-        self.report(name, span, message, remedy);
+        self.report(&name, span, message, remedy);
     }
 
     /// Adds a problem, unless what it is about was spoilt by a syntax error.
     fn report(&mut self, key: &str, span: Range<usize>, message: String, remedy: String) {
-        let line = self.text[..span.start].matches('\n').count();
-        if !self.broken.contains(&line) {
+        if !self.broken.contains(&self.line(span.start)) {
             self.problems.push_at(span, key, message, remedy);
         }
     }
@@ -378,6 +402,14 @@ fn described(value: &Spanned<DeValue>) -> String {
     }
 }
 
+fn common_names() -> impl Iterator<Item = &'static str> {
+    super::COMMON.iter().map(|(name, _)| *name)
+}
+
+fn is_common(name: &str) -> bool {
+    common_names().any(|common| common == name)
+}
+
 fn is_bare(key: &str) -> bool {
     !key.is_empty()
         && key
@@ -387,8 +419,6 @@ fn is_bare(key: &str) -> bool {
 
 fn start_from(schemas: &[Schema]) -> String {
     let devices: Vec<&str> = schemas.iter().map(|schema| schema.device).collect();
-    format!(
-        "`glint new DEVICE` writes a file to start from; the devices are {}",
-        listed(&devices)
-    )
+    let devices = devices.join(", ");
+    format!("`glint new DEVICE` writes a file to start from; devices: {devices}")
 }

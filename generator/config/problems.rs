@@ -17,7 +17,12 @@ pub struct Problems {
     /// Where the file gives each key: what [`Problems::push`] points at.
     places: BTreeMap<String, Range<usize>>,
     list: Vec<Problem>,
+    /// Problems beyond the limit, which are counted only.
+    further: usize,
 }
+
+/// The most problems that are kept: a file that is no configuration at all has no end of them.
+const LIMIT: usize = 200;
 
 /// One problem.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,6 +62,9 @@ impl Problems {
         message: impl Into<String>,
         remedy: impl Into<String>,
     ) {
+        // What is missing at the end of the text is missing in its last line, not below it.
+        let end = self.text.trim_end_matches(['\r', '\n']).len();
+        let span = span.start.min(end)..span.end.min(end);
         self.insert(key, message.into(), remedy.into(), Some(span));
     }
 
@@ -69,6 +77,7 @@ impl Problems {
     pub(super) fn cleared(&self) -> Self {
         Problems {
             list: Vec::new(),
+            further: 0,
             ..self.clone()
         }
     }
@@ -88,7 +97,9 @@ impl Problems {
             remedy,
             span,
         };
-        if !self.list.contains(&problem) {
+        if self.list.len() == LIMIT {
+            self.further += 1;
+        } else if !self.list.contains(&problem) {
             let rank = |problem: &Problem| problem.start().unwrap_or(usize::MAX);
             let place = self
                 .list
@@ -104,7 +115,7 @@ impl Problems {
 
     /// How many there are.
     pub fn len(&self) -> usize {
-        self.list.len()
+        self.list.len() + self.further
     }
 
     /// The problems, in the order of their places; those without a place last.
@@ -158,7 +169,10 @@ impl Problems {
             };
             renderer.render(&[group])
         };
-        let reports: Vec<String> = self.list.iter().map(each).collect();
+        let mut reports: Vec<String> = self.list.iter().map(each).collect();
+        if self.further > 0 {
+            reports.push(format!("and {} further problems", self.further));
+        }
         reports.join("\n\n")
     }
 }

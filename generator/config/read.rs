@@ -11,7 +11,7 @@ use super::schema::Schema;
 use super::values::Config;
 
 /// Far beyond any configuration, and far below what would exhaust the memory.
-const LARGEST: u64 = 1 << 20;
+const LARGEST: u64 = 1 << 16;
 
 /// Reads a configuration file.
 ///

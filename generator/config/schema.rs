@@ -161,8 +161,13 @@ impl Key {
 impl Kind {
     /// Whether this is a choice among integers, which TOML writes without quotes.
     pub fn is_integer_choice(&self) -> bool {
+        matches!(self, Kind::Choice(options) if options.iter().all(|option| is_integer(option)))
+    }
+
+    /// Such a choice could not tell how a file writes it.
+    fn mixes_integers_and_words(&self) -> bool {
         matches!(self, Kind::Choice(options)
-            if options.iter().all(|option| option.parse::<i64>().is_ok()))
+            if !self.is_integer_choice() && options.iter().any(|option| is_integer(option)))
     }
 }
 
@@ -185,7 +190,7 @@ impl Value {
     /// The value as TOML: [`Value::bare`], with quotes around a word.
     pub fn toml(&self) -> String {
         match self {
-            Value::Text(text) if text.parse::<i64>().is_err() => format!("\"{text}\""),
+            Value::Text(text) if !is_integer(text) => format!("\"{text}\""),
             other => other.bare(),
         }
     }
@@ -221,6 +226,9 @@ impl Schema {
             }
             for fault in key.faults_of(&key.default) {
                 faults.push(format!("default of `{name}`: {}", fault.message));
+            }
+            if key.kind.mixes_integers_and_words() {
+                faults.push(format!("`{name}` is a choice among integers and words"));
             }
             if let Some((other, value)) = key.only_when {
                 // Only an earlier key, so that chains of conditions end.
@@ -269,4 +277,10 @@ fn is_plain(part: &str) -> bool {
         && part
             .chars()
             .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+}
+
+/// Whether a word is an integer as it is displayed: `007` and `+7` are not.
+fn is_integer(word: &str) -> bool {
+    word.parse::<i64>()
+        .is_ok_and(|value| value.to_string() == word)
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::module_name;
-use super::nearest::{listed, nearest};
+use super::nearest::nearest;
 use super::problems::{Problem, Problems};
 use super::schema::{Key, Kind, Schema, Value};
 use super::values::Config;
@@ -32,7 +32,10 @@ impl Key {
             }
             (Kind::Choice(options), Value::Text(given)) => self
                 .unless(options.contains(&given.as_str()), || {
-                    format!("`{name}` cannot be {}", shown(&value.toml()))
+                    match self.kind.is_integer_choice() {
+                        true => format!("`{name}` cannot be {}", shown(given)),
+                        false => format!("`{name}` cannot be {}", quoted(given)),
+                    }
                 })
                 .into_iter()
                 .map(|fault| self.with_suggestion(fault, given))
@@ -346,7 +349,7 @@ impl<'a> Draft<'a> {
     }
 }
 
-/// A sentence with the keys of a table; the table of the keys at the top is empty.
+/// A list of the keys of a table, for a remedy; the table of the keys at the top is empty.
 pub(super) fn keys_of(schema: &Schema, table: &str) -> String {
     let mut keys: Vec<&str> = schema
         .keys
@@ -355,28 +358,22 @@ pub(super) fn keys_of(schema: &Schema, table: &str) -> String {
         .filter(|(of, _)| *of == table)
         .map(|(_, leaf)| leaf)
         .collect();
-    if table.is_empty() {
-        keys = super::COMMON
-            .iter()
-            .map(|(name, _)| *name)
-            .chain(keys)
-            .collect();
-        let mut tables: Vec<&str> = Vec::new();
-        for key in &schema.keys {
-            let (table, _) = key.table_and_leaf();
-            if !table.is_empty() && !tables.contains(&table) {
-                tables.push(table);
-            }
+    if !table.is_empty() {
+        return format!("keys of [{table}]: {}", keys.join(", "));
+    }
+    keys.splice(0..0, super::COMMON.map(|(name, _)| name));
+    let mut tables: Vec<String> = Vec::new();
+    for key in &schema.keys {
+        let (table, _) = key.table_and_leaf();
+        let table = format!("[{table}]");
+        if table != "[]" && !tables.contains(&table) {
+            tables.push(table);
         }
-        match tables.is_empty() {
-            true => format!("the keys are {}", listed(&keys)),
-            false => format!(
-                "the keys outside tables are {}; the tables are {}",
-                listed(&keys),
-                listed(&tables)
-            ),
-        }
-    } else {
-        format!("the keys of [{table}] are {}", listed(&keys))
+    }
+    let tables = tables.join(", ");
+    let keys = keys.join(", ");
+    match tables.is_empty() {
+        true => format!("keys: {keys}"),
+        false => format!("keys outside tables: {keys}; tables: {tables}"),
     }
 }

@@ -27,18 +27,20 @@ pub fn commented(schema: &Schema, name: &str) -> String {
                 text.push('\n');
             }
             let default = config.value(key.name).toml();
-            text += &comment(&format!("{} {}.", key.doc, capitalised(&key.accepts())));
-            let mut off = "";
+            text += &comment(&sentence(key.doc));
+            let mut rule = format!("{}, default {default}", key.accepts());
             if let Some((other, value)) = key.only_when {
                 let value = match config.value(other) {
                     Value::Text(_) => Value::Text(value.to_owned()).toml(),
                     _ => value.to_owned(),
                 };
-                text += &comment(&format!("Only with {other} = {value}."));
-                if !config.applies(schema, key.name) {
-                    off = "# ";
-                }
+                rule += &format!("; only with {other} = {value}");
             }
+            text += &comment(&sentence(&rule));
+            let off = match config.applies(schema, key.name) {
+                true => "",
+                false => "# ",
+            };
             text += &format!("{off}{} = {default}\n", key.table_and_leaf().1);
         }
     }
@@ -68,8 +70,11 @@ pub(super) fn plain(schema: &Schema, config: &Config) -> String {
 /// The keys that every device has, in the order of [`super::COMMON`], with their values as TOML.
 fn common(config: &Config) -> [(&'static str, String); 3] {
     [
-        ("device", format!("\"{}\"", config.device)),
-        ("name", format!("\"{}\"", config.name)),
+        (
+            "device",
+            toml::Value::from(config.device.as_str()).to_string(),
+        ),
+        ("name", toml::Value::from(config.name.as_str()).to_string()),
         ("strict", config.strict.to_string()),
     ]
 }
@@ -103,10 +108,15 @@ fn comment(text: &str) -> String {
     lines + &line + "\n"
 }
 
-fn capitalised(text: &str) -> String {
+/// A text with a capital at its start and a full stop at its end.
+fn sentence(text: &str) -> String {
+    let text = text.trim_end_matches('.');
     let mut letters = text.chars();
-    match letters.next() {
-        Some(first) => first.to_uppercase().chain(letters).collect(),
-        None => String::new(),
-    }
+    let first = letters.next().map(char::to_uppercase);
+    first
+        .into_iter()
+        .flatten()
+        .chain(letters)
+        .chain(['.'])
+        .collect()
 }
