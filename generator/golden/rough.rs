@@ -3,6 +3,8 @@
 mod bound;
 mod clock_model;
 mod contract;
+#[cfg(test)]
+mod tests;
 
 pub use clock_model::RoughModel;
 pub use contract::RoughContract;

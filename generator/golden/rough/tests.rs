@@ -1,0 +1,196 @@
+//! `rough` worked by hand in words of a few bits.
+
+use super::*;
+use crate::golden::{Contract, Model};
+
+/// C = 4, S = P = 6, F = 4, and the sine table that `sine.rs` works out by hand.
+fn small() -> Params {
+    Params {
+        cosine_fraction: 4,
+        exponent_bits: 4,
+        colour_bits: 4,
+        product_fraction: 6,
+        intensity_fraction: 4,
+        sine_scheme: Scheme::Segmented {
+            segments: vec![2],
+            slope_fraction: 5,
+        },
+        sine_fraction: 6,
+        exponents: (1, 15),
+        ..Params::default()
+    }
+}
+
+fn f(params: &Params, control: [i64; 4]) -> i64 {
+    RoughContract::from_params(params).unwrap().f(&control)
+}
+
+#[test]
+fn exact_arithmetic() {
+    // c = 12/16, cd = 14/16; sines 43/64 and 31/64. Register 11: 168/256 → 42/64; register 12:
+    // 1333/4096 → 20/64.
+    // dγ negative, n = 4: (42 + 20 − 64)/64 · 2 = −8/128 → −1/16; (15/16)² = 225/256 → 14/16.
+    assert_eq!(f(&small(), [12, 14, 4, 1]), 14);
+    // dγ positive, n = 1: (42 − 20 − 64)/64 / 2 = −42/128 → −6/16; (10/16)² = 100/256 → 6/16.
+    assert_eq!(f(&small(), [12, 14, 1, 0]), 6);
+    // n = 4: −168/128 clamps to −1.0.
+    assert_eq!(f(&small(), [12, 14, 4, 0]), 0);
+    // To the nearest: 168/256 → 42/64 and 1333/4096 → 21/64, n = 1: −43/128 → −5/16, 121/256 → 8/16.
+    let nearest = Params {
+        product_rounding: Rounding::Nearest,
+        intensity_rounding: Rounding::Nearest,
+        ..small()
+    };
+    assert_eq!(f(&nearest, [12, 14, 1, 0]), 8);
+}
+
+#[test]
+fn ends_of_the_operands() {
+    // γ = dγ = 0: 1.0 saturates to 15/16. A cosine beyond 1.0 is taken as 1.0, a negative one as 0.
+    assert_eq!(f(&small(), [16, 16, 15, 0]), 15);
+    assert_eq!(f(&small(), [31, 31, 15, 1]), 15);
+    assert_eq!(f(&small(), [0, 14, 1, 1]), 0);
+    assert_eq!(f(&small(), [-3, 14, 1, 1]), 0);
+}
+
+#[test]
+fn without_the_clamp_the_parabola_rises_again() {
+    let params = Params {
+        clamp: false,
+        ..small()
+    };
+    // n = 4: −168/128 → −21/16; (−5/16)² = 25/256 → 1/16.
+    assert_eq!(f(&params, [12, 14, 4, 0]), 1);
+    // n = 15: −630/128 saturates to −2.0; (−1.0)² is 1.0, of which f has an ulp less.
+    assert_eq!(f(&params, [12, 14, 15, 0]), 15);
+    // And so at the peak.
+    assert_eq!(f(&params, [16, 16, 15, 0]), 15);
+    assert_eq!(f(&params, [0, 14, 15, 0]), 0);
+}
+
+#[test]
+fn patent_arithmetic() {
+    let params = Params {
+        arithmetic: Kind::Patent,
+        sine_scheme: Scheme::Direct { address: 4 },
+        ..small()
+    };
+    // Sines at 12.5/16 and 14.5/16: 0.6242 and 0.4227, or 10/16 and 7/16. Register 11: 168/256 →
+    // 10/16; register 12: 70/256 → 4/16.
+    // dγ positive, n = 4: 10 + ¬4 = 10 + 11 = 21 → 5; 5·2 = 10; 10 + 1 = 11; 121/256 → 7/16.
+    assert_eq!(f(&params, [12, 14, 4, 0]), 7);
+    // dγ negative: 10 + (4 − 1) + 1 = 14; 28 → 12; 13; 169/256 → 10/16. n = 5 loses its low bit.
+    assert_eq!(f(&params, [12, 14, 4, 1]), 10);
+    assert_eq!(f(&params, [12, 14, 5, 1]), 10);
+}
+
+fn values(model: &RoughModel, names: &[&str]) -> Vec<u64> {
+    let of = |name: &&str| {
+        let at = model.signals().iter().position(|signal| signal == name);
+        model.values()[at.unwrap()]
+    };
+    names.iter().map(of).collect()
+}
+
+/// c = 12/16, cd = 14/16, n = 4, dγ negative, red 15; all written.
+const WRITE: [u64; 14] = [12, 1, 14, 1, 4, 1, 1, 1, 15, 1, 0, 1, 0, 1];
+
+fn clock(model: &mut RoughModel, rst_n: u64, start: u64, operands: &[u64; 14]) {
+    let mut inputs = vec![rst_n, start];
+    inputs.extend(operands);
+    model.clock(&inputs);
+}
+
+/// One point followed through the patent's ten words; the writes of the clock of `start` count, those
+/// while busy do not.
+#[test]
+fn a_point_clock_by_clock() {
+    for sine_synchronous in [false, true] {
+        let params = Params {
+            sine_synchronous,
+            ..small()
+        };
+        let mut model = RoughModel::from_params(&params).unwrap();
+        let names = [
+            "run",
+            "word_address",
+            "reg19_sin_gamma",
+            "reg11_cos_cos",
+            "reg12_sin_sin",
+            "reg13_result",
+            "valid",
+            "done",
+        ];
+        let expected = [
+            [1, 0, 0, 0, 0, 0, 0, 0],
+            [1, 1, 0, 0, 0, 0, 0, 0],
+            [1, 2, 43, 42, 0, 0, 0, 0],
+            [1, 3, 43, 42, 0, 0, 0, 0],
+            [1, 4, 43, 42, 20, 0, 0, 0],
+            [1, 5, 43, 42, 20, 0, 0, 0],
+            // −1 in five bits.
+            [1, 6, 43, 42, 20, 31, 0, 0],
+            [1, 7, 43, 42, 20, 31, 0, 0],
+            [1, 8, 43, 42, 20, 14, 1, 0],
+            [1, 9, 43, 42, 20, 14, 0, 1],
+            [0, 0, 43, 42, 20, 14, 0, 0],
+        ];
+        clock(&mut model, 1, 1, &WRITE);
+        for row in expected {
+            assert_eq!(values(&model, &names), row);
+            let late = if row[0] == 1 { 1 } else { 0 };
+            clock(
+                &mut model,
+                1,
+                0,
+                &[
+                    1, late, 1, late, 1, late, 0, late, 1, late, 1, late, 1, late,
+                ],
+            );
+        }
+        // 14/16 · 15 = 13.125.
+        assert_eq!(values(&model, &["red_out", "cos_gamma_reg"]), [13, 12]);
+    }
+}
+
+/// A reset in word 5 ends the point, but the word's transfer still takes place.
+#[test]
+fn a_reset_stops_the_words_alone() {
+    let mut model = RoughModel::from_params(&small()).unwrap();
+    clock(&mut model, 1, 1, &WRITE);
+    for _ in 0..5 {
+        clock(&mut model, 1, 0, &[0; 14]);
+    }
+    clock(&mut model, 0, 1, &[0; 14]);
+    let names = ["run", "word_address", "reg13_result", "exponent_reg"];
+    assert_eq!(values(&model, &names), [0, 0, 31, 4]);
+}
+
+#[test]
+fn parameters_out_of_range_are_named() {
+    let refused = |params: Params| RoughContract::from_params(&params).unwrap_err();
+    let product_fraction = Params {
+        product_fraction: 41,
+        ..small()
+    };
+    assert!(refused(product_fraction).contains("product.fraction"));
+    let deviation = Params {
+        deviation: 91.0,
+        ..small()
+    };
+    assert!(refused(deviation).contains("domain.deviation"));
+    let table = Params {
+        sine_scheme: Scheme::Direct { address: 5 },
+        ..small()
+    };
+    assert!(refused(table).contains("sine.address"));
+}
+
+/// What the default promises: below one unit from 20.4 kbit.
+#[test]
+fn the_default_is_proven_with_a_small_rom() {
+    let contract = RoughContract::from_params(&Params::default()).unwrap();
+    let (words, width) = contract.rom_size();
+    assert_eq!((words, width), (584, 35));
+    assert!(contract.bound().units < 1.0);
+}
