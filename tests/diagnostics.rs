@@ -135,7 +135,7 @@ fn clashing_fields() {
     let found = program(|d, load| {
         let a = d.operand("a", BYTE);
         let b = d.operand("b", BYTE);
-        let select = d.select("select", 2);
+        let select = d.select("select", &["a", "b"]);
         let first = d.mux_on("first", select, [a.q(), b.q()]);
         let second = d.mux_on("second", select, [b.q(), a.q()]);
         vec![
@@ -207,7 +207,7 @@ fn products_taken_under_another_selection() {
     let d = Designer::new("device");
     let a = d.operand("a", BYTE);
     let b = d.operand("b", Format::unsigned(2, 6));
-    let select = d.select("operands", 2);
+    let select = d.select("operands", &["a", "b"]);
     let first = d.bus("first", select, [a.q(), b.q()]);
     let second = d.bus("second", select, [a.q(), b.q()]);
     let product = d.shared_mul("product", &first, &second);
@@ -222,7 +222,7 @@ fn products_taken_under_another_selection() {
     ]);
     assert_eq!(
         finish(d),
-        ["word `wrong` loads `y` with the product of (a_reg), but selects (b_reg)"]
+        ["word `wrong` loads `y` with the product of (a), but selects (b)"]
     );
 }
 
@@ -231,7 +231,7 @@ fn products_that_are_never_formed() {
     let found = mistakes(|d| {
         let a = d.operand("a", BYTE);
         let b = d.operand("b", Format::unsigned(2, 6));
-        let select = d.select("operands", 2);
+        let select = d.select("operands", &["a", "b"]);
         let first = d.bus("first", select, [a.q(), b.q()]);
         let second = d.bus("second", select, [a.q(), b.q()]);
         let product = d.shared_mul("product", &first, &second);

@@ -11,9 +11,8 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
-use sha2::{Digest, Sha256};
 
-use crate::emit::OutputFile;
+use crate::emit::{OutputFile, digest};
 
 /// What [`write`] did with the directories of a configuration.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,11 +85,6 @@ pub fn differences(out: &Path, name: &str, files: &[OutputFile]) -> Result<Vec<S
     }
     different.sort();
     Ok(different)
-}
-
-/// The digest that the manifest holds of a file.
-pub fn digest(contents: &[u8]) -> String {
-    Sha256::digest(contents).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The directories of a configuration.

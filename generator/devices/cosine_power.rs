@@ -64,7 +64,7 @@ pub fn describe(d: &Designer, config: &Config) {
         .q();
     let colours = Colours::new(d, integer("colour.bits"), None);
 
-    let operand_select = d.select("operand_select", 3);
+    let operand_select = d.select("operand_select", &["distance", "base", "power"]);
     let accumulator = d
         .register("accumulator", f)
         .doc("n/m*(1 - cos gamma), then the powers of W's base");

@@ -233,7 +233,9 @@ pub fn describe(d: &Designer, config: &Config) {
     let colours = Colours::new(d, config.integer("colour.bits") as i32, Some(CHANNELS));
 
     // V1 V2, then V3, then the load lines V4 to V7: in the order of the patent's table.
-    let operand_select = d.select("operand_select", 4).lines(&[45, 46]);
+    let operand_select = d
+        .select("operand_select", &["cosines", "sines", "half_n", "square"])
+        .lines(&[45, 46]);
     let sine_of = d
         .mux("mux17", [cos_gamma, cos_dgamma])
         .block(17)

@@ -31,7 +31,7 @@ impl Designer {
         inputs: impl IntoIterator<Item = Signal<'d>>,
     ) -> Bus<'d> {
         let inputs: Vec<_> = inputs.into_iter().collect();
-        select.choices(name, &inputs);
+        select.check_inputs(name, inputs.len());
         let low = inputs.iter().map(|input| input.range().0).min().unwrap_or(0);
         let high = inputs.iter().map(|input| input.range().1).max().unwrap_or(0);
         let format = Format::holding(low, high, 0);

@@ -109,11 +109,13 @@ impl Designer {
         self.signal(q)
     }
 
-    /// Select lines that several muxes share; `choices` is the number of inputs of the widest.
+    /// Select lines that several muxes share, with a name for each value: what the muxes then pass on
+    /// together.
     #[track_caller]
-    pub fn select(&self, name: &str, choices: usize) -> Select<'_> {
-        let width = usize::BITS - choices.saturating_sub(1).leading_zeros();
-        let field = self.add_field(name, width.max(1), FieldKind::Select(Vec::new()));
+    pub fn select(&self, name: &str, choices: &[&str]) -> Select<'_> {
+        let width = usize::BITS - choices.len().saturating_sub(1).leading_zeros();
+        let choices = choices.iter().map(|&choice| choice.to_owned()).collect();
+        let field = self.add_field(name, width.max(1), FieldKind::Select(choices));
         Select { designer: self, field }
     }
 
@@ -286,29 +288,19 @@ impl<'d> Select<'d> {
         self
     }
 
-    /// Notes what the values of the field pass on in mux `name`.
+    /// Mux `name` has as many inputs as the field has values.
     #[track_caller]
-    pub(crate) fn choices(self, name: &str, inputs: &[Signal<'d>]) {
-        let width = self.designer.field_net(self.field).format().width();
-        if inputs.len() > 1 << width {
-            self.designer.error(format!(
-                "mux `{name}` has {} inputs, but its select field has {width} bits",
-                inputs.len()
-            ));
-        }
-        let names: Vec<_> = inputs.iter().map(|input| input.name()).collect();
-        self.designer.with(|inner| {
-            let FieldKind::Select(choices) = &mut inner.design.control.fields[self.field.index()].kind else {
-                return;
+    pub(crate) fn check_inputs(self, name: &str, inputs: usize) {
+        let choices = self.designer.with(|inner| {
+            let FieldKind::Select(choices) = &inner.design.control.fields[self.field.index()].kind else {
+                return 0;
             };
-            for (at, name) in names.into_iter().enumerate() {
-                match choices.get_mut(at) {
-                    Some(choice) if *choice == name => {}
-                    Some(choice) => *choice = format!("{choice}, {name}"),
-                    None => choices.push(name),
-                }
-            }
+            choices.len()
         });
+        if inputs != choices {
+            self.designer
+                .error(format!("mux `{name}` has {inputs} inputs, but its select lines have {choices} choices"));
+        }
     }
 }
 

@@ -333,7 +333,9 @@ impl Designer {
     #[track_caller]
     pub fn mux<'d>(&'d self, name: &str, inputs: impl IntoIterator<Item = Signal<'d>>) -> Mux<'d> {
         let inputs: Vec<_> = inputs.into_iter().collect();
-        let select = self.select(&format!("{name}_select"), inputs.len());
+        let names: Vec<String> = inputs.iter().map(|input| input.name()).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let select = self.select(&format!("{name}_select"), &names);
         self.mux_on(name, select, inputs)
     }
 
@@ -346,7 +348,7 @@ impl Designer {
         inputs: impl IntoIterator<Item = Signal<'d>>,
     ) -> Mux<'d> {
         let inputs: Vec<_> = inputs.into_iter().collect();
-        select.choices(name, &inputs);
+        select.check_inputs(name, inputs.len());
         let out = self.mux_of(name, self.field_net(select.field()).id(), &inputs);
         Mux { out, field: select.field() }
     }

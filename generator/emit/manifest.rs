@@ -5,7 +5,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::naming::{Naming, is_control_rom};
-use super::{EmitInputs, Quantity, Timing};
+use super::{EmitInputs, OutputFile, Quantity, Timing, digest};
 use crate::netlist::{Design, FieldKind, Net, NetId, Role, RomId, Sequence};
 
 #[derive(Serialize)]
@@ -23,6 +23,7 @@ struct Manifest<'a> {
     control: Value,
     roms: Vec<Value>,
     files: Value,
+    sha256: serde_json::Map<String, Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
     example: Option<Value>,
 }
@@ -59,7 +60,7 @@ pub struct Files<'a> {
     pub testbench: &'a [String],
 }
 
-/// The manifest as text.
+/// The manifest as text, with the digests of all `others`.
 ///
 /// # Errors
 /// A number that JSON cannot carry (a value that is not finite).
@@ -68,6 +69,7 @@ pub fn contents(
     inputs: &EmitInputs,
     naming: &Naming,
     files: &Files,
+    others: &[OutputFile],
 ) -> Result<String> {
     let about = &design.about;
     let manifest = Manifest {
@@ -89,6 +91,15 @@ pub fn contents(
             "cores": files.cores,
             "testbench": files.testbench,
         }),
+        sha256: others
+            .iter()
+            .map(|file| {
+                (
+                    file.path.clone(),
+                    json!(digest(file.contents.as_bytes())),
+                )
+            })
+            .collect(),
         example: inputs.example.as_ref().map(|example| {
             json!({ "operands": quantities(&example.operands), "outputs": quantities(&example.outputs) })
         }),

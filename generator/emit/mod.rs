@@ -23,6 +23,7 @@ mod view;
 use anyhow::{Result, ensure};
 use askama::Template;
 use serde::Serialize;
+use sha2::{Digest, Sha256};
 
 use crate::netlist::{Design, RomId, Unit};
 use interface::Interface;
@@ -148,7 +149,6 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         cores: &cores,
         testbench: &bench_names,
     };
-    let manifest = manifest::contents(design, inputs, &naming, &files)?;
     let has_bench = !testbench.is_empty();
     let core = core::device(
         name,
@@ -157,22 +157,34 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         &memory_names,
         has_bench,
     )?;
-    let device = rtl
+    let mut all: Vec<OutputFile> = rtl
         .into_iter()
         .chain(memories)
-        .chain([
-            (format!("{name}.json"), manifest),
-            (format!("{name}.core"), core),
-        ])
+        .chain([(format!("{name}.core"), core)])
         .map(|(file, contents)| OutputFile {
             path: format!("rtl_out/{name}/{file}"),
             contents,
-        });
-    let bench = testbench.into_iter().map(|(file, contents)| OutputFile {
+        })
+        .collect();
+    all.extend(testbench.into_iter().map(|(file, contents)| OutputFile {
         path: format!("testbench/{name}/{file}"),
         contents,
+    }));
+    // The manifest vouches for every other file.
+    let contents = manifest::contents(design, inputs, &naming, &files, &all)?;
+    all.push(OutputFile {
+        path: format!("rtl_out/{name}/{name}.json"),
+        contents,
     });
-    Ok(device.chain(bench).collect())
+    Ok(all)
+}
+
+/// The digest of a file, as the manifest holds it: SHA-256 in hexadecimal.
+pub fn digest(contents: &[u8]) -> String {
+    Sha256::digest(contents)
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect()
 }
 
 fn names_of(files: &[(String, String)]) -> Vec<String> {
