@@ -1,0 +1,276 @@
+//! The accuracy contract: no measured error exceeds its bound, and the defaults' bounds are below one
+//! unit.
+//!
+//! The proof is factored as the hardware is: the word f over the control operands, and the colour
+//! multiplier over every word and colour. Covered for f are: `cosine-power`, every cosine and every n
+//! of its domain; `rough`, every cosine and every n for nine settings of dγ, and random points
+//! for the rest. Random configurations of both devices follow.
+
+use std::sync::Mutex;
+use std::thread;
+
+use glint::config::{self, Schema};
+use glint::devices;
+use glint::fixed::{Rounding, exp2};
+use glint::golden::cosine_power::{self, CosinePowerContract};
+use glint::golden::rough::{self, RoughContract};
+use glint::golden::sine::Scheme;
+use glint::golden::{Bound, Contract};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
+
+/// What f64 itself may add to an error in units.
+const F64: f64 = 1e-6;
+
+/// The largest error seen, and where.
+#[derive(Clone, Debug, Default)]
+struct Worst {
+    error: f64,
+    control: Vec<i64>,
+}
+
+impl Worst {
+    fn take(&mut self, error: f64, control: &[i64]) {
+        if error > self.error {
+            *self = Worst {
+                error,
+                control: control.to_vec(),
+            };
+        }
+    }
+
+    fn merge(&mut self, other: Worst) {
+        self.take(other.error, &other.control);
+    }
+}
+
+/// The error of the word f.
+fn error_of_f(contract: &impl Contract, control: &[i64]) -> f64 {
+    let f = contract.f(control) as f64 * exp2(-contract.f_format().frac);
+    (f - contract.reference(control)).abs()
+}
+
+/// The largest error of f over `range`, each value of which `control` makes into a point; on two threads.
+fn sweep<C: Contract, const N: usize>(
+    contract: &C,
+    outer: std::ops::RangeInclusive<i64>,
+    inner: &[i64],
+    control: impl Fn(i64, i64) -> [i64; N] + Sync,
+) -> Worst {
+    const THREADS: i64 = 2;
+    let worst = Mutex::new(Worst::default());
+    thread::scope(|scope| {
+        for thread in 0..THREADS {
+            let (outer, control, worst) = (outer.clone(), &control, &worst);
+            scope.spawn(move || {
+                let mut own = Worst::default();
+                for x in outer.skip(thread as usize).step_by(THREADS as usize) {
+                    for &n in inner {
+                        let point = control(x, n);
+                        own.take(error_of_f(contract, &point), &point);
+                    }
+                }
+                worst.lock().unwrap().merge(own);
+            });
+        }
+    });
+    worst.into_inner().unwrap()
+}
+
+/// The largest error that the colour multiplier adds, in units, over every word and colour.
+fn colour_error(contract: &impl Contract) -> f64 {
+    let (f_format, colour) = (contract.f_format(), contract.operands().last().unwrap());
+    let mut worst = 0.0f64;
+    for f in 0..=f_format.max_raw() as i64 {
+        for k in colour.domain.0..=colour.domain.1 {
+            let exact = (f * k) as f64 * exp2(-f_format.frac);
+            worst = worst.max((contract.colour(f, k) as f64 - exact).abs());
+        }
+    }
+    worst
+}
+
+/// Asserts that what was measured of f and of the colours together is within the bound, below a unit.
+fn assert_contract(contract: &impl Contract, bound: &Bound, f: &Worst) {
+    let largest = contract.operands().last().unwrap().domain.1 as f64;
+    let colour = colour_error(contract);
+    let together = f.error * largest + colour;
+    println!(
+        "f off by {} units at {:?}; colours by {colour}; bound {bound:#?}",
+        f.error * largest,
+        f.control
+    );
+    assert!(
+        f.error <= bound.f + F64 / largest,
+        "{f:?} exceeds {bound:?}"
+    );
+    assert!(
+        together <= bound.units + F64,
+        "{f:?} and {colour} exceed {bound:?}"
+    );
+    assert!(bound.units < 1.0, "{bound:?}");
+}
+
+#[test]
+fn cosine_power_over_all_operands() {
+    let contract = CosinePowerContract::from_params(&cosine_power::Params::default()).unwrap();
+    let exponents: Vec<i64> = (1..=1000).collect();
+    let worst = sweep(&contract, 0..=1 << 20, &exponents, |cosine, n| [cosine, n]);
+    assert_contract(&contract, &contract.bound(), &worst);
+}
+
+/// Raw cosines of 0°, 1°, 5°, 15° and 30°, the nearest within the domain.
+fn deviations() -> [i64; 5] {
+    [0.0f64, 1.0, 5.0, 15.0, 30.0]
+        .map(|degrees| (degrees.to_radians().cos() * exp2(20)).ceil() as i64)
+}
+
+#[test]
+fn rough_over_cosines_and_exponents() {
+    let contract = RoughContract::from_params(&rough::Params::default()).unwrap();
+    let exponents: Vec<i64> = (1..=1000).collect();
+    let mut worst = Worst::default();
+    for deviation in deviations() {
+        for negative in 0..=1 {
+            let of = sweep(&contract, 0..=1 << 20, &exponents, |cosine, n| {
+                [cosine, deviation, n, negative]
+            });
+            println!("{deviation} {negative}: {}", of.error * 255.0);
+            worst.merge(of);
+        }
+    }
+    assert_contract(&contract, &contract.bound(), &worst);
+}
+
+/// A point of the domain, more often than not within the highlight: cosines anywhere, small, or such
+/// that γ is near dγ, as near as n makes the highlight narrow.
+fn random_point(contract: &impl Contract, rng: &mut ChaCha8Rng) -> Vec<i64> {
+    let mut unit = || rng.next_u32() as f64 / exp2(32);
+    let operands = contract.operands();
+    let mut point: Vec<i64> = operands
+        .iter()
+        .filter(|operand| !operand.colour)
+        .map(|operand| {
+            let (low, high) = operand.domain;
+            let part = if unit() < 0.5 {
+                unit()
+            } else {
+                unit() * unit() * unit()
+            };
+            // Cosines crowd at their upper end, exponents at their lower.
+            let offset = (part * (high - low + 1) as f64) as i64;
+            if operand.name.starts_with("cos") {
+                high - offset
+            } else {
+                low + offset
+            }
+        })
+        .collect();
+    let place = |name: &str| operands.iter().position(|operand| operand.name == name);
+    if let (Some(gamma), Some(exponent)) = (place("cos_gamma"), place("exponent"))
+        && unit() < 0.75
+    {
+        let format = operands[gamma].format;
+        let centre =
+            place("cos_dgamma").map_or(0.0, |at| format.to_f64(point[at].into()).min(1.0).acos());
+        let half_width = (1.0 - 2.0 / point[exponent].max(1) as f64).max(-1.0).acos();
+        let angle = centre + 1.2 * (2.0 * unit() - 1.0) * half_width;
+        let (low, high) = operands[gamma].domain;
+        point[gamma] = (format.quantise(angle.cos()) as i64).clamp(low, high);
+    }
+    point
+}
+
+/// Asserts that no output is further from the formula than the bound says, at random points.
+fn assert_outputs_within_bound(
+    contract: &impl Contract,
+    points: usize,
+    rng: &mut ChaCha8Rng,
+    what: &str,
+) {
+    let bound = contract.bound();
+    let largest = contract.operands().last().unwrap().domain.1;
+    for _ in 0..points {
+        let point = random_point(contract, rng);
+        let (f, exact) = (contract.f(&point), contract.reference(&point));
+        for colour in [largest, rng.next_u32() as i64 & largest] {
+            let error = (contract.colour(f, colour) as f64 - colour as f64 * exact).abs();
+            assert!(
+                error <= bound.units + F64,
+                "{error} at {point:?} × {colour} of {what}: {bound:#?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn rough_at_random_points() {
+    let contract = RoughContract::from_params(&rough::Params::default()).unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    assert_outputs_within_bound(&contract, 5_000_000, &mut rng, "the default");
+}
+
+/// No random configuration's measured error exceeds its bound, good or bad as it may be.
+fn assert_random_configurations<C: Contract>(
+    schema: &Schema,
+    contract: impl Fn(&config::Config) -> C,
+) {
+    for seed in 0..300 {
+        let config = config::sample(schema, seed);
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        assert_outputs_within_bound(&contract(&config), 3000, &mut rng, &config.to_toml(schema));
+    }
+}
+
+#[test]
+fn random_configurations_of_rough() {
+    assert_random_configurations(&devices::rough::schema(), RoughContract::new);
+}
+
+#[test]
+fn random_configurations_of_cosine_power() {
+    assert_random_configurations(&devices::cosine_power::schema(), CosinePowerContract::new);
+}
+
+/// Configurations of which each widens one thing that the defaults leave alone.
+#[test]
+fn bounds_of_unusual_configurations() {
+    let segmented = rough::Params::default();
+    let params = [
+        rough::Params {
+            clamp: false,
+            ..segmented.clone()
+        },
+        rough::Params {
+            deviation: 90.0,
+            ..segmented.clone()
+        },
+        rough::Params {
+            product_rounding: Rounding::Nearest,
+            intensity_rounding: Rounding::Nearest,
+            ..segmented.clone()
+        },
+        rough::Params {
+            output_rounding: Rounding::Truncate,
+            ..segmented.clone()
+        },
+        rough::Params {
+            cosine_signed: true,
+            ..segmented.clone()
+        },
+        rough::Params {
+            sine_scheme: Scheme::Direct { address: 10 },
+            exponents: (1, 4),
+            ..segmented.clone()
+        },
+        rough::Params {
+            arithmetic: rough::Kind::Patent,
+            ..segmented
+        },
+    ];
+    for params in params {
+        let contract = RoughContract::from_params(&params).unwrap();
+        let mut rng = ChaCha8Rng::seed_from_u64(2);
+        assert_outputs_within_bound(&contract, 300_000, &mut rng, &format!("{params:?}"));
+    }
+}
