@@ -72,6 +72,7 @@ fn print(loaded: &[Loaded], findings: &[Finding]) {
         "clocks",
         "registers",
         "outputs",
+        "ROM bits",
         "bound",
         "largest error",
         "verdict",
@@ -86,6 +87,7 @@ fn print(loaded: &[Loaded], findings: &[Finding]) {
             tables::grouped(finding.outcome.clocks),
             finding.outcome.registers.to_string(),
             finding.outcome.outputs.to_string(),
+            tables::grouped(one.unit.design.rom_bits()),
             format!("{:.3}", finding.bound.units),
             finding
                 .outcome
@@ -95,7 +97,17 @@ fn print(loaded: &[Loaded], findings: &[Finding]) {
             if finding.faults.is_empty() { "holds" } else { "FAILS" }.to_owned(),
         ]
     });
-    tables::print(&headings, &["clocks/point", "points", "clocks", "registers", "outputs", "bound", "largest error"], rows);
+    let numbers = [
+        "clocks/point",
+        "points",
+        "clocks",
+        "registers",
+        "outputs",
+        "ROM bits",
+        "bound",
+        "largest error",
+    ];
+    tables::print(&headings, &numbers, rows);
     tables::print_line("Registers and outputs are compared with the golden model on every clock. Errors are in output units, against the formula in f64. The largest error is at:");
     for (one, finding) in loaded.iter().zip(findings) {
         if let Some(worst) = &finding.outcome.worst {

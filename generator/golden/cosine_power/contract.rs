@@ -128,4 +128,45 @@ impl Contract for CosinePowerContract {
         ];
         shared::bound(&shares, f, params.colour_bits, params.output_rounding)
     }
+    /// Below n = m, W loses to a smaller m: its base no longer reaches 0 where cosⁿγ does.
+    fn remarks(&self) -> Vec<String> {
+        let power = self.params.power;
+        let (first, last) = self.params.exponents;
+        let worse: Vec<(i64, f64, u32, f64)> = (first.max(1)..=last.min(i64::from(power) - 1))
+            .filter_map(|n| {
+                let own = formula_error(n, power);
+                let (error, other) = [2, 4, 8, 16]
+                    .into_iter()
+                    .filter(|&other| other < power)
+                    .map(|other| (formula_error(n, other), other))
+                    .min_by(|a, b| a.0.total_cmp(&b.0))?;
+                (error < own).then_some((n, own, other, error))
+            })
+            .collect();
+        let Some(&(n, own, other, error)) = worse
+            .iter()
+            .max_by(|a, b| (a.1 - a.3).total_cmp(&(b.1 - b.3)))
+        else {
+            return Vec::new();
+        };
+        let exponents: Vec<String> = worse.iter().map(|entry| entry.0.to_string()).collect();
+        vec![format!(
+            "power = {power} is above some n of the domain: for n = {} a smaller power is closer to cos^n; \
+             at n = {n} the formula is off by {own:.4} with power = {power}, by {error:.4} with power = {other} \
+             (raise domain.exponent_min, or choose the smaller power)",
+            exponents.join(", ")
+        )]
+    }
+}
+
+/// The largest difference between W and cosⁿγ over the cosines from 0 to 1, on a fine grid.
+fn formula_error(n: i64, power: u32) -> f64 {
+    const GRID: u32 = 512;
+    (1..=GRID)
+        .map(|step| {
+            let cosine = f64::from(step) / f64::from(GRID);
+            let n = n as f64;
+            (reference::cosine_power(cosine, n, power) - reference::blinn(cosine, n)).abs()
+        })
+        .fold(0.0, f64::max)
 }

@@ -1,0 +1,175 @@
+// rough_unclamped_tb: self-checking bench of rough_unclamped
+//
+// Run it with any simulator from a directory that holds the files of both folders, for example
+//   $ iverilog -g2012 -o rough_unclamped_tb rough_unclamped*.v
+//   $ ./rough_unclamped_tb
+// or, with Verilator 5,
+//   $ verilator --binary --timing --top-module rough_unclamped_tb rough_unclamped*.v
+//   $ obj_dir/Vrough_unclamped_tb
+// Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
+//
+// Generated files belong to their user, without conditions.
+
+`timescale 1ns / 1ps
+`default_nettype none
+
+module rough_unclamped_tb #(
+    parameter STIMULUS_FILE = "rough_unclamped_stimulus.mem",
+    parameter EXPECTED_FILE = "rough_unclamped_expected.mem"
+);
+    localparam CLOCKS     = 298;
+    localparam KNOWN_FROM = 12;  // results are compared from this clock on
+    localparam REPORTED   = 20;  // differences that are printed
+
+    reg [85:0] stimulus [0:CLOCKS-1];
+    reg [26:0] expected [0:CLOCKS-1];
+    reg [26:0] want;
+    reg         clk;
+    reg         rst_n;
+    reg         start;
+    reg  [20:0] cos_gamma;
+    reg         cos_gamma_write;
+    reg  [20:0] cos_dgamma;
+    reg         cos_dgamma_write;
+    reg  [9:0]  exponent;
+    reg         exponent_write;
+    reg         dgamma_negative;
+    reg         dgamma_negative_write;
+    reg  [7:0]  red;
+    reg         red_write;
+    reg  [7:0]  green;
+    reg         green_write;
+    reg  [7:0]  blue;
+    reg         blue_write;
+    wire        valid;
+    wire        busy;
+    wire        done;
+    wire [7:0]  red_out;
+    wire [7:0]  green_out;
+    wire [7:0]  blue_out;
+
+    integer clock;
+    integer errors;
+    reg was_reset;  // the control unit is in a known state
+
+    rough_unclamped dut (
+        .clk(clk),
+        .rst_n(rst_n),
+        .start(start),
+        .cos_gamma(cos_gamma),
+        .cos_gamma_write(cos_gamma_write),
+        .cos_dgamma(cos_dgamma),
+        .cos_dgamma_write(cos_dgamma_write),
+        .exponent(exponent),
+        .exponent_write(exponent_write),
+        .dgamma_negative(dgamma_negative),
+        .dgamma_negative_write(dgamma_negative_write),
+        .red(red),
+        .red_write(red_write),
+        .green(green),
+        .green_write(green_write),
+        .blue(blue),
+        .blue_write(blue_write),
+        .valid(valid),
+        .busy(busy),
+        .done(done),
+        .red_out(red_out),
+        .green_out(green_out),
+        .blue_out(blue_out)
+    );
+
+    // Prints the word of the microprogram that is executed.
+    task write_word;
+        case (dut.control.word_address)
+            4'd0: $write("word 0 (operands cos gamma, cos dgamma; sine of gamma addressed)");
+            4'd1: $write("word 1 (19 <- sin gamma; 11 <- cos gamma * cos dgamma)");
+            4'd2: $write("word 2 (operands sin dgamma, sin gamma)");
+            4'd3: $write("word 3 (12 <- sin gamma * sin dgamma)");
+            4'd4: $write("word 4 (operands adder 15, n/2)");
+            4'd5: $write("word 5 (13 <- n/2 * (cos(gamma +- dgamma) - 1))");
+            4'd6: $write("word 6 (operands adder 16, adder 16)");
+            4'd7: $write("word 7 (13 <- (... + 1)^2)");
+            4'd8: $write("word 8 (valid: intensities on the outputs)");
+            4'd9: $write("word 9 (end: clears the triggers and counter 29)");
+            default: $write("no word");
+        endcase
+    endtask
+
+    initial begin
+        $readmemh(STIMULUS_FILE, stimulus);
+        $readmemh(EXPECTED_FILE, expected);
+        errors = 0;
+        was_reset = 1'b0;
+        clk = 1'b0;
+        for (clock = 0; clock < CLOCKS; clock = clock + 1) begin
+            {rst_n, start, cos_gamma, cos_gamma_write, cos_dgamma, cos_dgamma_write, exponent,
+                    exponent_write, dgamma_negative, dgamma_negative_write, red, red_write, green,
+                    green_write, blue, blue_write} = stimulus[clock];
+            want = expected[clock];
+            #4;
+            if (was_reset) begin
+                if (valid !== want[26]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": valid is %h, expected %h", valid, want[26]);
+                    end
+                end
+                if (busy !== want[25]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": busy is %h, expected %h", busy, want[25]);
+                    end
+                end
+                if (done !== want[24]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": done is %h, expected %h", done, want[24]);
+                    end
+                end
+            end
+            if (clock >= KNOWN_FROM) begin
+                if (red_out !== want[23:16]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": red_out is %h, expected %h", red_out, want[23:16]);
+                    end
+                end
+                if (green_out !== want[15:8]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": green_out is %h, expected %h", green_out, want[15:8]);
+                    end
+                end
+                if (blue_out !== want[7:0]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": blue_out is %h, expected %h", blue_out, want[7:0]);
+                    end
+                end
+            end
+            if (!rst_n) was_reset = 1'b1;
+            #1 clk = 1'b1;
+            #5 clk = 1'b0;
+        end
+        if (errors != 0) begin
+            $display("FAIL rough_unclamped: %0d differences in %0d clocks", errors, CLOCKS);
+            $fatal;
+        end
+        $display("PASS rough_unclamped: %0d clocks, no difference", CLOCKS);
+        $finish;
+    end
+endmodule
+
+`default_nettype wire
