@@ -10,7 +10,6 @@
 //
 // Generated files belong to their user, without conditions.
 
-`timescale 1ns / 1ps
 `default_nettype none
 
 module ${ name }$ #(
@@ -25,13 +24,16 @@ module ${ name }$ #(
     reg [${ expected_last }$:0] ${ names.expected }$ [0:CLOCKS-1];
     reg [${ expected_last }$:0] ${ names.want }$;
 
+    reg clk = 1'b0;
 <%- for line in declarations %>
 ${ line }$
 <%- endfor %>
 
     integer ${ names.clock }$;
-    integer ${ names.errors }$;
-    reg ${ names.was_reset }$;  // the control unit is in a known state
+    // Initial values stand here and not in the process below: Verilator 5.006 takes a variable for
+    // constant after a loop with delays when the process has set it before the loop.
+    integer ${ names.errors }$ = 0;
+    reg ${ names.was_reset }$ = ${ reset_seen }$;  // the control unit is in a known state
 
     ${ module }$ ${ names.dut }$ (
 <%- for line in connections %>
@@ -52,9 +54,6 @@ ${ line }$
     initial begin
         $readmemh(STIMULUS_FILE, ${ names.stimulus }$);
         $readmemh(EXPECTED_FILE, ${ names.expected }$);
-        ${ names.errors }$ = 0;
-        ${ names.was_reset }$ = <% if reset.is_some() %>1'b0<% else %>1'b1<% endif %>;
-        clk = 1'b0;
         for (${ names.clock }$ = 0; ${ names.clock }$ < CLOCKS; ${ names.clock }$ = ${ names.clock }$ + 1) begin
 <%- for line in stimulus %>
 ${ line }$

@@ -27,6 +27,8 @@ struct Bench {
     stimulus: Vec<String>,
     connections: Vec<String>,
     reset: Option<String>,
+    /// What `was_reset` begins with.
+    reset_seen: &'static str,
     handshake: Vec<Output>,
     results: Vec<Output>,
     address: String,
@@ -161,9 +163,10 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
                 .replace('%', "%%"),
         })
         .collect();
-    let clock = Row::port("", "reg", 1, false, "clk", "");
-    let declarations: Vec<_> = std::iter::once(clock)
-        .chain(design.ports.iter().map(|port| {
+    let declarations: Vec<_> = design
+        .ports
+        .iter()
+        .map(|port| {
             let format = design.net(port.net).format;
             let kind = if port.role.is_input() { "reg" } else { "wire" };
             Row::port(
@@ -174,8 +177,9 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
                 &port_name(port),
                 "",
             )
-        }))
+        })
         .collect();
+    let reset = design.port(|role| role == Role::Reset).map(port_name);
     let connected = design.ports.iter().map(port_name);
     let stimulus: Vec<_> = inputs.iter().map(|port| port_name(port)).collect();
     Bench {
@@ -203,7 +207,9 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
                 .map(|name| format!(".{name}({name})"))
                 .collect(),
         ),
-        reset: design.port(|role| role == Role::Reset).map(port_name),
+        // Without a reset there is nothing to wait for.
+        reset_seen: if reset.is_some() { "1'b0" } else { "1'b1" },
+        reset,
         handshake,
         results,
         address: format!(

@@ -185,20 +185,9 @@ impl<'a> Expressions<'a> {
     fn cell(&mut self, id: NetId, op: &Op) -> String {
         match op {
             Op::Relabel(a) => self.whole(*a),
-            Op::Extend(a) => {
-                let net = self.plan.design.net(*a);
-                let bits =
-                    self.plan.bits[a.index()].extend(self.plan.design.width(id), net.format.signed);
+            Op::Extend(_) | Op::Slice { .. } | Op::Concat(_) => {
+                let bits = self.plan.wiring(id).unwrap_or_default();
                 self.bits(&bits)
-            }
-            Op::Slice { of, low } => {
-                self.bits(&self.plan.bits[of.index()].slice(*low, self.plan.design.width(id)))
-            }
-            Op::Concat(parts) => {
-                let all = parts.iter().fold(Bits::default(), |all, part| {
-                    all.followed_by(&self.plan.bits[part.index()])
-                });
-                self.bits(&all)
             }
             Op::Not(a) => format!("~{}", self.operand(*a)),
             Op::And(a, b) => self.binary(*a, "&", *b),
@@ -219,7 +208,7 @@ impl<'a> Expressions<'a> {
                 format!("{} * {}", self.with_sign(*a), self.with_sign(*b))
             }
             Op::Equal(a, b) => self.binary(*a, "==", *b),
-            Op::Less(a, b) => match self.constant_comparison(*a, *b) {
+            Op::Less(a, b) => match self.plan.constant_comparison(*a, *b) {
                 Some(known) => literal(known, 1),
                 // A constant reads best on the right.
                 None if matches!(
@@ -274,21 +263,6 @@ impl<'a> Expressions<'a> {
             (false, true) => format!("$signed({text})"),
             (true, false) => format!("$unsigned({text})"),
             _ => text,
-        }
-    }
-
-    /// A comparison that the format alone decides (`a < 0` without a sign), which linters refuse.
-    fn constant_comparison(&self, a: NetId, b: NetId) -> Option<u64> {
-        let format = self.plan.design.net(a).format;
-        let constant = |id: NetId| match self.plan.bits[id.index()].single() {
-            Some(Piece::Constant { value, .. }) => Some(format.raw(value)),
-            _ => None,
-        };
-        match (constant(a), constant(b)) {
-            (Some(a), Some(b)) => Some(u64::from(a < b)),
-            (Some(a), None) if a == format.max_raw() => Some(0),
-            (None, Some(b)) if b == format.min_raw() => Some(0),
-            _ => None,
         }
     }
 }

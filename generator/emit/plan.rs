@@ -42,6 +42,8 @@ pub struct Plan<'a> {
     pub forms: Vec<Form>,
     /// What each net stands for.
     pub bits: Vec<Bits>,
+    /// The same through declared wiring too, down to cells, state and inputs.
+    pub roots: Vec<Bits>,
     /// The nets whose cells are written at all, in an order in which operands come first.
     pub live: Vec<NetId>,
     /// The bits of each net that each module reads.
@@ -94,6 +96,7 @@ impl<'a> Plan<'a> {
             design,
             forms: vec![Form::Declared; design.nets.len()],
             bits: vec![Bits::default(); design.nets.len()],
+            roots: vec![Bits::default(); design.nets.len()],
             live: Vec::new(),
             reads: BTreeMap::new(),
             reset,
@@ -136,6 +139,9 @@ impl<'a> Plan<'a> {
     pub fn operands(&self, reader: Reader) -> Vec<NetId> {
         match reader {
             Reader::Cell(net) => match &self.design.net(net).driver {
+                Driver::Op(Op::Less(a, b)) if self.constant_comparison(*a, *b).is_some() => {
+                    Vec::new()
+                }
                 Driver::Op(op) => op.operands(),
                 Driver::Field(_) => vec![self.design.rom(self.design.control.rom).data],
                 _ => Vec::new(),
@@ -169,6 +175,21 @@ impl<'a> Plan<'a> {
         }
     }
 
+    /// A comparison that the format alone decides (`a < 0` without a sign), which linters refuse.
+    pub fn constant_comparison(&self, a: NetId, b: NetId) -> Option<u64> {
+        let format = self.design.net(a).format;
+        let constant = |id: NetId| match self.roots[id.index()].single() {
+            Some(Piece::Constant { value, .. }) => Some(format.raw(value)),
+            _ => None,
+        };
+        match (constant(a), constant(b)) {
+            (Some(a), Some(b)) => Some(u64::from(a < b)),
+            (Some(a), None) if a == format.max_raw() => Some(0),
+            (None, Some(b)) if b == format.min_raw() => Some(0),
+            _ => None,
+        }
+    }
+
     /// Every reader that is written.
     pub fn readers(&self) -> Vec<Reader> {
         let cells = self.live.iter().copied().filter(|net| {
@@ -187,35 +208,45 @@ impl<'a> Plan<'a> {
             .collect()
     }
 
+    /// What a net is by wiring alone, if it is, with `known` in place of each operand.
+    fn wired(&self, id: NetId, known: &[Bits]) -> Option<Bits> {
+        let width = self.design.width(id);
+        let of = |operand: &NetId| &known[operand.index()];
+        match &self.design.net(id).driver {
+            Driver::Constant(value) => Some(Bits::constant(value & mask(width), width)),
+            Driver::Op(Op::Relabel(a)) => Some(of(a).clone()),
+            Driver::Op(Op::Extend(a)) => {
+                Some(of(a).extend(width, self.design.net(*a).format.signed))
+            }
+            Driver::Op(Op::Slice { of: a, low }) => Some(of(a).slice(*low, width)),
+            Driver::Op(Op::Concat(parts)) => {
+                let all = parts.iter().map(of);
+                Some(all.fold(Bits::default(), |all, part| all.followed_by(part)))
+            }
+            _ => None,
+        }
+    }
+
+    /// The right-hand side of a declared net that is wiring.
+    pub fn wiring(&self, id: NetId) -> Option<Bits> {
+        self.wired(id, &self.bits)
+    }
+
     fn resolve_wiring(&mut self, order: &[NetId]) {
         for &id in order {
-            let net = self.design.net(id);
-            let width = self.design.width(id);
-            let of = |operand: &NetId| &self.bits[operand.index()];
-            let wiring = match &net.driver {
-                Driver::Constant(value) => Some(Bits::constant(value & mask(width), width)),
-                Driver::Op(Op::Relabel(a)) => Some(of(a).clone()),
-                Driver::Op(Op::Extend(a)) => {
-                    Some(of(a).extend(width, self.design.net(*a).format.signed))
-                }
-                Driver::Op(Op::Slice { of: a, low }) => Some(of(a).slice(*low, width)),
-                Driver::Op(Op::Concat(parts)) => Some(
-                    parts
-                        .iter()
-                        .fold(Bits::default(), |all, part| all.followed_by(of(part))),
-                ),
-                _ => None,
-            };
+            let whole = Bits::net(id, self.design.width(id));
             // A named constant is a localparam where it is used whole, and known bits elsewhere.
+            let net = self.design.net(id);
             let constant = matches!(net.driver, Driver::Constant(_)) && !self.is_port(id);
             let transparent = constant || !(net.named || self.is_port(id));
-            match wiring {
+            self.roots[id.index()] = self.wired(id, &self.roots).unwrap_or_else(|| whole.clone());
+            self.bits[id.index()] = match self.wiring(id) {
                 Some(bits) if transparent => {
                     self.forms[id.index()] = Form::Wiring;
-                    self.bits[id.index()] = bits;
+                    bits
                 }
-                _ => self.bits[id.index()] = Bits::net(id, width),
-            }
+                _ => whole,
+            };
         }
     }
 
@@ -326,6 +357,8 @@ impl<'a> Plan<'a> {
                 // Comparisons and products need declared operands, whose signedness is visible; the
                 // select of a case reads best as a name.
                 Driver::Op(Op::Mul(..) | Op::Less(..)) => return false,
+                // Bits can be selected from a net alone, not from an expression.
+                Driver::Op(Op::Extend(_) | Op::Slice { .. } | Op::Concat(_)) => return false,
                 Driver::Op(Op::Mux { inputs, .. }) if inputs.len() > 2 => return false,
                 Driver::Op(_) => false,
                 _ => return false,

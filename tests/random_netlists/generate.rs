@@ -1,0 +1,457 @@
+//! Random designs that keep the rules of the netlist.
+
+use std::panic::Location;
+
+use glint::fixed::{Format, mask};
+use glint::netlist::{
+    About, Control, Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, Port, RegId,
+    Register, RegisterKind, Role, Rom, RomId, Sequence, Unit, Word,
+};
+
+/// Splitmix64.
+pub struct Random(u64);
+
+impl Random {
+    /// A stream of its own for each seed.
+    pub fn new(seed: u64) -> Self {
+        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut mixed = self.0;
+        mixed = (mixed ^ mixed >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
+        mixed ^ mixed >> 31
+    }
+
+    fn below(&mut self, bound: usize) -> usize {
+        (self.next() % bound as u64) as usize
+    }
+
+    fn chance(&mut self, percent: usize) -> bool {
+        self.below(100) < percent
+    }
+
+    /// A pattern; often one of the ends.
+    pub fn bits(&mut self, width: u32) -> u64 {
+        let ends = [0, 1, mask(width), mask(width) >> 1, 1 << (width - 1)];
+        match self.chance(30) {
+            true => ends[self.below(ends.len())] & mask(width),
+            false => self.next() & mask(width),
+        }
+    }
+}
+
+/// Words of the control ROM; not a power of two.
+const WORDS: usize = 6;
+
+/// The design of a seed.
+pub fn design(seed: u64) -> Design {
+    let mut build = Build {
+        random: Random::new(seed),
+        design: skeleton(seed),
+        unit: Unit::Control,
+    };
+    build.control();
+    build.unit = Unit::Datapath;
+    build.datapath();
+    build.design.ports.sort_by_key(|port| !port.role.is_input());
+    build.design
+}
+
+fn skeleton(seed: u64) -> Design {
+    Design {
+        name: format!("random_{seed}"),
+        about: About {
+            title: "Random cells − each «meets» every other".to_owned(),
+            ..About::default()
+        },
+        nets: Vec::new(),
+        registers: Vec::new(),
+        roms: Vec::new(),
+        ports: Vec::new(),
+        control: Control {
+            fields: Vec::new(),
+            words: Vec::new(),
+            rom: RomId(0),
+            address: RegId(0),
+            run: RegId(0),
+        },
+    }
+}
+
+struct Build {
+    random: Random,
+    design: Design,
+    unit: Unit,
+}
+
+impl Build {
+    fn net(&mut self, format: Format, driver: Driver, named: bool) -> NetId {
+        let id = NetId(self.design.nets.len() as u32);
+        self.design.nets.push(Net {
+            name: format!("n{}", id.0),
+            format,
+            range: (format.min_raw(), format.max_raw()),
+            driver,
+            block: (id.0 % 5 == 0).then_some(id.0 as u16),
+            doc: if id.0 % 3 == 0 {
+                format!("net number {}", id.0)
+            } else {
+                String::new()
+            },
+            named,
+            unit: self.unit,
+            location: Location::caller(),
+        });
+        id
+    }
+
+    fn input(&mut self, format: Format, role: Role) -> NetId {
+        let id = self.net(format, Driver::Input, true);
+        self.design.ports.push(Port { net: id, role });
+        id
+    }
+
+    fn output(&mut self, source: NetId, role: Role) {
+        let format = self.design.net(source).format;
+        let net = self.net(format, Driver::Op(Op::Relabel(source)), true);
+        self.design.ports.push(Port { net, role });
+    }
+
+    fn register(&mut self, format: Format, reset: Option<u64>) -> (RegId, NetId) {
+        let id = RegId(self.design.registers.len() as u32);
+        let q = self.net(format, Driver::Register(id), true);
+        self.design.registers.push(Register {
+            q,
+            data: None,
+            enable: None,
+            reset,
+            kind: RegisterKind::Architectural,
+        });
+        (id, q)
+    }
+
+    fn rom(
+        &mut self,
+        name: &str,
+        address: NetId,
+        format: Format,
+        words: Vec<u64>,
+        synchronous: bool,
+    ) -> NetId {
+        let id = RomId(self.design.roms.len() as u32);
+        let data = self.net(format, Driver::Rom(id), true);
+        self.design.roms.push(Rom {
+            name: name.to_owned(),
+            address,
+            data,
+            synchronous,
+            words,
+            doc: vec!["a random word".to_owned()],
+            comments: Vec::new(),
+            block: None,
+            location: Location::caller(),
+        });
+        data
+    }
+
+    /// An address that counts through the words for ever; two selects and two enables.
+    fn control(&mut self) {
+        self.input(Format::BIT, Role::Reset);
+        self.input(Format::BIT, Role::Start);
+        let wide = Format::unsigned(3, 0);
+        let (address, q) = self.register(wide, Some(0));
+        let (run, running) = self.register(Format::BIT, Some(1));
+        let last = self.net(wide, Driver::Constant(WORDS as u64 - 1), false);
+        let zero = self.net(wide, Driver::Constant(0), false);
+        let one = self.net(wide, Driver::Constant(1), false);
+        let at_last = self.net(Format::BIT, Driver::Op(Op::Equal(q, last)), false);
+        let sum = Op::Add {
+            a: q,
+            b: one,
+            carry: None,
+        };
+        let following = self.net(wide, Driver::Op(sum), false);
+        let around = Op::Mux {
+            select: at_last,
+            inputs: vec![following, zero],
+        };
+        let next = self.net(wide, Driver::Op(around), true);
+        self.design.registers[address.index()].data = Some(next);
+        self.design.registers[run.index()].data = Some(running);
+
+        let choices = || FieldKind::Select(["a", "b", "c·c", "d"].map(str::to_owned).to_vec());
+        let kinds = [
+            (2, choices()),
+            (1, FieldKind::Enable),
+            (2, choices()),
+            (1, FieldKind::Enable),
+        ];
+        let width = kinds.iter().map(|(width, _)| width).sum::<i32>();
+        for (at, (width, kind)) in kinds.into_iter().enumerate() {
+            let id = FieldId(at as u32);
+            let net = self.net(Format::unsigned(width, 0), Driver::Field(id), true);
+            self.design.control.fields.push(Field {
+                name: format!("field{at}"),
+                net,
+                kind,
+                lines: Vec::new(),
+            });
+        }
+        let words: Vec<u64> = (0..WORDS).map(|_| self.random.bits(width as u32)).collect();
+        let rom = RomId(self.design.roms.len() as u32);
+        self.rom("control", q, Format::unsigned(width, 0), words, false);
+        let word = |at: usize| Word {
+            name: format!("word {at}"),
+            values: Vec::new(),
+            sequence: Sequence::Next,
+            location: Location::caller(),
+        };
+        self.design.control.words = (0..WORDS).map(word).collect();
+        self.design.control.rom = rom;
+        self.design.control.address = address;
+        self.design.control.run = run;
+    }
+
+    fn datapath(&mut self) {
+        for _ in 0..4 {
+            let format = self.format(20);
+            let strobe = self.input(Format::BIT, Role::Strobe);
+            self.input(format, Role::Operand { strobe });
+        }
+        // With feedback: data is chosen when all is there.
+        let loops: Vec<_> = (0..4)
+            .map(|_| {
+                let format = self.format(16);
+                let reset = self.random.bits(format.width());
+                self.register(format, Some(reset))
+            })
+            .collect();
+        for at in 0..40 {
+            self.unit = if self.random.chance(90) {
+                Unit::Datapath
+            } else {
+                Unit::Control
+            };
+            match at {
+                10 | 20 => self.memory(at == 20),
+                15 | 25 | 35 => {
+                    let data = self.any();
+                    let format = self.design.net(data).format;
+                    let (id, _) = self.register(format, None);
+                    self.design.registers[id.index()].data = Some(data);
+                }
+                _ => self.cell(),
+            }
+        }
+        self.unit = Unit::Datapath;
+        for (id, q) in loops {
+            let width = self.design.width(q);
+            let data = self.of_width(width, None);
+            let enable = self.of_width(1, None);
+            let register = &mut self.design.registers[id.index()];
+            register.data = Some(data);
+            register.enable = Some(enable);
+        }
+        for _ in 0..6 {
+            let source = self.any();
+            self.output(source, Role::Result);
+        }
+        let last = NetId(self.design.nets.len() as u32 - 20);
+        self.output(last, Role::Result);
+    }
+
+    fn format(&mut self, widest: usize) -> Format {
+        let width = 1 + self.random.below(widest) as i32;
+        let frac = self.random.below(30) as i32 - 10;
+        match self.random.chance(50) {
+            true => Format::signed(width - 1 - frac, frac),
+            false => Format::unsigned(width - frac, frac),
+        }
+    }
+
+    /// Some net that is not known beforehand: linters refuse, rightly, to compare with such.
+    fn any(&mut self) -> NetId {
+        loop {
+            // Late nets are chosen more often, so that expressions nest.
+            let count = self.design.nets.len();
+            let from = if self.random.chance(60) {
+                count.saturating_sub(12)
+            } else {
+                0
+            };
+            let id = NetId((from + self.random.below(count - from)) as u32);
+            if !self.is_constant(id) {
+                return id;
+            }
+        }
+    }
+
+    fn is_constant(&self, id: NetId) -> bool {
+        match &self.design.net(id).driver {
+            Driver::Constant(_) => true,
+            Driver::Op(op) => op
+                .operands()
+                .iter()
+                .all(|operand| self.is_constant(*operand)),
+            _ => false,
+        }
+    }
+
+    /// A slice of it may be known beforehand.
+    fn is_partly_constant(&self, id: NetId) -> bool {
+        let net = self.design.net(id);
+        match &net.driver {
+            Driver::Constant(_) => true,
+            Driver::Op(Op::Extend(of)) => {
+                !self.design.net(*of).format.signed || self.is_partly_constant(*of)
+            }
+            Driver::Op(op @ (Op::Relabel(_) | Op::Slice { .. } | Op::Concat(_))) => op
+                .operands()
+                .iter()
+                .any(|operand| self.is_partly_constant(*operand)),
+            _ => false,
+        }
+    }
+
+    fn add(&mut self, format: Format, op: Op) -> NetId {
+        let named = self.random.chance(25);
+        self.net(format, Driver::Op(op), named)
+    }
+
+    /// Some net as one of the given width (and signedness), by wiring or a constant.
+    fn of_width(&mut self, width: u32, signed: Option<bool>) -> NetId {
+        let mut source = self.any();
+        while self.design.width(source) > width && self.is_partly_constant(source) {
+            source = self.any();
+        }
+        let from = self.design.net(source).format;
+        let signed = signed.unwrap_or(from.signed);
+        let format = match signed {
+            true => Format::signed(width as i32 - 1, 0),
+            false => Format::unsigned(width as i32, 0),
+        };
+        if self.random.chance(12) {
+            let value = self.random.bits(width);
+            let named = self.random.chance(30);
+            return self.net(format, Driver::Constant(value), named);
+        }
+        let resized = match from.width().cmp(&width) {
+            std::cmp::Ordering::Less => {
+                let extended = match from.signed {
+                    true => Format::signed(width as i32 - 1, 0),
+                    false => Format::unsigned(width as i32, 0),
+                };
+                self.add(extended, Op::Extend(source))
+            }
+            std::cmp::Ordering::Equal => source,
+            std::cmp::Ordering::Greater => {
+                let low = self.random.below((from.width() - width) as usize + 1) as u32;
+                self.add(
+                    Format::unsigned(width as i32, 0),
+                    Op::Slice { of: source, low },
+                )
+            }
+        };
+        if self.design.net(resized).format.signed == signed {
+            resized
+        } else {
+            self.add(format, Op::Relabel(resized))
+        }
+    }
+
+    fn cell(&mut self) {
+        let format = self.format(20);
+        let width = format.width();
+        let bit = Format::BIT;
+        let pair = |build: &mut Self, signed| {
+            (build.of_width(width, signed), build.of_width(width, signed))
+        };
+        match self.random.below(15) {
+            0 => {
+                let a = self.of_width(width, None);
+                self.add(format, Op::Not(a));
+            }
+            1..=3 => {
+                let (a, b) = pair(self, None);
+                let op = [Op::And(a, b), Op::Or(a, b), Op::Xor(a, b)][self.random.below(3)].clone();
+                self.add(format, op);
+            }
+            4 | 5 => {
+                let (a, b) = pair(self, None);
+                let carry = self
+                    .random
+                    .chance(40)
+                    .then(|| self.of_width(1, Some(false)));
+                self.add(format, Op::Add { a, b, carry });
+            }
+            6 => {
+                let (a, b) = pair(self, None);
+                self.add(format, Op::Sub(a, b));
+            }
+            7 | 8 => {
+                let signed = self.random.chance(50);
+                let other = 1 + self.random.below(20) as u32;
+                let a = self.of_width(width, Some(signed));
+                let b = self.of_width(other, Some(signed));
+                let total = (width + other) as i32;
+                let product = if signed {
+                    Format::signed(total - 1, 0)
+                } else {
+                    Format::unsigned(total, 0)
+                };
+                self.add(product, Op::Mul(a, b));
+            }
+            9 => {
+                let (a, b) = pair(self, None);
+                self.add(bit, Op::Equal(a, b));
+            }
+            10 => {
+                let signed = Some(self.random.chance(50));
+                let (a, b) = pair(self, signed);
+                self.add(bit, Op::Less(a, b));
+            }
+            11 => {
+                let a = self.any();
+                let op = if self.random.chance(50) {
+                    Op::Any(a)
+                } else {
+                    Op::All(a)
+                };
+                self.add(bit, op);
+            }
+            12 => {
+                let first = 1 + self.random.below(10) as u32;
+                let second = 1 + self.random.below(10) as u32;
+                let parts = vec![self.of_width(first, None), self.of_width(second, None)];
+                self.add(
+                    Format::unsigned((first + second) as i32, 0),
+                    Op::Concat(parts),
+                );
+            }
+            _ => {
+                let count = 2 + self.random.below(3);
+                let inputs = (0..count).map(|_| self.of_width(width, None)).collect();
+                let select = match (count, self.random.chance(70)) {
+                    (2, _) => self.of_width(1, None),
+                    (_, true) => self.design.control.fields[self.random.below(2) * 2].net,
+                    (_, false) => self.of_width(2, Some(false)),
+                };
+                self.add(format, Op::Mux { select, inputs });
+            }
+        }
+    }
+
+    fn memory(&mut self, synchronous: bool) {
+        let bits = 1 + self.random.below(6) as u32;
+        let address = self.of_width(bits, Some(false));
+        let format = self.format(40);
+        let words = (0..1usize << bits)
+            .map(|_| self.random.bits(format.width()))
+            .collect();
+        let name = if synchronous { "blocks" } else { "logic" };
+        self.rom(name, address, format, words, synchronous);
+    }
+}
