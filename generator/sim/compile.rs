@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 
-use crate::fixed::{MAX_WIDTH, mask};
-use crate::netlist::{Design, Driver, NetId, Op, Role};
+use crate::fixed::mask;
+use crate::netlist::{Design, Driver, NetId, Role};
 use crate::sim::lower::drop_of;
 use crate::sim::machine::execute;
 use crate::sim::program::{
