@@ -116,6 +116,9 @@ impl<const LANES: usize> Circuit<LANES> {
     }
 
     /// The bit pattern of a net in each lane.
+    ///
+    /// # Panics
+    /// When the net is unnamed and was optimised away.
     pub fn lanes(&self, net: NetId) -> &[u64; LANES] {
         self.machine.lanes(net)
     }

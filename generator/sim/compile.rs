@@ -1,11 +1,12 @@
 //! From [`Design`] to [`Program`].
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
 
-use crate::fixed::{MAX_WIDTH, mask};
-use crate::netlist::{Design, Driver, NetId, Op, Role};
+use crate::fixed::mask;
+use crate::netlist::{Design, Driver, NetId, Role};
+use crate::sim::lower::drop_of;
 use crate::sim::machine::execute;
 use crate::sim::program::{
     InputPort, Instruction, Program, ReadEdge, RegisterEdge, Segment, Slot, Sources, Span,
@@ -33,24 +34,40 @@ pub(super) fn compile(design: &Design) -> Result<Program> {
     compiler.finish()
 }
 
-struct Compiler<'a> {
-    design: &'a Design,
+/// Sources below this number change from outside settling and share numbers when they are many;
+/// from here on each is a field of the control word, numbered in order of evaluation.
+const FIRST_FIELD: u32 = 40;
+
+/// An instruction and what orders it.
+struct Step {
+    sources: Sources,
+    to: Slot,
+    operands: Vec<Slot>,
+    instruction: Instruction,
+}
+
+pub(super) struct Compiler<'a> {
+    pub(super) design: &'a Design,
     /// For each slot: the [`Sources`] it depends on within one clock; none for constants.
     sources: Vec<Sources>,
     /// How many sources there are so far.
     numbered: u32,
+    /// The next source for a field.
+    next_field: u32,
     /// For each slot; the only lane is that of the folded constants.
     initial: Vec<[u64; 1]>,
     constants: BTreeMap<u64, Slot>,
     /// Instructions already there, written to slot 0, and the slots that have their results.
     known: HashMap<Instruction, Slot>,
-    /// In an order of evaluation, each with what it depends on.
-    instructions: Vec<(Sources, Instruction)>,
-    choices: Vec<Slot>,
+    /// The instruction that writes a slot, unless it is a field.
+    made_by: HashMap<Slot, Instruction>,
+    /// In an order of evaluation.
+    steps: Vec<Step>,
+    pub(super) choices: Vec<Slot>,
     words: Vec<u64>,
     roms: Vec<Span>,
     /// For each net; `Slot::MAX` until the net has been compiled.
-    of_net: Vec<Slot>,
+    pub(super) of_net: Vec<Slot>,
     inputs: Vec<InputPort>,
     /// For each field of the control word, the number of its lowest bit.
     fields: Vec<u32>,
@@ -62,10 +79,12 @@ impl<'a> Compiler<'a> {
             design,
             sources: Vec::new(),
             numbered: 0,
+            next_field: FIRST_FIELD,
             initial: Vec::new(),
             constants: BTreeMap::new(),
             known: HashMap::new(),
-            instructions: Vec::new(),
+            made_by: HashMap::new(),
+            steps: Vec::new(),
             choices: Vec::new(),
             words: Vec::new(),
             roms: Vec::new(),
@@ -120,12 +139,33 @@ impl<'a> Compiler<'a> {
 
     /// A slot that changes from outside settling.
     fn source(&mut self) -> Slot {
-        let sources = 1 << (self.numbered % Sources::BITS);
+        let sources = 1 << (self.numbered % FIRST_FIELD);
         self.numbered += 1;
         self.fresh(sources)
     }
 
-    fn constant(&mut self, bits: u64) -> Slot {
+    /// A slot with a field of the control word. It is a source of its own, so that what depends on
+    /// it is settled when the field changes, rather than whenever the address does.
+    fn field(&mut self, word: NetId, low: u32, width: u32) -> Result<Slot> {
+        let a = self.of_net[word.index()];
+        if self.known_value(a).is_some() || self.next_field == Sources::BITS {
+            return self.slice(word, low, width);
+        }
+        let (low, drop, source) = (low as u8, drop_of(width), self.next_field as u8);
+        self.next_field += 1;
+        let to = self.fresh(1 << source);
+        let instruction = Instruction::Field {
+            to,
+            a,
+            low,
+            drop,
+            source,
+        };
+        self.push(to, &[a], instruction);
+        Ok(to)
+    }
+
+    pub(super) fn constant(&mut self, bits: u64) -> Slot {
         if let Some(slot) = self.constants.get(&bits) {
             return *slot;
         }
@@ -136,29 +176,57 @@ impl<'a> Compiler<'a> {
     }
 
     /// The value of a slot that is known already.
-    fn known_value(&self, slot: Slot) -> Option<u64> {
+    pub(super) fn known_value(&self, slot: Slot) -> Option<u64> {
         let constant = self.sources[slot as usize] == 0;
         constant.then(|| self.initial[slot as usize][0])
     }
 
     /// The slot with the result of an instruction, which `make` builds for a given destination.
-    fn emit(&mut self, operands: &[Slot], make: impl Fn(Slot) -> Instruction) -> Slot {
+    pub(super) fn emit(&mut self, operands: &[Slot], make: impl Fn(Slot) -> Instruction) -> Slot {
         if let Some(slot) = self.known.get(&make(0)) {
             return *slot;
         }
-        let sources = operands
-            .iter()
-            .fold(0, |all, slot| all | self.sources[*slot as usize]);
+        let sources = self.sources_of(operands);
         let to = self.fresh(sources);
         if sources == 0 {
-            execute(make(to), &self.choices, &self.words, &mut self.initial);
+            execute(
+                make(to),
+                &self.choices,
+                &self.words,
+                &mut self.initial,
+                &mut 0,
+            );
             let [bits] = self.initial.pop().unwrap_or_default();
             self.sources.pop();
             return self.constant(bits);
         }
-        self.instructions.push((sources, make(to)));
+        self.push(to, operands, make(to));
         self.known.insert(make(0), to);
+        self.made_by.insert(to, make(to));
         to
+    }
+
+    fn push(&mut self, to: Slot, operands: &[Slot], instruction: Instruction) {
+        self.steps.push(Step {
+            sources: self.sources_of(operands),
+            to,
+            operands: operands.to_vec(),
+            instruction,
+        });
+    }
+
+    fn sources_of(&self, operands: &[Slot]) -> Sources {
+        let sources = operands.iter().map(|slot| self.sources[*slot as usize]);
+        sources.fold(0, |all, sources| all | sources)
+    }
+
+    /// The slot, the lowest bit and the width, as a `drop`, of which a slot is a slice; itself when
+    /// it is none. Instructions that can cut use it, and the slice is often not needed then.
+    pub(super) fn sliced(&self, slot: Slot) -> (Slot, u8, u8) {
+        match self.made_by.get(&slot) {
+            Some(Instruction::Slice { a, low, drop, .. }) => (*a, *low, *drop),
+            _ => (slot, 0, 0),
+        }
     }
 
     /// The slot of a net whose inputs have been compiled.
@@ -196,203 +264,10 @@ impl<'a> Compiler<'a> {
                     "its field drives another net"
                 );
                 let word = design.rom(design.control.rom).data;
-                self.slice(word, self.fields[field.index()], width)
+                self.field(word, self.fields[field.index()], width)
             }
             Driver::Op(op) => self.op(op, id),
         }
-    }
-
-    fn op(&mut self, op: &Op, id: NetId) -> Result<Slot> {
-        let design = self.design;
-        let width = design.width(id);
-        let slot = |net: NetId| self.of_net[net.index()];
-        let wide = |net: NetId, wanted: u32| {
-            ensure!(
-                design.width(net) == wanted,
-                "operand `{}` is {} bits wide, not {wanted}",
-                design.net(net).name,
-                design.width(net)
-            );
-            Ok(())
-        };
-        let result_wide = |wanted: u32| {
-            ensure!(width == wanted, "it is {width} bits wide, not {wanted}");
-            Ok(())
-        };
-        let signed = |net: NetId| design.net(net).format.signed;
-        let same_sign = |a: NetId, b: NetId| {
-            ensure!(
-                signed(a) == signed(b),
-                "one of `{}` and `{}` is signed, the other is not",
-                design.net(a).name,
-                design.net(b).name
-            );
-            Ok(signed(a))
-        };
-        let drop = drop_of(width);
-        Ok(match op {
-            Op::Relabel(a) => {
-                wide(*a, width)?;
-                slot(*a)
-            }
-            Op::Extend(of) => {
-                let narrow = design.width(*of);
-                ensure!(narrow <= width, "the operand is wider");
-                let (a, from) = (slot(*of), drop_of(narrow));
-                // A pattern is masked to its width, so zeros are above it already.
-                if narrow == width || !signed(*of) {
-                    a
-                } else {
-                    self.emit(&[a], |to| Instruction::SignExtend { to, a, from, drop })
-                }
-            }
-            Op::Slice { of, low } => self.slice(*of, *low, width)?,
-            Op::Concat(parts) => {
-                result_wide(parts.iter().map(|part| design.width(*part)).sum())?;
-                self.concat(parts)
-            }
-            Op::Not(of) => {
-                wide(*of, width)?;
-                let (a, b) = (slot(*of), self.constant(mask(width)));
-                self.emit(&[a], |to| Instruction::Xor { to, a, b })
-            }
-            Op::And(a, b) | Op::Or(a, b) | Op::Xor(a, b) | Op::Sub(a, b) => {
-                wide(*a, width)?;
-                wide(*b, width)?;
-                let (a, b) = (slot(*a), slot(*b));
-                self.emit(&[a, b], |to| match op {
-                    Op::And(..) => Instruction::And { to, a, b },
-                    Op::Or(..) => Instruction::Or { to, a, b },
-                    Op::Xor(..) => Instruction::Xor { to, a, b },
-                    _ => Instruction::Sub { to, a, b, drop },
-                })
-            }
-            Op::Add { a, b, carry } => {
-                wide(*a, width)?;
-                wide(*b, width)?;
-                let (a, b) = (slot(*a), slot(*b));
-                match carry {
-                    None => self.emit(&[a, b], |to| Instruction::Add { to, a, b, drop }),
-                    Some(carry) => {
-                        wide(*carry, 1)?;
-                        let carry = slot(*carry);
-                        self.emit(&[a, b, carry], |to| Instruction::AddCarry {
-                            to,
-                            a,
-                            b,
-                            carry,
-                            drop,
-                        })
-                    }
-                }
-            }
-            Op::Mul(a, b) => {
-                result_wide(design.width(*a) + design.width(*b))?;
-                let signed = same_sign(*a, *b)?;
-                let (drop_a, drop_b) = (drop_of(design.width(*a)), drop_of(design.width(*b)));
-                let (a, b) = (slot(*a), slot(*b));
-                self.emit(&[a, b], |to| match signed {
-                    false => Instruction::MulUnsigned { to, a, b },
-                    true => Instruction::MulSigned {
-                        to,
-                        a,
-                        b,
-                        drop_a,
-                        drop_b,
-                        drop,
-                    },
-                })
-            }
-            Op::Equal(a, b) | Op::Less(a, b) => {
-                result_wide(1)?;
-                wide(*b, design.width(*a))?;
-                let drop = drop_of(design.width(*a));
-                let less = matches!(op, Op::Less(..));
-                let signed = less && same_sign(*a, *b)?;
-                let (a, b) = (slot(*a), slot(*b));
-                self.emit(&[a, b], |to| match (less, signed) {
-                    (false, _) => Instruction::Equal { to, a, b },
-                    (true, false) => Instruction::LessUnsigned { to, a, b },
-                    (true, true) => Instruction::LessSigned { to, a, b, drop },
-                })
-            }
-            Op::Any(of) | Op::All(of) => {
-                result_wide(1)?;
-                let a = slot(*of);
-                if design.width(*of) == 1 {
-                    a
-                } else if let Op::Any(_) = op {
-                    self.emit(&[a], |to| Instruction::Any { to, a })
-                } else {
-                    let b = self.constant(mask(design.width(*of)));
-                    self.emit(&[a], |to| Instruction::Equal { to, a, b })
-                }
-            }
-            Op::Mux { select, inputs } => {
-                for input in inputs {
-                    wide(*input, width)?;
-                }
-                let inputs: Vec<_> = inputs.iter().map(|net| slot(*net)).collect();
-                self.mux(slot(*select), &inputs)?
-            }
-        })
-    }
-
-    /// `width` bits of `of` from `low` up.
-    fn slice(&mut self, of: NetId, low: u32, width: u32) -> Result<Slot> {
-        let whole = self.design.width(of);
-        ensure!(
-            low.checked_add(width).is_some_and(|top| top <= whole),
-            "{width} bits from bit {low} are not within the {whole} of `{}`",
-            self.design.net(of).name
-        );
-        let (a, low, drop) = (self.of_net[of.index()], low as u8, drop_of(width));
-        if width == whole {
-            return Ok(a);
-        }
-        Ok(self.emit(&[a], |to| Instruction::Slice { to, a, low, drop }))
-    }
-
-    /// The operands side by side; together they are no wider than a net.
-    fn concat(&mut self, parts: &[NetId]) -> Slot {
-        let mut all = self.constant(0);
-        for part in parts {
-            let (a, b) = (all, self.of_net[part.index()]);
-            let shift = self.design.width(*part) as u8;
-            all = if self.known_value(a) == Some(0) {
-                b
-            } else {
-                self.emit(&[a, b], |to| Instruction::Concat { to, a, b, shift })
-            };
-        }
-        all
-    }
-
-    fn mux(&mut self, select: Slot, inputs: &[Slot]) -> Result<Slot> {
-        let [.., last] = inputs else {
-            bail!("the mux has no inputs");
-        };
-        if let Some(value) = self.known_value(select) {
-            let chosen = usize::try_from(value).ok().and_then(|at| inputs.get(at));
-            return Ok(*chosen.unwrap_or(last));
-        }
-        if inputs.iter().all(|input| input == last) {
-            return Ok(*last);
-        }
-        let mut operands = vec![select];
-        operands.extend(inputs);
-        if let [a, b] = *inputs {
-            return Ok(self.emit(&operands, |to| Instruction::Choose { to, select, a, b }));
-        }
-        let first = u32::try_from(self.choices.len()).context("too many muxes")?;
-        let last = first + (inputs.len() - 1) as u32;
-        self.choices.extend(inputs);
-        Ok(self.emit(&operands, |to| Instruction::Mux {
-            to,
-            select,
-            first,
-            last,
-        }))
     }
 
     /// The clock edge, and everything together.
@@ -447,19 +322,25 @@ impl<'a> Compiler<'a> {
                 reset: register.reset.unwrap_or(0) & mask(design.width(register.q)),
             });
         }
+        self.drop_unneeded(&reads, &registers);
         // An operand depends on no source that the result does not depend on, so its set is the
-        // smaller number, and this remains an order of evaluation.
-        self.instructions.sort_by_key(|(sources, _)| *sources);
+        // smaller number; a field is the largest number among its own and those of its operands.
+        // This remains an order of evaluation.
+        self.steps.sort_by_key(|step| step.sources);
         let segments = self
-            .instructions
-            .chunk_by(|(a, _), (b, _)| a == b)
+            .steps
+            .chunk_by(|a, b| a.sources == b.sources)
             .map(|chunk| Segment {
-                sources: chunk[0].0,
+                sources: chunk[0].sources,
                 len: chunk.len() as u32,
             })
             .collect();
         Ok(Program {
-            instructions: self.instructions.into_iter().map(|(_, i)| i).collect(),
+            instructions: self
+                .steps
+                .into_iter()
+                .map(|step| step.instruction)
+                .collect(),
             segments,
             reads,
             registers,
@@ -471,6 +352,43 @@ impl<'a> Compiler<'a> {
         })
     }
 
+    /// Drops the instructions that neither the edge nor a named net or a port has a use for. What
+    /// they would have computed has no slot then.
+    fn drop_unneeded(&mut self, reads: &[ReadEdge], registers: &[RegisterEdge]) {
+        let design = self.design;
+        let mut needed = vec![false; self.sources.len()];
+        let of_edge = reads.iter().map(|edge| edge.address).chain(
+            registers
+                .iter()
+                .flat_map(|edge| [edge.data, edge.enable, edge.keep]),
+        );
+        let of_nets = design
+            .iter()
+            .filter(|(_, net)| net.named)
+            .map(|(id, _)| id)
+            .chain(design.ports.iter().map(|port| port.net))
+            .map(|net| self.of_net[net.index()]);
+        for slot in of_edge.chain(of_nets) {
+            needed[slot as usize] = true;
+        }
+        let mut dropped = HashSet::new();
+        for step in self.steps.iter().rev() {
+            if needed[step.to as usize] {
+                for slot in &step.operands {
+                    needed[*slot as usize] = true;
+                }
+            } else {
+                dropped.insert(step.to);
+            }
+        }
+        self.steps.retain(|step| needed[step.to as usize]);
+        for slot in &mut self.of_net {
+            if dropped.contains(slot) {
+                *slot = Slot::MAX;
+            }
+        }
+    }
+
     /// A slot that holds the value of `a` until the edge is over, although the edge has written the
     /// slots `written` before: the edge happens everywhere at once.
     fn stable(&mut self, a: Slot, written: &[Slot]) -> Slot {
@@ -480,9 +398,4 @@ impl<'a> Compiler<'a> {
             a
         }
     }
-}
-
-/// How much narrower than 64 bits a width is.
-fn drop_of(width: u32) -> u8 {
-    (MAX_WIDTH - width) as u8
 }

@@ -61,7 +61,13 @@ impl<const LANES: usize> Machine<LANES> {
             rest = after;
             if self.changed & segment.sources != 0 {
                 for instruction in here {
-                    execute(*instruction, choices, words, &mut self.slots);
+                    execute(
+                        *instruction,
+                        choices,
+                        words,
+                        &mut self.slots,
+                        &mut self.changed,
+                    );
                 }
             }
         }
@@ -94,6 +100,9 @@ impl<const LANES: usize> Machine<LANES> {
     }
 
     /// The bit pattern of a net in each lane.
+    ///
+    /// # Panics
+    /// When the net is unnamed and was optimised away.
     pub fn lanes(&self, net: NetId) -> &[u64; LANES] {
         &self.slots[self.program.slot(net)]
     }
@@ -109,19 +118,41 @@ fn changed<const LANES: usize>(old: &[u64; LANES], new: &[u64; LANES], source: S
     if differences == 0 { 0 } else { source }
 }
 
-/// Executes one instruction.
+/// Executes one instruction; fields that change are added to `news`.
 #[inline(always)]
 pub(super) fn execute<const LANES: usize>(
     instruction: Instruction,
     choices: &[Slot],
     words: &[u64],
     slots: &mut [[u64; LANES]],
+    news: &mut Sources,
 ) {
     use Instruction as I;
     match instruction {
         I::Copy { to, a } => unary(slots, to, a, |a| a),
+        I::Field {
+            to,
+            a,
+            low,
+            drop,
+            source,
+        } => {
+            let field = slots[a as usize].map(|a| a >> low & mask(drop));
+            let to = &mut slots[to as usize];
+            *news |= changed(to, &field, 1 << source);
+            *to = field;
+        }
         I::Slice { to, a, low, drop } => unary(slots, to, a, |a| a >> low & mask(drop)),
-        I::Concat { to, a, b, shift } => binary(slots, to, a, b, |a, b| a << shift | b),
+        I::Place {
+            to,
+            base,
+            a,
+            low,
+            drop,
+            shift,
+        } => binary(slots, to, base, a, |base, a| {
+            base | (a >> low & mask(drop)) << shift
+        }),
         I::SignExtend { to, a, from, drop } => {
             unary(slots, to, a, |a| signed(a, from) as u64 & mask(drop));
         }
@@ -155,7 +186,9 @@ pub(super) fn execute<const LANES: usize>(
             signed(a, drop_a).wrapping_mul(signed(b, drop_b)) as u64 & mask(drop)
         }),
         I::Equal { to, a, b } => binary(slots, to, a, b, |a, b| u64::from(a == b)),
-        I::Any { to, a } => unary(slots, to, a, |a| u64::from(a != 0)),
+        I::Any { to, a, low, drop } => {
+            unary(slots, to, a, |a| u64::from(a >> low & mask(drop) != 0));
+        }
         I::LessUnsigned { to, a, b } => binary(slots, to, a, b, |a, b| u64::from(a < b)),
         I::LessSigned { to, a, b, drop } => binary(slots, to, a, b, |a, b| {
             u64::from(signed(a, drop) < signed(b, drop))

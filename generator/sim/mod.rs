@@ -7,6 +7,7 @@
 
 mod circuit;
 mod compile;
+mod lower;
 mod machine;
 mod program;
 mod references;
@@ -91,6 +92,9 @@ impl<const LANES: usize> Simulator<LANES> {
     }
 
     /// The bit pattern of a net in each lane, after the latest clock.
+    ///
+    /// # Panics
+    /// When the net is unnamed and was optimised away.
     pub fn lanes(&self, net: NetId) -> &[u64; LANES] {
         self.circuit.lanes(net)
     }
@@ -170,6 +174,9 @@ impl Simulator {
     }
 
     /// The bit pattern of a net after the latest clock.
+    ///
+    /// # Panics
+    /// When the net is unnamed and was optimised away.
     #[inline]
     pub fn value(&self, net: NetId) -> u64 {
         let [bits] = *self.lanes(net);

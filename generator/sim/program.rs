@@ -4,9 +4,11 @@
 //! runs the instructions in order; each computes one slot from earlier ones. The *edge* writes the
 //! data outputs of synchronous ROMs and then the registers. Nets that are mere wiring (other names,
 //! zero extensions, whole slices) share a slot, constants are folded, and equal instructions are
-//! merged, so there are fewer instructions than cells.
+//! merged, so there are fewer instructions than cells. An unnamed net whose only readers can cut it
+//! out of its operand themselves has no slot at all.
 //!
-//! What changes from outside settling, input ports and what the edge writes, is a *source*.
+//! What changes from outside settling, input ports and what the edge writes, is a *source*; so are
+//! the fields of the control word, most of which stay as they are from one word to the next.
 //! Instructions that depend on the same sources form a segment, and settling skips segments whose
 //! sources have not changed.
 
@@ -29,6 +31,14 @@ pub(super) type Sources = u64;
 pub(super) enum Instruction {
     /// `a`, as it was before the coming edge.
     Copy { to: Slot, a: Slot },
+    /// The bits of `a` from `low` up; when they are news, `source` has changed.
+    Field {
+        to: Slot,
+        a: Slot,
+        low: u8,
+        drop: u8,
+        source: u8,
+    },
     /// The bits of `a` from `low` up.
     Slice {
         to: Slot,
@@ -36,11 +46,13 @@ pub(super) enum Instruction {
         low: u8,
         drop: u8,
     },
-    /// `a` above the `shift` bits of `b`.
-    Concat {
+    /// The bits of `a` from `low` up, shifted up, together with the bits of `base`.
+    Place {
         to: Slot,
+        base: Slot,
         a: Slot,
-        b: Slot,
+        low: u8,
+        drop: u8,
         shift: u8,
     },
     /// `a`, whose width is given by `from`, with copies of its sign bit above it.
@@ -91,8 +103,13 @@ pub(super) enum Instruction {
     },
     /// 1 when `a == b`; with a mask, when all bits are 1.
     Equal { to: Slot, a: Slot, b: Slot },
-    /// 1 when `a != 0`.
-    Any { to: Slot, a: Slot },
+    /// 1 when the bits of `a` from `low` up are not all 0.
+    Any {
+        to: Slot,
+        a: Slot,
+        low: u8,
+        drop: u8,
+    },
     /// 1 when `a < b`, unsigned.
     LessUnsigned { to: Slot, a: Slot, b: Slot },
     /// 1 when `a < b`, signed.
@@ -184,7 +201,7 @@ pub struct Program {
     pub(super) words: Vec<u64>,
     /// What the slots hold at power-up, before settling.
     pub(super) initial: Vec<u64>,
-    /// The slot of each net.
+    /// The slot of each net; `Slot::MAX` for unnamed nets that have none.
     pub(super) slots: Vec<Slot>,
     /// In order of declaration.
     pub(super) inputs: Vec<InputPort>,
@@ -211,7 +228,12 @@ impl Program {
     }
 
     /// The slot of a net.
+    ///
+    /// # Panics
+    /// When the net is unnamed and has none.
     pub(super) fn slot(&self, net: NetId) -> usize {
-        self.slots[net.index()] as usize
+        let slot = self.slots[net.index()];
+        assert!(slot != Slot::MAX, "{net:?} is unnamed and not simulated");
+        slot as usize
     }
 }
