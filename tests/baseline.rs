@@ -150,19 +150,24 @@ fn the_hand_written_core_computes_what_rough_does() {
     }
     let (name, bench) = baseline("rough_hand_tb.v");
     let bench = bench.replace("POINTS = 1;", &format!("POINTS = {};", points.len()));
-    let files = [
-        baseline("rough_hand.v"),
-        baseline("rough_hand_sine.mem"),
-        (name, bench),
-        ("rough_hand_points.mem".to_owned(), lines),
-    ];
-    let outcome = tools::assert_bench_passes(Simulator::Icarus, &files, "rough_hand_tb");
-    let verdict = format!("PASS: {POINTS} points");
-    assert!(
-        outcome.transcript.contains(&verdict),
-        "{}",
-        outcome.transcript
-    );
+    let (_, core) = baseline("rough_hand.v");
+    let held = core.replace("HELD_OPERANDS = 0", "HELD_OPERANDS = 1");
+    assert_ne!(core, held);
+    for core in [core, held] {
+        let files = [
+            ("rough_hand.v".to_owned(), core),
+            baseline("rough_hand_sine.mem"),
+            (name.clone(), bench.clone()),
+            ("rough_hand_points.mem".to_owned(), lines.clone()),
+        ];
+        let outcome = tools::assert_bench_passes(Simulator::Icarus, &files, "rough_hand_tb");
+        let verdict = format!("PASS: {POINTS} points");
+        assert!(
+            outcome.transcript.contains(&verdict),
+            "{}",
+            outcome.transcript
+        );
+    }
     // The comparison is worth something only if the points are neither all dark nor all bright.
     let lit = points
         .iter()

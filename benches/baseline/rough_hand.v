@@ -12,7 +12,9 @@
 `default_nettype none
 
 module rough_hand #(
-    parameter SINE_FILE = "rough_hand_sine.mem"
+    parameter SINE_FILE = "rough_hand_sine.mem",
+    // 1: the operands of the multiplier are registered, which the settling words leave time for.
+    parameter HELD_OPERANDS = 0
 ) (
     input  wire        clk,
     input  wire        rst_n,
@@ -138,22 +140,51 @@ module rough_hand #(
     // Adder 16 = register 13 + 1.0: u1.16, since register 13 is at least -1.0.
     wire [16:0] adder16 = {!reg13_result[16], reg13_result[15:0]};
 
-    reg [17:0] first;     // 8
-    reg [17:0] second;    // 9
+    reg  [17:0] choice8;
+    reg  [17:0] choice9;
+    wire [17:0] first_of_sine;
 
     always @*
         case (select)
-            2'd0:    begin first = cos_gamma_reg;   second = cos_dgamma_reg;          end
-            2'd1:    begin first = {1'b0, sine};    second = {1'b0, reg19_sin_gamma}; end
-            2'd2:    begin first = adder15[17:0];   second = {8'd0, exponent_reg};    end
-            default: begin first = {1'b0, adder16}; second = {1'b0, adder16};         end
+            2'd0:    begin choice8 = cos_gamma_reg;   choice9 = cos_dgamma_reg;          end
+            2'd1:    begin choice8 = first_of_sine;   choice9 = {1'b0, reg19_sin_gamma}; end
+            2'd2:    begin choice8 = adder15[17:0];   choice9 = {8'd0, exponent_reg};    end
+            default: begin choice8 = {1'b0, adder16}; choice9 = {1'b0, adder16};         end
         endcase
+
+    // A word that settles comes before each that takes the product, so the operands may be a clock
+    // late; all but the sine, which its ROM has only just delivered in word 3.
+    wire [17:0] first;
+    wire [17:0] second;
+    wire        negative;    // adder 15, as the multiplier sees it
+
+    generate
+        if (HELD_OPERANDS != 0) begin : held
+            reg [17:0] first_held;
+            reg [17:0] second_held;
+            reg        negative_held;
+            always @(posedge clk) begin
+                first_held    <= choice8;
+                second_held   <= choice9;
+                negative_held <= adder15[18];
+            end
+            assign first_of_sine = cos_gamma_reg;    // any choice will do, and this one is free
+            assign first         = select == 2'd1 ? {1'b0, sine} : first_held;
+            assign second        = second_held;
+            assign negative      = negative_held;
+        end else begin : direct
+            assign first_of_sine = {1'b0, sine};
+            assign first         = choice8;
+            assign second        = choice9;
+            assign negative      = adder15[18];
+        end
+    endgenerate
 
     wire [35:0] product = first * second;
 
     // The multiplier takes the low 18 bits of adder 15 as unsigned, so a negative one leaves the
     // product n/2 * 4.0 too large: n, at the weight of bit 18.
-    wire [10:0] above_one = {1'b0, product[27:18]} - {1'b0, exponent_reg & {10{adder15[18]}}};
+    wire [10:0] above_one = {1'b0, product[27:18]} - {1'b0, exponent_reg & {10{negative}}};
 
     // ---- Result registers: every narrowing truncates --------------------------------------------
 

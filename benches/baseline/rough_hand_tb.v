@@ -49,7 +49,8 @@ module rough_hand_tb;
                 end
                 if (valid && {red_out, green_out, blue_out} !== points[at][23:0]) begin
                     if (errors < 20)
-                        $display("point %0d %h: %h %h %h", at, points[at], red_out, green_out, blue_out);
+                        $display("point %0d %h: %h %h %h", at, points[at],
+                                 red_out, green_out, blue_out);
                     errors = errors + 1;
                 end
                 @(negedge clk);
