@@ -41,7 +41,7 @@ module rough_direct_datapath #(
     // Constants
     localparam [17:0] COS_GAMMA_MOST = 18'h20000;  // 1.0 in u1.17
     localparam [17:0] COS_DGAMMA_MOST = 18'h20000;  // 1.0 in u1.17
-    localparam [18:0] ONE = 19'h40000;  // 1.0 in u1.18
+    localparam [17:0] ONE = 18'h20000;  // 1.0 in u1.17
     localparam [16:0] ONE_2 = 17'h10000;  // 1.0 in u1.16
     localparam [16:0] RESULT_LEAST = 17'h10000;  // -1.0 in s0.16
     localparam [16:0] RESULT_MOST = 17'hffff;  // 0.9999847412109375 in s0.16
@@ -62,12 +62,12 @@ module rough_direct_datapath #(
     reg         [7:0]  red_reg;              // register 5: intensity of the light times k_s
     reg         [7:0]  green_reg;            // register 6: intensity of the light times k_s
     reg         [7:0]  blue_reg;             // register 7: intensity of the light times k_s
-    reg         [17:0] reg19_sin_gamma;      // register 19, u0.18: sin gamma
-    reg         [18:0] reg11_cos_cos;        // register 11, u1.18: cos gamma * cos dgamma
-    reg         [17:0] reg12_sin_sin;        // register 12, u0.18: sin gamma * sin dgamma
+    reg         [16:0] reg19_sin_gamma;      // register 19, u0.17: sin gamma
+    reg         [17:0] reg11_cos_cos;        // register 11, u1.17: cos gamma * cos dgamma
+    reg         [16:0] reg12_sin_sin;        // register 12, u0.17: sin gamma * sin dgamma
     // register 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
     reg  signed [16:0] reg13_result;
-    reg         [17:0] sine_word;            // u0.18: sine of the addressed cosine
+    reg         [16:0] sine_word;            // u0.17: sine of the addressed cosine
 
     wire cos_gamma_over = cos_gamma > COS_GAMMA_MOST;
     wire [17:0] cos_gamma_at_most = cos_gamma_over ? COS_GAMMA_MOST : cos_gamma;  // u1.17
@@ -85,50 +85,50 @@ module rough_direct_datapath #(
     wire [17:0] mux17 = mux17_select ? cos_dgamma_reg : cos_gamma_reg;
 
     wire [9:0] sine_address = mux17[17] ? 10'd1023 : mux17[16:7];
-    wire signed [18:0] adder31 = {1'b0, reg12_sin_sin} - ONE;  // adder 31, s0.18: register 12 - 1.0
-    wire [18:0] raised12 = {1'b0, reg12_sin_sin} + ONE;  // u1.18: register 12 + 1.0, by wiring
-    wire signed [19:0] inverse12 = ~{1'b0, raised12};  // s1.18: -(register 12) - 1.0, less an ulp
+    wire signed [17:0] adder31 = {1'b0, reg12_sin_sin} - ONE;  // adder 31, s0.17: register 12 - 1.0
+    wire [17:0] raised12 = {1'b0, reg12_sin_sin} + ONE;  // u1.17: register 12 + 1.0, by wiring
+    wire signed [18:0] inverse12 = ~{1'b0, raised12};  // s1.17: -(register 12) - 1.0, less an ulp
 
-    // mux 14, s1.18: what adder 15 adds to register 11
-    wire signed [19:0] mux14 = dgamma_negative_reg ? {adder31[18], adder31} : inverse12;
+    // mux 14, s1.17: what adder 15 adds to register 11
+    wire signed [18:0] mux14 = dgamma_negative_reg ? {adder31[17], adder31} : inverse12;
 
     wire subtracts = ~dgamma_negative_reg;  // carry-in of adder 15
 
-    // adder 15, s1.18: cos(gamma +- dgamma) - 1.0
-    wire signed [19:0] adder15 = {1'b0, reg11_cos_cos} + mux14 + {19'd0, subtracts};
+    // adder 15, s1.17: cos(gamma +- dgamma) - 1.0
+    wire signed [18:0] adder15 = {1'b0, reg11_cos_cos} + mux14 + {18'd0, subtracts};
 
     wire [16:0] adder16 = reg13_result + ONE_2;  // adder 16, u1.16: register 13 + 1.0
-    wire [22:0] half_exponent = {exponent_reg, 13'd0};  // u9.14: n/2, by wiring
+    wire [23:0] half_exponent = {exponent_reg, 14'd0};  // u9.15: n/2, by wiring
 
-    // mux 8, s19.0: first operand of multiplier 10
-    reg  signed [19:0] mux8;
+    // mux 8, s18.0: first operand of multiplier 10
+    reg  signed [18:0] mux8;
     always @* begin
         case (operand_select)
-            OPERAND_SELECT_COSINES: mux8 = {2'd0, cos_gamma_reg};
+            OPERAND_SELECT_COSINES: mux8 = {1'b0, cos_gamma_reg};
             OPERAND_SELECT_SINES: mux8 = {2'd0, sine_word};
             OPERAND_SELECT_HALF_N: mux8 = adder15;
-            OPERAND_SELECT_SQUARE: mux8 = {3'd0, adder16};
-            default: mux8 = {3'd0, adder16};
+            OPERAND_SELECT_SQUARE: mux8 = {2'd0, adder16};
+            default: mux8 = {2'd0, adder16};
         endcase
     end
 
     // mux 9: second operand of multiplier 10
-    reg  [22:0] mux9;
+    reg  [23:0] mux9;
     always @* begin
         case (operand_select)
-            OPERAND_SELECT_COSINES: mux9 = {5'd0, cos_dgamma_reg};
-            OPERAND_SELECT_SINES: mux9 = {5'd0, reg19_sin_gamma};
+            OPERAND_SELECT_COSINES: mux9 = {6'd0, cos_dgamma_reg};
+            OPERAND_SELECT_SINES: mux9 = {7'd0, reg19_sin_gamma};
             OPERAND_SELECT_HALF_N: mux9 = half_exponent;
-            OPERAND_SELECT_SQUARE: mux9 = {6'd0, adder16};
-            default: mux9 = {6'd0, adder16};
+            OPERAND_SELECT_SQUARE: mux9 = {7'd0, adder16};
+            default: mux9 = {7'd0, adder16};
         endcase
     end
 
     // multiplier 10, s43.0: the shared product; its point depends on the operands
     wire signed [43:0] multiplier10 = mux8 * $signed({1'b0, mux9});
 
-    wire [18:0] cos_cos = multiplier10[34:16];  // u1.18
-    wire [17:0] sin_sin = multiplier10[35:18];  // u0.18
+    wire [17:0] cos_cos = multiplier10[34:17];  // u1.17
+    wire [16:0] sin_sin = multiplier10[33:17];  // u0.17
     wire signed [16:0] result_limit = multiplier10[42] ? RESULT_LEAST : RESULT_MOST;  // s0.16
 
     // s0.16
@@ -151,8 +151,8 @@ module rough_direct_datapath #(
     wire [7:0] blue_intensity = blue_product[23:16] + {7'd0, blue_product[15]};
     assign blue_out = blue_intensity;  // output 42: intensity on the output
 
-    // ROM 18: sine (u0.18) at the middle of a bucket of the cosine
-    reg [17:0] sine_rom [0:1023];
+    // ROM 18: sine (u0.17) at the middle of a bucket of the cosine
+    reg [16:0] sine_rom [0:1023];
     initial $readmemh(SINE_FILE, sine_rom);
     always @(posedge clk) sine_word <= sine_rom[sine_address];
 

@@ -10,7 +10,6 @@
 //
 // Generated files belong to their user, without conditions.
 
-`timescale 1ns / 1ps
 `default_nettype none
 
 module cosine_power_tb #(
@@ -24,7 +23,8 @@ module cosine_power_tb #(
     reg [61:0] stimulus [0:CLOCKS-1];
     reg [26:0] expected [0:CLOCKS-1];
     reg [26:0] want;
-    reg         clk;
+
+    reg clk = 1'b0;
     reg         rst_n;
     reg         start;
     reg  [20:0] cos_gamma;
@@ -45,8 +45,10 @@ module cosine_power_tb #(
     wire [7:0]  blue_out;
 
     integer clock;
-    integer errors;
-    reg was_reset;  // the control unit is in a known state
+    // Initial values stand here and not in the process below: Verilator 5.006 takes a variable for
+    // constant after a loop with delays when the process has set it before the loop.
+    integer errors = 0;
+    reg was_reset = 1'b0;  // the control unit is in a known state
 
     cosine_power dut (
         .clk(clk),
@@ -85,9 +87,6 @@ module cosine_power_tb #(
     initial begin
         $readmemh(STIMULUS_FILE, stimulus);
         $readmemh(EXPECTED_FILE, expected);
-        errors = 0;
-        was_reset = 1'b0;
-        clk = 1'b0;
         for (clock = 0; clock < CLOCKS; clock = clock + 1) begin
             {rst_n, start, cos_gamma, cos_gamma_write, exponent, exponent_write, red, red_write,
                     green, green_write, blue, blue_write} = stimulus[clock];
