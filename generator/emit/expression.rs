@@ -83,6 +83,16 @@ impl<'a> Expressions<'a> {
         }
     }
 
+    /// The operand of a unary operator, which may not begin with another one.
+    fn primary(&mut self, id: NetId) -> String {
+        let text = self.operand(id);
+        if text.starts_with('~') {
+            format!("({text})")
+        } else {
+            text
+        }
+    }
+
     /// The localparam for a net that is a constant, possibly extended or relabelled, unless a literal
     /// says as much: 0, 1 ulp, all ones.
     fn constant(&mut self, id: NetId) -> Option<String> {
@@ -189,7 +199,7 @@ impl<'a> Expressions<'a> {
                 let bits = self.plan.wiring(id).unwrap_or_default();
                 self.bits(&bits)
             }
-            Op::Not(a) => format!("~{}", self.operand(*a)),
+            Op::Not(a) => format!("~{}", self.primary(*a)),
             Op::And(a, b) => self.binary(*a, "&", *b),
             Op::Or(a, b) => self.binary(*a, "|", *b),
             Op::Xor(a, b) => self.binary(*a, "^", *b),
@@ -222,8 +232,8 @@ impl<'a> Expressions<'a> {
             },
             Op::Any(a) if self.plan.design.width(*a) == 1 => self.whole(*a),
             Op::All(a) if self.plan.design.width(*a) == 1 => self.whole(*a),
-            Op::Any(a) => format!("|{}", self.operand(*a)),
-            Op::All(a) => format!("&{}", self.operand(*a)),
+            Op::Any(a) => format!("|{}", self.primary(*a)),
+            Op::All(a) => format!("&{}", self.primary(*a)),
             Op::Mux { select, inputs } => match &inputs[..] {
                 [zero, one] => {
                     let select = self.operand(*select);
