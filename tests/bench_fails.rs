@@ -1,0 +1,143 @@
+//! The emitted bench: what differs makes it fail, in every simulator, and it says where.
+
+mod common;
+
+use common::tools::LIMIT;
+use glint::cosim::external::{BenchOutcome, Simulator, run_bench};
+use glint::dsl::{Designer, end, step, valid};
+use glint::emit::{EmitInputs, Vectors, emit};
+use glint::fixed::{Format, Overflow, Rounding};
+use glint::netlist::Design;
+
+/// y = x², of an operand of four bits, to four bits.
+fn squarer() -> Design {
+    let d = Designer::new("squarer");
+    let x = d.operand("x", Format::unsigned(0, 4));
+    let square = d.mul("square", x.q(), x.q());
+    let y = d.register("y", Format::unsigned(0, 4));
+    y.takes(d.narrow(
+        "y_rounded",
+        square,
+        y.format(),
+        Rounding::Truncate,
+        Overflow::Saturate,
+    ));
+    d.output("y_out", y.q());
+    d.microprogram([
+        step("idle 100%", []),
+        step("say \"square\"", [y.load()]),
+        step("result", [valid(), end()]),
+    ]);
+    d.finish().unwrap_or_else(|error| panic!("{error}"))
+}
+
+/// A reset, one point with x = 12/16, and what comes of it: floor(144/16) = 9.
+fn vectors() -> Vectors {
+    // Inputs rst_n, start, x, x_write; outputs valid, busy, done, y_out.
+    let clocks = [
+        ([0, 0, 0, 0], [0, 0, 0, 0]),
+        ([1, 1, 12, 1], [0, 0, 0, 0]),
+        ([1, 0, 0, 0], [0, 1, 0, 0]),
+        ([1, 0, 0, 0], [0, 1, 0, 0]),
+        ([1, 0, 0, 0], [1, 1, 1, 9]),
+        ([1, 0, 0, 0], [0, 0, 0, 9]),
+    ];
+    Vectors {
+        inputs: clocks.iter().map(|(inputs, _)| inputs.to_vec()).collect(),
+        expected: clocks.iter().map(|(_, outputs)| outputs.to_vec()).collect(),
+        known_from: 4,
+    }
+}
+
+fn run(simulator: Simulator, vectors: Vectors) -> BenchOutcome {
+    let inputs = EmitInputs {
+        vectors: Some(vectors),
+        ..EmitInputs::default()
+    };
+    let files: Vec<_> = emit(&squarer(), &inputs)
+        .unwrap_or_else(|error| panic!("{error:?}"))
+        .into_iter()
+        .map(|file| {
+            let name = file.path.rsplit('/').next().unwrap_or_default().to_owned();
+            (name, file.contents)
+        })
+        .filter(|(name, _)| name.ends_with(".v") || name.ends_with(".mem"))
+        .collect();
+    run_bench(simulator, &files, "squarer_tb", LIMIT).unwrap_or_else(|error| panic!("{error:?}"))
+}
+
+#[test]
+fn true_vectors_pass_and_every_wrong_output_fails_in_both_simulators() {
+    for simulator in [Simulator::Icarus, Simulator::Verilator] {
+        let outcome = run(simulator, vectors());
+        assert!(outcome.passed, "{simulator}:\n{}", outcome.transcript);
+        let outputs = [
+            ("valid", 1, "0 (idle 100%)"),
+            ("done", 3, "1 (say 'square')"),
+            ("y_out", 5, "0 (idle 100%)"),
+        ];
+        for (output, clock, word) in outputs {
+            let mut wrong = vectors();
+            let at = ["valid", "busy", "done", "y_out"]
+                .iter()
+                .position(|name| *name == output);
+            wrong.expected[clock][at.unwrap_or_default()] ^= 1;
+            let outcome = run(simulator, wrong);
+            assert!(
+                !outcome.passed,
+                "{simulator}, {output}:\n{}",
+                outcome.transcript
+            );
+            let place = format!("clock {clock}, word {word}: {output} is ");
+            assert!(
+                outcome.transcript.contains(&place),
+                "{place}\n{}",
+                outcome.transcript
+            );
+            assert!(
+                outcome
+                    .transcript
+                    .contains("FAIL squarer: 1 differences in 6 clocks")
+            );
+        }
+    }
+}
+
+#[test]
+fn results_are_not_compared_before_they_are_known() {
+    let mut early = vectors();
+    early.expected[3][3] ^= 1;
+    assert!(run(Simulator::Icarus, early).passed);
+}
+
+#[test]
+fn vectors_that_do_not_fit_are_refused() {
+    let refused = |spoil: fn(&mut Vectors)| {
+        let mut vectors = vectors();
+        spoil(&mut vectors);
+        let inputs = EmitInputs {
+            vectors: Some(vectors),
+            ..EmitInputs::default()
+        };
+        emit(&squarer(), &inputs)
+            .expect_err("vectors that do not fit")
+            .to_string()
+    };
+    let message = refused(|vectors| vectors.inputs[2][2] = 16);
+    assert_eq!(
+        message,
+        "clock 2 of the stimulus: 0x10 does not fit the 4 bits of `x`"
+    );
+    let message = refused(|vectors| vectors.expected[0].truncate(3));
+    assert_eq!(
+        message,
+        "clock 0 of the expected outputs has 3 values for 4 ports"
+    );
+    let message = refused(|vectors| vectors.expected.truncate(3));
+    assert_eq!(message, "6 clocks of stimulus, 3 of expected outputs");
+    let message = refused(|vectors| vectors.known_from = 7);
+    assert_eq!(
+        message,
+        "results are compared from clock 7 on, but there are 6 clocks"
+    );
+}
