@@ -84,7 +84,10 @@ fn with_golden(unit: &Unit) -> Result<Duration> {
     let mut lockstep = unit.lockstep(1)?;
     let begin = Instant::now();
     let outcome = lockstep.run(POINTS, None, &mut |_| ())?;
-    anyhow::ensure!(outcome.mismatch.is_none(), "golden model and simulation differ");
+    anyhow::ensure!(
+        outcome.mismatch.is_none(),
+        "golden model and simulation differ"
+    );
     Ok(begin.elapsed())
 }
 
@@ -118,7 +121,8 @@ impl Icarus {
     fn run(&mut self) -> Result<Duration> {
         let begin = Instant::now();
         let limit = Duration::from_secs(600);
-        self.vvp.run_to_success(["-n", "bench.vvp"], self.place.path(), limit)?;
+        self.vvp
+            .run_to_success(["-n", "bench.vvp"], self.place.path(), limit)?;
         Ok(begin.elapsed())
     }
 }

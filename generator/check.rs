@@ -104,24 +104,41 @@ impl Checker<'_> {
     fn names(&mut self) {
         let design = self.design;
         let mut seen: HashMap<&str, Place> = HashMap::new();
-        let nets = design.nets.iter().map(|net| (net.name.as_str(), net.location));
-        let roms = design.roms.iter().map(|rom| (rom.name.as_str(), rom.location));
+        let nets = design
+            .nets
+            .iter()
+            .map(|net| (net.name.as_str(), net.location));
+        let roms = design
+            .roms
+            .iter()
+            .map(|rom| (rom.name.as_str(), rom.location));
         for (name, location) in nets.chain(roms) {
             if name == "clk" {
-                self.report("`clk` is the clock of every design; choose another name".to_owned(), location);
+                self.report(
+                    "`clk` is the clock of every design; choose another name".to_owned(),
+                    location,
+                );
             } else if let Err(why) = identifier::check(name) {
-                self.report(format!("`{name}` cannot be a Verilog name: {why}"), location);
+                self.report(
+                    format!("`{name}` cannot be a Verilog name: {why}"),
+                    location,
+                );
             }
             if let Some(first) = seen.insert(name, location) {
-                let diagnostic = Diagnostic::new(format!("the name `{name}` is used twice"), location);
-                self.found.push(diagnostic.note("the first".to_owned(), first));
+                let diagnostic =
+                    Diagnostic::new(format!("the name `{name}` is used twice"), location);
+                self.found
+                    .push(diagnostic.note("the first".to_owned(), first));
             }
         }
         if let Err(why) = identifier::check(&design.name) {
             let location = design.nets.first().map(|net| net.location);
             if let Some(location) = location {
                 self.report(
-                    format!("`{}` cannot be the name of a Verilog module: {why}", design.name),
+                    format!(
+                        "`{}` cannot be the name of a Verilog module: {why}",
+                        design.name
+                    ),
                     location,
                 );
             }
@@ -137,7 +154,10 @@ impl Checker<'_> {
         for register in &self.design.registers {
             let net = self.design.net(register.q);
             if register.data.is_none() {
-                self.report(format!("nothing drives the data input of register `{}`", net.name), net.location);
+                self.report(
+                    format!("nothing drives the data input of register `{}`", net.name),
+                    net.location,
+                );
             }
         }
     }
@@ -157,12 +177,21 @@ impl Checker<'_> {
         for (id, net) in design.iter() {
             let width = net.format.width();
             if width > MAX_WIDTH {
-                self.report(format!("`{}` is {width} bits wide; {MAX_WIDTH} is the most", net.name), net.location);
+                self.report(
+                    format!(
+                        "`{}` is {width} bits wide; {MAX_WIDTH} is the most",
+                        net.name
+                    ),
+                    net.location,
+                );
             }
             let (low, high) = net.range;
             if low > high || !net.format.holds(low) || !net.format.holds(high) {
                 self.report(
-                    format!("`{}` is {}, but takes values from {low} to {high} ulp", net.name, net.format),
+                    format!(
+                        "`{}` is {}, but takes values from {low} to {high} ulp",
+                        net.name, net.format
+                    ),
                     net.location,
                 );
             }
@@ -172,10 +201,18 @@ impl Checker<'_> {
                 let operands: Vec<String> = op
                     .operands()
                     .iter()
-                    .map(|&operand| format!("`{}` ({})", self.name(operand), design.net(operand).format))
+                    .map(|&operand| {
+                        format!("`{}` ({})", self.name(operand), design.net(operand).format)
+                    })
                     .collect();
                 self.report(
-                    format!("`{}` ({}) = {} of {}: {why}", net.name, net.format, op.mnemonic(), operands.join(", ")),
+                    format!(
+                        "`{}` ({}) = {} of {}: {why}",
+                        net.name,
+                        net.format,
+                        op.mnemonic(),
+                        operands.join(", ")
+                    ),
                     net.location,
                 );
             }
@@ -183,11 +220,20 @@ impl Checker<'_> {
         for register in &design.registers {
             let net = design.net(register.q);
             let width = |id: NetId| design.width(id);
-            if register.data.is_some_and(|data| width(data) != width(register.q)) {
-                self.report(format!("register `{}` and its data differ in width", net.name), net.location);
+            if register
+                .data
+                .is_some_and(|data| width(data) != width(register.q))
+            {
+                self.report(
+                    format!("register `{}` and its data differ in width", net.name),
+                    net.location,
+                );
             }
             if register.enable.is_some_and(|enable| width(enable) != 1) {
-                self.report(format!("the enable of register `{}` is not one bit", net.name), net.location);
+                self.report(
+                    format!("the enable of register `{}` is not one bit", net.name),
+                    net.location,
+                );
             }
         }
     }
@@ -209,14 +255,25 @@ impl Checker<'_> {
                 parts.iter().map(|&part| width(part)).sum::<u32>() == own,
                 "the widths must add up",
             ),
-            Op::And(a, b) | Op::Or(a, b) | Op::Xor(a, b) | Op::Sub(a, b) => ok(same(&[*a, *b]), EQUAL),
+            Op::And(a, b) | Op::Or(a, b) | Op::Xor(a, b) | Op::Sub(a, b) => {
+                ok(same(&[*a, *b]), EQUAL)
+            }
             Op::Add { a, b, carry } => {
-                ok(carry.is_none_or(|carry| width(carry) == 1), "the carry is one bit")?;
+                ok(
+                    carry.is_none_or(|carry| width(carry) == 1),
+                    "the carry is one bit",
+                )?;
                 ok(same(&[*a, *b]), EQUAL)
             }
             Op::Mul(a, b) => {
-                ok(signed(*a) == signed(*b), "one operand is signed, the other is not")?;
-                ok(width(*a) + width(*b) == own, "the product is as wide as both together")
+                ok(
+                    signed(*a) == signed(*b),
+                    "one operand is signed, the other is not",
+                )?;
+                ok(
+                    width(*a) + width(*b) == own,
+                    "the product is as wide as both together",
+                )
             }
             Op::Equal(a, b) => {
                 ok(width(*a) == width(*b), EQUAL)?;
@@ -224,7 +281,10 @@ impl Checker<'_> {
             }
             Op::Less(a, b) => {
                 ok(width(*a) == width(*b), EQUAL)?;
-                ok(signed(*a) == signed(*b), "one operand is signed, the other is not")?;
+                ok(
+                    signed(*a) == signed(*b),
+                    "one operand is signed, the other is not",
+                )?;
                 ok(own == 1, BIT)
             }
             Op::Any(_) | Op::All(_) => ok(own == 1, BIT),
@@ -248,7 +308,12 @@ impl Checker<'_> {
             }
             if !rom.comments.is_empty() && rom.comments.len() != rom.words.len() {
                 self.report(
-                    format!("ROM `{}`: {} comments for {} words", rom.name, rom.comments.len(), rom.words.len()),
+                    format!(
+                        "ROM `{}`: {} comments for {} words",
+                        rom.name,
+                        rom.comments.len(),
+                        rom.words.len()
+                    ),
                     rom.location,
                 );
             }
@@ -263,7 +328,10 @@ impl Checker<'_> {
         while let Some(at) = pending.pop() {
             let Some(word) = words.get(at) else {
                 if let Some(last) = words.last() {
-                    self.report(format!("the last word, `{}`, does not end", last.name), last.location);
+                    self.report(
+                        format!("the last word, `{}`, does not end", last.name),
+                        last.location,
+                    );
                 }
                 continue;
             };
@@ -278,13 +346,19 @@ impl Checker<'_> {
         }
         for (word, reached) in words.iter().zip(reached) {
             if !reached {
-                self.report(format!("word `{}` cannot be reached", word.name), word.location);
+                self.report(
+                    format!("word `{}` cannot be reached", word.name),
+                    word.location,
+                );
             }
         }
         if let Some(idle) = words.first() {
             if idle.sequence != Sequence::Next {
                 self.report(
-                    format!("word `{}` is where the device waits for start; it goes on to the next", idle.name),
+                    format!(
+                        "word `{}` is where the device waits for start; it goes on to the next",
+                        idle.name
+                    ),
                     idle.location,
                 );
             }
@@ -302,7 +376,9 @@ impl Checker<'_> {
         }
         for (at, field) in control.fields.iter().enumerate() {
             let net = self.design.net(field.net);
-            if matches!(field.kind, FieldKind::Enable) && words.iter().all(|word| word.values[at] == 0) {
+            if matches!(field.kind, FieldKind::Enable)
+                && words.iter().all(|word| word.values[at] == 0)
+            {
                 self.report(format!("no word turns `{}`", field.name), net.location);
             }
         }
@@ -316,7 +392,8 @@ impl Checker<'_> {
         let design = self.design;
         let word = &design.control.words[at];
         for register in &design.registers {
-            let Some(Driver::Field(enable)) = register.enable.map(|id| &design.net(id).driver) else {
+            let Some(Driver::Field(enable)) = register.enable.map(|id| &design.net(id).driver)
+            else {
                 continue;
             };
             let Some(data) = register.data.filter(|_| word.values[enable.index()] == 1) else {
@@ -333,10 +410,13 @@ impl Checker<'_> {
                 {
                     let field = &design.control.fields[view.field.index()];
                     let choice = |value: u64| match &field.kind {
-                        FieldKind::Select(choices) => choices.get(value as usize).map_or("nothing", String::as_str),
+                        FieldKind::Select(choices) => choices
+                            .get(value as usize)
+                            .map_or("nothing", String::as_str),
                         _ => "nothing",
                     };
-                    let wanted: Vec<&str> = view.values.iter().map(|&value| choice(value)).collect();
+                    let wanted: Vec<&str> =
+                        view.values.iter().map(|&value| choice(value)).collect();
                     let message = format!(
                         "word `{}` loads `{}` with the product of ({}), but selects ({})",
                         word.name,
@@ -345,7 +425,8 @@ impl Checker<'_> {
                         choice(word.values[view.field.index()]),
                     );
                     let diagnostic = Diagnostic::new(message, word.location);
-                    let diagnostic = diagnostic.note("the product".to_owned(), design.net(id).location);
+                    let diagnostic =
+                        diagnostic.note("the product".to_owned(), design.net(id).location);
                     self.found.push(diagnostic);
                     break;
                 }

@@ -52,7 +52,13 @@ impl Unit {
     /// Model and design do not name the same signals.
     pub fn lockstep(&self, seed: u64) -> Result<Lockstep<'_>> {
         let model = (self.device.model)(&self.config);
-        Lockstep::new(&self.design, model, self.contract.as_ref(), Simulator::new(&self.design)?, seed)
+        Lockstep::new(
+            &self.design,
+            model,
+            self.contract.as_ref(),
+            Simulator::new(&self.design)?,
+            seed,
+        )
     }
 
     /// Clocks between the events of the handshake.
@@ -70,7 +76,9 @@ impl Unit {
     /// They do not agree.
     pub fn vectors(&self, points: u64, seed: u64) -> Result<Vectors> {
         let mut vectors = Vectors::default();
-        let outcome = self.lockstep(seed)?.run(points, Some(&mut vectors), &mut |_| ())?;
+        let outcome = self
+            .lockstep(seed)?
+            .run(points, Some(&mut vectors), &mut |_| ())?;
         ensure!(
             outcome.mismatch.is_none(),
             "golden model and simulation differ: {:?}",

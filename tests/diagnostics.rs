@@ -13,7 +13,11 @@ fn mistakes(wrong: impl FnOnce(&Designer)) -> Vec<String> {
     y.takes(x.q());
     d.output("y_out", y.q());
     wrong(&d);
-    d.microprogram([step("idle", []), step("load", [y.load()]), step("result", [valid(), end()])]);
+    d.microprogram([
+        step("idle", []),
+        step("load", [y.load()]),
+        step("result", [valid(), end()]),
+    ]);
     finish(d)
 }
 
@@ -59,7 +63,13 @@ fn two_drivers() {
         r.takes(a.q());
         r.takes(w);
     });
-    assert_eq!(found, ["`w` has two drivers: `a_reg` is the second", "`r` has two drivers: `w` is the second"]);
+    assert_eq!(
+        found,
+        [
+            "`w` has two drivers: `a_reg` is the second",
+            "`r` has two drivers: `w` is the second"
+        ]
+    );
 }
 
 #[test]
@@ -73,7 +83,12 @@ fn the_line_of_a_mistake_is_that_of_the_description() {
     d.microprogram([step("idle", []), step("end", [end()])]);
     let found = d.finish().unwrap_err();
     assert_eq!(found.0[0].location.line(), line);
-    assert!(found.to_string().contains(&format!("--> tests/diagnostics.rs:{line}:")), "{found}");
+    assert!(
+        found
+            .to_string()
+            .contains(&format!("--> tests/diagnostics.rs:{line}:")),
+        "{found}"
+    );
 }
 
 #[test]
@@ -85,7 +100,10 @@ fn missing_drivers() {
     });
     assert_eq!(
         found,
-        ["nothing drives `floating`", "nothing drives the data input of register `idle_register`"]
+        [
+            "nothing drives `floating`",
+            "nothing drives the data input of register `idle_register`"
+        ]
     );
 }
 
@@ -146,7 +164,9 @@ fn clashing_fields() {
     });
     assert_eq!(
         found,
-        ["word `both`: `second.pick(a_reg)` clashes with `first.pick(a_reg)`: they share select lines"]
+        [
+            "word `both`: `second.pick(a_reg)` clashes with `first.pick(a_reg)`: they share select lines"
+        ]
     );
 }
 
@@ -156,39 +176,74 @@ fn picks_of_what_a_mux_does_not_pass_on() {
         let a = d.operand("a", BYTE);
         let b = d.operand("b", BYTE);
         let m = d.mux("m", [a.q(), a.q()]);
-        vec![step("idle", [m.pick(b.q())]), step("x", [m.pick(a.q()), load]), step("end", [end()])]
+        vec![
+            step("idle", [m.pick(b.q())]),
+            step("x", [m.pick(a.q()), load]),
+            step("end", [end()]),
+        ]
     });
-    assert_eq!(found, ["`b_reg` is no input of `m`", "`a_reg` is more than one input of `m`"]);
+    assert_eq!(
+        found,
+        [
+            "`b_reg` is no input of `m`",
+            "`a_reg` is more than one input of `m`"
+        ]
+    );
 }
 
 #[test]
 fn words_out_of_order() {
-    let found = program(|_, load| vec![step("idle", []), step("end", [load.clone(), end()]), step("after", [load])]);
+    let found = program(|_, load| {
+        vec![
+            step("idle", []),
+            step("end", [load.clone(), end()]),
+            step("after", [load]),
+        ]
+    });
     assert_eq!(found, ["word `after` cannot be reached"]);
 
     let found = program(|_, load| vec![step("idle", []), step("load", [load])]);
     assert_eq!(found, ["the last word, `load`, does not end"]);
 
     let found = program(|_, load| vec![step("idle", [load.clone()]), step("load", [load, end()])]);
-    assert_eq!(found, ["word `idle` turns `y_load`, but the device also waits for start in it"]);
+    assert_eq!(
+        found,
+        ["word `idle` turns `y_load`, but the device also waits for start in it"]
+    );
 
     let found = program(|_, load| vec![step("idle", []), step("two ways", [load, next(), end()])]);
     assert_eq!(found, ["word `two ways` goes on in two ways"]);
 
-    let found = program(|_, load| vec![step("idle", []), step("twice", [load.clone()]), step("twice", [load, end()])]);
+    let found = program(|_, load| {
+        vec![
+            step("idle", []),
+            step("twice", [load.clone()]),
+            step("twice", [load, end()]),
+        ]
+    });
     assert_eq!(found, ["two words are named `twice`"]);
 
     let found = program(|_, _| vec![step("idle", []), step("end", [end()])]);
     assert_eq!(found, ["no word turns `y_load`"]);
 
     let found = program(|_, load| vec![step("only", [load, end()])]);
-    assert_eq!(found, ["a microprogram has at least two words: where it waits, and where it ends"]);
+    assert_eq!(
+        found,
+        ["a microprogram has at least two words: where it waits, and where it ends"]
+    );
 
     let found = program(|d, load| {
         let bit = d.operand("more", Format::BIT);
-        vec![step("idle", []), step("load", [load, loop_while(bit.q(), "nowhere")]), step("end", [end()])]
+        vec![
+            step("idle", []),
+            step("load", [load, loop_while(bit.q(), "nowhere")]),
+            step("end", [end()]),
+        ]
     });
-    assert_eq!(found, ["word `load` loops to `nowhere`, but no word has that name"]);
+    assert_eq!(
+        found,
+        ["word `load` loops to `nowhere`, but no word has that name"]
+    );
 }
 
 #[test]
@@ -213,7 +268,13 @@ fn products_taken_under_another_selection() {
     let product = d.shared_mul("product", &first, &second);
     let y = d.register("y", BYTE);
     let square = product.of(a.q(), a.q());
-    y.takes(d.narrow("square", square, BYTE, Rounding::Truncate, Overflow::Saturate));
+    y.takes(d.narrow(
+        "square",
+        square,
+        BYTE,
+        Rounding::Truncate,
+        Overflow::Saturate,
+    ));
     d.output("y_out", y.q());
     d.microprogram([
         step("idle", []),
@@ -253,7 +314,10 @@ fn nets_that_are_too_wide() {
         let a = d.operand("a", Format::unsigned(0, 40));
         d.mul("square", a.q(), a.q());
     });
-    assert_eq!(found, ["`square` would be 80 bits wide (u0.80); a net has 1 to 64"]);
+    assert_eq!(
+        found,
+        ["`square` would be 80 bits wide (u0.80); a net has 1 to 64"]
+    );
 }
 
 #[test]
@@ -280,7 +344,10 @@ fn constants_that_are_not_representable() {
     });
     assert_eq!(
         found,
-        ["constant `third`: 0.3333333333333333 is not representable in u0.8", "constant `many`: 256 does not fit u0.8"]
+        [
+            "constant `third`: 0.3333333333333333 is not representable in u0.8",
+            "constant `many`: 256 does not fit u0.8"
+        ]
     );
 }
 
@@ -293,7 +360,8 @@ fn names_that_verilog_does_not_take() {
         d.operand("two words", BYTE);
         d.operand("clk", BYTE);
     });
-    let twice = ["a", "a_write", "a_load", "a_reg"].map(|name| format!("the name `{name}` is used twice"));
+    let twice =
+        ["a", "a_write", "a_load", "a_reg"].map(|name| format!("the name `{name}` is used twice"));
     for message in twice {
         assert!(found.contains(&message), "{found:#?}");
     }

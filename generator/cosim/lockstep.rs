@@ -84,9 +84,9 @@ impl<'a> Lockstep<'a> {
         seed: u64,
     ) -> Result<Self> {
         let find = |name: &str| {
-            design
-                .find(name)
-                .ok_or_else(|| anyhow!("the golden model speaks of `{name}`, which the design does not have"))
+            design.find(name).ok_or_else(|| {
+                anyhow!("the golden model speaks of `{name}`, which the design does not have")
+            })
         };
         let inputs: Vec<NetId> = design.inputs().map(|port| port.net).collect();
         let outputs: Vec<NetId> = design.outputs().map(|port| port.net).collect();
@@ -99,10 +99,17 @@ impl<'a> Lockstep<'a> {
                 at.with_context(|| format!("the golden model takes `{name}` for an input"))
             })
             .collect::<Result<Vec<_>>>()?;
-        let compared = model.signals().iter().map(|name| find(name)).collect::<Result<Vec<_>>>()?;
+        let compared = model
+            .signals()
+            .iter()
+            .map(|name| find(name))
+            .collect::<Result<Vec<_>>>()?;
         for id in outputs.iter().chain(&registers(design)) {
             let name = &design.net(*id).name;
-            ensure!(compared.contains(id), "the golden model does not predict `{name}`");
+            ensure!(
+                compared.contains(id),
+                "the golden model does not predict `{name}`"
+            );
         }
         let stimulus = Stimulus::new(design, contract.operands(), seed);
         let operands = contract
@@ -116,12 +123,20 @@ impl<'a> Lockstep<'a> {
         let role = |wanted: fn(Role) -> bool| design.port(wanted).map(|port| port.net);
         let busy = role(|role| role == Role::Busy).context("the design has no output `busy`")?;
         let valid = role(|role| role == Role::Valid).context("the design has no output `valid`")?;
-        let results = contract.outputs().iter().map(|name| find(name)).collect::<Result<Vec<_>>>()?;
+        let results = contract
+            .outputs()
+            .iter()
+            .map(|name| find(name))
+            .collect::<Result<Vec<_>>>()?;
         Ok(Self {
             design,
             contract,
             model_inputs: vec![0; order.len()],
-            colours: contract.operands().iter().filter(|operand| operand.colour).count(),
+            colours: contract
+                .operands()
+                .iter()
+                .filter(|operand| operand.colour)
+                .count(),
             model,
             simulator,
             stimulus,
@@ -224,7 +239,9 @@ impl<'a> Lockstep<'a> {
                     signal: self.model.signals()[at].clone(),
                     golden,
                     simulated,
-                    word: words.get(word as usize).map_or_else(String::new, |word| word.name.clone()),
+                    word: words
+                        .get(word as usize)
+                        .map_or_else(String::new, |word| word.name.clone()),
                 });
             }
         }
@@ -251,7 +268,11 @@ impl<'a> Lockstep<'a> {
             let format = self.design.net(net).format;
             let out = format.to_f64(format.raw(self.simulator.value(net)));
             let units = (out - exact).abs();
-            if outcome.worst.as_ref().is_none_or(|worst| units > worst.units) {
+            if outcome
+                .worst
+                .as_ref()
+                .is_none_or(|worst| units > worst.units)
+            {
                 outcome.worst = Some(Worst {
                     units,
                     output: self.design.net(net).name.clone(),

@@ -41,7 +41,11 @@ impl Random {
     /// An integer from `low` to `high`.
     pub fn within(&mut self, low: i64, high: i64) -> i64 {
         let span = (i128::from(high) - i128::from(low) + 1) as u64;
-        if span == 0 { self.bits() as i64 } else { low.wrapping_add(self.below(span) as i64) }
+        if span == 0 {
+            self.bits() as i64
+        } else {
+            low.wrapping_add(self.below(span) as i64)
+        }
     }
 }
 
@@ -85,7 +89,10 @@ impl Stimulus {
     ///
     /// Operands of the design that `operands` does not mention take any bit pattern.
     pub fn new(design: &Design, operands: &[Operand], seed: u64) -> Self {
-        let names: Vec<&str> = design.inputs().map(|port| design.net(port.net).name.as_str()).collect();
+        let names: Vec<&str> = design
+            .inputs()
+            .map(|port| design.net(port.net).name.as_str())
+            .collect();
         let position = |net: NetId| {
             let name = &design.net(net).name;
             names.iter().position(|other| other == name).unwrap_or(0)
@@ -130,7 +137,9 @@ impl Stimulus {
 
     /// The position of an operand among those of the design, for [`Stimulus::accepted`].
     pub fn position(&self, name: &str) -> Option<usize> {
-        self.operands.iter().position(|driven| driven.operand.name == name)
+        self.operands
+            .iter()
+            .position(|driven| driven.operand.name == name)
     }
 
     /// The raw value that was last written to an operand while the device could take it.
@@ -154,7 +163,11 @@ impl Stimulus {
                 if !self.first {
                     self.noise(busy);
                 }
-                self.phase = if left > 0 { Phase::Reset(left - 1) } else { self.next_point() };
+                self.phase = if left > 0 {
+                    Phase::Reset(left - 1)
+                } else {
+                    self.next_point()
+                };
             }
             Phase::Writing(left) => self.write(left),
             Phase::Starting(idle) => {
@@ -239,7 +252,11 @@ impl Stimulus {
             self.begin();
             Phase::Running
         } else {
-            Phase::Starting(if self.random.once_in(4) { self.random.below(6) as u32 } else { 0 })
+            Phase::Starting(if self.random.once_in(4) {
+                self.random.below(6) as u32
+            } else {
+                0
+            })
         };
     }
 
@@ -259,7 +276,10 @@ impl Stimulus {
 
     /// A bit pattern for an operand: mostly of its domain, often at its ends, sometimes anything.
     fn value(&mut self, at: usize) -> u64 {
-        let (format, (low, high)) = (self.operands[at].operand.format, self.operands[at].operand.domain);
+        let (format, (low, high)) = (
+            self.operands[at].operand.format,
+            self.operands[at].operand.domain,
+        );
         let raw = match self.random.below(16) {
             0 => i128::from(low),
             1 => i128::from(high),

@@ -24,7 +24,8 @@ struct Trial {
 /// # Errors
 /// A device that never ends, or never raises `valid`.
 pub fn timing(design: &Design, contract: &dyn Contract) -> Result<Timing> {
-    let corner = |pick: fn(&Operand) -> i64| contract.operands().iter().map(pick).collect::<Vec<_>>();
+    let corner =
+        |pick: fn(&Operand) -> i64| contract.operands().iter().map(pick).collect::<Vec<_>>();
     let corners = [
         corner(|operand| operand.domain.0),
         corner(|operand| operand.domain.1),
@@ -97,7 +98,11 @@ fn example_operands(contract: &dyn Contract) -> Vec<i64> {
             }
         })
         .collect();
-    let control = contract.operands().iter().filter(|operand| !operand.colour).count();
+    let control = contract
+        .operands()
+        .iter()
+        .filter(|operand| !operand.colour)
+        .count();
     if let Some(first) = contract.operands().first() {
         let (low, high) = first.domain;
         for step in 0..256 {
@@ -113,18 +118,29 @@ fn example_operands(contract: &dyn Contract) -> Vec<i64> {
 }
 
 fn results(design: &Design, contract: &dyn Contract) -> Vec<NetId> {
-    contract.outputs().iter().filter_map(|name| design.find(name)).collect()
+    contract
+        .outputs()
+        .iter()
+        .filter_map(|name| design.find(name))
+        .collect()
 }
 
 /// Resets, writes the operands, starts, and waits for the end.
 fn run(design: &Design, contract: &dyn Contract, operands: &[i64]) -> Result<Trial> {
     let mut simulator = Simulator::new(design)?;
-    let output = |wanted: fn(Role) -> bool| design.port(wanted).map(|port| port.net).context("no handshake");
+    let output = |wanted: fn(Role) -> bool| {
+        design
+            .port(wanted)
+            .map(|port| port.net)
+            .context("no handshake")
+    };
     let valid = output(|role| role == Role::Valid)?;
     let done = output(|role| role == Role::Done)?;
     let busy = output(|role| role == Role::Busy)?;
     let input = |name: &str| {
-        let at = design.inputs().position(|port| design.net(port.net).name == name);
+        let at = design
+            .inputs()
+            .position(|port| design.net(port.net).name == name);
         at.with_context(|| format!("no input `{name}`"))
     };
     let (reset, start) = (input("rst_n")?, input("start")?);
@@ -156,7 +172,11 @@ fn run(design: &Design, contract: &dyn Contract, operands: &[i64]) -> Result<Tri
         }
         if simulator.value(busy) == 0 {
             trial.timing.start_to_start = Some(clock);
-            ensure!(trial.timing.start_to_valid.is_some(), "`{}` never raises valid", design.name);
+            ensure!(
+                trial.timing.start_to_valid.is_some(),
+                "`{}` never raises valid",
+                design.name
+            );
             return Ok(trial);
         }
         simulator.clock()?;

@@ -26,12 +26,22 @@ pub fn cosine_signed() -> Key {
 
 /// `exponent.bits`.
 pub fn exponent_bits() -> Key {
-    Key::integer("exponent.bits", 10, 1..=12, "Bits of the specular exponent n.")
+    Key::integer(
+        "exponent.bits",
+        10,
+        1..=12,
+        "Bits of the specular exponent n.",
+    )
 }
 
 /// `colour.bits`.
 pub fn colour_bits() -> Key {
-    Key::integer("colour.bits", 8, 1..=12, "Bits of a colour operand, and of an output.")
+    Key::integer(
+        "colour.bits",
+        8,
+        1..=12,
+        "Bits of a colour operand, and of an output.",
+    )
 }
 
 /// `intensity.fraction`.
@@ -46,12 +56,22 @@ pub fn intensity_fraction(default: i64) -> Key {
 
 /// `intensity.rounding`.
 pub fn intensity_rounding() -> Key {
-    Key::choice("intensity.rounding", "truncate", &ROUNDINGS, "Rounding into the register that holds f.")
+    Key::choice(
+        "intensity.rounding",
+        "truncate",
+        &ROUNDINGS,
+        "Rounding into the register that holds f.",
+    )
 }
 
 /// `output.rounding`.
 pub fn output_rounding() -> Key {
-    Key::choice("output.rounding", "nearest", &ROUNDINGS, "Rounding of the colour outputs to integers.")
+    Key::choice(
+        "output.rounding",
+        "nearest",
+        &ROUNDINGS,
+        "Rounding of the colour outputs to integers.",
+    )
 }
 
 /// `domain.exponent_min`.
@@ -76,7 +96,10 @@ pub fn exponent_max() -> Key {
 
 /// The domain of n is not empty and fits the operand.
 pub fn check_exponents(config: &Config, problems: &mut Problems) {
-    let (min, max) = (config.integer("domain.exponent_min"), config.integer("domain.exponent_max"));
+    let (min, max) = (
+        config.integer("domain.exponent_min"),
+        config.integer("domain.exponent_max"),
+    );
     let bits = config.integer("exponent.bits");
     if min > max {
         problems.push(

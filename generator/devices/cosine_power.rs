@@ -18,7 +18,12 @@ pub fn schema() -> Schema {
     Schema {
         device: "cosine-power",
         keys: vec![
-            Key::choice("power", "16", &["2", "4", "8", "16"], "The power m: the larger, the closer to cos^n, and the more squarings."),
+            Key::choice(
+                "power",
+                "16",
+                &["2", "4", "8", "16"],
+                "The power m: the larger, the closer to cos^n, and the more squarings.",
+            ),
             common::cosine_fraction(20),
             common::cosine_signed(),
             common::exponent_bits(),
@@ -76,7 +81,10 @@ pub fn describe(d: &Designer, config: &Config) {
 
     let one = d.constant("one", 1.0, Format::unsigned(1, integer("cosine.fraction")));
     let complement = d.sub("complement", one, cos_gamma).doc("1.0 - cos gamma");
-    let zeta = exponent.shift_right(squarings as i32).named("zeta").doc("n/m, by wiring");
+    let zeta = exponent
+        .shift_right(squarings as i32)
+        .named("zeta")
+        .doc("n/m, by wiring");
     let base = base(d, cos_gamma, accumulator.q());
 
     let first = d
@@ -85,12 +93,24 @@ pub fn describe(d: &Designer, config: &Config) {
     let second = d
         .bus("second", operand_select, [zeta, base, accumulator.q()])
         .doc("second operand of the multiplier");
-    let product = d.shared_mul("product", &first, &second).doc("its point depends on the operands");
+    let product = d
+        .shared_mul("product", &first, &second)
+        .doc("its point depends on the operands");
     let rounding_f = rounding(config, "intensity.rounding");
-    let distance = d.narrow("distance", product.of(complement, zeta), f, rounding_f, Overflow::Saturate);
+    let distance = d.narrow(
+        "distance",
+        product.of(complement, zeta),
+        f,
+        rounding_f,
+        Overflow::Saturate,
+    );
     let square = product.of_any(&[(base, base), (accumulator.q(), accumulator.q())]);
     let square = d.narrow("square", square, f, rounding_f, Overflow::Saturate);
-    let next = d.mux_on("accumulator_next", operand_select, [distance, square, square]);
+    let next = d.mux_on(
+        "accumulator_next",
+        operand_select,
+        [distance, square, square],
+    );
     accumulator.takes(next.out());
     colours.outputs(accumulator.q(), rounding(config, "output.rounding"));
 
@@ -98,7 +118,9 @@ pub fn describe(d: &Designer, config: &Config) {
         step("operands 1 - cos gamma, n/m", []),
         step(
             "accumulator <- n/m * (1 - cos gamma)",
-            [accumulator.load()].into_iter().chain(remaining.map(|counter| counter.load())),
+            [accumulator.load()]
+                .into_iter()
+                .chain(remaining.map(|counter| counter.load())),
         ),
         step(
             "accumulator <- base^2",
@@ -107,7 +129,9 @@ pub fn describe(d: &Designer, config: &Config) {
     ];
     if let Some(remaining) = remaining {
         let one = d.raw_constant("one_left", 1, remaining.q().format());
-        let more = d.less("more", one, remaining.q()).doc("not the last squaring");
+        let more = d
+            .less("more", one, remaining.q())
+            .doc("not the last squaring");
         steps.push(step(
             "accumulator <- accumulator^2",
             [
@@ -126,10 +150,15 @@ pub fn describe(d: &Designer, config: &Config) {
 /// `1 − n/m·(1 − cos γ)` as the complement of the accumulator: an ulp too small, which is what keeps it
 /// a fraction. 0 when cos γ ≤ 0.
 fn base<'d>(d: &'d Designer, cos_gamma: Signal<'d>, accumulator: Signal<'d>) -> Signal<'d> {
-    let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
-    let inverse = d.not("inverse", accumulator).doc("1.0 - accumulator, less an ulp");
+    let facing = d
+        .any("facing", cos_gamma)
+        .doc("the surface faces the half vector");
+    let inverse = d
+        .not("inverse", accumulator)
+        .doc("1.0 - accumulator, less an ulp");
     let zero = d.raw_constant("zero", 0, accumulator.format());
-    d.choose("base", facing, [zero, inverse]).doc("base of the power")
+    d.choose("base", facing, [zero, inverse])
+        .doc("base of the power")
 }
 
 fn about(config: &Config) -> About {

@@ -49,7 +49,10 @@ fn check(config: &Config, problems: &mut Problems) {
     let cosine = config.integer("cosine.fraction");
     check_multiplier(config, problems);
     let (fraction, product) = if config.choice("arithmetic") == "exact" {
-        (config.integer("sine.fraction"), config.integer("product.fraction"))
+        (
+            config.integer("sine.fraction"),
+            config.integer("product.fraction"),
+        )
     } else {
         (cosine, cosine)
     };
@@ -84,7 +87,7 @@ fn check(config: &Config, problems: &mut Problems) {
         most = most.max(bits - prefix);
     }
     let rest = cosine - 2 * config.integers("sine.segments").len() as i64;
-    if rest < 0 || rest > 12 {
+    if !(0..=12).contains(&rest) {
         problems.push(
             "sine.segments",
             format!("2^{rest} exact entries would remain below the last range"),
@@ -120,8 +123,14 @@ fn check_multiplier(config: &Config, problems: &mut Problems) {
     let (half_pad, base_pad) = ((2 * f - product - 1).max(0), (product + 1 - 2 * f).max(0));
     // Adder 16, with its sign; without the clamp it needs an integer bit more.
     let base = f + if config.flag("clamp") { 2 } else { 3 };
-    let first = (cosine + 2).max(sine + 1).max(product + 2).max(base + base_pad);
-    let second = (cosine + 2).max(sine + 1).max(integer("exponent.bits") + half_pad + 1).max(base);
+    let first = (cosine + 2)
+        .max(sine + 1)
+        .max(product + 2)
+        .max(base + base_pad);
+    let second = (cosine + 2)
+        .max(sine + 1)
+        .max(integer("exponent.bits") + half_pad + 1)
+        .max(base);
     let width = first + second;
     if width > i64::from(MAX_WIDTH) {
         let keys = [
@@ -130,7 +139,10 @@ fn check_multiplier(config: &Config, problems: &mut Problems) {
             ("product.fraction", product),
             ("intensity.fraction", f),
         ];
-        let key = keys.iter().max_by_key(|(_, bits)| *bits).map_or("cosine.fraction", |(key, _)| *key);
+        let key = keys
+            .iter()
+            .max_by_key(|(_, bits)| *bits)
+            .map_or("cosine.fraction", |(key, _)| *key);
         problems.push(
             key,
             format!("multiplier 10 would be {first} by {second} bits; a product has at most {MAX_WIDTH}"),
@@ -221,7 +233,10 @@ pub fn describe(d: &Designer, config: &Config) {
 
     let (cos_gamma, cos_dgamma) = operands(d, &formats);
     let r3 = d
-        .operand("exponent", Format::unsigned(config.integer("exponent.bits") as i32, 0))
+        .operand(
+            "exponent",
+            Format::unsigned(config.integer("exponent.bits") as i32, 0),
+        )
         .block(3)
         .inputs(59, 60)
         .doc("specular exponent n");
@@ -283,19 +298,39 @@ pub fn describe(d: &Designer, config: &Config) {
         .block(8)
         .doc("first operand of multiplier 10");
     let mux9 = d
-        .bus("mux9", operand_select, [cos_dgamma, r19.q(), half_n, adder16])
+        .bus(
+            "mux9",
+            operand_select,
+            [cos_dgamma, r19.q(), half_n, adder16],
+        )
         .block(9)
         .doc("second operand of multiplier 10");
     let product = d
         .shared_mul("multiplier10", &mux8, &mux9)
         .block(10)
         .doc("the shared product; its point depends on the operands");
-    let overflow = if formats.patent { Overflow::Wrap } else { Overflow::Saturate };
+    let overflow = if formats.patent {
+        Overflow::Wrap
+    } else {
+        Overflow::Saturate
+    };
     let (rounding_products, rounding_result) = (formats.product_rounding, formats.result_rounding);
     let cos_cos = product.of(cos_gamma, cos_dgamma);
-    r11.takes(d.narrow("cos_cos", cos_cos, r11.format(), rounding_products, overflow));
+    r11.takes(d.narrow(
+        "cos_cos",
+        cos_cos,
+        r11.format(),
+        rounding_products,
+        overflow,
+    ));
     let sin_sin = product.of(sine, r19.q());
-    r12.takes(d.narrow("sin_sin", sin_sin, r12.format(), rounding_products, overflow));
+    r12.takes(d.narrow(
+        "sin_sin",
+        sin_sin,
+        r12.format(),
+        rounding_products,
+        overflow,
+    ));
     let both = product.of_any(&[(adder15, half_n), (base, adder16)]);
     let result = d.narrow("result", both, r13.format(), rounding_result, overflow);
     r13.takes(if formats.patent {
@@ -309,31 +344,64 @@ pub fn describe(d: &Designer, config: &Config) {
         r13.q().bits(0, formats.f).named("f").doc(doc)
     } else {
         // Without the clamp the square can be 1.0 or more, where f saturates.
-        d.narrow("f", r13.q(), formats.f, Rounding::Truncate, Overflow::Saturate).doc(doc)
+        d.narrow(
+            "f",
+            r13.q(),
+            formats.f,
+            Rounding::Truncate,
+            Overflow::Saturate,
+        )
+        .doc(doc)
     };
     colours.outputs(f, rounding(config, "output.rounding"));
 
     d.microprogram([
-        step("operands cos gamma, cos dgamma; sine of gamma addressed", []),
-        step("19 <- sin gamma; 11 <- cos gamma * cos dgamma", [hold(), r19.load(), r11.load()]),
+        step(
+            "operands cos gamma, cos dgamma; sine of gamma addressed",
+            [],
+        ),
+        step(
+            "19 <- sin gamma; 11 <- cos gamma * cos dgamma",
+            [hold(), r19.load(), r11.load()],
+        ),
         step(
             "operands sin dgamma, sin gamma",
-            [mux8.pick(sine), mux9.pick(r19.q()), sine_of.pick(cos_dgamma)],
+            [
+                mux8.pick(sine),
+                mux9.pick(r19.q()),
+                sine_of.pick(cos_dgamma),
+            ],
         ),
         step("12 <- sin gamma * sin dgamma", [hold(), r12.load()]),
         step(
             "operands adder 15, n/2",
-            [mux8.pick(adder15), mux9.pick(half_n), sine_of.pick(cos_dgamma)],
+            [
+                mux8.pick(adder15),
+                mux9.pick(half_n),
+                sine_of.pick(cos_dgamma),
+            ],
         ),
-        step("13 <- n/2 * (cos(gamma +- dgamma) - 1)", [hold(), r13.load()]),
+        step(
+            "13 <- n/2 * (cos(gamma +- dgamma) - 1)",
+            [hold(), r13.load()],
+        ),
         step(
             "operands adder 16, adder 16",
-            [mux8.pick(base), mux9.pick(adder16), sine_of.pick(cos_dgamma)],
+            [
+                mux8.pick(base),
+                mux9.pick(adder16),
+                sine_of.pick(cos_dgamma),
+            ],
         ),
         step("13 <- (... + 1)^2", [hold(), r13.load()]),
         step(
             "valid: intensities on the outputs",
-            [mux8.pick(adder15), mux9.pick(half_n), sine_of.pick(cos_dgamma), valid()],
+            [
+                mux8.pick(adder15),
+                mux9.pick(half_n),
+                sine_of.pick(cos_dgamma),
+                valid(),
+            ],
         ),
         step("end: clears the triggers and counter 29", [end()]),
     ]);
@@ -375,9 +443,16 @@ fn exact_sums<'d>(
     [r11, r12, r13]: [Register<'d>; 3],
 ) -> (Signal<'d>, Signal<'d>, Signal<'d>) {
     let one = d.constant("one", 1.0, Format::unsigned(1, r12.format().frac));
-    let adder31 = d.sub("adder31", r12.q(), one).block(31).doc("register 12 - 1.0");
-    let raised = d.add("raised12", r12.q(), one).doc("register 12 + 1.0, by wiring");
-    let inverse = d.not("inverse12", raised.as_signed()).doc("-(register 12) - 1.0, less an ulp");
+    let adder31 = d
+        .sub("adder31", r12.q(), one)
+        .block(31)
+        .doc("register 12 - 1.0");
+    let raised = d
+        .add("raised12", r12.q(), one)
+        .doc("register 12 + 1.0, by wiring");
+    let inverse = d
+        .not("inverse12", raised.as_signed())
+        .doc("-(register 12) - 1.0, less an ulp");
     let mux14 = d
         .choose("mux14", negative, [inverse, adder31])
         .block(14)
@@ -388,7 +463,10 @@ fn exact_sums<'d>(
         .block(15)
         .doc("cos(gamma +- dgamma) - 1.0");
     let one = d.constant("one", 1.0, Format::unsigned(1, r13.format().frac));
-    let adder16 = d.add("adder16", r13.q(), one).block(16).doc("register 13 + 1.0");
+    let adder16 = d
+        .add("adder16", r13.q(), one)
+        .block(16)
+        .doc("register 13 + 1.0");
     (adder15, exponent.shift_right(1), adder16)
 }
 
@@ -430,13 +508,20 @@ fn patent_sums<'d>(
 
 /// What register 13 takes: the product, or −1.0, which makes f = 0, when cos γ ≤ 0.
 fn facing_only<'d>(d: &'d Designer, cos_gamma: Signal<'d>, result: Signal<'d>) -> Signal<'d> {
-    let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
+    let facing = d
+        .any("facing", cos_gamma)
+        .doc("the surface faces the half vector");
     let dark = d.constant("minus_one", -1.0, Format::signed(0, result.format().frac));
     d.choose("facing_result", facing, [dark, result])
 }
 
 /// ROM 18: sin = √(1 − cos²).
-fn sine_rom<'d>(d: &'d Designer, config: &Config, formats: &Formats, cosine: Signal<'d>) -> Signal<'d> {
+fn sine_rom<'d>(
+    d: &'d Designer,
+    config: &Config,
+    formats: &Formats,
+    cosine: Signal<'d>,
+) -> Signal<'d> {
     let fraction = config.integer("cosine.fraction") as u32;
     let synchronous = config.flag("sine.synchronous");
     if config.choice("sine.scheme") == "direct" {
@@ -447,7 +532,11 @@ fn sine_rom<'d>(d: &'d Designer, config: &Config, formats: &Formats, cosine: Sig
     let u = complement.shift_left(fraction as i32);
     let cut = Segmentation {
         operand_bits: fraction,
-        segments: config.integers("sine.segments").iter().map(|&k| k as u32).collect(),
+        segments: config
+            .integers("sine.segments")
+            .iter()
+            .map(|&k| k as u32)
+            .collect(),
     };
     let shape = Shape {
         fraction: formats.sine.frac,
@@ -455,11 +544,17 @@ fn sine_rom<'d>(d: &'d Designer, config: &Config, formats: &Formats, cosine: Sig
         synchronous,
     };
     let entry = |segment: Segment| sine_entry(segment, fraction, shape);
-    segmented::interpolate(d, "sine", u, &cut, shape, entry, Some(18)).doc("sine of the addressed cosine")
+    segmented::interpolate(d, "sine", u, &cut, shape, entry, Some(18))
+        .doc("sine of the addressed cosine")
 }
 
 /// The patent's own: one entry for each bucket of the cosine, the sine at its middle.
-fn direct_sine<'d>(d: &'d Designer, config: &Config, formats: &Formats, cosine: Signal<'d>) -> Signal<'d> {
+fn direct_sine<'d>(
+    d: &'d Designer,
+    config: &Config,
+    formats: &Formats,
+    cosine: Signal<'d>,
+) -> Signal<'d> {
     let fraction = config.integer("cosine.fraction") as u32;
     let bits = config.integer("sine.address") as u32;
     let mut address = cosine.bits(fraction - bits, Format::unsigned(bits as i32, 0));
@@ -475,9 +570,18 @@ fn direct_sine<'d>(d: &'d Designer, config: &Config, formats: &Formats, cosine: 
         })
         .collect();
     let rom = d
-        .rom("sine", address, formats.sine, &words, config.flag("sine.synchronous"))
+        .rom(
+            "sine",
+            address,
+            formats.sine,
+            &words,
+            config.flag("sine.synchronous"),
+        )
         .block(18)
-        .doc(&format!("sine ({}) at the middle of a bucket of the cosine", formats.sine));
+        .doc(&format!(
+            "sine ({}) at the middle of a bucket of the cosine",
+            formats.sine
+        ));
     rom.out().doc("sine of the addressed cosine")
 }
 
@@ -505,7 +609,10 @@ fn sine_entry(segment: Segment, fraction: u32, shape: Shape) -> Entry {
     let least = residual(0.0).min(residual(last));
     let (mut low, mut high) = (0.0, last);
     while high - low > 2.0 {
-        let (a, b) = ((low + (high - low) / 3.0).floor(), (high - (high - low) / 3.0).ceil());
+        let (a, b) = (
+            (low + (high - low) / 3.0).floor(),
+            (high - (high - low) / 3.0).ceil(),
+        );
         if residual(a) < residual(b) {
             low = a;
         } else {
@@ -513,7 +620,10 @@ fn sine_entry(segment: Segment, fraction: u32, shape: Shape) -> Entry {
         }
     }
     let middle = ((low + high) / 2.0).floor();
-    let most = [low, middle, high].into_iter().map(residual).fold(f64::MIN, f64::max);
+    let most = [low, middle, high]
+        .into_iter()
+        .map(residual)
+        .fold(f64::MIN, f64::max);
     Entry {
         base: value.quantise((least + most) / 2.0),
         slope: slope as i128,

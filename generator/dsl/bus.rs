@@ -32,18 +32,29 @@ impl Designer {
     ) -> Bus<'d> {
         let inputs: Vec<_> = inputs.into_iter().collect();
         select.check_inputs(name, inputs.len());
-        let low = inputs.iter().map(|input| input.range().0).min().unwrap_or(0);
-        let high = inputs.iter().map(|input| input.range().1).max().unwrap_or(0);
+        let low = inputs
+            .iter()
+            .map(|input| input.range().0)
+            .min()
+            .unwrap_or(0);
+        let high = inputs
+            .iter()
+            .map(|input| input.range().1)
+            .max()
+            .unwrap_or(0);
         let format = Format::holding(low, high, 0);
         let carried = inputs
             .iter()
             .map(|input| {
                 let have = input.format();
-                self.resized(*input, Format {
-                    frac: have.frac,
-                    int: format.int - have.frac,
-                    signed: format.signed,
-                })
+                self.resized(
+                    *input,
+                    Format {
+                        frac: have.frac,
+                        int: format.int - have.frac,
+                        signed: format.signed,
+                    },
+                )
             })
             .collect();
         let op = Op::Mux {
@@ -62,7 +73,12 @@ impl Designer {
 
     /// The product of two buses under the same select lines.
     #[track_caller]
-    pub fn shared_mul<'d>(&'d self, name: &str, first: &Bus<'d>, second: &Bus<'d>) -> SharedProduct<'d> {
+    pub fn shared_mul<'d>(
+        &'d self,
+        name: &str,
+        first: &Bus<'d>,
+        second: &Bus<'d>,
+    ) -> SharedProduct<'d> {
         if first.field != second.field || first.inputs.len() != second.inputs.len() {
             self.error(format!(
                 "multiplier `{name}`: `{}` and `{}` must have as many inputs under the same select lines",
@@ -72,7 +88,12 @@ impl Designer {
         SharedProduct {
             out: self.mul(name, first.out, second.out),
             field: first.field,
-            pairs: first.inputs.iter().copied().zip(second.inputs.iter().copied()).collect(),
+            pairs: first
+                .inputs
+                .iter()
+                .copied()
+                .zip(second.inputs.iter().copied())
+                .collect(),
         }
     }
 }
@@ -154,7 +175,10 @@ impl<'d> SharedProduct<'d> {
         let op = if format.width() == self.out.format().width() {
             Op::Relabel(self.out.id())
         } else if format.width() < self.out.format().width() {
-            Op::Slice { of: self.out.id(), low: 0 }
+            Op::Slice {
+                of: self.out.id(),
+                low: 0,
+            }
         } else {
             Op::Extend(self.out.id())
         };

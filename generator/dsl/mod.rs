@@ -44,15 +44,17 @@ use std::collections::HashMap;
 use std::panic::Location;
 
 pub use bus::{Bus, SharedProduct};
-pub use program::{Program, Setting, Step, end, hold, loop_while, next, step, valid, wait_for_start};
+pub use program::{
+    Program, Setting, Step, end, hold, loop_while, next, step, valid, wait_for_start,
+};
 pub use registers::{Counter, Flag, Operand, Register, Select};
 pub use signal::{Mux, Signal};
 
 use crate::check::{self, Diagnostic, Diagnostics};
 use crate::fixed::{Format, MAX_WIDTH};
 use crate::netlist::{
-    About, Control, Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, Port, Register as NetRegister,
-    RegisterKind, Role, Rom as NetRom, RomId, Unit,
+    About, Control, Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, Port,
+    Register as NetRegister, RegisterKind, Role, Rom as NetRom, RomId, Unit,
 };
 
 /// Where a description says something.
@@ -125,7 +127,12 @@ impl Designer {
         designer.start = designer.add_named("start", Format::BIT, Driver::Input);
         designer.port(designer.start, Role::Start);
         designer.set_doc(designer.start, "begins a computation when not busy");
-        designer.run = designer.add_register("run", Format::BIT, Format::BIT.range(), RegisterKind::Sequencer);
+        designer.run = designer.add_register(
+            "run",
+            Format::BIT,
+            Format::BIT.range(),
+            RegisterKind::Sequencer,
+        );
         designer.set_doc(designer.run, "a microprogram is running");
         designer.idle = designer.add_named("idle", Format::BIT, Driver::Undriven);
         designer.set_doc(designer.idle, "operands may be written");
@@ -143,7 +150,9 @@ impl Designer {
     pub fn constant(&self, name: &str, value: f64, format: Format) -> Signal<'_> {
         let raw = format.quantise(value);
         if format.to_f64(raw) != value {
-            self.error(format!("constant `{name}`: {value} is not representable in {format}"));
+            self.error(format!(
+                "constant `{name}`: {value} is not representable in {format}"
+            ));
         }
         let id = self.add_wiring(name, format, (raw, raw), Driver::Constant(format.bits(raw)));
         self.signal(id)
@@ -171,13 +180,18 @@ impl Designer {
         let (format, net) = (wire.format(), self.net(wire.id()));
         if net.driver != Driver::Undriven {
             self.error_at(
-                format!("`{}` has two drivers: `{}` is the second", net.name, source.name()),
+                format!(
+                    "`{}` has two drivers: `{}` is the second",
+                    net.name,
+                    source.name()
+                ),
                 [("the first is here", net.location)],
             );
             return;
         }
         if let Some(id) = self.fitted(source, format, &format!("wire `{}`", net.name)) {
-            self.inner.borrow_mut().design.nets[wire.id().index()].driver = Driver::Op(Op::Relabel(id));
+            self.inner.borrow_mut().design.nets[wire.id().index()].driver =
+                Driver::Op(Op::Relabel(id));
         }
     }
 
@@ -187,7 +201,14 @@ impl Designer {
     /// `synchronous` ROM reads on the rising edge, as block RAM does: its output belongs to the
     /// address of the clock before.
     #[track_caller]
-    pub fn rom(&self, name: &str, address: Signal<'_>, format: Format, words: &[i128], synchronous: bool) -> Rom<'_> {
+    pub fn rom(
+        &self,
+        name: &str,
+        address: Signal<'_>,
+        format: Format,
+        words: &[i128],
+        synchronous: bool,
+    ) -> Rom<'_> {
         let (low, high) = address.range();
         if address.format().frac != 0 || low < 0 || high >= words.len() as i128 {
             self.error(format!(
@@ -197,8 +218,14 @@ impl Designer {
                 address.format()
             ));
         }
-        if let Some((at, raw)) = words.iter().enumerate().find(|(_, raw)| !format.holds(**raw)) {
-            self.error(format!("ROM `{name}`: word {at} is {raw}, which does not fit {format}"));
+        if let Some((at, raw)) = words
+            .iter()
+            .enumerate()
+            .find(|(_, raw)| !format.holds(**raw))
+        {
+            self.error(format!(
+                "ROM `{name}`: word {at} is {raw}, which does not fit {format}"
+            ));
         }
         let range = words
             .iter()
@@ -207,9 +234,19 @@ impl Designer {
             })
             .unwrap_or((0, 0));
         // A synchronous read starts from the power-up value 0.
-        let range = if synchronous { (range.0.min(0), range.1.max(0)) } else { range };
+        let range = if synchronous {
+            (range.0.min(0), range.1.max(0))
+        } else {
+            range
+        };
         let id = RomId(self.inner.borrow().design.roms.len() as u32);
-        let data = self.add_net(&format!("{name}_word"), format, range, Driver::Rom(id), true);
+        let data = self.add_net(
+            &format!("{name}_word"),
+            format,
+            range,
+            Driver::Rom(id),
+            true,
+        );
         self.inner.borrow_mut().design.roms.push(NetRom {
             name: name.to_owned(),
             address: address.id(),
@@ -272,7 +309,10 @@ impl Designer {
             program::assemble(&self, &program);
         } else {
             let place = self.net(self.start).location;
-            self.report(Diagnostic::new("the design has no microprogram".to_owned(), place));
+            self.report(Diagnostic::new(
+                "the design has no microprogram".to_owned(),
+                place,
+            ));
         }
         let Inner {
             design,
@@ -313,7 +353,13 @@ impl Designer {
 
     /// A net that the DSL adds; `name` is made distinct.
     #[track_caller]
-    pub(crate) fn add_wiring(&self, name: &str, format: Format, range: (i128, i128), driver: Driver) -> NetId {
+    pub(crate) fn add_wiring(
+        &self,
+        name: &str,
+        format: Format,
+        range: (i128, i128),
+        driver: Driver,
+    ) -> NetId {
         let name = self.with(|inner| {
             let taken = |name: &str| inner.design.nets.iter().any(|net| net.name == name);
             if !taken(name) {
@@ -372,7 +418,13 @@ impl Designer {
 
     /// A register; returns the net that it drives.
     #[track_caller]
-    pub(crate) fn add_register(&self, name: &str, format: Format, range: (i128, i128), kind: RegisterKind) -> NetId {
+    pub(crate) fn add_register(
+        &self,
+        name: &str,
+        format: Format,
+        range: (i128, i128),
+        kind: RegisterKind,
+    ) -> NetId {
         let id = self.with(|inner| crate::netlist::RegId(inner.design.registers.len() as u32));
         let q = self.add_net(name, format, range, Driver::Register(id), true);
         self.with(|inner| {
@@ -468,7 +520,8 @@ impl<'d> Rom<'d> {
     /// The block number in the source's figure.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
-        self.designer.with(|inner| inner.design.roms[self.id.index()].block = Some(number));
+        self.designer
+            .with(|inner| inner.design.roms[self.id.index()].block = Some(number));
         self
     }
 
@@ -483,7 +536,8 @@ impl<'d> Rom<'d> {
     /// A comment for each word.
     #[must_use]
     pub fn comments(self, comments: Vec<String>) -> Self {
-        self.designer.with(|inner| inner.design.roms[self.id.index()].comments = comments);
+        self.designer
+            .with(|inner| inner.design.roms[self.id.index()].comments = comments);
         self
     }
 }

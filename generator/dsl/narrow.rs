@@ -38,7 +38,13 @@ impl Designer {
 
     /// The value with `frac` fraction bits.
     #[track_caller]
-    fn rounded<'d>(&'d self, name: &str, a: Signal<'d>, frac: i32, rounding: Rounding) -> Signal<'d> {
+    fn rounded<'d>(
+        &'d self,
+        name: &str,
+        a: Signal<'d>,
+        frac: i32,
+        rounding: Rounding,
+    ) -> Signal<'d> {
         let have = a.format();
         let places = have.frac - frac;
         if places <= 0 {
@@ -64,7 +70,10 @@ impl Designer {
             "kept",
             kept,
             (floor(low), floor(high)),
-            Op::Slice { of: a.id(), low: places },
+            Op::Slice {
+                of: a.id(),
+                low: places,
+            },
         );
         match rounding {
             Rounding::Truncate => truncated,
@@ -89,13 +98,21 @@ impl Designer {
     fn low_bits(&self, a: Signal<'_>, format: Format) -> Op {
         if a.format().width() <= format.width() {
             // Only the meaning of the top bit changes.
-            let same = Format { signed: a.format().signed, ..unsigned_as(format) };
+            let same = Format {
+                signed: a.format().signed,
+                ..unsigned_as(format)
+            };
             let same = if same.signed { signed_as(format) } else { same };
-            let wide = a.wiring("wide", same, a.range(), if a.format().width() == format.width() {
-                Op::Relabel(a.id())
-            } else {
-                Op::Extend(a.id())
-            });
+            let wide = a.wiring(
+                "wide",
+                same,
+                a.range(),
+                if a.format().width() == format.width() {
+                    Op::Relabel(a.id())
+                } else {
+                    Op::Extend(a.id())
+                },
+            );
             Op::Relabel(wide.id())
         } else {
             Op::Slice { of: a.id(), low: 0 }
@@ -110,21 +127,42 @@ impl Designer {
         let have = v.format();
         let (width, kept) = (have.width(), format.width());
         let constant = |suffix: &str, raw: i128| {
-            self.add_wiring(&format!("{name}_{suffix}"), format, (raw, raw), Driver::Constant(format.bits(raw)))
+            self.add_wiring(
+                &format!("{name}_{suffix}"),
+                format,
+                (raw, raw),
+                Driver::Constant(format.bits(raw)),
+            )
         };
         let flag = |suffix: &str, op: Op| {
-            let id = self.add_wiring(&format!("{name}_{suffix}"), Format::BIT, (0, 1), Driver::Op(op));
+            let id = self.add_wiring(
+                &format!("{name}_{suffix}"),
+                Format::BIT,
+                (0, 1),
+                Driver::Op(op),
+            );
             self.signal(id)
         };
         // The bits that carry the value inside `format`; shorter values are extended first.
         let wide = if width < kept {
-            self.resized(v, Format { int: have.int + (kept - width) as i32, ..have })
+            self.resized(
+                v,
+                Format {
+                    int: have.int + (kept - width) as i32,
+                    ..have
+                },
+            )
         } else {
             v.id()
         };
         let inside = self
             .signal(wide)
-            .wiring("inside", format, format.range(), Op::Slice { of: wide, low: 0 })
+            .wiring(
+                "inside",
+                format,
+                format.range(),
+                Op::Slice { of: wide, low: 0 },
+            )
             .id();
         let mux = |select: NetId, normal: NetId, limit: NetId| Op::Mux {
             select,
@@ -137,7 +175,8 @@ impl Designer {
             // Never negative: too large when any bit above the format is 1.
             (_, false) => {
                 let magnitude = kept - u32::from(format.signed);
-                let over = upper(magnitude, width).map_or(inside, |top| flag("over", Op::Any(top.id())).id());
+                let over = upper(magnitude, width)
+                    .map_or(inside, |top| flag("over", Op::Any(top.id())).id());
                 mux(over, inside, constant("most", format.max_raw()))
             }
             (false, true) => {
@@ -146,7 +185,12 @@ impl Designer {
                 let limited = top.map_or(inside, |top| {
                     let over = flag("over", Op::Any(top.id()));
                     let op = mux(over.id(), inside, constant("most", format.max_raw()));
-                    self.add_wiring(&format!("{name}_limited"), format, format.range(), Driver::Op(op))
+                    self.add_wiring(
+                        &format!("{name}_limited"),
+                        format,
+                        format.range(),
+                        Driver::Op(op),
+                    )
                 });
                 mux(sign.id(), limited, constant("least", 0))
             }
@@ -174,8 +218,17 @@ impl Designer {
                     let ones = flag("low", Op::All(all.id()));
                     let off = not(ones, "mixed");
                     let over = flag("over", Op::And(any.id(), off.id()));
-                    let limit = mux(sign.id(), constant("most", format.max_raw()), constant("least", format.min_raw()));
-                    let limit = self.add_wiring(&format!("{name}_limit"), format, format.range(), Driver::Op(limit));
+                    let limit = mux(
+                        sign.id(),
+                        constant("most", format.max_raw()),
+                        constant("least", format.min_raw()),
+                    );
+                    let limit = self.add_wiring(
+                        &format!("{name}_limit"),
+                        format,
+                        format.range(),
+                        Driver::Op(limit),
+                    );
                     mux(over.id(), inside, limit)
                 }
             }

@@ -7,7 +7,8 @@ use crate::check::Diagnostic;
 use crate::fixed::Format;
 use crate::microcode;
 use crate::netlist::{
-    Control, Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role, Rom as NetRom, RomId, Sequence, Unit, Word,
+    Control, Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role, Rom as NetRom, RomId,
+    Sequence, Unit, Word,
 };
 
 /// What one word does to one knob, or to the sequence.
@@ -54,7 +55,10 @@ impl Setting {
     /// A mux passes `input` on: found by what the mux's net selects from.
     #[track_caller]
     pub(crate) fn pick(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>) -> Self {
-        let inputs = match d.with(|inner| inner.design.find(mux)).map(|id| d.net(id).driver) {
+        let inputs = match d
+            .with(|inner| inner.design.find(mux))
+            .map(|id| d.net(id).driver)
+        {
             Some(Driver::Op(Op::Mux { inputs, .. })) => inputs,
             _ => Vec::new(),
         };
@@ -64,20 +68,34 @@ impl Setting {
                 || matches!(d.net(id).driver,
                     Driver::Op(Op::Extend(a) | Op::Relabel(a) | Op::Slice { of: a, low: 0 }) if a == input.id())
         };
-        let found: Vec<_> = (0..inputs.len()).filter(|&at| stands_for(inputs[at])).collect();
+        let found: Vec<_> = (0..inputs.len())
+            .filter(|&at| stands_for(inputs[at]))
+            .collect();
         Self::picked(d, field, mux, input, &found)
     }
 
     #[track_caller]
-    pub(crate) fn pick_of(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>, inputs: &[Signal<'_>]) -> Self {
-        let found: Vec<_> = (0..inputs.len()).filter(|&at| inputs[at].id() == input.id()).collect();
+    pub(crate) fn pick_of(
+        d: &Designer,
+        field: FieldId,
+        mux: &str,
+        input: Signal<'_>,
+        inputs: &[Signal<'_>],
+    ) -> Self {
+        let found: Vec<_> = (0..inputs.len())
+            .filter(|&at| inputs[at].id() == input.id())
+            .collect();
         Self::picked(d, field, mux, input, &found)
     }
 
     #[track_caller]
     fn picked(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>, found: &[usize]) -> Self {
         let [at] = found else {
-            let how = if found.is_empty() { "is no input" } else { "is more than one input" };
+            let how = if found.is_empty() {
+                "is no input"
+            } else {
+                "is more than one input"
+            };
             d.error(format!("`{}` {how} of `{mux}`", input.name()));
             return Self::sequence(Kind::Wrong);
         };
@@ -196,7 +214,15 @@ pub(crate) fn assemble(d: &Designer, program: &Program) {
         go_on: sequence_field("go_on", 1),
     };
     let words = words(d, steps, &sequences, &fields, &conditions);
-    sequencer(d, program, words, &fields, &conditions, &targets, address_width);
+    sequencer(
+        d,
+        program,
+        words,
+        &fields,
+        &conditions,
+        &targets,
+        address_width,
+    );
 }
 
 fn distinct(loops: &[(NetId, usize)]) -> (Vec<NetId>, Vec<usize>) {
@@ -222,7 +248,10 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
                 if d.net(*condition).format.width() != 1 {
                     let name = d.net(*condition).name;
                     d.report(Diagnostic::new(
-                        format!("word `{}`: the condition `{name}` has more than one bit", step.name),
+                        format!(
+                            "word `{}`: the condition `{name}` has more than one bit",
+                            step.name
+                        ),
                         setting.location,
                     ));
                 }
@@ -233,7 +262,10 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
                     },
                     None => {
                         d.report(Diagnostic::new(
-                            format!("word `{}` loops to `{to}`, but no word has that name", step.name),
+                            format!(
+                                "word `{}` loops to `{to}`, but no word has that name",
+                                step.name
+                            ),
                             setting.location,
                         ));
                         Sequence::Next
@@ -265,20 +297,33 @@ fn words(
     fields: &SequenceFields,
     conditions: &[NetId],
 ) -> Vec<Word> {
-    let kinds: Vec<FieldKind> =
-        d.with(|inner| inner.design.control.fields.iter().map(|field| field.kind.clone()).collect());
+    let kinds: Vec<FieldKind> = d.with(|inner| {
+        inner
+            .design
+            .control
+            .fields
+            .iter()
+            .map(|field| field.kind.clone())
+            .collect()
+    });
     let mut words: Vec<Word> = Vec::new();
     for (step, sequence) in steps.iter().zip(sequences) {
         if let Some(first) = steps.iter().find(|other| other.name == step.name)
             && !std::ptr::eq(first, step)
         {
             d.report(
-                Diagnostic::new(format!("two words are named `{}`", step.name), step.location)
-                    .note("the first".to_owned(), first.location),
+                Diagnostic::new(
+                    format!("two words are named `{}`", step.name),
+                    step.location,
+                )
+                .note("the first".to_owned(), first.location),
             );
         }
         let mut values = vec![0; kinds.len()];
-        if step.settings.iter().any(|setting| matches!(setting.kind, Kind::Hold))
+        if step
+            .settings
+            .iter()
+            .any(|setting| matches!(setting.kind, Kind::Hold))
             && let Some(before) = words.last()
         {
             for (at, kind) in kinds.iter().enumerate() {
@@ -348,7 +393,8 @@ fn sequencer(
     targets: &[usize],
     address_width: u32,
 ) {
-    let op = |name: &str, format: Format, op: Op| d.signal(d.add_named(name, format, Driver::Op(op)));
+    let op =
+        |name: &str, format: Format, op: Op| d.signal(d.add_named(name, format, Driver::Op(op)));
     let bit = |name: &str, cell: Op| op(name, Format::BIT, cell);
     let wide = Format::unsigned(address_width as i32, 0);
     let last_word = words.len() as i128 - 1;
@@ -358,7 +404,12 @@ fn sequencer(
     let zero = d.raw_constant("first_word", 0, wide);
     let one = d.raw_constant("one_word", 1, wide);
 
-    let address = d.add_register("word_address", wide, (0, last_word), RegisterKind::Sequencer);
+    let address = d.add_register(
+        "word_address",
+        wide,
+        (0, last_word),
+        RegisterKind::Sequencer,
+    );
     d.set_doc(address, "the word that is executed");
     let following = op(
         "following_word",
@@ -383,10 +434,17 @@ fn sequencer(
             (None, [only, ..]) => bit("condition", Op::Relabel(*only)),
             (None, []) => return,
         };
-        let again = bit("loop_back", Op::And(d.field_net(again).id(), condition.id()));
+        let again = bit(
+            "loop_back",
+            Op::And(d.field_net(again).id(), condition.id()),
+        );
         let target = match fields.target {
             Some(field) => d.field_net(field),
-            None => d.raw_constant("loop_start", targets.first().map_or(0, |&to| to as i128), wide),
+            None => d.raw_constant(
+                "loop_start",
+                targets.first().map_or(0, |&to| to as i128),
+                wide,
+            ),
         };
         onward = op(
             "onward_word",
@@ -458,15 +516,24 @@ fn sequencer(
 
 fn control_rom(d: &Designer, program: &Program, words: Vec<Word>, address: NetId) {
     let fields = d.with(|inner| inner.design.control.fields.clone());
-    let widths: Vec<u32> = fields.iter().map(|field| d.net(field.net).format.width()).collect();
-    let packed: Vec<u64> = words.iter().map(|word| microcode::pack(&widths, &word.values)).collect();
+    let widths: Vec<u32> = fields
+        .iter()
+        .map(|field| d.net(field.net).format.width())
+        .collect();
+    let packed: Vec<u64> = words
+        .iter()
+        .map(|word| microcode::pack(&widths, &word.values))
+        .collect();
     let comments = words.iter().map(|word| word.name.clone()).collect();
     let width: u32 = widths.iter().sum();
     let format = Format::unsigned(width as i32, 0);
     let rom = d.with(|inner| RomId(inner.design.roms.len() as u32));
     let data = d.add_named("control_word", format, Driver::Rom(rom));
     let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
-    let doc = vec![format!("the microprogram, a word a line: {}", names.join(", "))];
+    let doc = vec![format!(
+        "the microprogram, a word a line: {}",
+        names.join(", ")
+    )];
     d.with(|inner| {
         inner.design.roms.push(NetRom {
             name: "control".to_owned(),

@@ -23,18 +23,32 @@ impl Designer {
             let (from, to) = format.range();
             let mut value = port;
             let limit = |suffix: &str, raw: i128| {
-                self.raw_constant(&format!("{name}_{suffix}"), raw, Format::holding(raw, raw, format.frac))
+                self.raw_constant(
+                    &format!("{name}_{suffix}"),
+                    raw,
+                    Format::holding(raw, raw, format.frac),
+                )
             };
             if to > most {
                 let most = limit("most", most);
                 let over = self.less(&format!("{name}_over"), most, value);
-                value = self.chosen_within(&format!("{name}_at_most"), over, [value, most], (from, most.range().0));
+                value = self.chosen_within(
+                    &format!("{name}_at_most"),
+                    over,
+                    [value, most],
+                    (from, most.range().0),
+                );
             }
             if from < least {
                 let least = limit("least", least);
                 let under = self.less(&format!("{name}_under"), port, least);
                 let high = value.range().1;
-                value = self.chosen_within(&format!("{name}_clamped"), under, [value, least], (least.range().0, high));
+                value = self.chosen_within(
+                    &format!("{name}_clamped"),
+                    under,
+                    [value, least],
+                    (least.range().0, high),
+                );
             }
             value
         })
@@ -71,8 +85,17 @@ impl Designer {
         self.port(port, Role::Operand { strobe });
         self.port(strobe, Role::Strobe);
         let data = limited(self.signal(port));
-        let load = self.and(&format!("{name}_load"), self.signal(strobe), self.signal(self.idle));
-        let q = self.add_register(&format!("{name}_reg"), data.format(), data.range(), RegisterKind::Operand);
+        let load = self.and(
+            &format!("{name}_load"),
+            self.signal(strobe),
+            self.signal(self.idle),
+        );
+        let q = self.add_register(
+            &format!("{name}_reg"),
+            data.format(),
+            data.range(),
+            RegisterKind::Operand,
+        );
         self.connect(q, data.id(), Some(load.id()));
         Operand {
             port: self.signal(port),
@@ -116,7 +139,10 @@ impl Designer {
         let width = usize::BITS - choices.len().saturating_sub(1).leading_zeros();
         let choices = choices.iter().map(|&choice| choice.to_owned()).collect();
         let field = self.add_field(name, width.max(1), FieldKind::Select(choices));
-        Select { designer: self, field }
+        Select {
+            designer: self,
+            field,
+        }
     }
 
     /// An output of the device that words raise.
@@ -125,7 +151,10 @@ impl Designer {
         let field = self.add_field(&format!("{name}_flag"), 1, FieldKind::Flag);
         let net = self.field_net(field);
         self.status(name, net);
-        Flag { designer: self, field }
+        Flag {
+            designer: self,
+            field,
+        }
     }
 
     /// A counter that counts down, with fields `<name>_load` and `<name>_count`.
@@ -137,9 +166,18 @@ impl Designer {
         let load = self.add_field(&format!("{name}_load"), 1, FieldKind::Enable);
         let count = self.add_field(&format!("{name}_count"), 1, FieldKind::Enable);
         let (load_net, count_net) = (self.field_net(load), self.field_net(count));
-        let q = self.signal(self.add_register(name, format, format.range(), RegisterKind::Architectural));
+        let q = self.signal(self.add_register(
+            name,
+            format,
+            format.range(),
+            RegisterKind::Architectural,
+        ));
         let one = self.raw_constant("one", 1, format);
-        let less_one = self.add_named(&format!("{name}_less_one"), format, Driver::Op(Op::Sub(q.id(), one.id())));
+        let less_one = self.add_named(
+            &format!("{name}_less_one"),
+            format,
+            Driver::Op(Op::Sub(q.id(), one.id())),
+        );
         let next = Op::Mux {
             select: load_net.id(),
             inputs: vec![less_one, start.id()],
@@ -147,16 +185,17 @@ impl Designer {
         let next = self.add_named(&format!("{name}_next"), format, Driver::Op(next));
         let enable = self.or(&format!("{name}_enable"), load_net, count_net);
         self.connect(q.id(), next, Some(enable.id()));
-        Counter {
-            q,
-            load,
-            count,
-        }
+        Counter { q, load, count }
     }
 
     pub(crate) fn connect(&self, q: NetId, data: NetId, enable: Option<NetId>) {
         self.with(|inner| {
-            if let Some(register) = inner.design.registers.iter_mut().find(|register| register.q == q) {
+            if let Some(register) = inner
+                .design
+                .registers
+                .iter_mut()
+                .find(|register| register.q == q)
+            {
                 register.data = Some(data);
                 register.enable = enable;
             }
@@ -225,10 +264,20 @@ impl<'d> Register<'d> {
     pub fn takes(self, data: Signal<'d>) {
         let d = self.q.designer();
         let net = d.net(self.q.id());
-        let taken = d.with(|inner| inner.design.registers.iter().any(|r| r.q == self.q.id() && r.data.is_some()));
+        let taken = d.with(|inner| {
+            inner
+                .design
+                .registers
+                .iter()
+                .any(|r| r.q == self.q.id() && r.data.is_some())
+        });
         if taken {
             d.error_at(
-                format!("`{}` has two drivers: `{}` is the second", net.name, data.name()),
+                format!(
+                    "`{}` has two drivers: `{}` is the second",
+                    net.name,
+                    data.name()
+                ),
                 [("the register", net.location)],
             );
             return;
@@ -241,7 +290,12 @@ impl<'d> Register<'d> {
     /// The knob: the register takes its data at the end of the word.
     #[track_caller]
     pub fn load(self) -> Setting {
-        Setting::field(self.field, 1, format!("{}.load", self.q.name()), Location::caller())
+        Setting::field(
+            self.field,
+            1,
+            format!("{}.load", self.q.name()),
+            Location::caller(),
+        )
     }
 
     /// The block number in the source's figure.
@@ -292,14 +346,16 @@ impl<'d> Select<'d> {
     #[track_caller]
     pub(crate) fn check_inputs(self, name: &str, inputs: usize) {
         let choices = self.designer.with(|inner| {
-            let FieldKind::Select(choices) = &inner.design.control.fields[self.field.index()].kind else {
+            let FieldKind::Select(choices) = &inner.design.control.fields[self.field.index()].kind
+            else {
                 return 0;
             };
             choices.len()
         });
         if inputs != choices {
-            self.designer
-                .error(format!("mux `{name}` has {inputs} inputs, but its select lines have {choices} choices"));
+            self.designer.error(format!(
+                "mux `{name}` has {inputs} inputs, but its select lines have {choices} choices"
+            ));
         }
     }
 }
@@ -337,13 +393,23 @@ impl<'d> Counter<'d> {
     /// The knob: takes the start value at the end of the word.
     #[track_caller]
     pub fn load(self) -> Setting {
-        Setting::field(self.load, 1, format!("{}.load", self.q.name()), Location::caller())
+        Setting::field(
+            self.load,
+            1,
+            format!("{}.load", self.q.name()),
+            Location::caller(),
+        )
     }
 
     /// The knob: one less at the end of the word.
     #[track_caller]
     pub fn count(self) -> Setting {
-        Setting::field(self.count, 1, format!("{}.count", self.q.name()), Location::caller())
+        Setting::field(
+            self.count,
+            1,
+            format!("{}.count", self.q.name()),
+            Location::caller(),
+        )
     }
 
     /// The block number in the source's figure.

@@ -126,7 +126,11 @@ impl<'d> Signal<'d> {
         // All bits of a value that is never negative are still within its range.
         let (from, to) = self.range();
         let top = low + format.width() == have && !format.signed && from >= 0;
-        let range = if top { (from >> low, to >> low) } else { format.range() };
+        let range = if top {
+            (from >> low, to >> low)
+        } else {
+            format.range()
+        };
         self.wiring("bits", format, range, Op::Slice { of: self.id, low })
     }
 
@@ -145,7 +149,10 @@ impl<'d> Signal<'d> {
         if format.signed {
             return self;
         }
-        let signed = Format { signed: true, ..format };
+        let signed = Format {
+            signed: true,
+            ..format
+        };
         self.designer.signal(self.designer.resized(self, signed))
     }
 
@@ -166,7 +173,9 @@ impl<'d> Signal<'d> {
     #[track_caller]
     pub(crate) fn wiring(self, suffix: &str, format: Format, range: (i128, i128), op: Op) -> Self {
         let name = format!("{}_{suffix}", self.name());
-        let id = self.designer.add_wiring(&name, format, range, Driver::Op(op));
+        let id = self
+            .designer
+            .add_wiring(&name, format, range, Driver::Op(op));
         self.designer.signal(id)
     }
 }
@@ -181,12 +190,24 @@ impl Designer {
 
     /// `a + b`, and one ulp (of the finer operand) when `carry` is 1.
     #[track_caller]
-    pub fn add_carry<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>, carry: Signal<'d>) -> Signal<'d> {
+    pub fn add_carry<'d>(
+        &'d self,
+        name: &str,
+        a: Signal<'d>,
+        b: Signal<'d>,
+        carry: Signal<'d>,
+    ) -> Signal<'d> {
         self.sum(name, a, b, Some(carry))
     }
 
     #[track_caller]
-    fn sum<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>, carry: Option<Signal<'d>>) -> Signal<'d> {
+    fn sum<'d>(
+        &'d self,
+        name: &str,
+        a: Signal<'d>,
+        b: Signal<'d>,
+        carry: Option<Signal<'d>>,
+    ) -> Signal<'d> {
         let (a, b) = aligned(a, b);
         let (a_range, b_range) = (a.range(), b.range());
         let carry_most = i128::from(carry.is_some());
@@ -255,7 +276,13 @@ impl Designer {
             frac,
         };
         let range = product_range(a.range(), b.range());
-        self.signal(self.add_net(name, format, range, Driver::Op(Op::Mul(a.id(), b.id())), true))
+        self.signal(self.add_net(
+            name,
+            format,
+            range,
+            Driver::Op(Op::Mul(a.id(), b.id())),
+            true,
+        ))
     }
 
     /// Every bit inverted: `−a − ulp` for a signed signal, `largest − a` for an unsigned one.
@@ -264,21 +291,40 @@ impl Designer {
         let format = a.format();
         let (low, high) = a.range();
         let top = if format.signed { -1 } else { format.max_raw() };
-        let net = self.add_net(name, format, (top - high, top - low), Driver::Op(Op::Not(a.id())), true);
+        let net = self.add_net(
+            name,
+            format,
+            (top - high, top - low),
+            Driver::Op(Op::Not(a.id())),
+            true,
+        );
         self.signal(net)
     }
 
     /// `low` in place of the low bits of the constant `high`, which must be zero there: an address made
     /// of a constant and a prefix, by wiring.
     #[track_caller]
-    pub(crate) fn beside<'d>(&'d self, high: Signal<'d>, low: Signal<'d>, format: Format) -> Signal<'d> {
+    pub(crate) fn beside<'d>(
+        &'d self,
+        high: Signal<'d>,
+        low: Signal<'d>,
+        format: Format,
+    ) -> Signal<'d> {
         let low_bits = low.format().width();
         let (from, to) = (high.range().0, high.range().0 + low.range().1);
         if low_bits == format.width() {
             return low;
         }
-        let top = high.bits(low_bits, Format::unsigned((format.width() - low_bits) as i32, 0));
-        low.wiring("beside", format, (from, to), Op::Concat(vec![top.id(), low.id()]))
+        let top = high.bits(
+            low_bits,
+            Format::unsigned((format.width() - low_bits) as i32, 0),
+        );
+        low.wiring(
+            "beside",
+            format,
+            (from, to),
+            Op::Concat(vec![top.id(), low.id()]),
+        )
     }
 
     /// 1 when both are 1; operands of one bit.
@@ -324,7 +370,12 @@ impl Designer {
     /// Input 0 or 1 by the one-bit signal `select`, a signal of the datapath. Inputs have one point;
     /// the result holds them all.
     #[track_caller]
-    pub fn choose<'d>(&'d self, name: &str, select: Signal<'d>, inputs: [Signal<'d>; 2]) -> Signal<'d> {
+    pub fn choose<'d>(
+        &'d self,
+        name: &str,
+        select: Signal<'d>,
+        inputs: [Signal<'d>; 2],
+    ) -> Signal<'d> {
         let select = self.one_bit(select);
         self.mux_of(name, select, &inputs)
     }
@@ -350,7 +401,10 @@ impl Designer {
         let inputs: Vec<_> = inputs.into_iter().collect();
         select.check_inputs(name, inputs.len());
         let out = self.mux_of(name, self.field_net(select.field()).id(), &inputs);
-        Mux { out, field: select.field() }
+        Mux {
+            out,
+            field: select.field(),
+        }
     }
 
     #[track_caller]
@@ -370,10 +424,21 @@ impl Designer {
             ));
             return *first;
         }
-        let low = inputs.iter().map(|input| input.range().0).min().unwrap_or(0);
-        let high = inputs.iter().map(|input| input.range().1).max().unwrap_or(0);
+        let low = inputs
+            .iter()
+            .map(|input| input.range().0)
+            .min()
+            .unwrap_or(0);
+        let high = inputs
+            .iter()
+            .map(|input| input.range().1)
+            .max()
+            .unwrap_or(0);
         let format = Format::holding(low, high, frac);
-        let inputs = inputs.iter().map(|input| self.resized(*input, format)).collect();
+        let inputs = inputs
+            .iter()
+            .map(|input| self.resized(*input, format))
+            .collect();
         let op = Op::Mux { select, inputs };
         self.signal(self.add_net(name, format, (low, high), Driver::Op(op), true))
     }
@@ -381,7 +446,11 @@ impl Designer {
     #[track_caller]
     fn one_bit(&self, a: Signal<'_>) -> NetId {
         if a.format().width() != 1 {
-            self.error(format!("`{}` is {}: one bit is wanted here", a.name(), a.format()));
+            self.error(format!(
+                "`{}` is {}: one bit is wanted here",
+                a.name(),
+                a.format()
+            ));
         }
         a.id()
     }
@@ -429,7 +498,9 @@ pub(crate) fn product_range(a: (i128, i128), b: (i128, i128)) -> (i128, i128) {
     let corners = [a.0 * b.0, a.0 * b.1, a.1 * b.0, a.1 * b.1];
     corners
         .into_iter()
-        .fold((i128::MAX, i128::MIN), |(low, high), corner| (low.min(corner), high.max(corner)))
+        .fold((i128::MAX, i128::MIN), |(low, high), corner| {
+            (low.min(corner), high.max(corner))
+        })
 }
 
 /// A mux whose select lines the microprogram drives.

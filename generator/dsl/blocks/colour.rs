@@ -32,9 +32,13 @@ impl<'d> Colours<'d> {
         let mut channels = Vec::new();
         for (at, name) in names.into_iter().enumerate() {
             let blocks = blocks.map(|blocks| blocks[at]);
-            let mut operand = designer.operand(name, format).doc("intensity of the light times k_s");
+            let mut operand = designer
+                .operand(name, format)
+                .doc("intensity of the light times k_s");
             if let Some(blocks) = blocks {
-                operand = operand.block(blocks.register).inputs(blocks.inputs.0, blocks.inputs.1);
+                operand = operand
+                    .block(blocks.register)
+                    .inputs(blocks.inputs.0, blocks.inputs.1);
             }
             channels.push((name, operand, blocks));
         }
@@ -58,7 +62,9 @@ impl<'d> Colours<'d> {
                 rounding,
                 Overflow::Saturate,
             );
-            let mut out = d.output(&format!("{name}_out"), narrowed).doc("intensity on the output");
+            let mut out = d
+                .output(&format!("{name}_out"), narrowed)
+                .doc("intensity on the output");
             if let Some(blocks) = blocks {
                 product = product.block(blocks.multiplier);
                 out = out.block(blocks.output);

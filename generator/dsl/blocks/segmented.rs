@@ -89,12 +89,20 @@ impl Segmentation {
 
     /// Bits of the remainder that the slope multiplies; one, a zero, when every entry is exact.
     fn rest_bits(&self) -> u32 {
-        self.blocks().iter().map(|block| block.bits - block.prefix).max().unwrap_or(0).max(1)
+        self.blocks()
+            .iter()
+            .map(|block| block.bits - block.prefix)
+            .max()
+            .unwrap_or(0)
+            .max(1)
     }
 
     /// Words of the table.
     pub fn entries(&self) -> usize {
-        self.blocks().iter().map(|block| 1usize << block.prefix).sum()
+        self.blocks()
+            .iter()
+            .map(|block| 1usize << block.prefix)
+            .sum()
     }
 
     /// The segment of each word of the table; `None` where no value of u leads. The word that
@@ -105,7 +113,11 @@ impl Segmentation {
         for (at, block) in blocks.iter().enumerate() {
             let is_rest = at + 1 == blocks.len();
             let length = 1u64 << (block.bits - block.prefix);
-            let first = if is_rest { 0 } else { 1u64 << (block.prefix - 2) };
+            let first = if is_rest {
+                0
+            } else {
+                1u64 << (block.prefix - 2)
+            };
             for prefix in first..1 << block.prefix {
                 words[block.base as usize + prefix as usize] = Some(Segment {
                     from: prefix * length,
@@ -141,10 +153,18 @@ pub fn interpolate<'d>(
         .iter()
         .map(|segment| segment.map_or_else(Entry::default, &entry))
         .collect();
-    let slope_most = entries.iter().map(|entry| entry.slope).max().unwrap_or(0).max(1);
+    let slope_most = entries
+        .iter()
+        .map(|entry| entry.slope)
+        .max()
+        .unwrap_or(0)
+        .max(1);
     let slope_bits = 128 - slope_most.leading_zeros();
     let value = Format::unsigned(0, shape.fraction);
-    let packed: Vec<i128> = entries.iter().map(|entry| entry.base << slope_bits | entry.slope).collect();
+    let packed: Vec<i128> = entries
+        .iter()
+        .map(|entry| entry.base << slope_bits | entry.slope)
+        .collect();
 
     let (address, rest) = address_and_rest(d, name, u, cut);
     let word = Format::unsigned(shape.fraction + slope_bits as i32, 0);
@@ -173,16 +193,37 @@ pub fn interpolate<'d>(
     } else {
         rest
     };
-    let base = rom.out().bits(slope_bits, value).named(&format!("{name}_base"));
+    let base = rom
+        .out()
+        .bits(slope_bits, value)
+        .named(&format!("{name}_base"));
     let slope = rom
         .out()
-        .bits(0, Format::unsigned(slope_bits as i32 - shape.slope_fraction, shape.slope_fraction))
+        .bits(
+            0,
+            Format::unsigned(
+                slope_bits as i32 - shape.slope_fraction,
+                shape.slope_fraction,
+            ),
+        )
         .named(&format!("{name}_slope"));
     let rise = d.mul(&format!("{name}_rise"), slope, rest);
     // The rise over a part of a segment is below the slope, which is below 1.
-    let rise = d.narrow(&format!("{name}_rise_cut"), rise, value, Rounding::Truncate, Overflow::Saturate);
+    let rise = d.narrow(
+        &format!("{name}_rise_cut"),
+        rise,
+        value,
+        Rounding::Truncate,
+        Overflow::Saturate,
+    );
     let sum = d.add(&format!("{name}_sum"), base, rise);
-    d.narrow(&format!("{name}_value"), sum, value, Rounding::Truncate, Overflow::Saturate)
+    d.narrow(
+        &format!("{name}_value"),
+        sum,
+        value,
+        Rounding::Truncate,
+        Overflow::Saturate,
+    )
 }
 
 /// The word and the remainder, left-justified, a fraction of the segment.
@@ -200,14 +241,22 @@ fn address_and_rest<'d>(
     let rest = Format::unsigned(0, rest_bits as i32);
     // One arm a block: {constant, prefix} and {remainder, zeros}.
     let arm = |block: &Block| {
-        let prefix = u.bits(block.bits - block.prefix, Format::unsigned(block.prefix as i32, 0));
-        let base = d.raw_constant(&format!("{name}_base_word"), i128::from(block.base), address);
+        let prefix = u.bits(
+            block.bits - block.prefix,
+            Format::unsigned(block.prefix as i32, 0),
+        );
+        let base = d.raw_constant(
+            &format!("{name}_base_word"),
+            i128::from(block.base),
+            address,
+        );
         let word = d.beside(base, prefix, address);
         let left = block.bits - block.prefix;
         let remainder = if left == 0 {
             d.raw_constant(&format!("{name}_no_rest"), 0, rest)
         } else {
-            u.bits(0, Format::unsigned(0, left as i32)).with_fraction(rest_bits as i32)
+            u.bits(0, Format::unsigned(0, left as i32))
+                .with_fraction(rest_bits as i32)
         };
         (word, remainder)
     };
@@ -220,7 +269,10 @@ fn address_and_rest<'d>(
                 // u is in range j or above when any bit from 2^(C−2j−2) up is set.
                 let low = block.bits - 2;
                 let top = u.format().width() - low;
-                let here = d.any(&format!("{name}_in_range{at}"), u.bits(low, Format::unsigned(top as i32, 0)));
+                let here = d.any(
+                    &format!("{name}_in_range{at}"),
+                    u.bits(low, Format::unsigned(top as i32, 0)),
+                );
                 let no_rest = lower_rest.range() == (0, 0) && remainder.range() == (0, 0);
                 (
                     d.choose(&format!("{name}_word{at}"), here, [lower_word, word]),
