@@ -273,8 +273,10 @@ impl<'a> Builder<'a> {
 
     /// Registers with the same enable and the same reset behaviour share a block.
     fn groups(&mut self) -> Vec<Vec<String>> {
+        /// The enable, and whether reset sets the registers.
+        type Key = (Option<NetId>, bool);
         let design = self.plan.design;
-        let mut groups: Vec<((Option<NetId>, bool), Vec<RegId>)> = Vec::new();
+        let mut groups: Vec<(Key, Vec<RegId>)> = Vec::new();
         for (at, register) in design.registers.iter().enumerate() {
             if self.plan.unit(register.q) != self.unit {
                 continue;

@@ -95,8 +95,8 @@ impl Build {
             format,
             range: (format.min_raw(), format.max_raw()),
             driver,
-            block: (id.0 % 5 == 0).then_some(id.0 as u16),
-            doc: if id.0 % 3 == 0 {
+            block: id.0.is_multiple_of(5).then_some(id.0 as u16),
+            doc: if id.0.is_multiple_of(3) {
                 format!("net number {}", id.0)
             } else {
                 String::new()
