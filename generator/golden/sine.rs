@@ -40,6 +40,9 @@ pub struct Piece {
     pub cosines: (f64, f64),
     /// The largest `|table − √(1 − x²)|` among its operands.
     pub error: f64,
+    /// What of it is left with words of unlimited width: how far a bucket's or a segment's sine is from
+    /// constant or straight.
+    pub shape: f64,
 }
 
 /// The sine as the hardware computes it.
@@ -158,8 +161,9 @@ impl Sine {
                 let range = |(j, &bits): (usize, &u32)| {
                     let width = operand - 2 * j as u32 - bits;
                     let first = 1i64 << (bits - 2);
-                    let fit =
-                        |prefix| fit(operand, fraction, *slope_fraction, prefix << width, width).0;
+                    let fit = |prefix| {
+                        fit(operand, fraction, *slope_fraction, prefix << width, width).segment
+                    };
                     Range {
                         width,
                         first,
@@ -257,9 +261,11 @@ impl Sine {
                         first + bucket - 1
                     };
                     let error = |x| (entry as f64 * ulp - sine_of(operand, one - x)).abs();
+                    let error = error(first).max(error(last));
                     visit(Piece {
                         cosines: (cosine(first), cosine(last)),
-                        error: error(first).max(error(last)),
+                        error,
+                        shape: (error - ulp / 2.0).max(0.0),
                     });
                 }
             }
@@ -273,15 +279,16 @@ impl Sine {
                 visit(Piece {
                     cosines: (0.0, 0.0),
                     error: ulp,
+                    shape: 0.0,
                 });
                 for range in ranges {
                     for prefix in range.first..4 * range.first {
                         let u = prefix << range.width;
-                        let (_, error) =
-                            fit(operand, self.fraction, *slope_fraction, u, range.width);
+                        let fit = fit(operand, self.fraction, *slope_fraction, u, range.width);
                         visit(Piece {
                             cosines: (cosine(one - u - (1 << range.width) + 1), cosine(one - u)),
-                            error,
+                            error: fit.error,
+                            shape: fit.shape,
                         });
                     }
                 }
@@ -289,6 +296,7 @@ impl Sine {
                 visit(Piece {
                     cosines: (cosine(one - rest.len() as i64 + 1), 1.0),
                     error: ulp / 2.0,
+                    shape: 0.0,
                 });
             }
         }
@@ -314,16 +322,24 @@ fn direct_entry(a: i64, address: u32, fraction: u32) -> i64 {
     to_raw((1.0 - x * x).sqrt(), fraction)
 }
 
-/// The entry for the segment u … u + 2^width, and the largest error of an operand in it.
-fn fit(operand: u32, fraction: u32, slope_fraction: u32, u: i64, width: u32) -> (Segment, f64) {
+/// A segment's entry with what it costs, as in [`Piece`].
+struct Fit {
+    segment: Segment,
+    error: f64,
+    shape: f64,
+}
+
+/// The entry for the segment u … u + 2^width.
+fn fit(operand: u32, fraction: u32, slope_fraction: u32, u: i64, width: u32) -> Fit {
     let (start, length) = (sine_of(operand, u), 1i64 << width);
     let ulp = exp2(-(fraction as i32));
     if width == 0 {
         let base = to_raw(start, fraction);
-        return (
-            Segment { base, slope: 0 },
-            (base as f64 * ulp - start).abs(),
-        );
+        return Fit {
+            segment: Segment { base, slope: 0 },
+            error: (base as f64 * ulp - start).abs(),
+            shape: 0.0,
+        };
     }
     let rise = sine_of(operand, u + length) - start;
     let slope = (rise * exp2(slope_fraction as i32) + 0.5).floor() as i64;
@@ -344,7 +360,12 @@ fn fit(operand: u32, fraction: u32, slope_fraction: u32, u: i64, width: u32) -> 
     let height = base as f64 * ulp;
     let below = most + ulp - height;
     // Saturation to 1 − ulp is off by up to an ulp, which `below` covers.
-    (Segment { base, slope }, below.max(height - least).max(ulp))
+    let chord = start + rise * low as f64 / length as f64;
+    Fit {
+        segment: Segment { base, slope },
+        error: below.max(height - least).max(ulp),
+        shape: (sine_of(operand, u + low) - chord) / 2.0,
+    }
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ pub fn blinn(c: f64, n: f64) -> f64 {
 
 /// The cosine of `γ + dγ`, or of `γ − dγ` when `dgamma_negative`, from `c = cos γ` and `cd = cos dγ`
 /// with both angles in 0 … 90°.
+#[inline]
 pub fn turned_cosine(c: f64, cd: f64, dgamma_negative: bool) -> f64 {
     let sines = ((1.0 - c * c) * (1.0 - cd * cd)).max(0.0).sqrt();
     if dgamma_negative {
@@ -24,6 +25,7 @@ pub fn turned_cosine(c: f64, cd: f64, dgamma_negative: bool) -> f64 {
 }
 
 /// The base of `rough`, `n/2·(cos(γ ± dγ) − 1) + 1`, before clamp and square.
+#[inline]
 fn rough_base(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     n / 2.0 * (turned_cosine(c, cd, dgamma_negative) - 1.0) + 1.0
 }
@@ -31,6 +33,7 @@ fn rough_base(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
 /// UA 60139 (seed 001): `(n/2·(cos(γ ± dγ) − 1) + 1)²`, 0 where the base is negative.
 ///
 /// `c = cos γ`, `cd = cos dγ`; `dgamma_negative` is trigger 4 (false: `cos(γ + dγ)`).
+#[inline]
 pub fn rough(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     if c <= 0.0 {
         return 0.0;
@@ -41,6 +44,7 @@ pub fn rough(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
 
 /// [`rough`] without the clamp of the base: the parabola rises again beyond its zero, and stays at 1
 /// where it would exceed it.
+#[inline]
 pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     if c <= 0.0 {
         return 0.0;
@@ -52,6 +56,7 @@ pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
 /// The paper's W (seed 002): `(n/m·(c − 1) + 1)^m`, 0 where the base is negative.
 ///
 /// `m` is a power of two, 2 … 16 in the seed.
+#[inline]
 pub fn cosine_power(c: f64, n: f64, m: u32) -> f64 {
     if c <= 0.0 {
         return 0.0;

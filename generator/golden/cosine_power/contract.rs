@@ -13,6 +13,8 @@ use crate::reference;
 pub struct CosinePowerContract {
     params: Params,
     arithmetic: Arithmetic,
+    /// An ulp of the cosine.
+    ulp: f64,
     operands: Vec<Operand>,
     outputs: Vec<String>,
 }
@@ -54,6 +56,7 @@ impl CosinePowerContract {
         operands.extend(shared::colour_operands(params.colour_format()));
         Ok(Self {
             arithmetic: Arithmetic::new(params),
+            ulp: exp2(-(params.cosine_fraction as i32)),
             params: params.clone(),
             operands,
             outputs: shared::colour_outputs(),
@@ -87,9 +90,10 @@ impl Contract for CosinePowerContract {
         self.arithmetic.colour(f, colour)
     }
 
+    #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let cosine = control[0].clamp(0, self.arithmetic.one) as f64;
-        let cosine = cosine * exp2(-(self.params.cosine_fraction as i32));
+        let cosine = cosine * self.ulp;
         reference::cosine_power(cosine, control[1] as f64, self.params.power)
     }
 

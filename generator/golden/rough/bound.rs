@@ -26,7 +26,7 @@ use crate::fixed::{Rounding, exp2};
 use crate::golden::Bound;
 use crate::golden::contract::{self, Share};
 use crate::golden::narrow::rounding_error;
-use crate::golden::sine::{Scheme, Sine};
+use crate::golden::sine::{Piece, Scheme, Sine};
 
 /// Bins of the quarter circle: fine against the narrowest highlight, 3.6° at n = 1000.
 const BINS: usize = 512;
@@ -55,21 +55,23 @@ pub fn bound(params: &Params, sine: &Sine) -> Bound {
 
 /// The table's error by angle.
 struct Errors {
-    /// The largest error of an operand in each bin.
-    errors: Vec<f64>,
+    /// The largest error of an operand in each bin, with its shape (as in [`Piece`]).
+    errors: Vec<(f64, f64)>,
     /// The largest sine in each bin.
     sines: Vec<f64>,
 }
 
 impl Errors {
     fn new(sine: &Sine) -> Self {
-        let mut errors = vec![0.0f64; BINS];
-        sine.for_each_piece(|piece| {
+        let mut errors = vec![(0.0, 0.0); BINS];
+        sine.for_each_piece(|piece: Piece| {
             let (low, high) = piece.cosines;
             let first = bin(libm::acos(high) - SLACK);
             let last = bin(libm::acos(low) + SLACK);
-            for error in &mut errors[first..=last] {
-                *error = error.max(piece.error);
+            for slot in &mut errors[first..=last] {
+                if piece.error > slot.0 {
+                    *slot = (piece.error, piece.shape);
+                }
             }
         });
         let sines = (1..=BINS)
@@ -78,11 +80,17 @@ impl Errors {
         Self { errors, sines }
     }
 
-    /// The largest error of register 12 from the table, for γ in bin `i` and dγ in bin `j`; of each
-    /// entry's error `part` takes the part in question.
-    fn product(&self, i: usize, j: usize, part: impl Fn(f64) -> f64) -> f64 {
+    /// The largest error of register 12 from the table, for γ in bin `i` and dγ in bin `j`.
+    fn product(&self, i: usize, j: usize) -> f64 {
+        self.part(i, j, |error, _| error)
+    }
+
+    /// The part of [`Self::product`] that comes from a part of each entry's error, which `part` takes
+    /// from the error and its shape.
+    fn part(&self, i: usize, j: usize, part: impl Fn(f64, f64) -> f64) -> f64 {
         let (gamma, dgamma) = (self.errors[i], self.errors[j]);
-        self.sines[i] * part(dgamma) + (self.sines[j] + dgamma) * part(gamma)
+        self.sines[i] * part(dgamma.0, dgamma.1)
+            + (self.sines[j] + dgamma.0) * part(gamma.0, gamma.1)
     }
 }
 
@@ -132,7 +140,6 @@ fn bin(angle: f64) -> usize {
 
 fn exact(params: &Params, sine: &Sine) -> Vec<Share> {
     let errors = Errors::new(sine);
-    let whole = |error: f64| error;
     let deviation = bin(params.deviation.to_radians() + SLACK);
     let (p, f, s) = (
         params.product_fraction,
@@ -142,7 +149,7 @@ fn exact(params: &Params, sine: &Sine) -> Vec<Share> {
 
     let cos_cos = rounding_error(2 * params.cosine_fraction, p, params.product_rounding);
     let mut sin_sin = rounding_error(2 * s, p, params.product_rounding);
-    let largest_product = errors.sines[deviation] + errors.errors[deviation];
+    let largest_product = errors.sines[deviation] + errors.errors[deviation].0;
     if params.product_rounding == Rounding::Nearest && largest_product >= 1.0 - exp2(-(p as i32)) {
         // What would round to 1.0 saturates to 1.0 − ulp.
         sin_sin = sin_sin.max(exp2(-(p as i32)));
@@ -152,7 +159,7 @@ fn exact(params: &Params, sine: &Sine) -> Vec<Share> {
 
     let pairs = || (0..BINS).flat_map(move |i| (0..=deviation).map(move |j| (i, j)));
     let largest = pairs()
-        .map(|(i, j)| errors.product(i, j, whole))
+        .map(|(i, j)| errors.product(i, j))
         .fold(0.0, f64::max);
     let (_, most) = exponents(params);
     let anywhere = most / 2.0 * (largest + products) + base;
@@ -163,7 +170,7 @@ fn exact(params: &Params, sine: &Sine) -> Vec<Share> {
     let (mut worst, mut at, mut square) = (0.0, (0, 0), 0.0f64);
     for (i, j) in pairs() {
         let weight = &weights[i.abs_diff(j)];
-        let error = errors.product(i, j, whole);
+        let error = errors.product(i, j);
         if weight.linear * error > worst {
             (worst, at) = (weight.linear * error, (i, j));
         }
@@ -176,8 +183,8 @@ fn exact(params: &Params, sine: &Sine) -> Vec<Share> {
         .iter()
         .enumerate()
         .map(|(k, &(key, what))| {
-            let part = |error| split(params, error)[k];
-            (key, what, linear * errors.product(at.0, at.1, part))
+            let part = |error, shape| split(params, error, shape)[k];
+            (key, what, linear * errors.part(at.0, at.1, part))
         })
         .collect();
     shares.extend([
@@ -215,19 +222,16 @@ fn sine_terms(params: &Params) -> &'static [(&'static str, &'static str)] {
     }
 }
 
-/// An entry's error, which is known as a whole, in its parts: as much as rounding (and the floor after
-/// interpolation) and the slope can be guilty of; the rest is the shape's.
-fn split(params: &Params, error: f64) -> [f64; 3] {
+/// An entry's error, which is known as a whole, in parts that add up to it: in proportion to what
+/// rounding (with the floor after interpolation), the shape and the slope's rounding could cost at most.
+fn split(params: &Params, error: f64, shape: f64) -> [f64; 3] {
     let ulp = exp2(-(params.sine_fraction as i32));
-    match params.sine_scheme {
-        Scheme::Direct { .. } => {
-            let rounding = error.min(ulp / 2.0);
-            [rounding, error - rounding, 0.0]
-        }
+    let most = match params.sine_scheme {
+        Scheme::Direct { .. } => [ulp / 2.0, shape, 0.0],
+        // A slope is off by half an ulp over the segment, and the base halves that again.
         Scheme::Segmented { slope_fraction, .. } => {
-            let rounding = error.min(1.5 * ulp);
-            let slope = (error - rounding).min(exp2(-(slope_fraction as i32)) / 4.0);
-            [rounding, error - rounding - slope, slope]
+            [1.5 * ulp, shape, exp2(-(slope_fraction as i32)) / 4.0]
         }
-    }
+    };
+    most.map(|part| part * error / most.iter().sum::<f64>())
 }

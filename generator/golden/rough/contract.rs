@@ -11,6 +11,9 @@ use crate::reference;
 pub struct RoughContract {
     params: Params,
     arithmetic: Arithmetic,
+    largest_cosine: i64,
+    /// An ulp of a cosine.
+    ulp: f64,
     operands: Vec<Operand>,
     outputs: Vec<String>,
 }
@@ -73,6 +76,8 @@ impl RoughContract {
         operands.extend(contract::colour_operands(params.colour_format()));
         Ok(Self {
             arithmetic,
+            largest_cosine: largest,
+            ulp: exp2(-(params.cosine_fraction as i32)),
             params: params.clone(),
             operands,
             outputs: contract::colour_outputs(),
@@ -84,8 +89,9 @@ impl RoughContract {
         self.arithmetic.sine.rom_size()
     }
 
+    #[inline]
     fn clamped(&self, cosine: i64) -> i64 {
-        cosine.clamp(0, self.params.largest_cosine())
+        cosine.clamp(0, self.largest_cosine)
     }
 }
 
@@ -118,18 +124,17 @@ impl Contract for RoughContract {
     }
 
     /// The patent's arithmetic is held against the clamped formula, which shows what it costs.
+    #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
-        let cosine = |raw| self.clamped(raw) as f64 * exp2(-(self.params.cosine_fraction as i32));
-        let formula = match (self.params.arithmetic, self.params.clamp) {
-            (Kind::Exact, false) => reference::rough_unclamped,
-            _ => reference::rough,
-        };
-        formula(
-            cosine(control[0]),
-            cosine(control[1]),
-            control[3] == 1,
-            control[2] as f64,
-        )
+        let cosine = |raw| self.clamped(raw) as f64 * self.ulp;
+        let (cos_gamma, cos_dgamma) = (cosine(control[0]), cosine(control[1]));
+        let (negative, exponent) = (control[3] == 1, control[2] as f64);
+        match (self.params.arithmetic, self.params.clamp) {
+            (Kind::Exact, false) => {
+                reference::rough_unclamped(cos_gamma, cos_dgamma, negative, exponent)
+            }
+            _ => reference::rough(cos_gamma, cos_dgamma, negative, exponent),
+        }
     }
 
     fn bound(&self) -> Bound {
