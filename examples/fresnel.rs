@@ -28,59 +28,33 @@ use std::process::ExitCode;
 
 use glint::config::{Config, Key, Problems, Schema};
 use glint::dsl::blocks::colour::Colours;
-use glint::dsl::{Designer, end, step, valid};
+use glint::dsl::{About, Designer, end, step, valid};
 use glint::fixed::{Format, Overflow, Rounding, exp2};
 use glint::golden::contract::{bound, colour_operands, colour_outputs};
-use glint::golden::handshake::{After, Handshake, OperandRegister, bits};
+use glint::golden::handshake::{After, Handshake, OperandRegister};
 use glint::golden::keys;
 use glint::golden::narrow::{Narrow, rounding_error};
 use glint::golden::{Bound, Contract, Model, Operand};
-use glint::netlist::About;
 use glint::registry::{Device, Registry};
 
 // 1. The keys: what the user of the device may choose. `new` writes them into a commented file, with
 //    these sentences; a file with a wrong value is refused with its line and a remedy.
 
+const ROUNDINGS: &[&str] = &["truncate", "nearest"];
+
 fn schema() -> Schema {
+    let bits = |name, default, doc| Key::integer(name, default, 4..=16, doc);
+    let rounding = |name, doc| Key::choice(name, "nearest", ROUNDINGS, doc);
+    let power = "Fraction bits of the powers of 1 - c and of f, u0.F: the width of the multiplier.";
     Schema {
         device: "fresnel",
         keys: vec![
-            Key::integer(
-                "cosine.fraction",
-                10,
-                4..=16,
-                "Fraction bits of the cosine, u1.F.",
-            ),
-            Key::integer(
-                "reflectance.fraction",
-                8,
-                4..=16,
-                "Fraction bits of the reflectance at normal incidence, u0.F.",
-            ),
-            Key::integer(
-                "power.fraction",
-                12,
-                4..=24,
-                "Fraction bits of the powers of 1 - c and of f, u0.F: the width of the multiplier.",
-            ),
-            Key::choice(
-                "power.rounding",
-                "nearest",
-                &["truncate", "nearest"],
-                "How the powers and f are rounded.",
-            ),
-            Key::integer(
-                "colour.bits",
-                8,
-                4..=16,
-                "Bits of the colour operands and outputs.",
-            ),
-            Key::choice(
-                "output.rounding",
-                "nearest",
-                &["truncate", "nearest"],
-                "How the colour outputs are rounded.",
-            ),
+            bits("cosine.fraction", 10, "Fraction bits of c, u1.F."),
+            bits("reflectance.fraction", 8, "Fraction bits of f0, u0.F."),
+            Key::integer("power.fraction", 12, 4..=24, power),
+            rounding("power.rounding", "How the powers and f are rounded."),
+            bits("colour.bits", 8, "Bits of colour operands and outputs."),
+            rounding("output.rounding", "How the outputs are rounded."),
         ],
         check,
     }
@@ -234,52 +208,42 @@ impl Formats {
     }
 }
 
-/// What the model predicts: every output, and every register. `run` and `word_address` are those of
-/// the sequencer.
-const SIGNALS: [&str; 15] = [
-    "valid",
-    "busy",
-    "done",
-    "run",
-    "word_address",
-    "power",
-    "f",
-    "cos_half_reg",
-    "f0_reg",
-    "red_reg",
-    "green_reg",
-    "blue_reg",
-    "red_out",
-    "green_out",
-    "blue_out",
-];
+/// The operands, in the order of the model's and the contract's.
+const OPERANDS: [&str; 5] = ["cos_half", "f0", "red", "green", "blue"];
+
+/// What else the model predicts. `run` and `word_address` are the sequencer's registers.
+const SIGNALS: &str = "valid busy done run word_address power f red_out green_out blue_out";
 
 /// The device at one clock.
 struct FresnelModel {
     formats: Formats,
     handshake: Handshake,
-    /// `cos_half`, `f0`, red, green, blue.
     operands: [OperandRegister; 5],
     power: i64,
     f: i64,
     inputs: Vec<String>,
     signals: Vec<String>,
-    values: [u64; SIGNALS.len()],
+    values: Vec<u64>,
 }
 
 impl FresnelModel {
     fn new(config: &Config) -> Self {
         let formats = Formats::new(config);
+        let one = 1 << formats.cosine.frac;
         let colour = OperandRegister::new(formats.colour);
         let mut inputs = vec!["rst_n".to_owned(), "start".to_owned()];
-        for operand in ["cos_half", "f0", "red", "green", "blue"] {
-            inputs.extend([operand.to_owned(), format!("{operand}_write")]);
-        }
+        inputs.extend(
+            OPERANDS
+                .iter()
+                .flat_map(|name| [name.to_string(), format!("{name}_write")]),
+        );
+        let mut signals: Vec<String> = SIGNALS.split(' ').map(str::to_owned).collect();
+        signals.extend(OPERANDS.map(|name| format!("{name}_reg")));
         Self {
             formats,
             handshake: Handshake::default(),
             operands: [
-                OperandRegister::clamped(formats.cosine, 0, 1 << formats.cosine.frac),
+                OperandRegister::clamped(formats.cosine, 0, one),
                 OperandRegister::new(formats.reflectance),
                 colour,
                 colour,
@@ -288,8 +252,8 @@ impl FresnelModel {
             power: 0,
             f: 0,
             inputs,
-            signals: SIGNALS.map(str::to_owned).to_vec(),
-            values: [0; SIGNALS.len()],
+            values: vec![0; signals.len()],
+            signals,
         }
     }
 }
@@ -321,32 +285,14 @@ impl Model for FresnelModel {
         self.handshake.clock(inputs[0] == 1, inputs[1] == 1, after);
 
         let Handshake { run, word } = self.handshake;
-        let last = word == 5;
-        let held = self.operands.map(|operand| operand.value as u64);
-        let out = |at: usize| {
-            let colour = self.operands[at].value;
-            bits(
-                self.formats.output(self.f, colour),
-                self.formats.colour.width(),
-            )
-        };
-        self.values = [
-            last.into(),
-            run.into(),
-            last.into(),
-            run.into(),
-            word.into(),
-            self.power as u64,
-            self.f as u64,
-            held[0],
-            held[1],
-            held[2],
-            held[3],
-            held[4],
-            out(2),
-            out(3),
-            out(4),
-        ];
+        let last = u64::from(word == 5);
+        let [power, f] = [self.power, self.f].map(|raw| raw as u64);
+        self.values = vec![last, run.into(), last, run.into(), word.into(), power, f];
+        let colours = &self.operands[2..];
+        let out = |colour: &OperandRegister| self.formats.output(self.f, colour.value) as u64;
+        self.values.extend(colours.iter().map(out));
+        self.values
+            .extend(self.operands.map(|operand| operand.value as u64));
     }
 
     fn values(&self) -> &[u64] {
@@ -365,24 +311,20 @@ struct FresnelContract {
 impl FresnelContract {
     fn new(config: &Config) -> Self {
         let formats = Formats::new(config);
-        let control = |name: &str, format: Format, most: i64, doc: &str| Operand {
-            name: name.to_owned(),
+        let control = |at: usize, format: Format, most: i64, doc: &str| Operand {
+            name: OPERANDS[at].to_owned(),
             format,
             domain: (0, most),
             colour: false,
             doc: doc.to_owned(),
         };
+        let [c, f0] = [formats.cosine, formats.reflectance];
         let mut operands = vec![
+            control(0, c, 1 << c.frac, "cosine to the half vector"),
             control(
-                "cos_half",
-                formats.cosine,
-                1 << formats.cosine.frac,
-                "cosine between the light and the half vector",
-            ),
-            control(
-                "f0",
-                formats.reflectance,
-                formats.reflectance.max_raw() as i64,
+                1,
+                f0,
+                f0.max_raw() as i64,
                 "reflectance at normal incidence",
             ),
         ];
