@@ -18,7 +18,7 @@
 //! ```
 //!
 //! where c is the cosine between the direction of the light and the half vector, and f0 the
-//! reflectance at normal incidence: 0.04 for glass, 0.9 for silver. The device multiplies the three
+//! reflectance at normal incidence: 0.04 for glass, 0.95 for silver. The device multiplies the three
 //! colours by it. It has one multiplier for f, which a microprogram of six words uses four times.
 //!
 //! A device is five things: configuration keys, a description, a golden model, a contract, and the
@@ -49,7 +49,7 @@ fn schema() -> Schema {
     Schema {
         device: "fresnel",
         keys: vec![
-            bits("cosine.fraction", 10, "Fraction bits of c, u1.F."),
+            bits("cosine.fraction", 10, "Fraction bits of cos_half, u1.F."),
             bits("reflectance.fraction", 8, "Fraction bits of f0, u0.F."),
             Key::integer("power.fraction", 12, 4..=24, power),
             rounding("power.rounding", "How the powers and f are rounded."),
@@ -144,15 +144,8 @@ fn describe(d: &Designer, config: &Config) {
 
     // 1.0 is no value of u0.F: it becomes the largest, one last place below. Elsewhere the ranges leave
     // saturation something to do, but the values do not; the proof is at the bound.
-    let narrow = |name, x| {
-        d.narrow(
-            name,
-            x,
-            formats.power,
-            formats.power_rounding,
-            Overflow::Saturate,
-        )
-    };
+    let (u0, rounding) = (formats.power, formats.power_rounding);
+    let narrow = |name, x| d.narrow(name, x, u0, rounding, Overflow::Saturate);
     power.takes(narrow("power_rounded", product));
     f.takes(narrow("f_rounded", d.add("blend", product, f0.q())));
     colours.outputs(f.q(), formats.output_rounding);
@@ -232,11 +225,9 @@ impl FresnelModel {
         let one = 1 << formats.cosine.frac;
         let colour = OperandRegister::new(formats.colour);
         let mut inputs = vec!["rst_n".to_owned(), "start".to_owned()];
-        inputs.extend(
-            OPERANDS
-                .iter()
-                .flat_map(|name| [name.to_string(), format!("{name}_write")]),
-        );
+        for operand in OPERANDS {
+            inputs.extend([operand.to_owned(), format!("{operand}_write")]);
+        }
         let mut signals: Vec<String> = SIGNALS.split(' ').map(str::to_owned).collect();
         signals.extend(OPERANDS.map(|name| format!("{name}_reg")));
         Self {
@@ -291,8 +282,8 @@ impl Model for FresnelModel {
         let colours = &self.operands[2..];
         let out = |colour: &OperandRegister| self.formats.output(self.f, colour.value) as u64;
         self.values.extend(colours.iter().map(out));
-        self.values
-            .extend(self.operands.map(|operand| operand.value as u64));
+        let held = self.operands.map(|operand| operand.value as u64);
+        self.values.extend(held);
     }
 
     fn values(&self) -> &[u64] {
@@ -321,12 +312,7 @@ impl FresnelContract {
         let [c, f0] = [formats.cosine, formats.reflectance];
         let mut operands = vec![
             control(0, c, 1 << c.frac, "cosine to the half vector"),
-            control(
-                1,
-                f0,
-                f0.max_raw() as i64,
-                "reflectance at normal incidence",
-            ),
+            control(1, f0, f0.max_raw() as i64, "reflectance head-on"),
         ];
         operands.extend(colour_operands(formats.colour));
         Self {
