@@ -1,4 +1,9 @@
 //! Glint: specular-shading hardware from Rust descriptions.
+//!
+//! A device is a [`registry::Device`]: keys ([`config::Schema`]), a description ([`dsl`]), a golden model
+//! ([`golden::Model`]) and a contract ([`golden::Contract`]). [`cli::run`] makes a command line of a
+//! registry, whether its devices are the catalogue's or your own: `examples/fresnel.rs` is a complete
+//! one, to be read from top to bottom.
 
 pub mod check;
 pub mod cli;

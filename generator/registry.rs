@@ -8,15 +8,18 @@ use crate::golden::{self, Contract, Model};
 use crate::netlist::Design;
 
 /// A device that Glint can generate, simulate and check.
+///
+/// All functions are called with configurations that the schema accepts. The file
+/// `examples/fresnel.rs` is a device of one's own, in full.
 #[derive(Clone, Copy)]
 pub struct Device {
-    /// As the key `device` names it.
+    /// As the key `device` names it: the same as [`Schema::device`].
     pub name: &'static str,
     /// One line for `glint list`.
     pub summary: &'static str,
     /// Its configuration keys.
     pub schema: fn() -> Schema,
-    /// Its description.
+    /// Its description: builds on a designer that has the module's name, and does not finish it.
     pub describe: fn(&Designer, &Config),
     /// Its golden model.
     pub model: fn(&Config) -> Box<dyn Model>,

@@ -50,10 +50,12 @@ pub use program::{
 pub use registers::{Counter, Flag, Operand, Register, Select};
 pub use signal::{Mux, Signal};
 
+pub use crate::netlist::About;
+
 use crate::check::{self, Diagnostic, Diagnostics};
 use crate::fixed::{Format, MAX_WIDTH};
 use crate::netlist::{
-    About, Control, Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, Port,
+    Control, Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, Port,
     Register as NetRegister, RegisterKind, Role, Rom as NetRom, RomId, Unit,
 };
 

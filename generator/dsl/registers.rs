@@ -105,6 +105,8 @@ impl Designer {
     }
 
     /// A register of the datapath, loaded in the words that say so; its field is `<name>_load`.
+    ///
+    /// It has no reset, and an operand cannot have its name, because both would own `<name>_load`.
     #[track_caller]
     pub fn register(&self, name: &str, format: Format) -> Register<'_> {
         let field = self.add_field(&format!("{name}_load"), 1, FieldKind::Enable);

@@ -182,7 +182,7 @@ impl<'d> Signal<'d> {
 
 /// The arithmetic blocks. Results are exact: their formats hold every value that the operands can give.
 impl Designer {
-    /// `a + b`.
+    /// `a + b`. Operands may differ in format: their points are aligned, and nothing is dropped.
     #[track_caller]
     pub fn add<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         self.sum(name, a, b, None)
@@ -248,7 +248,7 @@ impl Designer {
         self.signal(self.add_net(name, format, format.range(), Driver::Op(op), true))
     }
 
-    /// `a − b`.
+    /// `a − b`, aligned as in [`Designer::add`]; unsigned where the ranges show that it is never negative.
     #[track_caller]
     pub fn sub<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
         let (a, b) = aligned(a, b);
@@ -381,6 +381,9 @@ impl Designer {
     }
 
     /// A mux that the microprogram turns, with a select field of its own, `<name>_select`.
+    ///
+    /// The inputs have one point ([`Signal::with_fraction`] aligns them; [`Designer::bus`] carries
+    /// any); integer bits and signs may differ.
     #[track_caller]
     pub fn mux<'d>(&'d self, name: &str, inputs: impl IntoIterator<Item = Signal<'d>>) -> Mux<'d> {
         let inputs: Vec<_> = inputs.into_iter().collect();

@@ -9,7 +9,7 @@ const COLOURS: [&str; 3] = ["red", "green", "blue"];
 /// One contribution to the error of `f`: its configuration key, what it is, and its size.
 pub type Share = (&'static str, &'static str, f64);
 
-/// The three colour operands; every value is in the domain.
+/// The operands of [`crate::dsl::blocks::colour::Colours`]; every value is in the domain.
 pub fn colour_operands(format: Format) -> impl Iterator<Item = Operand> {
     COLOURS.into_iter().map(move |colour| Operand {
         name: colour.to_string(),
@@ -20,7 +20,7 @@ pub fn colour_operands(format: Format) -> impl Iterator<Item = Operand> {
     })
 }
 
-/// The three colour outputs.
+/// The outputs of [`crate::dsl::blocks::colour::Colours`].
 pub fn colour_outputs() -> Vec<String> {
     COLOURS.map(|colour| format!("{colour}_out")).to_vec()
 }
@@ -29,7 +29,8 @@ pub fn colour_outputs() -> Vec<String> {
 ///
 /// `f` and the formula both lie in 0 … 1, so that no word is off by more than 1.0: where the shares
 /// exceed it, they are scaled down to it. An output is `f` times a colour, which multiplies the error
-/// by the largest colour, and a rounding. It never saturates, for `f` < 1.
+/// by the largest colour, and a rounding. It never saturates, for `f` < 1. The rounding's share is
+/// attributed to a key `output.rounding`, which the device must have.
 pub fn bound(shares: &[Share], frac: u32, colour_bits: u32, output_rounding: Rounding) -> Bound {
     let sum: f64 = shares.iter().map(|share| share.2).sum();
     let cap = if sum > 1.0 { 1.0 / sum } else { 1.0 };

@@ -13,7 +13,11 @@ pub enum After {
     End,
 }
 
-/// The trigger `run` and the counter of control words.
+/// The trigger `run` and the counter of control words (`word_address`).
+///
+/// The device idles in word 0, and executes it once more in the clock after `start`: words 1 and on
+/// follow. A register that a word loads takes its value at the rising edge that ends the word, whether
+/// `rst_n` is low at that edge or not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Handshake {
     /// A point is in flight. This is also the output `busy`.

@@ -18,11 +18,16 @@ use crate::fixed::Format;
 ///
 /// Values are bit patterns. All state is zero before the first clock, as the built-in simulator's is.
 pub trait Model: Send {
-    /// The names of the inputs, in the order in which [`Model::clock`] takes them; `rst_n` and
-    /// `start` are among them.
+    /// The names of the inputs, in the order in which [`Model::clock`] takes them: `rst_n`, `start`,
+    /// and `<operand>` and `<operand>_write` for each operand. The order is the model's own.
     fn inputs(&self) -> &[String];
 
-    /// The names of everything predicted: the outputs of the device and its architectural registers.
+    /// The names of everything predicted, in any order.
+    ///
+    /// Nothing that a device shows may be missing: the outputs (`valid`, `busy`, `done`, results and
+    /// flags); the sequencer's registers `run` and `word_address`; the register `<operand>_reg` of each
+    /// operand; and the registers and counters of the description by their names. Registers inside a
+    /// block ([`crate::dsl::Designer::pipeline`], synchronous ROMs) need not be there.
     fn signals(&self) -> &[String];
 
     /// One rising edge, with the inputs as they stand just before it.
