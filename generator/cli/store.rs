@@ -111,7 +111,8 @@ fn present(out: &Path, name: &str) -> Result<Vec<PathBuf>> {
                 continue;
             }
             Err(error) => {
-                return Err(error).with_context(|| format!("cannot read `{}`", directory.display()));
+                return Err(error)
+                    .with_context(|| format!("cannot read `{}`", directory.display()));
             }
         };
         for entry in entries {
