@@ -1,27 +1,93 @@
 //! How errors are told.
 
-use serde_json::json;
+use std::fmt;
+use std::io::Write;
+use std::process::ExitCode;
+
+use serde_json::{Value, json};
 
 use crate::config::Problems;
+
+/// A mistake on the command line itself, which only a command can see: exit code 2.
+#[derive(Debug)]
+pub struct Usage(pub String);
+
+impl fmt::Display for Usage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for Usage {}
+
+/// Several errors, none the cause of another: those of several configurations.
+#[derive(Debug)]
+pub struct Several(pub Vec<anyhow::Error>);
+
+impl fmt::Display for Several {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} errors", self.0.len())
+    }
+}
+
+impl std::error::Error for Several {}
+
+/// The exit code that stands for an error.
+pub fn exit_code(error: &anyhow::Error) -> ExitCode {
+    // Also when a context was put around it.
+    match error.downcast_ref::<Usage>() {
+        Some(_) => ExitCode::from(2),
+        None => ExitCode::FAILURE,
+    }
+}
 
 /// Prints an error with its causes: to standard error, or as a JSON object to standard output.
 pub fn print(error: &anyhow::Error, as_json: bool) {
     if as_json {
-        let problems = error.downcast_ref::<Problems>().map(Problems::to_json);
-        let causes: Vec<String> = error.chain().map(ToString::to_string).collect();
-        let value = match problems {
-            Some(problems) => json!({ "ok": false, "problems": problems }),
-            None => json!({ "ok": false, "error": causes.join(": ") }),
-        };
-        super::tables::print_json(&value);
+        print_problems(problems(error));
+    } else {
+        print_text(error);
+    }
+}
+
+/// Prints what is wrong as a JSON object; each of the problems has the keys of
+/// [`Problems::to_json`].
+pub fn print_problems(problems: Vec<Value>) {
+    super::tables::print_json(&json!({ "ok": false, "problems": problems }));
+}
+
+/// A problem that is none of a configuration's text, with the keys of those that are.
+pub fn problem(message: &str) -> Value {
+    json!({ "file": null, "line": null, "column": null, "key": null, "message": message, "remedy": null })
+}
+
+fn problems(error: &anyhow::Error) -> Vec<Value> {
+    if let Some(Several(errors)) = error.downcast_ref() {
+        return errors.iter().flat_map(problems).collect();
+    }
+    match error.downcast_ref::<Problems>().map(Problems::to_json) {
+        Some(Value::Array(problems)) => problems,
+        Some(other) => vec![other],
+        None => vec![problem(&format!("{error:#}"))],
+    }
+}
+
+fn print_text(error: &anyhow::Error) {
+    if let Some(Several(errors)) = error.downcast_ref() {
+        for (at, error) in errors.iter().enumerate() {
+            if at > 0 {
+                print_line("");
+            }
+            print_text(error);
+        }
         return;
     }
     match error.downcast_ref::<Problems>() {
-        Some(problems) => eprintln!("{problems}"),
+        Some(problems) => print_line(&problems.to_string()),
         None => {
-            eprintln!("error: {error}");
+            print_line(&format!("error: {error}"));
             for cause in error.chain().skip(1) {
-                eprintln!("  caused by: {cause}");
+                print_line(&format!("  caused by: {cause}"));
             }
         }
     }
@@ -29,5 +95,10 @@ pub fn print(error: &anyhow::Error, as_json: bool) {
 
 /// Prints a warning to standard error.
 pub fn warn(message: &str) {
-    eprintln!("warning: {message}");
+    print_line(&format!("warning: {message}"));
+}
+
+/// Prints a line to standard error. When that cannot be written there is nobody left to tell.
+fn print_line(line: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{line}");
 }

@@ -50,6 +50,11 @@ enum Command {
     /// Each configuration gets the directories `rtl_out/<name>/` and `testbench/<name>/`. They are replaced
     /// as a whole or not at all. Files that Glint did not write, or that were edited since, are left alone
     /// unless --force is given.
+    #[command(after_help = "\
+Examples:
+  glint generate                              everything in configs/, into rtl_out/ and testbench/
+  glint generate my_core.toml --out build     one configuration, into build/
+  glint generate --check                      is what is there up to date? Writes nothing")]
     Generate {
         #[command(flatten)]
         configs: Configs,
@@ -64,6 +69,12 @@ enum Command {
         force: bool,
     },
     /// Compare the golden model with the simulated hardware, every register on every clock
+    #[command(after_help = "\
+Examples:
+  glint cosim                                             everything in configs/, built-in simulator
+  glint cosim my_core.toml --points 1000000 --seed 7      more points, another stimulus
+  glint cosim my_core.toml --simulator icarus --json      the emitted Verilog, result for scripts
+  glint cosim my_core.toml --points 20 --vcd wave.vcd     a waveform for a viewer")]
     Cosim {
         #[command(flatten)]
         configs: Configs,
@@ -80,10 +91,15 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         vcd: Option<PathBuf>,
         /// Seconds after which an external simulator is given up
-        #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..))]
+        #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
         time_limit: u64,
     },
     /// Compute one point: golden registers, outputs and the formula in f64
+    #[command(after_help = "\
+Examples:
+  glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
+  glint eval my_core.toml cos_gamma=#1038090     a raw integer, as the port takes it
+  glint eval my_core.toml --json                 the middle of the domain, for scripts")]
     Eval {
         /// A configuration
         config: PathBuf,
@@ -93,8 +109,14 @@ enum Command {
         operands: Vec<String>,
     },
     /// Name the devices, and the configurations in configs/
+    #[command(after_help = "\
+Example:
+  glint list --json")]
     List,
     /// Print a commented configuration of a device
+    #[command(after_help = "\
+Example:
+  glint new rough --name my_core > my_core.toml")]
     New {
         /// A device, as `glint list` names it
         device: String,
@@ -138,8 +160,17 @@ pub fn run(registry: &Registry) -> ExitCode {
 
 /// Runs the command line `arguments`, the program's name first.
 pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let cli = match Cli::try_parse_from(arguments) {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let cli = match Cli::try_parse_from(&arguments) {
         Ok(cli) => cli,
+        Err(error)
+            if error.use_stderr() && arguments.iter().any(|argument| argument == "--json") =>
+        {
+            failure::print_problems(vec![failure::problem(
+                error.render().to_string().trim_end(),
+            )]);
+            return ExitCode::from(error.exit_code() as u8);
+        }
         Err(error) => {
             // Help and version go to standard output with exit code 0, the rest to standard error
             // with 2; a closed pipe is nobody's error.
@@ -173,15 +204,26 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             };
             commands::cosim(registry, output, &configs.configs, &request)
         }
-        Some(Command::Eval { config, operands }) => commands::eval(registry, output, &config, &operands),
+        Some(Command::Eval { config, operands }) => {
+            commands::eval(registry, output, &config, &operands)
+        }
         Some(Command::List) => commands::list(registry, output),
-        Some(Command::New { device, name }) => commands::new(registry, &device, name.as_deref()),
+        Some(Command::New { device, name }) => {
+            commands::new(registry, output, &device, name.as_deref())
+        }
     };
-    match done {
+    let code = match done {
         Ok(true) => ExitCode::SUCCESS,
         Ok(false) => ExitCode::FAILURE,
         Err(error) => {
             failure::print(&error, output.json);
+            failure::exit_code(&error)
+        }
+    };
+    match tables::finish() {
+        Ok(()) => code,
+        Err(error) => {
+            failure::print(&error, false);
             ExitCode::FAILURE
         }
     }

@@ -6,11 +6,12 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use serde_json::Value;
+use tempfile::TempDir;
 
 use crate::emit::{OutputFile, digest};
 
@@ -34,29 +35,28 @@ pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Resul
     }
     let foreign = foreign_files(out, name)?;
     if !foreign.is_empty() && !force {
-        let list: Vec<String> = foreign.iter().map(|path| format!("  {}", path.display())).collect();
+        let list: Vec<String> = foreign
+            .iter()
+            .map(|path| format!("  {}", path.display()))
+            .collect();
         bail!(
             "these files were not written by Glint, or were edited since; nothing was changed\n{}\n\
              move them away, choose another --out, or replace them with --force",
             list.join("\n")
         );
     }
-    fs::create_dir_all(out).with_context(|| format!("cannot create `{}`", out.display()))?;
+    create_directory(out)?;
     let staging = tempfile::Builder::new()
         .prefix(".glint-")
         .tempdir_in(out)
-        .with_context(|| format!("cannot write to `{}`; choose another directory with --out", out.display()))?;
+        .with_context(|| {
+            format!(
+                "cannot write to `{}`; choose another directory with --out",
+                out.display()
+            )
+        })?;
     stage(staging.path(), files)?;
-    for path in &foreign {
-        // Kept, unless something new takes its place.
-        let relative = path.strip_prefix(out).unwrap_or(path);
-        let target = staging.path().join(relative);
-        if !target.exists() && path.is_file() {
-            create_parent(&target)?;
-            fs::copy(path, &target).with_context(|| format!("cannot keep `{}`", path.display()))?;
-        }
-    }
-    swap(out, staging.path(), name)?;
+    swap(out, staging, name, &foreign)?;
     Ok(Written::Replaced)
 }
 
@@ -73,8 +73,12 @@ pub fn differences(out: &Path, name: &str, files: &[OutputFile]) -> Result<Vec<S
             Ok(_) => different.push(file.path.clone()),
             Err(error) if error.kind() == ErrorKind::NotFound => different.push(file.path.clone()),
             // A file where a directory should be.
-            Err(error) if error.kind() == ErrorKind::NotADirectory => different.push(file.path.clone()),
-            Err(error) => return Err(error).with_context(|| format!("cannot read `{}`", path.display())),
+            Err(error) if error.kind() == ErrorKind::NotADirectory => {
+                different.push(file.path.clone())
+            }
+            Err(error) => {
+                return Err(error).with_context(|| format!("cannot read `{}`", path.display()));
+            }
         }
     }
     for path in present(out, name)? {
@@ -100,13 +104,23 @@ fn present(out: &Path, name: &str) -> Result<Vec<PathBuf>> {
             Ok(entries) => entries,
             Err(error) if error.kind() == ErrorKind::NotFound => continue,
             Err(error) if error.kind() == ErrorKind::NotADirectory => {
-                found.push(directory);
+                // Unless it is one above that is no directory.
+                if fs::symlink_metadata(&directory).is_ok() {
+                    found.push(directory);
+                }
                 continue;
             }
-            Err(error) => return Err(error).with_context(|| format!("cannot read `{}`", directory.display())),
+            Err(error) => {
+                return Err(error)
+                    .with_context(|| format!("cannot read `{}`", directory.display()));
+            }
         };
         for entry in entries {
-            found.push(entry.with_context(|| format!("cannot read `{}`", directory.display()))?.path());
+            found.push(
+                entry
+                    .with_context(|| format!("cannot read `{}`", directory.display()))?
+                    .path(),
+            );
         }
     }
     found.sort();
@@ -122,8 +136,9 @@ fn foreign_files(out: &Path, name: &str) -> Result<Vec<PathBuf>> {
         let ours = match &digests {
             None => false,
             Some(_) if path == manifest => true,
-            Some(digests) => fs::read(&path)
-                .is_ok_and(|contents| digests.get(&relative_name(out, &path)) == Some(&digest(&contents))),
+            Some(digests) => fs::read(&path).is_ok_and(|contents| {
+                digests.get(&relative_name(out, &path)) == Some(&digest(&contents))
+            }),
         };
         if !ours {
             foreign.push(path);
@@ -151,55 +166,94 @@ fn relative_name(out: &Path, path: &Path) -> String {
 
 fn create_parent(path: &Path) -> Result<()> {
     match path.parent() {
-        Some(parent) => {
-            fs::create_dir_all(parent).with_context(|| format!("cannot create `{}`", parent.display()))
-        }
+        Some(parent) => create_directory(parent),
         None => Ok(()),
     }
+}
+
+fn create_directory(path: &Path) -> Result<()> {
+    fs::create_dir_all(path)
+        .with_context(|| format!("cannot create the directory `{}`", path.display()))
 }
 
 fn stage(staging: &Path, files: &[OutputFile]) -> Result<()> {
     for file in files {
         let path = staging.join(&file.path);
         create_parent(&path)?;
-        fs::write(&path, &file.contents)
-            .with_context(|| format!("cannot write `{}`; what was there before is unchanged", file.path))?;
+        fs::write(&path, &file.contents).with_context(|| {
+            format!(
+                "cannot write `{}`; what was there before is unchanged",
+                file.path
+            )
+        })?;
     }
     Ok(())
 }
 
-/// Moves the old directories out of the way and the new ones into their place; undoes it when a
-/// step fails. The old ones are deleted with `staging`.
-fn swap(out: &Path, staging: &Path, name: &str) -> Result<()> {
-    let mut done: Vec<(PathBuf, Option<PathBuf>)> = Vec::new();
-    let result = swap_each(out, staging, name, &mut done);
-    if result.is_err() {
-        for (place, old) in done.iter().rev() {
-            // The new one goes away with the staging directory; what was there comes back.
-            let _ = fs::rename(place, staging.join("undone").join(place.file_name().unwrap_or_default()));
-            if let Some(old) = old {
-                let _ = fs::rename(old, place);
-            }
-        }
+/// Moves the old directories out of the way, the new ones into their place, and those of the
+/// `foreign` files back that nothing new replaces. What is left of the old is deleted with `staging`.
+fn swap(out: &Path, staging: TempDir, name: &str, foreign: &[PathBuf]) -> Result<()> {
+    let mut moves = Moves::default();
+    let Err(error) = swap_each(out, staging.path(), name, foreign, &mut moves) else {
+        return Ok(());
+    };
+    if moves.undo().is_err() {
+        let kept = staging.keep();
+        return Err(error).context(format!(
+            "what was there before is now in `{}`",
+            kept.display()
+        ));
     }
-    result
+    Err(error)
 }
 
-fn swap_each(out: &Path, staging: &Path, name: &str, done: &mut Vec<(PathBuf, Option<PathBuf>)>) -> Result<()> {
-    let (new, old) = (directories(staging, name), directories(&staging.join("old"), name));
+fn swap_each(
+    out: &Path,
+    staging: &Path,
+    name: &str,
+    foreign: &[PathBuf],
+    moves: &mut Moves,
+) -> Result<()> {
+    let aside = staging.join("old");
+    let (new, old) = (directories(staging, name), directories(&aside, name));
     for ((place, new), old) in directories(out, name).into_iter().zip(new).zip(old) {
         if !new.exists() {
             continue;
         }
         create_parent(&place)?;
         create_parent(&old)?;
-        let kept = match fs::rename(&place, &old) {
-            Ok(()) => Some(old),
-            Err(error) if error.kind() == ErrorKind::NotFound => None,
-            Err(error) => return Err(error).with_context(|| format!("cannot replace `{}`", place.display())),
-        };
-        done.push((place.clone(), kept));
-        fs::rename(&new, &place).with_context(|| format!("cannot write `{}`", place.display()))?;
+        if fs::symlink_metadata(&place).is_ok() {
+            moves.rename(&place, &old)?;
+        }
+        moves.rename(&new, &place)?;
+    }
+    for path in foreign {
+        let old = aside.join(path.strip_prefix(out).unwrap_or(path));
+        // Not where something new stands, or where the directory as a whole stayed.
+        if fs::symlink_metadata(path).is_err() {
+            moves.rename(&old, path)?;
+        }
     }
     Ok(())
+}
+
+/// Renames that can be undone.
+#[derive(Default)]
+struct Moves(Vec<(PathBuf, PathBuf)>);
+
+impl Moves {
+    fn rename(&mut self, from: &Path, to: &Path) -> Result<()> {
+        fs::rename(from, to)
+            .with_context(|| format!("cannot move `{}` to `{}`", from.display(), to.display()))?;
+        self.0.push((from.to_owned(), to.to_owned()));
+        Ok(())
+    }
+
+    /// Takes back what was done, the last first.
+    fn undo(self) -> io::Result<()> {
+        self.0
+            .into_iter()
+            .rev()
+            .try_for_each(|(from, to)| fs::rename(to, from))
+    }
 }

@@ -1,7 +1,9 @@
 //! Tables for people, JSON for scripts.
 
-use std::io::Write;
+use std::io::{self, ErrorKind, Write};
+use std::sync::OnceLock;
 
+use anyhow::{Result, bail};
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 use serde_json::Value;
 
@@ -30,9 +32,27 @@ pub fn print_json(value: &Value) {
     print_line(&format!("{value:#}"));
 }
 
-/// Prints a line; a reader that went away is nobody's error.
+/// The first failure to write standard output.
+static FAILURE: OnceLock<io::Error> = OnceLock::new();
+
+/// Prints a line. A failure is kept for [`finish`]; a reader that went away is none.
 pub fn print_line(line: &str) {
-    let _ = writeln!(std::io::stdout().lock(), "{line}");
+    if let Err(error) = writeln!(io::stdout().lock(), "{line}")
+        && error.kind() != ErrorKind::BrokenPipe
+    {
+        let _ = FAILURE.set(error);
+    }
+}
+
+/// Whether everything that was printed was written.
+///
+/// # Errors
+/// Standard output cannot be written, as on a full disk.
+pub fn finish() -> Result<()> {
+    match FAILURE.get() {
+        Some(error) => bail!("cannot write standard output: {error}"),
+        None => Ok(()),
+    }
 }
 
 /// An integer with spaces between the thousands.

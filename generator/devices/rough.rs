@@ -71,6 +71,7 @@ fn check(config: &Config, problems: &mut Problems) {
                 format!("at most {cosine}, or a larger cosine.fraction"),
             );
         }
+        check_rom_size(config.integer("sine.address"), fraction, problems);
         return;
     }
     let mut most = 0;
@@ -100,6 +101,23 @@ fn check(config: &Config, problems: &mut Problems) {
             "sine.slope_fraction",
             format!("{slope} fraction bits of the slope do not go with {fraction} of the sine"),
             format!("{} to {fraction}", (fraction - most).max(8)),
+        );
+    }
+}
+
+/// The most bits of ROM 18: a megabit. The direct table alone can be larger, since a segmented one
+/// has at most 2^10 entries a range.
+const ROM_LIMIT: i64 = 1 << 20;
+
+fn check_rom_size(address: i64, width: i64, problems: &mut Problems) {
+    let bits = width << address;
+    if bits > ROM_LIMIT {
+        problems.push(
+            "sine.address",
+            format!("ROM 18 would have 2^{address} entries of {width} bits, {bits} bits in all"),
+            format!(
+                "fewer address bits, for at most {ROM_LIMIT} bits, or sine.scheme = \"segmented\""
+            ),
         );
     }
 }

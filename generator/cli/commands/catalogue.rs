@@ -6,6 +6,7 @@ use anyhow::{Result, bail};
 use serde_json::json;
 
 use super::{CONFIGS, paths};
+use crate::cli::failure::Usage;
 use crate::cli::{Output, tables};
 use crate::config;
 use crate::registry::Registry;
@@ -42,19 +43,37 @@ pub fn list(registry: &Registry, output: Output) -> Result<bool> {
 }
 
 /// `glint new`.
-pub fn new(registry: &Registry, device: &str, name: Option<&str>) -> Result<bool> {
+pub fn new(registry: &Registry, output: Output, device: &str, name: Option<&str>) -> Result<bool> {
     let Some(found) = registry.device(device) else {
-        let names: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
-        let near = config::nearest(device, names.iter().copied())
-            .map(|near| format!("; did you mean `{near}`?"))
-            .unwrap_or_default();
-        bail!("there is no device `{device}`{near} The devices are: {}", names.join(", "));
+        let names: Vec<&str> = registry
+            .devices()
+            .iter()
+            .map(|device| device.name)
+            .collect();
+        let near = config::nearest(device, names.iter().copied()).map_or_else(
+            || ".".to_owned(),
+            |near| format!("; did you mean `{near}`?"),
+        );
+        bail!(Usage(format!(
+            "there is no device `{device}`{near} The devices are: {}",
+            names.join(", ")
+        )));
     };
     let schema = (found.schema)();
     let name = name.map_or_else(|| device.replace('-', "_"), str::to_owned);
     let text = config::commented(&schema, &name);
     // A name that the reader would refuse is refused here.
-    config::parse("<new>", &text, &[schema])?;
-    tables::print_line(text.trim_end());
+    if let Err(problems) = config::parse("<new>", &text, &[schema]) {
+        let faults: Vec<String> = problems
+            .iter()
+            .map(|problem| format!("{}; {}", problem.message, problem.remedy))
+            .collect();
+        bail!(Usage(faults.join("\n")));
+    }
+    if output.json {
+        tables::print_json(&json!({ "ok": true, "device": device, "name": name, "text": text }));
+    } else {
+        tables::print_line(text.trim_end());
+    }
     Ok(true)
 }

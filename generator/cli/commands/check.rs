@@ -39,7 +39,11 @@ pub fn everything(registry: &Registry, output: Output) -> Result<bool> {
     bar.finish_and_clear();
     let holds = findings.iter().all(|finding| finding.faults.is_empty());
     if output.json {
-        let list: Vec<Value> = loaded.iter().zip(&findings).map(|(one, finding)| as_json(one, finding)).collect();
+        let list: Vec<Value> = loaded
+            .iter()
+            .zip(&findings)
+            .map(|(one, finding)| as_json(one, finding))
+            .collect();
         tables::print_json(&json!({ "ok": holds, "configurations": list }));
         return Ok(holds);
     }
@@ -49,10 +53,13 @@ pub fn everything(registry: &Registry, output: Output) -> Result<bool> {
 
 fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<Finding> {
     let mut shown = 0;
-    let outcome = one.unit.lockstep(BENCH_SEED)?.run(POINTS, None, &mut |points| {
-        bar.inc(points - shown);
-        shown = points;
-    })?;
+    let outcome = one
+        .unit
+        .lockstep(BENCH_SEED)?
+        .run(POINTS, None, &mut |points| {
+            bar.inc(points - shown);
+            shown = points;
+        })?;
     let bound = one.unit.contract.bound();
     let faults = cosim::faults(&outcome, &bound);
     Ok(Finding {
@@ -94,7 +101,12 @@ fn print(loaded: &[Loaded], findings: &[Finding]) {
                 .worst
                 .as_ref()
                 .map_or_else(|| "-".to_owned(), |worst| format!("{:.3}", worst.units)),
-            if finding.faults.is_empty() { "holds" } else { "FAILS" }.to_owned(),
+            if finding.faults.is_empty() {
+                "holds"
+            } else {
+                "FAILS"
+            }
+            .to_owned(),
         ]
     });
     let numbers = [
@@ -108,7 +120,9 @@ fn print(loaded: &[Loaded], findings: &[Finding]) {
         "largest error",
     ];
     tables::print(&headings, &numbers, rows);
-    tables::print_line("Registers and outputs are compared with the golden model on every clock. Errors are in output units, against the formula in f64. The largest error is at:");
+    tables::print_line(
+        "Registers and outputs are compared with the golden model on every clock. Errors are in output units, against the formula in f64. The largest error is at:",
+    );
     for (one, finding) in loaded.iter().zip(findings) {
         if let Some(worst) = &finding.outcome.worst {
             tables::print_line(&format!("  {}: {}", one.path, cosim::place(one, worst)));

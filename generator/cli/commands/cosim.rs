@@ -1,6 +1,6 @@
 //! `cosim`.
 
-use std::fs::File;
+use std::fs::{self, File, OpenOptions};
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -10,6 +10,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::{Loaded, load};
+use crate::cli::failure::Usage;
 use crate::cli::{Output, POINTS, Simulator, progress, tables};
 use crate::cosim::external::{self, BenchOutcome};
 use crate::cosim::{Outcome, Worst};
@@ -18,6 +19,9 @@ use crate::registry::Registry;
 
 /// Points when an external simulator runs.
 const EXTERNAL_POINTS: u64 = 200;
+
+/// The most points for an external simulator, whose vectors are made in memory.
+const EXTERNAL_LIMIT: u64 = 1_000_000;
 
 /// What `cosim` was asked for.
 pub struct CosimRequest {
@@ -34,10 +38,18 @@ pub struct CosimRequest {
 }
 
 /// `glint cosim`.
-pub fn cosim(registry: &Registry, output: Output, configs: &[PathBuf], request: &CosimRequest) -> Result<bool> {
+pub fn cosim(
+    registry: &Registry,
+    output: Output,
+    configs: &[PathBuf],
+    request: &CosimRequest,
+) -> Result<bool> {
     let loaded = load(registry, configs)?;
     if request.vcd.is_some() && loaded.len() != 1 {
-        bail!("--vcd is for one configuration; {} are named", loaded.len());
+        bail!(Usage(format!(
+            "--vcd is for one configuration; here are {}",
+            loaded.len()
+        )));
     }
     let which = match request.simulator {
         Simulator::RustHdl => return built_in(output, &loaded, request),
@@ -45,9 +57,14 @@ pub fn cosim(registry: &Registry, output: Output, configs: &[PathBuf], request: 
         Simulator::Verilator => external::Simulator::Verilator,
     };
     if request.vcd.is_some() {
-        bail!("--vcd is for the built-in simulator");
+        bail!(Usage("--vcd is for the built-in simulator".to_owned()));
     }
     let points = request.points.unwrap_or(EXTERNAL_POINTS);
+    if points > EXTERNAL_LIMIT {
+        bail!(Usage(format!(
+            "--points {points}: an external simulator takes at most {EXTERNAL_LIMIT}"
+        )));
+    }
     let bar = progress::bar(output, loaded.len() as u64, "benches run");
     let runs: Vec<(usize, BenchOutcome)> = loaded
         .par_iter()
@@ -79,7 +96,10 @@ pub fn cosim(registry: &Registry, output: Output, configs: &[PathBuf], request: 
     }
     for (one, (clocks, run)) in loaded.iter().zip(&runs) {
         let verdict = if run.passed { "holds" } else { "FAILS" };
-        tables::print_line(&format!("{}: {points} points, {clocks} clocks: {verdict}", one.path));
+        tables::print_line(&format!(
+            "{}: {points} points, {clocks} clocks: {verdict}",
+            one.path
+        ));
         if !run.passed {
             tables::print_line(&run.transcript);
         }
@@ -89,7 +109,12 @@ pub fn cosim(registry: &Registry, output: Output, configs: &[PathBuf], request: 
 
 /// The emitted bench in an external simulator. The expected values are those on which golden model
 /// and built-in simulator agree.
-fn bench(one: &Loaded, which: external::Simulator, points: u64, request: &CosimRequest) -> Result<(usize, BenchOutcome)> {
+fn bench(
+    one: &Loaded,
+    which: external::Simulator,
+    points: u64,
+    request: &CosimRequest,
+) -> Result<(usize, BenchOutcome)> {
     let vectors = one.unit.vectors(points, request.seed)?;
     let clocks = vectors.inputs.len();
     let files = one.unit.files(&one.path, vectors)?;
@@ -107,7 +132,11 @@ fn bench(one: &Loaded, which: external::Simulator, points: u64, request: &CosimR
 
 fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result<bool> {
     let points = request.points.unwrap_or(POINTS);
-    let bar = progress::bar(output, points * loaded.len() as u64, "points checked");
+    let bar = progress::bar(
+        output,
+        points.saturating_mul(loaded.len() as u64),
+        "points checked",
+    );
     let outcomes: Vec<Outcome> = loaded
         .par_iter()
         .map(|one| {
@@ -157,7 +186,12 @@ fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result
     Ok(holds)
 }
 
-fn run(one: &Loaded, points: u64, request: &CosimRequest, progress: &mut dyn FnMut(u64)) -> Result<Outcome> {
+fn run(
+    one: &Loaded,
+    points: u64,
+    request: &CosimRequest,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Outcome> {
     let mut lockstep = one.unit.lockstep(request.seed)?;
     let Some(path) = &request.vcd else {
         return lockstep.run(points, None, progress);
@@ -173,19 +207,42 @@ fn traced(
     progress: &mut dyn FnMut(u64),
 ) -> Result<Outcome> {
     let cannot = || format!("cannot write the waveform `{}`", path.display());
+    // A pipe or a device is written itself; a file is replaced.
+    if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+        let file = OpenOptions::new()
+            .write(true)
+            .open(path)
+            .with_context(cannot)?;
+        return trace_to(lockstep, file, points, progress).with_context(cannot);
+    }
     let directory = match path.parent() {
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),
     };
-    let staged = tempfile::Builder::new()
-        .prefix(".glint-")
-        .tempfile_in(directory)
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".glint-");
+    // As any new file: the umask takes away from it.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let staged = builder.tempfile_in(directory).with_context(cannot)?;
+    let file = staged.reopen().with_context(cannot)?;
+    let outcome = trace_to(lockstep, file, points, progress).with_context(cannot)?;
+    staged
+        .persist(path)
+        .map_err(|error| error.error)
         .with_context(cannot)?;
-    let file: File = staged.reopen().with_context(cannot)?;
-    lockstep.trace(BufWriter::new(file)).with_context(cannot)?;
-    let outcome = lockstep.run(points, None, progress).with_context(cannot)?;
-    lockstep.end_trace().with_context(cannot)?;
-    staged.persist(path).map_err(|error| error.error).with_context(cannot)?;
+    Ok(outcome)
+}
+
+fn trace_to(
+    lockstep: &mut crate::cosim::Lockstep<'_>,
+    file: File,
+    points: u64,
+    progress: &mut dyn FnMut(u64),
+) -> Result<Outcome> {
+    lockstep.trace(BufWriter::new(file))?;
+    let outcome = lockstep.run(points, None, progress)?;
+    lockstep.end_trace()?;
     Ok(outcome)
 }
 
@@ -217,7 +274,10 @@ pub fn place(one: &Loaded, worst: &Worst) -> String {
         .iter()
         .filter_map(|(name, raw)| {
             let operand = operands.iter().find(|operand| operand.name == *name)?;
-            Some(format!("{name}={}", operand.format.to_f64(i128::from(*raw))))
+            Some(format!(
+                "{name}={}",
+                operand.format.to_f64(i128::from(*raw))
+            ))
         })
         .collect();
     format!("{} for {}", worst.output, values.join(" "))

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, bail};
 use serde_json::{Value, json};
 
 use super::load_one;
+use crate::cli::failure::Usage;
 use crate::cli::{Output, tables};
 use crate::config;
 use crate::golden::{Model, Operand};
@@ -15,11 +16,16 @@ use crate::registry::Registry;
 const LIMIT: u64 = 1 << 16;
 
 /// `glint eval`.
-pub fn eval(registry: &Registry, output: Output, config: &Path, settings: &[String]) -> Result<bool> {
+pub fn eval(
+    registry: &Registry,
+    output: Output,
+    config: &Path,
+    settings: &[String],
+) -> Result<bool> {
     let one = load_one(registry, &registry.schemas(), config)?;
     let contract = one.unit.contract.as_ref();
     let operands = contract.operands();
-    let raw = operand_values(operands, settings)?;
+    let raw = operand_values(operands, settings).map_err(Usage)?;
     let mut model = (one.unit.device.model)(&one.unit.config);
     let signals = point(model.as_mut(), operands, &raw)?;
     let control = operands.iter().filter(|operand| !operand.colour).count();
@@ -73,12 +79,20 @@ pub fn eval(registry: &Registry, output: Output, config: &Path, settings: &[Stri
             operand.format.to_f64(i128::from(raw)).to_string(),
         ]
     });
-    tables::print(&["operand", "format", "raw", "value"], &["raw", "value"], rows);
+    tables::print(
+        &["operand", "format", "raw", "value"],
+        &["raw", "value"],
+        rows,
+    );
     let rows = signals.iter().map(|(name, bits)| {
         let (raw, value, format) = value_of(name, *bits);
         vec![name.clone(), format, raw.to_string(), value.to_string()]
     });
-    tables::print(&["golden, when valid", "format", "raw", "value"], &["raw", "value"], rows);
+    tables::print(
+        &["golden, when valid", "format", "raw", "value"],
+        &["raw", "value"],
+        rows,
+    );
     tables::print_line(&format!("formula in f64: f = {f}"));
     for (name, exact) in contract.outputs().iter().zip(exact) {
         tables::print_line(&format!("  {name} = {exact:.6}"));
@@ -90,55 +104,79 @@ pub fn eval(registry: &Registry, output: Output, config: &Path, settings: &[Stri
 }
 
 /// Raw operands from `name=value`.
-fn operand_values(operands: &[Operand], settings: &[String]) -> Result<Vec<i64>> {
+fn operand_values(operands: &[Operand], settings: &[String]) -> Result<Vec<i64>, String> {
     let mut raw: Vec<Option<i64>> = vec![None; operands.len()];
     for setting in settings {
         let (name, text) = setting
             .split_once('=')
-            .with_context(|| format!("`{setting}` is not operand=value, as in cos_gamma=0.99"))?;
+            .ok_or_else(|| format!("`{setting}` is not operand=value, as in cos_gamma=0.99"))?;
         let Some(at) = operands.iter().position(|operand| operand.name == name) else {
-            let names: Vec<&str> = operands.iter().map(|operand| operand.name.as_str()).collect();
-            let near = config::nearest(name, names.iter().copied())
-                .map(|near| format!("; did you mean `{near}`?"))
-                .unwrap_or_default();
-            bail!("there is no operand `{name}`{near} The operands are: {}", names.join(", "));
+            let names: Vec<&str> = operands
+                .iter()
+                .map(|operand| operand.name.as_str())
+                .collect();
+            let near = config::nearest(name, names.iter().copied()).map_or_else(
+                || ".".to_owned(),
+                |near| format!("; did you mean `{near}`?"),
+            );
+            return Err(format!(
+                "there is no operand `{name}`{near} The operands are: {}",
+                names.join(", ")
+            ));
         };
         if raw[at].is_some() {
-            bail!("operand `{name}` is given twice");
+            return Err(format!("operand `{name}` is given twice"));
         }
-        raw[at] = Some(operand_value(&operands[at], text).with_context(|| format!("operand `{name}`"))?);
+        let value = operand_value(&operands[at], text);
+        raw[at] = Some(value.map_err(|fault| format!("operand `{name}`: {fault}"))?);
     }
     Ok(operands
         .iter()
         .zip(raw)
         .map(|(operand, raw)| {
             let (low, high) = operand.domain;
-            raw.unwrap_or(if operand.colour { high } else { low.midpoint(high) })
+            raw.unwrap_or(if operand.colour {
+                high
+            } else {
+                low.midpoint(high)
+            })
         })
         .collect())
 }
 
-fn operand_value(operand: &Operand, text: &str) -> Result<i64> {
+fn operand_value(operand: &Operand, text: &str) -> Result<i64, String> {
     let format = operand.format;
     let raw = if let Some(integer) = text.strip_prefix('#') {
-        integer
-            .parse::<i64>()
-            .map_err(|_| anyhow!("`{text}` is not a raw integer, as in #1038090"))?
+        let raw: i128 = integer
+            .parse()
+            .map_err(|_| format!("`{text}` is not a raw integer, as in #1038090"))?;
+        if !format.holds(raw) {
+            return Err(format!(
+                "raw integer {raw} is beyond {format}: {} to {}",
+                format.min_raw(),
+                format.max_raw()
+            ));
+        }
+        raw
     } else {
-        let value: f64 = text.parse().map_err(|_| anyhow!("`{text}` is not a number"))?;
+        let value: f64 = text
+            .parse()
+            .map_err(|_| format!("`{text}` is not a number"))?;
         if !value.is_finite() {
-            bail!("`{text}` is not a finite number");
+            return Err(format!("`{text}` is not a finite number"));
         }
+        // It saturates: what is further off than a rounding does not fit.
         let raw = format.quantise(value);
-        if (format.to_f64(raw) - value).abs() > format.to_f64(1) {
-            bail!("{value} is beyond {format}: {} to {}", format.to_f64(format.min_raw()), format.to_f64(format.max_raw()));
+        if (format.to_f64(raw) - value).abs() >= format.to_f64(1) {
+            let (least, most) = (
+                format.to_f64(format.min_raw()),
+                format.to_f64(format.max_raw()),
+            );
+            return Err(format!("{value} is beyond {format}: {least} to {most}"));
         }
-        raw as i64
+        raw
     };
-    if !format.holds(i128::from(raw)) {
-        bail!("{raw} is beyond {format}: {} to {}", format.min_raw(), format.max_raw());
-    }
-    Ok(raw)
+    i64::try_from(raw).map_err(|_| format!("{raw} has more than 63 bits"))
 }
 
 /// Writes the operands, starts, and returns all signals in the clock in which `valid` is high.
@@ -153,7 +191,11 @@ fn point(model: &mut dyn Model, operands: &[Operand], raw: &[i64]) -> Result<Vec
     model.clock(&inputs);
     set(&mut inputs, "rst_n", 1);
     for (operand, &raw) in operands.iter().zip(raw) {
-        set(&mut inputs, &operand.name, operand.format.bits(i128::from(raw)));
+        set(
+            &mut inputs,
+            &operand.name,
+            operand.format.bits(i128::from(raw)),
+        );
         set(&mut inputs, &format!("{}_write", operand.name), 1);
     }
     set(&mut inputs, "start", 1);

@@ -68,16 +68,24 @@ pub fn generate(
 pub fn files(one: &Loaded) -> Result<Vec<OutputFile>> {
     let vectors = one.unit.vectors(BENCH_POINTS, BENCH_SEED);
     let vectors = vectors.with_context(|| format!("`{}`", one.path))?;
-    one.unit.files(&one.path, vectors).with_context(|| format!("`{}`", one.path))
+    one.unit
+        .files(&one.path, vectors)
+        .with_context(|| format!("`{}`", one.path))
 }
 
 /// Writes the files of a configuration.
 pub fn write(out: &Path, one: &Loaded, files: &[OutputFile], force: bool) -> Result<Written> {
-    store::write(out, &one.unit.config.name, files, force).with_context(|| format!("`{}` was not generated", one.path))
+    store::write(out, &one.unit.config.name, files, force)
+        .with_context(|| format!("`{}` was not generated", one.path))
 }
 
 /// `--check`: what is there is what would be written.
-fn compare(output: Output, out: &Path, loaded: &[Loaded], made: &[Vec<OutputFile>]) -> Result<bool> {
+fn compare(
+    output: Output,
+    out: &Path,
+    loaded: &[Loaded],
+    made: &[Vec<OutputFile>],
+) -> Result<bool> {
     let mut all = Vec::new();
     for (one, files) in loaded.iter().zip(made) {
         all.extend(store::differences(out, &one.unit.config.name, files)?);

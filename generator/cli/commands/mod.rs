@@ -16,7 +16,7 @@ pub use cosim::{CosimRequest, cosim};
 pub use eval::eval;
 pub use generate::generate;
 
-use super::failure;
+use super::failure::{self, Several};
 use crate::config;
 use crate::flow::Unit;
 use crate::registry::Registry;
@@ -36,12 +36,18 @@ fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
     if !named.is_empty() {
         return Ok(named.to_vec());
     }
-    let entries = std::fs::read_dir(CONFIGS)
-        .with_context(|| format!("cannot read `{CONFIGS}/`; name a configuration, or `glint new DEVICE` for one"))?;
+    let entries = std::fs::read_dir(CONFIGS).with_context(|| {
+        format!("cannot read `{CONFIGS}/`; name a configuration, or `glint new DEVICE` for one")
+    })?;
     let mut paths = Vec::new();
     for entry in entries {
-        let path = entry.with_context(|| format!("cannot read `{CONFIGS}/`"))?.path();
-        if path.extension().is_some_and(|extension| extension == "toml") {
+        let path = entry
+            .with_context(|| format!("cannot read `{CONFIGS}/`"))?
+            .path();
+        if path
+            .extension()
+            .is_some_and(|extension| extension == "toml")
+        {
             paths.push(path);
         }
     }
@@ -66,7 +72,10 @@ fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
         }
     }
     for (at, one) in loaded.iter().enumerate() {
-        if let Some(other) = loaded[..at].iter().find(|other| other.unit.config.name == one.unit.config.name) {
+        if let Some(other) = loaded[..at]
+            .iter()
+            .find(|other| other.unit.config.name == one.unit.config.name)
+        {
             failed.push(anyhow!(
                 "`{}` and `{}` both name their module `{}`; set another `name` in one of them",
                 other.path,
@@ -75,15 +84,10 @@ fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
             ));
         }
     }
-    let last = failed.pop();
-    match last {
-        None => Ok(loaded),
-        Some(last) => {
-            for error in failed {
-                failure::print(&error, false);
-            }
-            Err(last)
-        }
+    if failed.is_empty() {
+        Ok(loaded)
+    } else {
+        Err(Several(failed).into())
     }
 }
 
@@ -104,7 +108,12 @@ impl Loaded {
         if bound.units >= 1.0 {
             let key = bound
                 .limiting()
-                .map(|term| format!("; `{}` ({}) limits it: {:.3} units", term.key, term.what, term.units))
+                .map(|term| {
+                    format!(
+                        "; `{}` ({}) limits it: {:.3} units",
+                        term.key, term.what, term.units
+                    )
+                })
                 .unwrap_or_default();
             let message = format!(
                 "{}: outside the accuracy contract: the error bound is {:.3} units, not below 1{key}",

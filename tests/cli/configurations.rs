@@ -1,0 +1,298 @@
+//! Configuration files that are refused: exit code 1, the place, the remedy.
+
+use std::fs;
+
+use serde_json::json;
+
+use crate::place::{COSINE_POWER, Place};
+
+/// What `generate` says of a file; nothing is generated.
+#[track_caller]
+fn refused(text: &str, parts: &[&str]) {
+    let place = Place::with("core.toml", text);
+    place.glint(["generate", "core.toml"]).refused(1, parts);
+    assert_eq!(place.files().len(), 1, "something was written");
+}
+
+/// The same of a file for `rough`, from line 2 on.
+#[track_caller]
+fn rough(text: &str, parts: &[&str]) {
+    refused(&format!("device = \"rough\"\n{text}\n"), parts);
+}
+
+#[test]
+fn files_that_cannot_be_read() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    let missing = place.glint(["generate", "cores.toml"]);
+    missing.refused(
+        1,
+        &[
+            "there is no such file",
+            "--> cores.toml",
+            "did you mean `core.toml`?",
+        ],
+    );
+    fs::create_dir(place.at("directory.toml")).unwrap();
+    let directory = place.glint(["cosim", "directory.toml"]);
+    directory.refused(1, &["this is a directory", "--> directory.toml"]);
+    place.write("latin.toml", b"device = \"rough\"\n# gl\xe4nzend\n");
+    let latin = place.glint(["eval", "latin.toml"]);
+    latin.refused(
+        1,
+        &[
+            "the file is not UTF-8: byte 21 is 0xe4",
+            "--> latin.toml:2:5",
+        ],
+    );
+    place.write("empty.toml", "");
+    place
+        .glint(["generate", "empty.toml"])
+        .refused(1, &["the file is empty", "devices: rough, cosine-power"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_file_without_permission() {
+    use std::os::unix::fs::PermissionsExt;
+    let place = Place::with("core.toml", COSINE_POWER);
+    fs::set_permissions(place.at("core.toml"), PermissionsExt::from_mode(0o000)).unwrap();
+    let run = crate::refusals::unprivileged(&place, &["generate", "core.toml"]);
+    run.refused(
+        1,
+        &[
+            "the file cannot be read: Permission denied",
+            "check the path and its permissions",
+        ],
+    );
+}
+
+#[test]
+fn malformed_toml() {
+    rough("[sine\n", &["not valid TOML", "--> core.toml:2:"]);
+    rough(
+        "clamp = true\nclamp = false",
+        &["`clamp` is given twice", "--> core.toml:3:1"],
+    );
+}
+
+#[test]
+fn unknown_words_are_answered_with_the_nearest() {
+    refused(
+        "device = \"ruogh\"\n",
+        &[
+            "there is no device \"ruogh\"",
+            "did you mean \"rough\"?",
+            "core.toml:1:10",
+        ],
+    );
+    rough(
+        "[cosine]\nfracton = 20",
+        &[
+            "has no key `cosine.fracton`",
+            "did you mean `cosine.fraction`?",
+            "core.toml:3:1",
+        ],
+    );
+    rough(
+        "arithmetic = \"exakt\"",
+        &["did you mean \"exact\"?", "core.toml:2:14"],
+    );
+}
+
+#[test]
+fn wrong_types_and_values() {
+    rough(
+        "clamp = 1",
+        &[
+            "`clamp` must be true or false, not the integer 1",
+            "core.toml:2:9",
+        ],
+    );
+    rough(
+        "[colour]\nbits = \"8\"",
+        &["`colour.bits` must be an integer, not the string \"8\""],
+    );
+    for width in [
+        "0",
+        "-8",
+        "13",
+        "9223372036854775807",
+        "99999999999999999999",
+    ] {
+        rough(
+            &format!("[colour]\nbits = {width}"),
+            &["core.toml:3:8", width],
+        );
+    }
+}
+
+#[test]
+fn a_format_too_narrow_for_its_values() {
+    rough(
+        "[exponent]\nbits = 4",
+        &[
+            "1000 does not fit the 4 bits of the exponent",
+            "at most 15, or a larger exponent.bits",
+        ],
+    );
+}
+
+#[test]
+fn names_that_are_no_module_names() {
+    for (name, complaint) in [
+        ("2fast", "starts with a digit"),
+        ("a-b", "has the character `-`"),
+        ("module", "is a keyword of Verilog or SystemVerilog"),
+        ("../core", "looks like a path"),
+        ("", "is empty"),
+    ] {
+        rough(
+            &format!("name = \"{name}\""),
+            &[complaint, "core.toml:2:8", "give a Verilog identifier"],
+        );
+    }
+}
+
+#[test]
+fn a_rom_beyond_a_sane_size_is_told_its_size() {
+    // 22 bits is the default of sine.fraction.
+    rough(
+        "[sine]\nscheme = \"direct\"\naddress = 16",
+        &[
+            "ROM 18 would have 2^16 entries of 22 bits, 1441792 bits in all",
+            "core.toml:4:11",
+            "at most 1048576 bits",
+        ],
+    );
+    rough(
+        "[sine]\nsegments = [6, 40, 2]",
+        &["`sine.segments[1]` = 40 is out of range", "core.toml:3:"],
+    );
+}
+
+/// Three files: two wrong in two places each, one that is missing, and a good one.
+fn wrong() -> Place {
+    let place = Place::with(
+        "a.toml",
+        "device = \"rough\"\nclamp = 1\n[colour]\nbits = 0\n",
+    );
+    place.write(
+        "b.toml",
+        "device = \"cosine-power\"\npower = 3\nname = \"wire\"\n",
+    );
+    place.write("good.toml", COSINE_POWER);
+    place
+}
+
+const WRONG: [&str; 4] = ["a.toml", "good.toml", "b.toml", "missing.toml"];
+
+#[test]
+fn all_problems_of_all_files_are_reported() {
+    for command in ["generate", "cosim"] {
+        let run = wrong().glint([command].iter().chain(&WRONG));
+        run.refused(
+            1,
+            &[
+                "a.toml:2:9",
+                "a.toml:4:8",
+                "b.toml:2:9",
+                "b.toml:3:8",
+                "--> missing.toml",
+            ],
+        );
+        assert_eq!(run.out, "");
+    }
+}
+
+#[test]
+fn all_problems_are_json_for_scripts() {
+    for command in ["generate", "cosim"] {
+        let run = wrong().glint([command, "--json"].iter().chain(&WRONG));
+        assert_eq!((run.code, run.err.as_str()), (1, ""), "{run:?}");
+        let value = run.json();
+        assert_eq!(value["ok"], false);
+        let places: Vec<_> = value["problems"]
+            .as_array()
+            .expect("a list")
+            .iter()
+            .map(|problem| {
+                json!([
+                    problem["file"],
+                    problem["line"],
+                    problem["column"],
+                    problem["key"]
+                ])
+            })
+            .collect();
+        assert_eq!(
+            places,
+            [
+                json!(["a.toml", 2, 9, "clamp"]),
+                json!(["a.toml", 4, 8, "colour.bits"]),
+                json!(["b.toml", 2, 9, "power"]),
+                json!(["b.toml", 3, 8, "name"]),
+                json!(["missing.toml", null, null, null]),
+            ]
+        );
+    }
+}
+
+#[test]
+fn two_configurations_of_one_name() {
+    let place = Place::with("a.toml", format!("{COSINE_POWER}name = \"same\"\n"));
+    place.write("b.toml", format!("{COSINE_POWER}name = \"same\"\n"));
+    let run = place.glint(["generate", "a.toml", "b.toml"]);
+    run.refused(1, &["`a.toml` and `b.toml` both name their module `same`"]);
+    let run = place.glint(["generate", "a.toml", "b.toml", "--json"]);
+    assert_eq!(run.code, 1);
+    let message = &run.json()["problems"][0]["message"];
+    assert!(
+        message
+            .as_str()
+            .unwrap()
+            .contains("both name their module `same`"),
+        "{message}"
+    );
+}
+
+#[test]
+fn outside_the_accuracy_contract() {
+    // Six fraction bits of f move an output of 255 by about 4.
+    let coarse = "[intensity]\nfraction = 6\n";
+    let place = Place::with("core.toml", format!("{COSINE_POWER}{coarse}"));
+    let run = place.glint(["generate", "core.toml"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    let parts = [
+        "warning: core.toml: outside the accuracy contract",
+        "not below 1; `intensity.fraction`",
+    ];
+    for part in parts {
+        assert!(run.err.contains(part), "{}", run.err);
+    }
+    let place = Place::with(
+        "core.toml",
+        format!("{COSINE_POWER}strict = true\n{coarse}"),
+    );
+    let run = place.glint(["generate", "core.toml"]);
+    run.refused(
+        1,
+        &[
+            "outside the accuracy contract",
+            "`intensity.fraction`",
+            "`strict = true` refuses that",
+        ],
+    );
+    assert!(!place.at("rtl_out").exists());
+}
+
+#[test]
+fn no_configuration_at_all() {
+    let place = Place::new();
+    place
+        .glint([] as [&str; 0])
+        .refused(1, &["cannot read `configs/`", "glint new DEVICE"]);
+    fs::create_dir(place.at("configs")).unwrap();
+    place
+        .glint(["generate"])
+        .refused(1, &["there is no configuration in `configs/`"]);
+}

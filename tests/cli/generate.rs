@@ -1,0 +1,194 @@
+//! `generate` and the main job, when all is well and when foreign files stand in the way.
+
+use crate::place::{COSINE_POWER, Place};
+
+const FILES: [&str; 2] = ["rtl_out/core/core.v", "testbench/core/core_tb.v"];
+
+fn generated() -> Place {
+    let place = Place::with("core.toml", COSINE_POWER);
+    place.done(["generate", "core.toml"]);
+    place
+}
+
+/// Changes the configuration, so that other files would be generated.
+fn reconfigure(place: &Place) {
+    place.write("core.toml", format!("{COSINE_POWER}power = 4\n"));
+}
+
+#[test]
+fn files_are_written_once_and_checked() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    let absent = place.glint(["generate", "--check", "core.toml"]);
+    assert_eq!(absent.code, 1, "{absent:?}");
+    assert!(
+        absent.out.contains("differs: rtl_out/core/core.v\n"),
+        "{}",
+        absent.out
+    );
+    assert_eq!(place.files().len(), 1, "--check wrote something");
+
+    assert!(
+        place
+            .done(["generate", "core.toml"])
+            .ends_with("files written\n")
+    );
+    let files = place.files();
+    for name in FILES
+        .iter()
+        .chain(&["rtl_out/core/core.json", "rtl_out/core/core.core"])
+    {
+        assert!(files.contains_key(*name), "no {name}");
+    }
+    assert!(
+        place
+            .done(["generate", "core.toml"])
+            .ends_with("files up to date\n")
+    );
+    place.done(["generate", "--check", "core.toml"]);
+    assert_eq!(place.files(), files);
+    place.assert_no_staging();
+
+    reconfigure(&place);
+    let stale = place.glint(["generate", "--check", "--json", "core.toml"]);
+    assert_eq!(stale.code, 1, "{stale:?}");
+    let different = stale.json()["different"].clone();
+    assert!(
+        different
+            .as_array()
+            .unwrap()
+            .contains(&"rtl_out/core/core.v".into()),
+        "{different}"
+    );
+    assert_eq!(place.files().len(), files.len());
+    place.done(["generate", "core.toml"]);
+    assert_ne!(
+        place.files()["rtl_out/core/core.v"],
+        files["rtl_out/core/core.v"]
+    );
+}
+
+#[test]
+fn another_directory_and_json() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    let run = place.glint(["generate", "core.toml", "--out", "a/b", "--json"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    let value = run.json();
+    assert_eq!(value["ok"], true);
+    let one = &value["generated"][0];
+    assert_eq!(
+        (&one["config"], &one["name"], &one["written"]),
+        (&"core.toml".into(), &"core".into(), &true.into())
+    );
+    let listed: Vec<String> = one["files"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|file| format!("a/b/{}", file.as_str().unwrap()))
+        .collect();
+    let mut sorted = listed.clone();
+    sorted.sort();
+    let found: Vec<String> = place
+        .files()
+        .into_keys()
+        .filter(|name| name != "core.toml")
+        .collect();
+    assert_eq!(found, sorted);
+}
+
+#[test]
+fn the_main_job_generates_and_checks_everything() {
+    let place = Place::with("configs/one.toml", COSINE_POWER);
+    place.write("configs/two.toml", format!("{COSINE_POWER}power = 2\n"));
+    place.write("configs/notes.txt", "no configuration");
+    let table = place.done([] as [&str; 0]);
+    for config in ["configs/one.toml", "configs/two.toml"] {
+        let row = table
+            .lines()
+            .find(|line| line.contains(config))
+            .expect("a row");
+        assert!(row.contains("100 000") && row.contains("holds"), "{row}");
+    }
+    assert!(place.at("rtl_out/one/one.v").exists() && place.at("testbench/two/two_tb.v").exists());
+    let run = place.glint(["--json"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    let value = run.json();
+    assert_eq!(value["ok"], true);
+    assert_eq!(value["configurations"][1]["config"], "configs/two.toml");
+    assert_eq!(value["configurations"][1]["points"], 100_000);
+    assert_eq!(value["configurations"][1]["faults"], serde_json::json!([]));
+}
+
+#[test]
+fn an_edited_file_is_not_overwritten() {
+    for name in FILES {
+        let place = generated();
+        place.write(name, "// my own\n");
+        reconfigure(&place);
+        let before = place.files();
+        let run = place.glint(["generate", "core.toml"]);
+        run.refused(
+            1,
+            &["were edited since; nothing was changed", name, "--force"],
+        );
+        assert_eq!(place.files(), before);
+        place.done(["generate", "core.toml", "--force"]);
+        place.done(["generate", "core.toml", "--check"]);
+        place.assert_no_staging();
+    }
+}
+
+#[test]
+fn foreign_files_are_kept() {
+    let place = generated();
+    place.write("rtl_out/core/notes.txt", "mine");
+    place.write("rtl_out/core/deep/er/notes.txt", "mine too");
+    place.write("testbench/core/wave.gtkw", "view");
+    reconfigure(&place);
+    let before = place.files();
+    let run = place.glint(["generate", "core.toml"]);
+    run.refused(
+        1,
+        &[
+            "rtl_out/core/notes.txt",
+            "rtl_out/core/deep",
+            "testbench/core/wave.gtkw",
+        ],
+    );
+    assert_eq!(place.files(), before);
+
+    place.done(["generate", "core.toml", "--force"]);
+    let after = place.files();
+    for name in [
+        "rtl_out/core/notes.txt",
+        "rtl_out/core/deep/er/notes.txt",
+        "testbench/core/wave.gtkw",
+    ] {
+        assert_eq!(after.get(name), before.get(name), "{name}");
+    }
+    assert_ne!(after["rtl_out/core/core.v"], before["rtl_out/core/core.v"]);
+    place.assert_no_staging();
+}
+
+#[test]
+fn a_directory_that_glint_never_wrote() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    place.write("rtl_out/core/core.v", "module core; endmodule\n");
+    place.write("rtl_out/other/other.v", "module other; endmodule\n");
+    let before = place.files();
+    place
+        .glint(["generate", "core.toml"])
+        .refused(1, &["were not written by Glint", "rtl_out/core/core.v"]);
+    assert_eq!(place.files(), before);
+    // A manifest that is none of Glint's vouches for nothing.
+    place.write("rtl_out/core/core.json", "{\"sha256\": {}}");
+    place
+        .glint(["generate", "core.toml"])
+        .refused(1, &["rtl_out/core/core.v"]);
+    place.done(["generate", "core.toml", "--force"]);
+    let after = place.files();
+    assert_eq!(
+        after["rtl_out/other/other.v"],
+        before["rtl_out/other/other.v"]
+    );
+    assert_ne!(after["rtl_out/core/core.v"], before["rtl_out/core/core.v"]);
+}

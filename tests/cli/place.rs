@@ -1,0 +1,157 @@
+//! A directory in which the program is run.
+
+use std::collections::BTreeMap;
+use std::ffi::OsStr;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// The least configuration: all defaults.
+pub const COSINE_POWER: &str = "device = \"cosine-power\"\n";
+
+/// A temporary directory.
+pub struct Place(TempDir);
+
+/// What a run of the program came to.
+#[derive(Debug)]
+pub struct Run {
+    /// The exit code.
+    pub code: i32,
+    /// Standard output.
+    pub out: String,
+    /// Standard error.
+    pub err: String,
+}
+
+impl Place {
+    pub fn new() -> Self {
+        Self(TempDir::new().expect("a temporary directory"))
+    }
+
+    /// A place with one file.
+    pub fn with(name: &str, text: impl AsRef<[u8]>) -> Self {
+        let place = Self::new();
+        place.write(name, text);
+        place
+    }
+
+    pub fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    pub fn at(&self, name: &str) -> PathBuf {
+        self.path().join(name)
+    }
+
+    /// Writes a file, with the directories that it needs.
+    pub fn write(&self, name: &str, text: impl AsRef<[u8]>) {
+        let path = self.at(name);
+        fs::create_dir_all(path.parent().expect("a parent")).expect("a directory");
+        fs::write(path, text).expect("a file");
+    }
+
+    /// Writes an executable shell script.
+    #[cfg(unix)]
+    pub fn script(&self, name: &str, text: &str) {
+        let text = format!("#!/bin/sh\n{text}\n");
+        shell(
+            "printf %s \"$2\" >\"$1\" && chmod 755 \"$1\"",
+            &self.at(name),
+            text.as_ref(),
+        );
+    }
+
+    pub fn read(&self, name: &str) -> String {
+        fs::read_to_string(self.at(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    /// The program, to be run here.
+    pub fn command(&self) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_glint"));
+        command.current_dir(self.path());
+        command
+    }
+
+    pub fn glint<A: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = A>) -> Run {
+        Run::of(self.command().args(arguments).output())
+    }
+
+    /// Runs the program, which is expected to succeed.
+    #[track_caller]
+    pub fn done<A: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = A>) -> String {
+        let run = self.glint(arguments);
+        assert_eq!(run.code, 0, "{run:?}");
+        run.out
+    }
+
+    /// Every file below this place, with its contents.
+    pub fn files(&self) -> BTreeMap<String, Vec<u8>> {
+        let mut found = BTreeMap::new();
+        let mut directories = vec![self.path().to_owned()];
+        while let Some(directory) = directories.pop() {
+            for entry in fs::read_dir(&directory).expect("a directory") {
+                let path = entry.expect("an entry").path();
+                if path.is_dir() {
+                    directories.push(path);
+                    continue;
+                }
+                let name = path.strip_prefix(self.path()).expect("a path below");
+                let name = name.to_str().expect("UTF-8").to_owned();
+                found.insert(name, fs::read(&path).expect("a file"));
+            }
+        }
+        found
+    }
+
+    /// Nothing that Glint makes on the way is left.
+    #[track_caller]
+    pub fn assert_no_staging(&self) {
+        for entry in fs::read_dir(self.path()).expect("a directory") {
+            let name = entry.expect("an entry").file_name();
+            assert!(
+                !name.to_string_lossy().starts_with(".glint-"),
+                "{name:?} is left"
+            );
+        }
+    }
+}
+
+impl Run {
+    pub fn of(output: std::io::Result<Output>) -> Self {
+        let output = output.expect("the program runs");
+        let run = Self {
+            code: output.status.code().unwrap_or(-1),
+            out: String::from_utf8(output.stdout).expect("UTF-8"),
+            err: String::from_utf8(output.stderr).expect("UTF-8"),
+        };
+        assert!(!run.err.contains("panicked"), "{run:?}");
+        run
+    }
+
+    /// It failed with this exit code, and standard error has all of these.
+    #[track_caller]
+    pub fn refused(&self, code: i32, parts: &[&str]) {
+        assert_eq!(self.code, code, "{self:?}");
+        for part in parts {
+            assert!(self.err.contains(part), "no `{part}` in\n{}", self.err);
+        }
+    }
+
+    /// Standard output as JSON; nothing but JSON is there.
+    #[track_caller]
+    pub fn json(&self) -> Value {
+        serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error}: {self:?}"))
+    }
+}
+
+/// Runs shell commands with two arguments. What is to be executed is written so: while this process
+/// has a file open for writing, a child that another test starts has it too, and then it is "busy".
+#[cfg(unix)]
+pub fn shell(commands: &str, first: &Path, second: &OsStr) {
+    let mut shell = Command::new("sh");
+    shell.args(["-c", commands, "sh"]).arg(first).arg(second);
+    assert!(shell.status().expect("a shell").success(), "{commands}");
+}

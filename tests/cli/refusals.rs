@@ -1,0 +1,130 @@
+//! Wrong usage, and arguments of all kinds: an exit code from 0 to 2, never a panic.
+
+use std::ffi::OsString;
+
+use crate::place::{COSINE_POWER, Place};
+
+/// Runs a copy of the program as a user who may not do everything, if this one may.
+#[cfg(unix)]
+pub fn unprivileged(place: &Place, arguments: &[&str]) -> crate::place::Run {
+    use std::fs;
+    use std::os::unix::fs::{MetadataExt, PermissionsExt};
+    use std::os::unix::process::CommandExt;
+    use std::process::Command;
+
+    use crate::place::shell;
+
+    // Its own directory may be closed to others.
+    let elsewhere = Place::new();
+    let program = elsewhere.at("glint");
+    let original = env!("CARGO_BIN_EXE_glint");
+    shell("cp \"$2\" \"$1\"", &program, original.as_ref());
+    let mut command = Command::new(&program);
+    command.args(arguments).current_dir(place.path());
+    // The owner of what a process makes is the user that it runs as.
+    if fs::metadata(&program).expect("a copy").uid() == 0 {
+        for (path, mode) in [(elsewhere.path(), 0o755), (&program, 0o755)] {
+            fs::set_permissions(path, PermissionsExt::from_mode(mode)).expect("permissions");
+        }
+        let mode = fs::metadata(place.path())
+            .expect("a place")
+            .permissions()
+            .mode();
+        let open = PermissionsExt::from_mode(mode | 0o055);
+        fs::set_permissions(place.path(), open).expect("permissions");
+        command.uid(65534).gid(65534);
+    }
+    crate::place::Run::of(command.output())
+}
+
+#[test]
+fn wrong_usage() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    for (arguments, message) in [
+        (&["generat"][..], "a similar subcommand exists: 'generate'"),
+        (
+            &["cosim", "--point", "3"],
+            "a similar argument exists: '--points'",
+        ),
+        (&["cosim", "--points", "0"], "0 is not in 1.."),
+        (&["cosim", "--points", "-1"], "unexpected argument '-1'"),
+        (&["cosim", "--points", "many"], "invalid digit"),
+        (
+            &["cosim", "--simulator", "icaru"],
+            "a similar value exists: 'icarus'",
+        ),
+        (
+            &["cosim", "--time-limit", "18446744073709551615"],
+            "is not in 1..=1000000",
+        ),
+        (&["eval"], "required arguments were not provided"),
+        (&["new"], "required arguments were not provided"),
+    ] {
+        let run = place.glint(arguments);
+        run.refused(2, &[message]);
+        assert_eq!(run.out, "");
+        let run = place.glint(arguments.iter().chain(&["--json"]));
+        assert_eq!((run.code, run.err.as_str()), (2, ""), "{run:?}");
+        let value = run.json();
+        assert_eq!(value["ok"], false);
+        assert!(
+            value["problems"][0]["message"]
+                .as_str()
+                .unwrap()
+                .contains(message),
+            "{value}"
+        );
+    }
+    let run = place.glint([
+        "cosim",
+        "core.toml",
+        "--simulator",
+        "icarus",
+        "--points",
+        "18446744073709551615",
+    ]);
+    run.refused(2, &["an external simulator takes at most 1000000"]);
+}
+
+#[test]
+fn nothing_panics() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    place.write("null.toml", [0; 64]);
+    place.write("deep.toml", format!("a = {}", "[".repeat(100_000)));
+    place.write(
+        "long.toml",
+        format!("{COSINE_POWER}{} = 1\n", "k".repeat(100_000)),
+    );
+    let mut odd: Vec<OsString> = [
+        "",
+        "-",
+        "--",
+        "=",
+        "#",
+        "core.toml",
+        "null.toml",
+        "deep.toml",
+        "long.toml",
+        "/",
+        "ü=1",
+        "🙂",
+    ]
+    .map(OsString::from)
+    .to_vec();
+    #[cfg(unix)]
+    odd.push(std::os::unix::ffi::OsStringExt::from_vec(vec![
+        0xff, 0xfe, b'=', 0x80,
+    ]));
+    for command in ["generate", "cosim", "eval", "new", "list", ""] {
+        for argument in &odd {
+            for second in ["cos_gamma=1e-400", "--json"] {
+                let arguments = [command.into(), argument.clone(), second.into()];
+                if command == "cosim" && argument == "core.toml" {
+                    continue; // 100 000 points, which other tests check fewer of.
+                }
+                let run = place.glint(&arguments);
+                assert!((0..=2).contains(&run.code), "{arguments:?}: {run:?}");
+            }
+        }
+    }
+}
