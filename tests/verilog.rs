@@ -142,7 +142,7 @@ fn notices_every_rom(unit: &Unit, emitted: &Emitted, bench: &Bench) {
     bench.assert_passes();
 }
 
-/// The word of a ROM that the bench's stimulus reads most often into a register other than the ROM's own.
+/// The word of a ROM that is addressed most often while the microprogram runs over the bench's stimulus.
 fn busiest_word(unit: &Unit, id: RomId) -> usize {
     let design: &Design = &unit.design;
     let rom = design.rom(id);
