@@ -1,3 +1,5 @@
 //! What several tests share.
 
+pub mod bench;
 pub mod tools;
+pub mod units;

@@ -241,17 +241,19 @@ fn address_and_rest<'d>(
     let rest = Format::unsigned(0, rest_bits as i32);
     // One arm a block: {constant, prefix} and {remainder, zeros}.
     let arm = |block: &Block| {
-        let prefix = u.bits(
-            block.bits - block.prefix,
-            Format::unsigned(block.prefix as i32, 0),
-        );
         let base = d.raw_constant(
             &format!("{name}_base_word"),
             i128::from(block.base),
             address,
         );
-        let word = d.beside(base, prefix, address);
         let left = block.bits - block.prefix;
+        // What remains below the last range may be the one value 0.
+        let word = if block.prefix == 0 {
+            base
+        } else {
+            let prefix = u.bits(left, Format::unsigned(block.prefix as i32, 0));
+            d.beside(base, prefix, address)
+        };
         let remainder = if left == 0 {
             d.raw_constant(&format!("{name}_no_rest"), 0, rest)
         } else {

@@ -1,0 +1,146 @@
+//! A bench that is built once and run several times, with other memories.
+
+// Each test crate uses a part of this.
+#![allow(dead_code)]
+
+use std::fs;
+
+use glint::cosim::external::{Run, Simulator};
+use tempfile::TempDir;
+
+use super::tools::{LIMIT, tool};
+use super::units::{Files, write};
+
+/// A built bench beside its memories, which it reads when it starts.
+pub struct Bench {
+    place: TempDir,
+    simulator: Simulator,
+}
+
+impl Bench {
+    /// Builds the bench `top`.
+    ///
+    /// # Panics
+    /// The simulator refuses it, or warns of it.
+    pub fn build(simulator: Simulator, files: &Files, top: &str) -> Self {
+        let (bench, output) = Self::build_with(simulator, files, top);
+        if simulator == Simulator::Icarus {
+            assert_eq!(output, "", "{top}: iverilog has remarks");
+        }
+        bench
+    }
+
+    /// Builds the bench `top` and disregards warnings: of models of cells that are not ours.
+    ///
+    /// # Panics
+    /// The simulator refuses it.
+    pub fn build_quietly(simulator: Simulator, files: &Files, top: &str) -> Self {
+        Self::build_with(simulator, files, top).0
+    }
+
+    fn build_with(simulator: Simulator, files: &Files, top: &str) -> (Self, String) {
+        let place = tempfile::tempdir().expect("a directory");
+        write(place.path(), files);
+        let sources = files
+            .iter()
+            .map(|(name, _)| name.as_str())
+            .filter(|name| name.ends_with(".v"));
+        let (compiler, arguments): (_, &[&str]) = match simulator {
+            Simulator::Icarus => ("iverilog", &["-g2012", "-Wall", "-o", "bench.vvp", "-s"]),
+            // It takes a warning for an error. The bench runs for an instant: optimising it takes longer.
+            Simulator::Verilator => (
+                "verilator",
+                &[
+                    "--binary",
+                    "--timing",
+                    "-j",
+                    "1",
+                    "-CFLAGS",
+                    "-O0",
+                    "-o",
+                    "bench",
+                    "--top-module",
+                ],
+            ),
+        };
+        let arguments = arguments.iter().copied().chain([top]).chain(sources);
+        let output = tool(compiler)
+            .run_to_success(arguments, place.path(), LIMIT)
+            .unwrap_or_else(|error| panic!("{top}: {error:#}"));
+        (Self { place, simulator }, output)
+    }
+
+    /// Replaces a memory.
+    ///
+    /// # Panics
+    /// It cannot be written.
+    pub fn replace(&self, name: &str, contents: &str) {
+        fs::write(self.place.path().join(name), contents).expect("a memory");
+    }
+
+    /// Runs the bench.
+    ///
+    /// # Panics
+    /// It does not start or does not end.
+    pub fn run(&self) -> Run {
+        let directory = self.place.path();
+        let run = match self.simulator {
+            // -n: a $stop ends the run instead of asking the terminal.
+            Simulator::Icarus => tool("vvp").run(["-n", "bench.vvp"], directory, LIMIT),
+            Simulator::Verilator => tool("env").run(["./obj_dir/bench"], directory, LIMIT),
+        };
+        run.unwrap_or_else(|error| panic!("{error:#}"))
+    }
+
+    /// # Panics
+    /// The bench does not pass, or does not say so in a line and by its exit code.
+    pub fn assert_passes(&self) {
+        let run = self.run();
+        let says = run.output.lines().any(|line| line.starts_with("PASS"));
+        assert!(
+            says && run.status.success(),
+            "{}:\n{}",
+            self.simulator,
+            run.output
+        );
+    }
+
+    /// # Panics
+    /// The bench does not fail, or does not say so in a line and by its exit code.
+    pub fn assert_fails(&self, because: &str) {
+        let run = self.run();
+        let says = |word| run.output.lines().any(|line| line.starts_with(word));
+        assert!(
+            says("FAIL") && !says("PASS") && !run.status.success(),
+            "{} does not notice {because} ({}):\n{}",
+            self.simulator,
+            run.status,
+            run.output
+        );
+    }
+}
+
+/// The contents of a memory with one bit of one word inverted.
+///
+/// # Panics
+/// There is no such word or bit.
+pub fn with_flipped_bit(memory: &str, word: usize, bit: u32) -> String {
+    let is_word = |line: &&str| !line.trim_start().starts_with("//") && !line.trim().is_empty();
+    let line = memory.lines().filter(is_word).nth(word).expect("a word");
+    let code = line.split("//").next().unwrap_or(line).trim();
+    // Words of digits 0 and 1 with _ between fields are binary; all others are hexadecimal.
+    let bits_of_a_digit = if code.contains('_') { 1 } else { 4 };
+    let mut digits: Vec<char> = code.chars().filter(|&digit| digit != '_').collect();
+    let at = digits.len() - 1 - (bit / bits_of_a_digit) as usize;
+    let digit = digits[at].to_digit(16).expect("a digit") ^ 1 << (bit % bits_of_a_digit);
+    digits[at] = char::from_digit(digit, 16).expect("a digit");
+    let flipped: String = digits.into_iter().collect();
+    let mut words = 0..;
+    let lines = memory
+        .lines()
+        .map(|line| match is_word(&line) && words.next() == Some(word) {
+            true => flipped.as_str(),
+            false => line,
+        });
+    lines.map(|line| format!("{line}\n")).collect()
+}

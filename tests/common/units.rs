@@ -1,0 +1,120 @@
+//! Configurations with their designs, and what is emitted for them.
+
+// Each test crate uses a part of this.
+#![allow(dead_code)]
+
+use std::fs;
+use std::path::Path;
+
+use glint::config;
+use glint::emit::OutputFile;
+use glint::flow::Unit;
+use glint::registry::{Device, Registry};
+
+/// Pairs of a plain file name and contents.
+pub type Files = Vec<(String, String)>;
+
+/// The configurations in `configs/`, by path, sorted.
+///
+/// # Panics
+/// There are none, or one of them is wrong.
+pub fn configurations() -> Vec<(String, Unit)> {
+    let entries = fs::read_dir("configs").expect("configs/");
+    let paths = entries.map(|entry| entry.expect("a directory entry").path());
+    let mut paths: Vec<String> = paths
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|extension| extension == "toml")
+        })
+        .map(|path| path.display().to_string())
+        .collect();
+    paths.sort();
+    assert!(!paths.is_empty(), "no configuration in configs/");
+    let with_unit = |path: String| {
+        let unit = configuration(&path);
+        (path, unit)
+    };
+    paths.into_iter().map(with_unit).collect()
+}
+
+/// The configuration of that path.
+///
+/// # Panics
+/// It is wrong.
+pub fn configuration(path: &str) -> Unit {
+    let registry = Registry::catalogue();
+    let config = config::read(Path::new(path), &registry.schemas())
+        .unwrap_or_else(|problems| panic!("{problems}"));
+    let device = *registry.device(&config.device).expect("a device");
+    Unit::new(device, config).unwrap_or_else(|error| panic!("{path}: {error:?}"))
+}
+
+/// A valid configuration drawn at random, as TOML for messages, and its unit.
+///
+/// # Panics
+/// The description does not make a design of it.
+pub fn random(device: Device, seed: u64) -> (String, Unit) {
+    let schema = (device.schema)();
+    let config = config::sample(&schema, seed);
+    let toml = format!("{}, seed {seed}\n{}", device.name, config.to_toml(&schema));
+    let unit = Unit::new(device, config).unwrap_or_else(|error| panic!("{error:?}\n{toml}"));
+    (toml, unit)
+}
+
+/// The files of a configuration whose bench runs over so many points.
+pub struct Emitted {
+    /// Everything, as it would be written.
+    pub files: Vec<OutputFile>,
+    /// The name of the top module.
+    pub name: String,
+}
+
+impl Emitted {
+    /// # Panics
+    /// Golden model and built-in simulator differ, or the design cannot be written.
+    pub fn new(unit: &Unit, points: u64, seed: u64) -> Self {
+        let name = unit.config.name.clone();
+        let files = unit
+            .vectors(points, seed)
+            .and_then(|vectors| unit.files(&format!("configs/{name}.toml"), vectors))
+            .unwrap_or_else(|error| panic!("{name}: {error:?}"));
+        Self { files, name }
+    }
+
+    /// The module that tests the device.
+    pub fn bench(&self) -> String {
+        format!("{}_tb", self.name)
+    }
+
+    /// Verilog and memories of the device, without its bench.
+    pub fn rtl(&self) -> Files {
+        self.below("rtl_out/")
+    }
+
+    /// Verilog and memories of the device and of its bench.
+    pub fn simulated(&self) -> Files {
+        self.below("")
+    }
+
+    fn below(&self, directory: &str) -> Files {
+        let needed = |path: &str| path.ends_with(".v") || path.ends_with(".mem");
+        let files = self.files.iter();
+        files
+            .filter(|file| file.path.starts_with(directory) && needed(&file.path))
+            .map(|file| {
+                let name = file.path.rsplit('/').next().unwrap_or(&file.path);
+                (name.to_owned(), file.contents.clone())
+            })
+            .collect()
+    }
+}
+
+/// Writes files into a directory.
+///
+/// # Panics
+/// It cannot be done.
+pub fn write(directory: &Path, files: &Files) {
+    for (name, contents) in files {
+        fs::write(directory.join(name), contents).unwrap_or_else(|error| panic!("{name}: {error}"));
+    }
+}

@@ -1,0 +1,119 @@
+//! The control ROM of `rough` is table 1 of UA 60139, bit for bit, whatever the configuration.
+
+use glint::config::{Config, parse, sample};
+use glint::emit::{EmitInputs, emit};
+use glint::netlist::Design;
+use glint::registry::{Device, Registry};
+
+/// The patent's table 1 (figure 4), typed from it. Columns V1 … V9, rows by address.
+const TABLE: [[u64; 9]; 10] = [
+    [0, 0, 0, 0, 0, 0, 0, 0, 1],
+    [0, 0, 0, 1, 1, 0, 0, 0, 1],
+    [0, 1, 1, 0, 0, 0, 0, 0, 1],
+    [0, 1, 1, 0, 0, 1, 0, 0, 1],
+    [1, 0, 1, 0, 0, 0, 0, 0, 1],
+    [1, 0, 1, 0, 0, 0, 1, 0, 1],
+    [1, 1, 1, 0, 0, 0, 0, 0, 1],
+    [1, 1, 1, 0, 0, 0, 1, 0, 1],
+    [1, 0, 1, 0, 0, 0, 0, 1, 1],
+    [0, 0, 0, 0, 0, 0, 0, 0, 0],
+];
+
+/// The lines of the block of control that V1 … V7 are, in the table's header.
+const LINES: [u16; 7] = [45, 46, 47, 48, 49, 50, 51];
+
+fn rough() -> Device {
+    *Registry::catalogue().device("rough").expect("the device")
+}
+
+fn configuration(toml: &str) -> Config {
+    let schemas = Registry::catalogue().schemas();
+    parse("rough.toml", toml, &schemas).unwrap_or_else(|problems| panic!("{problems}\n{toml}"))
+}
+
+fn design(config: &Config) -> Design {
+    rough()
+        .design(config)
+        .unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn assert_is_the_table(design: &Design, what: &str) {
+    let rom = design.rom(design.control.rom);
+    assert_eq!(design.width(rom.data), 9, "{what}");
+    let value = |row: &[u64; 9]| row.iter().fold(0, |word, bit| word << 1 | bit);
+    let table: Vec<u64> = TABLE.iter().map(value).collect();
+    assert_eq!(rom.words, table, "{what}");
+
+    let lines: Vec<u16> = design
+        .control
+        .fields
+        .iter()
+        .flat_map(|field| field.lines.clone())
+        .collect();
+    assert_eq!(lines[..LINES.len()], LINES, "{what}");
+
+    let files =
+        emit(design, &EmitInputs::default()).unwrap_or_else(|error| panic!("{error:#}\n{what}"));
+    let name = format!("rtl_out/{0}/{0}_control.mem", design.name);
+    let memory = files
+        .iter()
+        .find(|file| file.path == name)
+        .expect("the control ROM");
+    let words: Vec<String> = memory
+        .contents
+        .lines()
+        .map(|line| {
+            line.split("//")
+                .next()
+                .unwrap_or("")
+                .trim()
+                .replace('_', "")
+        })
+        .filter(|word| !word.is_empty())
+        .collect();
+    let table = TABLE.map(|row| row.map(|bit| bit.to_string()).concat());
+    assert_eq!(words, table, "{what}");
+}
+
+#[test]
+fn every_option_has_the_words_of_the_patent() {
+    let either = |key: &str, values: [&str; 2]| values.map(|value| format!("{key} = {value}\n"));
+    // Options that any arithmetic has, and those of exact arithmetic alone.
+    let common = [
+        either("sine.scheme", ["\"segmented\"", "\"direct\""]),
+        either("sine.synchronous", ["true", "false"]),
+        either("output.rounding", ["\"truncate\"", "\"nearest\""]),
+    ];
+    let exact = [
+        either("clamp", ["true", "false"]),
+        either("cosine.signed", ["true", "false"]),
+        either("product.rounding", ["\"truncate\"", "\"nearest\""]),
+        either("intensity.rounding", ["\"truncate\"", "\"nearest\""]),
+    ];
+    let product = |options: &[[String; 2]], texts: Vec<String>| {
+        options.iter().fold(texts, |texts, option| {
+            let with = |text: &String| option.each_ref().map(|line| format!("{text}{line}"));
+            texts.iter().flat_map(with).collect()
+        })
+    };
+    let start = |arithmetic: &str| {
+        vec![format!(
+            "device = \"rough\"\narithmetic = \"{arithmetic}\"\n"
+        )]
+    };
+    let mut texts = product(&common, start("patent"));
+    texts.extend(product(&exact, product(&common, start("exact"))));
+    assert_eq!(texts.len(), 8 + 128);
+    for toml in texts {
+        assert_is_the_table(&design(&configuration(&toml)), &toml);
+    }
+}
+
+#[test]
+fn random_configurations_have_the_words_of_the_patent() {
+    let schema = (rough().schema)();
+    for seed in 0..200 {
+        let config = sample(&schema, seed);
+        assert_is_the_table(&design(&config), &config.to_toml(&schema));
+    }
+}

@@ -1,0 +1,221 @@
+//! Synthesis of every configuration by Yosys for iCE40, ECP5 and Xilinx 7: no latch, no warning, ROMs
+//! in block RAM and products in DSP blocks, and no ROM contents lost.
+//!
+//! The iCE40 netlist, control ROM and all, passes the bench of its source. ECP5 and Xilinx block
+//! RAMs have no models here; the ones in their initial values are counted.
+
+mod common;
+
+use std::fs;
+use std::path::Path;
+
+use common::bench::Bench;
+use common::tools::{tool, yosys};
+use common::units::{Emitted, Files, configurations, write};
+use glint::cosim::external::Simulator;
+use glint::netlist::{Design, Driver, Op, Rom};
+use rayon::prelude::*;
+
+/// Points of the bench that the netlist runs.
+const POINTS: u64 = 40;
+
+/// A smaller ROM may well be logic.
+const WARRANTS_BLOCK_RAM: u64 = 2048;
+
+/// A family of devices, and the names of its cells.
+struct Family {
+    command: &'static str,
+    block_rams: &'static [&'static str],
+    /// What the names of their initial values begin with, before so many hexadecimal digits.
+    initial: (&'static [&'static str], usize),
+    multiplier: &'static str,
+}
+
+const FAMILIES: [Family; 3] = [
+    Family {
+        command: "synth_ice40 -dsp",
+        block_rams: &["SB_RAM40_4K"],
+        initial: (&["INIT_"], 1),
+        multiplier: "SB_MAC16",
+    },
+    Family {
+        command: "synth_ecp5",
+        block_rams: &["DP16KD", "PDPW16KD"],
+        initial: (&["INITVAL_"], 2),
+        multiplier: "MULT18X18D",
+    },
+    Family {
+        command: "synth_xilinx -flatten",
+        block_rams: &["RAMB18E1", "RAMB36E1"],
+        // INIT_A and INIT_B are of the output register.
+        initial: (&["INIT_", "INITP_"], 2),
+        multiplier: "DSP48E1",
+    },
+];
+
+#[test]
+fn every_configuration_is_synthesised_whole() {
+    configurations().par_iter().for_each(|(path, unit)| {
+        let emitted = Emitted::new(unit, POINTS, 1);
+        for family in &FAMILIES {
+            let place = tempfile::tempdir().expect("a directory");
+            write(place.path(), &emitted.rtl());
+            synthesise(place.path(), &emitted, family);
+            let netlist = fs::read_to_string(place.path().join("netlist.json")).expect("a netlist");
+            let netlist = serde_json::from_str(&netlist).expect("a netlist");
+            let cells = Cells::new(&netlist, &emitted.name);
+            let what = format!("{path}, {}", family.command);
+            memories_are_whole(&unit.design, &cells, family, &what);
+            let products = products(&unit.design);
+            let blocks = cells.count(family.multiplier);
+            assert!(
+                blocks >= products,
+                "{what}: {products} products in {blocks} DSP blocks"
+            );
+            println!(
+                "{what}: {blocks} DSP blocks, {} block RAMs, {} cells",
+                family
+                    .block_rams
+                    .iter()
+                    .map(|kind| cells.count(kind))
+                    .sum::<usize>(),
+                cells.0.len()
+            );
+            if family.command.starts_with("synth_ice40") {
+                let netlist =
+                    fs::read_to_string(place.path().join("netlist.v")).expect("a netlist");
+                netlist_passes(&emitted, netlist);
+            }
+        }
+    });
+}
+
+/// Leaves `netlist.json` and `netlist.v` in the directory.
+fn synthesise(directory: &Path, emitted: &Emitted, family: &Family) {
+    let sources: Vec<String> = common::tools::verilog_files(directory);
+    let commands = format!(
+        "read_verilog {}; hierarchy -check -top {top}; proc; \
+         select -assert-none t:$dlatch t:$adlatch t:$dlatchsr t:$sr; \
+         {} -top {top}; check -assert; write_json netlist.json; write_verilog -noattr netlist.v",
+        sources.join(" "),
+        family.command,
+        top = emitted.name,
+    );
+    yosys(directory, &commands);
+}
+
+/// The cells of a flat netlist.
+struct Cells<'a>(Vec<&'a serde_json::Value>);
+
+impl<'a> Cells<'a> {
+    fn new(netlist: &'a serde_json::Value, top: &str) -> Self {
+        let cells = netlist["modules"][top]["cells"].as_object().expect("cells");
+        let all: Vec<_> = cells.values().collect();
+        let cells = Self(all);
+        for cell in &cells.0 {
+            let kind = Cells::kind(cell);
+            assert!(!kind.starts_with('$'), "{top}: {kind} was left over");
+            assert!(
+                !kind.contains("LATCH") && !kind.starts_with("LD"),
+                "{top}: a latch, {kind}"
+            );
+        }
+        cells
+    }
+
+    fn kind(cell: &serde_json::Value) -> &str {
+        cell["type"].as_str().expect("a type")
+    }
+
+    fn of<'b>(&'b self, kind: &'b str) -> impl Iterator<Item = &'a serde_json::Value> + 'b {
+        self.0
+            .iter()
+            .copied()
+            .filter(move |cell| Self::kind(cell) == kind)
+    }
+
+    fn count(&self, kind: &str) -> usize {
+        self.of(kind).count()
+    }
+}
+
+/// Synchronous ROMs of some size are in block RAM, with every 1 of their contents.
+fn memories_are_whole(design: &Design, cells: &Cells, family: &Family, what: &str) {
+    let bits = |rom: &Rom| rom.words.len() as u64 * u64::from(design.width(rom.data));
+    let large: Vec<&Rom> = design
+        .roms
+        .iter()
+        .filter(|rom| rom.synchronous && bits(rom) >= WARRANTS_BLOCK_RAM)
+        .collect();
+    let rams: Vec<_> = family
+        .block_rams
+        .iter()
+        .flat_map(|kind| cells.of(kind))
+        .collect();
+    assert!(
+        rams.len() >= large.len(),
+        "{what}: ROMs are not in block RAM"
+    );
+    let ones: u64 = rams.iter().map(|cell| ones(cell, family.initial)).sum();
+    let wanted: u64 = large
+        .iter()
+        .flat_map(|rom| &rom.words)
+        .map(|word| u64::from(word.count_ones()))
+        .sum();
+    assert_eq!(ones, wanted, "{what}: ones in block RAM, and in its ROMs");
+}
+
+/// The ones in the initial values of a block RAM. Bits that are not given are `x` or 0.
+fn ones(cell: &serde_json::Value, (prefixes, digits): (&[&str], usize)) -> u64 {
+    let is_number =
+        |rest: &str| rest.len() == digits && rest.chars().all(|c| c.is_ascii_hexdigit());
+    let is_contents = |name: &str| {
+        prefixes
+            .iter()
+            .any(|prefix| name.strip_prefix(prefix).is_some_and(is_number))
+    };
+    let parameters = cell["parameters"].as_object().expect("parameters");
+    let contents = parameters.iter().filter(|(name, _)| is_contents(name));
+    let ones = contents.map(|(_, bits)| bits.as_str().expect("bits").matches('1').count() as u64);
+    ones.sum()
+}
+
+/// Multiplications in a design.
+fn products(design: &Design) -> usize {
+    let is_product = |driver: &Driver| matches!(driver, Driver::Op(Op::Mul(..)));
+    design
+        .nets
+        .iter()
+        .filter(|net| is_product(&net.driver))
+        .count()
+}
+
+/// The synthesised netlist, ROM contents within, passes the bench.
+fn netlist_passes(emitted: &Emitted, netlist: String) {
+    let rtl: Vec<String> = emitted.rtl().into_iter().map(|(name, _)| name).collect();
+    let mut files: Files = emitted
+        .simulated()
+        .into_iter()
+        .filter(|(name, _)| !rtl.contains(name))
+        .collect();
+    for (_, contents) in &mut files {
+        // A flat netlist has no instance of that name; only messages speak of the word.
+        *contents = contents.replace("dut.control.word_address", "4'd15");
+    }
+    files.push(("netlist.v".to_owned(), netlist));
+    // Default values of ports are beyond Icarus Verilog 11, and a netlist from synthesis needs none.
+    let models = format!("`define NO_ICE40_DEFAULT_ASSIGNMENTS\n{}", cell_models());
+    files.push(("cells_sim.v".to_owned(), models));
+    Bench::build_quietly(Simulator::Icarus, &files, &emitted.bench()).assert_passes();
+}
+
+/// The models of iCE40 cells that Yosys brings.
+fn cell_models() -> String {
+    let yosys = tool("yosys")
+        .path()
+        .canonicalize()
+        .expect("the place of yosys");
+    let installation = yosys.parent().and_then(Path::parent).expect("a bin/");
+    let models = installation.join("share/yosys/ice40/cells_sim.v");
+    fs::read_to_string(&models).unwrap_or_else(|error| panic!("{}: {error}", models.display()))
+}
