@@ -26,7 +26,7 @@ struct Point {
 /// √(1 − x²) in the middle of the bucket of x, to the nearest 2⁻¹⁷, in integers throughout.
 fn sine_of_bucket(bucket: u64) -> i64 {
     // x = (2·bucket + 1)·2⁻¹¹, so (2·2¹⁷·sine)² = 4·2³⁴·(2²² − (2·bucket + 1)²)·2⁻²².
-    let square = (4u128 << 34) * ((1 << 22) - u128::from(2 * bucket + 1).pow(2)) >> 22;
+    let square = ((4u128 << 34) * ((1 << 22) - u128::from(2 * bucket + 1).pow(2))) >> 22;
     (square.isqrt() as i64 + 1) / 2
 }
 
