@@ -170,6 +170,8 @@ impl<'a> Lockstep<'a> {
             ..Outcome::default()
         };
         let mut busy = self.simulator.value(self.busy) == 1;
+        // Results since the latest start.
+        let mut index = 0;
         while outcome.points < points {
             let inputs = self.stimulus.next(busy);
             for (at, &bits) in inputs.iter().enumerate() {
@@ -191,7 +193,10 @@ impl<'a> Lockstep<'a> {
                 outcome.mismatch = Some(mismatch);
                 return Ok(outcome);
             }
-            busy = self.simulator.value(self.busy) == 1;
+            let was_busy = std::mem::replace(&mut busy, self.simulator.value(self.busy) == 1);
+            if busy && !was_busy {
+                index = 0;
+            }
             if self.simulator.value(self.valid) == 1 {
                 if outcome.points == 0
                     && let Some(recording) = recording.as_deref_mut()
@@ -199,7 +204,8 @@ impl<'a> Lockstep<'a> {
                     recording.known_from = recording.expected.len();
                 }
                 outcome.points += 1;
-                self.measure(&mut outcome);
+                self.measure(index, &mut outcome);
+                index += 1;
                 if outcome.points.is_multiple_of(1024) {
                     progress(outcome.points);
                 }
@@ -248,8 +254,9 @@ impl<'a> Lockstep<'a> {
         None
     }
 
-    /// The error of the results that are on the outputs now, where the operands are in the domain.
-    fn measure(&self, outcome: &mut Outcome) {
+    /// The error of the results that are on the outputs now, number `index` of their computation, where the
+    /// operands are in the domain.
+    fn measure(&self, index: u64, outcome: &mut Outcome) {
         let operands = self.contract.operands();
         let raw = |at: usize| self.stimulus.accepted(self.operands[at]);
         let inside = operands
@@ -261,7 +268,9 @@ impl<'a> Lockstep<'a> {
         }
         let control = operands.len() - self.colours;
         let values: Vec<i64> = (0..control).map(raw).collect();
-        let f = self.contract.reference(&values);
+        let f = self
+            .contract
+            .reference(&self.contract.point(&values, index));
         for (at, &net) in self.results.iter().enumerate() {
             let colour = &operands[control + at];
             let exact = f * colour.format.to_f64(i128::from(raw(control + at)));

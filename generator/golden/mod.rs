@@ -75,6 +75,35 @@ pub trait Contract: Send + Sync {
     /// The source's formula in f64, unrounded, at the raw (that is, quantised) control operands.
     fn reference(&self, control: &[i64]) -> f64;
 
+    /// The control operands of the one point that result number `index` (from 0) of a computation shows.
+    ///
+    /// A device with one result per `start` shows the point of its operands. One that walks a line of
+    /// points from one `start` says here where the walk has come to.
+    fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
+        let _ = index;
+        control.to_vec()
+    }
+
+    /// What an exhaustive check of `f` goes through: by default every combination of the control operands.
+    fn sweep(&self) -> Sweep {
+        let control = self.operands().iter().filter(|operand| !operand.colour);
+        Sweep {
+            axes: control
+                .map(|operand| Axis {
+                    name: operand.name.clone(),
+                    values: Values::Range(operand.domain.0, operand.domain.1),
+                })
+                .collect(),
+            omits: String::new(),
+        }
+    }
+
+    /// The error of `f` at a place of the sweep, absolute: by default a place is a point.
+    fn sweep_error(&self, place: &[i64]) -> f64 {
+        let f = self.f_format().to_f64(i128::from(self.f(place)));
+        (f - self.reference(place)).abs()
+    }
+
     /// A proven bound on the error, stated before anything is simulated.
     fn bound(&self) -> Bound;
 
@@ -82,6 +111,56 @@ pub trait Contract: Send + Sync {
     /// domain another choice of the same device would come closer to `cosⁿγ`.
     fn remarks(&self) -> Vec<String> {
         Vec::new()
+    }
+}
+
+/// The places that an exhaustive check of `f` visits: the product of its axes.
+///
+/// A device with too many control operands for all combinations names what determines `f` (a word in
+/// between, say, with [`Contract::sweep_error`] taking the worst over what rounds to it), or a list of
+/// settings, and says in `omits` what is left to random points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sweep {
+    /// The outermost first.
+    pub axes: Vec<Axis>,
+    /// What is not covered, in a sentence; empty when every combination of control operands is.
+    pub omits: String,
+}
+
+/// One axis of a [`Sweep`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// The operand, or what stands for it.
+    pub name: String,
+    /// Its values.
+    pub values: Values,
+}
+
+/// The values of an [`Axis`].
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// From the first to the last.
+    Range(i64, i64),
+    /// These.
+    List(Vec<i64>),
+}
+
+impl Values {
+    /// How many.
+    pub fn count(&self) -> u64 {
+        match self {
+            Self::Range(low, high) => low.abs_diff(*high) + 1,
+            Self::List(values) => values.len() as u64,
+        }
+    }
+
+    /// Value number `at`.
+    #[inline]
+    pub fn value(&self, at: u64) -> i64 {
+        match self {
+            Self::Range(low, _) => low + at as i64,
+            Self::List(values) => values[at as usize],
+        }
     }
 }
 
