@@ -80,7 +80,7 @@ fn the_catalogue_is_not_there() {
         .collect();
     assert_eq!(names, ["fresnel"]);
     let rough = run(directory.path(), &["new", "rough"]);
-    assert_eq!(rough.status.code(), Some(1));
+    assert_eq!(rough.status.code(), Some(2));
 }
 
 #[test]

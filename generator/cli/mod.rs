@@ -74,7 +74,8 @@ Examples:
   glint cosim                                             everything in configs/, built-in simulator
   glint cosim my_core.toml --points 1000000 --seed 7      more points, another stimulus
   glint cosim my_core.toml --simulator icarus --json      the emitted Verilog, result for scripts
-  glint cosim my_core.toml --points 20 --vcd wave.vcd     a waveform for a viewer")]
+  glint cosim my_core.toml --points 20 --vcd wave.vcd     a waveform for a viewer
+  glint cosim my_core.toml --exhaustive                   the accuracy contract, every control operand")]
     Cosim {
         #[command(flatten)]
         configs: Configs,
@@ -87,6 +88,9 @@ Examples:
         /// What simulates the hardware
         #[arg(long, value_enum, default_value_t = Simulator::RustHdl)]
         simulator: Simulator,
+        /// Prove the accuracy contract instead: f over all control operands, every word f with every colour
+        #[arg(long, conflicts_with_all = ["points", "seed", "simulator", "vcd"])]
+        exhaustive: bool,
         /// Write a waveform of one configuration (built-in simulator)
         #[arg(long, value_name = "FILE")]
         vcd: Option<PathBuf>,
@@ -189,9 +193,15 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
         }) => commands::generate(registry, output, &configs.configs, &out, check, force),
         Some(Command::Cosim {
             configs,
+            exhaustive: true,
+            ..
+        }) => commands::exhaustive(registry, output, &configs.configs),
+        Some(Command::Cosim {
+            configs,
             points,
             seed,
             simulator,
+            exhaustive: false,
             vcd,
             time_limit,
         }) => {

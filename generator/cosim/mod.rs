@@ -1,5 +1,6 @@
 //! Co-simulation: stimulus, golden model against built-in simulator, external simulators.
 
+pub mod exhaustive;
 pub mod external;
 mod lockstep;
 mod stimulus;

@@ -4,6 +4,7 @@ mod catalogue;
 mod check;
 mod cosim;
 mod eval;
+mod exhaustive;
 mod generate;
 
 use std::path::{Path, PathBuf};
@@ -14,6 +15,7 @@ pub use catalogue::{list, new};
 pub use check::everything;
 pub use cosim::{CosimRequest, cosim};
 pub use eval::eval;
+pub use exhaustive::exhaustive;
 pub use generate::generate;
 
 use super::failure::{self, Several};

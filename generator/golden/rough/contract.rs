@@ -3,8 +3,11 @@
 use super::{Arithmetic, Kind, Params, bound};
 use crate::config::Config;
 use crate::fixed::{Format, exp2};
-use crate::golden::{Bound, Contract, Operand, contract};
+use crate::golden::{Axis, Bound, Contract, Operand, Sweep, Values, contract};
 use crate::reference;
+
+/// The settings of dγ, in degrees, that an exhaustive check visits beside the largest of the domain.
+const SWEPT_DEVIATIONS: [f64; 4] = [0.0, 1.0, 5.0, 15.0];
 
 /// The accuracy contract. Control operands: `cos_gamma`, `cos_dgamma`, `exponent`, `dgamma_negative`.
 #[derive(Clone, Debug)]
@@ -134,6 +137,30 @@ impl Contract for RoughContract {
                 reference::rough_unclamped(cos_gamma, cos_dgamma, negative, exponent)
             }
             _ => reference::rough(cos_gamma, cos_dgamma, negative, exponent),
+        }
+    }
+
+    /// Every cos γ and every n, with some settings of dγ of the domain, of both signs.
+    fn sweep(&self) -> Sweep {
+        let mut deviations: Vec<i64> = SWEPT_DEVIATIONS
+            .into_iter()
+            .filter(|&degrees| degrees < self.params.deviation)
+            .chain([self.params.deviation])
+            .map(|degrees| (libm::cos(degrees.to_radians()) / self.ulp).ceil() as i64)
+            .map(|raw| raw.clamp(self.operands[1].domain.0, self.operands[1].domain.1))
+            .collect();
+        deviations.dedup();
+        let axes = self.operands.iter().take(4).map(|operand| Axis {
+            name: operand.name.clone(),
+            values: match operand.name.as_str() {
+                "cos_dgamma" => Values::List(deviations.clone()),
+                _ => Values::Range(operand.domain.0, operand.domain.1),
+            },
+        });
+        Sweep {
+            axes: axes.collect(),
+            omits: "values of cos_dgamma between the settings: they are met at random points"
+                .to_owned(),
         }
     }
 
