@@ -242,3 +242,30 @@ fn a_simulator_that_hangs() {
     );
     bench.refused(1, &["`vvp` did not end within", "and was killed"]);
 }
+
+#[test]
+fn exhaustive() {
+    let text = "device = \"cosine-power\"\npower = 2\ncosine.fraction = 8\nexponent.bits = 3\n\
+                colour.bits = 2\nintensity.fraction = 8\ndomain.exponent_max = 7\n";
+    let place = Place::with("core.toml", text);
+    let run = place.glint(["cosim", "core.toml", "--exhaustive", "--json"]);
+    let value = run.json();
+    assert_eq!((run.code, &value["ok"]), (0, &Value::Bool(true)), "{run:?}");
+    let one = &value["configurations"][0];
+    // 257 cosines and 7 exponents; 256 words and 4 colours.
+    assert_eq!(
+        (&one["evaluations"], &one["colour_products"]),
+        (&1799.into(), &1024.into())
+    );
+    assert_eq!(one["not_covered"], "");
+    assert!(one["together"].as_f64() <= one["bound"].as_f64(), "{one}");
+    let text = place.done(["cosim", "core.toml", "--exhaustive"]);
+    assert!(
+        text.contains("1 799 evaluations of f (cos_gamma = 0 to 256 x exponent = 1 to 7)"),
+        "{text}"
+    );
+    assert!(text.contains(": holds\n"), "{text}");
+    let run = place.glint(["cosim", "core.toml", "--exhaustive", "--points", "5"]);
+    assert_eq!(run.code, 2, "{run:?}");
+    assert!(run.err.contains("--exhaustive"), "{run:?}");
+}

@@ -28,7 +28,8 @@ pub fn everything(registry: &Registry, output: Output) -> Result<bool> {
     let loaded = load(registry, &[])?;
     for one in &loaded {
         one.contract()?;
-        let files = generate::files(one)?;
+    }
+    for (one, files) in loaded.iter().zip(generate::all_files(output, &loaded)?) {
         generate::write(Path::new("."), one, &files, false)?;
     }
     let bar = progress::bar(output, POINTS * loaded.len() as u64, "points checked");

@@ -26,16 +26,7 @@ pub fn generate(
     for one in &loaded {
         one.contract()?;
     }
-    let bar = progress::bar(output, loaded.len() as u64, "generating");
-    let made: Vec<Vec<OutputFile>> = loaded
-        .par_iter()
-        .map(|one| {
-            let files = files(one);
-            bar.inc(1);
-            files
-        })
-        .collect::<Result<_>>()?;
-    bar.finish_and_clear();
+    let made = all_files(output, &loaded)?;
     if check {
         return compare(output, out, &loaded, &made);
     }
@@ -64,8 +55,23 @@ pub fn generate(
     Ok(true)
 }
 
+/// Every file of each configuration, made in parallel.
+pub fn all_files(output: Output, loaded: &[Loaded]) -> Result<Vec<Vec<OutputFile>>> {
+    let bar = progress::bar(output, loaded.len() as u64, "generating");
+    let made = loaded
+        .par_iter()
+        .map(|one| {
+            let files = files(one);
+            bar.inc(1);
+            files
+        })
+        .collect();
+    bar.finish_and_clear();
+    made
+}
+
 /// Every file of a configuration, with its bench.
-pub fn files(one: &Loaded) -> Result<Vec<OutputFile>> {
+fn files(one: &Loaded) -> Result<Vec<OutputFile>> {
     let vectors = one.unit.vectors(BENCH_POINTS, BENCH_SEED);
     let vectors = vectors.with_context(|| format!("`{}`", one.path))?;
     one.unit
