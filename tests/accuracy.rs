@@ -5,7 +5,7 @@ use glint::config::{self, Schema};
 use glint::devices;
 use glint::fixed::{Rounding, exp2};
 use glint::golden::Contract;
-use glint::golden::cosine_power::{self, CosinePowerContract};
+use glint::golden::cosine_power::CosinePowerContract;
 use glint::golden::rough::{self, RoughContract};
 use glint::golden::sine::Scheme;
 use rand_chacha::ChaCha8Rng;

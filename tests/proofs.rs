@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 use std::fs;
 
 use common::units::{configuration, configurations};
-use glint::cosim::exhaustive::{Places, Proof, colour_error};
+use glint::cosim::exhaustive::{Places, Proof};
 use glint::registry::Registry;
 use serde_json::{Value, json};
 
@@ -60,7 +60,7 @@ fn the_records_hold_today() {
         let path = record["config"].as_str().expect("a path");
         let unit = configuration(path);
         let contract = unit.contract.as_ref();
-        let places = Places::new(contract);
+        let places = Places::of_f(contract);
         let stale = format!("the record of {path} is not of today's program");
         assert_eq!(record["evaluations"], json!(places.count()), "{stale}");
         assert_eq!(record["bound"], json!(contract.bound().units), "{stale}");
@@ -70,7 +70,7 @@ fn the_records_hold_today() {
         let place = record["f"]["place"].as_u64().expect("a number");
         assert_eq!(places.error(place), largest, "{stale}");
         let stride = (places.count() / AGAIN).max(1);
-        let peak = places.check_every(stride, 0..places.blocks(), &|_| ());
+        let peak = places.check(every(&places, stride), &|_| ());
         assert!(
             peak.error <= largest,
             "{stale}: {} at {:?}",
@@ -78,9 +78,15 @@ fn the_records_hold_today() {
             places.place(peak.place)
         );
 
-        let colour = colour_error(contract, &|_| ());
-        assert_eq!(record["colour_units"], json!(colour), "{stale}");
+        let colours = Places::of_colours(contract);
+        let colour = colours.check(every(&colours, 1), &|_| ());
+        assert_eq!(record["colour_units"], json!(colour.error), "{stale}");
         let proof = Proof::new(contract, peak, colour);
         assert_eq!(proof.faults, Vec::<String>::new(), "{path}");
     }
+}
+
+/// Every `stride`-th block.
+fn every(places: &Places<'_>, stride: u64) -> Vec<u64> {
+    (0..places.blocks()).step_by(stride as usize).collect()
 }

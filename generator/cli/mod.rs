@@ -3,6 +3,7 @@
 mod commands;
 mod failure;
 mod progress;
+mod staged;
 mod store;
 mod tables;
 
@@ -12,6 +13,7 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::cosim::exhaustive::Shard;
 use crate::registry::Registry;
 
 /// The points that the main job and `cosim` check of each configuration.
@@ -91,12 +93,30 @@ Examples:
         /// Prove the accuracy contract instead: f over all control operands, every word f with every colour
         #[arg(long, conflicts_with_all = ["points", "seed", "simulator", "vcd"])]
         exhaustive: bool,
+        /// With --exhaustive: keep what is done in FILE, and go on from there
+        #[arg(long, value_name = "FILE", requires = "exhaustive")]
+        resume: Option<PathBuf>,
+        /// With --exhaustive: part i of N of the work, for a job array; `glint merge` joins the parts
+        #[arg(long, value_name = "I/N", requires = "exhaustive", requires = "resume")]
+        shard: Option<Shard>,
         /// Write a waveform of one configuration (built-in simulator)
         #[arg(long, value_name = "FILE")]
         vcd: Option<PathBuf>,
         /// Seconds after which an external simulator is given up
         #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
         time_limit: u64,
+    },
+    /// Join the parts of a divided `cosim --exhaustive`
+    #[command(after_help = "\
+Example, on four machines and then on one:
+  glint cosim my_core.toml --exhaustive --shard 1/4 --resume part1.json
+  glint merge my_core.toml part1.json part2.json part3.json part4.json")]
+    Merge {
+        /// The configuration
+        config: PathBuf,
+        /// The files of all parts
+        #[arg(value_name = "FILE", required = true)]
+        files: Vec<PathBuf>,
     },
     /// Compute one point: golden registers, outputs and the formula in f64
     #[command(after_help = "\
@@ -194,8 +214,16 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
         Some(Command::Cosim {
             configs,
             exhaustive: true,
+            resume,
+            shard,
             ..
-        }) => commands::exhaustive(registry, output, &configs.configs),
+        }) => {
+            let request = commands::ExhaustiveRequest { resume, shard };
+            commands::exhaustive(registry, output, &configs.configs, &request)
+        }
+        Some(Command::Merge { config, files }) => {
+            commands::merge(registry, output, &config, &files)
+        }
         Some(Command::Cosim {
             configs,
             points,
@@ -204,6 +232,7 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             exhaustive: false,
             vcd,
             time_limit,
+            ..
         }) => {
             let request = commands::CosimRequest {
                 points,

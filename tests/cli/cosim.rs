@@ -269,3 +269,68 @@ fn exhaustive() {
     assert_eq!(run.code, 2, "{run:?}");
     assert!(run.err.contains("--exhaustive"), "{run:?}");
 }
+
+/// A job that is killed, resumed, and divided reports what an uninterrupted one does.
+#[test]
+fn exhaustive_in_parts() {
+    let text = "device = \"cosine-power\"\npower = 2\ndomain.exponent_max = 100\n";
+    let place = Place::with("core.toml", text);
+    let whole = place.done(["cosim", "core.toml", "--exhaustive", "--json"]);
+    let proof = ["cosim", "core.toml", "--exhaustive", "--json", "--resume"];
+
+    let mut child = place
+        .command()
+        .args(proof)
+        .arg("state.json")
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .expect("started");
+    while !place.at("state.json").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    child.kill().expect("killed");
+    child.wait().expect("ended");
+    let resumed = place.done(proof.iter().chain(&["state.json"]));
+    assert_eq!(resumed, whole);
+    // There is nothing left to do the second time.
+    assert_eq!(place.done(proof.iter().chain(&["state.json"])), whole);
+
+    for shard in ["1/2", "2/2"] {
+        let file = format!("part{}.json", &shard[..1]);
+        place.done(proof.iter().chain(&[file.as_str(), "--shard", shard]));
+    }
+    let merge = ["merge", "core.toml", "--json", "part2.json", "part1.json"];
+    assert_eq!(place.done(merge), whole);
+
+    let refused = |arguments: &[&str]| {
+        let run = place.glint(arguments);
+        assert_eq!(run.code, 1, "{run:?}");
+        run.err
+    };
+    let error = refused(&["merge", "core.toml", "part2.json"]);
+    assert!(error.contains("missing: shard 1/2"), "{error}");
+    let error = refused(&["merge", "core.toml", "part2.json", "core.toml"]);
+    assert!(
+        error.contains("`core.toml` does not hold the state"),
+        "{error}"
+    );
+    let error = refused(&[
+        "cosim",
+        "core.toml",
+        "--exhaustive",
+        "--resume",
+        "part1.json",
+    ]);
+    assert!(error.contains("another configuration, shard"), "{error}");
+    place.write("core.toml", "device = \"cosine-power\"\npower = 4\n");
+    let error = refused(&["merge", "core.toml", "part1.json", "part2.json"]);
+    assert!(error.contains("not of `core.toml` as it stands"), "{error}");
+    let error = refused(&[
+        "cosim",
+        "core.toml",
+        "--exhaustive",
+        "--resume",
+        "gone/state.json",
+    ]);
+    assert!(error.contains("gone/state.json"), "{error}");
+}

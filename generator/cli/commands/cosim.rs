@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use super::{Loaded, load};
 use crate::cli::failure::Usage;
-use crate::cli::{Output, POINTS, Simulator, progress, tables};
+use crate::cli::{Output, POINTS, Simulator, progress, staged, tables};
 use crate::cosim::external::{self, BenchOutcome};
 use crate::cosim::{Outcome, Worst};
 use crate::golden::Bound;
@@ -215,16 +215,7 @@ fn traced(
             .with_context(cannot)?;
         return trace_to(lockstep, file, points, progress).with_context(cannot);
     }
-    let directory = match path.parent() {
-        Some(parent) if parent != Path::new("") => parent,
-        _ => Path::new("."),
-    };
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".glint-");
-    // As any new file: the umask takes away from it.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let staged = builder.tempfile_in(directory).with_context(cannot)?;
+    let staged = staged::beside(path)?;
     let file = staged.reopen().with_context(cannot)?;
     let outcome = trace_to(lockstep, file, points, progress).with_context(cannot)?;
     staged

@@ -1,44 +1,66 @@
-//! `cosim --exhaustive`.
+//! `cosim --exhaustive` and `merge`.
 
-use std::path::PathBuf;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
-use anyhow::Result;
+use anyhow::{Context, Result, anyhow, bail, ensure};
 use serde_json::{Value, json};
 
 use super::{Loaded, load};
-use crate::cli::{Output, progress, tables};
-use crate::cosim::exhaustive::{self, Places, Proof};
+use crate::cli::failure::Usage;
+use crate::cli::{Output, progress, staged, tables};
+use crate::cosim::exhaustive::{Job, Places, Proof, Shard, State};
+use crate::emit::digest;
 use crate::golden::{Axis, Values};
 use crate::registry::Registry;
 
+/// How often the state is written.
+const SAVE: Duration = Duration::from_secs(5);
+
+/// What `cosim --exhaustive` was asked for beside configurations.
+pub struct ExhaustiveRequest {
+    /// Where the state stands.
+    pub resume: Option<PathBuf>,
+    /// Which part of the job.
+    pub shard: Option<Shard>,
+}
+
 /// `glint cosim --exhaustive`: the factored proof of the accuracy contract.
-pub fn exhaustive(registry: &Registry, output: Output, configs: &[PathBuf]) -> Result<bool> {
+pub fn exhaustive(
+    registry: &Registry,
+    output: Output,
+    configs: &[PathBuf],
+    request: &ExhaustiveRequest,
+) -> Result<bool> {
     let loaded = load(registry, configs)?;
+    if request.resume.is_some() && loaded.len() != 1 {
+        bail!(Usage(format!(
+            "--resume is for one configuration; here are {}",
+            loaded.len()
+        )));
+    }
     let mut list = Vec::new();
     let mut holds = true;
     for one in &loaded {
-        let contract = one.unit.contract.as_ref();
-        let places = Places::new(contract);
+        let job = Job::new(one.unit.contract.as_ref());
+        let mut state = State::new(&identity(one), request.shard.unwrap_or(Shard::WHOLE));
+        if let Some(path) = &request.resume
+            && let Some(found) = read(path)?
+        {
+            ensure!(
+                found.digest == state.digest && found.shard == state.shard,
+                "`{}` is of another configuration, shard or version of Glint; name another file",
+                path.display()
+            );
+            state = found;
+        }
         if !output.json {
-            announce(one, &places);
+            announce(one, &job, &state);
         }
-        let bar = progress::bar(output, places.count(), "evaluations of f");
-        let peak = places.check(0..places.blocks(), &|done| bar.inc(done));
-        bar.finish_and_clear();
-        let bar = progress::bar(
-            output,
-            exhaustive::colour_products(contract),
-            "colour products",
-        );
-        let colour = exhaustive::colour_error(contract, &|done| bar.inc(done));
-        bar.finish_and_clear();
-        let proof = Proof::new(contract, peak, colour);
-        holds &= proof.faults.is_empty();
-        if output.json {
-            list.push(as_json(one, &places, &proof));
-        } else {
-            print(one, &places, &proof);
-        }
+        prove(output, &job, &mut state, request.resume.as_deref())?;
+        holds &= report(output, one, &job, &state, &mut list);
     }
     if output.json {
         tables::print_json(&json!({ "ok": holds, "configurations": list }));
@@ -46,18 +68,121 @@ pub fn exhaustive(registry: &Registry, output: Output, configs: &[PathBuf]) -> R
     Ok(holds)
 }
 
+/// `glint merge`: what the shards of one job give together.
+pub fn merge(
+    registry: &Registry,
+    output: Output,
+    config: &Path,
+    files: &[PathBuf],
+) -> Result<bool> {
+    let loaded = load(registry, &[config.to_path_buf()])?;
+    let one = &loaded[0];
+    let job = Job::new(one.unit.contract.as_ref());
+    let names: Vec<String> = files
+        .iter()
+        .map(|path| path.display().to_string())
+        .collect();
+    let states = files
+        .iter()
+        .map(|path| read(path)?.with_context(|| format!("there is no `{}`", path.display())))
+        .collect::<Result<Vec<_>>>()?;
+    ensure!(
+        states.iter().any(|state| state.digest == identity(one)),
+        "these shards are not of `{}` as it stands, or of another version of Glint",
+        one.path
+    );
+    let merged = job.merge(&states, &names)?;
+    if !output.json {
+        announce(one, &job, &State::new("", Shard::WHOLE));
+    }
+    let mut list = Vec::new();
+    let holds = report(output, one, &job, &merged, &mut list);
+    if output.json {
+        tables::print_json(&json!({ "ok": holds, "configurations": list }));
+    }
+    Ok(holds)
+}
+
+/// What a state is of.
+fn identity(one: &Loaded) -> String {
+    let schema = (one.unit.device.schema)();
+    let text = one.unit.config.to_toml(&schema);
+    digest(format!("{}\n{text}", env!("CARGO_PKG_VERSION")).as_bytes())
+}
+
+/// The state that a file holds, if there is one.
+fn read(path: &Path) -> Result<Option<State>> {
+    let text = match fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        Err(error) => {
+            return Err(error).with_context(|| format!("cannot read `{}`", path.display()));
+        }
+    };
+    let state = serde_json::from_str(&text)
+        .map_err(|error| anyhow!("{error}"))
+        .with_context(|| {
+            format!(
+                "`{}` does not hold the state of a proof; name another file",
+                path.display()
+            )
+        })?;
+    Ok(Some(state))
+}
+
+/// Goes on to the end of the shard, keeping the state in `file`.
+fn prove(output: Output, job: &Job<'_>, state: &mut State, file: Option<&Path>) -> Result<()> {
+    let save = |state: &State| -> Result<()> {
+        match file {
+            Some(path) => staged::replace(path, serde_json::to_string_pretty(state)?.as_bytes()),
+            None => Ok(()),
+        }
+    };
+    // Nothing is worth computing that cannot be kept.
+    save(state)?;
+    let bar = progress::bar(output, job.remaining(state), "evaluations");
+    let mut saved = Instant::now();
+    let mut failure = None;
+    let end = job.run(state, &|done| bar.inc(done), &mut |state| {
+        if saved.elapsed() < SAVE {
+            return ControlFlow::Continue(());
+        }
+        saved = Instant::now();
+        match save(state) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(error) => {
+                failure = Some(error);
+                ControlFlow::Break(())
+            }
+        }
+    });
+    bar.finish_and_clear();
+    match (end, failure) {
+        (ControlFlow::Break(()), Some(error)) => Err(error),
+        _ => save(state),
+    }
+}
+
 /// What is about to be done, and what is not.
-fn announce(one: &Loaded, places: &Places<'_>) {
-    let axes: Vec<String> = places.sweep().axes.iter().map(axis_text).collect();
+fn announce(one: &Loaded, job: &Job<'_>, state: &State) {
+    let axes: Vec<String> = job.f.sweep().axes.iter().map(axis_text).collect();
     tables::print_line(&format!(
         "{}: {} evaluations of f ({}), {} colour products",
         one.path,
-        tables::grouped(places.count()),
+        tables::grouped(job.f.count()),
         axes.join(" x "),
-        tables::grouped(exhaustive::colour_products(one.unit.contract.as_ref()))
+        tables::grouped(job.colours.count())
     ));
-    if !places.sweep().omits.is_empty() {
-        tables::print_line(&format!("  not covered: {}", places.sweep().omits));
+    if !job.f.sweep().omits.is_empty() {
+        tables::print_line(&format!("  not covered: {}", job.f.sweep().omits));
+    }
+    let (all, left) = (job.f.count() + job.colours.count(), job.remaining(state));
+    if left != all {
+        tables::print_line(&format!(
+            "  shard {}: {} evaluations to do here",
+            state.shard,
+            tables::grouped(left)
+        ));
     }
 }
 
@@ -68,8 +193,25 @@ fn axis_text(axis: &Axis) -> String {
     }
 }
 
-fn print(one: &Loaded, places: &Places<'_>, proof: &Proof) {
-    let bound = one.unit.contract.bound();
+/// Says what a state means; whether it is within the bound.
+fn report(
+    output: Output,
+    one: &Loaded,
+    job: &Job<'_>,
+    state: &State,
+    list: &mut Vec<Value>,
+) -> bool {
+    let contract = one.unit.contract.as_ref();
+    let proof = Proof::new(contract, state.f.peak, state.colours.peak);
+    if output.json {
+        list.push(as_json(one, &job.f, &proof, state, job.colours.count()));
+    } else {
+        print(one, &job.f, &proof, state);
+    }
+    proof.faults.is_empty()
+}
+
+fn print(one: &Loaded, places: &Places<'_>, proof: &Proof, state: &State) {
     let at: Vec<String> = places
         .sweep()
         .axes
@@ -77,19 +219,19 @@ fn print(one: &Loaded, places: &Places<'_>, proof: &Proof) {
         .zip(places.place(proof.f.place))
         .map(|(axis, value)| format!("{}={value}", axis.name))
         .collect();
+    let verdict = match (proof.faults.is_empty(), state.shard == Shard::WHOLE) {
+        (true, true) => "holds",
+        (true, false) => "holds so far; `glint merge` joins the shards",
+        (false, _) => "FAILS",
+    };
     tables::print_line(&format!(
-        "  f is off by {:.3e} at most, {:.3} units, at raw {}; a colour multiplier by {:.3}; together {:.3} (bound {:.3}): {}",
+        "  f is off by {:.3e} at most, {:.3} units, at raw {}; a colour multiplier by {:.3}; together {:.3} (bound {:.3}): {verdict}",
         proof.f.error,
         proof.f_units,
         at.join(" "),
-        proof.colour_units,
+        proof.colours.error,
         proof.together(),
-        bound.units,
-        if proof.faults.is_empty() {
-            "holds"
-        } else {
-            "FAILS"
-        }
+        one.unit.contract.bound().units,
     ));
     for fault in &proof.faults {
         tables::print_line(&format!("  FAILS: {fault}"));
@@ -97,7 +239,13 @@ fn print(one: &Loaded, places: &Places<'_>, proof: &Proof) {
 }
 
 /// A proof for scripts, and for the record.
-fn as_json(one: &Loaded, places: &Places<'_>, proof: &Proof) -> Value {
+fn as_json(
+    one: &Loaded,
+    places: &Places<'_>,
+    proof: &Proof,
+    state: &State,
+    products: u64,
+) -> Value {
     let axes: Vec<Value> = places
         .sweep()
         .axes
@@ -107,24 +255,27 @@ fn as_json(one: &Loaded, places: &Places<'_>, proof: &Proof) -> Value {
             Values::List(values) => json!({ "name": axis.name, "values": values }),
         })
         .collect();
-    let contract = one.unit.contract.as_ref();
-    json!({
+    let mut value = json!({
         "config": one.path,
         "device": one.unit.device.name,
         "axes": axes,
         "not_covered": places.sweep().omits,
         "evaluations": places.count(),
-        "colour_products": exhaustive::colour_products(contract),
+        "colour_products": products,
         "f": {
             "error": proof.f.error,
             "units": proof.f_units,
             "place": proof.f.place,
             "at": places.place(proof.f.place),
         },
-        "colour_units": proof.colour_units,
+        "colour_units": proof.colours.error,
         "together": proof.together(),
-        "bound": contract.bound().units,
+        "bound": one.unit.contract.bound().units,
         "holds": proof.faults.is_empty(),
         "faults": proof.faults,
-    })
+    });
+    if state.shard != Shard::WHOLE {
+        value["shard"] = json!(state.shard.to_string());
+    }
+    value
 }

@@ -15,7 +15,7 @@ pub use catalogue::{list, new};
 pub use check::everything;
 pub use cosim::{CosimRequest, cosim};
 pub use eval::eval;
-pub use exhaustive::exhaustive;
+pub use exhaustive::{ExhaustiveRequest, exhaustive, merge};
 pub use generate::generate;
 
 use super::failure::{self, Several};

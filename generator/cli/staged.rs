@@ -1,0 +1,39 @@
+//! Single files, written beside their place and moved there when they are whole.
+
+use std::io::Write;
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use tempfile::NamedTempFile;
+
+/// A temporary file in the directory of `path`, to be persisted there.
+///
+/// # Errors
+/// The directory is missing or not writable.
+pub fn beside(path: &Path) -> Result<NamedTempFile> {
+    let directory = match path.parent() {
+        Some(parent) if parent != Path::new("") => parent,
+        _ => Path::new("."),
+    };
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".glint-");
+    // As any new file: the umask takes away from it.
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder
+        .tempfile_in(directory)
+        .with_context(|| format!("cannot write `{}`", path.display()))
+}
+
+/// Replaces the file `path` as a whole, or leaves it as it was.
+///
+/// # Errors
+/// It cannot be written.
+pub fn replace(path: &Path, contents: &[u8]) -> Result<()> {
+    let mut staged = beside(path)?;
+    staged
+        .write_all(contents)
+        .and_then(|()| staged.persist(path).map_err(|error| error.error))
+        .with_context(|| format!("cannot write `{}`", path.display()))?;
+    Ok(())
+}

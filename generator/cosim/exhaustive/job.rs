@@ -1,0 +1,223 @@
+//! A proof as a job that can be interrupted, resumed, and divided among machines.
+//!
+//! Blocks of places are dealt out: shard i of N has every N-th block, from block i − 1 on. What a shard has
+//! done is a [`State`], a few numbers that stand in a file; joining the states of all shards gives exactly
+//! what one uninterrupted run gives, because a peak does not depend on the order in which it was found.
+
+use std::fmt;
+use std::ops::ControlFlow;
+use std::str::FromStr;
+
+use anyhow::{Result, ensure};
+use serde::{Deserialize, Serialize};
+
+use super::places::{Peak, Places};
+use crate::golden::Contract;
+
+/// Blocks between two looks at the state.
+const CHUNK: u64 = 64;
+
+/// One part of a divided job.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Shard {
+    /// From 1.
+    pub number: u64,
+    /// Of so many.
+    pub of: u64,
+}
+
+impl Shard {
+    /// The whole job.
+    pub const WHOLE: Self = Self { number: 1, of: 1 };
+
+    /// The blocks of the shard, of `blocks` in all.
+    fn count(self, blocks: u64) -> u64 {
+        (blocks + self.of - self.number) / self.of
+    }
+
+    /// Block number `at` of the shard.
+    fn block(self, at: u64) -> u64 {
+        self.number - 1 + at * self.of
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.number, self.of)
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split_once('/');
+        let numbers = parts.and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
+        match numbers {
+            Some((number, of)) if (1..=of).contains(&number) => Ok(Self { number, of }),
+            _ => Err("a shard is i/N with i from 1 to N, as 3/16".to_owned()),
+        }
+    }
+}
+
+/// How far one part of a job has come.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Progress {
+    /// Blocks of the shard that are done: the first so many.
+    pub done: u64,
+    /// The peak of those.
+    pub peak: Peak,
+}
+
+/// How far a shard has come.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Tells one configuration (and version of Glint) from another.
+    pub digest: String,
+    /// Which part of the job.
+    pub shard: Shard,
+    /// The sweep of `f`.
+    pub f: Progress,
+    /// The colour products.
+    pub colours: Progress,
+}
+
+impl State {
+    /// Nothing done.
+    pub fn new(digest: &str, shard: Shard) -> Self {
+        let nothing = Progress {
+            done: 0,
+            peak: Peak::NONE,
+        };
+        Self {
+            digest: digest.to_owned(),
+            shard,
+            f: nothing,
+            colours: nothing,
+        }
+    }
+}
+
+/// A proof to be made.
+pub struct Job<'a> {
+    /// The places of `f`.
+    pub f: Places<'a>,
+    /// The colour products.
+    pub colours: Places<'a>,
+}
+
+impl<'a> Job<'a> {
+    /// The proof of a contract.
+    pub fn new(contract: &'a dyn Contract) -> Self {
+        Self {
+            f: Places::of_f(contract),
+            colours: Places::of_colours(contract),
+        }
+    }
+
+    /// Places of the shard that are still to be visited.
+    pub fn remaining(&self, state: &State) -> u64 {
+        let part = |places: &Places<'_>, progress: Progress| {
+            let count = state.shard.count(places.blocks());
+            let blocks = progress.done.min(count)..count;
+            places.visits(blocks.map(|at| state.shard.block(at)))
+        };
+        part(&self.f, state.f) + part(&self.colours, state.colours)
+    }
+
+    /// Goes on from `state` to the end of its shard, or until `look`, which sees the state now and then,
+    /// breaks; `progress` is told the places of each block that is done.
+    pub fn run(
+        &self,
+        state: &mut State,
+        progress: &(dyn Fn(u64) + Sync),
+        look: &mut dyn FnMut(&State) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let shard = state.shard;
+        for part in [Part::F, Part::Colours] {
+            let places = part.places(self);
+            let count = shard.count(places.blocks());
+            while part.progress(state).done < count {
+                let own = part.progress(state);
+                let end = (own.done + CHUNK).min(count);
+                let blocks: Vec<u64> = (own.done..end).map(|at| shard.block(at)).collect();
+                own.peak = own.peak.join(places.check(blocks, progress));
+                own.done = end;
+                look(state)?;
+            }
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// What the shards of one job give together.
+    ///
+    /// # Errors
+    /// Shards of different jobs, shards that are missing, twice there, or not done. `names` say which,
+    /// in the order of `states`.
+    pub fn merge(&self, states: &[State], names: &[String]) -> Result<State> {
+        let Some(first) = states.first() else {
+            anyhow::bail!("nothing to merge");
+        };
+        let of = first.shard.of;
+        let mut merged = State::new(&first.digest, Shard::WHOLE);
+        let mut seen: Vec<Option<&String>> = vec![None; usize::try_from(of)?];
+        for (state, name) in states.iter().zip(names) {
+            ensure!(
+                state.digest == first.digest,
+                "`{name}` is not of the same configuration and version of Glint as `{}`",
+                names[0]
+            );
+            ensure!(
+                state.shard.of == of,
+                "`{name}` is shard {}, and `{}` is shard {}: they are not of one division",
+                state.shard,
+                names[0],
+                first.shard
+            );
+            ensure!(
+                self.remaining(state) == 0,
+                "`{name}` is not complete; go on with --shard {} --resume {name}",
+                state.shard
+            );
+            let place = &mut seen[usize::try_from(state.shard.number - 1)?];
+            if let Some(other) = place {
+                anyhow::bail!("`{other}` and `{name}` are both shard {}", state.shard);
+            }
+            *place = Some(name);
+            merged.f.peak = merged.f.peak.join(state.f.peak);
+            merged.colours.peak = merged.colours.peak.join(state.colours.peak);
+        }
+        let missing: Vec<String> = (1u64..)
+            .zip(&seen)
+            .filter(|(_, name)| name.is_none())
+            .map(|(number, _)| Shard { number, of }.to_string())
+            .collect();
+        ensure!(missing.is_empty(), "missing: shard {}", missing.join(", "));
+        merged.f.done = self.f.blocks();
+        merged.colours.done = self.colours.blocks();
+        Ok(merged)
+    }
+}
+
+/// The parts of a job.
+#[derive(Clone, Copy)]
+enum Part {
+    F,
+    Colours,
+}
+
+impl Part {
+    fn places<'j, 'a>(self, job: &'j Job<'a>) -> &'j Places<'a> {
+        match self {
+            Self::F => &job.f,
+            Self::Colours => &job.colours,
+        }
+    }
+
+    fn progress(self, state: &mut State) -> &mut Progress {
+        match self {
+            Self::F => &mut state.f,
+            Self::Colours => &mut state.colours,
+        }
+    }
+}

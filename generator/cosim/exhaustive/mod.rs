@@ -1,0 +1,66 @@
+//! The factored proof of an accuracy contract: every place of its sweep for `f`, every word `f` with every
+//! colour, and what both give together.
+//!
+//! Places are numbered, the last axis fastest, and cut into blocks; any set of blocks can be checked
+//! anywhere, in any order, and the outcomes joined: the result does not depend on how the work was divided.
+
+mod job;
+mod places;
+
+#[cfg(test)]
+mod tests;
+
+pub use job::{Job, Progress, Shard, State};
+pub use places::{Peak, Places};
+
+use crate::golden::Contract;
+
+/// What f64 itself may add to an error in units.
+const F64: f64 = 1e-6;
+
+/// What the proof found.
+#[derive(Clone, Debug)]
+pub struct Proof {
+    /// The largest error of `f`.
+    pub f: Peak,
+    /// The same in output units, for the largest colour.
+    pub f_units: f64,
+    /// The largest error of a colour multiplier, in output units.
+    pub colours: Peak,
+    /// What is not within the stated bound, or not below one unit though the bound is.
+    pub faults: Vec<String>,
+}
+
+impl Proof {
+    /// Weighs the peaks against the contract's bound.
+    pub fn new(contract: &dyn Contract, f: Peak, colours: Peak) -> Self {
+        let colour = contract.operands().iter().find(|operand| operand.colour);
+        let largest = colour.map_or(1.0, |operand| operand.domain.1 as f64);
+        let bound = contract.bound();
+        let mut proof = Self {
+            f,
+            f_units: f.error * largest,
+            colours,
+            faults: Vec::new(),
+        };
+        if f.error > bound.f + F64 / largest {
+            proof.faults.push(format!(
+                "f is off by {:e}, beyond the stated bound of {:e}",
+                f.error, bound.f
+            ));
+        }
+        if proof.together() > bound.units + F64 {
+            proof.faults.push(format!(
+                "an output may be off by {:.4} units, beyond the stated bound of {:.4}",
+                proof.together(),
+                bound.units
+            ));
+        }
+        proof
+    }
+
+    /// The most by which an output can be off, in its units.
+    pub fn together(&self) -> f64 {
+        self.f_units + self.colours.error
+    }
+}

@@ -1,0 +1,156 @@
+//! Places, division and joining, on a contract whose errors are known.
+
+use std::ops::ControlFlow;
+
+use super::*;
+use crate::fixed::Format;
+use crate::golden::{Axis, Bound, Operand, Sweep, Values};
+
+/// f = 0; the "error" numbers the places 0, 1, 2, …, and repeats its largest value.
+struct Counting;
+
+impl Contract for Counting {
+    fn operands(&self) -> &[Operand] {
+        &[]
+    }
+    fn outputs(&self) -> &[String] {
+        &[]
+    }
+    fn f_format(&self) -> Format {
+        Format::unsigned(0, 4)
+    }
+    fn f(&self, _: &[i64]) -> i64 {
+        0
+    }
+    fn colour(&self, _: i64, _: i64) -> i64 {
+        0
+    }
+    fn reference(&self, _: &[i64]) -> f64 {
+        0.0
+    }
+    fn bound(&self) -> Bound {
+        Bound {
+            f: 1.0,
+            units: 1.0,
+            terms: Vec::new(),
+        }
+    }
+    fn sweep(&self) -> Sweep {
+        let axis = |values| Axis {
+            name: String::new(),
+            values,
+        };
+        Sweep {
+            axes: vec![
+                axis(Values::List(vec![7, 3])),
+                axis(Values::Range(-5, 149_994)),
+                axis(Values::Range(0, 2)),
+            ],
+            omits: String::new(),
+        }
+    }
+    fn sweep_error(&self, place: &[i64]) -> f64 {
+        let major = if place[0] == 3 { 450_000 } else { 0 };
+        ((major + (place[1] + 5) * 3 + place[2]) as f64).min(700_000.5)
+    }
+}
+
+#[test]
+fn places_are_numbered_last_axis_fastest() {
+    let places = Places::of_f(&Counting);
+    assert_eq!(places.count(), 900_000);
+    assert_eq!(places.place(0), [7, -5, 0]);
+    assert_eq!(places.place(4), [7, -4, 1]);
+    assert_eq!(places.place(899_999), [3, 149_994, 2]);
+    assert_eq!(places.error(451_234), 451_234.0);
+}
+
+#[test]
+fn the_peak_is_the_first_of_the_largest_however_the_work_is_divided() {
+    let places = Places::of_f(&Counting);
+    let whole = places.check(0..places.blocks(), &|_| ());
+    assert_eq!((whole.error, whole.place), (700_000.5, 700_001));
+    let parts = (0..places.blocks())
+        .rev()
+        .map(|block| places.check(block..block + 1, &|_| ()))
+        .reduce(Peak::join);
+    assert_eq!(parts, Some(whole));
+    assert_eq!(
+        places.check(0..2, &|_| ()).error,
+        f64::from(2 * (1 << 17) - 1)
+    );
+}
+
+#[test]
+fn without_colours_there_are_no_products() {
+    assert_eq!(Places::of_colours(&Counting).count(), 0);
+}
+
+fn whole() -> State {
+    let mut state = State::new("digest", Shard::WHOLE);
+    let end = Job::new(&Counting).run(&mut state, &|_| (), &mut |_| ControlFlow::Continue(()));
+    assert_eq!(end, ControlFlow::Continue(()));
+    state
+}
+
+#[test]
+fn an_interrupted_run_ends_as_an_uninterrupted_one() {
+    let job = Job::new(&Counting);
+    let mut state = State::new("digest", Shard { number: 2, of: 3 });
+    assert_eq!(job.remaining(&state), 2 * (1 << 17));
+    // Broken off as soon as something is done, and gone on with from what a file would hold.
+    let broken = job.run(&mut state, &|_| (), &mut |_| ControlFlow::Break(()));
+    assert_eq!(broken, ControlFlow::Break(()));
+    let text = serde_json::to_string(&state).unwrap();
+    let mut state: State = serde_json::from_str(&text).unwrap();
+    let end = job.run(&mut state, &|_| (), &mut |_| ControlFlow::Continue(()));
+    assert_eq!(end, ControlFlow::Continue(()));
+    assert_eq!(job.remaining(&state), 0);
+    // Blocks 1 and 4 of 0 to 6; the largest error of block 4 is that of its last place.
+    assert_eq!(state.f.done, 2);
+    assert_eq!(state.f.peak.error, f64::from(5 * (1 << 17) - 1));
+}
+
+#[test]
+fn shards_join_to_the_whole() {
+    let job = Job::new(&Counting);
+    let shard = |number| {
+        let mut state = State::new("digest", Shard { number, of: 3 });
+        let _ = job.run(&mut state, &|_| (), &mut |_| ControlFlow::Continue(()));
+        state
+    };
+    let names: Vec<String> = ["c", "a", "b"].map(String::from).to_vec();
+    let states = [shard(3), shard(1), shard(2)];
+    assert_eq!(job.merge(&states, &names).unwrap(), whole());
+
+    let refused = |states: &[State]| job.merge(states, &names).unwrap_err().to_string();
+    assert_eq!(refused(&states[..2]), "missing: shard 2/3");
+    assert_eq!(
+        refused(&[states[0].clone(), states[0].clone()]),
+        "`c` and `a` are both shard 3/3"
+    );
+    assert!(refused(&[states[0].clone(), whole()]).contains("not of one division"));
+    let mut other = states[1].clone();
+    other.digest = "another".to_owned();
+    assert!(refused(&[states[0].clone(), other]).contains("not of the same configuration"));
+    let nothing = State::new("digest", Shard { number: 1, of: 3 });
+    assert!(refused(&[nothing]).contains("`c` is not complete; go on with --shard 1/3"));
+}
+
+#[test]
+fn a_shard_is_one_of_so_many() {
+    assert_eq!("3/16".parse(), Ok(Shard { number: 3, of: 16 }));
+    for text in ["0/4", "5/4", "1", "a/b", "1/0", "-1/2"] {
+        assert!(text.parse::<Shard>().is_err(), "{text}");
+    }
+}
+
+#[test]
+fn errors_beyond_the_bound_are_faults() {
+    let peak = |error| Peak { error, place: 0 };
+    // The bound of `Counting` is 1.0 for f and 1.0 units in all.
+    let faults = |f, colour| Proof::new(&Counting, peak(f), peak(colour)).faults.len();
+    assert_eq!(faults(0.5, 0.5), 0);
+    assert_eq!(faults(0.5, 0.6), 1);
+    assert_eq!(faults(1.5, 0.0), 2);
+}
