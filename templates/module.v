@@ -71,6 +71,14 @@ ${ line }$
 ${ line }$
 <%- endfor %>
 <%- endif %>
+<%- if !formal.is_empty() %>
+
+`ifdef FORMAL
+<%- for line in formal %>
+${ line }$
+<%- endfor %>
+`endif
+<%- endif %>
 endmodule
 
 `default_nettype wire

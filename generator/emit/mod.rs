@@ -8,6 +8,7 @@ mod bench;
 mod bits;
 mod core;
 mod expression;
+mod formal;
 mod header;
 mod interface;
 mod manifest;
@@ -137,6 +138,8 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
             format!("{name}_tb.core"),
             core::bench(name, &names[0], &names[1..])?,
         ));
+        let formal = formal::files(design, &naming, &inputs.timing, &names_of(&rtl))?;
+        testbench.splice(0..0, formal);
     }
 
     let (rtl_names, memory_names) = (names_of(&rtl), names_of(&memories));

@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use super::EmitInputs;
 use super::expression::Expressions;
+use super::formal;
 use super::header;
 use super::interface::{Interface, unread};
 use super::naming::{Naming, is_control_rom, remark, rom_label};
@@ -63,6 +64,7 @@ impl<'a> Builder<'a> {
             items,
             groups,
             unused: self.unused(),
+            formal: formal::invariants(self.plan.design, self.naming, self.unit),
         }
     }
 

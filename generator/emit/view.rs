@@ -30,6 +30,8 @@ pub struct Module {
     pub groups: Vec<Vec<String>>,
     /// The net that takes the bits that nobody reads, or nothing.
     pub unused: Vec<String>,
+    /// Invariants, for formal tools alone.
+    pub formal: Vec<String>,
 }
 
 /// A net with what drives it, and the space above it.
