@@ -1,4 +1,5 @@
-//! From a checked [`Design`] to files: Verilog, ROM contents, manifest, FuseSoC cores, test bench.
+//! From a checked [`Design`] to files: Verilog, ROM contents, manifest, FuseSoC cores, test bench, and
+//! the page for people.
 //!
 //! Names and expressions become strings first ([`plan`], [`expression`]), views collect them, and
 //! the templates in `templates/` print views and decide nothing. Emission is pure: it returns files
@@ -8,12 +9,14 @@ mod bench;
 mod bits;
 mod core;
 mod expression;
+mod facts;
 mod header;
 mod interface;
 mod manifest;
 mod memory;
 mod module;
 mod naming;
+mod page;
 mod plan;
 mod rows;
 mod text;
@@ -29,6 +32,8 @@ use crate::netlist::{Design, RomId, Unit};
 use interface::Interface;
 use naming::Naming;
 use plan::Plan;
+
+pub use page::{PageInputs, is_page, page};
 
 /// A file to be written.
 #[derive(Clone, Debug, PartialEq, Eq)]
