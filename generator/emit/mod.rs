@@ -1,7 +1,7 @@
 //! From a checked [`Design`] to files: Verilog, ROM contents, manifest, FuseSoC cores, test bench, and
 //! the page for people.
 //!
-//! Names and expressions become strings first ([`plan`], [`expression`]), views collect them, and
+//! Names and expressions become strings first (`plan`, `expression`), views collect them, and
 //! the templates in `templates/` print views and decide nothing. Emission is pure: it returns files
 //! and writes none, and the same design gives the same bytes.
 
