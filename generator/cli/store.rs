@@ -15,7 +15,7 @@ use tempfile::TempDir;
 
 use crate::emit::{OutputFile, digest, is_page};
 
-/// What [`write`] did with the directories of a configuration.
+/// What [`write()`] did with the directories of a configuration, or [`write_page`] with its page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Written {
     /// They were there already, byte for byte.

@@ -83,6 +83,14 @@ pub enum Sequence<'a> {
         #[serde(rename = "while")]
         condition: &'a str,
     },
+    /// Over some words.
+    Jump {
+        /// The word to go to.
+        jump_to: usize,
+        /// The net that must be 1 for that.
+        #[serde(rename = "if")]
+        condition: &'a str,
+    },
 }
 
 /// A ROM.
@@ -226,10 +234,19 @@ pub fn words(design: &Design) -> Vec<Word<'_>> {
                 netlist::Sequence::Next => Sequence::Plain("next"),
                 netlist::Sequence::WaitStart => Sequence::Plain("wait for start"),
                 netlist::Sequence::End => Sequence::Plain("end"),
-                netlist::Sequence::LoopWhile { condition, to } => Sequence::Loop {
-                    loop_to: *to,
-                    condition: name(design, *condition),
-                },
+                netlist::Sequence::LoopWhile { condition, to } => {
+                    let condition = name(design, *condition);
+                    match *to > address {
+                        true => Sequence::Jump {
+                            jump_to: *to,
+                            condition,
+                        },
+                        false => Sequence::Loop {
+                            loop_to: *to,
+                            condition,
+                        },
+                    }
+                }
             },
         })
         .collect()

@@ -141,13 +141,19 @@ module rough_direct_datapath #(
     // u0.16: the reflectance, once register 13 holds the square
     wire [15:0] f = reg13_result[15:0];
 
-    wire [23:0] red_product = f * red_reg;  // multiplier 20, u8.16
+    wire [23:0] red_product = f * red_reg;  // multiplier 20, u8.16: an output before it is rounded
     wire [7:0] red_intensity = red_product[23:16] + {7'd0, red_product[15]};
     assign red_out = red_intensity;  // output 40: intensity on the output
-    wire [23:0] green_product = f * green_reg;  // multiplier 21, u8.16
+
+    // multiplier 21, u8.16: an output before it is rounded
+    wire [23:0] green_product = f * green_reg;
+
     wire [7:0] green_intensity = green_product[23:16] + {7'd0, green_product[15]};
     assign green_out = green_intensity;  // output 41: intensity on the output
-    wire [23:0] blue_product = f * blue_reg;  // multiplier 22, u8.16
+
+    // multiplier 22, u8.16: an output before it is rounded
+    wire [23:0] blue_product = f * blue_reg;
+
     wire [7:0] blue_intensity = blue_product[23:16] + {7'd0, blue_product[15]};
     assign blue_out = blue_intensity;  // output 42: intensity on the output
 

@@ -108,7 +108,7 @@ pub fn prose(text: &str) -> String {
             '|' => true,
             '*' | '[' | '\\' => !name,
             // Between letters it means nothing.
-            '_' => !name && !(before.is_alphanumeric() && after.is_alphanumeric()),
+            '_' => !(name || before.is_alphanumeric() && after.is_alphanumeric()),
             '<' => !name && (after.is_ascii_alphabetic() || matches!(after, '/' | '!' | '?')),
             _ => false,
         };

@@ -10,7 +10,7 @@ use super::facts::{self, Sequence};
 use super::naming::Naming;
 use super::{Quantity, Timing, WorkedExample};
 use crate::config::{Config, Schema, Value};
-use crate::golden::{Bound, Contract};
+use crate::golden::{Bound, Contract, Values};
 use crate::netlist::Design;
 use markdown::{Align, Table, code, prose};
 
@@ -49,6 +49,7 @@ struct Page<'a> {
     accuracy: String,
     terms: String,
     limit: String,
+    proof: String,
     domain: String,
     remarks: Vec<String>,
     example: String,
@@ -93,6 +94,7 @@ pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
                 term.units
             )
         }),
+        proof: proof(inputs),
         domain: domain(inputs.contract),
         remarks: inputs
             .contract
@@ -267,6 +269,9 @@ fn words(design: &Design) -> String {
             Sequence::Loop { loop_to, condition } => {
                 format!("word {loop_to} while {}", code(condition))
             }
+            Sequence::Jump { jump_to, condition } => {
+                format!("word {jump_to} if {}", code(condition))
+            }
         });
         table.row(cells);
     }
@@ -317,6 +322,29 @@ fn terms(bound: &Bound) -> String {
         ]);
     }
     table.text()
+}
+
+/// What an exhaustive check of `f` goes through.
+fn proof(inputs: &PageInputs) -> String {
+    let sweep = inputs.contract.sweep();
+    let axes: Vec<String> = sweep
+        .axes
+        .iter()
+        .map(|axis| match &axis.values {
+            Values::Range(low, high) => format!("{} = {low} … {high}", code(&axis.name)),
+            Values::List(values) => format!("{} settings of {}", values.len(), code(&axis.name)),
+        })
+        .collect();
+    let omits = match sweep.omits.as_str() {
+        "" => String::new(),
+        omits => format!(" Not covered: {}.", prose(omits)),
+    };
+    format!(
+        "`glint cosim {} --exhaustive` checks it: every word f with every colour, and f at every combination of {} \
+         (integers, as on the ports).{omits}",
+        inputs.path,
+        axes.join(", ")
+    )
 }
 
 fn domain(contract: &dyn Contract) -> String {
