@@ -83,8 +83,7 @@ impl<'a> Blocks<'a> {
                     _ => false,
                 };
                 net.unit == Unit::Datapath
-                    && net.named
-                    && (hardware || net.block.is_some())
+                    && (net.named && hardware || net.block.is_some())
                     && !ports.contains(&id)
             })
             .collect();
