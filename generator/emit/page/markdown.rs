@@ -148,7 +148,7 @@ mod tests {
         table.row([String::new(), "a".to_owned()]);
         assert_eq!(
             table.without_empty("no.").text(),
-            "| name |\n| --- |\n| a |"
+            "| name |\n| --- |\n| a   |"
         );
     }
 
