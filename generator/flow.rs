@@ -4,7 +4,7 @@ use anyhow::{Context, Result, ensure};
 
 use crate::config::Config;
 use crate::cosim::{Lockstep, trial};
-use crate::emit::{self, EmitInputs, OutputFile, Timing, Vectors};
+use crate::emit::{self, EmitInputs, OutputFile, PageInputs, Timing, Vectors};
 use crate::golden::Contract;
 use crate::netlist::Design;
 use crate::registry::Device;
@@ -99,5 +99,21 @@ impl Unit {
             vectors: Some(vectors),
         };
         emit::emit(&self.design, &inputs)
+    }
+
+    /// The page of the configuration, which the command line knows as `config`.
+    ///
+    /// # Errors
+    /// A device that does not end.
+    pub fn page(&self, config: &str) -> Result<String> {
+        let inputs = PageInputs {
+            path: config,
+            config: &self.config,
+            schema: &(self.device.schema)(),
+            contract: self.contract.as_ref(),
+            timing: &self.timing()?,
+            example: &trial::example(&self.design, self.contract.as_ref())?,
+        };
+        emit::page(&self.design, &inputs)
     }
 }

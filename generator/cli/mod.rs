@@ -42,6 +42,7 @@ Examples:
   glint cosim my_core.toml --simulator icarus   the emitted Verilog in Icarus Verilog
   glint cosim my_core.toml --points 20 --vcd wave.vcd
   glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
+  glint describe my_core.toml                   ports, blocks, microprogram, accuracy: a page
 
 Exit codes: 0 everything holds; 1 something does not hold or could not be done; 2 wrong usage.";
 
@@ -131,6 +132,25 @@ Examples:
         /// taken from the middle of its domain, colours from the top
         #[arg(value_name = "OPERAND=VALUE")]
         operands: Vec<String>,
+    },
+    /// Print a page of documentation, in Markdown
+    ///
+    /// Ports, blocks, microprogram, clocks, accuracy, a worked example and the keys of a configuration, from the
+    /// description that the Verilog is made of. With --out, each configuration gets the file `DIR/<name>.md`; a page that
+    /// Glint did not write, or that was edited since, is left alone unless --force is given.
+    #[command(after_help = "\
+Examples:
+  glint describe my_core.toml
+  glint describe configs/rough.toml --out docs/devices")]
+    Describe {
+        #[command(flatten)]
+        configs: Configs,
+        /// Write the pages into this directory
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Replace pages that Glint did not write or that were edited since
+        #[arg(long, requires = "out")]
+        force: bool,
     },
     /// Name the devices, and the configurations in configs/
     #[command(after_help = "\
@@ -246,6 +266,11 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
         Some(Command::Eval { config, operands }) => {
             commands::eval(registry, output, &config, &operands)
         }
+        Some(Command::Describe {
+            configs,
+            out,
+            force,
+        }) => commands::describe(registry, output, &configs.configs, out.as_deref(), force),
         Some(Command::List) => commands::list(registry, output),
         Some(Command::New { device, name }) => {
             commands::new(registry, output, &device, name.as_deref())

@@ -13,9 +13,9 @@ use anyhow::{Context, Result, bail};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::emit::{OutputFile, digest};
+use crate::emit::{OutputFile, digest, is_page};
 
-/// What [`write`] did with the directories of a configuration.
+/// What [`write()`] did with the directories of a configuration, or [`write_page`] with its page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Written {
     /// They were there already, byte for byte.
@@ -46,17 +46,37 @@ pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Resul
         );
     }
     create_directory(out)?;
-    let staging = tempfile::Builder::new()
-        .prefix(".glint-")
-        .tempdir_in(out)
-        .with_context(|| {
-            format!(
-                "cannot write to `{}`; choose another directory with --out",
-                out.display()
-            )
-        })?;
+    let staging = staging(out)?;
     stage(staging.path(), files)?;
     swap(out, staging, name, &foreign)?;
+    Ok(Written::Replaced)
+}
+
+/// Writes the page of configuration `name` into `out`, as `<name>.md`.
+///
+/// # Errors
+/// A file there that is no page of Glint's or was edited since, unless `force`; a directory that cannot be
+/// written. Whatever fails, what was there before is there after.
+pub fn write_page(out: &Path, name: &str, page: &str, force: bool) -> Result<Written> {
+    let path = out.join(format!("{name}.md"));
+    match fs::read(&path) {
+        Ok(found) if found == page.as_bytes() => return Ok(Written::Unchanged),
+        Ok(found) if !force && !is_page(&found) => bail!(
+            "`{}` was not written by Glint, or was edited since; nothing was changed\n\
+             move it away, choose another --out, or replace it with --force",
+            path.display()
+        ),
+        Ok(_) => {}
+        Err(error) if error.kind() == ErrorKind::NotFound => {}
+        Err(error) => {
+            return Err(error).with_context(|| format!("cannot read `{}`", path.display()));
+        }
+    }
+    create_directory(out)?;
+    let staging = staging(out)?;
+    let new = staging.path().join("page.md");
+    fs::write(&new, page).with_context(|| format!("cannot write `{}`", path.display()))?;
+    Moves::default().rename(&new, &path)?;
     Ok(Written::Replaced)
 }
 
@@ -162,6 +182,19 @@ fn relative_name(out: &Path, path: &Path) -> String {
     let relative = path.strip_prefix(out).unwrap_or(path);
     let parts: Vec<_> = relative.iter().map(|part| part.to_string_lossy()).collect();
     parts.join("/")
+}
+
+/// A directory beside what is to be replaced; it goes when it is dropped.
+fn staging(out: &Path) -> Result<TempDir> {
+    tempfile::Builder::new()
+        .prefix(".glint-")
+        .tempdir_in(out)
+        .with_context(|| {
+            format!(
+                "cannot write to `{}`; choose another directory with --out",
+                out.display()
+            )
+        })
 }
 
 fn create_parent(path: &Path) -> Result<()> {

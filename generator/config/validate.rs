@@ -115,7 +115,7 @@ impl Key {
     }
 
     /// The values that the key accepts, in words: `an integer from 4 to 30`.
-    pub(super) fn accepts(&self) -> String {
+    pub fn accepts(&self) -> String {
         match &self.kind {
             Kind::Integer { min, max } => format!("an integer from {min} to {max}"),
             Kind::Number { min, max } => format!("a number from {min:?} to {max:?}"),

@@ -95,7 +95,7 @@ pub fn describe(d: &Designer, config: &Config) {
         .doc("second operand of the multiplier");
     let product = d
         .shared_mul("product", &first, &second)
-        .doc("its point depends on the operands");
+        .doc("the shared product; its point depends on the operands");
     let rounding_f = rounding(config, "intensity.rounding");
     let distance = d.narrow(
         "distance",
@@ -169,6 +169,13 @@ fn about(config: &Config) -> About {
         formula: format!("out = colour * (n/{m} * (cos(gamma) - 1) + 1)^{m}"),
         source: "Seed 002, the paper's W(n, gamma) with zeta = n/m".to_owned(),
         notes: vec![
+            "The paper gives no circuit. This is the least that its formula asks for: one multiplier and one \
+             accumulator; n/m is a shift by wiring."
+                .to_owned(),
+            "The sum is formed as a complement, 1 - n/m * (1 - cos gamma): every number is then a fraction from 0 \
+             to 1, and the clamp beyond the zero of W is the saturation of the first product. The complement is the \
+             accumulator inverted, an ulp too small, which the error bound counts."
+                .to_owned(),
             "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0, and so does everything \
              beyond the zero of W at cos gamma = (n - m)/n."
                 .to_owned(),

@@ -1,6 +1,7 @@
-//! From a checked [`Design`] to files: Verilog, ROM contents, manifest, FuseSoC cores, test bench.
+//! From a checked [`Design`] to files: Verilog, ROM contents, manifest, FuseSoC cores, test bench, and
+//! the page for people.
 //!
-//! Names and expressions become strings first ([`plan`], [`expression`]), views collect them, and
+//! Names and expressions become strings first (`plan`, `expression`), views collect them, and
 //! the templates in `templates/` print views and decide nothing. Emission is pure: it returns files
 //! and writes none, and the same design gives the same bytes.
 
@@ -8,6 +9,7 @@ mod bench;
 mod bits;
 mod core;
 mod expression;
+mod facts;
 mod formal;
 mod header;
 mod interface;
@@ -15,6 +17,7 @@ mod manifest;
 mod memory;
 mod module;
 mod naming;
+mod page;
 mod plan;
 mod rows;
 mod text;
@@ -30,6 +33,8 @@ use crate::netlist::{Design, RomId, Unit};
 use interface::Interface;
 use naming::Naming;
 use plan::Plan;
+
+pub use page::{PageInputs, is_page, page};
 
 /// A file to be written.
 #[derive(Clone, Debug, PartialEq, Eq)]

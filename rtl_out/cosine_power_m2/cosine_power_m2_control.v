@@ -65,6 +65,13 @@ module cosine_power_m2_control #(
             word_address <= next_word;
         end
     end
+
+`ifdef FORMAL
+    always @* if (!$initstate) begin
+        assert (word_address <= 2'd3);  // no other word is reached
+        if (!run) assert (word_address == 2'd0);
+    end
+`endif
 endmodule
 
 `default_nettype wire

@@ -23,6 +23,13 @@
 //  green_out        u8.0    result
 //  blue_out         u8.0    result
 //
+// The paper gives no circuit. This is the least that its formula asks for: one multiplier and one
+// accumulator; n/m is a shift by wiring.
+//
+// The sum is formed as a complement, 1 - n/m * (1 - cos gamma): every number is then a fraction
+// from 0 to 1, and the clamp beyond the zero of W is the saturation of the first product. The
+// complement is the accumulator inverted, an ulp too small, which the error bound counts.
+//
 // Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0, and so does
 // everything beyond the zero of W at cos gamma = (n - m)/n.
 //

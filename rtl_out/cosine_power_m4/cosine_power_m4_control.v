@@ -78,6 +78,13 @@ module cosine_power_m4_control #(
             word_address <= next_word;
         end
     end
+
+`ifdef FORMAL
+    always @* if (!$initstate) begin
+        assert (word_address <= 3'd4);  // no other word is reached
+        if (!run) assert (word_address == 3'd0);
+    end
+`endif
 endmodule
 
 `default_nettype wire

@@ -83,7 +83,7 @@ module cosine_power_m4_datapath (
         endcase
     end
 
-    wire [36:0] product = first * second;  // its point depends on the operands
+    wire [36:0] product = first * second;  // the shared product; its point depends on the operands
     wire [15:0] distance = (|product[29:22]) ? 16'hffff : product[21:6];  // u0.16
     wire [15:0] square = product[31:16];  // u0.16
 
@@ -98,13 +98,13 @@ module cosine_power_m4_datapath (
         endcase
     end
 
-    wire [23:0] red_product = accumulator * red_reg;  // u8.16
+    wire [23:0] red_product = accumulator * red_reg;  // u8.16: an output before it is rounded
     wire [7:0] red_intensity = red_product[23:16] + {7'd0, red_product[15]};
     assign red_out = red_intensity;  // intensity on the output
-    wire [23:0] green_product = accumulator * green_reg;  // u8.16
+    wire [23:0] green_product = accumulator * green_reg;  // u8.16: an output before it is rounded
     wire [7:0] green_intensity = green_product[23:16] + {7'd0, green_product[15]};
     assign green_out = green_intensity;  // intensity on the output
-    wire [23:0] blue_product = accumulator * blue_reg;  // u8.16
+    wire [23:0] blue_product = accumulator * blue_reg;  // u8.16: an output before it is rounded
     wire [7:0] blue_intensity = blue_product[23:16] + {7'd0, blue_product[15]};
     assign blue_out = blue_intensity;  // intensity on the output
     assign more = remaining > 2'd1;  // not the last squaring
@@ -154,6 +154,20 @@ module cosine_power_m4_datapath (
     // Bits that nothing needs, among them those that narrowing drops.
     wire unused = &{1'b0, product[5:0], product[36:32], red_product[14:0], green_product[14:0],
             blue_product[14:0]};
+
+`ifdef FORMAL
+    reg was_busy = 1'b0;
+    always @(posedge clk) begin
+        was_busy <= !idle;
+        if (was_busy) begin
+            assert (cos_gamma_reg == $past(cos_gamma_reg));
+            assert (exponent_reg == $past(exponent_reg));
+            assert (red_reg == $past(red_reg));
+            assert (green_reg == $past(green_reg));
+            assert (blue_reg == $past(blue_reg));
+        end
+    end
+`endif
 endmodule
 
 `default_nettype wire

@@ -141,13 +141,19 @@ module rough_direct_datapath #(
     // u0.16: the reflectance, once register 13 holds the square
     wire [15:0] f = reg13_result[15:0];
 
-    wire [23:0] red_product = f * red_reg;  // multiplier 20, u8.16
+    wire [23:0] red_product = f * red_reg;  // multiplier 20, u8.16: an output before it is rounded
     wire [7:0] red_intensity = red_product[23:16] + {7'd0, red_product[15]};
     assign red_out = red_intensity;  // output 40: intensity on the output
-    wire [23:0] green_product = f * green_reg;  // multiplier 21, u8.16
+
+    // multiplier 21, u8.16: an output before it is rounded
+    wire [23:0] green_product = f * green_reg;
+
     wire [7:0] green_intensity = green_product[23:16] + {7'd0, green_product[15]};
     assign green_out = green_intensity;  // output 41: intensity on the output
-    wire [23:0] blue_product = f * blue_reg;  // multiplier 22, u8.16
+
+    // multiplier 22, u8.16: an output before it is rounded
+    wire [23:0] blue_product = f * blue_reg;
+
     wire [7:0] blue_intensity = blue_product[23:16] + {7'd0, blue_product[15]};
     assign blue_out = blue_intensity;  // output 42: intensity on the output
 
@@ -225,6 +231,22 @@ module rough_direct_datapath #(
     // Bits that nothing needs, among them those that narrowing drops.
     wire unused = &{1'b0, mux17[6:0], multiplier10[15:0], multiplier10[43], red_product[14:0],
             green_product[14:0], blue_product[14:0]};
+
+`ifdef FORMAL
+    reg was_busy = 1'b0;
+    always @(posedge clk) begin
+        was_busy <= !idle;
+        if (was_busy) begin
+            assert (cos_gamma_reg == $past(cos_gamma_reg));
+            assert (cos_dgamma_reg == $past(cos_dgamma_reg));
+            assert (exponent_reg == $past(exponent_reg));
+            assert (dgamma_negative_reg == $past(dgamma_negative_reg));
+            assert (red_reg == $past(red_reg));
+            assert (green_reg == $past(green_reg));
+            assert (blue_reg == $past(blue_reg));
+        end
+    end
+`endif
 endmodule
 
 `default_nettype wire

@@ -117,13 +117,19 @@ module rough_patent_datapath #(
     wire [17:0] sin_sin = multiplier10[35:18];  // u0.18
     wire [17:0] result = multiplier10[35:18];  // u0.18
     wire [17:0] f = reg13_result;  // u0.18: the reflectance, once register 13 holds the square
-    wire [25:0] red_product = f * red_reg;  // multiplier 20, u8.18
+    wire [25:0] red_product = f * red_reg;  // multiplier 20, u8.18: an output before it is rounded
     wire [7:0] red_intensity = red_product[25:18] + {7'd0, red_product[17]};
     assign red_out = red_intensity;  // output 40: intensity on the output
-    wire [25:0] green_product = f * green_reg;  // multiplier 21, u8.18
+
+    // multiplier 21, u8.18: an output before it is rounded
+    wire [25:0] green_product = f * green_reg;
+
     wire [7:0] green_intensity = green_product[25:18] + {7'd0, green_product[17]};
     assign green_out = green_intensity;  // output 41: intensity on the output
-    wire [25:0] blue_product = f * blue_reg;  // multiplier 22, u8.18
+
+    // multiplier 22, u8.18: an output before it is rounded
+    wire [25:0] blue_product = f * blue_reg;
+
     wire [7:0] blue_intensity = blue_product[25:18] + {7'd0, blue_product[17]};
     assign blue_out = blue_intensity;  // output 42: intensity on the output
 
@@ -201,6 +207,22 @@ module rough_patent_datapath #(
     // Bits that nothing needs, among them those that narrowing drops.
     wire unused = &{1'b0, exponent_reg[0], mux17[7:0], multiplier10[17:0], multiplier10[44:36],
             red_product[16:0], green_product[16:0], blue_product[16:0]};
+
+`ifdef FORMAL
+    reg was_busy = 1'b0;
+    always @(posedge clk) begin
+        was_busy <= !idle;
+        if (was_busy) begin
+            assert (cos_gamma_reg == $past(cos_gamma_reg));
+            assert (cos_dgamma_reg == $past(cos_dgamma_reg));
+            assert (exponent_reg == $past(exponent_reg));
+            assert (dgamma_negative_reg == $past(dgamma_negative_reg));
+            assert (red_reg == $past(red_reg));
+            assert (green_reg == $past(green_reg));
+            assert (blue_reg == $past(blue_reg));
+        end
+    end
+`endif
 endmodule
 
 `default_nettype wire

@@ -80,6 +80,13 @@ module rough_unclamped_control #(
             word_address <= next_word;
         end
     end
+
+`ifdef FORMAL
+    always @* if (!$initstate) begin
+        assert (word_address <= 4'd9);  // no other word is reached
+        if (!run) assert (word_address == 4'd0);
+    end
+`endif
 endmodule
 
 `default_nettype wire

@@ -3,6 +3,7 @@
 
 mod configurations;
 mod cosim;
+mod describe;
 mod generate;
 mod output;
 mod place;

@@ -3,6 +3,7 @@
 mod catalogue;
 mod check;
 mod cosim;
+mod describe;
 mod eval;
 mod exhaustive;
 mod generate;
@@ -14,6 +15,7 @@ use anyhow::{Context, Result, anyhow, bail};
 pub use catalogue::{list, new};
 pub use check::everything;
 pub use cosim::{CosimRequest, cosim};
+pub use describe::describe;
 pub use eval::eval;
 pub use exhaustive::{ExhaustiveRequest, exhaustive, merge};
 pub use generate::generate;

@@ -54,7 +54,9 @@ impl<'d> Colours<'d> {
     pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) {
         let d = self.designer;
         for (name, operand, blocks) in &self.channels {
-            let mut product = d.mul(&format!("{name}_product"), f, operand.q());
+            let mut product = d
+                .mul(&format!("{name}_product"), f, operand.q())
+                .doc("an output before it is rounded");
             let narrowed = d.narrow(
                 &format!("{name}_intensity"),
                 product,
