@@ -71,10 +71,16 @@ fn latency(timing: &Timing) -> Vec<String> {
     let valid = timing
         .start_to_valid
         .map(|clocks| format!("valid {clocks} clocks after start"));
+    let more = timing.valid_to_valid.map(|clocks| match clocks {
+        1 => "then in every clock for one more result".to_owned(),
+        clocks => format!("then every {clocks} clocks for one more result"),
+    });
+    let done = (timing.valid_to_valid.is_some() && timing.start_to_done.is_none())
+        .then(|| "done when as many have come as the operands say".to_owned());
     let start = timing
         .start_to_start
         .map(|clocks| format!("the next start {clocks} clocks after start"));
-    let facts: Vec<_> = [valid, start].into_iter().flatten().collect();
+    let facts: Vec<_> = [valid, more, done, start].into_iter().flatten().collect();
     if facts.is_empty() {
         return Vec::new();
     }
@@ -128,7 +134,8 @@ fn program(design: &Design) -> Vec<String> {
             Sequence::WaitStart => "  (waits for start)".to_owned(),
             Sequence::End => "  (end)".to_owned(),
             Sequence::LoopWhile { condition, to } => {
-                format!("  (to word {to} while {})", design.net(*condition).name)
+                let when = if *to > address { "if" } else { "while" };
+                format!("  (to word {to} {when} {})", design.net(*condition).name)
             }
         };
         lines.push(format!(

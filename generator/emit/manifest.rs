@@ -215,7 +215,12 @@ fn control(design: &Design) -> Value {
                 Sequence::WaitStart => json!("wait for start"),
                 Sequence::End => json!("end"),
                 Sequence::LoopWhile { condition, to } => {
-                    json!({ "loop_to": to, "while": name(design, *condition) })
+                    let condition = name(design, *condition);
+                    if *to > address {
+                        json!({ "jump_to": to, "if": condition })
+                    } else {
+                        json!({ "loop_to": to, "while": condition })
+                    }
                 }
             };
             json!({ "address": address, "name": word.name, "fields": values, "sequence": next })
