@@ -144,31 +144,30 @@ pub fn describe(d: &Designer, config: &Config) {
 /// Decoder 10: outputs 30 to 33, one of them 1, and the number of the one.
 fn decoder<'d>(d: &'d Designer, exponent: Signal<'d>) -> Signal<'d> {
     let constant = |name: &str, raw: i128| d.raw_constant(name, raw, exponent.format());
+    let first = constant("first_exponent", 1);
+    let second = constant("second_exponent", 2);
+    let high = constant("high_exponents", 7);
     let power_1 = d
-        .equal("power_1", exponent, constant("exponent_1", 1))
-        .block(30)
-        .doc("n = 1");
+        .equal("power_1", exponent, first)
+        .doc("output 30 of decoder 10: n = 1");
     let power_2 = d
-        .equal("power_2", exponent, constant("exponent_2", 2))
-        .block(31)
-        .doc("n = 2");
-    let above_2 = d.less("above_2", constant("exponent_2", 2), exponent);
-    let below_7 = d.less("below_7", exponent, constant("exponent_7", 7));
+        .equal("power_2", exponent, second)
+        .doc("output 31 of decoder 10: n = 2");
+    let above_2 = d.less("above_2", second, exponent);
+    let below_7 = d.less("below_7", exponent, high);
     let power_4 = d
         .and("power_4", above_2, below_7)
-        .block(32)
-        .doc("n = 3 to 6");
+        .doc("output 32 of decoder 10: n = 3 to 6");
     let small = d.or("power_1_or_2", power_1, power_2);
     let small = d.or("power_below_16", small, power_4);
     let power_16 = d
         .not("power_16", small)
-        .block(33)
-        .doc("n = 0, and n from 7 on");
+        .doc("output 33 of decoder 10: n = 0, and n from 7 on");
     let high = d.or("power_4_or_16", power_4, power_16);
     let low = d.or("power_2_or_16", power_2, power_16);
     d.concat("power_code", high, low)
         .block(10)
-        .doc("the number of the output that is 1")
+        .doc("the number of the decoder's output that is 1")
 }
 
 /// Which of the powers serves the exponent n.

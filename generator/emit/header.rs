@@ -72,15 +72,13 @@ fn latency(timing: &Timing) -> Vec<String> {
         .start_to_valid
         .map(|clocks| format!("valid {clocks} clocks after start"));
     let more = timing.valid_to_valid.map(|clocks| match clocks {
-        1 => "then in every clock for one more result".to_owned(),
-        clocks => format!("then every {clocks} clocks for one more result"),
+        1 => "then a result every clock, as many as the operands say".to_owned(),
+        clocks => format!("then a result every {clocks} clocks, as many as the operands say"),
     });
-    let done = (timing.valid_to_valid.is_some() && timing.start_to_done.is_none())
-        .then(|| "done when as many have come as the operands say".to_owned());
     let start = timing
         .start_to_start
         .map(|clocks| format!("the next start {clocks} clocks after start"));
-    let facts: Vec<_> = [valid, more, done, start].into_iter().flatten().collect();
+    let facts: Vec<_> = [valid, more, start].into_iter().flatten().collect();
     if facts.is_empty() {
         return Vec::new();
     }

@@ -63,8 +63,6 @@ pub struct Timing {
     /// Clocks from a result to the next of the same computation, where there are several.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub valid_to_valid: Option<u32>,
-    /// The results of a computation.
-    pub results: Option<u32>,
     /// The number of the clock in which `done` is high.
     pub start_to_done: Option<u32>,
     /// The number of the first clock in which the next `start` is taken.

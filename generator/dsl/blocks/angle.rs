@@ -64,10 +64,9 @@ pub fn address<'d>(
         Rounding::Truncate,
         Overflow::Saturate,
     );
-    let last = d.raw_constant(&format!("{name}_last"), (1 << bits) - 1, leading.format());
-    d.choose(&format!("{name}_fraction"), within, [last, leading])
-        .read_as(Format::unsigned(bits, 0))
-        .named(name)
+    let step = leading.read_as(Format::unsigned(bits, 0));
+    let last = d.raw_constant(&format!("{name}_last"), (1 << bits) - 1, step.format());
+    d.choose(name, within, [last, step])
 }
 
 /// The words of a table of `cosᵏ` over a right angle in 2^`bits` steps, in `u0.fraction`.
