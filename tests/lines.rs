@@ -229,6 +229,52 @@ fn a_reset_in_mid_line_drops_what_is_on_its_way() {
     }
 }
 
+/// Every word of ROM 9 and of ROM 12, which a run does not come to see: √(n/k) is rounded to nearest, and the
+/// middle of each step of a power is within half an ulp of its word.
+#[test]
+fn every_word_of_the_tables() {
+    let powers = |n: u64| match n {
+        1 => 1,
+        2 => 2,
+        3..=6 => 4,
+        _ => 16,
+    };
+    for (device, tables) in [
+        ("quad-cosine", &[1, 2, 4, 16][..]),
+        ("cosine-squared", &[2]),
+    ] {
+        let unit = unit(device);
+        let rom = |name: &str| unit.design.roms.iter().find(|rom| rom.name == name);
+        if let Some(rom) = rom("root") {
+            for (n, &word) in (0u64..).zip(&rom.words) {
+                // (2r − 1)² ≤ 4·n·2²⁸/k < (2r + 1)².
+                let (k, square) = (powers(n), n << 30);
+                let below = (2 * word).saturating_sub(1).pow(2) * k;
+                assert!(
+                    below <= square && square < (2 * word + 1).pow(2) * k,
+                    "n = {n}"
+                );
+            }
+        }
+        let words = &rom("cosine").expect("a table").words;
+        let steps = words.len() / tables.len();
+        for (at, &word) in words.iter().enumerate() {
+            let (power, step) = (tables[at / steps], at % steps);
+            let value = |step: usize| {
+                let cosine = (step as f64 / steps as f64 * FRAC_PI_2).cos();
+                cosine.powi(power) * 1024.0
+            };
+            let middle = (value(step) + value(step + 1)) / 2.0;
+            if step + 1 == steps {
+                assert_eq!(word, 0);
+            } else {
+                let off = word as f64 - middle.min(1023.0);
+                assert!(off.abs() <= 0.5 + 1e-9, "cos^{power}, step {step}: {word}");
+            }
+        }
+    }
+}
+
 /// Random set-ups of lines whose highlight is on them, of the longest length.
 fn set_ups(count: usize) -> impl Iterator<Item = Line> {
     let mut source = ChaCha8Rng::seed_from_u64(3);
@@ -272,7 +318,7 @@ fn drift(
 /// From unquantised set-up, within two units over the longest line.
 ///
 /// By argument: the contract (0.93 and 0.82), half a unit for the amplitude's rounding, and the drift of the
-/// angle, 4095 half ulps of Δζ and one of ζ: 2^(11−F) right angles. f falls by at most 30.7 a right angle
+/// angle, 4095 half ulps of Δζ and one of ζ: 2^(11−F) right angles. f falls by at most 30.6 a right angle
 /// for n = 1000 (√(n/k)·k·cos^(k−1)·sin·π/2), 1.57 for cos² of a stretched angle, so that F = 26 gives 0.24 units and
 /// F = 22 of the stretched angle 0.20.
 #[test]

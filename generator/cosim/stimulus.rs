@@ -305,12 +305,15 @@ impl Stimulus {
             self.operands[at].operand.domain,
         );
         let reach = (i128::from(high) - i128::from(low)).max(1) as u64;
-        let kind = self.random.below(16);
-        let kind = match kind {
-            2..=14 if self.length == Some(at) => 5,
-            kind => kind,
-        };
-        let raw = match kind {
+        if self.length == Some(at) && !self.random.once_in(16) {
+            // Of a random magnitude, small ones first: the smaller of two draws.
+            let magnitudes = u64::from(64 - reach.leading_zeros()) + 1;
+            let bits = self.random.below(magnitudes);
+            let bits = bits.min(self.random.below(magnitudes));
+            let above = self.random.below(1 << bits.min(62)).min(reach);
+            return format.bits(i128::from(low) + i128::from(above));
+        }
+        let raw = match self.random.below(16) {
             0 => i128::from(low),
             1 => i128::from(high),
             2 => return self.random.bits() & crate::fixed::mask(format.width()),
@@ -340,5 +343,88 @@ impl Stimulus {
                 driven.accepted = driven.operand.format.raw(self.inputs[driven.data]) as i64;
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dsl::{Designer, end, step, valid};
+    use crate::fixed::Format;
+
+    /// A design with one operand; how long a computation takes is for the tests to say.
+    fn design() -> Design {
+        let d = Designer::new("device");
+        let x = d.operand("x", Format::unsigned(12, 0));
+        let y = d.register("y", x.q().format());
+        y.takes(x.q());
+        d.output("y_out", y.q());
+        d.microprogram([step("idle", []), step("load", [y.load(), valid(), end()])]);
+        d.finish().unwrap()
+    }
+
+    /// What happened to computations of some length.
+    #[derive(Debug, Default)]
+    struct Events {
+        complete: u32,
+        reset: u32,
+        written: u32,
+        started_again: u32,
+        with_last_write: u32,
+    }
+
+    fn events(length: u32, clocks: u32) -> Events {
+        let mut stimulus = Stimulus::new(&design(), &[], 1);
+        let (reset, start, strobe) = (stimulus.reset, stimulus.start, stimulus.operands[0].strobe);
+        let mut left = 0;
+        let mut events = Events::default();
+        for _ in 0..clocks {
+            let busy = left > 0;
+            let inputs = stimulus.next(busy);
+            let (reset, start) = (inputs[reset] == 0, inputs[start] == 1);
+            let strobe = inputs[strobe] == 1;
+            events.written += u32::from(busy && strobe);
+            events.started_again += u32::from(busy && start);
+            events.with_last_write += u32::from(!busy && start && strobe);
+            if reset {
+                events.reset += u32::from(busy);
+                left = 0;
+            } else if busy {
+                left -= 1;
+                events.complete += u32::from(left == 0);
+            } else if start {
+                left = length;
+            }
+        }
+        events
+    }
+
+    #[test]
+    fn short_computations_meet_everything() {
+        let events = events(10, 100_000);
+        assert!(events.complete > 5_000, "{events:?}");
+        // One in some forty.
+        assert!(events.reset > 100 && events.reset < 500, "{events:?}");
+        assert!(events.written > 2_000, "{events:?}");
+        assert!(events.started_again > 2_000, "{events:?}");
+        assert!(events.with_last_write > 1_000, "{events:?}");
+    }
+
+    #[test]
+    fn most_long_computations_come_to_their_end() {
+        let events = events(4100, 4_000_000);
+        assert!(events.complete > 800, "{events:?}");
+        assert!(events.reset > 30 && events.reset < 150, "{events:?}");
+    }
+
+    #[test]
+    fn lengths_are_small_and_at_times_the_largest() {
+        let mut stimulus = Stimulus::new(&design(), &[], 1).with_length("x");
+        let drawn: Vec<u64> = (0..10_000).map(|_| stimulus.value(0)).collect();
+        let count = |wanted: fn(u64) -> bool| drawn.iter().filter(|&&x| wanted(x)).count();
+        assert!(count(|x| x == 0) > 1_000);
+        assert!(count(|x| x < 64) > 6_000);
+        assert!(count(|x| x > 2_000) > 300);
+        assert!(count(|x| x == 4095) > 20);
     }
 }

@@ -273,7 +273,7 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
                     None => {
                         d.report(Diagnostic::new(
                             format!(
-                                "word `{}` loops to `{to}`, but no word has that name",
+                                "word `{}` goes to `{to}`, but no word has that name",
                                 step.name
                             ),
                             setting.location,
