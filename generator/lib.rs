@@ -20,4 +20,5 @@ pub mod microcode;
 pub mod netlist;
 pub mod reference;
 pub mod registry;
+pub mod setup;
 pub mod sim;

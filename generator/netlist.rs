@@ -365,7 +365,7 @@ pub enum Sequence {
     Next,
     /// Stays until `start` is high, then to the next word. The device is not busy here.
     WaitStart,
-    /// To word `to` while `condition` is 1, else to the next word.
+    /// To word `to`, back or ahead, while `condition` is 1, else to the next word.
     LoopWhile {
         /// One bit of the datapath.
         condition: NetId,

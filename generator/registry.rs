@@ -68,6 +68,24 @@ impl Registry {
                 model: |config| Box::new(golden::cosine_power::CosinePowerModel::new(config)),
                 contract: |config| Box::new(golden::cosine_power::CosinePowerContract::new(config)),
             },
+            Device {
+                name: "quad-cosine",
+                summary: "cos^k(sqrt(n/k)*delta) along a scan line, k = 1, 2, 4, 16 by n (seed 000)",
+                schema: devices::quad_cosine::schema,
+                describe: devices::quad_cosine::describe,
+                model: |config| Box::new(golden::quad_cosine::QuadCosineModel::new(config)),
+                contract: |config| Box::new(golden::quad_cosine::QuadCosineContract::new(config)),
+            },
+            Device {
+                name: "cosine-squared",
+                summary: "cos^2(a*delta) along a scan line, a = sqrt(n/2) outside (seed 000's prototype)",
+                schema: devices::cosine_squared::schema,
+                describe: devices::cosine_squared::describe,
+                model: |config| Box::new(golden::cosine_squared::CosineSquaredModel::new(config)),
+                contract: |config| {
+                    Box::new(golden::cosine_squared::CosineSquaredContract::new(config))
+                },
+            },
         ])
     }
 

@@ -6,6 +6,8 @@ use glint::devices;
 use glint::fixed::{Rounding, exp2};
 use glint::golden::Contract;
 use glint::golden::cosine_power::CosinePowerContract;
+use glint::golden::cosine_squared::CosineSquaredContract;
+use glint::golden::quad_cosine::QuadCosineContract;
 use glint::golden::rough::{self, RoughContract};
 use glint::golden::sine::Scheme;
 use rand_chacha::ChaCha8Rng;
@@ -102,6 +104,42 @@ fn random_configurations_of_rough() {
 #[test]
 fn random_configurations_of_cosine_power() {
     assert_random_configurations(&devices::cosine_power::schema(), CosinePowerContract::new);
+}
+
+/// At random places of the sweep no error of f exceeds the bound, in any configuration: of a point of a line
+/// a place says all that matters, where random operands would rarely meet the highlight.
+fn assert_random_places<C: Contract>(schema: &Schema, contract: impl Fn(&config::Config) -> C) {
+    for seed in 0..300 {
+        let config = config::sample(schema, seed);
+        let contract = contract(&config);
+        let (axes, bound) = (contract.sweep().axes, contract.bound());
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        for _ in 0..3000 {
+            let place: Vec<i64> = axes
+                .iter()
+                .map(|axis| axis.values.value(rng.next_u64() % axis.values.count()))
+                .collect();
+            let error = contract.sweep_error(&place);
+            assert!(
+                error <= bound.f + F64,
+                "{error} at {place:?} of {}: {bound:#?}",
+                config.to_toml(schema)
+            );
+        }
+    }
+}
+
+#[test]
+fn random_configurations_of_quad_cosine() {
+    assert_random_places(&devices::quad_cosine::schema(), QuadCosineContract::new);
+}
+
+#[test]
+fn random_configurations_of_cosine_squared() {
+    assert_random_places(
+        &devices::cosine_squared::schema(),
+        CosineSquaredContract::new,
+    );
 }
 
 /// Configurations of which each widens one thing that the defaults leave alone.

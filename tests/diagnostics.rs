@@ -1,6 +1,6 @@
 //! Every mistake that a description can make, with the message that names signals and source line.
 
-use glint::dsl::{Designer, Setting, end, loop_while, next, step, valid};
+use glint::dsl::{Designer, Setting, end, jump_if, loop_while, next, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
 
 const BYTE: Format = Format::unsigned(0, 8);
@@ -242,7 +242,7 @@ fn words_out_of_order() {
     });
     assert_eq!(
         found,
-        ["word `load` loops to `nowhere`, but no word has that name"]
+        ["word `load` goes to `nowhere`, but no word has that name"]
     );
 }
 
@@ -369,4 +369,59 @@ fn names_that_verilog_does_not_take() {
     assert!(has("`module` cannot be a Verilog name: "), "{found:#?}");
     assert!(has("`two words` cannot be a Verilog name: "), "{found:#?}");
     assert!(has("`clk` is the clock of every design"), "{found:#?}");
+}
+
+#[test]
+fn valid_that_follows_a_signal() {
+    let follows = |clocks: u32, last: fn() -> Vec<Setting>| {
+        program(|d, load| {
+            let x = d.operand("a", Format::BIT);
+            d.valid_after(x.q(), clocks);
+            vec![
+                step("idle", []),
+                step("load", [load]),
+                step("result", last()),
+            ]
+        })
+    };
+    assert_eq!(follows(0, || vec![end()]), Vec::<String>::new());
+    assert_eq!(follows(3, || vec![end()]), Vec::<String>::new());
+    assert_eq!(
+        follows(1, || vec![valid(), end()]),
+        ["word `result` raises valid, which follows a signal in this design"]
+    );
+    let found = mistakes(|d| {
+        d.valid_after(d.operand("a", BYTE).q(), 1);
+    });
+    assert_eq!(
+        found,
+        ["valid follows `a_reg`, which has more than one bit"]
+    );
+    let found = program(|d, load| {
+        let (a, b) = (d.operand("a", Format::BIT), d.operand("b", Format::BIT));
+        d.valid_after(a.q(), 1);
+        d.valid_after(b.q(), 1);
+        vec![step("idle", []), step("load", [load, end()])]
+    });
+    assert_eq!(found, ["valid follows `b_reg` and another signal"]);
+}
+
+#[test]
+fn a_jump_around_words() {
+    let jumps = |to: &'static str| {
+        program(|d, load| {
+            let x = d.operand("a", Format::BIT);
+            vec![
+                step("idle", []),
+                step("first", [jump_if(x.q(), to)]),
+                step("load", [load]),
+                step("result", [valid(), end()]),
+            ]
+        })
+    };
+    assert_eq!(jumps("result"), Vec::<String>::new());
+    assert_eq!(
+        jumps("nowhere"),
+        ["word `first` goes to `nowhere`, but no word has that name"]
+    );
 }

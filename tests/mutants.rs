@@ -40,11 +40,15 @@ struct Mutant {
     design: Design,
 }
 
-/// Every fault of every kind.
-fn mutants(design: &Design) -> Vec<Mutant> {
+/// Every fault of every kind. The tables of a device that walks lines are left out: its points share an
+/// exponent and are neighbours, so that a run sees few of their words. `tests/lines.rs` has all of them.
+fn mutants(unit: &Unit) -> Vec<Mutant> {
+    let design = &unit.design;
     let mut mutants = Vec::new();
-    for at in 0..design.roms.len() {
-        rom_words(design, RomId(at as u32), &mut mutants);
+    for id in (0..design.roms.len()).map(|at| RomId(at as u32)) {
+        if id == design.control.rom || unit.contract.length().is_none() {
+            rom_words(design, id, &mut mutants);
+        }
     }
     for (id, net) in design.iter() {
         if let Driver::Op(Op::Mux { inputs, .. }) = &net.driver {
@@ -114,7 +118,7 @@ fn survives(unit: &Unit, mutant: &Mutant) -> bool {
 }
 
 fn assert_all_are_noticed(path: &str, unit: &Unit) {
-    let mutants = mutants(&unit.design);
+    let mutants = mutants(unit);
     let of_roms = mutants
         .iter()
         .filter(|mutant| mutant.what.starts_with("ROM "))

@@ -111,7 +111,10 @@ impl<'a> Lockstep<'a> {
                 "the golden model does not predict `{name}`"
             );
         }
-        let stimulus = Stimulus::new(design, contract.operands(), seed);
+        let mut stimulus = Stimulus::new(design, contract.operands(), seed);
+        if let Some(length) = contract.length() {
+            stimulus = stimulus.with_length(length);
+        }
         let operands = contract
             .operands()
             .iter()

@@ -4,6 +4,10 @@
 //! operands written one after another, all at once or together with `start`, some left from the point
 //! before, writes and starts while busy, and resets in the middle of a computation. It reacts to `busy`,
 //! as a host does, and is a function of its seed.
+//!
+//! Whether a computation is to be reset, and when, is drawn as it starts, with short and long times alike:
+//! resets come often in the middle of a computation of ten clocks, and still let most of one of thousands
+//! come to its end.
 
 use crate::golden::Operand;
 use crate::netlist::{Design, NetId, Role};
@@ -49,6 +53,10 @@ impl Random {
     }
 }
 
+/// Resets come within 2⁰, 2¹, … clocks after a start, in equal parts up to this many powers: as long as
+/// the longest line.
+const RESET_MAGNITUDES: u64 = 13;
+
 /// An operand as the stimulus drives it.
 struct Driven {
     /// Positions of data and strobe among the inputs.
@@ -67,14 +75,16 @@ enum Phase {
     Writing(u64),
     /// `start` is due after so many idle clocks.
     Starting(u32),
-    /// A computation runs.
-    Running,
+    /// A computation runs; the clocks to its reset, when one is due.
+    Running(Option<u64>),
 }
 
 /// The inputs of a device, clock by clock.
 pub struct Stimulus {
     random: Random,
     operands: Vec<Driven>,
+    /// The operand that says how many results a computation has.
+    length: Option<usize>,
     reset: usize,
     start: usize,
     phase: Phase,
@@ -126,6 +136,7 @@ impl Stimulus {
         Self {
             random: Random::new(seed),
             operands: driven,
+            length: None,
             reset,
             start,
             phase: Phase::Reset(2),
@@ -133,6 +144,14 @@ impl Stimulus {
             disturbed: false,
             first: true,
         }
+    }
+
+    /// Operand `name` says how many results a computation has: it is drawn small more often than not, so that
+    /// long computations do not crowd out all others.
+    #[must_use]
+    pub fn with_length(mut self, name: &str) -> Self {
+        self.length = self.position(name);
+        self
     }
 
     /// The position of an operand among those of the design, for [`Stimulus::accepted`].
@@ -177,7 +196,7 @@ impl Stimulus {
                     self.phase = Phase::Starting(idle - 1);
                 }
             }
-            Phase::Running => self.run(busy),
+            Phase::Running(reset) => self.run(busy, reset),
         }
         self.accept(busy);
         &self.inputs
@@ -187,17 +206,22 @@ impl Stimulus {
         self.inputs[self.start] = 1;
         self.disturbed = false;
         self.first = false;
-        self.phase = Phase::Running;
+        let reset = self.random.once_in(16).then(|| {
+            let magnitude = self.random.below(RESET_MAGNITUDES);
+            self.random.below(1 << magnitude)
+        });
+        self.phase = Phase::Running(reset);
     }
 
     /// A clock after `start`: until the device has ended, now and then something that it must ignore,
     /// or a reset.
-    fn run(&mut self, busy: bool) {
+    fn run(&mut self, busy: bool, reset: Option<u64>) {
         if busy {
             if self.random.once_in(6) {
                 self.noise(true);
             }
-            if self.random.once_in(400) {
+            self.phase = Phase::Running(reset.map(|clocks| clocks.saturating_sub(1)));
+            if reset == Some(0) {
                 self.inputs[self.reset] = 0;
                 self.disturbed = true;
                 self.phase = Phase::Reset(self.random.below(3) as u32);
@@ -245,19 +269,18 @@ impl Stimulus {
             }
         }
         let left = left & !now;
-        self.phase = if left != 0 {
-            Phase::Writing(left)
+        if left != 0 {
+            self.phase = Phase::Writing(left);
         } else if self.random.once_in(3) {
             // Together with the last write.
             self.begin();
-            Phase::Running
         } else {
-            Phase::Starting(if self.random.once_in(4) {
+            self.phase = Phase::Starting(if self.random.once_in(4) {
                 self.random.below(6) as u32
             } else {
                 0
-            })
-        };
+            });
+        }
     }
 
     /// Strobes, data and `start` at random: ignored while busy.
@@ -274,22 +297,36 @@ impl Stimulus {
         }
     }
 
-    /// A bit pattern for an operand: mostly of its domain, often at its ends, sometimes anything.
+    /// A bit pattern for an operand: mostly of its domain, often at its ends or close to one (or to 0, which
+    /// is as good as an end), sometimes anything.
     fn value(&mut self, at: usize) -> u64 {
         let (format, (low, high)) = (
             self.operands[at].operand.format,
             self.operands[at].operand.domain,
         );
+        let reach = (i128::from(high) - i128::from(low)).max(1) as u64;
+        if self.length == Some(at) && !self.random.once_in(16) {
+            // Of a random magnitude, small ones first: the smaller of two draws.
+            let magnitudes = u64::from(64 - reach.leading_zeros()) + 1;
+            let bits = self.random.below(magnitudes);
+            let bits = bits.min(self.random.below(magnitudes));
+            let above = self.random.below(1 << bits.min(62)).min(reach);
+            return format.bits(i128::from(low) + i128::from(above));
+        }
         let raw = match self.random.below(16) {
             0 => i128::from(low),
             1 => i128::from(high),
             2 => return self.random.bits() & crate::fixed::mask(format.width()),
-            // Close to an end of the domain, by a random power of two.
-            3..=6 => {
-                let reach = (i128::from(high) - i128::from(low)).max(1) as u64;
+            near @ 3..=8 => {
+                // Off by a random power of two.
                 let bits = self.random.below(u64::from(64 - reach.leading_zeros()) + 1);
-                let back = self.random.below(1 << bits.min(62)).min(reach);
-                i128::from(high) - i128::from(back)
+                let off = i128::from(self.random.below(1 << bits.min(62)).min(reach));
+                match near {
+                    3 | 4 => i128::from(high) - off,
+                    _ if low >= 0 => i128::from(low) + off,
+                    5 | 6 => off.min(i128::from(high)),
+                    _ => (-off).max(i128::from(low)),
+                }
             }
             _ => i128::from(self.random.within(low, high)),
         };
@@ -306,5 +343,88 @@ impl Stimulus {
                 driven.accepted = driven.operand.format.raw(self.inputs[driven.data]) as i64;
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dsl::{Designer, end, step, valid};
+    use crate::fixed::Format;
+
+    /// A design with one operand; how long a computation takes is for the tests to say.
+    fn design() -> Design {
+        let d = Designer::new("device");
+        let x = d.operand("x", Format::unsigned(12, 0));
+        let y = d.register("y", x.q().format());
+        y.takes(x.q());
+        d.output("y_out", y.q());
+        d.microprogram([step("idle", []), step("load", [y.load(), valid(), end()])]);
+        d.finish().unwrap()
+    }
+
+    /// What happened to computations of some length.
+    #[derive(Debug, Default)]
+    struct Events {
+        complete: u32,
+        reset: u32,
+        written: u32,
+        started_again: u32,
+        with_last_write: u32,
+    }
+
+    fn events(length: u32, clocks: u32) -> Events {
+        let mut stimulus = Stimulus::new(&design(), &[], 1);
+        let (reset, start, strobe) = (stimulus.reset, stimulus.start, stimulus.operands[0].strobe);
+        let mut left = 0;
+        let mut events = Events::default();
+        for _ in 0..clocks {
+            let busy = left > 0;
+            let inputs = stimulus.next(busy);
+            let (reset, start) = (inputs[reset] == 0, inputs[start] == 1);
+            let strobe = inputs[strobe] == 1;
+            events.written += u32::from(busy && strobe);
+            events.started_again += u32::from(busy && start);
+            events.with_last_write += u32::from(!busy && start && strobe);
+            if reset {
+                events.reset += u32::from(busy);
+                left = 0;
+            } else if busy {
+                left -= 1;
+                events.complete += u32::from(left == 0);
+            } else if start {
+                left = length;
+            }
+        }
+        events
+    }
+
+    #[test]
+    fn short_computations_meet_everything() {
+        let events = events(10, 100_000);
+        assert!(events.complete > 5_000, "{events:?}");
+        // One in some forty.
+        assert!(events.reset > 100 && events.reset < 500, "{events:?}");
+        assert!(events.written > 2_000, "{events:?}");
+        assert!(events.started_again > 2_000, "{events:?}");
+        assert!(events.with_last_write > 1_000, "{events:?}");
+    }
+
+    #[test]
+    fn most_long_computations_come_to_their_end() {
+        let events = events(4100, 4_000_000);
+        assert!(events.complete > 800, "{events:?}");
+        assert!(events.reset > 30 && events.reset < 150, "{events:?}");
+    }
+
+    #[test]
+    fn lengths_are_small_and_at_times_the_largest() {
+        let mut stimulus = Stimulus::new(&design(), &[], 1).with_length("x");
+        let drawn: Vec<u64> = (0..10_000).map(|_| stimulus.value(0)).collect();
+        let count = |wanted: fn(u64) -> bool| drawn.iter().filter(|&&x| wanted(x)).count();
+        assert!(count(|x| x == 0) > 1_000);
+        assert!(count(|x| x < 64) > 6_000);
+        assert!(count(|x| x > 2_000) > 300);
+        assert!(count(|x| x == 4095) > 20);
     }
 }

@@ -14,7 +14,9 @@ const LIMIT: u32 = 1 << 16;
 /// What one computation showed.
 struct Trial {
     timing: Timing,
-    /// The result outputs at `valid`.
+    /// The clocks from each result to the next; where it is as from the one before, it is left out.
+    distances: Vec<u32>,
+    /// The result outputs at the first `valid`.
     outputs: Vec<u64>,
 }
 
@@ -32,24 +34,36 @@ pub fn timing(design: &Design, contract: &dyn Contract) -> Result<Timing> {
         corner(|operand| operand.domain.0.midpoint(operand.domain.1)),
     ];
     let mut common: Option<Timing> = None;
+    let mut distances = Vec::new();
     for operands in corners {
-        let seen = run(design, contract, &operands)?.timing;
+        let trial = run(design, contract, &operands)?;
+        distances.extend(trial.distances);
+        let seen = trial.timing;
         common = Some(match common {
             None => seen,
             Some(before) => {
                 let same = |a: Option<u32>, b: Option<u32>| if a == b { a } else { None };
                 Timing {
                     start_to_valid: same(before.start_to_valid, seen.start_to_valid),
+                    valid_to_valid: None,
                     start_to_done: same(before.start_to_done, seen.start_to_done),
                     start_to_start: same(before.start_to_start, seen.start_to_start),
                 }
             }
         });
     }
-    Ok(common.unwrap_or_default())
+    distances.dedup();
+    Ok(Timing {
+        valid_to_valid: match distances[..] {
+            [only] => Some(only),
+            _ => None,
+        },
+        ..common.unwrap_or_default()
+    })
 }
 
-/// A computation with all its numbers: operands of the domain for which f is neither 0 nor 1.
+/// A computation with all its numbers: operands of the domain for which f is neither 0 nor 1. Of several
+/// results it shows the first.
 ///
 /// # Errors
 /// Those of [`timing`].
@@ -80,7 +94,8 @@ pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample
     })
 }
 
-/// Typical operands: the first (a cosine) is lowered until f is well inside 0 … 1.
+/// Typical operands: of the fractions among those of control the first that can (a cosine, an angle) is
+/// lowered until f is well inside 0 … 1.
 fn example_operands(contract: &dyn Contract) -> Vec<i64> {
     let mut colour = 0;
     let mut values: Vec<i64> = contract
@@ -92,7 +107,12 @@ fn example_operands(contract: &dyn Contract) -> Vec<i64> {
                 colour += 1;
                 high - high * (colour - 1) / 3
             } else if operand.format.frac > 0 {
-                high - (high - low) / 64
+                // Close to 1.0 for a cosine, close to 0 for what has a sign.
+                if low < 0 {
+                    high / 64
+                } else {
+                    high - (high - low) / 64
+                }
             } else {
                 20.clamp(low, high) * i64::from(high > 1)
             }
@@ -103,16 +123,17 @@ fn example_operands(contract: &dyn Contract) -> Vec<i64> {
         .iter()
         .filter(|operand| !operand.colour)
         .count();
-    if let Some(first) = contract.operands().first() {
-        let (low, high) = first.domain;
+    for at in (0..control).filter(|&at| contract.operands()[at].format.frac > 0) {
+        let (low, high) = contract.operands()[at].domain;
+        let typical = values[at];
         for step in 0..256 {
-            values[0] = high - (high - low) / 256 * step;
-            let f = contract.reference(&values[..control]);
+            values[at] = high - (high - low) / 256 * step;
+            let f = contract.reference(&contract.point(&values[..control], 0));
             if (0.4..0.8).contains(&f) {
                 return values;
             }
         }
-        values[0] = high;
+        values[at] = typical;
     }
     values
 }
@@ -158,14 +179,22 @@ fn run(design: &Design, contract: &dyn Contract, operands: &[i64]) -> Result<Tri
     simulator.set(start, 0);
     let mut trial = Trial {
         timing: Timing::default(),
+        distances: Vec::new(),
         outputs: Vec::new(),
     };
+    let mut latest = None;
     // Clock 0 was the one that took `start`.
     for clock in 1..LIMIT {
-        if simulator.value(valid) == 1 && trial.timing.start_to_valid.is_none() {
-            trial.timing.start_to_valid = Some(clock);
-            let nets = results(design, contract);
-            trial.outputs = nets.iter().map(|&net| simulator.value(net)).collect();
+        if simulator.value(valid) == 1 {
+            if trial.timing.start_to_valid.is_none() {
+                trial.timing.start_to_valid = Some(clock);
+                let nets = results(design, contract);
+                trial.outputs = nets.iter().map(|&net| simulator.value(net)).collect();
+            }
+            if let Some(before) = latest.replace(clock) {
+                trial.distances.push(clock - before);
+                trial.distances.dedup();
+            }
         }
         if simulator.value(done) == 1 {
             trial.timing.start_to_done = Some(clock);

@@ -1,6 +1,7 @@
 //! Keys that several devices share, so that one name means one thing everywhere.
 
 use crate::config::{Config, Key, Problems};
+use crate::dsl::blocks::line::{LineBlocks, OperandBlocks};
 
 /// The names of the roundings.
 pub const ROUNDINGS: [&str; 2] = ["truncate", "nearest"];
@@ -74,6 +75,36 @@ pub fn output_rounding() -> Key {
     )
 }
 
+/// `angle.fraction`.
+pub fn angle_fraction(default: i64) -> Key {
+    Key::integer(
+        "angle.fraction",
+        default,
+        8..=28,
+        "Fraction bits of the angles, in right angles. A line adds up their rounding: one bit more halves its drift.",
+    )
+}
+
+/// `table.address`.
+pub fn table_address(default: i64) -> Key {
+    Key::integer(
+        "table.address",
+        default,
+        4..=14,
+        "Address bits of a table of the cosine's power in ROM 12, over a right angle.",
+    )
+}
+
+/// `length.bits`.
+pub fn length_bits() -> Key {
+    Key::integer(
+        "length.bits",
+        12,
+        1..=12,
+        "Bits of the line's length l; a line has up to 2^bits points.",
+    )
+}
+
 /// `domain.exponent_min`.
 pub fn exponent_min() -> Key {
     Key::integer(
@@ -116,3 +147,38 @@ pub fn check_exponents(config: &Config, problems: &mut Problems) {
         );
     }
 }
+
+/// The most bits of a ROM: a megabit.
+pub const ROM_LIMIT: i64 = 1 << 20;
+
+/// The ROM with `address` address bits and words of `width` bits, which `key` governs, is not too large.
+pub fn check_rom_size(key: &str, rom: &str, address: i64, width: i64, problems: &mut Problems) {
+    let bits = width << address;
+    if bits > ROM_LIMIT {
+        problems.push(
+            key,
+            format!("{rom} would have 2^{address} entries of {width} bits, {bits} bits in all"),
+            format!("fewer address bits or narrower entries, for at most {ROM_LIMIT} bits"),
+        );
+    }
+}
+
+/// Seed 000's numbers of the accumulator that walks a line.
+pub const LINE_BLOCKS: LineBlocks = LineBlocks {
+    delta: OperandBlocks {
+        inputs: (17, 18),
+        register: 2,
+    },
+    start: OperandBlocks {
+        inputs: (19, 20),
+        register: 3,
+    },
+    length_inputs: (23, 24),
+    counter: 5,
+    adder: 6,
+    mux: 7,
+    register: 8,
+    count: 34,
+    select: 36,
+    write: 37,
+};

@@ -2,6 +2,8 @@
 
 mod common;
 pub mod cosine_power;
+pub mod cosine_squared;
+pub mod quad_cosine;
 pub mod rough;
 
 use crate::config::Config;

@@ -45,7 +45,7 @@ use std::panic::Location;
 
 pub use bus::{Bus, SharedProduct};
 pub use program::{
-    Program, Setting, Step, end, hold, loop_while, next, step, valid, wait_for_start,
+    Program, Setting, Step, end, hold, jump_if, loop_while, next, step, valid, wait_for_start,
 };
 pub use registers::{Counter, Flag, Operand, Register, Select};
 pub use signal::{Mux, Signal};
@@ -83,6 +83,8 @@ pub(crate) struct Inner {
     design: Design,
     views: HashMap<NetId, View>,
     program: Option<Program>,
+    /// What `valid` follows, and how many clocks later, when no word raises it.
+    valid: Option<(NetId, u32)>,
     diagnostics: Vec<Diagnostic>,
     names: HashMap<String, u32>,
     unit: Unit,
@@ -113,6 +115,7 @@ impl Designer {
             },
             views: HashMap::new(),
             program: None,
+            valid: None,
             diagnostics: Vec::new(),
             names: HashMap::new(),
             unit: Unit::Control,
@@ -298,6 +301,31 @@ impl Designer {
         };
         if self.inner.borrow_mut().program.replace(program).is_some() {
             self.error("a second microprogram".to_owned());
+        }
+    }
+
+    /// Lets `valid` follow `signal`, one bit, `clocks` clocks later: for a datapath with registers between
+    /// what a word starts and the outputs, so that a result may come out in every clock. No word raises
+    /// [`valid`] then. The words that the last result needs to come out stand at the end of the
+    /// microprogram, so that the device is busy until then; a reset drops results that are on their way.
+    #[track_caller]
+    pub fn valid_after(&self, signal: Signal<'_>, clocks: u32) {
+        if signal.format().width() != 1 {
+            self.error(format!(
+                "valid follows `{}`, which has more than one bit",
+                signal.name()
+            ));
+        } else if self
+            .inner
+            .borrow_mut()
+            .valid
+            .replace((signal.id(), clocks))
+            .is_some()
+        {
+            self.error(format!(
+                "valid follows `{}` and another signal",
+                signal.name()
+            ));
         }
     }
 

@@ -137,6 +137,14 @@ pub fn loop_while(condition: Signal<'_>, to: &str) -> Setting {
     })
 }
 
+/// On to the word named `to` when `condition`, one bit, is 1; else to the next word: a way around words
+/// that there may be nothing to do for, as a loop whose body need not run even once.
+#[track_caller]
+pub fn jump_if(condition: Signal<'_>, to: &str) -> Setting {
+    // To the sequencer a jump is a jump, whichever way it goes.
+    loop_while(condition, to)
+}
+
 /// The last word: `done` is high in it, and the device is idle after it.
 #[track_caller]
 pub fn end() -> Setting {
@@ -170,7 +178,8 @@ pub struct Program {
 
 /// The fields that the sequencer uses, as far as the program needs them.
 struct SequenceFields {
-    valid: FieldId,
+    /// None when `valid` follows a signal.
+    valid: Option<FieldId>,
     wait: Option<FieldId>,
     again: Option<FieldId>,
     condition: Option<FieldId>,
@@ -202,8 +211,9 @@ pub(crate) fn assemble(d: &Designer, program: &Program) {
     let (conditions, targets) = distinct(&loops);
     let address_width = usize::BITS - (steps.len() - 1).leading_zeros();
     let sequence_field = |name: &str, width: u32| d.add_field(name, width, FieldKind::Sequence);
+    let by_word = d.with(|inner| inner.valid.is_none());
     let fields = SequenceFields {
-        valid: d.add_field("valid_word", 1, FieldKind::Flag),
+        valid: by_word.then(|| d.add_field("valid_word", 1, FieldKind::Flag)),
         wait: waits.then(|| sequence_field("wait_word", 1)),
         again: (!loops.is_empty()).then(|| sequence_field("loop_word", 1)),
         condition: (conditions.len() > 1).then(|| {
@@ -263,7 +273,7 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
                     None => {
                         d.report(Diagnostic::new(
                             format!(
-                                "word `{}` loops to `{to}`, but no word has that name",
+                                "word `{}` goes to `{to}`, but no word has that name",
                                 step.name
                             ),
                             setting.location,
@@ -336,7 +346,19 @@ fn words(
         for setting in &step.settings {
             let (field, value, what) = match &setting.kind {
                 Kind::Field { field, value, what } => (*field, *value, what.as_str()),
-                Kind::Valid => (fields.valid, 1, "valid"),
+                Kind::Valid => match fields.valid {
+                    Some(field) => (field, 1, "valid"),
+                    None => {
+                        d.report(Diagnostic::new(
+                            format!(
+                                "word `{}` raises valid, which follows a signal in this design",
+                                step.name
+                            ),
+                            setting.location,
+                        ));
+                        continue;
+                    }
+                },
                 _ => continue,
             };
             if let Some((other, other_what, place)) = set[field.index()]
@@ -496,7 +518,11 @@ fn sequencer(
     let last = bit("last_word", Op::Not(go_on));
     let done = bit("done", Op::And(run, last.id()));
     d.set_doc(done.id(), "high in the last clock of a computation");
-    let valid = bit("valid", Op::Relabel(d.field_net(fields.valid).id()));
+    let source = match fields.valid {
+        Some(field) => d.field_net(field).id(),
+        None => valid_line(d),
+    };
+    let valid = bit("valid", Op::Relabel(source));
     d.set_doc(valid.id(), "the results are on the outputs");
     control_rom(d, program, words, address);
 
@@ -512,6 +538,37 @@ fn sequencer(
             _ => 2,
         });
     });
+}
+
+/// The signal that `valid` follows, as many clocks later as was said. A reset drops what is on its way.
+fn valid_line(d: &Designer) -> NetId {
+    let Some((mut source, clocks)) = d.with(|inner| inner.valid) else {
+        return d.run;
+    };
+    for clock in 1..=clocks {
+        let q = d.add_register(
+            &format!("valid_in_{}", clocks - clock),
+            Format::BIT,
+            (0, 1),
+            RegisterKind::Internal,
+        );
+        d.set_doc(
+            q,
+            &match clocks - clock {
+                0 => "a result has come through the datapath".to_owned(),
+                1 => "a result is a clock away".to_owned(),
+                left => format!("a result is {left} clocks away"),
+            },
+        );
+        d.connect(q, source, None);
+        d.with(|inner| {
+            if let Some(register) = inner.design.registers.last_mut() {
+                register.reset = Some(0);
+            }
+        });
+        source = q;
+    }
+    source
 }
 
 fn control_rom(d: &Designer, program: &Program, words: Vec<Word>, address: NetId) {

@@ -261,6 +261,11 @@ impl<'d> Register<'d> {
         self.q.format()
     }
 
+    /// The load line: 1 in the words that load the register.
+    pub fn loading(self) -> Signal<'d> {
+        self.q.designer().field_net(self.field)
+    }
+
     /// Connects the data input. Formats must agree: [`Designer::narrow`] first where bits are to go.
     #[track_caller]
     pub fn takes(self, data: Signal<'d>) {
@@ -390,6 +395,20 @@ impl<'d> Counter<'d> {
     /// The count.
     pub fn q(self) -> Signal<'d> {
         self.q
+    }
+
+    /// The count line: 1 in the words that count.
+    pub fn counting(self) -> Signal<'d> {
+        self.q.designer().field_net(self.count)
+    }
+
+    /// The number of the count line in the source's figure.
+    #[must_use]
+    pub fn line(self, number: u16) -> Self {
+        self.q
+            .designer()
+            .with(|inner| inner.design.control.fields[self.count.index()].lines = vec![number]);
+        self
     }
 
     /// The knob: takes the start value at the end of the word.

@@ -301,6 +301,17 @@ impl Designer {
         self.signal(net)
     }
 
+    /// `high` and `low` side by side, by wiring: an address made of two parts. Integers without a sign.
+    #[track_caller]
+    pub fn concat<'d>(&'d self, name: &str, high: Signal<'d>, low: Signal<'d>) -> Signal<'d> {
+        let width = low.format().width();
+        let format = Format::unsigned((high.format().width() + width) as i32, 0);
+        let (from, to) = (high.range().0 << width, high.range().1 << width);
+        let range = (from + low.range().0, to + low.range().1);
+        let op = Op::Concat(vec![high.id(), low.id()]);
+        self.signal(self.add_net(name, format, range, Driver::Op(op), true))
+    }
+
     /// `low` in place of the low bits of the constant `high`, which must be zero there: an address made
     /// of a constant and a prefix, by wiring.
     #[track_caller]
@@ -530,6 +541,11 @@ impl<'d> Mux<'d> {
     pub fn block(self, number: u16) -> Self {
         let _ = self.out.block(number);
         self
+    }
+
+    /// The select line or lines.
+    pub fn select(self) -> Signal<'d> {
+        self.out.designer().field_net(self.field)
     }
 
     /// The number of the select line in the source's figure.

@@ -71,10 +71,14 @@ fn latency(timing: &Timing) -> Vec<String> {
     let valid = timing
         .start_to_valid
         .map(|clocks| format!("valid {clocks} clocks after start"));
+    let more = timing.valid_to_valid.map(|clocks| match clocks {
+        1 => "then a result every clock, as many as the operands say".to_owned(),
+        clocks => format!("then a result every {clocks} clocks, as many as the operands say"),
+    });
     let start = timing
         .start_to_start
         .map(|clocks| format!("the next start {clocks} clocks after start"));
-    let facts: Vec<_> = [valid, start].into_iter().flatten().collect();
+    let facts: Vec<_> = [valid, more, start].into_iter().flatten().collect();
     if facts.is_empty() {
         return Vec::new();
     }
@@ -128,7 +132,8 @@ fn program(design: &Design) -> Vec<String> {
             Sequence::WaitStart => "  (waits for start)".to_owned(),
             Sequence::End => "  (end)".to_owned(),
             Sequence::LoopWhile { condition, to } => {
-                format!("  (to word {to} while {})", design.net(*condition).name)
+                let when = if *to > address { "if" } else { "while" };
+                format!("  (to word {to} {when} {})", design.net(*condition).name)
             }
         };
         lines.push(format!(

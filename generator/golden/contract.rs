@@ -25,6 +25,23 @@ pub fn colour_outputs() -> Vec<String> {
     COLOURS.map(|colour| format!("{colour}_out")).to_vec()
 }
 
+/// The operand of [`crate::dsl::blocks::colour::Colours::amplitude`]; every value is in the domain.
+pub fn amplitude_operand(format: Format) -> Operand {
+    Operand {
+        name: "amplitude".to_string(),
+        format,
+        domain: (0, format.max_raw() as i64),
+        colour: true,
+        doc: "intensity of the light times the surface's specular coefficient, at the peak"
+            .to_string(),
+    }
+}
+
+/// The output of [`crate::dsl::blocks::colour::Colours::amplitude`].
+pub fn intensity_output() -> Vec<String> {
+    vec!["intensity_out".to_string()]
+}
+
 /// The bound from the errors of `f`, a word with `frac` fraction bits.
 ///
 /// `f` and the formula both lie in 0 … 1, so that no word is off by more than 1.0: where the shares

@@ -9,6 +9,8 @@ pub enum After {
     Next,
     /// The same word once more.
     Again,
+    /// The word of this number is next.
+    To(u32),
     /// The program ends: back to word 0, idle.
     End,
 }
@@ -37,6 +39,7 @@ impl Handshake {
             match after {
                 After::Next => self.word += 1,
                 After::Again => {}
+                After::To(word) => self.word = word,
                 After::End => *self = Self::default(),
             }
         }

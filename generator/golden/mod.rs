@@ -6,9 +6,12 @@
 
 pub mod contract;
 pub mod cosine_power;
+pub mod cosine_squared;
 pub mod handshake;
 pub mod keys;
+pub mod line;
 pub mod narrow;
+pub mod quad_cosine;
 pub mod rough;
 pub mod sine;
 
@@ -82,6 +85,11 @@ pub trait Contract: Send + Sync {
     fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
         let _ = index;
         control.to_vec()
+    }
+
+    /// The operand that says how many results a computation has, when one does.
+    fn length(&self) -> Option<&str> {
+        None
     }
 
     /// What an exhaustive check of `f` goes through: by default every combination of the control operands.

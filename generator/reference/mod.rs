@@ -4,6 +4,8 @@
 //! A surface that faces away (`c ≤ 0`) reflects nothing. Transcendentals come from `libm`, so a
 //! figure is the same on every machine.
 
+use std::f64::consts::FRAC_PI_2;
+
 /// Blinn's function `cⁿ` itself (seeds 000–002), which all the others approximate.
 ///
 /// `c` is the cosine of the angle between the normal and the half vector, `n` the exponent.
@@ -65,6 +67,47 @@ pub fn cosine_power(c: f64, n: f64, m: u32) -> f64 {
     (0..m.ilog2()).fold(base, |power, _| power * power)
 }
 
+/// The power k with which `quad-cosine` (seed 000) serves an exponent: 1, 2 and 4 for n = 1, n = 2 and
+/// n = 3 to 6, 16 for all others, 0 among them.
+#[inline]
+pub fn quad_power(n: i64) -> u32 {
+    match n {
+        1 => 1,
+        2 => 2,
+        3..=6 => 4,
+        _ => 16,
+    }
+}
+
+/// `cosᵏ` of an angle in radians of whatever sign, 0 where it is a right angle or more. k is a power
+/// of two.
+#[inline]
+fn lobe(angle: f64, k: u32) -> f64 {
+    let angle = angle.abs();
+    if angle >= FRAC_PI_2 {
+        return 0.0;
+    }
+    (0..k.ilog2()).fold(libm::cos(angle), |power, _| power * power)
+}
+
+/// Seed 000's `cosᵏ(√(n/k)·δ)`, with k of [`quad_power`]; δ in radians. 0 where `√(n/k)·δ` is a right angle or
+/// more, and where δ itself is beyond one: the surface faces away.
+#[inline]
+pub fn quad_cosine(delta: f64, n: i64) -> f64 {
+    if delta.abs() > FRAC_PI_2 {
+        return 0.0;
+    }
+    let k = quad_power(n);
+    lobe((n as f64 / f64::from(k)).sqrt() * delta, k)
+}
+
+/// Abbas, Szirmay-Kalos and Horváth's `cos²(a·δ)` (seed 000), of the stretched angle `a·δ` in radians; 0
+/// where it is a right angle or more.
+#[inline]
+pub fn cosine_squared(stretched: f64) -> f64 {
+    lobe(stretched, 2)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -95,5 +138,25 @@ mod tests {
         // n = 4, m = 4: the base is c.
         assert_eq!(cosine_power(0.5, 4.0, 4), 0.0625);
         assert_eq!(cosine_power(0.5, 1.0, 2), 0.5625);
+    }
+
+    #[test]
+    fn stretched_cosines() {
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-15;
+        // cos(60°), cos²(−60°), cos⁴(√(4/4)·60°), cos¹⁶(√(64/16)·30°).
+        let third = std::f64::consts::FRAC_PI_3;
+        assert!(close(quad_cosine(third, 1), 0.5));
+        assert!(close(quad_cosine(-third, 2), 0.25));
+        assert!(close(quad_cosine(third, 4), 0.0625));
+        assert!(close(quad_cosine(third / 2.0, 64), 0.5f64.powi(16)));
+        // √(64/16)·45° is a right angle; n = 0 gives 1 as far as the surface faces.
+        assert_eq!(quad_cosine(0.786, 64), 0.0);
+        assert_eq!(quad_cosine(1.57, 0), 1.0);
+        assert_eq!(quad_cosine(-1.58, 0), 0.0);
+        // √(3/4) < 1: the stretched angle is small when δ is a right angle.
+        assert!(quad_cosine(1.57, 3) > 0.001);
+        assert_eq!(quad_cosine(1.58, 3), 0.0);
+        assert!(close(cosine_squared(-third), 0.25));
+        assert_eq!(cosine_squared(1.6), 0.0);
     }
 }

@@ -86,7 +86,7 @@ fn print(loaded: &[Loaded], findings: &[Finding]) {
         "verdict",
     ];
     let rows = loaded.iter().zip(findings).map(|(one, finding)| {
-        let clocks = finding.timing.start_to_start;
+        let clocks = finding.timing.clocks_per_point();
         vec![
             one.unit.device.name.to_owned(),
             one.path.clone(),
@@ -136,6 +136,6 @@ fn print(loaded: &[Loaded], findings: &[Finding]) {
 
 fn as_json(one: &Loaded, finding: &Finding) -> Value {
     let mut value = cosim::as_json(one, &finding.outcome, &finding.bound, &finding.faults);
-    value["clocks_per_point"] = json!(finding.timing.start_to_start);
+    value["clocks_per_point"] = json!(finding.timing.clocks_per_point());
     value
 }

@@ -33,7 +33,8 @@ pub fn eval(
         .iter()
         .zip(&raw)
         .all(|(operand, raw)| (operand.domain.0..=operand.domain.1).contains(raw));
-    let f = contract.reference(&raw[..control]);
+    // Of several results, the first.
+    let f = contract.reference(&contract.point(&raw[..control], 0));
     let exact: Vec<f64> = operands[control..]
         .iter()
         .zip(&raw[control..])

@@ -16,15 +16,22 @@ pub struct ChannelBlocks {
     pub output: u16,
 }
 
-/// The colour operands `red`, `green`, `blue`: the intensity of the light times k_s, integers.
+/// The colour operands: the intensity of the light times k_s, integers.
 pub struct Colours<'d> {
     designer: &'d Designer,
     format: Format,
-    channels: Vec<(&'static str, Operand<'d>, Option<ChannelBlocks>)>,
+    channels: Vec<Channel<'d>>,
+}
+
+struct Channel<'d> {
+    /// Of the output, without its `_out`.
+    name: &'static str,
+    operand: Operand<'d>,
+    blocks: Option<ChannelBlocks>,
 }
 
 impl<'d> Colours<'d> {
-    /// Operands of `bits` bits, with the source's numbers where it has some.
+    /// The operands `red`, `green`, `blue` of `bits` bits, with the source's numbers where it has some.
     #[track_caller]
     pub fn new(designer: &'d Designer, bits: i32, blocks: Option<[ChannelBlocks; 3]>) -> Self {
         let format = Format::unsigned(bits, 0);
@@ -40,7 +47,11 @@ impl<'d> Colours<'d> {
                     .block(blocks.register)
                     .inputs(blocks.inputs.0, blocks.inputs.1);
             }
-            channels.push((name, operand, blocks));
+            channels.push(Channel {
+                name,
+                operand,
+                blocks,
+            });
         }
         Self {
             designer,
@@ -49,21 +60,48 @@ impl<'d> Colours<'d> {
         }
     }
 
-    /// The outputs `<colour>_out = f · colour`, rounded to integers.
+    /// One operand, `amplitude`, of `bits` bits, for the output `intensity_out`: a device that is there
+    /// once for each colour, or whose light has none.
+    #[track_caller]
+    pub fn amplitude(designer: &'d Designer, bits: i32, blocks: Option<ChannelBlocks>) -> Self {
+        let format = Format::unsigned(bits, 0);
+        let mut operand = designer
+            .operand("amplitude", format)
+            .doc("intensity of the light times k_s, at the highest point of the highlight");
+        if let Some(blocks) = blocks {
+            operand = operand
+                .block(blocks.register)
+                .inputs(blocks.inputs.0, blocks.inputs.1);
+        }
+        Self {
+            designer,
+            format,
+            channels: vec![Channel {
+                name: "intensity",
+                operand,
+                blocks,
+            }],
+        }
+    }
+
+    /// The outputs, `<colour>_out` or `intensity_out`, each f times its operand, rounded to integers.
     #[track_caller]
     pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) {
         let d = self.designer;
-        for (name, operand, blocks) in &self.channels {
+        for channel in &self.channels {
+            let Channel {
+                name,
+                operand,
+                blocks,
+            } = channel;
             let mut product = d
                 .mul(&format!("{name}_product"), f, operand.q())
                 .doc("an output before it is rounded");
-            let narrowed = d.narrow(
-                &format!("{name}_intensity"),
-                product,
-                self.format,
-                rounding,
-                Overflow::Saturate,
-            );
+            let rounded = match *name {
+                "intensity" => "intensity_rounded".to_owned(),
+                colour => format!("{colour}_intensity"),
+            };
+            let narrowed = d.narrow(&rounded, product, self.format, rounding, Overflow::Saturate);
             let mut out = d
                 .output(&format!("{name}_out"), narrowed)
                 .doc("intensity on the output");

@@ -1,4 +1,6 @@
 //! Blocks that several devices share, and that a device of your own can take too.
 
+pub mod angle;
 pub mod colour;
+pub mod line;
 pub mod segmented;

@@ -1,0 +1,118 @@
+//! `cosine-squared` — seed 000's prototype (Abbas, Szirmay-Kalos, Horváth 2000): `cos²(a·δ)` along a scan line.
+//!
+//! The accumulator of `quad-cosine`; the host multiplies its angles by `a = √(n/2)`, so that nothing stands
+//! between register 8 and a single table.
+
+use crate::config::{Config, Key, Problems, Schema};
+use crate::dsl::Designer;
+use crate::dsl::blocks::angle;
+use crate::dsl::blocks::colour::Colours;
+use crate::dsl::blocks::line::Line;
+use crate::fixed::Format;
+use crate::netlist::About;
+
+use super::{common, quad_cosine, rounding};
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    Schema {
+        device: "cosine-squared",
+        keys: vec![
+            Key::integer(
+                "angle.integer",
+                7,
+                1..=8,
+                "Integer bits of the stretched angles, which are in right angles and signed.",
+            ),
+            common::angle_fraction(22),
+            common::table_address(10),
+            common::length_bits(),
+            common::colour_bits(),
+            common::intensity_fraction(10),
+            common::output_rounding(),
+        ],
+        check,
+    }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    let integer = |key: &str| config.integer(key);
+    let fraction = integer("angle.fraction");
+    if integer("table.address") > fraction {
+        problems.push(
+            "table.address",
+            format!("the angle has {fraction} fraction bits"),
+            format!("at most {fraction}, or a larger angle.fraction"),
+        );
+    }
+    common::check_rom_size(
+        "table.address",
+        "ROM 12",
+        integer("table.address"),
+        integer("intensity.fraction"),
+        problems,
+    );
+}
+
+/// The device.
+pub fn describe(d: &Designer, config: &Config) {
+    let integer = |key: &str| config.integer(key) as i32;
+    let table = integer("table.address");
+    let f = Format::unsigned(0, integer("intensity.fraction"));
+    d.about(about());
+
+    let colours = Colours::amplitude(d, integer("colour.bits"), Some(quad_cosine::AMPLITUDE));
+    let line = Line::new(
+        d,
+        Format::signed(integer("angle.integer"), integer("angle.fraction")),
+        integer("length.bits"),
+        Some(common::LINE_BLOCKS),
+    );
+    let folded = angle::fold(d, line.angle(), table);
+    let address = angle::address(d, "table_address", folded.magnitude, folded.within, table);
+    let cosine = d
+        .rom(
+            "cosine",
+            address,
+            f,
+            &angle::cosine_power_table(2, table, f.frac),
+            true,
+        )
+        .block(12)
+        .doc(&format!("cos^2 in 2^{table} steps of a right angle"))
+        .comments(angle::step_comments(2, table));
+    colours.outputs(cosine.out(), rounding(config, "output.rounding"));
+    // Register 8, then ROM 12.
+    line.microprogram(2);
+}
+
+fn about() -> About {
+    About {
+        device: "cosine-squared".to_owned(),
+        title: "Specular intensity along a scan line by a stretched cosine squared".to_owned(),
+        formula: "out = amplitude * cos^2(angle); angle = zeta_start + i * delta_zeta, stretched by sqrt(n/2)"
+            .to_owned(),
+        source: "Seed 000, the prototype: Abbas, Szirmay-Kalos, Horvath 2000".to_owned(),
+        notes: vec![
+            "The host multiplies both angles by a = sqrt(n/2) before it writes them: there is no exponent here. \
+             Angles are in right angles: 1.0 is 90 degrees. The intensity is 0 where the stretched angle is not in \
+             -90 (included) to 90 degrees."
+                .to_owned(),
+            "A stretched angle is no angle on a circle: it must not wrap around within a line. With angle.integer = 7 \
+             the word holds 128 right angles either way; what a host can set up reaches 3*sqrt(n/2), that is 68 for n \
+             = 1000. Beyond, the word wraps around, in model and hardware alike."
+                .to_owned(),
+            "The default has 22 fraction bits of the angle: over the longest line, of 4095 intervals, the host's roundings of delta_zeta and              zeta_start add up to at most 2^11 ulps. The formula falls by at most 1.58 in a right angle, so that an              amplitude of 255 drifts by at most 255 * 1.58 * 2^(11 - 22) = 0.20 units; with the contract's 0.82 and              half a unit for the rounding of the amplitude, 1.52 from the host's unrounded numbers."
+                .to_owned(),
+            "The seed does not draw the prototype. Its accumulator is taken to be that of the claimed device, and \
+             bears its block numbers: registers 1 to 3, counter 5, adder 6, mux 7, register 8, ROM 12, multiplier 13."
+                .to_owned(),
+            "A start makes length + 1 points, one a clock: valid is high for each, two clocks after output 37 \
+             (write_angle) has written its angle. busy is high to the last point and done is high with it."
+                .to_owned(),
+            "Writes while busy are ignored. The output follows the operand register of the amplitude: it holds from \
+             valid until that is written or the next computation begins."
+                .to_owned(),
+        ],
+    }
+}

@@ -1,0 +1,231 @@
+//! `quad-cosine` — seed 000, the claimed device: `cosᵏ(√(n/k)·δ)` along a scan line, k ∈ {1, 2, 4, 16} by n.
+//!
+//! Block numbers are the patent's. Block 14's triggers become words of a microprogram with the same order
+//! of events; ROMs 9 and 12 are synchronous, and output 29 follows output 37 by two clocks.
+
+use crate::config::{Config, Key, Problems, Schema};
+use crate::dsl::blocks::angle;
+use crate::dsl::blocks::colour::{ChannelBlocks, Colours};
+use crate::dsl::blocks::line::Line;
+use crate::dsl::{Designer, Signal};
+use crate::fixed::Format;
+use crate::netlist::About;
+
+use super::{common, rounding};
+
+/// The powers, in the order of ROM 12's tables and of the decoder's outputs 30 to 33.
+const POWERS: [u32; 4] = [1, 2, 4, 16];
+
+/// The numbers of the amplitude's way through the figure.
+pub(super) const AMPLITUDE: ChannelBlocks = ChannelBlocks {
+    inputs: (15, 16),
+    register: 1,
+    multiplier: 13,
+    output: 27,
+};
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    Schema {
+        device: "quad-cosine",
+        keys: vec![
+            common::angle_fraction(26),
+            Key::integer(
+                "angle.multiplied",
+                17,
+                8..=24,
+                "Fraction bits of the angle that multiplier 11 takes: the leading ones.",
+            ),
+            Key::integer(
+                "root.fraction",
+                14,
+                8..=20,
+                "Fraction bits of sqrt(n/k) in ROM 9.",
+            ),
+            common::table_address(11),
+            common::length_bits(),
+            common::exponent_bits(),
+            common::colour_bits(),
+            common::intensity_fraction(10),
+            common::output_rounding(),
+            common::exponent_min(),
+            common::exponent_max(),
+        ],
+        check,
+    }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    common::check_exponents(config, problems);
+    let integer = |key: &str| config.integer(key);
+    if integer("exponent.bits") < 3 {
+        problems.push(
+            "exponent.bits",
+            "decoder 10 tells n = 7 from smaller ones, which takes three bits".to_owned(),
+            "at least 3".to_owned(),
+        );
+    }
+    let fraction = integer("angle.fraction");
+    if integer("angle.multiplied") > fraction {
+        problems.push(
+            "angle.multiplied",
+            format!("the angle has {fraction} fraction bits"),
+            format!("at most {fraction}, or a larger angle.fraction"),
+        );
+    }
+    common::check_rom_size(
+        "table.address",
+        "ROM 12",
+        integer("table.address") + 2,
+        integer("intensity.fraction"),
+        problems,
+    );
+}
+
+/// The device.
+pub fn describe(d: &Designer, config: &Config) {
+    let integer = |key: &str| config.integer(key) as i32;
+    let table = integer("table.address");
+    let f = Format::unsigned(0, integer("intensity.fraction"));
+    d.about(about());
+
+    let colours = Colours::amplitude(d, integer("colour.bits"), Some(AMPLITUDE));
+    let line = Line::new(
+        d,
+        Format::signed(1, integer("angle.fraction")),
+        integer("length.bits"),
+        Some(common::LINE_BLOCKS),
+    );
+    let exponent = d
+        .operand("exponent", Format::unsigned(integer("exponent.bits"), 0))
+        .block(4)
+        .inputs(21, 22)
+        .doc("specular exponent n")
+        .q();
+
+    let root = d
+        .rom("root", exponent, root_format(config), &roots(config), true)
+        .block(9)
+        .doc("sqrt(n/k), k as decoder 10 picks it for n; n is the address")
+        .comments(
+            (0..1i64 << integer("exponent.bits"))
+                .map(|n| format!("sqrt({n}/{})", POWERS[power_of(n)]))
+                .collect(),
+        );
+    let folded = angle::fold(d, line.angle(), integer("angle.multiplied"));
+    let scaled = d
+        .mul("scaled_angle", folded.magnitude, root.out())
+        .block(11)
+        .doc("sqrt(n/k) * |angle|, in right angles");
+    let step = angle::address(d, "table_step", scaled, folded.within, table);
+    let address = d
+        .concat("table_address", decoder(d, exponent), step)
+        .doc("which table, and where in it");
+    let words: Vec<i128> = POWERS
+        .iter()
+        .flat_map(|&power| angle::cosine_power_table(power, table, f.frac))
+        .collect();
+    let comments = POWERS
+        .iter()
+        .flat_map(|&power| angle::step_comments(power, table))
+        .collect();
+    let cosine = d
+        .rom("cosine", address, f, &words, true)
+        .block(12)
+        .doc(&format!(
+            "cos^k for k = 1, 2, 4, 16, one table after another; 2^{table} steps of a right angle each"
+        ))
+        .comments(comments);
+    colours.outputs(cosine.out(), rounding(config, "output.rounding"));
+    // Register 8, then ROM 12.
+    line.microprogram(2);
+}
+
+/// Decoder 10: outputs 30 to 33, one of them 1, and the number of the one.
+fn decoder<'d>(d: &'d Designer, exponent: Signal<'d>) -> Signal<'d> {
+    let constant = |name: &str, raw: i128| d.raw_constant(name, raw, exponent.format());
+    let first = constant("first_exponent", 1);
+    let second = constant("second_exponent", 2);
+    let high = constant("high_exponents", 7);
+    let power_1 = d
+        .equal("power_1", exponent, first)
+        .doc("output 30 of decoder 10: n = 1");
+    let power_2 = d
+        .equal("power_2", exponent, second)
+        .doc("output 31 of decoder 10: n = 2");
+    let above_2 = d.less("above_2", second, exponent);
+    let below_7 = d.less("below_7", exponent, high);
+    let power_4 = d
+        .and("power_4", above_2, below_7)
+        .doc("output 32 of decoder 10: n = 3 to 6");
+    let small = d.or("power_1_or_2", power_1, power_2);
+    let small = d.or("power_below_16", small, power_4);
+    let power_16 = d
+        .not("power_16", small)
+        .doc("output 33 of decoder 10: n = 0, and n from 7 on");
+    let high = d.or("power_4_or_16", power_4, power_16);
+    let low = d.or("power_2_or_16", power_2, power_16);
+    d.concat("power_code", high, low)
+        .block(10)
+        .doc("the number of the decoder's output that is 1")
+}
+
+/// Which of the powers serves the exponent n.
+fn power_of(n: i64) -> usize {
+    match n {
+        1 => 0,
+        2 => 1,
+        3..=6 => 2,
+        _ => 3,
+    }
+}
+
+fn roots(config: &Config) -> Vec<i128> {
+    let format = Format::unsigned(8, config.integer("root.fraction") as i32);
+    (0..1i64 << config.integer("exponent.bits"))
+        .map(|n| format.quantise((n as f64 / f64::from(POWERS[power_of(n)])).sqrt()))
+        .collect()
+}
+
+fn root_format(config: &Config) -> Format {
+    let largest = roots(config).into_iter().max().unwrap_or(0);
+    Format::holding(0, largest, config.integer("root.fraction") as i32)
+}
+
+fn about() -> About {
+    About {
+        device: "quad-cosine".to_owned(),
+        title: "Specular intensity along a scan line by powers of a stretched cosine".to_owned(),
+        formula: "out = amplitude * cos^k(sqrt(n/k) * angle), k = 1, 2, 4, 16 by n; angle = zeta_start + i * delta_zeta"
+            .to_owned(),
+        source: "Seed 000, the claimed device: quadruple cosine".to_owned(),
+        notes: vec![
+            "Angles are in right angles: 1.0 is 90 degrees. The word holds one turn and wraps around where \
+             angles do, so no line overflows it. The intensity is 0 where the angle is not in -90 (included) to 90 \
+             degrees, and where the stretched angle is 90 degrees or more."
+                .to_owned(),
+            "A start makes length + 1 points, one a clock: valid is high for each. Output 37 (write_angle) writes \
+             the angle of a point; valid, which is the same net in the patent, follows it by two clocks, for register \
+             8 and for the synchronous ROM 12. busy is high to the last point and done is high with it."
+                .to_owned(),
+            "Decoder 10 picks k = 1 for n = 1, 2 for n = 2, 4 for n = 3 to 6 and 16 for all other n, with n = 0 among \
+             them: its root is 0 and its intensity the amplitude wherever the surface faces. The patent drives four \
+             address bits of ROM 12 with the decoder's outputs 30 to 33; here their number drives two, and the ROM is \
+             a quarter as large. Its nine bits of n cannot hold 1000; ten can."
+                .to_owned(),
+            "The patent's counter 5 is written by its strobe and used up by a line. Here the operand length keeps its \
+             value and loads the counter with the first point, so that a line can be repeated by start alone. A length \
+             of 0 makes one point: the word that adds is left out, as the patent's borrow from an empty counter \
+             leaves it out."
+                .to_owned(),
+            "The default has 26 fraction bits of the angle: over the longest line, of 4095 intervals, the host's roundings of delta_zeta and              zeta_start add up to at most 2^11 ulps. The formula falls by at most 30.6 in a right angle (n = 1000), so              that an amplitude of 255 drifts by at most 255 * 30.6 * 2^(11 - 26) = 0.24 units. With the contract's 0.93              and half a unit for the rounding of the amplitude itself this is 1.67 units from the host's unrounded              numbers. The accumulator adds exactly, and only multiplier 11 drops bits."
+                .to_owned(),
+            "The root sqrt(n/k) is applied by multiplier 11 alone; the seed's formulas (13) and (16) apply it to the \
+             operands a second time. Output 28 is busy, high from start to end, as trigger 39 drives it."
+                .to_owned(),
+            "Writes while busy are ignored. The output follows the operand registers of amplitude and exponent: it \
+             holds from valid until one of them is written or the next computation begins."
+                .to_owned(),
+        ],
+    }
+}

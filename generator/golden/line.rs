@@ -1,0 +1,354 @@
+//! What the devices of seed 000 share: a walk along a scan line, and tables of powers of a cosine.
+//!
+//! Angles are in right angles: a raw value of `2^F` is 90°.
+
+use super::Operand;
+use super::handshake::{After, Handshake, OperandRegister, bits};
+use crate::fixed::{Format, Overflow, Rounding, exp2};
+
+/// Control block 14 with the accumulator: counter 5, adder 6, mux 7, register 8, and the operand registers
+/// that they use.
+#[derive(Clone, Debug)]
+pub struct Walker {
+    format: Format,
+    length_bits: u32,
+    handshake: Handshake,
+    delta: OperandRegister,
+    start: OperandRegister,
+    length: OperandRegister,
+    /// Counter 5: intervals still to go.
+    intervals: i64,
+    /// Register 8, raw.
+    angle: i64,
+    /// The pulse on output 37 one and two clocks ago.
+    written: [bool; 2],
+}
+
+/// The word that writes the first point.
+const FIRST: u32 = 1;
+/// The word that writes every other one.
+const NEXT: u32 = 2;
+/// The first of the two words in which the last point comes out.
+const DRAIN: u32 = 3;
+
+impl Walker {
+    /// The operands whose inputs [`Walker::clock`] takes, in this order.
+    pub const OPERANDS: [&'static str; 3] = ["delta_zeta", "zeta_start", "length"];
+
+    /// The names of [`Walker::values`].
+    pub const SIGNALS: [&'static str; 13] = [
+        "valid",
+        "busy",
+        "done",
+        "count",
+        "accumulate",
+        "write_angle",
+        "run",
+        "word_address",
+        "delta_zeta_reg",
+        "zeta_start_reg",
+        "length_reg",
+        "intervals",
+        "angle",
+    ];
+
+    /// At power-up; angles are of `format`.
+    pub fn new(format: Format, length_bits: u32) -> Self {
+        Self {
+            format,
+            length_bits,
+            handshake: Handshake::default(),
+            delta: OperandRegister::new(format),
+            start: OperandRegister::new(format),
+            length: OperandRegister::new(length_format(length_bits)),
+            intervals: 0,
+            angle: 0,
+            written: [false; 2],
+        }
+    }
+
+    /// Whether a line is in progress.
+    pub fn busy(&self) -> bool {
+        self.handshake.run
+    }
+
+    /// The angle in register 8, raw.
+    pub fn angle(&self) -> i64 {
+        self.angle
+    }
+
+    /// One rising edge. `operands` has data and strobe of each of [`Walker::OPERANDS`].
+    pub fn clock(&mut self, rst_n: bool, start: bool, operands: &[u64]) {
+        let run = self.handshake.run;
+        let pulse = self.pulse();
+        let after = self.execute();
+        let registers = [&mut self.delta, &mut self.start, &mut self.length];
+        for (register, pair) in registers.into_iter().zip(operands.chunks_exact(2)) {
+            register.clock(run, pair[1], pair[0]);
+        }
+        self.written = [rst_n && pulse, rst_n && self.written[0]];
+        self.handshake.clock(rst_n, start, after);
+    }
+
+    /// Output 37: a point's angle is written in this word.
+    fn pulse(&self) -> bool {
+        matches!(self.handshake.word, FIRST | NEXT)
+    }
+
+    fn execute(&mut self) -> After {
+        match self.handshake.word {
+            // The first pulse on output 37 loads ζ(X_start), and the counter is set to l.
+            FIRST => {
+                self.angle = self.start.value;
+                self.intervals = self.length.value;
+                if self.length.value == 0 {
+                    After::To(DRAIN)
+                } else {
+                    After::Next
+                }
+            }
+            // Each of the others adds Δζ and counts, until the counter comes to 0.
+            NEXT => {
+                self.angle = wrapped(self.format, self.angle + self.delta.value);
+                let left = self.intervals - 1;
+                self.intervals = left & ((1 << self.length_bits) - 1);
+                if left > 0 { After::Again } else { After::Next }
+            }
+            word if word > DRAIN => After::End,
+            _ => After::Next,
+        }
+    }
+
+    /// What is predicted, in the order of [`Walker::SIGNALS`].
+    pub fn values(&self) -> [u64; Self::SIGNALS.len()] {
+        let Handshake { run, word } = self.handshake;
+        let width = self.format.width();
+        [
+            u64::from(self.written[1]),
+            u64::from(run),
+            u64::from(run && word > DRAIN),
+            u64::from(word == NEXT),
+            u64::from(word == NEXT),
+            u64::from(self.pulse()),
+            u64::from(run),
+            u64::from(word),
+            bits(self.delta.value, width),
+            bits(self.start.value, width),
+            self.length.value as u64,
+            self.intervals as u64,
+            bits(self.angle, width),
+        ]
+    }
+}
+
+fn length_format(length_bits: u32) -> Format {
+    Format::unsigned(length_bits as i32, 0)
+}
+
+/// An angle as the accumulator holds it.
+fn wrapped(format: Format, raw: i64) -> i64 {
+    format.narrow(
+        i128::from(raw),
+        format.frac,
+        Rounding::Truncate,
+        Overflow::Wrap,
+    ) as i64
+}
+
+/// The angle of point number `index` of a line, as the accumulator holds it.
+pub fn angle_at(format: Format, start: i64, delta: i64, index: u64) -> i64 {
+    let sum = i128::from(start) + i128::from(delta) * i128::from(index);
+    format.narrow(sum, format.frac, Rounding::Truncate, Overflow::Wrap) as i64
+}
+
+/// `delta_zeta` and `zeta_start` as the contract sees them: every value is in the domain.
+pub fn angle_operands(format: Format) -> [Operand; 2] {
+    let operand = |name: &str, doc: &str| Operand {
+        name: name.to_string(),
+        format,
+        domain: (format.min_raw() as i64, format.max_raw() as i64),
+        colour: false,
+        doc: doc.to_string(),
+    };
+    [
+        operand(
+            "delta_zeta",
+            "angle from a point to the next, in right angles",
+        ),
+        operand("zeta_start", "angle of the first point, in right angles"),
+    ]
+}
+
+/// `length` as the contract sees it: every value is in the domain.
+pub fn length_operand(length_bits: u32) -> Operand {
+    let format = length_format(length_bits);
+    Operand {
+        name: "length".to_string(),
+        format,
+        domain: (0, format.max_raw() as i64),
+        colour: false,
+        doc: "intervals of the line: one less than its points".to_string(),
+    }
+}
+
+/// The leading `kept` fraction bits of an angle's magnitude, complement for a negative one; `None`
+/// outside −90° ≤ angle < 90°.
+#[inline]
+pub fn magnitude(angle: i64, fraction: u32, kept: u32) -> Option<i64> {
+    let right = 1i64 << fraction;
+    if !(-right..right).contains(&angle) {
+        return None;
+    }
+    let positive = if angle < 0 { -1 - angle } else { angle };
+    Some(positive >> (fraction - kept))
+}
+
+/// ROM 12's table of `cosᵏ`: for each step the middle of the values at its ends; the last one 0.
+#[derive(Clone, Debug)]
+pub struct CosineTable {
+    /// Raw words of `fraction` bits.
+    pub words: Vec<i64>,
+    /// How far the formula at the ends of a step is from the middle at most.
+    pub step: f64,
+    /// How far it is from the word.
+    pub total: f64,
+    /// The steepest slope, per right angle.
+    pub slope: f64,
+}
+
+impl CosineTable {
+    /// k is a power of two; 2^`address` steps.
+    pub fn new(power: u32, address: u32, fraction: u32) -> Self {
+        let steps = 1u64 << address;
+        let one = exp2(fraction as i32);
+        // By the angle's complement: cos(90° · step/steps) = sin(90° · (steps − step)/steps).
+        let value = |step: u64| {
+            let back = (steps - step) as f64 / steps as f64;
+            let cosine = libm::sin(back * std::f64::consts::FRAC_PI_2);
+            libm::pow(cosine, f64::from(power))
+        };
+        let mut table = Self {
+            words: Vec::new(),
+            step: 0.0,
+            total: 0.0,
+            slope: slope(power),
+        };
+        for step in 0..steps {
+            let (high, low) = (value(step), value(step + 1));
+            let exact = if step + 1 == steps {
+                0.0
+            } else {
+                0.5 * (high + low)
+            };
+            let word = (exact * one + 0.5).floor().min(one - 1.0);
+            let off = |from: f64| (high - from).abs().max((from - low).abs());
+            table.step = table.step.max(off(exact));
+            table.total = table.total.max(off(word / one));
+            table.words.push(word as i64);
+        }
+        table
+    }
+
+    /// The word for an angle with `fraction` fraction bits, in right angles; the last one beyond them.
+    #[inline]
+    pub fn address(scaled: i64, fraction: u32, address: u32) -> usize {
+        let most = (1usize << address) - 1;
+        usize::try_from(scaled >> (fraction - address)).map_or(most, |step| step.min(most))
+    }
+}
+
+/// The largest slope of `cosᵏ`, per right angle: where `tan² = 1/(k − 1)`.
+fn slope(power: u32) -> f64 {
+    let k = f64::from(power);
+    if power == 1 {
+        return std::f64::consts::FRAC_PI_2;
+    }
+    let cosine = (1.0 - 1.0 / k).sqrt();
+    k * libm::pow(cosine, k - 1.0) * (1.0 / k).sqrt() * std::f64::consts::FRAC_PI_2
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn angles_wrap_as_the_circle_does() {
+        // s1.4: right angles of 16 raw, a turn of 64.
+        let format = Format::signed(1, 4);
+        assert_eq!(angle_at(format, 30, 1, 1), 31);
+        assert_eq!(angle_at(format, 30, 1, 2), -32);
+        assert_eq!(angle_at(format, -32, -1, 1), 31);
+        assert_eq!(angle_at(format, 5, -32, 4095), 5 - 32);
+    }
+
+    #[test]
+    fn magnitudes_by_hand() {
+        // 4 fraction bits, 2 kept: 13/16 → 3/4; −1/16 is 0 complemented, −13/16 is 12/16.
+        assert_eq!(magnitude(13, 4, 2), Some(3));
+        assert_eq!(magnitude(-1, 4, 4), Some(0));
+        assert_eq!(magnitude(-13, 4, 4), Some(12));
+        assert_eq!(magnitude(15, 4, 4), Some(15));
+        assert_eq!(magnitude(16, 4, 4), None);
+        assert_eq!(magnitude(-16, 4, 4), Some(15));
+        assert_eq!(magnitude(-17, 4, 4), None);
+    }
+
+    #[test]
+    fn a_table_by_hand() {
+        // cos² at 0, 22.5, 45, 67.5 and 90 degrees: 1, 0.8536, 0.5, 0.1464, 0; times 16, middles of the steps.
+        let table = CosineTable::new(2, 2, 4);
+        assert_eq!(table.words, [15, 11, 5, 0]);
+        assert!((table.step - 0.1768).abs() < 1e-4, "{}", table.step);
+        // cos⁴ has its steepest slope at 30 degrees: 4 · 0.6495 · 0.5 a radian.
+        assert!((slope(4) - 1.299 * 1.5708).abs() < 1e-3);
+        assert_eq!(slope(1), std::f64::consts::FRAC_PI_2);
+        assert!((slope(2) - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+        // 0.75 with 3 fraction bits in 4 steps; 1.0 and more in the last.
+        assert_eq!(CosineTable::address(6, 3, 2), 3);
+        assert_eq!(CosineTable::address(5, 3, 2), 2);
+        assert_eq!(CosineTable::address(80, 3, 2), 3);
+    }
+
+    /// The order of events of seed 000 for l = 3, with register 8 and ROM 12 between outputs 37 and 29.
+    #[test]
+    fn a_line_of_three_intervals_event_by_event() {
+        let mut walker = Walker::new(Format::signed(1, 4), 4);
+        let value = |walker: &Walker, name: &str| {
+            let at = Walker::SIGNALS.iter().position(|it| *it == name).unwrap();
+            walker.values()[at]
+        };
+        // Δζ = 2/16, ζ = −3/16, l = 3, written together with start.
+        walker.clock(true, true, &[2, 1, 64 - 3, 1, 3, 1]);
+        let mut seen = Vec::new();
+        for _ in 0..8 {
+            // Outputs 28, 29, 34, 36, 37, then done, counter 5 and register 8.
+            seen.push(
+                [
+                    "busy",
+                    "valid",
+                    "count",
+                    "accumulate",
+                    "write_angle",
+                    "done",
+                    "intervals",
+                    "angle",
+                ]
+                .map(|name| value(&walker, name)),
+            );
+            walker.clock(true, false, &[0, 1, 0, 1, 0, 1]);
+        }
+        let expected = [
+            [1, 0, 0, 0, 0, 0, 0, 0],
+            // Pulse 1 on output 37 with 36 low loads ζ(X_start) …
+            [1, 0, 0, 0, 1, 0, 0, 0],
+            // … pulses 2, 3, 4 add Δζ, and 34 counts 3 → 2 → 1 → 0.
+            [1, 0, 1, 1, 1, 0, 3, 61],
+            [1, 1, 1, 1, 1, 0, 2, 63],
+            [1, 1, 1, 1, 1, 0, 1, 1],
+            [1, 1, 0, 0, 0, 0, 0, 3],
+            [1, 1, 0, 0, 0, 1, 0, 3],
+            [0, 0, 0, 0, 0, 0, 0, 3],
+        ];
+        assert_eq!(seen, expected);
+    }
+}

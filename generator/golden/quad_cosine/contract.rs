@@ -1,0 +1,189 @@
+//! The accuracy contract of `quad-cosine`.
+
+use std::f64::consts::FRAC_PI_2;
+
+use super::{Arithmetic, POWERS, Params, range_of};
+use crate::config::Config;
+use crate::fixed::{Format, exp2};
+use crate::golden::contract as shared;
+use crate::golden::line;
+use crate::golden::{Axis, Bound, Contract, Operand, Sweep, Values};
+use crate::reference;
+
+/// The accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `exponent`, `length`; those of a
+/// point have its angle for `zeta_start`.
+#[derive(Clone, Debug)]
+pub struct QuadCosineContract {
+    params: Params,
+    arithmetic: Arithmetic,
+    operands: Vec<Operand>,
+    outputs: Vec<String>,
+}
+
+impl QuadCosineContract {
+    /// The contract of a configuration.
+    ///
+    /// # Panics
+    /// If the configuration is one that [`Params::check`] refuses and the device's schema does not.
+    pub fn new(config: &Config) -> Self {
+        Self::from_params(&Params::from_config(config))
+            .expect("a configuration that its schema accepts")
+    }
+
+    /// The contract from parameters.
+    ///
+    /// # Errors
+    /// As [`Params::check`].
+    pub fn from_params(params: &Params) -> Result<Self, String> {
+        params.check()?;
+        let exponent = Operand {
+            name: "exponent".to_string(),
+            format: params.exponent_format(),
+            domain: params.exponents,
+            colour: false,
+            doc: "specular exponent n".to_string(),
+        };
+        let mut operands = line::angle_operands(params.angle_format()).to_vec();
+        operands.push(exponent);
+        operands.push(line::length_operand(params.length_bits));
+        operands.push(shared::amplitude_operand(params.colour_format()));
+        Ok(Self {
+            arithmetic: Arithmetic::new(params),
+            params: params.clone(),
+            operands,
+            outputs: shared::intensity_output(),
+        })
+    }
+
+    /// The largest error of the stretched angle for n, in right angles, from what multiplier 11 takes of
+    /// the angle and from ROM 9's rounding.
+    ///
+    /// The magnitude m stands for angles from m to m + u. With s = √(n/k) and s' = ROM 9's word, s'·m is less than
+    /// s·(m + u) by at most s·u + (s − s')·m, and more than s·m by at most (s' − s)·m. An angle beyond
+    /// 1/s is in the table's last word anyway, and so is one beyond 1/s'.
+    fn stretching(&self, n: i64) -> (f64, f64) {
+        let s = (n as f64 / POWERS[range_of(n)] as f64).sqrt();
+        let word = self.arithmetic.root(n) as f64 * exp2(-(self.params.root_fraction as i32));
+        let reach = (1.0 / s.min(word)).min(1.0);
+        let cut = s * exp2(-(self.params.angle_multiplied as i32));
+        (cut, (s - word).abs() * reach)
+    }
+}
+
+impl Contract for QuadCosineContract {
+    fn operands(&self) -> &[Operand] {
+        &self.operands
+    }
+
+    fn outputs(&self) -> &[String] {
+        &self.outputs
+    }
+
+    fn f_format(&self) -> Format {
+        Format::unsigned(0, self.params.intensity_fraction as i32)
+    }
+
+    #[inline]
+    fn f(&self, control: &[i64]) -> i64 {
+        let (angle, n) = (control[1], control[2]);
+        let it = &self.arithmetic;
+        it.cosine(n, it.magnitude(angle), it.root(n))
+    }
+
+    #[inline]
+    fn colour(&self, f: i64, colour: i64) -> i64 {
+        self.arithmetic.colour(f, colour)
+    }
+
+    /// The surface faces from −90° to less than 90°, as two's complement has it.
+    #[inline]
+    fn reference(&self, control: &[i64]) -> f64 {
+        let (angle, n) = (control[1], control[2]);
+        let right = 1i64 << self.params.angle_fraction;
+        if angle >= right {
+            return 0.0;
+        }
+        let angle = angle as f64 / right as f64;
+        reference::quad_cosine(angle * FRAC_PI_2, n)
+    }
+
+    fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
+        let format = self.params.angle_format();
+        let angle = line::angle_at(format, control[1], control[0], index);
+        vec![control[0], angle, control[2], control[3]]
+    }
+
+    fn length(&self) -> Option<&str> {
+        Some("length")
+    }
+
+    /// Every angle that a line can come to, by what multiplier 11 takes of it, and every n. Where the surface
+    /// faces away the word is the table's last, 0, for every n, and so is the formula.
+    fn sweep(&self) -> Sweep {
+        let magnitudes = 1i64 << self.params.angle_multiplied;
+        let (low, high) = self.params.exponents;
+        Sweep {
+            axes: vec![
+                Axis {
+                    name: "exponent".to_string(),
+                    values: Values::Range(low, high),
+                },
+                Axis {
+                    name: "magnitude of the angle".to_string(),
+                    values: Values::Range(0, magnitudes - 1),
+                },
+            ],
+            omits: String::new(),
+        }
+    }
+
+    /// The worst over the angles of either sign that have this magnitude: the formula falls from one end
+    /// of them to the other.
+    fn sweep_error(&self, place: &[i64]) -> f64 {
+        let (n, magnitude) = (place[0], place[1]);
+        let it = &self.arithmetic;
+        let word = it.cosine(n, Some(magnitude), it.root(n));
+        let f = self.f_format().to_f64(i128::from(word));
+        let ulp = exp2(-(self.params.angle_multiplied as i32));
+        let end = |magnitude: i64| reference::quad_cosine(magnitude as f64 * ulp * FRAC_PI_2, n);
+        (end(magnitude) - f).max(f - end(magnitude + 1))
+    }
+
+    /// For each n: how far ROM 12 is from the formula within a step, and the error of the stretched angle
+    /// by the steepest slope of the power. The terms are those of the worst n.
+    fn bound(&self) -> Bound {
+        let params = &self.params;
+        let (low, high) = params.exponents;
+        let largest = (1 << params.exponent_bits) - 1;
+        let worst = (low..=high.min(largest))
+            .map(|n| {
+                let table = &self.arithmetic.tables[range_of(n)];
+                let (cut, root) = self.stretching(n);
+                [
+                    table.step,
+                    table.total - table.step,
+                    table.slope * cut,
+                    table.slope * root,
+                ]
+            })
+            .max_by(|a, b| a.iter().sum::<f64>().total_cmp(&b.iter().sum()))
+            .unwrap_or_default();
+        let [step, rounding, cut, root] = worst;
+        let shares = [
+            ("table.address", "the steps of ROM 12", step),
+            ("intensity.fraction", "rounding of ROM 12", rounding),
+            (
+                "angle.multiplied",
+                "the angle that multiplier 11 takes",
+                cut,
+            ),
+            ("root.fraction", "rounding of ROM 9", root),
+        ];
+        shared::bound(
+            &shares,
+            params.intensity_fraction,
+            params.colour_bits,
+            params.output_rounding,
+        )
+    }
+}
