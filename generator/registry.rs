@@ -86,6 +86,14 @@ impl Registry {
                     Box::new(golden::cosine_squared::CosineSquaredContract::new(config))
                 },
             },
+            Device {
+                name: "schlick",
+                summary: "Schlick's function, c / (n - n*c + c), by a divider (seed 002)",
+                schema: devices::schlick::schema,
+                describe: devices::schlick::describe,
+                model: |config| Box::new(golden::schlick::SchlickModel::new(config)),
+                contract: |config| Box::new(golden::schlick::SchlickContract::new(config)),
+            },
         ])
     }
 

@@ -9,6 +9,7 @@ use glint::golden::cosine_power::CosinePowerContract;
 use glint::golden::cosine_squared::CosineSquaredContract;
 use glint::golden::quad_cosine::QuadCosineContract;
 use glint::golden::rough::{self, RoughContract};
+use glint::golden::schlick::SchlickContract;
 use glint::golden::sine::Scheme;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
@@ -140,6 +141,11 @@ fn random_configurations_of_cosine_squared() {
         &devices::cosine_squared::schema(),
         CosineSquaredContract::new,
     );
+}
+
+#[test]
+fn random_configurations_of_schlick() {
+    assert_random_configurations(&devices::schlick::schema(), SchlickContract::new);
 }
 
 /// Configurations of which each widens one thing that the defaults leave alone.

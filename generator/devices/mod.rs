@@ -5,6 +5,7 @@ pub mod cosine_power;
 pub mod cosine_squared;
 pub mod quad_cosine;
 pub mod rough;
+pub mod schlick;
 
 use crate::config::Config;
 use crate::fixed::Rounding;

@@ -141,6 +141,24 @@ impl<'d> Signal<'d> {
         self.bits(at, Format::BIT)
     }
 
+    /// The bits of this signal above those of `low`, read in `format` (which must be as wide as both
+    /// together): what a shift register takes.
+    #[must_use]
+    #[track_caller]
+    pub fn above(self, low: Signal<'d>, format: Format) -> Self {
+        let width = self.format().width() + low.format().width();
+        if width != format.width() {
+            self.designer.error(format!(
+                "`{}` above `{}` is {width} bits, which is not {format}",
+                self.name(),
+                low.name()
+            ));
+            return self.designer.raw_constant("zeros", 0, format);
+        }
+        let op = Op::Concat(vec![self.id, low.id]);
+        self.wiring("above", format, format.range(), op)
+    }
+
     /// The signal as a signed number of the same value, one bit wider when it was unsigned.
     #[must_use]
     #[track_caller]

@@ -13,6 +13,7 @@ pub mod line;
 pub mod narrow;
 pub mod quad_cosine;
 pub mod rough;
+pub mod schlick;
 pub mod sine;
 
 use crate::fixed::Format;

@@ -108,6 +108,17 @@ pub fn cosine_squared(stretched: f64) -> f64 {
     lobe(stretched, 2)
 }
 
+/// Schlick's function (seed 002): `c / (n − n·c + c)`, 0 where `c ≤ 0`, `n = 0` included.
+#[inline]
+pub fn schlick(c: f64, n: f64) -> f64 {
+    // n·(1 − c) keeps what n − n·c loses to cancellation where c is near 1.
+    if c <= 0.0 {
+        0.0
+    } else {
+        c / (n * (1.0 - c) + c)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -138,6 +149,12 @@ mod tests {
         // n = 4, m = 4: the base is c.
         assert_eq!(cosine_power(0.5, 4.0, 4), 0.0625);
         assert_eq!(cosine_power(0.5, 1.0, 2), 0.5625);
+        // 1/2 over 3·1/2 + 1/2; n = 1 is c itself, n = 0 is 1.
+        assert_eq!(schlick(0.5, 3.0), 0.25);
+        assert_eq!(schlick(0.3, 1.0), 0.3);
+        assert_eq!([0.0, 0.1, 1.0].map(|c| schlick(c, 0.0)), [0.0, 1.0, 1.0]);
+        assert_eq!(schlick(1.0, 1000.0), 1.0);
+        assert_eq!(schlick(-0.5, 3.0), 0.0);
     }
 
     #[test]

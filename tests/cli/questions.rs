@@ -156,7 +156,11 @@ fn devices_and_configurations_are_listed() {
 
 #[test]
 fn a_new_configuration_is_accepted() {
-    for (device, name) in [("rough", "rough"), ("cosine-power", "cosine_power")] {
+    for (device, name) in [
+        ("rough", "rough"),
+        ("cosine-power", "cosine_power"),
+        ("schlick", "schlick"),
+    ] {
         let place = Place::new();
         let text = place.done(["new", device]);
         place.write("file.toml", &text);
@@ -184,7 +188,7 @@ fn a_new_configuration_is_accepted() {
 fn new_with_wrong_words() {
     let place = Place::new();
     let run = place.glint(["new", "cosine_powr"]);
-    run.refused(2, &["there is no device `cosine_powr`; did you mean `cosine-power`? The devices are: rough, cosine-power"]);
+    run.refused(2, &["there is no device `cosine_powr`; did you mean `cosine-power`? The devices are: rough, cosine-power, schlick"]);
     assert_eq!(run.out, "");
     for (name, message) in [
         ("always", "\"always\" is a keyword"),

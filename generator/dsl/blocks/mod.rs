@@ -3,4 +3,5 @@
 pub mod angle;
 pub mod colour;
 pub mod line;
+pub mod divider;
 pub mod segmented;

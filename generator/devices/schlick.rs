@@ -1,0 +1,141 @@
+//! `schlick` — seed 002: the rival of the paper's function, `c / (n − n·c + c)`, c = cos γ.
+//!
+//! The paper names the division as what makes the function hard to build, and gives no circuit. This
+//! is the least: one multiplier for the divisor and an iterative divider, one bit of the quotient a
+//! clock. The divisor is formed as n·(1 − c) + c, in which every term is positive.
+
+use crate::config::{Config, Key, Problems, Schema};
+use crate::dsl::blocks::colour::Colours;
+use crate::dsl::blocks::divider::Divider;
+use crate::dsl::{Designer, Signal, end, loop_while, step, valid};
+use crate::fixed::{Format, Overflow, Rounding};
+use crate::netlist::About;
+
+use super::{common, rounding};
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    Schema {
+        device: "schlick",
+        keys: vec![
+            common::cosine_fraction(20),
+            common::cosine_signed(),
+            common::exponent_bits(),
+            common::colour_bits(),
+            Key {
+                doc: "Fraction bits of the reflectance f, the quotient; each takes a clock. It is truncated: \
+                      one bit more is as near as rounding.",
+                ..common::intensity_fraction(10)
+            },
+            common::output_rounding(),
+            common::exponent_min(),
+            common::exponent_max(),
+        ],
+        check,
+    }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    common::check_exponents(config, problems);
+}
+
+/// The device.
+pub fn describe(d: &Designer, config: &Config) {
+    let integer = |key: &str| config.integer(key) as i32;
+    let cosine = Format {
+        signed: config.flag("cosine.signed"),
+        int: 1,
+        frac: integer("cosine.fraction"),
+    };
+    d.about(about(config));
+
+    let cos_gamma = d
+        .operand_clamped("cos_gamma", cosine, 0.0, 1.0)
+        .doc("cosine of the angle between normal and half vector")
+        .q();
+    let exponent = d
+        .operand("exponent", Format::unsigned(integer("exponent.bits"), 0))
+        .doc("specular exponent n")
+        .q();
+    let colours = Colours::new(d, integer("colour.bits"), None);
+
+    let divisor = divisor(d, cos_gamma, exponent);
+    let quotient = Divider::new(
+        d,
+        "quotient",
+        cos_gamma,
+        divisor,
+        integer("intensity.fraction"),
+    );
+    colours.outputs(quotient.quotient(), rounding(config, "output.rounding"));
+
+    d.microprogram([
+        step("operands cos gamma, n", []),
+        step(
+            "remainder <- cos gamma, divisor <- n*(1 - cos gamma) + cos gamma",
+            quotient.load(),
+        ),
+        step(
+            "next bit of the quotient",
+            quotient
+                .step()
+                .into_iter()
+                .chain([loop_while(quotient.more(), "next bit of the quotient")]),
+        ),
+        step("result", [valid(), end()]),
+    ]);
+}
+
+/// `n·(1 − cos γ) + cos γ`, exact; an ulp more where cos γ = 0, which only keeps it above 0: the
+/// quotient is 0 then, whatever the divisor.
+fn divisor<'d>(d: &'d Designer, cos_gamma: Signal<'d>, exponent: Signal<'d>) -> Signal<'d> {
+    let (c, n) = (cos_gamma.format(), exponent.format());
+    let one = d.constant("one", 1.0, Format::unsigned(1, c.frac));
+    let complement = d.sub("complement", one, cos_gamma).doc("1.0 - cos gamma");
+    let scaled = d
+        .mul("scaled", complement, exponent)
+        .doc("n*(1 - cos gamma)");
+    let facing = d
+        .any("facing", cos_gamma)
+        .doc("the surface faces the half vector");
+    let dark = d
+        .not("dark", facing)
+        .doc("an ulp for the divisor, which n = 0 would leave at 0");
+    let sum = d.add_carry("denominator", scaled, cos_gamma, dark);
+    // It lies between cos γ and n, or 1.0, and is n and an ulp at the most.
+    let divisor = d.narrow(
+        "divisor",
+        sum,
+        Format::unsigned(n.int, c.frac),
+        Rounding::Truncate,
+        Overflow::Wrap,
+    );
+    divisor.doc("n - n*cos gamma + cos gamma, never 0")
+}
+
+fn about(config: &Config) -> About {
+    let bits = config.integer("intensity.fraction");
+    About {
+        device: "schlick".to_owned(),
+        title: "Specular intensity by Schlick's function".to_owned(),
+        formula: "out = colour * cos(gamma) / (n - n * cos(gamma) + cos(gamma))".to_owned(),
+        source: "Seed 002, Schlick's function, with which the paper compares its own".to_owned(),
+        notes: vec![
+            format!(
+                "The quotient is truncated to {bits} bits and exact to the last of them: the divider keeps the whole \
+                 remainder. One bit takes a clock. The quotient 1.0, of cos gamma = 1.0 or n = 0, is the largest \
+                 fraction, an ulp less."
+            ),
+            "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0. A division by zero \
+             cannot occur: the divisor is 0 for cos gamma = 0 and n = 0 alone, and cos gamma = 0 adds an ulp to \
+             it, so that this gives 0 too."
+                .to_owned(),
+            "The seed prints the fraction as cos/n - n*cos + cos, its bar lost; the denominator is \
+             n - n*cos + cos."
+                .to_owned(),
+            "Writes while busy are ignored. The outputs follow the quotient and the colour registers: they hold \
+             from valid until a colour is written or the next computation begins."
+                .to_owned(),
+        ],
+    }
+}

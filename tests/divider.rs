@@ -1,0 +1,151 @@
+//! The divider block in a device of its own, through the built-in simulator: every quotient, remainder
+//! and clock of small operands, against integer division.
+
+use glint::dsl::blocks::divider::Divider;
+use glint::dsl::{Designer, end, loop_while, step, valid};
+use glint::fixed::Format;
+use glint::netlist::{Design, NetId};
+use glint::sim::Simulator;
+
+/// A device that divides two operands.
+fn ratio(dividend: Format, divisor: Format, bits: i32) -> Design {
+    let d = Designer::new("ratio");
+    let a = d.operand("a", dividend);
+    let b = d.operand("b", divisor);
+    let ratio = Divider::new(&d, "ratio", a.q(), b.q(), bits);
+    d.output("ratio_out", ratio.quotient());
+    let repeat = loop_while(ratio.more(), "bit");
+    d.microprogram([
+        step("operands", []),
+        step("load", ratio.load()),
+        step("bit", ratio.step().into_iter().chain([repeat])),
+        step("result", [valid(), end()]),
+    ]);
+    d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"))
+}
+
+/// A simulation that divides again and again: what was left by one division is there in the next.
+struct Bench<'a> {
+    design: &'a Design,
+    simulator: Simulator,
+}
+
+impl<'a> Bench<'a> {
+    fn new(design: &'a Design) -> Self {
+        let mut simulator = Simulator::new(design).expect("a simulator");
+        simulator.clock().expect("a clock");
+        let mut bench = Self { design, simulator };
+        bench.set("rst_n", 1);
+        bench
+    }
+
+    fn net(&self, name: &str) -> NetId {
+        self.design
+            .find(name)
+            .unwrap_or_else(|| panic!("no {name}"))
+    }
+
+    fn value(&self, name: &str) -> u64 {
+        self.simulator.value(self.net(name))
+    }
+
+    fn set(&mut self, name: &str, bits: u64) {
+        let is_it = |port: &glint::netlist::Port| self.design.net(port.net).name == name;
+        let at = self.design.inputs().position(is_it).expect("an input");
+        self.simulator.set(at, bits);
+    }
+
+    /// Quotient, remainder, and the clocks from `start` to `valid`.
+    fn divide(&mut self, a: u64, b: u64) -> (u64, u64, u32) {
+        for (name, bits) in [
+            ("a", a),
+            ("b", b),
+            ("a_write", 1),
+            ("b_write", 1),
+            ("start", 1),
+        ] {
+            self.set(name, bits);
+        }
+        self.simulator.clock().expect("a clock");
+        for name in ["a_write", "b_write", "start"] {
+            self.set(name, 0);
+        }
+        for clock in 1..100 {
+            if self.value("valid") == 1 {
+                let result = (
+                    self.value("ratio_out"),
+                    self.value("ratio_remainder"),
+                    clock,
+                );
+                self.simulator.clock().expect("a clock");
+                return result;
+            }
+            self.simulator.clock().expect("a clock");
+        }
+        panic!("{a} / {b} does not end");
+    }
+}
+
+#[test]
+fn every_quotient_of_five_bits_is_exact() {
+    let format = Format::unsigned(5, 0);
+    for bits in [2, 3, 7, 8] {
+        let design = ratio(format, format, bits as i32);
+        let mut bench = Bench::new(&design);
+        for b in 1..32u64 {
+            for a in 0..=b {
+                let (quotient, remainder, clocks) = bench.divide(a, b);
+                // 1.0 is not representable: the largest fraction, which leaves the divisor.
+                let exact = ((a << bits) / b).min((1 << bits) - 1);
+                assert_eq!(quotient, exact, "{a} / {b} to {bits} bits");
+                assert_eq!(
+                    remainder,
+                    (a << bits) - exact * b,
+                    "{a} / {b} to {bits} bits"
+                );
+                // The words 0, load and result, and one clock a bit.
+                assert_eq!(clocks, bits + 3);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_quotient_by_zero_is_the_largest_fraction() {
+    let format = Format::unsigned(5, 0);
+    let design = ratio(format, format, 6);
+    let mut bench = Bench::new(&design);
+    assert_eq!(bench.divide(0, 0).0, 63);
+    // Nothing of it is left in the next division.
+    assert_eq!(bench.divide(1, 3), (21, 1, 9));
+}
+
+/// a has two fraction bits and b none: a/4 over b. Where b has the fraction bits, a over b/4.
+#[test]
+fn points_are_aligned() {
+    for (a_frac, b_frac) in [(2, 0), (0, 2)] {
+        let a_format = Format::unsigned(4 - a_frac, a_frac);
+        let b_format = Format::unsigned(4 - b_frac, b_frac);
+        let design = ratio(a_format, b_format, 5);
+        let mut bench = Bench::new(&design);
+        for b in 1..16u64 {
+            for a in 0..16u64 {
+                let (num, den) = (a << b_frac, b << a_frac);
+                if num <= den {
+                    let exact = ((num << 5) / den).min(31);
+                    assert_eq!(bench.divide(a, b).0, exact, "{a} / {b}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn negative_operands_are_refused() {
+    let d = Designer::new("ratio");
+    let a = d.operand("a", Format::signed(4, 0));
+    let b = d.operand("b", Format::unsigned(4, 0));
+    let _ = Divider::new(&d, "ratio", a.q(), b.q(), 5);
+    let told = d.finish().expect_err("a mistake").to_string();
+    assert!(told.contains("operands are not negative"), "{told}");
+}
