@@ -20,5 +20,6 @@ pub mod microcode;
 pub mod netlist;
 pub mod reference;
 pub mod registry;
+pub mod report;
 pub mod setup;
 pub mod sim;

@@ -1,9 +1,11 @@
-//! Co-simulation: stimulus, golden model against built-in simulator, external simulators.
+//! Co-simulation: stimulus, golden model against built-in simulator, external simulators,
+//! synthesis.
 
 pub mod exhaustive;
 pub mod external;
 mod lockstep;
 mod stimulus;
+pub mod synthesis;
 pub mod trial;
 
 pub use lockstep::{Lockstep, Mismatch, Outcome, Worst};

@@ -14,6 +14,8 @@ const LIMIT: u32 = 1 << 16;
 /// What one computation showed.
 struct Trial {
     timing: Timing,
+    /// Clocks in which `valid` is high.
+    results: u32,
     /// The clocks from each result to the next; where it is as from the one before, it is left out.
     distances: Vec<u32>,
     /// The result outputs at the first `valid`.
@@ -60,6 +62,20 @@ pub fn timing(design: &Design, contract: &dyn Contract) -> Result<Timing> {
         },
         ..common.unwrap_or_default()
     })
+}
+
+/// The clocks of one computation, from `start` to the next, and the results that it shows.
+///
+/// # Errors
+/// Those of [`timing`].
+pub fn throughput(
+    design: &Design,
+    contract: &dyn Contract,
+    operands: &[i64],
+) -> Result<(u32, u32)> {
+    let trial = run(design, contract, operands)?;
+    let clocks = trial.timing.start_to_start.context("it does not end")?;
+    Ok((clocks, trial.results))
 }
 
 /// A computation with all its numbers: operands of the domain for which f is neither 0 nor 1. Of several
@@ -179,6 +195,7 @@ fn run(design: &Design, contract: &dyn Contract, operands: &[i64]) -> Result<Tri
     simulator.set(start, 0);
     let mut trial = Trial {
         timing: Timing::default(),
+        results: 0,
         distances: Vec::new(),
         outputs: Vec::new(),
     };
@@ -186,6 +203,7 @@ fn run(design: &Design, contract: &dyn Contract, operands: &[i64]) -> Result<Tri
     // Clock 0 was the one that took `start`.
     for clock in 1..LIMIT {
         if simulator.value(valid) == 1 {
+            trial.results += 1;
             if trial.timing.start_to_valid.is_none() {
                 trial.timing.start_to_valid = Some(clock);
                 let nets = results(design, contract);

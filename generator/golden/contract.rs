@@ -3,6 +3,12 @@
 use super::{Bound, Operand, Term};
 use crate::fixed::{Format, Rounding, exp2};
 
+/// The operand cos γ, where a device has it.
+pub const COSINE: &str = "cos_gamma";
+
+/// The operand n, where a device has it.
+pub const EXPONENT: &str = "exponent";
+
 /// The colours, in the order of operands and outputs.
 const COLOURS: [&str; 3] = ["red", "green", "blue"];
 
@@ -76,9 +82,75 @@ pub fn bound(shares: &[Share], frac: u32, colour_bits: u32, output_rounding: Rou
     }
 }
 
+/// The control operands among `operands` for an angle `gamma` (in radians) and an exponent: `cos_gamma` and
+/// `exponent`, both of which must be there. Others take their value in `neutral`, or else the value of
+/// their domain that is nearest to 0.
+///
+/// `None` where `n` is not in the domain of the exponent, or not an exponent that it can hold.
+pub fn operands_at(
+    operands: &[Operand],
+    gamma: f64,
+    n: f64,
+    neutral: &[(&str, i64)],
+) -> Option<Vec<i64>> {
+    let has = |name| operands.iter().any(|operand| operand.name == name);
+    if !has(COSINE) || !has(EXPONENT) {
+        return None;
+    }
+    operands
+        .iter()
+        .filter(|operand| !operand.colour)
+        .map(|operand| {
+            let (low, high) = operand.domain;
+            let nearest = |value: f64| operand.format.quantise(value) as i64;
+            match operand.name.as_str() {
+                COSINE => Some(nearest(libm::cos(gamma)).clamp(low, high)),
+                EXPONENT => {
+                    let raw = nearest(n);
+                    let held = operand.format.to_f64(i128::from(raw)) == n;
+                    (held && (low..=high).contains(&raw)).then_some(raw)
+                }
+                name => {
+                    let given = neutral.iter().find(|(other, _)| *other == name);
+                    Some(given.map_or(0, |(_, raw)| *raw).clamp(low, high))
+                }
+            }
+        })
+        .collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn operands_stand_for_an_angle_and_an_exponent() {
+        let operand = |name: &str, format, domain| Operand {
+            name: name.to_string(),
+            format,
+            domain,
+            colour: false,
+            doc: String::new(),
+        };
+        let mut operands = vec![
+            operand("exponent", Format::unsigned(6, 0), (2, 50)),
+            operand("cos_gamma", Format::unsigned(1, 4), (0, 16)),
+            operand("turn", Format::signed(2, 2), (1, 7)),
+            operand("tint", Format::unsigned(2, 2), (0, 15)),
+        ];
+        operands.extend(colour_operands(Format::unsigned(8, 0)));
+        let at = |gamma: f64, n| operands_at(&operands, gamma, n, &[("tint", 5)]);
+        // cos 60° = 8/16; 0 is not in the domain of `turn`, and 1 is nearest to it.
+        let third = std::f64::consts::FRAC_PI_3;
+        assert_eq!(at(third, 35.0), Some(vec![35, 8, 1, 5]));
+        assert_eq!(at(0.0, 2.0), Some(vec![2, 16, 1, 5]));
+        // Beyond the domain, beyond the format, and between integers.
+        assert_eq!(
+            [1.0, 51.0, 64.0, 1e9, 2.5].map(|n| at(0.0, n)),
+            [const { None }; 5]
+        );
+        assert_eq!(operands_at(&operands[1..], 0.0, 2.0, &[]), None);
+    }
 
     #[test]
     fn terms_add_up_and_are_capped() {

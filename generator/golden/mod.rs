@@ -93,6 +93,26 @@ pub trait Contract: Send + Sync {
         None
     }
 
+    /// The control operands, as [`Contract::f`] takes them, that come nearest to the angle `gamma`, in radians
+    /// from 0 to π/2, and the exponent `n`; `None` where no operands of the domain stand for that exponent.
+    ///
+    /// By default these are the operands `cos_gamma` and `exponent`, if the device has them; any other is
+    /// as near to 0 as its domain allows. A device with other operands, or for whose operands 0 means
+    /// something, says so here.
+    fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
+        contract::operands_at(self.operands(), gamma, n, &[])
+    }
+
+    /// The cosine of the angle γ that control operands denote once they are quantised: by default the operand
+    /// `cos_gamma`, if the device has one.
+    fn cosine(&self, control: &[i64]) -> Option<f64> {
+        let operands = self.operands().iter().zip(control);
+        let (operand, raw) = operands
+            .into_iter()
+            .find(|(operand, _)| operand.name == contract::COSINE)?;
+        Some(operand.format.to_f64(i128::from(*raw)).clamp(0.0, 1.0))
+    }
+
     /// What an exhaustive check of `f` goes through: by default every combination of the control operands.
     fn sweep(&self) -> Sweep {
         let control = self.operands().iter().filter(|operand| !operand.colour);

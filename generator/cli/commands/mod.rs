@@ -2,6 +2,7 @@
 
 mod catalogue;
 mod check;
+mod compare;
 mod cosim;
 mod describe;
 mod eval;
@@ -14,6 +15,7 @@ use anyhow::{Context, Result, anyhow, bail};
 
 pub use catalogue::{list, new};
 pub use check::everything;
+pub use compare::{CompareRequest, compare};
 pub use cosim::{CosimRequest, cosim};
 pub use describe::describe;
 pub use eval::eval;

@@ -2,6 +2,6 @@
 
 pub mod angle;
 pub mod colour;
-pub mod line;
 pub mod divider;
+pub mod line;
 pub mod segmented;

@@ -140,6 +140,12 @@ impl Contract for RoughContract {
         }
     }
 
+    /// With dγ = 0.
+    fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
+        let no_deviation = [("cos_dgamma", self.largest_cosine)];
+        contract::operands_at(&self.operands, gamma, n, &no_deviation)
+    }
+
     /// Every cos γ and every n, with some settings of dγ of the domain, of both signs.
     fn sweep(&self) -> Sweep {
         let mut deviations: Vec<i64> = SWEPT_DEVIATIONS

@@ -1,0 +1,225 @@
+//! `compare`.
+
+mod show;
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use anyhow::{Context, Result, bail};
+use rayon::prelude::*;
+
+use super::load;
+use crate::cli::failure::Usage as WrongUsage;
+use crate::cli::{Output, progress};
+use crate::config::{Config, Schema, Value};
+use crate::cosim::external::Tool;
+use crate::cosim::synthesis::{self, FAMILIES, Usage};
+use crate::emit::{self, EmitInputs};
+use crate::flow::Unit;
+use crate::registry::{Device, Registry};
+use crate::report::comparison::{self, Accuracy, Multiplier};
+
+/// What `compare` was asked for.
+pub struct CompareRequest {
+    /// The exponent n.
+    pub exponent: u32,
+    /// Keys that replace a device's default, where it has them.
+    pub widths: Vec<(&'static str, i64)>,
+    /// Print CSV.
+    pub csv: bool,
+    /// Ask Yosys what the devices take.
+    pub synthesis: bool,
+    /// After which a run of Yosys is given up.
+    pub time_limit: Duration,
+}
+
+/// One configuration in the comparison.
+struct Entry {
+    /// The name of the device, or the path of the configuration.
+    label: String,
+    unit: Unit,
+    figures: Figures,
+    /// By family; empty without synthesis.
+    usage: Vec<Result<Usage, String>>,
+}
+
+/// What is known of a configuration without a tool.
+struct Figures {
+    /// `None` when the exponent is outside the domain.
+    accuracy: Option<Accuracy>,
+    clocks_per_point: f64,
+    multipliers: Vec<Multiplier>,
+}
+
+/// `glint compare`.
+pub fn compare(
+    registry: &Registry,
+    output: Output,
+    configs: &[PathBuf],
+    request: &CompareRequest,
+) -> Result<bool> {
+    if request.csv && output.json {
+        bail!(WrongUsage(
+            "--csv and --json are two ways to print the same: give one".to_owned()
+        ));
+    }
+    let mut notes = Vec::new();
+    let mut units = Vec::new();
+    for device in registry.devices() {
+        let config = with_widths(device, &request.widths, &mut notes);
+        units.push((device.name.to_owned(), Unit::new(*device, config)?));
+    }
+    if !configs.is_empty() {
+        let named = load(registry, configs)?;
+        units.extend(named.into_iter().map(|one| (one.path, one.unit)));
+    }
+    let yosys = match request.synthesis.then(|| Tool::find("yosys")) {
+        None => None,
+        Some(Ok(yosys)) => Some(yosys),
+        Some(Err(missing)) => {
+            notes.push(format!("{missing}: no LUTs, DSP blocks and block RAMs"));
+            None
+        }
+    };
+    let families = if yosys.is_some() { FAMILIES.len() } else { 0 };
+    let bar = progress::bar(
+        output,
+        (units.len() * (1 + families)) as u64,
+        "devices weighed",
+    );
+    let n = f64::from(request.exponent);
+    let figures: Vec<Figures> = units
+        .par_iter()
+        .map(|(label, unit)| {
+            let figures = figures(unit, n);
+            bar.inc(1);
+            figures.with_context(|| format!("`{label}`"))
+        })
+        .collect::<Result<_>>()?;
+    let mut usage = match &yosys {
+        None => vec![Vec::new(); units.len()],
+        Some(yosys) => synthesise(&units, yosys, request.time_limit, &|| bar.inc(1))?,
+    };
+    bar.finish_and_clear();
+    let entries: Vec<Entry> = units
+        .into_iter()
+        .zip(figures)
+        .zip(usage.drain(..))
+        .map(|(((label, unit), figures), usage)| Entry {
+            label,
+            unit,
+            figures,
+            usage,
+        })
+        .collect();
+    for entry in &entries {
+        if entry.figures.accuracy.is_none() {
+            notes.push(outside(entry, request.exponent));
+        }
+    }
+    let faults: Vec<String> = entries
+        .iter()
+        .flat_map(|entry| &entry.usage)
+        .filter_map(|usage| usage.as_ref().err().cloned())
+        .collect();
+    show::show(output, request, &entries, &notes, &faults);
+    Ok(faults.is_empty())
+}
+
+/// The device's defaults with these keys replaced, where it has them and accepts the value.
+fn with_widths(device: &Device, widths: &[(&'static str, i64)], notes: &mut Vec<String>) -> Config {
+    let schema: Schema = (device.schema)();
+    let name = device.name.replace('-', "_");
+    let mut accepted: Vec<(String, Value)> = Vec::new();
+    let mut config = Config::defaults(&schema, &name);
+    for &(key, value) in widths {
+        if schema.key(key).is_none() {
+            continue;
+        }
+        let mut wanted = accepted.clone();
+        wanted.push((key.to_owned(), Value::Integer(value)));
+        match Config::from_values(&schema, &name, wanted.clone()) {
+            Ok(found) => {
+                config = found;
+                accepted = wanted;
+            }
+            Err(problems) => {
+                let why = problems.iter().next().map_or_else(String::new, |problem| {
+                    format!(": {}; {}", problem.message, problem.remedy)
+                });
+                notes.push(format!(
+                    "{}: {key} = {value} is not accepted, {} is compared{why}",
+                    device.name,
+                    config.value(key).bare(),
+                ));
+            }
+        }
+    }
+    config
+}
+
+fn figures(unit: &Unit, n: f64) -> Result<Figures> {
+    let contract = unit.contract.as_ref();
+    Ok(Figures {
+        accuracy: comparison::accuracy(contract, n),
+        clocks_per_point: comparison::clocks_per_point(&unit.design, contract, n)?,
+        multipliers: comparison::multipliers(&unit.design),
+    })
+}
+
+/// What every unit takes in every family: an outcome, or what went wrong.
+fn synthesise(
+    units: &[(String, Unit)],
+    yosys: &Tool,
+    limit: Duration,
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<Vec<Result<Usage, String>>>> {
+    let files: Vec<Vec<(String, String)>> = units
+        .iter()
+        .map(|(label, unit)| verilog(unit).with_context(|| format!("`{label}`")))
+        .collect::<Result<_>>()?;
+    let runs: Vec<Result<Usage, String>> = (0..units.len() * FAMILIES.len())
+        .into_par_iter()
+        .map(|at| {
+            let (one, family) = (at / FAMILIES.len(), &FAMILIES[at % FAMILIES.len()]);
+            let (label, unit) = &units[one];
+            let usage = synthesis::synthesise(yosys, &files[one], &unit.config.name, family, limit);
+            done();
+            usage.map_err(|error| format!("{label}, {}: {error:#}", family.title))
+        })
+        .collect();
+    Ok(runs.chunks(FAMILIES.len()).map(<[_]>::to_vec).collect())
+}
+
+/// Verilog and memories of a device, as plain names and contents.
+fn verilog(unit: &Unit) -> Result<Vec<(String, String)>> {
+    let files = emit::emit(&unit.design, &EmitInputs::default())?;
+    Ok(files
+        .into_iter()
+        .filter_map(|file| {
+            let name = file.path.rsplit('/').next()?.to_owned();
+            (name.ends_with(".v") || name.ends_with(".mem")).then_some((name, file.contents))
+        })
+        .collect())
+}
+
+/// Why a configuration has no errors to show.
+fn outside(entry: &Entry, exponent: u32) -> String {
+    let operands = entry.unit.contract.operands();
+    let domain = operands
+        .iter()
+        .find(|operand| operand.name == crate::golden::contract::EXPONENT)
+        .map(|operand| {
+            let value = |raw: i64| operand.format.to_f64(i128::from(raw));
+            format!(
+                " of n = {} to {}",
+                value(operand.domain.0),
+                value(operand.domain.1)
+            )
+        })
+        .unwrap_or_default();
+    format!(
+        "{}: n = {exponent} is not in its domain{domain}",
+        entry.label
+    )
+}

@@ -1,0 +1,277 @@
+//! A comparison as tables, as CSV and as JSON.
+
+use serde_json::{Value, json};
+
+use super::{CompareRequest, Entry};
+use crate::cli::{Output, failure, tables};
+use crate::cosim::synthesis::{FAMILIES, Usage};
+use crate::report::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, Multiplier, Spread};
+
+/// Prints everything in the form that was asked for.
+pub fn show(
+    output: Output,
+    request: &CompareRequest,
+    entries: &[Entry],
+    notes: &[String],
+    faults: &[String],
+) {
+    if output.json {
+        tables::print_json(&as_json(request, entries, notes, faults));
+        return;
+    }
+    if request.csv {
+        for row in as_csv(request, entries) {
+            let fields: Vec<String> = row.iter().map(|field| csv_field(field)).collect();
+            tables::print_line(&fields.join(","));
+        }
+        for note in notes.iter().chain(faults) {
+            failure::warn(note);
+        }
+        return;
+    }
+    print_errors(request, entries);
+    print_hardware(entries);
+    for note in notes {
+        tables::print_line(&format!("Note: {note}."));
+    }
+    for fault in faults {
+        tables::print_line(&format!("FAILS: {fault}"));
+    }
+}
+
+/// The errors of an accuracy with their names, the whole first.
+fn spreads(accuracy: &Accuracy) -> [(&'static str, Spread); 4] {
+    [
+        ("error", accuracy.whole),
+        ("formula", accuracy.formula),
+        ("operands", accuracy.operands),
+        ("fixed_point", accuracy.fixed_point),
+    ]
+}
+
+fn print_errors(request: &CompareRequest, entries: &[Entry]) {
+    tables::print_line(&format!(
+        "Errors of f against cos^n gamma for n = {}, over gamma = 0 to 90 degrees in steps of {}:",
+        request.exponent,
+        1.0 / f64::from(ANGLES_PER_DEGREE)
+    ));
+    let headings = [
+        "device",
+        "largest",
+        "mean",
+        "formula, largest",
+        "mean",
+        "operands, largest",
+        "mean",
+        "fixed point, largest",
+        "mean",
+        "bound, units",
+    ];
+    let rows = entries.iter().map(|entry| {
+        let mut row = vec![entry.label.clone()];
+        match &entry.figures.accuracy {
+            None => row.resize(9, "-".to_owned()),
+            Some(accuracy) => row.extend(
+                spreads(accuracy)
+                    .iter()
+                    .flat_map(|(_, spread)| [spread.largest, spread.mean])
+                    .map(|error| format!("{error:.6}")),
+            ),
+        }
+        row.push(format!("{:.3}", entry.unit.contract.bound().units));
+        row
+    });
+    tables::print(&headings, &headings[1..], rows);
+    tables::print_line(
+        "The error at an angle is the sum of three: of the formula, in f64 at the quantised operands; of cos gamma \
+         as the operands denote it; and of the fixed point, f against the formula. The bound is on an output, \
+         f times a colour and rounded, against the formula.",
+    );
+    tables::print_line("");
+}
+
+fn print_hardware(entries: &[Entry]) {
+    let synthesised = entries.iter().any(|entry| !entry.usage.is_empty());
+    let mut headings = vec![
+        "device".to_owned(),
+        "clocks a point".to_owned(),
+        "ROM bits".to_owned(),
+        "multipliers".to_owned(),
+    ];
+    if synthesised {
+        for family in &FAMILIES {
+            for resource in ["LUT", "DSP", "RAM"] {
+                headings.push(format!("{} {resource}", family.title));
+            }
+        }
+    }
+    let rows = entries.iter().map(|entry| {
+        let mut row = vec![
+            entry.label.clone(),
+            clocks(entry.figures.clocks_per_point),
+            tables::grouped(entry.unit.design.rom_bits()),
+            sizes(&entry.figures.multipliers),
+        ];
+        for usage in &entry.usage {
+            match usage {
+                Ok(usage) => row.extend(numbers(usage).map(|(_, number)| number.to_string())),
+                Err(_) => row.extend(["-"; 3].map(str::to_owned)),
+            }
+        }
+        row
+    });
+    let headings: Vec<&str> = headings.iter().map(String::as_str).collect();
+    let right: Vec<&str> = headings
+        .iter()
+        .copied()
+        .filter(|&heading| heading != "device" && heading != "multipliers")
+        .collect();
+    tables::print(&headings, &right, rows);
+    tables::print_line(
+        "ROM bits count the control ROM. Clocks are from start to start, per point of the longest line where a \
+         start shows several.",
+    );
+    if synthesised {
+        tables::print_line(
+            "By Yosys, before placement; block RAMs are of 4 kbit in iCE40 and of 18 kbit in the others.",
+        );
+    }
+}
+
+/// Whole clocks as an integer.
+fn clocks(clocks: f64) -> String {
+    if clocks.fract() == 0.0 {
+        format!("{clocks}")
+    } else {
+        format!("{clocks:.2}")
+    }
+}
+
+/// `21x10, 3 of 10x8`.
+fn sizes(multipliers: &[Multiplier]) -> String {
+    let alike = multipliers.chunk_by(|a, b| a == b);
+    let texts: Vec<String> = alike
+        .map(|alike| match alike {
+            [one] => one.to_string(),
+            several => format!("{} of {}", several.len(), several[0]),
+        })
+        .collect();
+    texts.join(", ")
+}
+
+/// What a design takes, with names.
+fn numbers(usage: &Usage) -> [(&'static str, u64); 3] {
+    [
+        ("luts", usage.luts),
+        ("dsps", usage.dsps),
+        ("block_rams", usage.block_rams),
+    ]
+}
+
+/// The heading, then a row for each entry. What is not known is empty.
+fn as_csv(request: &CompareRequest, entries: &[Entry]) -> Vec<Vec<String>> {
+    let synthesised = entries.iter().any(|entry| !entry.usage.is_empty());
+    let mut heading: Vec<String> = ["name", "device", "exponent"].map(str::to_owned).to_vec();
+    for (name, _) in spreads(&Accuracy::default()) {
+        heading.extend([format!("{name}_largest"), format!("{name}_mean")]);
+    }
+    heading
+        .extend(["bound_units", "clocks_per_point", "rom_bits", "multipliers"].map(str::to_owned));
+    if synthesised {
+        for family in &FAMILIES {
+            heading
+                .extend(["luts", "dsps", "block_rams"].map(|it| format!("{}_{it}", family.name)));
+        }
+    }
+    let row = |entry: &Entry| {
+        let mut row = vec![
+            entry.label.clone(),
+            entry.unit.device.name.to_owned(),
+            request.exponent.to_string(),
+        ];
+        match &entry.figures.accuracy {
+            None => row.extend(vec![String::new(); 8]),
+            Some(accuracy) => row.extend(
+                spreads(accuracy)
+                    .iter()
+                    .flat_map(|(_, spread)| [spread.largest, spread.mean])
+                    .map(|error| error.to_string()),
+            ),
+        }
+        row.extend([
+            entry.unit.contract.bound().units.to_string(),
+            entry.figures.clocks_per_point.to_string(),
+            entry.unit.design.rom_bits().to_string(),
+            sizes(&entry.figures.multipliers),
+        ]);
+        for usage in &entry.usage {
+            match usage {
+                Ok(usage) => row.extend(numbers(usage).map(|(_, number)| number.to_string())),
+                Err(_) => row.extend(vec![String::new(); 3]),
+            }
+        }
+        row
+    };
+    std::iter::once(heading)
+        .chain(entries.iter().map(row))
+        .collect()
+}
+
+/// A field as RFC 4180 has it.
+fn csv_field(field: &str) -> String {
+    if field.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", field.replace('"', "\"\""))
+    } else {
+        field.to_owned()
+    }
+}
+
+fn as_json(
+    request: &CompareRequest,
+    entries: &[Entry],
+    notes: &[String],
+    faults: &[String],
+) -> Value {
+    let entries: Vec<Value> = entries.iter().map(entry_json).collect();
+    let problems: Vec<Value> = faults.iter().map(|fault| failure::problem(fault)).collect();
+    json!({
+        "ok": faults.is_empty(),
+        "exponent": request.exponent,
+        "angles": { "from_degrees": 0, "to_degrees": 90, "count": ANGLES },
+        "entries": entries,
+        "notes": notes,
+        "problems": problems,
+    })
+}
+
+fn entry_json(entry: &Entry) -> Value {
+    let unit = &entry.unit;
+    let schema = (unit.device.schema)();
+    let mut value = json!({
+        "name": entry.label,
+        "device": unit.device.name,
+        "toml": unit.config.to_toml(&schema),
+        "bound_units": unit.contract.bound().units,
+        "clocks_per_point": entry.figures.clocks_per_point,
+        "rom_bits": unit.design.rom_bits(),
+    });
+    value["errors"] = entry.figures.accuracy.as_ref().map_or(Value::Null, |it| {
+        let spread = |spread: Spread| json!({ "largest": spread.largest, "mean": spread.mean });
+        let named = spreads(it).map(|(name, errors)| (name.to_owned(), spread(errors)));
+        Value::Object(named.into_iter().collect())
+    });
+    let multipliers = entry.figures.multipliers.iter();
+    value["multipliers"] = multipliers.map(|it| json!([it.first, it.second])).collect();
+    if !entry.usage.is_empty() {
+        let taken = |usage: &Result<Usage, String>| match usage {
+            Ok(usage) => {
+                let named = numbers(usage).map(|(name, number)| (name.to_owned(), json!(number)));
+                Value::Object(named.into_iter().collect())
+            }
+            Err(_) => Value::Null,
+        };
+        let families = FAMILIES.iter().map(|family| family.name.to_owned());
+        value["synthesis"] = Value::Object(families.zip(entry.usage.iter().map(taken)).collect());
+    }
+    value
+}

@@ -1,0 +1,142 @@
+//! Devices side by side at one exponent: how near they come to `cosⁿγ`, and what they take.
+
+use std::fmt;
+
+use anyhow::Result;
+
+use crate::cosim::trial;
+use crate::golden::Contract;
+use crate::netlist::{Design, Driver, Op};
+use crate::reference;
+
+/// Angles to a degree in the grid from 0 to 90°.
+pub const ANGLES_PER_DEGREE: u32 = 100;
+
+/// Angles of the grid, both ends among them.
+pub const ANGLES: u32 = 90 * ANGLES_PER_DEGREE + 1;
+
+/// An absolute error over the grid.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Spread {
+    /// The largest.
+    pub largest: f64,
+    /// The mean over all angles.
+    pub mean: f64,
+}
+
+impl Spread {
+    /// Takes the error at one angle of the grid.
+    fn take(&mut self, error: f64) {
+        let error = error.abs();
+        self.largest = self.largest.max(error);
+        self.mean += error / f64::from(ANGLES);
+    }
+}
+
+/// The error of `f` against `cosⁿγ`, whole and by cause. At every angle the whole error is the sum of the
+/// signed errors by cause; the largest of each may be at different angles.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Accuracy {
+    /// The word f against `cosⁿγ`.
+    pub whole: Spread,
+    /// The source's formula, in f64 and at the quantised operands, against `cosⁿ` of the angle that these
+    /// denote.
+    pub formula: Spread,
+    /// `cosⁿ` of the angle that the quantised operands denote against `cosⁿγ`. 0 where a contract does not
+    /// tell that angle ([`Contract::cosine`]): then the formula's error includes it.
+    pub operands: Spread,
+    /// The word f against the formula at the quantised operands.
+    pub fixed_point: Spread,
+}
+
+/// The errors over the grid of angles; `None` when the operands cannot denote `n`.
+pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
+    let format = contract.f_format();
+    let mut accuracy = Accuracy::default();
+    for step in 0..ANGLES {
+        let gamma = (f64::from(step) / f64::from(ANGLES_PER_DEGREE)).to_radians();
+        // cos 90° is not 0 in f64, which n = 0 would show.
+        let cosine = if step == ANGLES - 1 {
+            0.0
+        } else {
+            libm::cos(gamma)
+        };
+        let control = contract.at(gamma, n)?;
+        let exact = reference::blinn(cosine, n);
+        let denoted = contract
+            .cosine(&control)
+            .map_or(exact, |cosine| reference::blinn(cosine, n));
+        let formula = contract.reference(&control);
+        let f = format.to_f64(i128::from(contract.f(&control)));
+        accuracy.whole.take(f - exact);
+        accuracy.formula.take(formula - denoted);
+        accuracy.operands.take(denoted - exact);
+        accuracy.fixed_point.take(f - formula);
+    }
+    Some(accuracy)
+}
+
+/// Clocks per point of the exponent `n`, from one `start` to the next.
+///
+/// A device that shows a line of points to a `start` is measured on its longest line: operands on which
+/// neither the angle nor n has any bearing are at the top of their domains.
+///
+/// # Errors
+/// A device that does not end, or shows no point.
+pub fn clocks_per_point(design: &Design, contract: &dyn Contract, n: f64) -> Result<f64> {
+    let at = |degrees: f64, n: f64| contract.at(degrees.to_radians(), n);
+    let base = at(10.0, n);
+    let others: Vec<Vec<i64>> = [1.0, 4.0, 16.0, 64.0, 256.0, 1000.0]
+        .into_iter()
+        .filter_map(|n| at(20.0, n))
+        .chain(at(20.0, n))
+        .collect();
+    let operands: Vec<i64> = contract
+        .operands()
+        .iter()
+        .enumerate()
+        .map(
+            |(place, operand)| match base.as_ref().and_then(|base| base.get(place)) {
+                Some(&value) if others.iter().any(|other| other[place] != value) => value,
+                _ => operand.domain.1,
+            },
+        )
+        .collect();
+    let (clocks, points) = trial::throughput(design, contract, &operands)?;
+    Ok(f64::from(clocks) / f64::from(points))
+}
+
+/// The widths of the operands of a multiplier, the wider one first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub struct Multiplier {
+    /// Bits of the wider operand.
+    pub first: u32,
+    /// Bits of the other.
+    pub second: u32,
+}
+
+impl fmt::Display for Multiplier {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}x{}", self.first, self.second)
+    }
+}
+
+/// The multipliers of a design, the largest first.
+pub fn multipliers(design: &Design) -> Vec<Multiplier> {
+    let mut found: Vec<Multiplier> = design
+        .nets
+        .iter()
+        .filter_map(|net| match net.driver {
+            Driver::Op(Op::Mul(a, b)) => {
+                let (a, b) = (design.width(a), design.width(b));
+                Some(Multiplier {
+                    first: a.max(b),
+                    second: a.min(b),
+                })
+            }
+            _ => None,
+        })
+        .collect();
+    found.sort_unstable_by_key(|it| std::cmp::Reverse((it.first * it.second, it.first)));
+    found
+}

@@ -1,0 +1,3 @@
+//! Figures about devices, for people to weigh.
+
+pub mod comparison;
