@@ -10,9 +10,10 @@ use std::fs;
 use std::path::Path;
 
 use common::bench::Bench;
-use common::tools::{tool, yosys};
-use common::units::{Emitted, Files, configurations, write};
+use common::tools::{LIMIT, tool, yosys};
+use common::units::{Emitted, Files, configuration, configurations, write};
 use glint::cosim::external::Simulator;
+use glint::cosim::synthesis::{self, FAMILIES, Family, Kinds, Usage};
 use glint::netlist::{Design, Driver, Op, Rom};
 use rayon::prelude::*;
 
@@ -22,36 +23,16 @@ const POINTS: u64 = 40;
 /// A smaller ROM may well be logic.
 const WARRANTS_BLOCK_RAM: u64 = 2048;
 
-/// A family of devices, and the names of its cells.
-struct Family {
-    command: &'static str,
-    block_rams: &'static [&'static str],
-    /// What the names of their initial values begin with, before so many hexadecimal digits.
-    initial: (&'static [&'static str], usize),
-    multiplier: &'static str,
-}
-
-const FAMILIES: [Family; 3] = [
-    Family {
-        command: "synth_ice40 -dsp",
-        block_rams: &["SB_RAM40_4K"],
-        initial: (&["INIT_"], 1),
-        multiplier: "SB_MAC16",
-    },
-    Family {
-        command: "synth_ecp5",
-        block_rams: &["DP16KD", "PDPW16KD"],
-        initial: (&["INITVAL_"], 2),
-        multiplier: "MULT18X18D",
-    },
-    Family {
-        command: "synth_xilinx -flatten",
-        block_rams: &["RAMB18E1", "RAMB36E1"],
+/// What the names of the initial values of a family's block RAMs begin with, before so many hexadecimal
+/// digits.
+fn initial(family: &Family) -> (&'static [&'static str], usize) {
+    match family.name {
+        "ice40" => (&["INIT_"], 1),
+        "ecp5" => (&["INITVAL_"], 2),
         // INIT_A and INIT_B are of the output register.
-        initial: (&["INIT_", "INITP_"], 2),
-        multiplier: "DSP48E1",
-    },
-];
+        _ => (&["INIT_", "INITP_"], 2),
+    }
+}
 
 #[test]
 fn every_configuration_is_synthesised_whole() {
@@ -67,18 +48,14 @@ fn every_configuration_is_synthesised_whole() {
             let what = format!("{path}, {}", family.command);
             memories_are_whole(&unit.design, &cells, family, &what);
             let products = products(&unit.design);
-            let blocks = cells.count(family.multiplier);
+            let blocks = cells.count_all(family.dsps);
             assert!(
                 blocks >= products,
                 "{what}: {products} products in {blocks} DSP blocks"
             );
             println!(
                 "{what}: {blocks} DSP blocks, {} block RAMs, {} cells",
-                family
-                    .block_rams
-                    .iter()
-                    .map(|kind| cells.count(kind))
-                    .sum::<usize>(),
+                cells.count_all(family.block_rams),
                 cells.0.len()
             );
             if family.command.starts_with("synth_ice40") {
@@ -87,6 +64,31 @@ fn every_configuration_is_synthesised_whole() {
                 netlist_passes(&emitted, netlist);
             }
         }
+    });
+}
+
+/// What the command line says that a design takes is what its netlist has.
+#[test]
+fn usage_is_that_of_the_netlist() {
+    let unit = configuration("configs/schlick.toml");
+    let emitted = Emitted::new(&unit, POINTS, 1);
+    FAMILIES.par_iter().for_each(|family| {
+        let told =
+            synthesis::synthesise(&tool("yosys"), &emitted.rtl(), &emitted.name, family, LIMIT)
+                .unwrap_or_else(|error| panic!("{error:#}"));
+        let place = tempfile::tempdir().expect("a directory");
+        write(place.path(), &emitted.rtl());
+        synthesise(place.path(), &emitted, family);
+        let netlist = fs::read_to_string(place.path().join("netlist.json")).expect("a netlist");
+        let netlist = serde_json::from_str(&netlist).expect("a netlist");
+        let cells = Cells::new(&netlist, &emitted.name);
+        let wanted = Usage {
+            luts: cells.count_all(family.luts),
+            dsps: cells.count_all(family.dsps),
+            block_rams: cells.count_all(family.block_rams),
+        };
+        assert_eq!(told, wanted, "{}", family.title);
+        assert!(told.luts > 50 && told.dsps > 3, "{told:?}");
     });
 }
 
@@ -134,8 +136,12 @@ impl<'a> Cells<'a> {
             .filter(move |cell| Self::kind(cell) == kind)
     }
 
-    fn count(&self, kind: &str) -> usize {
-        self.of(kind).count()
+    /// How many there are of some kinds, each with its weight.
+    fn count_all(&self, kinds: Kinds) -> u64 {
+        let weighed = kinds
+            .iter()
+            .map(|(kind, weight)| self.of(kind).count() as u64 * weight);
+        weighed.sum()
     }
 }
 
@@ -150,13 +156,13 @@ fn memories_are_whole(design: &Design, cells: &Cells, family: &Family, what: &st
     let rams: Vec<_> = family
         .block_rams
         .iter()
-        .flat_map(|kind| cells.of(kind))
+        .flat_map(|(kind, _)| cells.of(kind))
         .collect();
     assert!(
         rams.len() >= large.len(),
         "{what}: ROMs are not in block RAM"
     );
-    let ones: u64 = rams.iter().map(|cell| ones(cell, family.initial)).sum();
+    let ones: u64 = rams.iter().map(|cell| ones(cell, initial(family))).sum();
     let wanted: u64 = large
         .iter()
         .flat_map(|rom| &rom.words)
@@ -181,13 +187,13 @@ fn ones(cell: &serde_json::Value, (prefixes, digits): (&[&str], usize)) -> u64 {
 }
 
 /// Multiplications in a design.
-fn products(design: &Design) -> usize {
+fn products(design: &Design) -> u64 {
     let is_product = |driver: &Driver| matches!(driver, Driver::Op(Op::Mul(..)));
     design
         .nets
         .iter()
         .filter(|net| is_product(&net.driver))
-        .count()
+        .count() as u64
 }
 
 /// The synthesised netlist, ROM contents within, passes the bench.

@@ -140,3 +140,128 @@ pub fn multipliers(design: &Design) -> Vec<Multiplier> {
     found.sort_unstable_by_key(|it| std::cmp::Reverse((it.first * it.second, it.first)));
     found
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dsl::{Designer, end, loop_while, step, valid};
+    use crate::fixed::Format;
+    use crate::golden::{Bound, Operand, contract};
+
+    /// cosⁿγ itself, but for an eighth too much: one fraction bit of the cosine, eight of f.
+    struct Line(Vec<Operand>, Vec<String>);
+
+    impl Line {
+        fn new() -> Self {
+            let operand = |name: &str, format, domain| Operand {
+                name: name.to_string(),
+                format,
+                domain,
+                colour: false,
+                doc: String::new(),
+            };
+            Self(
+                vec![
+                    operand("cos_gamma", Format::unsigned(1, 1), (0, 2)),
+                    operand("intervals", Format::unsigned(4, 0), (0, 15)),
+                    operand("exponent", Format::unsigned(4, 0), (1, 15)),
+                ],
+                Vec::new(),
+            )
+        }
+    }
+
+    impl Contract for Line {
+        fn operands(&self) -> &[Operand] {
+            &self.0
+        }
+
+        fn outputs(&self) -> &[String] {
+            &self.1
+        }
+
+        fn f_format(&self) -> Format {
+            Format::unsigned(1, 8)
+        }
+
+        fn f(&self, control: &[i64]) -> i64 {
+            (self.reference(control) * 256.0) as i64 + 32
+        }
+
+        fn colour(&self, f: i64, _: i64) -> i64 {
+            f
+        }
+
+        fn reference(&self, control: &[i64]) -> f64 {
+            0.5 * reference::blinn(control[0] as f64 / 2.0, control[2] as f64)
+        }
+
+        fn bound(&self) -> Bound {
+            contract::bound(&[], 8, 1, crate::fixed::Rounding::Nearest)
+        }
+    }
+
+    /// `intervals + 1` results, one a clock.
+    fn design() -> Design {
+        let d = Designer::new("line");
+        let _ = d.operand("cos_gamma", Format::unsigned(1, 1));
+        let intervals = d.operand("intervals", Format::unsigned(4, 0));
+        let _ = d.operand("exponent", Format::unsigned(4, 0));
+        let left = d.down_counter("left", intervals.q());
+        let more = d.any("more", left.q());
+        d.output("left_out", left.q());
+        d.microprogram([
+            step("operands", []),
+            step("load", [left.load()]),
+            step("point", [valid(), left.count(), loop_while(more, "point")]),
+            step("end", [end()]),
+        ]);
+        d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"))
+    }
+
+    #[test]
+    fn errors_are_told_apart() {
+        // n = 1: c is rounded to halves, f is half of it and an eighth.
+        let found = accuracy(&Line::new(), 1.0).expect("within the domain");
+        assert_eq!(
+            found.fixed_point,
+            Spread {
+                largest: 0.125,
+                mean: found.fixed_point.mean
+            }
+        );
+        assert!((found.fixed_point.mean - 0.125).abs() < 1e-12);
+        assert_eq!(found.formula.largest, 0.5);
+        // cos γ near 1/4 and 3/4 is rounded furthest.
+        assert!((found.operands.largest - 0.25).abs() < 1e-3, "{found:?}");
+        // At γ = 0: 1/2 + 1/8 for 1.
+        assert_eq!(found.whole.largest, 0.375);
+        assert_eq!(accuracy(&Line::new(), 16.0), None);
+    }
+
+    #[test]
+    fn a_line_counts_by_its_points() {
+        // The clock of `start`, words 0 and 1, 16 points, the last word.
+        let clocks = clocks_per_point(&design(), &Line::new(), 3.0).expect("it ends");
+        assert_eq!(clocks, 20.0 / 16.0);
+    }
+
+    #[test]
+    fn multipliers_are_listed_by_size() {
+        let d = Designer::new("products");
+        let a = d.operand("a", Format::unsigned(0, 4)).q();
+        let b = d.operand("b", Format::signed(0, 8)).q();
+        let small = d.mul("small", a, a);
+        let large = d.mul("large", a, b);
+        d.output("small_out", small);
+        d.output("large_out", large);
+        d.microprogram([step("idle", []), step("result", [valid(), end()])]);
+        let design = d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"));
+        // A sign bit each.
+        let sizes: Vec<String> = multipliers(&design)
+            .iter()
+            .map(Multiplier::to_string)
+            .collect();
+        assert_eq!(sizes, ["9x5", "4x4"]);
+    }
+}

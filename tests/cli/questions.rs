@@ -206,7 +206,7 @@ fn new_with_wrong_words() {
 #[test]
 fn help_teaches_by_example() {
     let place = Place::new();
-    for command in ["generate", "cosim", "eval", "list", "new"] {
+    for command in ["generate", "cosim", "eval", "compare", "list", "new"] {
         let text = place.done([command, "--help"]);
         let (_, examples) = text.split_once("Example").expect("an example");
         assert!(examples.contains(&format!("  glint {command} ")), "{text}");

@@ -16,6 +16,7 @@ use crate::cosim::external::Tool;
 use crate::cosim::synthesis::{self, FAMILIES, Usage};
 use crate::emit::{self, EmitInputs};
 use crate::flow::Unit;
+use crate::golden::contract;
 use crate::registry::{Device, Registry};
 use crate::report::comparison::{self, Accuracy, Multiplier};
 
@@ -204,22 +205,18 @@ fn verilog(unit: &Unit) -> Result<Vec<(String, String)>> {
 }
 
 /// Why a configuration has no errors to show.
-fn outside(entry: &Entry, exponent: u32) -> String {
+fn outside(entry: &Entry, n: u32) -> String {
     let operands = entry.unit.contract.operands();
-    let domain = operands
+    let exponent = operands
         .iter()
-        .find(|operand| operand.name == crate::golden::contract::EXPONENT)
-        .map(|operand| {
+        .find(|operand| operand.name == contract::EXPONENT);
+    let label = &entry.label;
+    match exponent {
+        None => format!("{label}: none of its operands stand for gamma and n = {n}"),
+        Some(operand) => {
             let value = |raw: i64| operand.format.to_f64(i128::from(raw));
-            format!(
-                " of n = {} to {}",
-                value(operand.domain.0),
-                value(operand.domain.1)
-            )
-        })
-        .unwrap_or_default();
-    format!(
-        "{}: n = {exponent} is not in its domain{domain}",
-        entry.label
-    )
+            let (low, high) = (value(operand.domain.0), value(operand.domain.1));
+            format!("{label}: n = {n} is not in its domain, n = {low} to {high}")
+        }
+    }
 }

@@ -1,0 +1,331 @@
+//! `compare`: figures that are computed here a second time, the three forms of output, widths, and tools
+//! that are missing, fail or hang.
+
+use serde_json::{Value, json};
+
+use crate::place::{COSINE_POWER, Place, Run};
+
+/// A comparison without synthesis.
+fn compare(arguments: &[&str]) -> Run {
+    let place = Place::with("core.toml", COSINE_POWER);
+    place.glint(["compare", "--no-synthesis"].iter().chain(arguments))
+}
+
+#[track_caller]
+fn compared(arguments: &[&str]) -> Value {
+    let run = compare(&[arguments, &["--json"]].concat());
+    assert_eq!((run.code, run.err.as_str()), (0, ""), "{run:?}");
+    run.json()
+}
+
+fn entry<'a>(value: &'a Value, name: &str) -> &'a Value {
+    let entries = value["entries"].as_array().expect("entries");
+    let found = entries.iter().find(|entry| entry["name"] == name);
+    found.unwrap_or_else(|| panic!("no {name} in {value}"))
+}
+
+/// The cosines of the grid, from 0 to 90 degrees by a hundredth, as 20 fraction bits hold them; and unrounded.
+fn cosines() -> impl Iterator<Item = (i64, f64)> {
+    (0..=9000).map(|step| {
+        let cosine = (f64::from(step) / 100.0).to_radians().cos();
+        ((cosine * 1048576.0).round() as i64, cosine)
+    })
+}
+
+/// The largest and the mean.
+fn spread(errors: impl Iterator<Item = f64>) -> (f64, f64) {
+    let errors: Vec<f64> = errors.map(f64::abs).collect();
+    let largest = errors.iter().copied().fold(0.0, f64::max);
+    (largest, errors.iter().sum::<f64>() / errors.len() as f64)
+}
+
+#[track_caller]
+fn assert_spread(told: &Value, (largest, mean): (f64, f64)) {
+    for (name, wanted) in [("largest", largest), ("mean", mean)] {
+        let told = told[name].as_f64().expect("a number");
+        assert!(
+            (told - wanted).abs() < 1e-12,
+            "{name}: {told}, not {wanted}"
+        );
+    }
+}
+
+#[test]
+fn the_formula_of_cosine_power_at_35() {
+    let value = compared(&["--exponent", "35"]);
+    assert_eq!(value["angles"]["count"], 9001);
+    let errors = &entry(&value, "cosine-power")["errors"];
+    // (35/16·(c − 1) + 1)¹⁶ against c³⁵.
+    let formula = cosines().map(|(raw, _)| {
+        let cosine = raw as f64 / 1048576.0;
+        (35.0 / 16.0 * (cosine - 1.0) + 1.0).max(0.0).powi(16) - cosine.powi(35)
+    });
+    assert_spread(&errors["formula"], spread(formula));
+    let operands =
+        cosines().map(|(raw, cosine)| (raw as f64 / 1048576.0).powi(35) - cosine.powi(35));
+    assert_spread(&errors["operands"], spread(operands));
+}
+
+#[test]
+fn all_of_schlick_at_20() {
+    let value = compared(&["-n", "20"]);
+    let schlick = entry(&value, "schlick");
+    // In integers: ten bits of c / (20·(1 − c) + c).
+    let word = |raw: i64| (1024 * raw / (20 * (1048576 - raw) + raw)).min(1023) as f64 / 1024.0;
+    let whole = cosines().map(|(raw, cosine)| word(raw) - cosine.powi(20));
+    assert_spread(&schlick["errors"]["error"], spread(whole));
+    let fixed_point = cosines().map(|(raw, _)| {
+        let cosine = raw as f64 / 1048576.0;
+        word(raw) - cosine / (20.0 - 20.0 * cosine + cosine)
+    });
+    assert_spread(&schlick["errors"]["fixed_point"], spread(fixed_point));
+    // Words 0, 1 and 3, ten bits, and the clock of `start`; four words of control ROM, nine bits each.
+    assert_eq!(schlick["clocks_per_point"], 14.0);
+    assert_eq!(schlick["rom_bits"], 36);
+    assert_eq!(
+        schlick["multipliers"],
+        json!([[21, 10], [10, 8], [10, 8], [10, 8]])
+    );
+    assert_eq!(schlick.get("synthesis"), None);
+}
+
+#[test]
+fn every_device_is_there_and_configurations_as_they_are() {
+    let place = Place::new();
+    let devices = place.glint(["list", "--json"]).json()["devices"].clone();
+    let mut names: Vec<&str> = devices
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|device| device["name"].as_str().expect("a name"))
+        .collect();
+    let value = compared(&["core.toml", "--bits", "10"]);
+    let told: Vec<&str> = value["entries"]
+        .as_array()
+        .expect("entries")
+        .iter()
+        .map(|entry| entry["name"].as_str().expect("a name"))
+        .collect();
+    names.push("core.toml");
+    assert_eq!(told, names);
+    // The width is of the devices; the configuration has its own.
+    let toml = |name| {
+        entry(&value, name)["toml"]
+            .as_str()
+            .expect("TOML")
+            .to_owned()
+    };
+    assert!(
+        toml("cosine-power").contains("bits = 10\n"),
+        "{}",
+        toml("cosine-power")
+    );
+    assert!(
+        toml("core.toml").contains("[colour]\nbits = 8\n"),
+        "{}",
+        toml("core.toml")
+    );
+    let bits = |name| entry(&value, name)["multipliers"][1].clone();
+    assert_eq!(
+        (bits("cosine-power"), bits("core.toml")),
+        (json!([16, 10]), json!([16, 8]))
+    );
+}
+
+#[test]
+fn widths_that_a_device_refuses_are_noted() {
+    let value = compared(&["--bits", "50", "--intensity-fraction", "12"]);
+    let notes: Vec<&str> = value["notes"]
+        .as_array()
+        .expect("notes")
+        .iter()
+        .filter_map(Value::as_str)
+        .collect();
+    let note = notes.iter().find(|note| note.starts_with("schlick: "));
+    let note = note.expect("a note");
+    assert!(
+        note.contains("colour.bits = 50 is not accepted, 8 is compared")
+            && note.contains("1 to 12"),
+        "{note}"
+    );
+    // The other width is taken.
+    assert_eq!(entry(&value, "schlick")["multipliers"][1], json!([12, 8]));
+}
+
+#[test]
+fn an_exponent_outside_the_domain_is_a_dash_and_a_note() {
+    let run = compare(&["--exponent", "1001"]);
+    assert_eq!((run.code, run.err.as_str()), (0, ""), "{run:?}");
+    let rows: Vec<Vec<&str>> = run
+        .out
+        .lines()
+        .filter(|line| line.starts_with("| schlick "))
+        .map(|line| line.split('|').map(str::trim).collect())
+        .collect();
+    assert_eq!(rows.len(), 2, "{}", run.out);
+    assert_eq!(rows[0][2..10], ["-"; 8], "{}", run.out);
+    let note = "Note: schlick: n = 1001 is not in its domain, n = 1 to 1000.";
+    assert!(run.out.contains(note), "{}", run.out);
+    let value = compared(&["--exponent", "1001"]);
+    assert_eq!(entry(&value, "schlick")["errors"], Value::Null);
+}
+
+#[test]
+fn comma_separated() {
+    let place = Place::with("a, \"b\".toml", COSINE_POWER);
+    let run = place.glint(["compare", "--no-synthesis", "--csv", "a, \"b\".toml"]);
+    assert_eq!((run.code, run.err.as_str()), (0, ""), "{run:?}");
+    let lines: Vec<&str> = run.out.lines().collect();
+    assert!(lines[0].starts_with("name,device,exponent,error_largest,error_mean,formula_largest,"));
+    assert!(lines[0].ends_with(",bound_units,clocks_per_point,rom_bits,multipliers"));
+    let row = lines.last().expect("a row");
+    assert!(
+        row.starts_with("\"a, \"\"b\"\".toml\",cosine-power,35,0."),
+        "{row}"
+    );
+    assert!(row.ends_with(",8,40,\"21x16, 3 of 16x8\""), "{row}");
+    // What is to be told beside the rows does not disturb them.
+    let noted = compare(&["--csv", "--exponent", "1001"]);
+    assert!(!noted.out.contains("domain"), "{noted:?}");
+    assert!(
+        noted.err.contains("warning: schlick: n = 1001"),
+        "{noted:?}"
+    );
+}
+
+#[test]
+fn wrong_usage() {
+    compare(&["--csv", "--json"]);
+    for (arguments, message) in [
+        (&["--exponent", "many"][..], "invalid digit"),
+        (&["--exponent", "-1"], "unexpected argument '-1'"),
+        (&["--bits", "0"], "0 is not in 1..=64"),
+        (&["--time-limit", "0"], "0 is not in 1..=1000000"),
+        (
+            &["--cosine-fractio", "9"],
+            "a similar argument exists: '--cosine-fraction'",
+        ),
+    ] {
+        compare(arguments).refused(2, &[message]);
+    }
+    let both = compare(&["--csv", "--json"]);
+    assert_eq!(both.code, 2, "{both:?}");
+    assert!(both.out.contains("give one"), "{both:?}");
+    compare(&["missing.toml"]).refused(1, &["missing.toml"]);
+}
+
+/// A comparison with `PATH` leading to this `yosys` alone, if to any.
+#[cfg(unix)]
+fn with_yosys(script: Option<&str>, arguments: &[&str]) -> Run {
+    let place = Place::new();
+    std::fs::create_dir(place.at("tools")).unwrap();
+    if let Some(script) = script {
+        place.script("tools/yosys", script);
+    }
+    let mut command = place.command();
+    command.env("PATH", place.at("tools"));
+    Run::of(command.arg("compare").args(arguments).output())
+}
+
+/// Writes statistics of the module that the script names.
+#[cfg(unix)]
+const COUNTS: &str = r#"
+s=${3#*-check -top }
+cells='"SB_LUT4": 11, "SB_MAC16": 3, "SB_RAM40_4K": 2, "LUT4": 20, "CCU2C": 4, "MULT18X18D": 5, "DP16KD": 1,
+"LUT1": 1, "LUT6": 40, "DSP48E1": 6, "RAMB18E1": 1, "RAMB36E1": 1, "FDRE": 99'
+printf '{"modules": {"\\\\%s": {"num_cells_by_type": {%s}}}}' "${s%%;*}" "$cells" >statistics.json"#;
+
+#[cfg(unix)]
+#[test]
+fn what_a_device_takes() {
+    let run = with_yosys(Some(COUNTS), &["--json"]);
+    assert_eq!((run.code, run.err.as_str()), (0, ""), "{run:?}");
+    let value = run.json();
+    let told = &entry(&value, "schlick")["synthesis"];
+    // A carry cell of ECP5 is two tables, the larger RAM of Xilinx two of the smaller.
+    assert_eq!(
+        *told,
+        json!({
+            "ice40": { "luts": 11, "dsps": 3, "block_rams": 2 },
+            "ecp5": { "luts": 20 + 4 * 2, "dsps": 5, "block_rams": 1 },
+            "xilinx7": { "luts": 20 + 41, "dsps": 6, "block_rams": 3 },
+        })
+    );
+    let text = with_yosys(Some(COUNTS), &[]).out;
+    let rows: Vec<&str> = text
+        .lines()
+        .filter(|line| line.starts_with("| schlick "))
+        .collect();
+    let cells: Vec<&str> = rows[1].split('|').map(str::trim).collect();
+    assert_eq!(
+        cells[5..14],
+        ["11", "3", "2", "28", "5", "1", "61", "6", "3"]
+    );
+    let csv = with_yosys(Some(COUNTS), &["--csv"]).out;
+    assert!(
+        csv.lines()
+            .next()
+            .is_some_and(|line| line.ends_with(",xilinx7_block_rams")),
+        "{csv}"
+    );
+    assert!(csv.contains(",11,3,2,28,5,1,61,6,3\n"), "{csv}");
+}
+
+#[cfg(unix)]
+#[test]
+fn yosys_is_missing() {
+    let run = with_yosys(None, &[]);
+    assert_eq!((run.code, run.err.as_str()), (0, ""), "{run:?}");
+    assert!(
+        run.out
+            .contains("Note: `yosys` is not on PATH; `bash tools/install` installs it")
+    );
+    assert!(!run.out.contains("LUT |"), "{}", run.out);
+    let value = with_yosys(None, &["--json"]).json();
+    assert_eq!(entry(&value, "schlick").get("synthesis"), None);
+    assert_eq!(value["ok"], true);
+}
+
+#[cfg(unix)]
+#[test]
+fn yosys_fails() {
+    let fails = "echo 'ERROR: out of luck'; exit 3";
+    let run = with_yosys(Some(fails), &[]);
+    assert_eq!(run.code, 1, "{run:?}");
+    for part in [
+        "FAILS: schlick, ECP5: `yosys` failed (exit status: 3)",
+        "out of luck",
+        "| schlick ",
+    ] {
+        assert!(run.out.contains(part), "no `{part}` in {}", run.out);
+    }
+    let value = with_yosys(Some(fails), &["--json"]).json();
+    assert_eq!(value["ok"], false);
+    assert_eq!(entry(&value, "schlick")["synthesis"]["ecp5"], Value::Null);
+    let told = value["problems"][0]["message"].as_str().expect("a message");
+    assert!(told.contains("out of luck"), "{told}");
+
+    let silent = with_yosys(Some("exit 0"), &[]);
+    assert_eq!(silent.code, 1, "{silent:?}");
+    assert!(
+        silent.out.contains("`yosys` wrote no statistics"),
+        "{silent:?}"
+    );
+    let garbled = with_yosys(Some("echo nothing >statistics.json"), &[]);
+    assert_eq!(garbled.code, 1, "{garbled:?}");
+    assert!(garbled.out.contains("are no JSON"), "{garbled:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn yosys_hangs() {
+    // Only for one family, so that this does not take long.
+    let hangs = format!("case $3 in *synth_ecp5*) exec /bin/sleep 100;; esac\n{COUNTS}");
+    let run = with_yosys(Some(&hangs), &["--time-limit", "1"]);
+    assert_eq!(run.code, 1, "{run:?}");
+    assert!(
+        run.out
+            .contains("FAILS: schlick, ECP5: `yosys` did not end within"),
+        "{run:?}"
+    );
+}
