@@ -1,10 +1,12 @@
-//! The divider block in a device of its own, through the built-in simulator: every quotient, remainder
-//! and clock of small operands, against integer division.
+//! The divider, through the built-in simulator: the block in a device of its own, every quotient,
+//! remainder and clock of small operands against integer division; and the edges of `schlick`.
 
+use glint::config;
 use glint::dsl::blocks::divider::Divider;
 use glint::dsl::{Designer, end, loop_while, step, valid};
 use glint::fixed::Format;
 use glint::netlist::{Design, NetId};
+use glint::registry::Registry;
 use glint::sim::Simulator;
 
 /// A device that divides two operands.
@@ -55,34 +57,37 @@ impl<'a> Bench<'a> {
         self.simulator.set(at, bits);
     }
 
-    /// Quotient, remainder, and the clocks from `start` to `valid`.
-    fn divide(&mut self, a: u64, b: u64) -> (u64, u64, u32) {
-        for (name, bits) in [
-            ("a", a),
-            ("b", b),
-            ("a_write", 1),
-            ("b_write", 1),
-            ("start", 1),
-        ] {
-            self.set(name, bits);
-        }
+    /// Writes the operands and starts; the clocks until `valid`, in which this returns.
+    fn run(&mut self, operands: &[(&str, u64)]) -> u32 {
+        // The end of the computation before.
         self.simulator.clock().expect("a clock");
-        for name in ["a_write", "b_write", "start"] {
-            self.set(name, 0);
+        for (name, bits) in operands {
+            self.set(name, *bits);
+            self.set(&format!("{name}_write"), 1);
         }
+        self.set("start", 1);
+        self.simulator.clock().expect("a clock");
+        for (name, _) in operands {
+            self.set(&format!("{name}_write"), 0);
+        }
+        self.set("start", 0);
         for clock in 1..100 {
             if self.value("valid") == 1 {
-                let result = (
-                    self.value("ratio_out"),
-                    self.value("ratio_remainder"),
-                    clock,
-                );
-                self.simulator.clock().expect("a clock");
-                return result;
+                return clock;
             }
             self.simulator.clock().expect("a clock");
         }
-        panic!("{a} / {b} does not end");
+        panic!("{operands:?} do not end");
+    }
+
+    /// Quotient, remainder, and the clocks from `start` to `valid`.
+    fn divide(&mut self, a: u64, b: u64) -> (u64, u64, u32) {
+        let clocks = self.run(&[("a", a), ("b", b)]);
+        (
+            self.value("ratio_out"),
+            self.value("ratio_remainder"),
+            clocks,
+        )
     }
 }
 
@@ -148,4 +153,58 @@ fn negative_operands_are_refused() {
     let _ = Divider::new(&d, "ratio", a.q(), b.q(), 5);
     let told = d.finish().expect_err("a mistake").to_string();
     assert!(told.contains("operands are not negative"), "{told}");
+}
+
+/// Ends of both operands, and one step within them; cos γ is signed here.
+#[test]
+fn edges_of_schlick() {
+    let registry = Registry::catalogue();
+    let text = "device = \"schlick\"\ncosine.signed = true\n";
+    let config = config::parse("edges.toml", text, &registry.schemas());
+    let config = config.unwrap_or_else(|problems| panic!("{problems}"));
+    let device = registry.device("schlick").expect("the device");
+    let design = device
+        .design(&config)
+        .unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let mut bench = Bench::new(&design);
+    let one = 1 << 20;
+    let negative = |raw: u64| (1 << 22) - raw;
+    for (cosine, exponent, quotient) in [
+        // 0/0 and all that is not lit.
+        (0, 0, 0),
+        (0, 1, 0),
+        (0, 1023, 0),
+        (negative(1), 0, 0),
+        (negative(one), 1000, 0),
+        // n = 0: 1 wherever there is light, less an ulp.
+        (1, 0, 1023),
+        (one, 0, 1023),
+        // cos γ = 1.0, and what exceeds it.
+        (one, 1, 1023),
+        (one, 1023, 1023),
+        (one + 1, 1023, 1023),
+        (2 * one - 1, 1000, 1023),
+        // n = 1 is cos γ, truncated.
+        (one / 2, 1, 512),
+        (one / 2 - 1, 1, 511),
+        (1, 1, 0),
+        // 1024·(2²⁰ − 1)/(1023 + 2²⁰ − 1) = 1023.001…: the last bit is exact.
+        (one - 1, 1023, 1023),
+        // 1024·(2²⁰ − 2)/(2·1023 + 2²⁰ − 2) = 1022.003….
+        (one - 2, 1023, 1022),
+        // The divisor is a multiple of the dividend: (1/2)/(1023/2 + 1/2) = 1/1024, and just below.
+        (one / 2, 1023, 1),
+        (one / 2 - 1, 1023, 0),
+    ] {
+        let operands = [("cos_gamma", cosine), ("exponent", exponent), ("red", 255)];
+        assert_eq!(bench.run(&operands), 13);
+        assert_eq!(
+            bench.value("quotient"),
+            quotient,
+            "{cosine} with n = {exponent}"
+        );
+        assert!(bench.value("quotient_divisor") > 0);
+        // To the nearest, ties upward.
+        assert_eq!(bench.value("red_out"), (255 * quotient + 512) / 1024);
+    }
 }

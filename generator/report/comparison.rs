@@ -251,10 +251,10 @@ mod tests {
         let d = Designer::new("products");
         let a = d.operand("a", Format::unsigned(0, 4)).q();
         let b = d.operand("b", Format::signed(0, 8)).q();
-        let small = d.mul("small", a, a);
-        let large = d.mul("large", a, b);
-        d.output("small_out", small);
-        d.output("large_out", large);
+        let square = d.mul("square", a, a);
+        let scaled = d.mul("scaled", a, b);
+        d.output("square_out", square);
+        d.output("scaled_out", scaled);
         d.microprogram([step("idle", []), step("result", [valid(), end()])]);
         let design = d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"));
         // A sign bit each.
