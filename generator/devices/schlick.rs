@@ -72,7 +72,7 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram([
         step("operands cos gamma, n", []),
         step(
-            "remainder <- cos gamma, divisor <- n*(1 - cos gamma) + cos gamma",
+            "cos gamma by n*(1 - cos gamma) + cos gamma",
             quotient.load(),
         ),
         step(
