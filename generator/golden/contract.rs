@@ -82,6 +82,14 @@ pub fn bound(shares: &[Share], frac: u32, colour_bits: u32, output_rounding: Rou
     }
 }
 
+/// The raw value of the operand for the exponent `n`; `None` where its domain or its format has none.
+pub fn exponent_at(operand: &Operand, n: f64) -> Option<i64> {
+    let raw = operand.format.quantise(n);
+    let held = operand.format.to_f64(raw) == n;
+    let (raw, (low, high)) = (raw as i64, operand.domain);
+    (held && (low..=high).contains(&raw)).then_some(raw)
+}
+
 /// The control operands among `operands` for an angle `gamma` (in radians) and an exponent: `cos_gamma` and
 /// `exponent`, both of which must be there. Others take their value in `neutral`, or else the value of
 /// their domain that is nearest to 0.
@@ -105,11 +113,7 @@ pub fn operands_at(
             let nearest = |value: f64| operand.format.quantise(value) as i64;
             match operand.name.as_str() {
                 COSINE => Some(nearest(libm::cos(gamma)).clamp(low, high)),
-                EXPONENT => {
-                    let raw = nearest(n);
-                    let held = operand.format.to_f64(i128::from(raw)) == n;
-                    (held && (low..=high).contains(&raw)).then_some(raw)
-                }
+                EXPONENT => exponent_at(operand, n),
                 name => {
                     let given = neutral.iter().find(|(other, _)| *other == name);
                     Some(given.map_or(0, |(_, raw)| *raw).clamp(low, high))

@@ -2,9 +2,18 @@
 //!
 //! Angles are in right angles: a raw value of `2^F` is 90°.
 
+use std::f64::consts::FRAC_PI_2;
+
 use super::Operand;
 use super::handshake::{After, Handshake, OperandRegister, bits};
 use crate::fixed::{Format, Overflow, Rounding, exp2};
+
+/// The raw value of an angle operand that is nearest to `angle`, in radians, or the end of its domain.
+pub fn raw_angle(operand: &Operand, angle: f64) -> i64 {
+    let (low, high) = operand.domain;
+    let raw = operand.format.quantise(angle / FRAC_PI_2) as i64;
+    raw.clamp(low, high)
+}
 
 /// Control block 14 with the accumulator: counter 5, adder 6, mux 7, register 8, and the operand registers
 /// that they use.

@@ -15,6 +15,9 @@ pub const ANGLES_PER_DEGREE: u32 = 100;
 /// Angles of the grid, both ends among them.
 pub const ANGLES: u32 = 90 * ANGLES_PER_DEGREE + 1;
 
+/// An angle at which a device is timed, in degrees.
+const TYPICAL: f64 = 10.0;
+
 /// An absolute error over the grid.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Spread {
@@ -76,31 +79,19 @@ pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
     Some(accuracy)
 }
 
-/// Clocks per point of the exponent `n`, from one `start` to the next.
-///
-/// A device that shows a line of points to a `start` is measured on its longest line: operands on which
-/// neither the angle nor n has any bearing are at the top of their domains.
+/// Clocks per point of the exponent `n`, from one `start` to the next; where a `start` shows a line of points,
+/// on the longest.
 ///
 /// # Errors
 /// A device that does not end, or shows no point.
 pub fn clocks_per_point(design: &Design, contract: &dyn Contract, n: f64) -> Result<f64> {
-    let at = |degrees: f64, n: f64| contract.at(degrees.to_radians(), n);
-    let base = at(10.0, n);
-    let others: Vec<Vec<i64>> = [1.0, 4.0, 16.0, 64.0, 256.0, 1000.0]
-        .into_iter()
-        .filter_map(|n| at(20.0, n))
-        .chain(at(20.0, n))
-        .collect();
-    let operands: Vec<i64> = contract
-        .operands()
-        .iter()
-        .enumerate()
-        .map(
-            |(place, operand)| match base.as_ref().and_then(|base| base.get(place)) {
-                Some(&value) if others.iter().any(|other| other[place] != value) => value,
-                _ => operand.domain.1,
-            },
-        )
+    let point = contract.at(TYPICAL.to_radians(), n).unwrap_or_default();
+    let operands = contract.operands().iter().enumerate();
+    let operands: Vec<i64> = operands
+        .map(|(place, operand)| match point.get(place) {
+            Some(&raw) if contract.length() != Some(&operand.name) => raw,
+            _ => operand.domain.1,
+        })
         .collect();
     let (clocks, points) = trial::throughput(design, contract, &operands)?;
     Ok(f64::from(clocks) / f64::from(points))
@@ -194,6 +185,10 @@ mod tests {
 
         fn reference(&self, control: &[i64]) -> f64 {
             0.5 * reference::blinn(control[0] as f64 / 2.0, control[2] as f64)
+        }
+
+        fn length(&self) -> Option<&str> {
+            Some("intervals")
         }
 
         fn bound(&self) -> Bound {

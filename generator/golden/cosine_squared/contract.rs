@@ -83,6 +83,13 @@ impl Contract for CosineSquaredContract {
         vec![control[0], angle, control[2]]
     }
 
+    /// A line of one point, its angle stretched by `√(n/2)` as the host does it. What the operand denotes is
+    /// an angle and n together, so no cosine is told of it.
+    fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
+        let stretched = (n / 2.0).sqrt() * gamma;
+        Some(vec![0, line::raw_angle(&self.operands[1], stretched), 0])
+    }
+
     fn length(&self) -> Option<&str> {
         Some("length")
     }

@@ -113,6 +113,22 @@ impl Contract for QuadCosineContract {
         vec![control[0], angle, control[2], control[3]]
     }
 
+    /// A line of one point.
+    fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
+        let angle = line::raw_angle(&self.operands[1], gamma);
+        Some(vec![
+            0,
+            angle,
+            shared::exponent_at(&self.operands[2], n)?,
+            0,
+        ])
+    }
+
+    fn cosine(&self, control: &[i64]) -> Option<f64> {
+        let angle = control[1] as f64 * exp2(-(self.params.angle_fraction as i32));
+        Some(libm::cos(angle * FRAC_PI_2).max(0.0))
+    }
+
     fn length(&self) -> Option<&str> {
         Some("length")
     }

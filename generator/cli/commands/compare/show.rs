@@ -143,7 +143,7 @@ fn clocks(clocks: f64) -> String {
     if clocks.fract() == 0.0 {
         format!("{clocks}")
     } else {
-        format!("{clocks:.2}")
+        format!("{clocks:.3}")
     }
 }
 
