@@ -300,7 +300,7 @@ mod tests {
         assert_eq!(table.words, [15, 11, 5, 0]);
         assert!((table.step - 0.1768).abs() < 1e-4, "{}", table.step);
         // cos⁴ has its steepest slope at 30 degrees: 4 · 0.6495 · 0.5 a radian.
-        assert!((slope(4) - 1.299 * 1.5708).abs() < 1e-3);
+        assert!((slope(4) - 1.299 * std::f64::consts::FRAC_PI_2).abs() < 1e-3);
         assert_eq!(slope(1), std::f64::consts::FRAC_PI_2);
         assert!((slope(2) - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
         // 0.75 with 3 fraction bits in 4 steps; 1.0 and more in the last.
