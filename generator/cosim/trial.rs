@@ -143,7 +143,12 @@ fn example_operands(contract: &dyn Contract) -> Vec<i64> {
         let (low, high) = contract.operands()[at].domain;
         let typical = values[at];
         for step in 0..256 {
-            values[at] = high - (high - low) / 256 * step;
+            values[at] = if low < 0 {
+                // What has a sign goes toward 0 by twentieths: its scale may be any.
+                (high as f64 * libm::pow(0.95, step as f64)) as i64
+            } else {
+                high - (high - low) / 256 * step
+            };
             let f = contract.reference(&contract.point(&values[..control], 0));
             if (0.4..0.8).contains(&f) {
                 return values;
