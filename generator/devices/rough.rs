@@ -555,6 +555,7 @@ fn sine_rom<'d>(
             .iter()
             .map(|&k| k as u32)
             .collect(),
+        tail: None,
     };
     let shape = Shape {
         fraction: formats.sine.frac,

@@ -338,6 +338,23 @@ impl Designer {
         )
     }
 
+    /// The bits of the parts side by side, the first in the top bits, read in `format`, which is as wide
+    /// as all together: wiring.
+    #[track_caller]
+    pub fn join<'d>(&'d self, name: &str, parts: &[Signal<'d>], format: Format) -> Signal<'d> {
+        let width: u32 = parts.iter().map(|part| part.format().width()).sum();
+        if width != format.width() {
+            self.error(format!(
+                "`{name}` joins {width} bits to a word of {} ({format})",
+                format.width()
+            ));
+            return self.raw_constant("zeros", 0, format);
+        }
+        let parts = parts.iter().map(|part| part.id()).collect();
+        let op = Driver::Op(Op::Concat(parts));
+        self.signal(self.add_wiring(name, format, format.range(), op))
+    }
+
     /// 1 when both are 1; operands of one bit.
     #[track_caller]
     pub fn and<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {

@@ -3,4 +3,7 @@
 pub mod angle;
 pub mod colour;
 pub mod line;
+pub mod exponential;
+pub mod multipartite;
 pub mod segmented;
+pub mod shift;

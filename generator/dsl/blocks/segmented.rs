@@ -2,8 +2,9 @@
 //!
 //! The operand u (an integer of C bits, or exactly 2^C) is cut into ranges by factors of four:
 //! range j holds u in [2^(C−2j−2), 2^(C−2j)) and is cut uniformly, by the k_j top bits of the
-//! (C−2j)-bit number. What lies below the last range has one entry a value. So the segments are fine
-//! where a function such as √u is steep, at a cost of one priority mux and no shifter.
+//! (C−2j)-bit number. What lies below the last range has one entry a value, or is cut uniformly too. So
+//! the segments are fine where a function such as √u is steep, or where one such as −log₂(1 − u) must
+//! keep its relative accuracy, at a cost of one priority mux and no shifter.
 
 use crate::dsl::{Designer, Signal};
 use crate::fixed::{Format, Overflow, Rounding};
@@ -15,6 +16,8 @@ pub struct Segmentation {
     pub operand_bits: u32,
     /// k_j: log₂ of the segments into which range j would be cut if it reached down to 0.
     pub segments: Vec<u32>,
+    /// log₂ of the segments into which what lies below the last range is cut; `None`: one entry a value.
+    pub tail: Option<u32>,
 }
 
 /// A block of entries: a range, or what lies below the last one.
@@ -73,7 +76,7 @@ impl Segmentation {
             })
             .chain([Block {
                 bits: rest,
-                prefix: rest,
+                prefix: self.tail.unwrap_or(rest),
                 base: 0,
             }])
             .collect();
@@ -134,6 +137,17 @@ impl Segmentation {
     }
 }
 
+/// The straight line of the segment that an operand lies in: `base + slope · rest`.
+#[derive(Clone, Copy)]
+pub struct Line<'d> {
+    /// The value at the start of the segment, `u0.S`.
+    pub base: Signal<'d>,
+    /// The rise over the whole segment, with D fraction bits.
+    pub slope: Signal<'d>,
+    /// Where in the segment the operand lies, a fraction of it.
+    pub rest: Signal<'d>,
+}
+
 /// The table as hardware: `u` is an integer from 0 to 2^C; the result is `u0.S`.
 ///
 /// With `shape.synchronous` the ROM and the remainder are registered, and the result belongs to the
@@ -148,6 +162,48 @@ pub fn interpolate<'d>(
     entry: impl Fn(Segment) -> Entry,
     block: Option<u16>,
 ) -> Signal<'d> {
+    let line = look_up(d, name, u, cut, shape, entry, block);
+    let rise = d.mul(&format!("{name}_rise"), line.slope, line.rest);
+    line.at(d, name, rise)
+}
+
+impl<'d> Line<'d> {
+    /// The value of the line, `u0.S`, where `rise` is the product of slope and rest.
+    #[track_caller]
+    pub fn at(self, d: &'d Designer, name: &str, rise: Signal<'d>) -> Signal<'d> {
+        let value = self.base.format();
+        // The rise over a part of a segment is below the slope, which is below 1.
+        let rise = d.narrow(
+            &format!("{name}_rise_cut"),
+            rise,
+            value,
+            Rounding::Truncate,
+            Overflow::Saturate,
+        );
+        let sum = d.add(&format!("{name}_sum"), self.base, rise);
+        d.narrow(
+            &format!("{name}_value"),
+            sum,
+            value,
+            Rounding::Truncate,
+            Overflow::Saturate,
+        )
+    }
+}
+
+/// The table without the multiplication, for a device whose multiplier has other work too.
+///
+/// As [`interpolate`]; [`Line::at`] is the rest of it.
+#[track_caller]
+pub fn look_up<'d>(
+    d: &'d Designer,
+    name: &str,
+    u: Signal<'d>,
+    cut: &Segmentation,
+    shape: Shape,
+    entry: impl Fn(Segment) -> Entry,
+    block: Option<u16>,
+) -> Line<'d> {
     let words = cut.segment_of_words();
     let entries: Vec<Entry> = words
         .iter()
@@ -207,23 +263,7 @@ pub fn interpolate<'d>(
             ),
         )
         .named(&format!("{name}_slope"));
-    let rise = d.mul(&format!("{name}_rise"), slope, rest);
-    // The rise over a part of a segment is below the slope, which is below 1.
-    let rise = d.narrow(
-        &format!("{name}_rise_cut"),
-        rise,
-        value,
-        Rounding::Truncate,
-        Overflow::Saturate,
-    );
-    let sum = d.add(&format!("{name}_sum"), base, rise);
-    d.narrow(
-        &format!("{name}_value"),
-        sum,
-        value,
-        Rounding::Truncate,
-        Overflow::Saturate,
-    )
+    Line { base, slope, rest }
 }
 
 /// The word and the remainder, left-justified, a fraction of the segment.
