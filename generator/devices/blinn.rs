@@ -43,11 +43,10 @@ pub fn describe(d: &Designer, config: &Config) {
     let mantissa = normalised
         .word
         .bits(0, Format::unsigned(bits as i32 - 1, 0));
-    let whole = d.raw_constant("whole", 1 << (bits - 1), Format::unsigned(bits as i32, 0));
     let u = d
-        .sub("distance", whole, mantissa)
-        .doc("1.0 - cos gamma * 2^octave, from 0 to one half");
-    let table = move |u: f64| -libm::log2(1.0 - u * exp2(-(bits as i32)));
+        .not("distance", mantissa)
+        .doc("1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half");
+    let table = move |u: f64| -libm::log2(1.0 - (u + 1.0) * exp2(-(bits as i32)));
     decay::describe(
         d,
         config,

@@ -15,7 +15,7 @@ use super::{common, rounding};
 
 /// Where the two devices differ.
 pub struct Curve<'d> {
-    /// The operand of the table, an integer of `operand_bits` bits or exactly 2^`operand_bits`.
+    /// The operand of the table, an integer of `operand_bits` bits.
     pub u: Signal<'d>,
     /// Bits of the operand.
     pub operand_bits: u32,
@@ -69,7 +69,7 @@ pub fn keys(defaults: &Defaults) -> Vec<Key> {
         ),
         Key::integer(
             "decay.slope_fraction",
-            24,
+            23,
             8..=28,
             "Fraction bits of the rise over a segment.",
         ),
@@ -325,6 +325,7 @@ fn look_up<'d>(
             .map(|&k| k as u32)
             .collect(),
         tail: Some(config.integer("decay.tail") as u32),
+        packed: true,
     };
     let shape = Shape {
         fraction: value.frac,
@@ -445,7 +446,8 @@ pub fn notes() -> Vec<String> {
          line 1 - x/2; the integer shifts it right."
             .to_owned(),
         "The straight segments of the decay shrink toward cos gamma = 1, by factors of four of 1 - cos gamma, so \
-         that the decay keeps its relative accuracy, which is what n multiplies."
+         that the decay keeps its relative accuracy, which is what n multiplies. The table is addressed by the \
+         inverse of cos gamma, an ulp below 1 - cos gamma, which costs no subtractor: its contents make up for it."
             .to_owned(),
         "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0, for n = 0 too. Else n = 0 \
          gives what cos gamma = 1.0 gives: all ones, an ulp below 1.0."

@@ -34,13 +34,12 @@ pub fn describe(d: &Designer, config: &Config) {
     d.about(about());
     let cos_gamma = decay::cosine(d, config);
     let bits = config.integer("cosine.fraction") as u32;
-    let one = d.constant("one", 1.0, Format::unsigned(1, bits as i32));
+    let fraction = cos_gamma.bits(0, Format::unsigned(bits as i32, 0));
     let u = d
-        .sub("distance", one, cos_gamma)
-        .doc("1.0 - cos gamma")
-        .shift_left(bits as i32);
+        .not("distance", fraction)
+        .doc("1.0 - cos gamma, less an ulp");
     let table = move |u: f64| {
-        let gamma = libm::acos(1.0 - u * exp2(-(bits as i32)));
+        let gamma = libm::acos(1.0 - (u + 1.0) * exp2(-(bits as i32)));
         gamma * gamma / (4.0 * LN_2)
     };
     decay::describe(

@@ -556,6 +556,7 @@ fn sine_rom<'d>(
             .map(|&k| k as u32)
             .collect(),
         tail: None,
+        packed: false,
     };
     let shape = Shape {
         fraction: formats.sine.frac,

@@ -350,9 +350,18 @@ impl Designer {
             ));
             return self.raw_constant("zeros", 0, format);
         }
+        // Side by side, unsigned parts are the larger the larger each is.
+        let ends = parts.iter().try_fold((0, 0), |(low, high), part| {
+            let (from, to) = part.range();
+            let width = part.format().width();
+            (from >= 0).then_some((low << width | from, high << width | to))
+        });
+        let range = match ends {
+            Some((low, high)) if !format.signed => (low, high),
+            _ => format.range(),
+        };
         let parts = parts.iter().map(|part| part.id()).collect();
-        let op = Driver::Op(Op::Concat(parts));
-        self.signal(self.add_wiring(name, format, format.range(), op))
+        self.signal(self.add_wiring(name, format, range, Driver::Op(Op::Concat(parts))))
     }
 
     /// 1 when both are 1; operands of one bit.

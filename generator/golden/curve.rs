@@ -1,6 +1,6 @@
 //! An increasing convex function by straight segments, computed afresh.
 //!
-//! The operand u is an integer from 0 to 2^C. Ranges, each a quarter of the one before, are cut uniformly,
+//! The operand u is an integer of C bits. Ranges, each a quarter of the one before, are cut uniformly,
 //! and so is the tail below them; a value is a raw u0.S.
 
 use crate::fixed::exp2;
@@ -87,8 +87,6 @@ pub struct Curve {
     /// stand in `segments`.
     ranges: Vec<(u32, i64)>,
     segments: Vec<Segment>,
-    /// The value for u = 2^C, which has a word of its own.
-    top: i64,
     largest: i64,
     pieces: Vec<Piece>,
 }
@@ -104,7 +102,6 @@ impl Curve {
             params: params.clone(),
             ranges: Vec::new(),
             segments: Vec::new(),
-            top: 0,
             largest: (1 << params.fraction) - 1,
             pieces: Vec::new(),
         };
@@ -117,15 +114,6 @@ impl Curve {
         for at in 0..curve.segments.len() {
             curve.fit(at, &function);
         }
-        let (last, scale) = (1u64 << params.operand_bits, exp2(params.fraction as i32));
-        let exact = function(last as f64);
-        curve.top = curve.largest.min((exact * scale + 0.5).floor() as i64);
-        curve.pieces.push(Piece {
-            start: last,
-            last,
-            error: (curve.top as f64 / scale - exact).abs(),
-            shape: 0.0,
-        });
         Ok(curve)
     }
 
@@ -197,7 +185,7 @@ impl Curve {
         });
     }
 
-    /// Every segment, and the word for u = 2^C.
+    /// Every segment.
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
@@ -205,9 +193,6 @@ impl Curve {
     /// The value for u.
     #[inline]
     pub fn at(&self, u: i64) -> i64 {
-        if u >> self.params.operand_bits != 0 {
-            return self.top;
-        }
         let length = 64 - (u as u64).leading_zeros();
         // Two bits a range.
         let range = ((self.params.operand_bits - length) / 2) as usize;
@@ -250,8 +235,6 @@ mod tests {
         assert_eq!([0, 1, 2, 3].map(|u| curve.at(u)), [0, 3, 6, 9]);
         // u = 4 … 7: 12 … 36.75, to 48: slope 36, 9 a step; above: 12, 9.75, 9, 9.75: base 10.5 + 0.5 = 11.
         assert_eq!([4, 5, 6, 7].map(|u| curve.at(u)), [11, 20, 29, 38]);
-        // The top has its own word.
-        assert_eq!(curve.at(16), 192);
         // The last of four segments, 12 … 15: 108, 126.75, 147, 168.75, to 192: slope 84, 21 a step;
         // above: 108, 105.75, 105, 105.75: base 106.5 + 0.5 = 107.
         assert_eq!([12, 15].map(|u| curve.at(u)), [107, 170]);
@@ -261,7 +244,7 @@ mod tests {
     fn pieces_bound_every_operand() {
         for (segments, tail) in [(&[2, 2][..], 0), (&[4][..], 1), (&[3, 2][..], 0)] {
             let curve = parabola(segments, tail);
-            for u in 0..=16i64 {
+            for u in 0..16i64 {
                 let holds = |piece: &&Piece| (piece.start..=piece.last).contains(&(u as u64));
                 let piece = curve.pieces().iter().find(holds).expect("a piece");
                 let error = (curve.at(u) as f64 - 0.75 * (u * u) as f64).abs() / 256.0;

@@ -149,7 +149,7 @@ impl Params {
 
     fn curve(&self) -> curve::Params {
         curve::Params {
-            // Of a cosine of at least one half, u is at most one half.
+            // Of a cosine of at least one half, u is below one half.
             operand_bits: match self.function {
                 Function::Logarithm => self.cosine_fraction - 1,
                 Function::Angle => self.cosine_fraction,
@@ -161,9 +161,9 @@ impl Params {
         }
     }
 
-    /// What the table holds, at u = 1 − c as an integer with C fraction bits.
+    /// What the table holds, at u, an integer with C fraction bits: 1 − c, less an ulp.
     fn table(&self, u: f64) -> f64 {
-        let cosine = 1.0 - u * exp2(-(self.cosine_fraction as i32));
+        let cosine = 1.0 - (u + 1.0) * exp2(-(self.cosine_fraction as i32));
         match self.function {
             Function::Logarithm => -libm::log2(cosine),
             Function::Angle => {
@@ -233,22 +233,22 @@ impl Arithmetic {
         })
     }
 
-    /// How often c doubles before it is at least one half, and the operand of the table.
+    /// How often c doubles before it is at least one half, and the operand of the table: the inverse of what
+    /// has become of c's fraction.
     ///
-    /// Without a fraction (c = 0 and 1.0) the hardware counts all ones and finds the operand one half; f does
-    /// not depend on either.
+    /// Without a fraction (c = 0 and 1.0) the hardware counts all ones; f does not depend on either.
     #[inline]
     fn operand(&self, cosine: i64) -> (i64, i64) {
+        let fraction = cosine & (self.one - 1);
         match self.function {
-            Function::Angle => (0, self.one - cosine),
+            Function::Angle => (0, self.one - 1 - fraction),
+            Function::Logarithm if fraction == 0 => {
+                let ones = (self.cosine_fraction - 1).ilog2() + 1;
+                ((1 << ones) - 1, self.one / 2 - 1)
+            }
             Function::Logarithm => {
-                let fraction = cosine & (self.one - 1);
-                if fraction == 0 {
-                    let ones = (self.cosine_fraction - 1).ilog2() + 1;
-                    return ((1 << ones) - 1, self.one / 2);
-                }
                 let octave = self.cosine_fraction - 1 - fraction.ilog2();
-                (i64::from(octave), self.one - (fraction << octave))
+                (i64::from(octave), self.one - 1 - (fraction << octave))
             }
         }
     }

@@ -18,6 +18,9 @@ pub struct Segmentation {
     pub segments: Vec<u32>,
     /// log₂ of the segments into which what lies below the last range is cut; `None`: one entry a value.
     pub tail: Option<u32>,
+    /// The operand is never 2^C. Then the words of a range's lowest quarter, where ranges below have taken
+    /// over, are addressed by nothing, and the blocks of those ranges stand there.
+    pub packed: bool,
 }
 
 /// A block of entries: a range, or what lies below the last one.
@@ -82,10 +85,31 @@ impl Segmentation {
             .collect();
         let mut order: Vec<usize> = (0..blocks.len()).collect();
         order.sort_by_key(|&at| std::cmp::Reverse(blocks[at].prefix));
+        // Words that nothing addresses: the first, and log2 of how many, to which the first is aligned.
+        let mut holes: Vec<(u32, u32)> = Vec::new();
         let mut next = 0;
         for at in order {
-            blocks[at].base = next;
-            next += 1 << blocks[at].prefix;
+            let prefix = blocks[at].prefix;
+            let hole = (0..holes.len())
+                .filter(|&hole| holes[hole].1 >= prefix)
+                .min_by_key(|&hole| holes[hole].1);
+            blocks[at].base = match hole {
+                None => {
+                    next += 1 << prefix;
+                    next - (1 << prefix)
+                }
+                Some(hole) => {
+                    let (base, mut size) = holes.swap_remove(hole);
+                    while size > prefix {
+                        size -= 1;
+                        holes.push((base + (1 << size), size));
+                    }
+                    base
+                }
+            };
+            if self.packed && at < self.segments.len() {
+                holes.push((blocks[at].base, prefix - 2));
+            }
         }
         blocks
     }
@@ -104,12 +128,13 @@ impl Segmentation {
     pub fn entries(&self) -> usize {
         self.blocks()
             .iter()
-            .map(|block| 1usize << block.prefix)
-            .sum()
+            .map(|block| block.base as usize + (1 << block.prefix))
+            .max()
+            .unwrap_or(0)
     }
 
     /// The segment of each word of the table; `None` where no value of u leads. The word that
-    /// u = 2^C leads to has that one value.
+    /// u = 2^C leads to, if it may be that, has that one value.
     pub fn segment_of_words(&self) -> Vec<Option<Segment>> {
         let mut words = vec![None; self.entries()];
         let blocks = self.blocks();
@@ -128,11 +153,13 @@ impl Segmentation {
                 });
             }
         }
-        let top = blocks.first().map_or(0, |block| block.base as usize);
-        words[top] = Some(Segment {
-            from: 1 << self.operand_bits,
-            length: 1,
-        });
+        if !self.packed {
+            let top = blocks.first().map_or(0, |block| block.base as usize);
+            words[top] = Some(Segment {
+                from: 1 << self.operand_bits,
+                length: 1,
+            });
+        }
         words
     }
 }
