@@ -1,6 +1,8 @@
 //! Stated error bounds: no error measured at random points exceeds them, in any configuration. The proof
 //! over all control operands is recorded in `proofs/`, which `tests/proofs.rs` re-checks.
 
+use std::path::Path;
+
 use glint::config::{self, Schema};
 use glint::devices;
 use glint::fixed::{Rounding, exp2};
@@ -10,6 +12,8 @@ use glint::golden::cosine_squared::CosineSquaredContract;
 use glint::golden::quad_cosine::QuadCosineContract;
 use glint::golden::rough::{self, RoughContract};
 use glint::golden::sine::Scheme;
+use glint::golden::{blinn, gauss};
+use glint::registry::Registry;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
@@ -140,6 +144,36 @@ fn random_configurations_of_cosine_squared() {
         &devices::cosine_squared::schema(),
         CosineSquaredContract::new,
     );
+}
+
+#[test]
+fn random_configurations_of_blinn() {
+    assert_random_configurations(&devices::blinn::schema(), blinn::contract);
+}
+
+#[test]
+fn random_configurations_of_gauss() {
+    assert_random_configurations(&devices::gauss::schema(), gauss::contract);
+}
+
+/// What the two configurations of `blinn` promise of f, by their bound or, for the small one, by this measure
+/// and the record of its proof: 1.0e-4 and 7e-4.
+#[test]
+fn blinn_is_as_close_as_it_promises() {
+    let read = |path: &str| {
+        config::read(Path::new(path), &Registry::catalogue().schemas())
+            .unwrap_or_else(|problems| panic!("{problems}"))
+    };
+    let best = blinn::contract(&read("configs/blinn.toml"));
+    assert!(best.bound().f <= 1.0e-4, "{:?}", best.bound());
+    assert!(best.f_format().frac >= 14);
+    let small = blinn::contract(&read("configs/blinn_small.toml"));
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    for _ in 0..2_000_000 {
+        let point = random_point(&small, &mut rng);
+        let error = small.sweep_error(&point);
+        assert!(error <= 7e-4, "{error} at {point:?}");
+    }
 }
 
 /// Configurations of which each widens one thing that the defaults leave alone.
