@@ -85,6 +85,20 @@ impl Registry {
                 contract: |config| {
                     Box::new(golden::cosine_squared::CosineSquaredContract::new(config))
                 },
+                name: "blinn",
+                summary: "cos(gamma)^n itself, by tables of -log2 and 2^-x (seeds 000 to 002)",
+                schema: devices::blinn::schema,
+                describe: devices::blinn::describe,
+                model: |config| Box::new(golden::blinn::model(config)),
+                contract: |config| Box::new(golden::blinn::contract(config)),
+            },
+            Device {
+                name: "gauss",
+                summary: "exp(-n*gamma^2/2), by tables of gamma^2 and 2^-x (seed 002)",
+                schema: devices::gauss::schema,
+                describe: devices::gauss::describe,
+                model: |config| Box::new(golden::gauss::model(config)),
+                contract: |config| Box::new(golden::gauss::contract(config)),
             },
             Device {
                 name: "schlick",

@@ -1,9 +1,12 @@
 //! The devices of the seeds: one file each, with its keys and its description and nothing else.
 
+pub mod blinn;
 mod common;
 pub mod cosine_power;
 pub mod cosine_squared;
 pub mod quad_cosine;
+mod decay;
+pub mod gauss;
 pub mod rough;
 pub mod schlick;
 

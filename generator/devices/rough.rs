@@ -555,6 +555,8 @@ fn sine_rom<'d>(
             .iter()
             .map(|&k| k as u32)
             .collect(),
+        tail: None,
+        packed: false,
     };
     let shape = Shape {
         fraction: formats.sine.frac,

@@ -356,6 +356,32 @@ impl Designer {
         )
     }
 
+    /// The bits of the parts side by side, the first in the top bits, read in `format`, which is as wide
+    /// as all together: wiring.
+    #[track_caller]
+    pub fn join<'d>(&'d self, name: &str, parts: &[Signal<'d>], format: Format) -> Signal<'d> {
+        let width: u32 = parts.iter().map(|part| part.format().width()).sum();
+        if width != format.width() {
+            self.error(format!(
+                "`{name}` joins {width} bits to a word of {} ({format})",
+                format.width()
+            ));
+            return self.raw_constant("zeros", 0, format);
+        }
+        // Side by side, unsigned parts are the larger the larger each is.
+        let ends = parts.iter().try_fold((0, 0), |(low, high), part| {
+            let (from, to) = part.range();
+            let width = part.format().width();
+            (from >= 0).then_some((low << width | from, high << width | to))
+        });
+        let range = match ends {
+            Some((low, high)) if !format.signed => (low, high),
+            _ => format.range(),
+        };
+        let parts = parts.iter().map(|part| part.id()).collect();
+        self.signal(self.add_wiring(name, format, range, Driver::Op(Op::Concat(parts))))
+    }
+
     /// 1 when both are 1; operands of one bit.
     #[track_caller]
     pub fn and<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {

@@ -4,9 +4,14 @@
 //! the netlist or the microcode, and it computes its own tables; that is what makes the comparison
 //! with the simulated hardware worth something.
 
+pub mod blinn;
 pub mod contract;
 pub mod cosine_power;
 pub mod cosine_squared;
+pub mod curve;
+pub mod decay;
+pub mod gauss;
+pub mod halving;
 pub mod handshake;
 pub mod keys;
 pub mod line;

@@ -106,6 +106,14 @@ pub fn quad_cosine(delta: f64, n: i64) -> f64 {
 #[inline]
 pub fn cosine_squared(stretched: f64) -> f64 {
     lobe(stretched, 2)
+/// The Gaussian of the angle (seed 002): `exp(−n·γ²/2)`, γ = arccos c.
+#[inline]
+pub fn gauss(c: f64, n: f64) -> f64 {
+    if c <= 0.0 {
+        return 0.0;
+    }
+    let gamma = libm::acos(c.min(1.0));
+    libm::exp(-n * gamma * gamma / 2.0)
 }
 
 /// Schlick's function (seed 002): `c / (n − n·c + c)`, 0 where `c ≤ 0`, `n = 0` included.
@@ -138,6 +146,10 @@ mod tests {
         assert_eq!(blinn(1.0, 1000.0), 1.0);
         assert_eq!(blinn(-0.1, 2.0), 0.0);
         assert_eq!(blinn(0.5, 3.0), 0.125);
+        assert_eq!(gauss(1.0, 1000.0), 1.0);
+        assert_eq!(gauss(-0.1, 2.0), 0.0);
+        // γ = 60°: exp(−π²/18).
+        assert!((gauss(0.5, 1.0) - 0.577_924_896_492_729_3).abs() < 1e-12);
         // n = 2, dγ = 0: the base is c itself.
         assert_eq!(rough(0.25, 1.0, false, 2.0), 0.0625);
         // n = 8, c = 1/2: the base is 4·(−1/2) + 1 = −1.

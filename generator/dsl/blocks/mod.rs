@@ -4,4 +4,7 @@ pub mod angle;
 pub mod colour;
 pub mod divider;
 pub mod line;
+pub mod exponential;
+pub mod multipartite;
 pub mod segmented;
+pub mod shift;

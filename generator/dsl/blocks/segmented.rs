@@ -2,8 +2,9 @@
 //!
 //! The operand u (an integer of C bits, or exactly 2^C) is cut into ranges by factors of four:
 //! range j holds u in [2^(C−2j−2), 2^(C−2j)) and is cut uniformly, by the k_j top bits of the
-//! (C−2j)-bit number. What lies below the last range has one entry a value. So the segments are fine
-//! where a function such as √u is steep, at a cost of one priority mux and no shifter.
+//! (C−2j)-bit number. What lies below the last range has one entry a value, or is cut uniformly too. So
+//! the segments are fine where a function such as √u is steep, or where one such as −log₂(1 − u) must
+//! keep its relative accuracy, at a cost of one priority mux and no shifter.
 
 use crate::dsl::{Designer, Signal};
 use crate::fixed::{Format, Overflow, Rounding};
@@ -15,6 +16,11 @@ pub struct Segmentation {
     pub operand_bits: u32,
     /// k_j: log₂ of the segments into which range j would be cut if it reached down to 0.
     pub segments: Vec<u32>,
+    /// log₂ of the segments into which what lies below the last range is cut; `None`: one entry a value.
+    pub tail: Option<u32>,
+    /// The operand is never 2^C. Then the words of a range's lowest quarter, where ranges below have taken
+    /// over, are addressed by nothing, and the blocks of those ranges stand there.
+    pub packed: bool,
 }
 
 /// A block of entries: a range, or what lies below the last one.
@@ -73,16 +79,37 @@ impl Segmentation {
             })
             .chain([Block {
                 bits: rest,
-                prefix: rest,
+                prefix: self.tail.unwrap_or(rest),
                 base: 0,
             }])
             .collect();
         let mut order: Vec<usize> = (0..blocks.len()).collect();
         order.sort_by_key(|&at| std::cmp::Reverse(blocks[at].prefix));
+        // Words that nothing addresses: the first, and log2 of how many, to which the first is aligned.
+        let mut holes: Vec<(u32, u32)> = Vec::new();
         let mut next = 0;
         for at in order {
-            blocks[at].base = next;
-            next += 1 << blocks[at].prefix;
+            let prefix = blocks[at].prefix;
+            let hole = (0..holes.len())
+                .filter(|&hole| holes[hole].1 >= prefix)
+                .min_by_key(|&hole| holes[hole].1);
+            blocks[at].base = match hole {
+                None => {
+                    next += 1 << prefix;
+                    next - (1 << prefix)
+                }
+                Some(hole) => {
+                    let (base, mut size) = holes.swap_remove(hole);
+                    while size > prefix {
+                        size -= 1;
+                        holes.push((base + (1 << size), size));
+                    }
+                    base
+                }
+            };
+            if self.packed && at < self.segments.len() {
+                holes.push((blocks[at].base, prefix - 2));
+            }
         }
         blocks
     }
@@ -101,12 +128,13 @@ impl Segmentation {
     pub fn entries(&self) -> usize {
         self.blocks()
             .iter()
-            .map(|block| 1usize << block.prefix)
-            .sum()
+            .map(|block| block.base as usize + (1 << block.prefix))
+            .max()
+            .unwrap_or(0)
     }
 
     /// The segment of each word of the table; `None` where no value of u leads. The word that
-    /// u = 2^C leads to has that one value.
+    /// u = 2^C leads to, if it may be that, has that one value.
     pub fn segment_of_words(&self) -> Vec<Option<Segment>> {
         let mut words = vec![None; self.entries()];
         let blocks = self.blocks();
@@ -125,13 +153,26 @@ impl Segmentation {
                 });
             }
         }
-        let top = blocks.first().map_or(0, |block| block.base as usize);
-        words[top] = Some(Segment {
-            from: 1 << self.operand_bits,
-            length: 1,
-        });
+        if !self.packed {
+            let top = blocks.first().map_or(0, |block| block.base as usize);
+            words[top] = Some(Segment {
+                from: 1 << self.operand_bits,
+                length: 1,
+            });
+        }
         words
     }
+}
+
+/// The straight line of the segment that an operand lies in: `base + slope · rest`.
+#[derive(Clone, Copy)]
+pub struct Line<'d> {
+    /// The value at the start of the segment, `u0.S`.
+    pub base: Signal<'d>,
+    /// The rise over the whole segment, with D fraction bits.
+    pub slope: Signal<'d>,
+    /// Where in the segment the operand lies, a fraction of it.
+    pub rest: Signal<'d>,
 }
 
 /// The table as hardware: `u` is an integer from 0 to 2^C; the result is `u0.S`.
@@ -148,6 +189,48 @@ pub fn interpolate<'d>(
     entry: impl Fn(Segment) -> Entry,
     block: Option<u16>,
 ) -> Signal<'d> {
+    let line = look_up(d, name, u, cut, shape, entry, block);
+    let rise = d.mul(&format!("{name}_rise"), line.slope, line.rest);
+    line.at(d, name, rise)
+}
+
+impl<'d> Line<'d> {
+    /// The value of the line, `u0.S`, where `rise` is the product of slope and rest.
+    #[track_caller]
+    pub fn at(self, d: &'d Designer, name: &str, rise: Signal<'d>) -> Signal<'d> {
+        let value = self.base.format();
+        // The rise over a part of a segment is below the slope, which is below 1.
+        let rise = d.narrow(
+            &format!("{name}_rise_cut"),
+            rise,
+            value,
+            Rounding::Truncate,
+            Overflow::Saturate,
+        );
+        let sum = d.add(&format!("{name}_sum"), self.base, rise);
+        d.narrow(
+            &format!("{name}_value"),
+            sum,
+            value,
+            Rounding::Truncate,
+            Overflow::Saturate,
+        )
+    }
+}
+
+/// The table without the multiplication, for a device whose multiplier has other work too.
+///
+/// As [`interpolate`]; [`Line::at`] is the rest of it.
+#[track_caller]
+pub fn look_up<'d>(
+    d: &'d Designer,
+    name: &str,
+    u: Signal<'d>,
+    cut: &Segmentation,
+    shape: Shape,
+    entry: impl Fn(Segment) -> Entry,
+    block: Option<u16>,
+) -> Line<'d> {
     let words = cut.segment_of_words();
     let entries: Vec<Entry> = words
         .iter()
@@ -207,23 +290,7 @@ pub fn interpolate<'d>(
             ),
         )
         .named(&format!("{name}_slope"));
-    let rise = d.mul(&format!("{name}_rise"), slope, rest);
-    // The rise over a part of a segment is below the slope, which is below 1.
-    let rise = d.narrow(
-        &format!("{name}_rise_cut"),
-        rise,
-        value,
-        Rounding::Truncate,
-        Overflow::Saturate,
-    );
-    let sum = d.add(&format!("{name}_sum"), base, rise);
-    d.narrow(
-        &format!("{name}_value"),
-        sum,
-        value,
-        Rounding::Truncate,
-        Overflow::Saturate,
-    )
+    Line { base, slope, rest }
 }
 
 /// The word and the remainder, left-justified, a fraction of the segment.

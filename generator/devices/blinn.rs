@@ -1,0 +1,80 @@
+//! `blinn` — cⁿ itself for run-time n (seeds 000–002: the function that all the others approximate).
+//!
+//! The seeds give no circuit. This is the one that a table logarithm, a product and a table exponential
+//! make: cⁿ = 2^(−n·decay) with the decay −log₂ c, an octave number before what the table holds.
+
+use crate::config::{Config, Problems, Schema};
+use crate::dsl::Designer;
+use crate::dsl::blocks::shift;
+use crate::fixed::{Format, exp2};
+use crate::netlist::About;
+
+use super::decay::{self, Curve, Defaults};
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    Schema {
+        device: "blinn",
+        keys: decay::keys(&Defaults {
+            coarse_fraction: 19,
+            segments: &[6, 5, 4, 3, 2],
+            offset_address: &[6, 5, 3],
+        }),
+        check,
+    }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    // Normalised, the top bit of the cosine is known.
+    decay::check(config, config.integer("cosine.fraction") - 1, problems);
+}
+
+/// The device.
+pub fn describe(d: &Designer, config: &Config) {
+    d.about(about());
+    let cos_gamma = decay::cosine(d, config);
+    let bits = config.integer("cosine.fraction") as u32;
+    let fraction = cos_gamma.bits(0, Format::unsigned(0, bits as i32));
+    let normalised = shift::normalise(d, "octave", fraction);
+    let octave = normalised
+        .zeros
+        .named("octave")
+        .doc("leading zeros of cos gamma");
+    let mantissa = normalised
+        .word
+        .bits(0, Format::unsigned(bits as i32 - 1, 0));
+    let u = d
+        .not("distance", mantissa)
+        .doc("1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half");
+    let table = move |u: f64| -libm::log2(1.0 - (u + 1.0) * exp2(-(bits as i32)));
+    decay::describe(
+        d,
+        config,
+        cos_gamma,
+        &Curve {
+            u,
+            operand_bits: bits - 1,
+            table: &table,
+            octave: Some(octave),
+            scale: 0,
+            doc: "-log2(cos gamma * 2^octave)",
+        },
+    );
+}
+
+fn about() -> About {
+    let mut notes = vec![
+        "The seeds hold every device against this function and give no circuit for it; structure and formats \
+         are Glint's own."
+            .to_owned(),
+        "Phong's function is this device with cos psi = V.R at the input in place of N.H.".to_owned(),
+    ];
+    notes.extend(decay::notes());
+    About {
+        device: "blinn".to_owned(),
+        title: "Specular intensity by Blinn's function itself".to_owned(),
+        formula: "out = colour * cos(gamma)^n".to_owned(),
+        source: "Seeds 000 to 002, the function that all devices approximate".to_owned(),
+        notes,
+    }
+}

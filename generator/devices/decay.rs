@@ -1,0 +1,459 @@
+//! What `blinn` and `gauss` share: `f = 2^(−n·decay)`, where the decay is a function of cos γ alone.
+//!
+//! The decay is read from straight segments (the first product), the exponent multiplies it (the second,
+//! in the same multiplier), and 2^−y of their product is one look at tables and a shift.
+
+use crate::config::{Config, Key, Problems, Value};
+use crate::dsl::blocks::colour::Colours;
+use crate::dsl::blocks::exponential::{self, Shape as Exponential};
+use crate::dsl::blocks::multipartite::{Cut, Offset};
+use crate::dsl::blocks::segmented::{self, Entry, Segment, Segmentation, Shape};
+use crate::dsl::{Designer, Signal, end, step, valid};
+use crate::fixed::{Format, Overflow, Rounding, exp2};
+
+use super::{common, rounding};
+
+/// Where the two devices differ.
+pub struct Curve<'d> {
+    /// The operand of the table, an integer of `operand_bits` bits.
+    pub u: Signal<'d>,
+    /// Bits of the operand.
+    pub operand_bits: u32,
+    /// What the table holds, a function of u as an integer: from 0 to below 1, increasing and convex.
+    pub table: &'d dyn Fn(f64) -> f64,
+    /// An integer that the decay has in front of what the table holds.
+    pub octave: Option<Signal<'d>>,
+    /// log₂ of what the sum of both is multiplied by to give the decay.
+    pub scale: i32,
+    /// What the table holds, in words.
+    pub doc: &'static str,
+}
+
+/// What the two devices have for defaults.
+pub struct Defaults {
+    /// `decay.coarse_fraction`.
+    pub coarse_fraction: i64,
+    /// `decay.segments`.
+    pub segments: &'static [i64],
+    /// `exponential.offset_address`.
+    pub offset_address: &'static [i64],
+}
+
+/// The keys.
+pub fn keys(defaults: &Defaults) -> Vec<Key> {
+    let mut intensity_rounding = common::intensity_rounding();
+    intensity_rounding.default = Value::Text("nearest".to_owned());
+    vec![
+        common::cosine_fraction(20),
+        common::cosine_signed(),
+        common::exponent_bits(),
+        common::colour_bits(),
+        Key::integer(
+            "decay.fraction",
+            26,
+            12..=28,
+            "Fraction bits of the decay: f = 2^(-n*decay).",
+        ),
+        Key::integers(
+            "decay.segments",
+            defaults.segments,
+            2..=10,
+            1..=11,
+            "log2 of the straight segments for each factor of four of 1 - cos, from the top.",
+        ),
+        Key::integer(
+            "decay.tail",
+            1,
+            0..=6,
+            "log2 of the segments into which what lies below the last of these is cut.",
+        ),
+        Key::integer(
+            "decay.slope_fraction",
+            23,
+            8..=28,
+            "Fraction bits of the rise over a segment.",
+        ),
+        Key::integer(
+            "decay.coarse_fraction",
+            defaults.coarse_fraction,
+            8..=28,
+            "Fraction bits with which a decay that is not small is multiplied by n; a small one keeps all.",
+        ),
+        Key::integer(
+            "exponential.address",
+            7,
+            3..=10,
+            "Leading bits of the fraction of n*decay that address the table of 2^-x.",
+        ),
+        Key::integers(
+            "exponential.offset_bits",
+            &[2, 3, 4],
+            2..=5,
+            1..=3,
+            "Bits of the fields below them, each with a table of offsets.",
+        ),
+        Key::integers(
+            "exponential.offset_address",
+            defaults.offset_address,
+            0..=10,
+            1..=3,
+            "Leading bits that choose the slope of each of these tables.",
+        ),
+        Key::integer(
+            "exponential.fraction",
+            18,
+            8..=24,
+            "Fraction bits of the tables of 2^-x.",
+        ),
+        Key::flag(
+            "tables.synchronous",
+            true,
+            "The tables read on the clock edge (block RAM) instead of at once (logic).",
+        ),
+        common::intensity_fraction(16),
+        intensity_rounding,
+        common::output_rounding(),
+        common::exponent_min(),
+        common::exponent_max(),
+    ]
+}
+
+/// The most bits of a fraction of n·decay.
+const MOST_EXPONENT_BITS: i64 = 20;
+
+/// The conditions between keys; `operand_bits` is how many the table's operand has.
+pub fn check(config: &Config, operand_bits: i64, problems: &mut Problems) {
+    common::check_exponents(config, problems);
+    check_decay(config, operand_bits, problems);
+    let integer = |key: &str| config.integer(key);
+    let (address, bits) = (
+        integer("exponential.address"),
+        config.integers("exponential.offset_bits"),
+    );
+    let addresses = config.integers("exponential.offset_address");
+    if addresses.len() != bits.len() {
+        problems.push(
+            "exponential.offset_address",
+            format!(
+                "{} entries for the {} fields of exponential.offset_bits",
+                addresses.len(),
+                bits.len()
+            ),
+            "one entry for each field".to_owned(),
+        );
+    }
+    if let Some(most) = addresses.iter().find(|&&most| most > address) {
+        problems.push(
+            "exponential.offset_address",
+            format!(
+                "a slope cannot be chosen by {most} of the {address} bits of exponential.address"
+            ),
+            format!("at most {address}, or a larger exponential.address"),
+        );
+    }
+    let total = address + bits.iter().sum::<i64>();
+    if total > MOST_EXPONENT_BITS {
+        problems.push(
+            "exponential.offset_bits",
+            format!("with exponential.address the fraction of n*decay would have {total} bits"),
+            format!("fewer or smaller fields, for at most {MOST_EXPONENT_BITS} bits in all"),
+        );
+    }
+}
+
+fn check_decay(config: &Config, operand_bits: i64, problems: &mut Problems) {
+    let segments = config.integers("decay.segments");
+    let rest = operand_bits - 2 * segments.len() as i64;
+    if rest < config.integer("decay.tail") {
+        problems.push(
+            "decay.segments",
+            format!(
+                "{rest} of the {operand_bits} bits of 1 - cos would remain for the tail below the last range"
+            ),
+            "fewer ranges, a smaller decay.tail, or a larger cosine.fraction".to_owned(),
+        );
+    }
+    for (range, &prefix) in (0i64..).zip(segments) {
+        let bits = operand_bits - 2 * range;
+        if prefix > bits {
+            problems.push(
+                "decay.segments",
+                format!("range {range} has {bits} bits of 1 - cos, which cannot be cut into 2^{prefix} segments"),
+                "fewer ranges or smaller entries, or a larger cosine.fraction".to_owned(),
+            );
+            break;
+        }
+    }
+    let fraction = config.integer("decay.fraction");
+    for (key, what) in [
+        ("decay.slope_fraction", "the rise over a segment"),
+        ("decay.coarse_fraction", "the decay for the product by n"),
+    ] {
+        let bits = config.integer(key);
+        if bits > fraction {
+            problems.push(
+                key,
+                format!("{bits} fraction bits of {what} do not go with {fraction} of the decay"),
+                format!("at most {fraction}, or a larger decay.fraction"),
+            );
+        }
+    }
+}
+
+/// The operand `cos_gamma`, limited to 0 … 1.0.
+pub fn cosine<'d>(d: &'d Designer, config: &Config) -> Signal<'d> {
+    let format = Format {
+        signed: config.flag("cosine.signed"),
+        int: 1,
+        frac: config.integer("cosine.fraction") as i32,
+    };
+    d.operand_clamped("cos_gamma", format, 0.0, 1.0)
+        .doc("cosine of the angle between normal and half vector")
+        .q()
+}
+
+/// Everything behind the operand `cos_gamma`: operands, the two products, 2^−y, outputs, microprogram.
+pub fn describe<'d>(d: &'d Designer, config: &Config, cos_gamma: Signal<'d>, curve: &Curve<'d>) {
+    let integer = |key: &str| config.integer(key) as i32;
+    let synchronous = config.flag("tables.synchronous");
+    let exponent = d
+        .operand("exponent", Format::unsigned(integer("exponent.bits"), 0))
+        .doc("specular exponent n")
+        .q();
+    let colours = Colours::new(d, integer("colour.bits"), None);
+    let f = Format::unsigned(0, integer("intensity.fraction"));
+    let exponential = Exponential {
+        cut: cut(config),
+        fraction: integer("exponential.fraction"),
+        synchronous,
+    };
+    // An integer part that shifts every bit of f out, and no larger.
+    let most = f.frac as u32 + 2;
+    let halvings_format = Format::unsigned(most.ilog2() as i32 + 1, exponential.cut.bits() as i32);
+
+    let operand_select = d.select("operand_select", &["segment", "power"]);
+    let decay = d
+        .register("decay", Format::unsigned(0, integer("decay.fraction")))
+        .doc(curve.doc);
+    let halvings = d
+        .register("halvings", halvings_format)
+        .doc("n*decay: how often f is half of 1.0");
+    let reflectance = d.register("reflectance", f).doc("f");
+
+    let line = look_up(d, config, curve, decay.format());
+    let (factor, small) = factor(d, config, curve, decay.q());
+    let first = d
+        .bus("first", operand_select, [line.slope, factor])
+        .doc("first operand of the multiplier");
+    let second = d
+        .bus("second", operand_select, [line.rest, exponent])
+        .doc("second operand of the multiplier");
+    let product = d
+        .shared_mul("product", &first, &second)
+        .doc("its point depends on the operands");
+    decay.takes(line.at(d, "curve", product.of(line.slope, line.rest)));
+
+    let power = product.of(factor, exponent);
+    let scaled = |name: &str, fraction: i32| {
+        d.narrow(
+            name,
+            power.shift_right(fraction - curve.scale),
+            halvings_format,
+            Rounding::Truncate,
+            Overflow::Saturate,
+        )
+    };
+    let coarse = scaled("halvings_coarse", integer("decay.coarse_fraction"));
+    let fine = scaled("halvings_fine", decay.format().frac);
+    halvings.takes(d.choose("halvings_next", small, [coarse, fine]));
+
+    let rounded = exponential::halvings(
+        d,
+        "exponential",
+        halvings.q(),
+        &exponential,
+        f.frac,
+        rounding(config, "intensity.rounding"),
+    );
+    reflectance.takes(ends(d, cos_gamma, halvings.q(), rounded));
+    let _ = d
+        .output("f_out", reflectance.q())
+        .doc("the reflectance, for a user's own multipliers");
+    colours.outputs(reflectance.q(), rounding(config, "output.rounding"));
+
+    d.microprogram([
+        step("segment of the decay addressed by cos gamma", []),
+        step("decay <- base + slope * rest", [decay.load()]),
+        step(
+            "halvings <- n * decay",
+            [first.pick(factor), second.pick(exponent), halvings.load()],
+        ),
+        step("tables of 2^-x addressed by the fraction", []),
+        step("reflectance <- 2^-halvings", [reflectance.load()]),
+        step("result", [valid(), end()]),
+    ]);
+}
+
+/// How the fraction of n·decay is cut.
+fn cut(config: &Config) -> Cut {
+    let bits = config.integers("exponential.offset_bits");
+    let addresses = config.integers("exponential.offset_address");
+    Cut {
+        address: config.integer("exponential.address") as u32,
+        offsets: bits
+            .iter()
+            .zip(addresses)
+            .map(|(&bits, &address)| Offset {
+                bits: bits as u32,
+                address: address as u32,
+            })
+            .collect(),
+    }
+}
+
+fn look_up<'d>(
+    d: &'d Designer,
+    config: &Config,
+    curve: &Curve<'d>,
+    value: Format,
+) -> segmented::Line<'d> {
+    let cut = Segmentation {
+        operand_bits: curve.operand_bits,
+        segments: config
+            .integers("decay.segments")
+            .iter()
+            .map(|&k| k as u32)
+            .collect(),
+        tail: Some(config.integer("decay.tail") as u32),
+        packed: true,
+    };
+    let shape = Shape {
+        fraction: value.frac,
+        slope_fraction: config.integer("decay.slope_fraction") as i32,
+        synchronous: config.flag("tables.synchronous"),
+    };
+    let entry = |segment: Segment| chord(segment, curve.table, shape);
+    segmented::look_up(d, "curve", curve.u, &cut, shape, entry, None)
+}
+
+/// The straight line through a segment of a convex function with the least error: the slope of the chord,
+/// and the base that puts the error of the segment's points symmetrically about 0, half an ulp up for what
+/// the truncated rise loses.
+fn chord(segment: Segment, function: &dyn Fn(f64) -> f64, shape: Shape) -> Entry {
+    let value = Format::unsigned(0, shape.fraction);
+    let (from, length) = (segment.from as f64, segment.length as f64);
+    if segment.length == 1 {
+        return Entry {
+            base: value.quantise(function(from)),
+            slope: 0,
+        };
+    }
+    let scale = exp2(shape.slope_fraction);
+    let slope = ((function(from + length) - function(from)) * scale + 0.5).floor();
+    let residual = |at: f64| function(from + at) - slope / scale * at / length;
+    // Convex: the greatest residual is at an end, the least where the curve is parallel to the line.
+    let last = length - 1.0;
+    let most = residual(0.0).max(residual(last));
+    let (mut low, mut high) = (0.0, last);
+    while high - low > 2.0 {
+        let third = (high - low) / 3.0;
+        let (a, b) = ((low + third).floor(), (high - third).ceil());
+        if residual(a) > residual(b) {
+            low = a;
+        } else {
+            high = b;
+        }
+    }
+    let middle = ((low + high) / 2.0).floor();
+    let least = [low, middle, high]
+        .into_iter()
+        .map(residual)
+        .fold(f64::MAX, f64::min);
+    Entry {
+        base: value.quantise((least + most) / 2.0 + exp2(-shape.fraction - 1)),
+        slope: slope as i128,
+    }
+}
+
+/// The decay as an operand of the multiplier, and whether it is a small one.
+///
+/// A small decay, below ¼ in the table's unit, meets large n and needs all its fraction bits; its two
+/// upper bits are zeros. Any other needs few, and has an octave number in front. So both are of about one
+/// width, and which it was decides only where the point of the product is.
+fn factor<'d>(
+    d: &'d Designer,
+    config: &Config,
+    curve: &Curve<'d>,
+    decay: Signal<'d>,
+) -> (Signal<'d>, Signal<'d>) {
+    let integer = |bits: u32| Format::unsigned(bits as i32, 0);
+    let width = decay.format().width();
+    let coarse_bits = config.integer("decay.coarse_fraction") as u32;
+    let mut coarse = decay.bits(width - coarse_bits, integer(coarse_bits));
+    let mut large = d.any("decay_large", decay.bits(width - 2, integer(2)));
+    if let Some(octave) = curve.octave {
+        coarse = d.join(
+            "decay_coarse",
+            &[octave, coarse],
+            integer(octave.format().width() + coarse_bits),
+        );
+        let far = d
+            .any("octave_any", octave)
+            .doc("cos gamma is below one half");
+        large = d.or("decay_far", large, far);
+    }
+    let small = d
+        .not("decay_small", large)
+        .doc("the decay is below 1/4, and all its bits count");
+    let fine = decay.bits(0, integer(width - 2));
+    let factor = d
+        .choose("factor", small, [coarse, fine])
+        .doc("the decay, its point by decay_small");
+    (factor, small)
+}
+
+/// f where it is known without tables: 0 for cos γ ≤ 0, and all ones, as near 1 as it can be, where cos γ is 1.0
+/// or n·decay is 0.
+fn ends<'d>(
+    d: &'d Designer,
+    cos_gamma: Signal<'d>,
+    halvings: Signal<'d>,
+    rounded: Signal<'d>,
+) -> Signal<'d> {
+    let format = rounded.format();
+    let facing = d
+        .any("facing", cos_gamma)
+        .doc("the surface faces the half vector");
+    let fades = d.any("fades", halvings);
+    let aligned = cos_gamma
+        .bit(cos_gamma.format().frac as u32)
+        .named("aligned")
+        .doc("cos gamma is 1.0");
+    let level = d.not("level", fades);
+    let peak = d.or("peak", aligned, level).doc("f is 1.0, less an ulp");
+    let ones = d.raw_constant("ones", format.max_raw(), format);
+    let lit = d.choose("lit", peak, [rounded, ones]);
+    let dark = d.raw_constant("dark", 0, format);
+    d.choose("reflectance_next", facing, [dark, lit])
+}
+
+/// What [`crate::netlist::About::notes`] says of both devices.
+pub fn notes() -> Vec<String> {
+    vec![
+        "Two products a point, in one shared multiplier (a second one would save a clock of six and cost one to \
+         two DSP blocks): the rise within a segment of the decay, and n times the decay. 2^-x over the fraction \
+         of n*decay comes from tables that are added (symmetric multipartite), for which it is stored less the \
+         line 1 - x/2; the integer shifts it right."
+            .to_owned(),
+        "The straight segments of the decay shrink toward cos gamma = 1, by factors of four of 1 - cos gamma, so \
+         that the decay keeps its relative accuracy, which is what n multiplies. The table is addressed by the \
+         inverse of cos gamma, an ulp below 1 - cos gamma, which costs no subtractor: its contents make up for it."
+            .to_owned(),
+        "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0, for n = 0 too. Else n = 0 \
+         gives what cos gamma = 1.0 gives: all ones, an ulp below 1.0."
+            .to_owned(),
+        "Writes while busy are ignored. The outputs follow the register of f and the colour registers: they \
+         hold from valid until a colour is written or the next computation reaches its word 4."
+            .to_owned(),
+    ]
+}

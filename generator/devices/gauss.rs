@@ -1,0 +1,75 @@
+//! `gauss` — exp(−n·γ²/2), γ = arccos c: the fourth function that seed 002 weighs.
+//!
+//! The seed gives no circuit, and prints the angle as ∠(H,L); its own formulas use ∠(N,H), which is taken
+//! here. exp(−n·γ²/2) = 2^(−n·decay) with the decay γ²/(2 ln 2), a smooth function of 1 − c.
+
+use std::f64::consts::LN_2;
+
+use crate::config::{Config, Problems, Schema};
+use crate::dsl::Designer;
+use crate::fixed::{Format, exp2};
+use crate::netlist::About;
+
+use super::decay::{self, Curve, Defaults};
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    Schema {
+        device: "gauss",
+        keys: decay::keys(&Defaults {
+            coarse_fraction: 24,
+            segments: &[6, 5, 4, 3, 2],
+            offset_address: &[6, 5, 3],
+        }),
+        check,
+    }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    decay::check(config, config.integer("cosine.fraction"), problems);
+}
+
+/// The device.
+pub fn describe(d: &Designer, config: &Config) {
+    d.about(about());
+    let cos_gamma = decay::cosine(d, config);
+    let bits = config.integer("cosine.fraction") as u32;
+    let fraction = cos_gamma.bits(0, Format::unsigned(bits as i32, 0));
+    let u = d
+        .not("distance", fraction)
+        .doc("1.0 - cos gamma, less an ulp");
+    let table = move |u: f64| {
+        let gamma = libm::acos(1.0 - (u + 1.0) * exp2(-(bits as i32)));
+        gamma * gamma / (4.0 * LN_2)
+    };
+    decay::describe(
+        d,
+        config,
+        cos_gamma,
+        &Curve {
+            u,
+            operand_bits: bits,
+            table: &table,
+            octave: None,
+            // At cos γ = 0 the decay is 1.78: the table holds half of it.
+            scale: 1,
+            doc: "gamma^2/(4 ln 2), half the decay",
+        },
+    );
+}
+
+fn about() -> About {
+    let mut notes = vec![
+        "The seed gives no circuit. It prints gamma as the angle between H and L; the angle between N and H, \
+         which is what makes the function comparable with cos^n, is taken here."
+            .to_owned(),
+    ];
+    notes.extend(decay::notes());
+    About {
+        device: "gauss".to_owned(),
+        title: "Specular intensity by a Gaussian of the angle".to_owned(),
+        formula: "out = colour * exp(-n * gamma^2 / 2)".to_owned(),
+        source: "Seed 002, the fourth function that it weighs".to_owned(),
+        notes,
+    }
+}
