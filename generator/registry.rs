@@ -68,6 +68,14 @@ impl Registry {
                 model: |config| Box::new(golden::cosine_power::CosinePowerModel::new(config)),
                 contract: |config| Box::new(golden::cosine_power::CosinePowerContract::new(config)),
             },
+            Device {
+                name: "threshold",
+                summary: "(n/2*(cos gamma - 1) + 1)^2 where it reaches ROM(n) (UA 30041)",
+                schema: devices::threshold::schema,
+                describe: devices::threshold::describe,
+                model: |config| Box::new(golden::threshold::ThresholdModel::new(config)),
+                contract: |config| Box::new(golden::threshold::ThresholdContract::new(config)),
+            },
         ])
     }
 

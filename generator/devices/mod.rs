@@ -3,6 +3,7 @@
 mod common;
 pub mod cosine_power;
 pub mod rough;
+pub mod threshold;
 
 use crate::config::Config;
 use crate::fixed::Rounding;

@@ -53,6 +53,18 @@ pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     (base * base).min(1.0)
 }
 
+/// `(n/2·(c − 1) + 1)²`, 0 where the base is negative: what UA 30041 (seed 001) compares with its level.
+#[inline]
+pub fn parabola(c: f64, n: f64) -> f64 {
+    rough(c, 1.0, false, n)
+}
+
+/// UA 30041: a reflectance where it reaches the level of visibility, otherwise 0.
+#[inline]
+pub fn threshold(square: f64, level: f64) -> f64 {
+    if square < level { 0.0 } else { square }
+}
+
 /// The paper's W (seed 002): `(n/m·(c − 1) + 1)^m`, 0 where the base is negative.
 ///
 /// `m` is a power of two, 2 … 16 in the seed.
