@@ -76,6 +76,14 @@ impl Registry {
                 model: |config| Box::new(golden::threshold::ThresholdModel::new(config)),
                 contract: |config| Box::new(golden::threshold::ThresholdContract::new(config)),
             },
+            Device {
+                name: "quadratic",
+                summary: "c + a(n)*(c^2 - c), c = cos gamma, a(n) from ROM (UA 20998)",
+                schema: devices::quadratic::schema,
+                describe: devices::quadratic::describe,
+                model: |config| Box::new(golden::quadratic::QuadraticModel::new(config)),
+                contract: |config| Box::new(golden::quadratic::QuadraticContract::new(config)),
+            },
         ])
     }
 

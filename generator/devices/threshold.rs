@@ -120,7 +120,7 @@ pub fn describe(d: &Designer, config: &Config) {
         rounding_f,
         Overflow::Saturate,
     ));
-    let one = d.constant("one", 1.0, Format::unsigned(1, f.frac));
+    let one = d.constant("base_one", 1.0, Format::unsigned(1, f.frac));
     let adder2 = d
         .add("adder2", scaled.q(), one)
         .block(2)
@@ -169,10 +169,10 @@ fn level_rom<'d>(d: &'d Designer, config: &Config, exponent: Signal<'d>) -> Rom<
         .collect();
     let most = words.iter().copied().max().unwrap_or(0);
     let comments = (0i64..)
-        .zip(&words)
-        .map(|(n, _)| {
+        .take(words.len())
+        .map(|n| {
             let level = hundredths(config, n);
-            format!("n = {n}: {}.{:02} units", level / 100, level % 100)
+            format!("{}.{:02} units", level / 100, level % 100)
         })
         .collect();
     let format = Format::holding(0, most, config.integer("intensity.fraction") as i32);
@@ -204,8 +204,8 @@ fn about(config: &Config) -> About {
         source: "UA 30041, the prototype in seed 001".to_owned(),
         notes: vec![
             "The seed multiplies by n; for cos^n to be approximated it must be n/2, which is wiring.".to_owned(),
-            "Every \"- 1\" and \"+ 1\" is 1.0. The seed's adders add a word of ones, and a carry: that is an ulp, and \
-             stands for 1.0 modulo 1.0 only."
+            "\"- 1\" and \"+ 1\" are 1.0 here. The seed's adder 1 adds a word of ones and its adder 2 a carry: an ulp \
+             down and up, which stands for 1.0 in words modulo 1.0 only."
                 .to_owned(),
             "The seed does not say what ROM(n) holds: here it holds the smallest f that is shown. Nothing passes where \
              the base is negative, whose square would rise again."

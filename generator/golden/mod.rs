@@ -9,6 +9,7 @@ pub mod cosine_power;
 pub mod handshake;
 pub mod keys;
 pub mod narrow;
+pub mod quadratic;
 pub mod rough;
 pub mod sine;
 pub mod threshold;

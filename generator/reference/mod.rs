@@ -65,6 +65,17 @@ pub fn threshold(square: f64, level: f64) -> f64 {
     if square < level { 0.0 } else { square }
 }
 
+/// UA 20998 (seed 001): `c + a·(c² − c)` with a = a(n), 0 where that is negative.
+///
+/// For a < 0, which no table has, it would exceed c.
+#[inline]
+pub fn quadratic(c: f64, a: f64) -> f64 {
+    if c <= 0.0 {
+        return 0.0;
+    }
+    (c * (1.0 - a * (1.0 - c))).max(0.0)
+}
+
 /// The paper's W (seed 002): `(n/m·(c − 1) + 1)^m`, 0 where the base is negative.
 ///
 /// `m` is a power of two, 2 … 16 in the seed.
