@@ -84,6 +84,14 @@ impl Registry {
                 model: |config| Box::new(golden::quadratic::QuadraticModel::new(config)),
                 contract: |config| Box::new(golden::quadratic::QuadraticContract::new(config)),
             },
+            Device {
+                name: "lyon",
+                summary: "max(0, 1 - beta*D^2)^m, D = N - H, m = 2, 4, 8, 16 (US 5 739 820)",
+                schema: devices::lyon::schema,
+                describe: devices::lyon::describe,
+                model: |config| Box::new(golden::lyon::LyonModel::new(config)),
+                contract: |config| Box::new(golden::lyon::LyonContract::new(config)),
+            },
         ])
     }
 

@@ -274,7 +274,8 @@ impl Stimulus {
         }
     }
 
-    /// A bit pattern for an operand: mostly of its domain, often at its ends, sometimes anything.
+    /// A bit pattern for an operand: mostly of its domain, often at its ends, sometimes anything. A
+    /// domain with 0 inside, as that of a vector's component, is met at all magnitudes alike.
     fn value(&mut self, at: usize) -> u64 {
         let (format, (low, high)) = (
             self.operands[at].operand.format,
@@ -290,6 +291,16 @@ impl Stimulus {
                 let bits = self.random.below(u64::from(64 - reach.leading_zeros()) + 1);
                 let back = self.random.below(1 << bits.min(62)).min(reach);
                 i128::from(high) - i128::from(back)
+            }
+            7..=13 if low < 0 && high > 0 => {
+                let limit = low.unsigned_abs().min(high.unsigned_abs());
+                let bits = self.random.below(u64::from(64 - limit.leading_zeros()) + 1);
+                let magnitude = i128::from(self.random.below(1 << bits.min(62)).min(limit));
+                if self.random.once_in(2) {
+                    -magnitude
+                } else {
+                    magnitude
+                }
             }
             _ => i128::from(self.random.within(low, high)),
         };

@@ -80,7 +80,7 @@ pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample
     })
 }
 
-/// Typical operands: the first (a cosine) is lowered until f is well inside 0 … 1.
+/// Typical operands: the first (a cosine or a component) is lowered until f is well inside 0 … 1.
 fn example_operands(contract: &dyn Contract) -> Vec<i64> {
     let mut colour = 0;
     let mut values: Vec<i64> = contract
@@ -91,6 +91,9 @@ fn example_operands(contract: &dyn Contract) -> Vec<i64> {
             if operand.colour {
                 colour += 1;
                 high - high * (colour - 1) / 3
+            } else if low < 0 && high > 0 {
+                // A component of a difference vector: small.
+                (high - low) / 512
             } else if operand.format.frac > 0 {
                 high - (high - low) / 64
             } else {

@@ -2,6 +2,7 @@
 
 mod common;
 pub mod cosine_power;
+pub mod lyon;
 pub mod quadratic;
 pub mod rough;
 pub mod threshold;

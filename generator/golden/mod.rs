@@ -8,6 +8,7 @@ pub mod contract;
 pub mod cosine_power;
 pub mod handshake;
 pub mod keys;
+pub mod lyon;
 pub mod narrow;
 pub mod quadratic;
 pub mod rough;

@@ -65,6 +65,15 @@ pub fn threshold(square: f64, level: f64) -> f64 {
     if square < level { 0.0 } else { square }
 }
 
+/// US 5 739 820 (seed 000): `(1 − β·D²)^m`, 0 where β·D² is 1 or more, with D² = |N − H|².
+///
+/// `m` is a power of two; with β = n/(2·m) and unit vectors it is [`cosine_power`], save for surfaces that face away.
+#[inline]
+pub fn lyon(distance: f64, beta: f64, m: u32) -> f64 {
+    let base = (1.0 - beta * distance).max(0.0);
+    (0..m.ilog2()).fold(base, |power, _| power * power)
+}
+
 /// UA 20998 (seed 001): `c + a·(c² − c)` with a = a(n), 0 where that is negative.
 ///
 /// For a < 0, which no table has, it would exceed c.

@@ -166,9 +166,9 @@ fn formula_error(n: i64, a: f64) -> f64 {
     let n = n as f64;
     let reach = (8.0 / n).min(1.0);
     (0..=GRID)
-        .map(|step| {
-            let cosine = 1.0 - reach * f64::from(step) / f64::from(GRID);
-            (reference::quadratic(cosine, a) - reference::blinn(cosine, n)).abs()
-        })
+        .map(|step| 1.0 - reach * f64::from(step) / f64::from(GRID))
+        // The zero of the parabola, where the error has its corner.
+        .chain([1.0 - 1.0 / a.max(1.0)])
+        .map(|cosine| (reference::quadratic(cosine, a) - reference::blinn(cosine, n)).abs())
         .fold(0.0, f64::max)
 }
