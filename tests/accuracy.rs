@@ -4,7 +4,10 @@
 //! The proof is factored as the hardware is: the word f over the control operands, and the colour
 //! multiplier over every word and colour. Covered for f are: `cosine-power`, every cosine and every n
 //! of its domain; `rough`, every cosine and every n for five settings of dγ, and random points
-//! for the rest. Random configurations of both devices follow.
+//! for the rest; `threshold`, every cosine for every 25th n, and every 64th cosine for every n;
+//! `quadratic` likewise, with both tables; `lyon`, every 64th word of D² for every n, with the worst
+//! over what rounds to a word, and every 16th word for every shift. What is left out here is in the tests that are
+//! ignored, which take minutes. Random configurations of all devices follow.
 
 use std::sync::Mutex;
 use std::thread;
@@ -13,11 +16,15 @@ use glint::config::{self, Schema};
 use glint::devices;
 use glint::fixed::{Rounding, exp2};
 use glint::golden::cosine_power::{self, CosinePowerContract};
+use glint::golden::lyon::{self, LyonContract, Scale};
+use glint::golden::quadratic::{self, QuadraticContract};
 use glint::golden::rough::{self, RoughContract};
 use glint::golden::sine::Scheme;
-use glint::golden::{Bound, Contract};
+use glint::golden::threshold::{self, ThresholdContract};
+use glint::golden::{Bound, Contract, nearer};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
+use rayon::prelude::*;
 
 /// What f64 itself may add to an error in units.
 const F64: f64 = 1e-6;
@@ -73,6 +80,34 @@ fn sweep<C: Contract, const N: usize>(
     worst.into_inner().unwrap()
 }
 
+/// The largest error of f over the sweep of a contract with two axes, of which every so manyth value is
+/// taken, and the last.
+fn sweep_part(contract: &impl Contract, strides: [u64; 2]) -> Worst {
+    let sweep = contract.sweep();
+    assert!(sweep.omits.is_empty() && sweep.axes.len() == 2);
+    let taken = |axis: usize| -> Vec<i64> {
+        let values = &sweep.axes[axis].values;
+        let last = values.count() - 1;
+        let steps = (0..last).step_by(strides[axis] as usize);
+        steps.chain([last]).map(|at| values.value(at)).collect()
+    };
+    let inner = taken(1);
+    taken(0)
+        .into_par_iter()
+        .map(|outer| {
+            let mut own = Worst::default();
+            for &value in &inner {
+                let place = [outer, value];
+                own.take(contract.sweep_error(&place), &place);
+            }
+            own
+        })
+        .reduce(Worst::default, |mut worst, other| {
+            worst.merge(other);
+            worst
+        })
+}
+
 /// The largest error that the colour multiplier adds, in units, over every word and colour.
 fn colour_error(contract: &impl Contract) -> f64 {
     let (f_format, colour) = (contract.f_format(), contract.operands().last().unwrap());
@@ -117,6 +152,80 @@ fn cosine_power_over_all_operands() {
     assert_contract(&contract, &contract.bound(), &worst);
 }
 
+fn threshold_over(strides: &[[u64; 2]]) {
+    for levels in [vec![50], vec![50, 100, 200, 400, 800]] {
+        let params = threshold::Params {
+            levels,
+            ..threshold::Params::default()
+        };
+        let contract = ThresholdContract::from_params(&params).unwrap();
+        assert_sweeps(&contract, strides);
+    }
+}
+
+fn quadratic_over(strides: &[[u64; 2]]) {
+    let default = quadratic::Params::default();
+    for scheme in [quadratic::Scheme::Taylor, default.scheme] {
+        let params = quadratic::Params {
+            scheme,
+            ..default.clone()
+        };
+        let contract = QuadraticContract::from_params(&params).unwrap();
+        assert_sweeps(&contract, strides);
+    }
+}
+
+fn lyon_over(scale: Scale, strides: [u64; 2]) {
+    let params = lyon::Params {
+        scale,
+        ..lyon::Params::default()
+    };
+    assert_sweeps(&LyonContract::from_params(&params).unwrap(), &[strides]);
+}
+
+fn assert_sweeps(contract: &impl Contract, strides: &[[u64; 2]]) {
+    let mut worst = Worst::default();
+    for &strides in strides {
+        worst.merge(sweep_part(contract, strides));
+    }
+    assert_contract(contract, &contract.bound(), &worst);
+}
+
+#[test]
+fn threshold_over_a_part() {
+    threshold_over(&[[1, 25], [64, 1]]);
+}
+
+#[test]
+fn quadratic_over_a_part() {
+    quadratic_over(&[[1, 25], [64, 1]]);
+}
+
+#[test]
+fn lyon_over_a_part() {
+    lyon_over(Scale::Multiplier, [1, 64]);
+    lyon_over(Scale::Shift, [1, 16]);
+}
+
+#[test]
+#[ignore = "takes a minute"]
+fn threshold_over_all_operands() {
+    threshold_over(&[[1, 1]]);
+}
+
+#[test]
+#[ignore = "takes a minute"]
+fn quadratic_over_all_operands() {
+    quadratic_over(&[[1, 1]]);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn lyon_over_all_words() {
+    lyon_over(Scale::Multiplier, [1, 1]);
+    lyon_over(Scale::Shift, [1, 1]);
+}
+
 /// dγ in degrees, and whether it is taken from γ (1) or added, which dims the highlight and its error.
 const DEVIATIONS: [(f64, i64); 5] = [(0.0, 1), (1.0, 1), (5.0, 1), (5.0, 0), (30.0, 1)];
 
@@ -148,9 +257,11 @@ fn random_point(contract: &impl Contract, rng: &mut ChaCha8Rng) -> Vec<i64> {
             } else {
                 unit() * unit() * unit()
             };
-            // Cosines crowd at their upper end, exponents at their lower.
+            // Cosines crowd at their upper end, exponents at their lower, components of vectors at 0.
             let offset = (part * (high - low + 1) as f64) as i64;
-            if operand.name.starts_with("cos") {
+            if operand.name.starts_with('d') && low < 0 {
+                (offset / 2 - (offset % 2) * offset).clamp(low, high)
+            } else if operand.name.starts_with("cos") {
                 high - offset
             } else {
                 low + offset
@@ -183,9 +294,10 @@ fn assert_outputs_within_bound(
     let largest = contract.operands().last().unwrap().domain.1;
     for _ in 0..points {
         let point = random_point(contract, rng);
-        let (f, exact) = (contract.f(&point), contract.reference(&point));
+        let (f, exact) = (contract.f(&point), contract.references(&point));
         for colour in [largest, rng.next_u32() as i64 & largest] {
-            let error = (contract.colour(f, colour) as f64 - colour as f64 * exact).abs();
+            let out = contract.colour(f, colour) as f64;
+            let error = nearer(out, exact.map(|exact| colour as f64 * exact));
             assert!(
                 error <= bound.units + F64,
                 "{error} at {point:?} × {colour} of {what}: {bound:#?}"
@@ -221,6 +333,21 @@ fn random_configurations_of_rough() {
 #[test]
 fn random_configurations_of_cosine_power() {
     assert_random_configurations(&devices::cosine_power::schema(), CosinePowerContract::new);
+}
+
+#[test]
+fn random_configurations_of_threshold() {
+    assert_random_configurations(&devices::threshold::schema(), ThresholdContract::new);
+}
+
+#[test]
+fn random_configurations_of_quadratic() {
+    assert_random_configurations(&devices::quadratic::schema(), QuadraticContract::new);
+}
+
+#[test]
+fn random_configurations_of_lyon() {
+    assert_random_configurations(&devices::lyon::schema(), LyonContract::new);
 }
 
 /// Configurations of which each widens one thing that the defaults leave alone.

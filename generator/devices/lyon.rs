@@ -296,6 +296,13 @@ fn about(config: &Config) -> About {
              is the function of cosine-power, reached without a scalar product."
                 .to_owned(),
             scaling.to_owned(),
+            format!(
+                "Valid is {}{} clocks after start: a word each for D^2, scaling, base and result, and one for each squaring \
+                 after the first{}.",
+                common::squarings(config) + 4,
+                if shift { " + shift" } else { "" },
+                if shift { " and for each place shifted after the first" } else { "" },
+            ),
             "The formula knows no side that faces away: where cos gamma <= 0, that is D^2 >= 2, f is not 0 for small n. \
              A host that wants it to be 0 does not start the device there."
                 .to_owned(),

@@ -167,7 +167,6 @@ fn level_rom<'d>(d: &'d Designer, config: &Config, exponent: Signal<'d>) -> Rom<
     let words: Vec<i128> = (0..1i64 << config.integer("exponent.bits"))
         .map(|n| level_word(config, hundredths(config, n)))
         .collect();
-    let most = words.iter().copied().max().unwrap_or(0);
     let comments = (0i64..)
         .take(words.len())
         .map(|n| {
@@ -175,7 +174,8 @@ fn level_rom<'d>(d: &'d Designer, config: &Config, exponent: Signal<'d>) -> Rom<
             format!("{}.{:02} units", level / 100, level % 100)
         })
         .collect();
-    let format = Format::holding(0, most, config.integer("intensity.fraction") as i32);
+    // As wide as f, so that the memory file can be exchanged for one of other levels.
+    let format = Format::unsigned(0, config.integer("intensity.fraction") as i32);
     d.rom("levels", exponent, format, &words, true)
         .doc("the smallest f that is shown for an exponent n (the address)")
         .comments(comments)
@@ -188,11 +188,12 @@ fn hundredths(config: &Config, n: i64) -> i64 {
     levels[octave.min(levels.len() - 1)]
 }
 
-/// The smallest word of f whose product with the largest colour reaches a level.
+/// The smallest word of f, but the largest word at most, whose product with the largest colour reaches a level.
 fn level_word(config: &Config, hundredths: i64) -> i128 {
     let unit = 100 * ((1 << config.integer("colour.bits")) - 1);
-    let scaled = i128::from(hundredths) << config.integer("intensity.fraction");
-    (scaled + unit - 1) / unit
+    let words = 1i128 << config.integer("intensity.fraction");
+    // 1.0 itself is no word.
+    ((i128::from(hundredths) * words + unit - 1) / unit).min(words - 1)
 }
 
 fn about(config: &Config) -> About {
@@ -227,7 +228,7 @@ fn comparator_note(config: &Config) -> String {
         .map(|n| level_word(config, hundredths(config, n)) - 1)
         .max()
         .unwrap_or(0)
-        .clamp(0, (1 << frac) - 1);
+        .max(0);
     let units = (blocked * largest) as f64 * exp2(-(frac as i32));
     let shown = match rounding(config, "output.rounding") {
         Rounding::Nearest => (units + 0.5).floor(),

@@ -111,21 +111,19 @@ impl Params {
         Format::unsigned(self.colour_bits as i32, 0)
     }
 
-    /// The least word of f that is shown for exponents from 2^octave: `levels / 100` units, rounded up to a word.
+    /// The least word of f that is shown, an entry an octave of n: `levels / 100` units, rounded up to a
+    /// word. There is none above 1.0 − ulp.
     fn thresholds(&self) -> Vec<i64> {
-        let largest = (1 << self.colour_bits) - 1;
+        // 100 · largest · word ≥ level · 2^F, for the least word; less than 2^30 · 2^24.
+        let unit = 100 * ((1 << self.colour_bits) - 1);
+        let word = |level: i64| {
+            let wanted = level << self.intensity_fraction;
+            wanted / unit + i64::from(wanted % unit != 0)
+        };
+        let largest = (1 << self.intensity_fraction) - 1;
         self.levels
             .iter()
-            .map(|&level| {
-                // 100 · largest · word ≥ level · 2^F, for the least word; less than 2^30 · 2^24.
-                let (wanted, unit) = (level << self.intensity_fraction, 100 * largest);
-                let below = wanted / unit;
-                if below * unit == wanted {
-                    below
-                } else {
-                    below + 1
-                }
-            })
+            .map(|&level| word(level).min(largest))
             .collect()
     }
 }

@@ -205,15 +205,17 @@ impl Contract for LyonContract {
             .map(|octave| (exp2(octave as i32) * std::f64::consts::SQRT_2) as i64);
         let worst = midway
             .flat_map(|n| [n, n + 1])
-            .chain([first, last])
             .filter(|n| (first.max(1)..=last).contains(n))
-            .map(|n| (n, params.exponent(params.scale_operand(n))))
-            .map(|(n, rounded)| (formula_error(n, rounded, params.power), n, rounded))
-            .max_by(|a, b| a.0.total_cmp(&b.0));
-        let Some((error, n, rounded)) = worst.filter(|worst| worst.1 != worst.2) else {
+            .map(|n| {
+                let rounded = params.exponent(params.scale_operand(n));
+                let errors = [rounded, n].map(|taken| formula_error(n, taken, params.power));
+                (n, rounded, errors)
+            })
+            .max_by(|a, b| (a.2[0] - a.2[1]).total_cmp(&(b.2[0] - b.2[1])));
+        let Some((n, rounded, [error, exact])) = worst.filter(|worst| worst.2[0] > worst.2[1])
+        else {
             return Vec::new();
         };
-        let exact = formula_error(n, n, params.power);
         vec![format!(
             "scale = \"shift\" takes n for a power of two: at n = {n}, taken for {rounded}, the formula is off from cos^n by \
              up to {error:.4}; with scale = \"multiplier\" by {exact:.4}"
