@@ -159,6 +159,9 @@ impl Contract for LyonContract {
     /// - Base: as in `cosine-power`, the inverse stands for 1.0 − ulp − t where 1.0 − t is meant. With t
     ///   truncated the base is low by at most an ulp; to the nearest, by 3/2.
     /// - The result of squaring number i is rounded, and then raised to m/2^i: m − 1 in sum.
+    ///
+    /// Where all of them truncate, D² makes f too large and the others make it too small, by so much at
+    /// most: only the larger of the two counts.
     fn bound(&self) -> Bound {
         let params = &self.params;
         let (f, power) = (params.intensity_fraction, f64::from(params.power));
@@ -175,12 +178,12 @@ impl Contract for LyonContract {
             Rounding::Nearest => ulp + rounding_error(scaled_fraction, f, Rounding::Nearest),
         };
         let squares = rounding_error(2 * f, f, params.intensity_rounding);
-        let shares = [
-            (
-                "distance.fraction",
-                "rounding of D², times n/2",
-                distance * largest / 2.0,
-            ),
+        let above = [(
+            "distance.fraction",
+            "rounding of D², times n/2",
+            distance * largest / 2.0,
+        )];
+        let below = [
             (
                 "intensity.fraction",
                 "the base, with the inverse for 1.0 − β·D²",
@@ -192,6 +195,13 @@ impl Contract for LyonContract {
                 squares * (power - 1.0),
             ),
         ];
+        let apart =
+            [params.distance_rounding, params.intensity_rounding] == [Rounding::Truncate; 2];
+        let shares = match apart {
+            true if above[0].2 > below[0].2 + below[1].2 => above.to_vec(),
+            true => below.to_vec(),
+            false => [&above[..], &below].concat(),
+        };
         shared::bound(&shares, f, params.colour_bits, params.output_rounding)
     }
 

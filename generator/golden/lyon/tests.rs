@@ -106,8 +106,20 @@ fn the_default_is_proven() {
     let bound = LyonContract::from_params(&Params::default())
         .unwrap()
         .bound();
-    // 2⁹ ulps of 2⁻²⁰ and 16 + 15 of 2⁻¹⁶, times 255, and half a unit.
-    let expected = (512.0 / 1048576.0 + 31.0 / 65536.0) * 255.0 + 0.5;
+    // 2⁹ ulps of 2⁻²⁰ upward, times 255, and half a unit; downward 16 + 15 of 2⁻¹⁶ are less.
+    assert_eq!(bound.units, 512.0 / 1048576.0 * 255.0 + 0.5);
+    let coarse = Params {
+        intensity_fraction: 15,
+        ..Params::default()
+    };
+    let bound = LyonContract::from_params(&coarse).unwrap().bound();
+    assert_eq!(bound.units, 31.0 / 32768.0 * 255.0 + 0.5);
+    let nearest = Params {
+        distance_rounding: Rounding::Nearest,
+        ..Params::default()
+    };
+    let bound = LyonContract::from_params(&nearest).unwrap().bound();
+    let expected = (256.0 / 1048576.0 + 31.0 / 65536.0) * 255.0 + 0.5;
     assert!((bound.units - expected).abs() < 1e-12, "{bound:?}");
 }
 
