@@ -53,22 +53,6 @@ impl Registry {
     pub fn catalogue() -> Self {
         Self(vec![
             Device {
-                name: "rough",
-                summary: "rough surface, (n/2*(cos(gamma +- dgamma) - 1) + 1)^2 (UA 60139)",
-                schema: devices::rough::schema,
-                describe: devices::rough::describe,
-                model: |config| Box::new(golden::rough::RoughModel::new(config)),
-                contract: |config| Box::new(golden::rough::RoughContract::new(config)),
-            },
-            Device {
-                name: "cosine-power",
-                summary: "W(n, gamma) = (n/m*(cos gamma - 1) + 1)^m, m = 2, 4, 8, 16 (seed 002)",
-                schema: devices::cosine_power::schema,
-                describe: devices::cosine_power::describe,
-                model: |config| Box::new(golden::cosine_power::CosinePowerModel::new(config)),
-                contract: |config| Box::new(golden::cosine_power::CosinePowerContract::new(config)),
-            },
-            Device {
                 name: "quad-cosine",
                 summary: "cos^k(sqrt(n/k)*delta) along a scan line, k = 1, 2, 4, 16 by n (seed 000)",
                 schema: devices::quad_cosine::schema,
@@ -85,6 +69,56 @@ impl Registry {
                 contract: |config| {
                     Box::new(golden::cosine_squared::CosineSquaredContract::new(config))
                 },
+            },
+            Device {
+                name: "lyon",
+                summary: "max(0, 1 - beta*D^2)^m, D = N - H, m = 2, 4, 8, 16 (US 5 739 820)",
+                schema: devices::lyon::schema,
+                describe: devices::lyon::describe,
+                model: |config| Box::new(golden::lyon::LyonModel::new(config)),
+                contract: |config| Box::new(golden::lyon::LyonContract::new(config)),
+            },
+            Device {
+                name: "rough",
+                summary: "rough surface, (n/2*(cos(gamma +- dgamma) - 1) + 1)^2 (UA 60139)",
+                schema: devices::rough::schema,
+                describe: devices::rough::describe,
+                model: |config| Box::new(golden::rough::RoughModel::new(config)),
+                contract: |config| Box::new(golden::rough::RoughContract::new(config)),
+            },
+            Device {
+                name: "threshold",
+                summary: "(n/2*(cos gamma - 1) + 1)^2 where it reaches ROM(n) (UA 30041)",
+                schema: devices::threshold::schema,
+                describe: devices::threshold::describe,
+                model: |config| Box::new(golden::threshold::ThresholdModel::new(config)),
+                contract: |config| Box::new(golden::threshold::ThresholdContract::new(config)),
+            },
+            Device {
+                name: "quadratic",
+                summary: "c + a(n)*(c^2 - c), c = cos gamma, a(n) from ROM (UA 20998)",
+                schema: devices::quadratic::schema,
+                describe: devices::quadratic::describe,
+                model: |config| Box::new(golden::quadratic::QuadraticModel::new(config)),
+                contract: |config| Box::new(golden::quadratic::QuadraticContract::new(config)),
+            },
+            Device {
+                name: "cosine-power",
+                summary: "W(n, gamma) = (n/m*(cos gamma - 1) + 1)^m, m = 2, 4, 8, 16 (seed 002)",
+                schema: devices::cosine_power::schema,
+                describe: devices::cosine_power::describe,
+                model: |config| Box::new(golden::cosine_power::CosinePowerModel::new(config)),
+                contract: |config| Box::new(golden::cosine_power::CosinePowerContract::new(config)),
+            },
+            Device {
+                name: "schlick",
+                summary: "Schlick's function, c / (n - n*c + c), by a divider (seed 002)",
+                schema: devices::schlick::schema,
+                describe: devices::schlick::describe,
+                model: |config| Box::new(golden::schlick::SchlickModel::new(config)),
+                contract: |config| Box::new(golden::schlick::SchlickContract::new(config)),
+            },
+            Device {
                 name: "blinn",
                 summary: "cos(gamma)^n itself, by tables of -log2 and 2^-x (seeds 000 to 002)",
                 schema: devices::blinn::schema,
@@ -99,14 +133,6 @@ impl Registry {
                 describe: devices::gauss::describe,
                 model: |config| Box::new(golden::gauss::model(config)),
                 contract: |config| Box::new(golden::gauss::contract(config)),
-            },
-            Device {
-                name: "schlick",
-                summary: "Schlick's function, c / (n - n*c + c), by a divider (seed 002)",
-                schema: devices::schlick::schema,
-                describe: devices::schlick::describe,
-                model: |config| Box::new(golden::schlick::SchlickModel::new(config)),
-                contract: |config| Box::new(golden::schlick::SchlickContract::new(config)),
             },
         ])
     }

@@ -4,7 +4,7 @@ use anyhow::{Context, Result, anyhow, ensure};
 
 use super::stimulus::Stimulus;
 use crate::emit::Vectors;
-use crate::golden::{Contract, Model};
+use crate::golden::{Contract, Model, nearer};
 use crate::netlist::{Design, NetId, Role};
 use crate::sim::Simulator;
 
@@ -273,13 +273,13 @@ impl<'a> Lockstep<'a> {
         let values: Vec<i64> = (0..control).map(raw).collect();
         let f = self
             .contract
-            .reference(&self.contract.point(&values, index));
+            .references(&self.contract.point(&values, index));
         for (at, &net) in self.results.iter().enumerate() {
             let colour = &operands[control + at];
-            let exact = f * colour.format.to_f64(i128::from(raw(control + at)));
+            let colour = colour.format.to_f64(i128::from(raw(control + at)));
             let format = self.design.net(net).format;
             let out = format.to_f64(format.raw(self.simulator.value(net)));
-            let units = (out - exact).abs();
+            let units = nearer(out, f.map(|f| f * colour));
             if outcome
                 .worst
                 .as_ref()

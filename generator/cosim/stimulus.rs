@@ -317,14 +317,15 @@ impl Stimulus {
             0 => i128::from(low),
             1 => i128::from(high),
             2 => return self.random.bits() & crate::fixed::mask(format.width()),
-            near @ 3..=8 => {
-                // Off by a random power of two.
+            // Off by a random power of two: from the upper end, from the lower, from 0 where that is between
+            // (an angle, the component of a vector).
+            choice @ 3..=13 if choice <= 8 || low < 0 && high > 0 => {
                 let bits = self.random.below(u64::from(64 - reach.leading_zeros()) + 1);
                 let off = i128::from(self.random.below(1 << bits.min(62)).min(reach));
-                match near {
+                match choice {
                     3 | 4 => i128::from(high) - off,
-                    _ if low >= 0 => i128::from(low) + off,
-                    5 | 6 => off.min(i128::from(high)),
+                    _ if low >= 0 || high <= 0 => i128::from(low) + off,
+                    _ if choice % 2 == 0 => off.min(i128::from(high)),
                     _ => (-off).max(i128::from(low)),
                 }
             }
@@ -424,7 +425,7 @@ mod tests {
         let count = |wanted: fn(u64) -> bool| drawn.iter().filter(|&&x| wanted(x)).count();
         assert!(count(|x| x == 0) > 1_000);
         assert!(count(|x| x < 64) > 6_000);
-        assert!(count(|x| x > 2_000) > 200);
+        assert!(count(|x| x > 2_000) > 300);
         assert!(count(|x| x == 4095) > 20);
     }
 }

@@ -35,6 +35,21 @@ pub fn exponent_bits() -> Key {
     )
 }
 
+/// `power`.
+pub fn power() -> Key {
+    Key::choice(
+        "power",
+        "16",
+        &["2", "4", "8", "16"],
+        "The power m: the larger, the closer to cos^n, and the more squarings.",
+    )
+}
+
+/// log2 of `power`: how many squarings make it.
+pub fn squarings(config: &Config) -> u32 {
+    config.integer("power").ilog2()
+}
+
 /// `colour.bits`.
 pub fn colour_bits() -> Key {
     Key::integer(

@@ -5,9 +5,10 @@
 //! every number is a fraction from 0 to 1 and the clamp at the zero of W is the saturation of the
 //! first product.
 
-use crate::config::{Config, Key, Problems, Schema};
+use crate::config::{Config, Problems, Schema};
 use crate::dsl::blocks::colour::Colours;
-use crate::dsl::{Designer, Signal, end, loop_while, step, valid};
+use crate::dsl::blocks::squaring::Squarings;
+use crate::dsl::{Designer, Signal, end, step, valid};
 use crate::fixed::{Format, Overflow};
 use crate::netlist::About;
 
@@ -18,12 +19,7 @@ pub fn schema() -> Schema {
     Schema {
         device: "cosine-power",
         keys: vec![
-            Key::choice(
-                "power",
-                "16",
-                &["2", "4", "8", "16"],
-                "The power m: the larger, the closer to cos^n, and the more squarings.",
-            ),
+            common::power(),
             common::cosine_fraction(20),
             common::cosine_signed(),
             common::exponent_bits(),
@@ -45,12 +41,7 @@ fn check(config: &Config, problems: &mut Problems) {
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
     let integer = |key: &str| config.integer(key) as i32;
-    let squarings = match config.choice("power") {
-        "2" => 1,
-        "4" => 2,
-        "8" => 3,
-        _ => 4,
-    };
+    let count = common::squarings(config);
     let cosine = Format {
         signed: config.flag("cosine.signed"),
         int: 1,
@@ -73,16 +64,12 @@ pub fn describe(d: &Designer, config: &Config) {
     let accumulator = d
         .register("accumulator", f)
         .doc("n/m*(1 - cos gamma), then the powers of W's base");
-    // The squarings after the first are one word, executed again and again.
-    let remaining = (squarings > 1).then(|| {
-        let start = d.raw_constant("squarings", squarings - 1, Format::unsigned(2, 0));
-        d.down_counter("remaining", start).doc("squarings to come")
-    });
+    let squarings = Squarings::new(d, count);
 
     let one = d.constant("one", 1.0, Format::unsigned(1, integer("cosine.fraction")));
     let complement = d.sub("complement", one, cos_gamma).doc("1.0 - cos gamma");
     let zeta = exponent
-        .shift_right(squarings as i32)
+        .shift_right(count as i32)
         .named("zeta")
         .doc("n/m, by wiring");
     let base = base(d, cos_gamma, accumulator.q());
@@ -118,31 +105,14 @@ pub fn describe(d: &Designer, config: &Config) {
         step("operands 1 - cos gamma, n/m", []),
         step(
             "accumulator <- n/m * (1 - cos gamma)",
-            [accumulator.load()]
-                .into_iter()
-                .chain(remaining.map(|counter| counter.load())),
-        ),
-        step(
-            "accumulator <- base^2",
-            [first.pick(base), second.pick(base), accumulator.load()],
+            [accumulator.load()].into_iter().chain(squarings.load()),
         ),
     ];
-    if let Some(remaining) = remaining {
-        let one = d.raw_constant("one_left", 1, remaining.q().format());
-        let more = d
-            .less("more", one, remaining.q())
-            .doc("not the last squaring");
-        steps.push(step(
-            "accumulator <- accumulator^2",
-            [
-                first.pick(accumulator.q()),
-                second.pick(accumulator.q()),
-                accumulator.load(),
-                remaining.count(),
-                loop_while(more, "accumulator <- accumulator^2"),
-            ],
-        ));
-    }
+    steps.extend(squarings.steps(
+        accumulator,
+        [first.pick(base), second.pick(base)],
+        [first.pick(accumulator.q()), second.pick(accumulator.q())],
+    ));
     steps.push(step("result", [valid(), end()]));
     d.microprogram(steps);
 }

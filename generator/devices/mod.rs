@@ -4,11 +4,14 @@ pub mod blinn;
 mod common;
 pub mod cosine_power;
 pub mod cosine_squared;
-pub mod quad_cosine;
 mod decay;
 pub mod gauss;
+pub mod lyon;
+pub mod quad_cosine;
+pub mod quadratic;
 pub mod rough;
 pub mod schlick;
+pub mod threshold;
 
 use crate::config::Config;
 use crate::fixed::Rounding;

@@ -15,11 +15,14 @@ pub mod halving;
 pub mod handshake;
 pub mod keys;
 pub mod line;
+pub mod lyon;
 pub mod narrow;
 pub mod quad_cosine;
+pub mod quadratic;
 pub mod rough;
 pub mod schlick;
 pub mod sine;
+pub mod threshold;
 
 use crate::fixed::Format;
 
@@ -84,6 +87,13 @@ pub trait Contract: Send + Sync {
     /// The source's formula in f64, unrounded, at the raw (that is, quantised) control operands.
     fn reference(&self, control: &[i64]) -> f64;
 
+    /// The values that are right for `f` at the raw control operands: the formula's, twice. Where the formula
+    /// jumps and fixed point may come out on its other side, the values on both sides. An error is
+    /// taken from the nearer.
+    fn references(&self, control: &[i64]) -> [f64; 2] {
+        [self.reference(control); 2]
+    }
+
     /// The control operands of the one point that result number `index` (from 0) of a computation shows.
     ///
     /// A device with one result per `start` shows the point of its operands. One that walks a line of
@@ -135,7 +145,7 @@ pub trait Contract: Send + Sync {
     /// The error of `f` at a place of the sweep, absolute: by default a place is a point.
     fn sweep_error(&self, place: &[i64]) -> f64 {
         let f = self.f_format().to_f64(i128::from(self.f(place)));
-        (f - self.reference(place)).abs()
+        nearer(f, self.references(place))
     }
 
     /// A proven bound on the error, stated before anything is simulated.
@@ -146,6 +156,12 @@ pub trait Contract: Send + Sync {
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
+}
+
+/// The distance of `value` from the nearer of two values that are right.
+#[inline]
+pub fn nearer(value: f64, right: [f64; 2]) -> f64 {
+    (value - right[0]).abs().min((value - right[1]).abs())
 }
 
 /// The places that an exhaustive check of `f` visits: the product of its axes.

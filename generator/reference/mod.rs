@@ -55,6 +55,38 @@ pub fn rough_unclamped(c: f64, cd: f64, dgamma_negative: bool, n: f64) -> f64 {
     (base * base).min(1.0)
 }
 
+/// `(n/2·(c − 1) + 1)²`, 0 where the base is negative: what UA 30041 (seed 001) compares with its level.
+#[inline]
+pub fn parabola(c: f64, n: f64) -> f64 {
+    rough(c, 1.0, false, n)
+}
+
+/// UA 30041: a reflectance where it reaches the level of visibility, otherwise 0.
+#[inline]
+pub fn threshold(square: f64, level: f64) -> f64 {
+    if square < level { 0.0 } else { square }
+}
+
+/// US 5 739 820 (seed 000): `(1 − β·D²)^m`, 0 where β·D² is 1 or more, with D² = |N − H|².
+///
+/// `m` is a power of two; with β = n/(2·m) and unit vectors it is [`cosine_power`], save for surfaces that face away.
+#[inline]
+pub fn lyon(distance: f64, beta: f64, m: u32) -> f64 {
+    let base = (1.0 - beta * distance).max(0.0);
+    (0..m.ilog2()).fold(base, |power, _| power * power)
+}
+
+/// UA 20998 (seed 001): `c + a·(c² − c)` with a = a(n), 0 where that is negative.
+///
+/// For a < 0, which no table has, it would exceed c.
+#[inline]
+pub fn quadratic(c: f64, a: f64) -> f64 {
+    if c <= 0.0 {
+        return 0.0;
+    }
+    (c * (1.0 - a * (1.0 - c))).max(0.0)
+}
+
 /// The paper's W (seed 002): `(n/m·(c − 1) + 1)^m`, 0 where the base is negative.
 ///
 /// `m` is a power of two, 2 … 16 in the seed.
@@ -106,6 +138,8 @@ pub fn quad_cosine(delta: f64, n: i64) -> f64 {
 #[inline]
 pub fn cosine_squared(stretched: f64) -> f64 {
     lobe(stretched, 2)
+}
+
 /// The Gaussian of the angle (seed 002): `exp(−n·γ²/2)`, γ = arccos c.
 #[inline]
 pub fn gauss(c: f64, n: f64) -> f64 {

@@ -3,8 +3,9 @@
 pub mod angle;
 pub mod colour;
 pub mod divider;
-pub mod line;
 pub mod exponential;
+pub mod line;
 pub mod multipartite;
 pub mod segmented;
 pub mod shift;
+pub mod squaring;

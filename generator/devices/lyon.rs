@@ -1,0 +1,316 @@
+//! `lyon` — US 5 739 820, Fig. 7C and 7D (the first analogue in seed 000): `max(0, 1 − β·D²)^(2^s)` from
+//! the difference vector D = N − H.
+//!
+//! The seed lists the parts only: two adders, four multipliers, shift register, counter, comparator and
+//! mux. The wiring is our reading. Numbers count each kind of block.
+
+use crate::config::{Config, Key, Problems, Schema};
+use crate::dsl::blocks::colour::Colours;
+use crate::dsl::blocks::squaring::Squarings;
+use crate::dsl::{Designer, Setting, Signal, Step, end, loop_while, step, valid};
+use crate::fixed::{Format, Overflow};
+use crate::netlist::About;
+
+use super::{common, rounding};
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    Schema {
+        device: "lyon",
+        keys: vec![
+            common::power(),
+            Key::choice(
+                "scale",
+                "shift",
+                &["shift", "multiplier"],
+                "shift: as in the patent, beta is a power of two, and the operand is shift = log2 n, rounded. multiplier: beta = n/(2*power) for every n, by a fifth multiplier.",
+            ),
+            Key::integer(
+                "vector.fraction",
+                16,
+                8..=20,
+                "Fraction bits of the components of D = N - H, which run from -2.0 up to 2.0.",
+            ),
+            Key::integer(
+                "distance.fraction",
+                20,
+                8..=28,
+                "Fraction bits of D^2, which n multiplies.",
+            ),
+            Key::choice(
+                "distance.rounding",
+                "truncate",
+                &common::ROUNDINGS,
+                "Rounding into the register that holds D^2.",
+            ),
+            common::exponent_bits(),
+            common::colour_bits(),
+            common::intensity_fraction(16),
+            common::intensity_rounding(),
+            common::output_rounding(),
+            common::exponent_min(),
+            common::exponent_max(),
+        ],
+        check,
+    }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    common::check_exponents(config, problems);
+    let (distance, vector) = (
+        config.integer("distance.fraction"),
+        config.integer("vector.fraction"),
+    );
+    if distance > 2 * vector {
+        problems.push(
+            "distance.fraction",
+            format!("{distance} fraction bits are more than the squares of the components have"),
+            format!("at most {}, or a larger vector.fraction", 2 * vector),
+        );
+    }
+}
+
+/// How beta·D² is formed: the words that do it, and the result.
+struct Scaled<'d> {
+    /// β·D², not limited to the fraction bits of f yet where a shift makes it.
+    value: Signal<'d>,
+    steps: Vec<Step>,
+    squarings: Squarings<'d>,
+}
+
+/// The device.
+pub fn describe(d: &Designer, config: &Config) {
+    let f = Format::unsigned(0, config.integer("intensity.fraction") as i32);
+    let rounding_f = rounding(config, "intensity.rounding");
+    d.about(about(config));
+
+    let vector = Format::signed(1, config.integer("vector.fraction") as i32);
+    let component = |name: &str, of: &str| {
+        d.operand(name, vector)
+            .doc(&format!("{of} of N - H, normal less half vector"))
+            .q()
+    };
+    let components = [
+        component("dx", "x"),
+        component("dy", "y"),
+        component("dz", "z"),
+    ];
+    let distance = distance(d, config, components);
+    let scaled = match config.choice("scale") {
+        "shift" => by_shift(d, config, distance),
+        _ => by_multiplier(d, config, distance),
+    };
+    let colours = Colours::new(d, config.integer("colour.bits") as i32, None);
+    let accumulator = d
+        .register("accumulator", f)
+        .doc("the powers of the base, in the end f");
+
+    let value = d.narrow(
+        "beta_distance",
+        scaled.value,
+        Format::unsigned(1, f.frac),
+        rounding_f,
+        Overflow::Saturate,
+    );
+    let base = base(d, value.doc("beta*D^2, to the point of f"), f);
+    let operand = d
+        .mux("multiplier4_operand", [base, accumulator.q()])
+        .doc("what multiplier 4 squares");
+    let multiplier4 = d.mul("multiplier4", operand.out(), operand.out()).block(4);
+    accumulator.takes(d.narrow("square", multiplier4, f, rounding_f, Overflow::Saturate));
+    colours.outputs(accumulator.q(), rounding(config, "output.rounding"));
+
+    let mut steps = scaled.steps;
+    let first = [operand.pick(base)]
+        .into_iter()
+        .chain(scaled.squarings.load());
+    let again = [operand.pick(accumulator.q())];
+    steps.extend(scaled.squarings.steps(accumulator, first, again));
+    steps.push(step("result", [valid(), end()]));
+    d.microprogram(steps);
+}
+
+/// D² = dx² + dy² + dz², 0 … 12.0, to the fraction bits of the register that takes it.
+fn distance<'d>(d: &'d Designer, config: &Config, components: [Signal<'d>; 3]) -> Signal<'d> {
+    let mut number = 0;
+    let squares = components.map(|component| {
+        number += 1;
+        d.mul(&format!("multiplier{number}"), component, component)
+            .block(number)
+    });
+    let adder1 = d.add("adder1", squares[0], squares[1]).block(1);
+    let adder2 = d.add("adder2", adder1, squares[2]).block(2).doc("D^2");
+    d.narrow(
+        "distance_rounded",
+        adder2,
+        Format::unsigned(4, config.integer("distance.fraction") as i32),
+        rounding(config, "distance.rounding"),
+        // The interval of the sum knows nothing of squares; it is never negative, and 12.0 at most.
+        Overflow::Wrap,
+    )
+}
+
+/// The patent's scaling: a register that shifts one place a clock, under the counter.
+///
+/// It starts from half of D²/2^(s+1), by wiring, so that it shifts once at least. What has left the
+/// range stays at the largest word, above 1.0.
+fn by_shift<'d>(d: &'d Designer, config: &Config, distance: Signal<'d>) -> Scaled<'d> {
+    let count = common::squarings(config);
+    let half_down = count as i32 + 2;
+    let shift = d
+        .operand("shift", shift_format(config))
+        .doc("log2 of the specular exponent n, rounded")
+        .q();
+    let register = d
+        .register(
+            "shift_register",
+            Format::unsigned(1, distance.format().frac + half_down),
+        )
+        .doc("beta*D^2, once it has shifted");
+    let (squarings, counter, load_shift) = Squarings::sharing(d, count, shift);
+    let counter = counter.doc("shifts, then squarings, to come");
+    let small = distance
+        .shift_right(half_down)
+        .named("distance_at_least_shift")
+        .doc("half of D^2 at shift 0, by wiring");
+    let doubled = d.narrow(
+        "doubled",
+        register.q().shift_left(1),
+        register.format(),
+        crate::fixed::Rounding::Truncate,
+        Overflow::Saturate,
+    );
+    let input = d
+        .mux("shift_input", [small, doubled])
+        .doc("loads or shifts");
+    register.takes(input.out());
+    let more = d.any("more_shifts", counter.q()).doc("not the last shift");
+    let word = "shift_register <- 2 * shift_register";
+    let load = [input.pick(small), register.load()];
+    let shift_on: [Setting; 4] = [
+        input.pick(doubled),
+        register.load(),
+        counter.count(),
+        loop_while(more, word),
+    ];
+    Scaled {
+        value: register.q(),
+        steps: vec![
+            step("operands dx, dy, dz", []),
+            step(
+                "shift_register <- D^2 / (4*power)",
+                load.into_iter().chain(load_shift),
+            ),
+            step(word, shift_on),
+        ],
+        squarings,
+    }
+}
+
+/// The exact β: a multiplier of ours, and n/2^(s+1) by wiring.
+fn by_multiplier<'d>(d: &'d Designer, config: &Config, distance: Signal<'d>) -> Scaled<'d> {
+    let count = common::squarings(config);
+    let exponent = d
+        .operand(
+            "exponent",
+            Format::unsigned(config.integer("exponent.bits") as i32, 0),
+        )
+        .doc("specular exponent n")
+        .q();
+    let register = d.register("distance", distance.format()).doc("D^2");
+    register.takes(distance);
+    let squarings = Squarings::new(d, count);
+    let beta = exponent
+        .shift_right(count as i32 + 1)
+        .named("beta")
+        .doc("n/(2*power), by wiring");
+    let multiplier5 = d.mul("multiplier5", register.q(), beta).block(5);
+    let scaled = d
+        .register(
+            "scaled",
+            Format::unsigned(1, config.integer("intensity.fraction") as i32),
+        )
+        .doc("beta*D^2");
+    scaled.takes(d.narrow(
+        "multiplier5_rounded",
+        multiplier5,
+        scaled.format(),
+        rounding(config, "intensity.rounding"),
+        Overflow::Saturate,
+    ));
+    Scaled {
+        value: scaled.q(),
+        steps: vec![
+            step("operands dx, dy, dz", []),
+            step("distance <- D^2", [register.load()]),
+            step("scaled <- beta * distance", [scaled.load()]),
+        ],
+        squarings,
+    }
+}
+
+/// `1 − β·D²` as the complement of β·D²: an ulp too small, which is what keeps it a fraction. The comparator
+/// with 1.0 makes the mux pass 0 instead.
+fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
+    let one = d.constant("one", 1.0, Format::unsigned(1, f.frac));
+    let comparator = d
+        .less("comparator", value, one)
+        .doc("beta*D^2 is below 1.0");
+    let inverse = d
+        .not("inverse", value.bits(0, f))
+        .doc("1.0 - beta*D^2, less an ulp");
+    let zero = d.raw_constant("zero", 0, f);
+    d.choose("base", comparator, [zero, inverse])
+        .doc("base of the power, or 0")
+}
+
+/// Holds every log2 of an exponent, rounded: 0 … `exponent.bits`.
+fn shift_format(config: &Config) -> Format {
+    Format::holding(0, i128::from(config.integer("exponent.bits")), 0)
+}
+
+fn about(config: &Config) -> About {
+    let m = config.choice("power");
+    let shift = config.choice("scale") == "shift";
+    let (beta, scaling) = if shift {
+        (
+            "2^shift",
+            "The shift register shifts one place a clock under the counter, shift + 1 times, which then counts the \
+             squarings. The host loads shift = log2 n, rounded: beta is within a factor of 1.42 of n/(2*power).",
+        )
+    } else {
+        (
+            "n",
+            "Beta is n/(2*power) for every n: multiplier 5 is ours, and stands in for the patent's shift register.",
+        )
+    };
+    About {
+        device: "lyon".to_owned(),
+        title: format!("Specular intensity from a difference vector, power {m}"),
+        formula: format!(
+            "out = colour * max(0, 1 - beta*D^2)^{m}, beta = {beta}/(2*{m}), D = N - H"
+        ),
+        source: "US 5 739 820, Fig. 7C and 7D, the first analogue in seed 000".to_owned(),
+        notes: vec![
+            "The seed lists the parts; the wiring is our reading. For unit vectors D^2 = 2*(1 - cos gamma), so that this \
+             is the function of cosine-power, reached without a scalar product."
+                .to_owned(),
+            scaling.to_owned(),
+            format!(
+                "Valid is {}{} clocks after start: a word each for D^2, scaling, base and result, and one for each squaring \
+                 after the first{}.",
+                common::squarings(config) + 4,
+                if shift { " + shift" } else { "" },
+                if shift { " and for each place shifted after the first" } else { "" },
+            ),
+            "The formula knows no side that faces away: where cos gamma <= 0, that is D^2 >= 2, f is not 0 for small n. \
+             A host that wants it to be 0 does not start the device there."
+                .to_owned(),
+            "Components may have any value; D^2 is whole up to 12.0, which is the most that three of them give."
+                .to_owned(),
+            "Writes while busy are ignored. The outputs follow the accumulator and the colour registers: they \
+             hold from valid until a colour is written or the next computation begins."
+                .to_owned(),
+        ],
+    }
+}

@@ -1,0 +1,241 @@
+//! `quadratic` — UA 20998 (the analogue in seed 001): `c + a(n)·(c² − c)`, with a(n) from ROM.
+//!
+//! The patent's blocks follow one another without a control block; two registers of ours cut the chain
+//! so that no clock holds more than one multiplier before the outputs. Numbers count each kind of block, as the
+//! seed's text does: register 1, adder 1, multiplier 1.
+
+mod coefficient;
+
+use crate::config::{Config, Key, Problems, Schema};
+use crate::dsl::blocks::colour::{ChannelBlocks, Colours};
+use crate::dsl::{Designer, Rom, Signal, end, step, valid};
+use crate::fixed::{Format, Overflow};
+use crate::netlist::About;
+
+use super::{common, rounding};
+
+/// The keys of the device.
+pub fn schema() -> Schema {
+    Schema {
+        device: "quadratic",
+        keys: vec![
+            Key::choice(
+                "coefficient.scheme",
+                "minimax",
+                &["taylor", "minimax"],
+                "ROM(n) holds a(n) = n - 1, which agrees with cos^n to the slope at its peak, or the a(n) whose largest error is least.",
+            ),
+            Key::integer("coefficient.fraction", 8, 0..=12, "Fraction bits of a(n).")
+                .only_when("coefficient.scheme", "minimax"),
+            common::cosine_fraction(20),
+            common::cosine_signed(),
+            common::exponent_bits(),
+            common::colour_bits(),
+            Key::integer(
+                "difference.fraction",
+                19,
+                8..=28,
+                "Fraction bits of c^2 - c, which a(n) multiplies.",
+            ),
+            Key::choice(
+                "difference.rounding",
+                "truncate",
+                &common::ROUNDINGS,
+                "Rounding into the register that holds c^2 - c.",
+            ),
+            common::intensity_fraction(16),
+            common::intensity_rounding(),
+            common::output_rounding(),
+            common::exponent_min(),
+            common::exponent_max(),
+        ],
+        check,
+    }
+}
+
+fn check(config: &Config, problems: &mut Problems) {
+    common::check_exponents(config, problems);
+    let (difference, cosine) = (
+        config.integer("difference.fraction"),
+        config.integer("cosine.fraction"),
+    );
+    if difference > 2 * cosine {
+        problems.push(
+            "difference.fraction",
+            format!("{difference} fraction bits are more than the square of the cosine has"),
+            format!("at most {}, or a larger cosine.fraction", 2 * cosine),
+        );
+    }
+}
+
+/// The seed's numbers of the colour channels.
+const CHANNELS: [ChannelBlocks; 3] = [channel(1), channel(2), channel(3)];
+
+const fn channel(output: u16) -> ChannelBlocks {
+    ChannelBlocks {
+        inputs: (output + 2, output + 2),
+        register: output + 2,
+        multiplier: output + 1,
+        output,
+    }
+}
+
+/// The device.
+pub fn describe(d: &Designer, config: &Config) {
+    let integer = |key: &str| config.integer(key) as i32;
+    let cosine = Format {
+        signed: config.flag("cosine.signed"),
+        int: 1,
+        frac: integer("cosine.fraction"),
+    };
+    d.about(about(config));
+
+    let exponent = d
+        .operand("exponent", Format::unsigned(integer("exponent.bits"), 0))
+        .block(1)
+        .inputs(1, 1)
+        .doc("specular exponent n")
+        .q();
+    let cos_gamma = d
+        .operand_clamped("cos_gamma", cosine, 0.0, 1.0)
+        .block(2)
+        .inputs(2, 2)
+        .doc("c, the cosine of the angle between normal and half vector")
+        .q();
+    let colours = Colours::new(d, integer("colour.bits"), Some(CHANNELS));
+
+    let difference = d
+        .register(
+            "difference",
+            Format::signed(-2, integer("difference.fraction")),
+        )
+        .doc("c^2 - c, from -0.25 to 0");
+    let intensity = d
+        .register(
+            "intensity",
+            Format::unsigned(0, integer("intensity.fraction")),
+        )
+        .doc("the reflectance f");
+
+    difference.takes(d.narrow(
+        "adder1_rounded",
+        adder1(d, cos_gamma),
+        difference.format(),
+        rounding(config, "difference.rounding"),
+        // The interval of the sum is wider than its values, which lie in -0.25 ... 0: nothing is lost.
+        Overflow::Wrap,
+    ));
+    let coefficient = coefficient_rom(d, config, exponent).out();
+    let multiplier1 = d.mul("multiplier1", difference.q(), coefficient).block(1);
+    let adder2 = d
+        .add("adder2", multiplier1, cos_gamma)
+        .block(2)
+        .doc("c + a(n)*(c^2 - c)");
+    intensity.takes(d.narrow(
+        "clamped",
+        adder2,
+        intensity.format(),
+        rounding(config, "intensity.rounding"),
+        Overflow::Saturate,
+    ));
+    colours.outputs(intensity.q(), rounding(config, "output.rounding"));
+
+    d.microprogram([
+        step("operands; ROM(n) addressed", []),
+        step("difference <- c^2 - c", [difference.load()]),
+        step(
+            "intensity <- c + a(n) * difference, not below 0",
+            [intensity.load()],
+        ),
+        step("result", [valid(), end()]),
+    ]);
+}
+
+/// Adder 1: multiplier 5's c² plus the inverted c plus its carry-in.
+fn adder1<'d>(d: &'d Designer, cos_gamma: Signal<'d>) -> Signal<'d> {
+    let square = d
+        .mul("multiplier5", cos_gamma, cos_gamma)
+        .block(5)
+        .doc("c^2");
+    let wide = cos_gamma.with_fraction(square.format().frac).as_signed();
+    let inverters = d
+        .not("inverters", wide)
+        .doc("-c, less an ulp of the square");
+    let carry = d
+        .raw_constant("carry", 1, Format::BIT)
+        .doc("carry-in of adder 1");
+    d.add_carry("adder1", square, inverters, carry)
+        .block(1)
+        .doc("c^2 - c")
+}
+
+fn coefficient_rom<'d>(d: &'d Designer, config: &Config, exponent: Signal<'d>) -> Rom<'d> {
+    let minimax = config.choice("coefficient.scheme") == "minimax";
+    let frac = if minimax {
+        config.integer("coefficient.fraction") as i32
+    } else {
+        0
+    };
+    let widest = Format::unsigned(config.integer("exponent.bits") as i32, frac);
+    let values: Vec<f64> = (0..1u32 << config.integer("exponent.bits"))
+        .map(|n| value(config, n))
+        .collect();
+    let words: Vec<i128> = values.iter().map(|&a| widest.quantise(a)).collect();
+    let comments = values.iter().map(|a| format!("{a:.6}")).collect();
+    let most = words.iter().copied().max().unwrap_or(0);
+    let kind = if minimax { "minimax" } else { "n - 1" };
+    d.rom(
+        "coefficient",
+        exponent,
+        Format::holding(0, most, frac),
+        &words,
+        true,
+    )
+    .doc(&format!("a(n), {kind}, for an exponent n (the address)"))
+    .comments(comments)
+}
+
+/// a(n) before it is rounded.
+fn value(config: &Config, n: u32) -> f64 {
+    match config.choice("coefficient.scheme") {
+        "minimax" => coefficient::minimax(n),
+        _ => coefficient::taylor(n),
+    }
+}
+
+fn about(config: &Config) -> About {
+    let (first, last) = (
+        config.integer("domain.exponent_min").max(1) as u32,
+        config.integer("domain.exponent_max") as u32,
+    );
+    let worst = |a: fn(u32) -> f64| {
+        (first..=last)
+            .map(|n| (coefficient::error(a(n), n), n))
+            .max_by(|a, b| a.0.total_cmp(&b.0))
+            .unwrap_or((0.0, first))
+    };
+    let (taylor, minimax) = (worst(coefficient::taylor), worst(coefficient::minimax));
+    let scheme = config.choice("coefficient.scheme");
+    About {
+        device: "quadratic".to_owned(),
+        title: format!("Specular intensity by a parabola in cos(gamma), {scheme} coefficients"),
+        formula: "out = colour * max(0, c + a(n) * (c^2 - c)), c = cos(gamma)".to_owned(),
+        source: "UA 20998, the analogue in seed 001".to_owned(),
+        notes: vec![
+            "Below its zero at c = 1 - 1/a(n) the parabola is clamped to 0. The seed has no clamp, but no negative words \
+             either."
+                .to_owned(),
+            format!(
+                "The seed does not say what ROM(n) holds. Against cos^n over n = {first} ... {last} the formula itself \
+                 is off by up to {:.4} with a(n) = n - 1 (at n = {}), and by up to {:.4} with the minimax a(n) (at \
+                 n = {}).",
+                taylor.0, taylor.1, minimax.0, minimax.1
+            ),
+            "n = 0 is taken as n = 1, where a(n) = 0 and f = c.".to_owned(),
+            "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.".to_owned(),
+            "Writes while busy are ignored. The outputs follow register intensity and the colour registers: they \
+             hold from valid until a colour is written or the next computation has its result."
+                .to_owned(),
+        ],
+    }
+}

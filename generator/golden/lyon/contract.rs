@@ -1,0 +1,249 @@
+//! The accuracy contract of `lyon`.
+
+use super::{Arithmetic, Params, Scale};
+use crate::config::Config;
+use crate::fixed::{Format, Rounding, exp2};
+use crate::golden::contract as shared;
+use crate::golden::narrow::rounding_error;
+use crate::golden::{Axis, Bound, Contract, Operand, Sweep, Values};
+use crate::reference;
+
+/// The most that D² can be: each component is at least −2.0.
+const FARTHEST: i64 = 12;
+
+/// The accuracy contract. Control operands: `dx`, `dy`, `dz`, and `shift` or `exponent`.
+#[derive(Clone, Debug)]
+pub struct LyonContract {
+    params: Params,
+    arithmetic: Arithmetic,
+    /// An ulp of the square of a component, and one of D².
+    ulps: (f64, f64),
+    operands: Vec<Operand>,
+    outputs: Vec<String>,
+}
+
+impl LyonContract {
+    /// The contract of a configuration.
+    ///
+    /// # Panics
+    /// If the configuration is one that [`Params::check`] refuses and the device's schema does not.
+    pub fn new(config: &Config) -> Self {
+        Self::from_params(&Params::from_config(config))
+            .expect("a configuration that its schema accepts")
+    }
+
+    /// The contract from parameters.
+    ///
+    /// # Errors
+    /// As [`Params::check`].
+    pub fn from_params(params: &Params) -> Result<Self, String> {
+        params.check()?;
+        let vector = params.vector_format();
+        let component = |name: &str| Operand {
+            name: name.to_string(),
+            format: vector,
+            domain: (vector.min_raw() as i64, vector.max_raw() as i64),
+            colour: false,
+            doc: format!("{} of the normal less the half vector", &name[1..]),
+        };
+        let (name, doc) = match params.scale {
+            Scale::Shift => ("shift", "log2 of the specular exponent n, rounded"),
+            Scale::Multiplier => ("exponent", "specular exponent n"),
+        };
+        let (first, last) = params.exponents;
+        let mut operands = vec![
+            component("dx"),
+            component("dy"),
+            component("dz"),
+            Operand {
+                name: name.to_string(),
+                format: params.scale_format(),
+                domain: (params.scale_operand(first), params.scale_operand(last)),
+                colour: false,
+                doc: doc.to_string(),
+            },
+        ];
+        operands.extend(shared::colour_operands(params.colour_format()));
+        Ok(Self {
+            arithmetic: Arithmetic::new(params),
+            ulps: (
+                exp2(-2 * params.vector_fraction as i32),
+                exp2(-(params.distance_fraction as i32)),
+            ),
+            params: params.clone(),
+            operands,
+            outputs: shared::colour_outputs(),
+        })
+    }
+
+    /// The formula at a D², with the β that the operand stands for.
+    #[inline]
+    fn formula(&self, distance: f64, operand: i64) -> f64 {
+        let power = self.params.power;
+        let beta = self.params.exponent(operand) as f64 / f64::from(2 * power);
+        reference::lyon(distance, beta, power)
+    }
+}
+
+impl Contract for LyonContract {
+    fn operands(&self) -> &[Operand] {
+        &self.operands
+    }
+
+    fn outputs(&self) -> &[String] {
+        &self.outputs
+    }
+
+    fn f_format(&self) -> Format {
+        Format::unsigned(0, self.params.intensity_fraction as i32)
+    }
+
+    #[inline]
+    fn f(&self, control: &[i64]) -> i64 {
+        let it = &self.arithmetic;
+        it.f(
+            it.distance([control[0], control[1], control[2]]),
+            control[3],
+        )
+    }
+
+    #[inline]
+    fn colour(&self, f: i64, colour: i64) -> i64 {
+        self.arithmetic.colour(f, colour)
+    }
+
+    #[inline]
+    fn reference(&self, control: &[i64]) -> f64 {
+        let squares = control[..3].iter().map(|component| component * component);
+        self.formula(squares.sum::<i64>() as f64 * self.ulps.0, control[3])
+    }
+
+    /// The word of D² and the operand that scales it determine f: adders 1 and 2 and multipliers 1 to 3 are exact.
+    fn sweep(&self) -> Sweep {
+        let operand = &self.operands[3];
+        Sweep {
+            axes: vec![
+                Axis {
+                    name: operand.name.clone(),
+                    values: Values::Range(operand.domain.0, operand.domain.1),
+                },
+                Axis {
+                    name: "word of D^2".to_string(),
+                    values: Values::Range(0, FARTHEST << self.params.distance_fraction),
+                },
+            ],
+            omits: String::new(),
+        }
+    }
+
+    /// The worst over every D² that is rounded to the word. The formula falls as D² grows, so that it is at an end.
+    #[inline]
+    fn sweep_error(&self, place: &[i64]) -> f64 {
+        let (operand, word) = (place[0], place[1]);
+        let f = self.arithmetic.f(word, operand) as f64 * exp2(-self.f_format().frac);
+        let word = word as f64;
+        let exact = 2 * self.params.vector_fraction <= self.params.distance_fraction;
+        let (low, high) = match self.params.distance_rounding {
+            _ if exact => (word, word),
+            Rounding::Truncate => (word, word + 1.0),
+            Rounding::Nearest => (word - 0.5, word + 0.5),
+        };
+        let error = |at: f64| (f - self.formula(at.max(0.0) * self.ulps.1, operand)).abs();
+        error(low).max(error(high))
+    }
+
+    /// Base and powers lie in 0 … 1, hardware's and formula's alike, so by the mean value theorem an error
+    /// ε before a power p grows to at most p·ε.
+    ///
+    /// - An error of D² is multiplied by β = n/(2·m), and raised to m: n/2 in all.
+    /// - Base: as in `cosine-power`, the inverse stands for 1.0 − ulp − t where 1.0 − t is meant. With t
+    ///   truncated the base is low by at most an ulp; to the nearest, by 3/2.
+    /// - The result of squaring number i is rounded, and then raised to m/2^i: m − 1 in sum.
+    ///
+    /// Where all of them truncate, D² makes f too large and the others make it too small, by so much at
+    /// most: only the larger of the two counts.
+    fn bound(&self) -> Bound {
+        let params = &self.params;
+        let (f, power) = (params.intensity_fraction, f64::from(params.power));
+        let ulp = exp2(-(f as i32));
+        let distance = rounding_error(
+            2 * params.vector_fraction,
+            params.distance_fraction,
+            params.distance_rounding,
+        );
+        let largest = params.exponent(self.operands[3].domain.1) as f64;
+        let scaled_fraction = params.distance_fraction + params.squarings() + 1;
+        let base = match params.intensity_rounding {
+            Rounding::Truncate => ulp,
+            Rounding::Nearest => ulp + rounding_error(scaled_fraction, f, Rounding::Nearest),
+        };
+        let squares = rounding_error(2 * f, f, params.intensity_rounding);
+        let above = [(
+            "distance.fraction",
+            "rounding of D², times n/2",
+            distance * largest / 2.0,
+        )];
+        let below = [
+            (
+                "intensity.fraction",
+                "the base, with the inverse for 1.0 − β·D²",
+                base * power,
+            ),
+            (
+                "intensity.rounding",
+                "rounding of the squares",
+                squares * (power - 1.0),
+            ),
+        ];
+        let apart =
+            [params.distance_rounding, params.intensity_rounding] == [Rounding::Truncate; 2];
+        let shares = match apart {
+            true if above[0].2 > below[0].2 + below[1].2 => above.to_vec(),
+            true => below.to_vec(),
+            false => [&above[..], &below].concat(),
+        };
+        shared::bound(&shares, f, params.colour_bits, params.output_rounding)
+    }
+
+    /// What a β that is a power of two costs: most where n is midway between two.
+    fn remarks(&self) -> Vec<String> {
+        let (params, (first, last)) = (&self.params, self.params.exponents);
+        if params.scale == Scale::Multiplier {
+            return Vec::new();
+        }
+        let midway = (0..=params.exponent_bits)
+            .map(|octave| (exp2(octave as i32) * std::f64::consts::SQRT_2) as i64);
+        let worst = midway
+            .flat_map(|n| [n, n + 1])
+            .filter(|n| (first.max(1)..=last).contains(n))
+            .map(|n| {
+                let rounded = params.exponent(params.scale_operand(n));
+                let errors = [rounded, n].map(|taken| formula_error(n, taken, params.power));
+                (n, rounded, errors)
+            })
+            .max_by(|a, b| (a.2[0] - a.2[1]).total_cmp(&(b.2[0] - b.2[1])));
+        let Some((n, rounded, [error, exact])) = worst.filter(|worst| worst.2[0] > worst.2[1])
+        else {
+            return Vec::new();
+        };
+        vec![format!(
+            "scale = \"shift\" takes n for a power of two: at n = {n}, taken for {rounded}, the formula is off from cos^n by \
+             up to {error:.4}; with scale = \"multiplier\" by {exact:.4}"
+        )]
+    }
+}
+
+/// The largest difference between the function with β = `rounded`/(2·m) and cosⁿγ, for unit vectors, on a
+/// grid that the highlight fills.
+fn formula_error(n: i64, rounded: i64, power: u32) -> f64 {
+    const GRID: u32 = 1024;
+    let beta = rounded as f64 / f64::from(2 * power);
+    let reach = (8.0 / n as f64).min(1.0);
+    (0..GRID)
+        .map(|step| {
+            let versine = reach * f64::from(step) / f64::from(GRID);
+            let value = reference::lyon(2.0 * versine, beta, power);
+            (value - reference::blinn(1.0 - versine, n as f64)).abs()
+        })
+        .fold(0.0, f64::max)
+}

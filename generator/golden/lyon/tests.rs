@@ -1,0 +1,134 @@
+//! Values worked out by hand.
+
+use super::*;
+use crate::golden::{Contract, Model};
+
+/// V = 4, D = 6, F = 4, K = 4, small enough to follow by hand.
+fn small(power: u32, scale: Scale) -> Params {
+    Params {
+        power,
+        scale,
+        vector_fraction: 4,
+        distance_fraction: 6,
+        exponent_bits: 4,
+        colour_bits: 4,
+        intensity_fraction: 4,
+        exponents: (1, 15),
+        ..Params::default()
+    }
+}
+
+#[test]
+fn points_by_hand() {
+    let f = |power, scale, control: [i64; 4]| {
+        LyonContract::from_params(&small(power, scale))
+            .unwrap()
+            .f(&control)
+    };
+    // D² = (9 + 4 + 1)/256 → 3/64. n = 12, m = 2: 36/256 → 2/16; base 13/16; 169/256 → 10.
+    assert_eq!(f(2, Scale::Multiplier, [3, -2, 1, 12]), 10);
+    // m = 4: 36/512 → 1/16; 14 → 196/256 → 12 → 144/256 → 9.
+    assert_eq!(f(4, Scale::Multiplier, [3, -2, 1, 12]), 9);
+    // 2³ = 8 for 12: 24/256 → 1/16; 14 → 12.
+    assert_eq!(f(2, Scale::Shift, [3, -2, 1, 3]), 12);
+    // D = 0: the base is an ulp below 1.0: 15 → 14.
+    assert_eq!(f(2, Scale::Shift, [0, 0, 0, 3]), 14);
+    // D² = 2.0: β·D² is 1.0 at n = 2, and beyond at n = 3.
+    assert_eq!(f(2, Scale::Multiplier, [16, 16, 0, 1]), 3);
+    assert_eq!(f(2, Scale::Multiplier, [16, 16, 0, 2]), 0);
+    assert_eq!(f(2, Scale::Multiplier, [16, 16, 0, 3]), 0);
+    // The farthest D² = 12.0, at the largest shift.
+    assert_eq!(f(2, Scale::Shift, [-32, -32, -32, 7]), 0);
+    assert_eq!(f(16, Scale::Shift, [-32, -32, -32, 0]), 0);
+}
+
+#[test]
+fn exponents_round_to_powers_of_two_by_their_ratio() {
+    let params = small(4, Scale::Shift);
+    let shifts = [0, 1, 2, 3, 5, 6, 11, 12, 15].map(|n| params.scale_operand(n));
+    assert_eq!(shifts, [0, 0, 1, 2, 2, 3, 3, 4, 4]);
+    assert_eq!(params.scale_format().width(), 3);
+}
+
+/// The sweep's error is the worst over what rounds to a word.
+#[test]
+fn a_word_stands_for_an_interval() {
+    let contract = LyonContract::from_params(&small(2, Scale::Multiplier)).unwrap();
+    // Word 3 and n = 12: 10/16 is held against (1 − 3/64·3)² and (1 − 4/64·3)².
+    let ends: [f64; 2] = [55.0 / 64.0, 52.0 / 64.0];
+    let worst = ends.map(|base| (base * base - 0.625).abs());
+    assert_eq!(contract.sweep_error(&[12, 3]), worst[0].max(worst[1]));
+}
+
+/// One point with the shift register followed clock by clock.
+#[test]
+fn a_point_clock_by_clock() {
+    let mut model = LyonModel::from_params(&small(4, Scale::Shift)).unwrap();
+    let value = |model: &LyonModel, name: &str| {
+        model.values()[model.signals().iter().position(|it| it == name).unwrap()]
+    };
+    // D = (3, −2, 1)/16, shift 2, red 15, written together with start.
+    model.clock(&[1, 1, 3, 1, 62, 1, 1, 1, 2, 1, 15, 1, 0, 0, 0, 0]);
+    let names = [
+        "run",
+        "word_address",
+        "shift_register",
+        "remaining",
+        "accumulator",
+        "valid",
+        "done",
+    ];
+    let mut seen = Vec::new();
+    for _ in 0..9 {
+        seen.push(names.map(|name| value(&model, name)));
+        // Writes while busy change nothing.
+        model.clock(&[1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0]);
+    }
+    let expected = [
+        [1, 0, 0, 0, 0, 0, 0],
+        [1, 1, 0, 0, 0, 0, 0],
+        // 3/64 of D², read as 3/1024, and three times doubled.
+        [1, 2, 3, 2, 0, 0, 0],
+        [1, 2, 6, 1, 0, 0, 0],
+        [1, 2, 12, 0, 0, 0, 0],
+        [1, 3, 24, 7, 0, 0, 0],
+        // 24/1024 → 0; base 15/16; 225/256 → 14, then 196/256 → 12.
+        [1, 4, 24, 1, 14, 0, 0],
+        [1, 5, 24, 0, 12, 1, 1],
+        [0, 0, 24, 0, 12, 0, 0],
+    ];
+    assert_eq!(seen, expected);
+    assert_eq!(value(&model, "dx_reg"), 1);
+}
+
+#[test]
+fn the_default_is_proven() {
+    let bound = LyonContract::from_params(&Params::default())
+        .unwrap()
+        .bound();
+    // 2⁹ ulps of 2⁻²⁰ upward, times 255, and half a unit; downward 16 + 15 of 2⁻¹⁶ are less.
+    assert_eq!(bound.units, 512.0 / 1048576.0 * 255.0 + 0.5);
+    let coarse = Params {
+        intensity_fraction: 15,
+        ..Params::default()
+    };
+    let bound = LyonContract::from_params(&coarse).unwrap().bound();
+    assert_eq!(bound.units, 31.0 / 32768.0 * 255.0 + 0.5);
+    let nearest = Params {
+        distance_rounding: Rounding::Nearest,
+        ..Params::default()
+    };
+    let bound = LyonContract::from_params(&nearest).unwrap().bound();
+    let expected = (256.0 / 1048576.0 + 31.0 / 65536.0) * 255.0 + 0.5;
+    assert!((bound.units - expected).abs() < 1e-12, "{bound:?}");
+}
+
+#[test]
+fn parameters_out_of_range_are_named() {
+    let params = Params {
+        distance_fraction: 9,
+        ..small(4, Scale::Shift)
+    };
+    let refused = LyonContract::from_params(&params).unwrap_err();
+    assert!(refused.contains("distance.fraction"), "{refused}");
+}

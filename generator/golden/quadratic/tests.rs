@@ -1,0 +1,127 @@
+//! Values worked out by hand.
+
+use super::*;
+use crate::golden::{Contract, Model};
+
+/// C = 4, D = 6, F = 4, K = 4, small enough to follow by hand.
+fn small(scheme: Scheme) -> Params {
+    Params {
+        scheme,
+        cosine_fraction: 4,
+        exponent_bits: 4,
+        colour_bits: 4,
+        difference_fraction: 6,
+        intensity_fraction: 4,
+        exponents: (1, 15),
+        ..Params::default()
+    }
+}
+
+#[test]
+fn points_by_hand() {
+    let contract = QuadraticContract::from_params(&small(Scheme::Taylor)).unwrap();
+    let f = |cosine, n| contract.f(&[cosine, n]);
+    // n = 1 and n = 0: f = c.
+    assert_eq!((f(14, 1), f(14, 0)), (14, 14));
+    // n = 2: c². 196/256 − 14/16 = −28/256 = −7/64; 56/64 − 7/64 = 49/64 → 12/16.
+    assert_eq!(f(14, 2), 12);
+    // c = 13/16: 169/256 − 208/256 = −39/256 → −10/64; 52 − 10 = 42/64 → 10/16.
+    assert_eq!(f(13, 2), 10);
+    // n = 5: 56/64 − 28/64 → 7/16. n = 9: 0. n = 10: below.
+    assert_eq!((f(14, 5), f(14, 9), f(14, 10)), (7, 0, 0));
+    // The ends, and what is above 1.0 at the port.
+    assert_eq!((f(16, 15), f(31, 1), f(0, 1)), (15, 15, 0));
+}
+
+#[test]
+fn minimax_words_by_hand() {
+    let scheme = Scheme::Minimax { fraction: 2 };
+    let contract = QuadraticContract::from_params(&small(scheme)).unwrap();
+    // n = 3: the errors are equal, 0.0424, at a = 1.535; six quarters.
+    assert_eq!(Arithmetic::new(&small(scheme)).words[..4], [0, 0, 4, 6]);
+    // c = 14/16: 56/64 − 1.5·7/64 = 45.5/64 → 11/16.
+    assert_eq!(contract.f(&[14, 3]), 11);
+}
+
+/// The table makes both errors equal: on a grid, no larger and no smaller coefficient does better.
+#[test]
+fn the_table_is_minimax() {
+    let table = coefficient::table(Scheme::Minimax { fraction: 0 }, 4096);
+    for n in [3, 5, 16, 250, 1000, 4095] {
+        let a = table[n];
+        let error = |a: f64| {
+            (0..=100_000)
+                .map(|step| {
+                    let c = 1.0 - f64::from(step) * 1e-5 * (8.0 / n as f64).min(1.0);
+                    let parabola = (c + a * (c * c - c)).max(0.0);
+                    (parabola - libm::pow(c, n as f64)).abs()
+                })
+                .fold(0.0, f64::max)
+        };
+        let own = error(a);
+        assert!(
+            error(a * 1.0005) > own && error(a * 0.9995) > own,
+            "n = {n}, a = {a}"
+        );
+    }
+}
+
+/// One point followed clock by clock: words 0, 1, 2, 3 and idle.
+#[test]
+fn a_point_clock_by_clock() {
+    let mut model = QuadraticModel::from_params(&small(Scheme::Taylor)).unwrap();
+    let value = |model: &QuadraticModel, name: &str| {
+        model.values()[model.signals().iter().position(|it| it == name).unwrap()]
+    };
+    // c = 14/16, n = 5, red 15, written together with start.
+    model.clock(&[1, 1, 14, 1, 5, 1, 15, 1, 0, 0, 0, 0]);
+    let names = [
+        "run",
+        "word_address",
+        "difference",
+        "intensity",
+        "valid",
+        "done",
+    ];
+    let mut seen = Vec::new();
+    for _ in 0..4 {
+        seen.push(names.map(|name| value(&model, name)));
+        // Writes while busy change nothing.
+        model.clock(&[1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0]);
+    }
+    let expected = [
+        [1, 0, 0, 0, 0, 0],
+        [1, 1, 0, 0, 0, 0],
+        // −7/64 in five bits.
+        [1, 2, 25, 0, 0, 0],
+        [1, 3, 25, 7, 1, 1],
+    ];
+    assert_eq!(seen, expected);
+    // 7/16 of 15 units.
+    assert_eq!(value(&model, "red_out"), 7);
+}
+
+#[test]
+fn the_defaults_are_proven() {
+    let bound = |scheme| {
+        let params = Params {
+            scheme,
+            ..Params::default()
+        };
+        QuadraticContract::from_params(&params).unwrap().bound()
+    };
+    // 999 ulps of 2⁻¹⁹ and one of 2⁻¹⁶, times 255, and half a unit.
+    let taylor = bound(Scheme::Taylor).units;
+    assert!((taylor - (999.0 / 524288.0 + 1.0 / 65536.0) * 255.0 - 0.5).abs() < 1e-12);
+    assert!(bound(Scheme::Minimax { fraction: 8 }).units < 0.9);
+}
+
+#[test]
+fn parameters_out_of_range_are_named() {
+    let params = Params {
+        difference_fraction: 9,
+        ..small(Scheme::Taylor)
+    };
+    let refused = QuadraticContract::from_params(&params).unwrap_err();
+    assert!(refused.contains("difference.fraction"), "{refused}");
+}
