@@ -4,13 +4,13 @@
 //! drivers, combinational loops, widths that do not match, duplicate or illegal names, words that
 //! cannot be reached, and registers loaded with a product under a selection that means another one.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt;
 
 use crate::dsl::{Place, View};
 use crate::fixed::{MAX_WIDTH, mask};
 use crate::identifier;
-use crate::netlist::{Design, Driver, FieldKind, NetId, Op, Sequence};
+use crate::netlist::{Design, Driver, FieldKind, NetId, Op, Sequence, Word};
 
 /// A mistake in a description.
 #[derive(Clone, Debug)]
@@ -387,61 +387,110 @@ impl Checker<'_> {
         }
     }
 
-    /// Every register that word `at` loads takes a product that the selection of the word gives.
+    /// Every register that word `at` loads takes a product that the selection of the word gives; behind
+    /// a pipeline register, that the selection of each word before it gives.
     fn selections(&mut self, at: usize) {
         let design = self.design;
-        let word = &design.control.words[at];
+        let words = &design.control.words;
         for register in &design.registers {
             let Some(Driver::Field(enable)) = register.enable.map(|id| &design.net(id).driver)
             else {
                 continue;
             };
-            let Some(data) = register.data.filter(|_| word.values[enable.index()] == 1) else {
+            let Some(data) = register
+                .data
+                .filter(|_| words[at].values[enable.index()] == 1)
+            else {
                 continue;
             };
-            let mut seen = vec![false; design.nets.len()];
-            let mut pending = vec![data];
-            while let Some(id) = pending.pop() {
-                if std::mem::replace(&mut seen[id.index()], true) {
+            let mut seen = HashSet::new();
+            let mut pending = vec![(at, data)];
+            while let Some((at, id)) = pending.pop() {
+                if !seen.insert((at, id)) {
                     continue;
                 }
+                let word = &words[at];
                 if let Some(view) = self.views.get(&id)
                     && !view.values.contains(&word.values[view.field.index()])
                 {
-                    let field = &design.control.fields[view.field.index()];
-                    let choice = |value: u64| match &field.kind {
-                        FieldKind::Select(choices) => choices
-                            .get(value as usize)
-                            .map_or("nothing", String::as_str),
-                        _ => "nothing",
-                    };
-                    let wanted: Vec<&str> =
-                        view.values.iter().map(|&value| choice(value)).collect();
-                    let message = format!(
-                        "word `{}` loads `{}` with the product of ({}), but selects ({})",
-                        word.name,
-                        self.name(register.q),
-                        wanted.join(") or ("),
-                        choice(word.values[view.field.index()]),
-                    );
-                    let diagnostic = Diagnostic::new(message, word.location);
+                    let diagnostic = self.wrong_product(word, register.q, view);
                     let diagnostic =
                         diagnostic.note("the product".to_owned(), design.net(id).location);
                     self.found.push(diagnostic);
                     break;
                 }
-                // Of a mux that the word turns, only the chosen input matters.
                 match &design.net(id).driver {
-                    Driver::Op(Op::Mux { select, inputs }) => match design.net(*select).driver {
-                        Driver::Field(field) => {
-                            let chosen = word.values[field.index()] as usize;
-                            pending.extend(inputs.get(chosen).or(inputs.last()));
-                        }
-                        _ => pending.extend(design.combinational_inputs(id)),
+                    // Of a mux that the word turns, only the chosen input matters.
+                    Driver::Op(Op::Mux { select, inputs }) => match self.selected(word, *select) {
+                        Some(chosen) => pending.extend(
+                            inputs
+                                .get(chosen as usize)
+                                .or(inputs.last())
+                                .map(|&input| (at, input)),
+                        ),
+                        None => pending.extend(
+                            design
+                                .combinational_inputs(id)
+                                .into_iter()
+                                .map(|input| (at, input)),
+                        ),
                     },
-                    _ => pending.extend(design.combinational_inputs(id)),
+                    Driver::Register(of) if design.register(*of).enable.is_none() => {
+                        let data = design.register(*of).data;
+                        let before = (0..words.len()).filter(|&word| leads_to(design, word, at));
+                        pending.extend(before.filter_map(|word| Some((word, data?))));
+                    }
+                    _ => pending.extend(
+                        design
+                            .combinational_inputs(id)
+                            .into_iter()
+                            .map(|input| (at, input)),
+                    ),
                 }
             }
         }
+    }
+
+    /// What `word` puts on a select line: a field, or bits of one.
+    fn selected(&self, word: &Word, select: NetId) -> Option<u64> {
+        let net = self.design.net(select);
+        match net.driver {
+            Driver::Field(field) => Some(word.values[field.index()]),
+            Driver::Op(Op::Relabel(of)) => self.selected(word, of),
+            Driver::Op(Op::Slice { of, low }) => {
+                let bits = self.selected(word, of)? >> low;
+                Some(bits & mask(net.format.width()))
+            }
+            _ => None,
+        }
+    }
+
+    fn wrong_product(&self, word: &Word, register: NetId, view: &View) -> Diagnostic {
+        let field = &self.design.control.fields[view.field.index()];
+        let choice = |value: u64| match &field.kind {
+            FieldKind::Select(choices) => choices
+                .get(value as usize)
+                .map_or("nothing", String::as_str),
+            _ => "nothing",
+        };
+        let wanted: Vec<&str> = view.values.iter().map(|&value| choice(value)).collect();
+        let message = format!(
+            "word `{}` loads `{}` with the product of ({}), but selects ({})",
+            word.name,
+            self.name(register),
+            wanted.join(") or ("),
+            choice(word.values[view.field.index()]),
+        );
+        Diagnostic::new(message, word.location)
+    }
+}
+
+/// Whether control can go from word `from` to word `to`. Idle, the device stays in word 0.
+fn leads_to(design: &Design, from: usize, to: usize) -> bool {
+    match design.control.words[from].sequence {
+        Sequence::Next => to == from + 1 || (from == 0 && to == 0),
+        Sequence::WaitStart => to == from || to == from + 1,
+        Sequence::LoopWhile { to: back, .. } => to == back || to == from + 1,
+        Sequence::End => to == 0,
     }
 }

@@ -151,16 +151,9 @@ pub fn describe(d: &Designer, config: &Config) {
         exact_sums(d, r4.q(), r3.q(), [r11, r12, r13])
     };
 
-    // Both products that register 13 takes must have their point in one place: zeros are appended to
-    // n/2, or to one side of the square, whichever falls short.
-    let sum_frac = adder15.format().frac + half_n.format().frac;
-    let square_frac = 2 * adder16.format().frac;
-    let half_n = half_n.with_fraction(half_n.format().frac + (square_frac - sum_frac).max(0));
-    let base = adder16.with_fraction(adder16.format().frac + (sum_frac - square_frac).max(0));
     let half_n = half_n.named("half_exponent").doc("n/2, by wiring");
-
     let mux8 = d
-        .bus("mux8", operand_select, [cos_gamma, sine, adder15, base])
+        .bus("mux8", operand_select, [cos_gamma, sine, adder15, adder16])
         .block(8)
         .doc("first operand of multiplier 10");
     let mux9 = d
@@ -197,8 +190,22 @@ pub fn describe(d: &Designer, config: &Config) {
         rounding_products,
         overflow,
     ));
-    let both = product.of_any(&[(adder15, half_n), (base, adder16)]);
-    let result = d.narrow("result", both, r13.format(), rounding_result, overflow);
+    // Words 4 and 6 settle what words 5 and 7 load, so that register 13 may take the product of the word
+    // before: the multiplier then shares a clock with none of the adders in front and behind.
+    let settled = product.held("product_held");
+    let line = settled.of(adder15, half_n);
+    let square = settled.of(adder16, adder16);
+    let squares = operand_select
+        .out()
+        .bit(0)
+        .named("squares")
+        .doc("V2: which of its two products register 13 takes");
+    let frac = line.format().frac.max(square.format().frac);
+    let either = [line.with_fraction(frac), square.with_fraction(frac)];
+    let either = d
+        .choose("line_or_square", squares, either)
+        .doc("n/2 * adder 15, or the square of adder 16");
+    let result = d.narrow("result", either, r13.format(), rounding_result, overflow);
     r13.takes(if formats.patent {
         result
     } else {
@@ -221,6 +228,7 @@ pub fn describe(d: &Designer, config: &Config) {
     };
     colours.outputs(f, rounding(config, "output.rounding"));
 
+    d.sequencer_lines(43, 44);
     d.microprogram([
         step(
             "operands cos gamma, cos dgamma; sine of gamma addressed",
@@ -254,7 +262,7 @@ pub fn describe(d: &Designer, config: &Config) {
         step(
             "operands adder 16, adder 16",
             [
-                mux8.pick(base),
+                mux8.pick(adder16),
                 mux9.pick(adder16),
                 sine_of.pick(cos_dgamma),
             ],
@@ -386,6 +394,9 @@ fn about(config: &Config) -> About {
     let mut notes = vec![
         "Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1; the control \
          ROM is its table 1, bit for bit."
+            .to_owned(),
+        "Register 13 takes the multiplier's product of the word before, which the patent's settling words \
+         have left the time for."
             .to_owned(),
         "Writes while busy are ignored. The outputs follow register 13 and the colour registers: they hold \
          from valid until a colour is written or the next computation reaches its word 5."

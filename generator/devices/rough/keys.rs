@@ -2,7 +2,6 @@
 
 use crate::config::{Config, Key, Problems, Schema};
 use crate::devices::common;
-use crate::fixed::MAX_WIDTH;
 
 /// The keys of the device.
 pub fn schema() -> Schema {
@@ -39,7 +38,15 @@ pub fn schema() -> Schema {
 fn check(config: &Config, problems: &mut Problems) {
     common::check_exponents(config, problems);
     let cosine = config.integer("cosine.fraction");
-    check_multiplier(config, problems);
+    // No range of a key makes a net wider than 64 bits: the widest is n/2 * adder 15 with the point of the
+    // square, 13 + 48 bits.
+    if config.choice("arithmetic") == "patent" && config.integer("exponent.bits") < 2 {
+        problems.push(
+            "exponent.bits",
+            "the patent's wiring of n/2 drops the only bit of n".to_owned(),
+            "at least 2 with arithmetic = \"patent\"".to_owned(),
+        );
+    }
     let (fraction, product) = if config.choice("arithmetic") == "exact" {
         (
             config.integer("sine.fraction"),
@@ -110,53 +117,6 @@ fn check_rom_size(address: i64, width: i64, problems: &mut Problems) {
             format!(
                 "fewer address bits, for at most {ROM_LIMIT} bits, or sine.scheme = \"segmented\""
             ),
-        );
-    }
-}
-
-/// Multiplier 10 fits a net, and in the patent's arithmetic n/2 has a bit left.
-fn check_multiplier(config: &Config, problems: &mut Problems) {
-    let integer = |key: &str| config.integer(key);
-    if config.choice("arithmetic") == "patent" {
-        if integer("exponent.bits") < 2 {
-            problems.push(
-                "exponent.bits",
-                "the patent's wiring of n/2 drops the only bit of n".to_owned(),
-                "at least 2 with arithmetic = \"patent\"".to_owned(),
-            );
-        }
-        return;
-    }
-    let (cosine, sine) = (integer("cosine.fraction"), integer("sine.fraction"));
-    let (product, f) = (integer("product.fraction"), integer("intensity.fraction"));
-    // Zeros that bring n/2 * adder 15 and the square of adder 16 to one point.
-    let (half_pad, base_pad) = ((2 * f - product - 1).max(0), (product + 1 - 2 * f).max(0));
-    // Adder 16, with its sign; without the clamp it needs an integer bit more.
-    let base = f + if config.flag("clamp") { 2 } else { 3 };
-    let first = (cosine + 2)
-        .max(sine + 1)
-        .max(product + 2)
-        .max(base + base_pad);
-    let second = (cosine + 2)
-        .max(sine + 1)
-        .max(integer("exponent.bits") + half_pad + 1)
-        .max(base);
-    let width = first + second;
-    if width > i64::from(MAX_WIDTH) {
-        let keys = [
-            ("cosine.fraction", cosine),
-            ("sine.fraction", sine),
-            ("product.fraction", product),
-            ("intensity.fraction", f),
-        ];
-        let key = keys
-            .iter()
-            .max_by_key(|(_, bits)| *bits)
-            .map_or("cosine.fraction", |(key, _)| *key);
-        problems.push(
-            key,
-            format!("multiplier 10 would be {first} by {second} bits; a product has at most {MAX_WIDTH}"),
-            "fewer bits here, or in cosine.fraction, sine.fraction, product.fraction or intensity.fraction".to_owned(),
         );
     }
 }
