@@ -89,27 +89,33 @@ module rough_small_datapath #(
     wire [18:0] mux17 = mux17_select ? cos_dgamma_reg : cos_gamma_reg;
 
     wire [18:0] complement = ONE - mux17;  // u1.18: 1.0 - cos
-    wire sine_in_range6 = |complement[18:4];
+    wire sine_in_range0 = |complement[18:16];  // u is in range 0 or in one above
+    wire [7:0] sine_word0 = sine_in_range0 ? {2'd2, complement[17:12]} : {1'b0, complement[15:9]};
+    wire [11:0] sine_rest0 = sine_in_range0 ? complement[11:0] : {complement[8:0], 3'd0};  // u0.12
+    wire sine_in_range2 = |complement[18:12];  // u is in range 2 or in one above
+    wire [8:0] sine_word2 = sine_in_range2 ? {3'd3, complement[13:8]} : {4'd8, complement[11:7]};
+
+    // u0.12
+    wire [11:0] sine_rest2 = sine_in_range2 ? {complement[7:0], 4'd0} : {complement[6:0], 5'd0};
+
+    wire sine_in_range1 = |complement[18:14];  // u is in range 1 or in one above
+    wire [8:0] sine_word1 = sine_in_range1 ? {1'b0, sine_word0} : sine_word2;
+    wire [11:0] sine_rest1 = sine_in_range1 ? sine_rest0 : sine_rest2;  // u0.12
+    wire sine_in_range4 = |complement[18:8];  // u is in range 4 or in one above
+    wire [8:0] sine_word4 = sine_in_range4 ? {5'd18, complement[9:6]} : {6'd40, complement[7:5]};
+
+    // u0.12
+    wire [11:0] sine_rest4 = sine_in_range4 ? {complement[5:0], 6'd0} : {complement[4:0], 7'd0};
+
+    wire sine_in_range6 = |complement[18:4];  // u is in range 6 or in one above
     wire [8:0] sine_word6 = sine_in_range6 ? {7'd82, complement[5:4]} : {5'd19, complement[3:0]};
     wire [11:0] sine_rest6 = sine_in_range6 ? {complement[3:0], 8'd0} : 12'd0;  // u0.12
-    wire sine_in_range5 = |complement[18:6];
-    wire [8:0] sine_word5 = sine_in_range5 ? {6'd40, complement[7:5]} : sine_word6;
-    wire [11:0] sine_rest5 = sine_in_range5 ? {complement[4:0], 7'd0} : sine_rest6;  // u0.12
-    wire sine_in_range4 = |complement[18:8];
-    wire [8:0] sine_word4 = sine_in_range4 ? {5'd18, complement[9:6]} : sine_word5;
-    wire [11:0] sine_rest4 = sine_in_range4 ? {complement[5:0], 6'd0} : sine_rest5;  // u0.12
-    wire sine_in_range3 = |complement[18:10];
-    wire [8:0] sine_word3 = sine_in_range3 ? {4'd8, complement[11:7]} : sine_word4;
-    wire [11:0] sine_rest3 = sine_in_range3 ? {complement[6:0], 5'd0} : sine_rest4;  // u0.12
-    wire sine_in_range2 = |complement[18:12];
-    wire [8:0] sine_word2 = sine_in_range2 ? {3'd3, complement[13:8]} : sine_word3;
-    wire [11:0] sine_rest2 = sine_in_range2 ? {complement[7:0], 4'd0} : sine_rest3;  // u0.12
-    wire sine_in_range1 = |complement[18:14];
-    wire [8:0] sine_word1 = sine_in_range1 ? {2'd0, complement[15:9]} : sine_word2;
-    wire [11:0] sine_rest1 = sine_in_range1 ? {complement[8:0], 3'd0} : sine_rest2;  // u0.12
-    wire sine_in_range0 = |complement[18:16];
-    wire [8:0] sine_word0 = sine_in_range0 ? {3'd2, complement[17:12]} : sine_word1;
-    wire [11:0] sine_rest0 = sine_in_range0 ? complement[11:0] : sine_rest1;  // u0.12
+    wire sine_in_range5 = |complement[18:6];  // u is in range 5 or in one above
+    wire [8:0] sine_word5 = sine_in_range5 ? sine_word4 : sine_word6;
+    wire [11:0] sine_rest5 = sine_in_range5 ? sine_rest4 : sine_rest6;  // u0.12
+    wire sine_in_range3 = |complement[18:10];  // u is in range 3 or in one above
+    wire [8:0] sine_word3 = sine_in_range3 ? sine_word1 : sine_word5;
+    wire [11:0] sine_rest3 = sine_in_range3 ? sine_rest1 : sine_rest5;  // u0.12
     wire [19:0] sine_base = sine_word[31:12];  // u0.20
     wire [11:0] sine_slope = sine_word[11:0];  // u-5.17
     wire [23:0] sine_rise = sine_slope * sine_rest_held;  // u-5.29
@@ -209,7 +215,7 @@ module rough_small_datapath #(
     // 2^-17 (12 bits)
     reg [31:0] sine_rom [0:331];
     initial $readmemh(SINE_FILE, sine_rom);
-    always @(posedge clk) sine_word <= sine_rom[sine_word0];
+    always @(posedge clk) sine_word <= sine_rom[sine_word3];
 
     always @(posedge clk) begin
         if (cos_gamma_load) begin
@@ -278,7 +284,7 @@ module rough_small_datapath #(
     end
 
     always @(posedge clk) begin
-        sine_rest_held <= sine_rest0;
+        sine_rest_held <= sine_rest3;
         product_held <= multiplier10;
         product_held_excess <= multiplier10_excess;
     end

@@ -88,33 +88,39 @@ module rough_unclamped_datapath #(
     wire [20:0] mux17 = mux17_select ? cos_dgamma_reg : cos_gamma_reg;
 
     wire [20:0] complement = ONE - mux17;  // u1.20: 1.0 - cos
-    wire sine_in_range8 = |complement[20:2];
-    wire [9:0] sine_word8 = sine_in_range8 ? {8'd144, complement[3:2]} : {8'd145, complement[1:0]};
-    wire [13:0] sine_rest8 = sine_in_range8 ? {complement[1:0], 12'd0} : 14'd0;  // u0.14
-    wire sine_in_range7 = |complement[20:4];
-    wire [9:0] sine_word7 = sine_in_range7 ? {7'd71, complement[5:3]} : sine_word8;
-    wire [13:0] sine_rest7 = sine_in_range7 ? {complement[2:0], 11'd0} : sine_rest8;  // u0.14
-    wire sine_in_range6 = |complement[20:6];
-    wire [9:0] sine_word6 = sine_in_range6 ? {7'd70, complement[7:5]} : sine_word7;
-    wire [13:0] sine_rest6 = sine_in_range6 ? {complement[4:0], 9'd0} : sine_rest7;  // u0.14
-    wire sine_in_range5 = |complement[20:8];
-    wire [9:0] sine_word5 = sine_in_range5 ? {6'd34, complement[9:6]} : sine_word6;
-    wire [13:0] sine_rest5 = sine_in_range5 ? {complement[5:0], 8'd0} : sine_rest6;  // u0.14
-    wire sine_in_range4 = |complement[20:10];
-    wire [9:0] sine_word4 = sine_in_range4 ? {5'd16, complement[11:7]} : sine_word5;
-    wire [13:0] sine_rest4 = sine_in_range4 ? {complement[6:0], 7'd0} : sine_rest5;  // u0.14
-    wire sine_in_range3 = |complement[20:12];
-    wire [9:0] sine_word3 = sine_in_range3 ? {4'd7, complement[13:8]} : sine_word4;
-    wire [13:0] sine_rest3 = sine_in_range3 ? {complement[7:0], 6'd0} : sine_rest4;  // u0.14
-    wire sine_in_range2 = |complement[20:14];
+    wire sine_in_range0 = |complement[20:18];  // u is in range 0 or in one above
+    wire [8:0] sine_word0 = sine_in_range0 ? {3'd6, complement[19:14]} : {1'b0, complement[17:10]};
+    wire [13:0] sine_rest0 = sine_in_range0 ? complement[13:0] : {complement[9:0], 4'd0};  // u0.14
+    wire sine_in_range3 = |complement[20:12];  // u is in range 3 or in one above
+    wire [9:0] sine_word3 = sine_in_range3 ? {4'd7, complement[13:8]} : {5'd16, complement[11:7]};
+
+    // u0.14
+    wire [13:0] sine_rest3 = sine_in_range3 ? {complement[7:0], 6'd0} : {complement[6:0], 7'd0};
+
+    wire sine_in_range2 = |complement[20:14];  // u is in range 2 or in one above
     wire [9:0] sine_word2 = sine_in_range2 ? {3'd2, complement[15:9]} : sine_word3;
     wire [13:0] sine_rest2 = sine_in_range2 ? {complement[8:0], 5'd0} : sine_rest3;  // u0.14
-    wire sine_in_range1 = |complement[20:16];
-    wire [9:0] sine_word1 = sine_in_range1 ? {2'd0, complement[17:10]} : sine_word2;
-    wire [13:0] sine_rest1 = sine_in_range1 ? {complement[9:0], 4'd0} : sine_rest2;  // u0.14
-    wire sine_in_range0 = |complement[20:18];
-    wire [9:0] sine_word0 = sine_in_range0 ? {4'd6, complement[19:14]} : sine_word1;
-    wire [13:0] sine_rest0 = sine_in_range0 ? complement[13:0] : sine_rest1;  // u0.14
+    wire sine_in_range1 = |complement[20:16];  // u is in range 1 or in one above
+    wire [9:0] sine_word1 = sine_in_range1 ? {1'b0, sine_word0} : sine_word2;
+    wire [13:0] sine_rest1 = sine_in_range1 ? sine_rest0 : sine_rest2;  // u0.14
+    wire sine_in_range5 = |complement[20:8];  // u is in range 5 or in one above
+    wire [9:0] sine_word5 = sine_in_range5 ? {6'd34, complement[9:6]} : {7'd70, complement[7:5]};
+
+    // u0.14
+    wire [13:0] sine_rest5 = sine_in_range5 ? {complement[5:0], 8'd0} : {complement[4:0], 9'd0};
+
+    wire sine_in_range8 = |complement[20:2];  // u is in range 8 or in one above
+    wire [9:0] sine_word8 = sine_in_range8 ? {8'd144, complement[3:2]} : {8'd145, complement[1:0]};
+    wire [13:0] sine_rest8 = sine_in_range8 ? {complement[1:0], 12'd0} : 14'd0;  // u0.14
+    wire sine_in_range7 = |complement[20:4];  // u is in range 7 or in one above
+    wire [9:0] sine_word7 = sine_in_range7 ? {7'd71, complement[5:3]} : sine_word8;
+    wire [13:0] sine_rest7 = sine_in_range7 ? {complement[2:0], 11'd0} : sine_rest8;  // u0.14
+    wire sine_in_range6 = |complement[20:6];  // u is in range 6 or in one above
+    wire [9:0] sine_word6 = sine_in_range6 ? sine_word5 : sine_word7;
+    wire [13:0] sine_rest6 = sine_in_range6 ? sine_rest5 : sine_rest7;  // u0.14
+    wire sine_in_range4 = |complement[20:10];  // u is in range 4 or in one above
+    wire [9:0] sine_word4 = sine_in_range4 ? sine_word1 : sine_word6;
+    wire [13:0] sine_rest4 = sine_in_range4 ? sine_rest1 : sine_rest6;  // u0.14
     wire [21:0] sine_base = sine_word[34:13];  // u0.22
     wire [12:0] sine_slope = sine_word[12:0];  // u-5.18
     wire [26:0] sine_rise = sine_slope * sine_rest_held;  // u-5.32
@@ -213,7 +219,7 @@ module rough_unclamped_datapath #(
     // 2^-18 (13 bits)
     reg [34:0] sine_rom [0:583];
     initial $readmemh(SINE_FILE, sine_rom);
-    always @(posedge clk) sine_word <= sine_rom[sine_word0];
+    always @(posedge clk) sine_word <= sine_rom[sine_word4];
 
     always @(posedge clk) begin
         if (cos_gamma_load) begin
@@ -282,7 +288,7 @@ module rough_unclamped_datapath #(
     end
 
     always @(posedge clk) begin
-        sine_rest_held <= sine_rest0;
+        sine_rest_held <= sine_rest4;
         product_held <= multiplier10;
     end
 
