@@ -388,7 +388,7 @@ impl Checker<'_> {
     }
 
     /// Every register that word `at` loads takes a product that the selection of the word gives; behind
-    /// a pipeline register, that the selection of each word before it gives.
+    /// pipeline registers, that the selections of the words before it give.
     fn selections(&mut self, at: usize) {
         let design = self.design;
         let words = &design.control.words;
@@ -397,55 +397,48 @@ impl Checker<'_> {
             else {
                 continue;
             };
-            let Some(data) = register
-                .data
-                .filter(|_| words[at].values[enable.index()] == 1)
-            else {
+            let loaded = words[at].values[enable.index()] == 1;
+            let Some(data) = register.data.filter(|_| loaded) else {
                 continue;
             };
             let mut seen = HashSet::new();
             let mut pending = vec![(at, data)];
-            while let Some((at, id)) = pending.pop() {
-                if !seen.insert((at, id)) {
+            while let Some((now, id)) = pending.pop() {
+                if !seen.insert((now, id)) {
                     continue;
                 }
-                let word = &words[at];
                 if let Some(view) = self.views.get(&id)
-                    && !view.values.contains(&word.values[view.field.index()])
+                    && let Some(wrong) =
+                        earlier(design, now, view.delay).into_iter().find(|&word| {
+                            !view
+                                .values
+                                .contains(&words[word].values[view.field.index()])
+                        })
                 {
-                    let diagnostic = self.wrong_product(word, register.q, view);
-                    let diagnostic =
-                        diagnostic.note("the product".to_owned(), design.net(id).location);
-                    self.found.push(diagnostic);
+                    let diagnostic = self.wrong_product(at, wrong, register.q, view);
+                    let place = design.net(id).location;
+                    self.found
+                        .push(diagnostic.note("the product".to_owned(), place));
                     break;
                 }
-                match &design.net(id).driver {
+                if let Driver::Op(Op::Mux { select, inputs }) = &design.net(id).driver
+                    && let Some(chosen) = self.selected(&words[now], *select)
+                {
                     // Of a mux that the word turns, only the chosen input matters.
-                    Driver::Op(Op::Mux { select, inputs }) => match self.selected(word, *select) {
-                        Some(chosen) => pending.extend(
-                            inputs
-                                .get(chosen as usize)
-                                .or(inputs.last())
-                                .map(|&input| (at, input)),
-                        ),
-                        None => pending.extend(
-                            design
-                                .combinational_inputs(id)
-                                .into_iter()
-                                .map(|input| (at, input)),
-                        ),
-                    },
+                    let chosen = inputs.get(chosen as usize).or(inputs.last());
+                    pending.extend(chosen.map(|&input| (now, input)));
+                    continue;
+                }
+                match &design.net(id).driver {
                     Driver::Register(of) if design.register(*of).enable.is_none() => {
                         let data = design.register(*of).data;
-                        let before = (0..words.len()).filter(|&word| leads_to(design, word, at));
+                        let before = earlier(design, now, 1).into_iter();
                         pending.extend(before.filter_map(|word| Some((word, data?))));
                     }
-                    _ => pending.extend(
-                        design
-                            .combinational_inputs(id)
-                            .into_iter()
-                            .map(|input| (at, input)),
-                    ),
+                    _ => {
+                        let inputs = design.combinational_inputs(id).into_iter();
+                        pending.extend(inputs.map(|input| (now, input)));
+                    }
                 }
             }
         }
@@ -465,7 +458,8 @@ impl Checker<'_> {
         }
     }
 
-    fn wrong_product(&self, word: &Word, register: NetId, view: &View) -> Diagnostic {
+    /// Word `at` loads `register`, but the selection of word `under` is wrong for that.
+    fn wrong_product(&self, at: usize, under: usize, register: NetId, view: &View) -> Diagnostic {
         let field = &self.design.control.fields[view.field.index()];
         let choice = |value: u64| match &field.kind {
             FieldKind::Select(choices) => choices
@@ -474,23 +468,35 @@ impl Checker<'_> {
             _ => "nothing",
         };
         let wanted: Vec<&str> = view.values.iter().map(|&value| choice(value)).collect();
+        let words = &self.design.control.words;
+        let (word, under) = (&words[at], &words[under]);
+        let selector = match view.delay {
+            0 => String::new(),
+            _ => format!("word `{}` before it ", under.name),
+        };
         let message = format!(
-            "word `{}` loads `{}` with the product of ({}), but selects ({})",
+            "word `{}` loads `{}` with the product of ({}), but {selector}selects ({})",
             word.name,
             self.name(register),
             wanted.join(") or ("),
-            choice(word.values[view.field.index()]),
+            choice(under.values[view.field.index()]),
         );
-        Diagnostic::new(message, word.location)
+        Diagnostic::new(message, under.location)
     }
 }
 
-/// Whether control can go from word `from` to word `to`. Idle, the device stays in word 0.
-fn leads_to(design: &Design, from: usize, to: usize) -> bool {
-    match design.control.words[from].sequence {
+/// The words from which control comes to word `at` in `clocks` clocks. Idle, the device stays in word 0.
+fn earlier(design: &Design, at: usize, clocks: u32) -> Vec<usize> {
+    let words = &design.control.words;
+    let leads = |from: usize, to: usize| match words[from].sequence {
         Sequence::Next => to == from + 1 || (from == 0 && to == 0),
         Sequence::WaitStart => to == from || to == from + 1,
         Sequence::LoopWhile { to: back, .. } => to == back || to == from + 1,
         Sequence::End => to == 0,
-    }
+    };
+    (0..clocks).fold(vec![at], |after, _| {
+        (0..words.len())
+            .filter(|&from| after.iter().any(|&to| leads(from, to)))
+            .collect()
+    })
 }

@@ -100,6 +100,7 @@ impl Designer {
         SharedProduct {
             out,
             excess,
+            delay: 0,
             field: first.field,
             pairs: first
                 .inputs
@@ -189,6 +190,8 @@ struct Excess<'d> {
 pub struct SharedProduct<'d> {
     out: Signal<'d>,
     excess: Option<Excess<'d>>,
+    /// Registers behind the multiplier.
+    delay: u32,
     field: FieldId,
     pairs: Vec<(Signal<'d>, Signal<'d>)>,
 }
@@ -243,8 +246,12 @@ impl<'d> SharedProduct<'d> {
             }
             _ => resized(self.out, "view", format, range),
         };
-        let field = self.field;
-        d.with(|inner| inner.views.insert(view.id(), View { field, values }));
+        let described = View {
+            field: self.field,
+            values,
+            delay: self.delay,
+        };
+        d.with(|inner| inner.views.insert(view.id(), described));
         view
     }
 
@@ -281,6 +288,7 @@ impl<'d> SharedProduct<'d> {
                 amount: d.pipeline(&format!("{name}_excess"), excess.amount),
                 ..excess
             }),
+            delay: self.delay + 1,
             ..self.clone()
         }
     }

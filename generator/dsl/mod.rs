@@ -77,6 +77,8 @@ pub(crate) struct View {
     pub field: FieldId,
     /// The values of the field under which the net means what its format says.
     pub values: Vec<u64>,
+    /// How many clocks ago the field had that value: registers behind the multiplier.
+    pub delay: u32,
 }
 
 pub(crate) struct Inner {
