@@ -4,13 +4,13 @@
 //! drivers, combinational loops, widths that do not match, duplicate or illegal names, words that
 //! cannot be reached, and registers loaded with a product under a selection that means another one.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::fmt;
 
 use crate::dsl::{Place, View};
 use crate::fixed::{MAX_WIDTH, mask};
 use crate::identifier;
-use crate::netlist::{Design, Driver, FieldKind, NetId, Op, Sequence};
+use crate::netlist::{Design, Driver, FieldKind, NetId, Op, Sequence, Word};
 
 /// A mistake in a description.
 #[derive(Clone, Debug)]
@@ -387,61 +387,116 @@ impl Checker<'_> {
         }
     }
 
-    /// Every register that word `at` loads takes a product that the selection of the word gives.
+    /// Every register that word `at` loads takes a product that the selection of the word gives; behind
+    /// pipeline registers, that the selections of the words before it give.
     fn selections(&mut self, at: usize) {
         let design = self.design;
-        let word = &design.control.words[at];
+        let words = &design.control.words;
         for register in &design.registers {
             let Some(Driver::Field(enable)) = register.enable.map(|id| &design.net(id).driver)
             else {
                 continue;
             };
-            let Some(data) = register.data.filter(|_| word.values[enable.index()] == 1) else {
+            let loaded = words[at].values[enable.index()] == 1;
+            let Some(data) = register.data.filter(|_| loaded) else {
                 continue;
             };
-            let mut seen = vec![false; design.nets.len()];
-            let mut pending = vec![data];
-            while let Some(id) = pending.pop() {
-                if std::mem::replace(&mut seen[id.index()], true) {
+            let mut seen = HashSet::new();
+            let mut pending = vec![(at, data)];
+            while let Some((now, id)) = pending.pop() {
+                if !seen.insert((now, id)) {
                     continue;
                 }
                 if let Some(view) = self.views.get(&id)
-                    && !view.values.contains(&word.values[view.field.index()])
+                    && let Some(wrong) =
+                        earlier(design, now, view.delay).into_iter().find(|&word| {
+                            !view
+                                .values
+                                .contains(&words[word].values[view.field.index()])
+                        })
                 {
-                    let field = &design.control.fields[view.field.index()];
-                    let choice = |value: u64| match &field.kind {
-                        FieldKind::Select(choices) => choices
-                            .get(value as usize)
-                            .map_or("nothing", String::as_str),
-                        _ => "nothing",
-                    };
-                    let wanted: Vec<&str> =
-                        view.values.iter().map(|&value| choice(value)).collect();
-                    let message = format!(
-                        "word `{}` loads `{}` with the product of ({}), but selects ({})",
-                        word.name,
-                        self.name(register.q),
-                        wanted.join(") or ("),
-                        choice(word.values[view.field.index()]),
-                    );
-                    let diagnostic = Diagnostic::new(message, word.location);
-                    let diagnostic =
-                        diagnostic.note("the product".to_owned(), design.net(id).location);
-                    self.found.push(diagnostic);
+                    let diagnostic = self.wrong_product(at, wrong, register.q, view);
+                    let place = design.net(id).location;
+                    self.found
+                        .push(diagnostic.note("the product".to_owned(), place));
                     break;
                 }
-                // Of a mux that the word turns, only the chosen input matters.
+                if let Driver::Op(Op::Mux { select, inputs }) = &design.net(id).driver
+                    && let Some(chosen) = self.selected(&words[now], *select)
+                {
+                    // Of a mux that the word turns, only the chosen input matters.
+                    let chosen = inputs.get(chosen as usize).or(inputs.last());
+                    pending.extend(chosen.map(|&input| (now, input)));
+                    continue;
+                }
                 match &design.net(id).driver {
-                    Driver::Op(Op::Mux { select, inputs }) => match design.net(*select).driver {
-                        Driver::Field(field) => {
-                            let chosen = word.values[field.index()] as usize;
-                            pending.extend(inputs.get(chosen).or(inputs.last()));
-                        }
-                        _ => pending.extend(design.combinational_inputs(id)),
-                    },
-                    _ => pending.extend(design.combinational_inputs(id)),
+                    Driver::Register(of) if design.register(*of).enable.is_none() => {
+                        let data = design.register(*of).data;
+                        let before = earlier(design, now, 1).into_iter();
+                        pending.extend(before.filter_map(|word| Some((word, data?))));
+                    }
+                    _ => {
+                        let inputs = design.combinational_inputs(id).into_iter();
+                        pending.extend(inputs.map(|input| (now, input)));
+                    }
                 }
             }
         }
     }
+
+    /// What `word` puts on a select line: a field, or bits of one.
+    fn selected(&self, word: &Word, select: NetId) -> Option<u64> {
+        let net = self.design.net(select);
+        match net.driver {
+            Driver::Field(field) => Some(word.values[field.index()]),
+            Driver::Op(Op::Relabel(of)) => self.selected(word, of),
+            Driver::Op(Op::Slice { of, low }) => {
+                let bits = self.selected(word, of)? >> low;
+                Some(bits & mask(net.format.width()))
+            }
+            _ => None,
+        }
+    }
+
+    /// Word `at` loads `register`, but the selection of word `under` is wrong for that.
+    fn wrong_product(&self, at: usize, under: usize, register: NetId, view: &View) -> Diagnostic {
+        let field = &self.design.control.fields[view.field.index()];
+        let choice = |value: u64| match &field.kind {
+            FieldKind::Select(choices) => choices
+                .get(value as usize)
+                .map_or("nothing", String::as_str),
+            _ => "nothing",
+        };
+        let wanted: Vec<&str> = view.values.iter().map(|&value| choice(value)).collect();
+        let words = &self.design.control.words;
+        let (word, under) = (&words[at], &words[under]);
+        let selector = match view.delay {
+            0 => String::new(),
+            _ => format!("word `{}` before it ", under.name),
+        };
+        let message = format!(
+            "word `{}` loads `{}` with the product of ({}), but {selector}selects ({})",
+            word.name,
+            self.name(register),
+            wanted.join(") or ("),
+            choice(under.values[view.field.index()]),
+        );
+        Diagnostic::new(message, under.location)
+    }
+}
+
+/// The words from which control comes to word `at` in `clocks` clocks. Idle, the device stays in word 0.
+fn earlier(design: &Design, at: usize, clocks: u32) -> Vec<usize> {
+    let words = &design.control.words;
+    let leads = |from: usize, to: usize| match words[from].sequence {
+        Sequence::Next => to == from + 1 || (from == 0 && to == 0),
+        Sequence::WaitStart => to == from || to == from + 1,
+        Sequence::LoopWhile { to: back, .. } => to == back || to == from + 1,
+        Sequence::End => to == 0,
+    };
+    (0..clocks).fold(vec![at], |after, _| {
+        (0..words.len())
+            .filter(|&from| after.iter().any(|&to| leads(from, to)))
+            .collect()
+    })
 }

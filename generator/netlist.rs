@@ -229,7 +229,8 @@ pub enum RegisterKind {
     Architectural,
     /// Of the sequencer; a golden model predicts it too.
     Sequencer,
-    /// A pipeline register inside a block (behind a synchronous ROM); only its effects are compared.
+    /// A pipeline register inside a block (behind a synchronous ROM or a multiplier); only its effects
+    /// are compared.
     Internal,
 }
 

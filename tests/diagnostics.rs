@@ -288,6 +288,39 @@ fn products_taken_under_another_selection() {
 }
 
 #[test]
+fn products_held_from_another_selection() {
+    let words = |settled: bool| {
+        let d = Designer::new("device");
+        let a = d.operand("a", BYTE);
+        let b = d.operand("b", BYTE);
+        let select = d.select("operands", &["a", "b"]);
+        let first = d.bus("first", select, [a.q(), b.q()]);
+        let second = d.bus("second", select, [a.q(), b.q()]);
+        let product = d
+            .shared_mul("product", &first, &second)
+            .held("product_held");
+        let y = d.register("y", Format::unsigned(0, 16));
+        // The lines that choose between two products are themselves lines of a word.
+        let squares = [product.of(a.q(), a.q()), product.of(b.q(), b.q())];
+        y.takes(d.choose("square", select.out().bit(0), squares));
+        d.output("y_out", y.q());
+        let before = settled.then(|| first.pick(b.q()));
+        d.microprogram([
+            step("idle", []),
+            step("settle", before),
+            step("load", [first.pick(b.q()), y.load()]),
+            step("end", [end()]),
+        ]);
+        finish(d)
+    };
+    assert_eq!(words(true), Vec::<String>::new());
+    assert_eq!(
+        words(false),
+        ["word `load` loads `y` with the product of (b), but word `settle` before it selects (a)"]
+    );
+}
+
+#[test]
 fn products_that_are_never_formed() {
     let found = mistakes(|d| {
         let a = d.operand("a", BYTE);

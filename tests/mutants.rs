@@ -1,8 +1,5 @@
 //! Faults put into a design are noticed: two words of a ROM, two words of the microprogram or two
 //! inputs of a mux change places, and the lock-step comparison with the golden model must differ.
-//!
-//! What survives is listed in [`EQUIVALENT`], with the reason why the fault changes nothing that the
-//! device does. The list is exact: an entry that is noticed after all is an error too.
 
 mod common;
 
@@ -25,17 +22,6 @@ const SAMPLE: usize = 300;
 
 /// A ROM of at most so many words is tried in all its pairs.
 const ALL_PAIRS: usize = 32;
-
-/// Device, fault, and why it changes nothing.
-const EQUIVALENT: [(&str, &str, &str); 3] = [
-    ("rough", "ROM control: words 2 and 4", SETTLE),
-    ("rough", "ROM control: words 2 and 6", SETTLE),
-    ("rough", "ROM control: words 4 and 6", SETTLE),
-];
-
-/// Of the patent's words that load nothing. `tests/rough_microprogram.rs` notices them in the ROM itself.
-const SETTLE: &str = "both load nothing and address ROM 18 by register 2; they differ in V1 V2 alone, \
-     which steers the multiplier while no register takes its product";
 
 struct Mutant {
     what: String,
@@ -185,30 +171,18 @@ fn assert_all_are_noticed(path: &str, unit: &Unit) {
         of_roms > 0 && of_roms < mutants.len(),
         "{path}: a kind of fault is missing"
     );
-    let survivors: BTreeSet<String> = mutants
+    println!(
+        "{path}: {} faults, {of_roms} of them in ROMs",
+        mutants.len()
+    );
+    let unnoticed: Vec<&str> = mutants
         .par_iter()
         .filter(|mutant| survives(unit, mutant))
-        .map(|mutant| mutant.what.clone())
+        .map(|mutant| mutant.what.as_str())
         .collect();
-    let expected: BTreeSet<String> = EQUIVALENT
-        .iter()
-        .filter(|(device, ..)| *device == unit.device.name)
-        .map(|(_, what, _)| (*what).to_owned())
-        .collect();
-    println!(
-        "{path}: {} faults, {of_roms} of them in ROMs, {} equivalent",
-        mutants.len(),
-        expected.len()
-    );
-    let unnoticed: Vec<&String> = survivors.difference(&expected).collect();
     assert!(
         unnoticed.is_empty(),
         "{path}: nothing notices {unnoticed:#?}"
-    );
-    let noticed: Vec<&String> = expected.difference(&survivors).collect();
-    assert!(
-        noticed.is_empty(),
-        "{path}: not equivalent after all: {noticed:#?}"
     );
 }
 

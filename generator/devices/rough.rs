@@ -3,171 +3,19 @@
 //! Block numbers are the patent's. One multiplier (10) serves four products under the select lines
 //! V1 V2; the microprogram is the patent's table 1, word by word.
 
-use crate::config::{Config, Key, Problems, Schema};
+mod keys;
+mod sine;
+
+pub use keys::schema;
+
+use crate::config::Config;
 use crate::dsl::blocks::colour::{ChannelBlocks, Colours};
-use crate::dsl::blocks::segmented::{self, Entry, Segment, Segmentation, Shape};
 use crate::dsl::{Designer, Register, Signal, end, hold, step, valid};
-use crate::fixed::{Format, MAX_WIDTH, Overflow, Rounding};
+use crate::fixed::{Format, Overflow, Rounding};
 use crate::netlist::About;
 
-use super::{common, rounding};
-
-/// The keys of the device.
-pub fn schema() -> Schema {
-    let exact = ("arithmetic", "exact");
-    let segmented = ("sine.scheme", "segmented");
-    Schema {
-        device: "rough",
-        keys: vec![
-            Key::choice("arithmetic", "exact", &["exact", "patent"], "exact: words with an integer position. patent: words modulo 1.0, as in UA 60139."),
-            Key::flag("clamp", true, "Clamp a negative n/2*(cos - 1) + 1 to 0; without it a ring appears around the highlight.").only_when(exact.0, exact.1),
-            common::cosine_fraction(20),
-            common::cosine_signed().only_when(exact.0, exact.1),
-            common::exponent_bits(),
-            common::colour_bits(),
-            Key::integer("product.fraction", 22, 8..=28, "Fraction bits of registers 11 and 12, the products of cosines and of sines.").only_when(exact.0, exact.1),
-            Key::choice("product.rounding", "truncate", &common::ROUNDINGS, "Rounding into registers 11 and 12.").only_when(exact.0, exact.1),
-            common::intensity_fraction(16).only_when(exact.0, exact.1),
-            common::intensity_rounding().only_when(exact.0, exact.1),
-            common::output_rounding(),
-            Key::choice("sine.scheme", "segmented", &["segmented", "direct"], "ROM 18: segments that shrink toward cos = 1, with interpolation; or one entry a bucket, as in the patent."),
-            Key::integer("sine.fraction", 22, 8..=28, "Fraction bits of the sine.").only_when(exact.0, exact.1),
-            Key::flag("sine.synchronous", true, "ROM 18 reads on the clock edge (block RAM) instead of at once (logic)."),
-            Key::integer("sine.address", 12, 4..=16, "Address bits of the direct table.").only_when("sine.scheme", "direct"),
-            Key::integers("sine.segments", &[6, 8, 7, 6, 5, 4, 3, 3, 2], 2..=10, 1..=11, "log2 of the segments for each factor of four of 1 - cos, from the top.").only_when(segmented.0, segmented.1),
-            Key::integer("sine.slope_fraction", 18, 8..=28, "Fraction bits of the rise over a segment.").only_when(segmented.0, segmented.1),
-            common::exponent_min(),
-            common::exponent_max(),
-            Key::number("domain.deviation", 30.0, 0.0..=90.0, "The largest angle between the normal and the perturbed normal, in degrees."),
-        ],
-        check,
-    }
-}
-
-fn check(config: &Config, problems: &mut Problems) {
-    common::check_exponents(config, problems);
-    let cosine = config.integer("cosine.fraction");
-    check_multiplier(config, problems);
-    let (fraction, product) = if config.choice("arithmetic") == "exact" {
-        (
-            config.integer("sine.fraction"),
-            config.integer("product.fraction"),
-        )
-    } else {
-        (cosine, cosine)
-    };
-    if product > 2 * fraction.min(cosine) {
-        problems.push(
-            "product.fraction",
-            format!("{product} fraction bits are more than the products have"),
-            format!("at most {}", 2 * fraction.min(cosine)),
-        );
-    }
-    if config.choice("sine.scheme") == "direct" {
-        if config.integer("sine.address") > cosine {
-            problems.push(
-                "sine.address",
-                "more address bits than the cosine has fraction bits".to_owned(),
-                format!("at most {cosine}, or a larger cosine.fraction"),
-            );
-        }
-        check_rom_size(config.integer("sine.address"), fraction, problems);
-        return;
-    }
-    let mut most = 0;
-    for (range, &prefix) in (0i64..).zip(config.integers("sine.segments")) {
-        let bits = cosine - 2 * range;
-        if prefix > bits {
-            problems.push(
-                "sine.segments",
-                format!("range {range} has {bits} bits of 1 - cos, which cannot be cut into 2^{prefix} segments"),
-                "fewer ranges or smaller entries, or a larger cosine.fraction".to_owned(),
-            );
-            return;
-        }
-        most = most.max(bits - prefix);
-    }
-    let rest = cosine - 2 * config.integers("sine.segments").len() as i64;
-    if !(0..=12).contains(&rest) {
-        problems.push(
-            "sine.segments",
-            format!("2^{rest} exact entries would remain below the last range"),
-            "as many ranges as leave 0 to 12 bits of cosine.fraction, two bits a range".to_owned(),
-        );
-    }
-    let slope = config.integer("sine.slope_fraction");
-    if slope > fraction || most + slope < fraction {
-        problems.push(
-            "sine.slope_fraction",
-            format!("{slope} fraction bits of the slope do not go with {fraction} of the sine"),
-            format!("{} to {fraction}", (fraction - most).max(8)),
-        );
-    }
-}
-
-/// The most bits of ROM 18: a megabit. The direct table alone can be larger, since a segmented one
-/// has at most 2^10 entries a range.
-const ROM_LIMIT: i64 = 1 << 20;
-
-fn check_rom_size(address: i64, width: i64, problems: &mut Problems) {
-    let bits = width << address;
-    if bits > ROM_LIMIT {
-        problems.push(
-            "sine.address",
-            format!("ROM 18 would have 2^{address} entries of {width} bits, {bits} bits in all"),
-            format!(
-                "fewer address bits, for at most {ROM_LIMIT} bits, or sine.scheme = \"segmented\""
-            ),
-        );
-    }
-}
-
-/// Multiplier 10 fits a net, and in the patent's arithmetic n/2 has a bit left.
-fn check_multiplier(config: &Config, problems: &mut Problems) {
-    let integer = |key: &str| config.integer(key);
-    if config.choice("arithmetic") == "patent" {
-        if integer("exponent.bits") < 2 {
-            problems.push(
-                "exponent.bits",
-                "the patent's wiring of n/2 drops the only bit of n".to_owned(),
-                "at least 2 with arithmetic = \"patent\"".to_owned(),
-            );
-        }
-        return;
-    }
-    let (cosine, sine) = (integer("cosine.fraction"), integer("sine.fraction"));
-    let (product, f) = (integer("product.fraction"), integer("intensity.fraction"));
-    // Zeros that bring n/2 * adder 15 and the square of adder 16 to one point.
-    let (half_pad, base_pad) = ((2 * f - product - 1).max(0), (product + 1 - 2 * f).max(0));
-    // Adder 16, with its sign; without the clamp it needs an integer bit more.
-    let base = f + if config.flag("clamp") { 2 } else { 3 };
-    let first = (cosine + 2)
-        .max(sine + 1)
-        .max(product + 2)
-        .max(base + base_pad);
-    let second = (cosine + 2)
-        .max(sine + 1)
-        .max(integer("exponent.bits") + half_pad + 1)
-        .max(base);
-    let width = first + second;
-    if width > i64::from(MAX_WIDTH) {
-        let keys = [
-            ("cosine.fraction", cosine),
-            ("sine.fraction", sine),
-            ("product.fraction", product),
-            ("intensity.fraction", f),
-        ];
-        let key = keys
-            .iter()
-            .max_by_key(|(_, bits)| *bits)
-            .map_or("cosine.fraction", |(key, _)| *key);
-        problems.push(
-            key,
-            format!("multiplier 10 would be {first} by {second} bits; a product has at most {MAX_WIDTH}"),
-            "fewer bits here, or in cosine.fraction, sine.fraction, product.fraction or intensity.fraction".to_owned(),
-        );
-    }
-}
+use super::rounding;
+use sine::sine_rom;
 
 /// The patent's numbers of the colour channels.
 const CHANNELS: [ChannelBlocks; 3] = [
@@ -262,7 +110,7 @@ pub fn describe(d: &Designer, config: &Config) {
         .operand("dgamma_negative", Format::BIT)
         .block(4)
         .inputs(61, 62)
-        .doc("trigger 4: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)");
+        .doc("sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)");
     let colours = Colours::new(d, config.integer("colour.bits") as i32, Some(CHANNELS));
 
     // V1 V2, then V3, then the load lines V4 to V7: in the order of the patent's table.
@@ -303,16 +151,9 @@ pub fn describe(d: &Designer, config: &Config) {
         exact_sums(d, r4.q(), r3.q(), [r11, r12, r13])
     };
 
-    // Both products that register 13 takes must have their point in one place: zeros are appended to
-    // n/2, or to one side of the square, whichever falls short.
-    let sum_frac = adder15.format().frac + half_n.format().frac;
-    let square_frac = 2 * adder16.format().frac;
-    let half_n = half_n.with_fraction(half_n.format().frac + (square_frac - sum_frac).max(0));
-    let base = adder16.with_fraction(adder16.format().frac + (sum_frac - square_frac).max(0));
     let half_n = half_n.named("half_exponent").doc("n/2, by wiring");
-
     let mux8 = d
-        .bus("mux8", operand_select, [cos_gamma, sine, adder15, base])
+        .bus("mux8", operand_select, [cos_gamma, sine, adder15, adder16])
         .block(8)
         .doc("first operand of multiplier 10");
     let mux9 = d
@@ -349,8 +190,22 @@ pub fn describe(d: &Designer, config: &Config) {
         rounding_products,
         overflow,
     ));
-    let both = product.of_any(&[(adder15, half_n), (base, adder16)]);
-    let result = d.narrow("result", both, r13.format(), rounding_result, overflow);
+    // Words 4 and 6 settle what words 5 and 7 load, so that register 13 may take the product of the word
+    // before: the multiplier then shares a clock with none of the adders in front and behind.
+    let settled = product.held("product_held");
+    let line = settled.of(adder15, half_n);
+    let square = settled.of(adder16, adder16);
+    let squares = operand_select
+        .out()
+        .bit(0)
+        .named("squares")
+        .doc("V2: which of its two products register 13 takes");
+    let frac = line.format().frac.max(square.format().frac);
+    let either = [line.with_fraction(frac), square.with_fraction(frac)];
+    let either = d
+        .choose("line_or_square", squares, either)
+        .doc("n/2 * adder 15, or the square of adder 16");
+    let result = d.narrow("result", either, r13.format(), rounding_result, overflow);
     r13.takes(if formats.patent {
         result
     } else {
@@ -373,6 +228,7 @@ pub fn describe(d: &Designer, config: &Config) {
     };
     colours.outputs(f, rounding(config, "output.rounding"));
 
+    d.sequencer_lines(43, 44);
     d.microprogram([
         step(
             "operands cos gamma, cos dgamma; sine of gamma addressed",
@@ -406,7 +262,7 @@ pub fn describe(d: &Designer, config: &Config) {
         step(
             "operands adder 16, adder 16",
             [
-                mux8.pick(base),
+                mux8.pick(adder16),
                 mux9.pick(adder16),
                 sine_of.pick(cos_dgamma),
             ],
@@ -533,128 +389,14 @@ fn facing_only<'d>(d: &'d Designer, cos_gamma: Signal<'d>, result: Signal<'d>) -
     d.choose("facing_result", facing, [dark, result])
 }
 
-/// ROM 18: sin = √(1 − cos²).
-fn sine_rom<'d>(
-    d: &'d Designer,
-    config: &Config,
-    formats: &Formats,
-    cosine: Signal<'d>,
-) -> Signal<'d> {
-    let fraction = config.integer("cosine.fraction") as u32;
-    let synchronous = config.flag("sine.synchronous");
-    if config.choice("sine.scheme") == "direct" {
-        return direct_sine(d, config, formats, cosine);
-    }
-    let one = d.constant("one", 1.0, Format::unsigned(1, fraction as i32));
-    let complement = d.sub("complement", one, cosine).doc("1.0 - cos");
-    let u = complement.shift_left(fraction as i32);
-    let cut = Segmentation {
-        operand_bits: fraction,
-        segments: config
-            .integers("sine.segments")
-            .iter()
-            .map(|&k| k as u32)
-            .collect(),
-        tail: None,
-        packed: false,
-    };
-    let shape = Shape {
-        fraction: formats.sine.frac,
-        slope_fraction: config.integer("sine.slope_fraction") as i32,
-        synchronous,
-    };
-    let entry = |segment: Segment| sine_entry(segment, fraction, shape);
-    segmented::interpolate(d, "sine", u, &cut, shape, entry, Some(18))
-        .doc("sine of the addressed cosine")
-}
-
-/// The patent's own: one entry for each bucket of the cosine, the sine at its middle.
-fn direct_sine<'d>(
-    d: &'d Designer,
-    config: &Config,
-    formats: &Formats,
-    cosine: Signal<'d>,
-) -> Signal<'d> {
-    let fraction = config.integer("cosine.fraction") as u32;
-    let bits = config.integer("sine.address") as u32;
-    let mut address = cosine.bits(fraction - bits, Format::unsigned(bits as i32, 0));
-    if !formats.patent {
-        // 1.0 has no bucket of its own: it reads the last one.
-        let last = d.raw_constant("last_bucket", (1 << bits) - 1, address.format());
-        address = d.choose("sine_address", cosine.bit(fraction), [address, last]);
-    }
-    let words: Vec<i128> = (0..1u32 << bits)
-        .map(|bucket| {
-            let x = (f64::from(bucket) + 0.5) / f64::from(1u32 << bits);
-            formats.sine.quantise((1.0 - x * x).sqrt())
-        })
-        .collect();
-    let rom = d
-        .rom(
-            "sine",
-            address,
-            formats.sine,
-            &words,
-            config.flag("sine.synchronous"),
-        )
-        .block(18)
-        .doc(&format!(
-            "sine ({}) at the middle of a bucket of the cosine",
-            formats.sine
-        ));
-    rom.out().doc("sine of the addressed cosine")
-}
-
-/// The straight line through a segment of s(u) = √(1 − (1 − u)²) with the least error: the slope of
-/// the chord, and the base that puts the error of the segment's points symmetrically about 0.
-fn sine_entry(segment: Segment, fraction: u32, shape: Shape) -> Entry {
-    let one = f64::from(1u32 << fraction);
-    let sine = |u: f64| {
-        let x = (one - u) / one;
-        (1.0 - x * x).max(0.0).sqrt()
-    };
-    let value = Format::unsigned(0, shape.fraction);
-    let (from, length) = (segment.from as f64, segment.length as f64);
-    if segment.length == 1 {
-        return Entry {
-            base: value.quantise(sine(from)),
-            slope: 0,
-        };
-    }
-    let scale = f64::from(1u32 << shape.slope_fraction);
-    let slope = ((sine(from + length) - sine(from)) * scale + 0.5).floor();
-    let residual = |at: f64| sine(from + at) - slope / scale * at / length;
-    // Concave: the least residual is at an end, the greatest where the line is parallel.
-    let last = length - 1.0;
-    let least = residual(0.0).min(residual(last));
-    let (mut low, mut high) = (0.0, last);
-    while high - low > 2.0 {
-        let (a, b) = (
-            (low + (high - low) / 3.0).floor(),
-            (high - (high - low) / 3.0).ceil(),
-        );
-        if residual(a) < residual(b) {
-            low = a;
-        } else {
-            high = b;
-        }
-    }
-    let middle = ((low + high) / 2.0).floor();
-    let most = [low, middle, high]
-        .into_iter()
-        .map(residual)
-        .fold(f64::MIN, f64::max);
-    Entry {
-        base: value.quantise((least + most) / 2.0),
-        slope: slope as i128,
-    }
-}
-
 fn about(config: &Config) -> About {
     let patent = config.choice("arithmetic") == "patent";
     let mut notes = vec![
         "Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1; the control \
          ROM is its table 1, bit for bit."
+            .to_owned(),
+        "Register 13 takes the multiplier's product of the word before, which the patent's settling words \
+         have left the time for."
             .to_owned(),
         "Writes while busy are ignored. The outputs follow register 13 and the colour registers: they hold \
          from valid until a colour is written or the next computation reaches its word 5."

@@ -77,6 +77,8 @@ pub(crate) struct View {
     pub field: FieldId,
     /// The values of the field under which the net means what its format says.
     pub values: Vec<u64>,
+    /// How many clocks ago the field had that value: registers behind the multiplier.
+    pub delay: u32,
 }
 
 pub(crate) struct Inner {
@@ -85,6 +87,8 @@ pub(crate) struct Inner {
     program: Option<Program>,
     /// What `valid` follows, and how many clocks later, when no word raises it.
     valid: Option<(NetId, u32)>,
+    /// The numbers of the lines of `valid_word` and of `go_on` in the source's figure.
+    sequencer_lines: Option<[u16; 2]>,
     diagnostics: Vec<Diagnostic>,
     names: HashMap<String, u32>,
     unit: Unit,
@@ -116,6 +120,7 @@ impl Designer {
             views: HashMap::new(),
             program: None,
             valid: None,
+            sequencer_lines: None,
             diagnostics: Vec::new(),
             names: HashMap::new(),
             unit: Unit::Control,
@@ -327,6 +332,12 @@ impl Designer {
                 signal.name()
             ));
         }
+    }
+
+    /// The numbers, in the source's figure, of two lines that every control unit has: the one by which
+    /// a word sets `valid`, and the one by which it lets the program go on.
+    pub fn sequencer_lines(&self, valid: u16, go_on: u16) {
+        self.inner.borrow_mut().sequencer_lines = Some([valid, go_on]);
     }
 
     /// The finished design, assembled and checked.

@@ -202,35 +202,31 @@ impl Designer {
                     return Op::Relabel(inside);
                 };
                 let not = |signal: Signal<'_>, suffix: &str| flag(suffix, Op::Not(signal.id()));
-                if below && !above {
-                    let ones = flag("in_range", Op::All(top.id()));
-                    let off = not(ones, "mixed");
-                    let over = flag("under", Op::And(sign.id(), off.id()));
-                    mux(over.id(), inside, constant("least", format.min_raw()))
-                } else if above && !below {
+                let over = || {
                     let any = flag("high", Op::Any(top.id()));
                     let positive = not(sign, "positive");
-                    let over = flag("over", Op::And(any.id(), positive.id()));
+                    let over = flag("over", Op::And(positive.id(), any.id()));
                     mux(over.id(), inside, constant("most", format.max_raw()))
-                } else {
-                    let all = v.bits(kept - 1, Format::unsigned((width - kept + 1) as i32, 0));
-                    let any = flag("high", Op::Any(all.id()));
-                    let ones = flag("low", Op::All(all.id()));
-                    let off = not(ones, "mixed");
-                    let over = flag("over", Op::And(any.id(), off.id()));
-                    let limit = mux(
-                        sign.id(),
-                        constant("most", format.max_raw()),
-                        constant("least", format.min_raw()),
-                    );
-                    let limit = self.add_wiring(
-                        &format!("{name}_limit"),
+                };
+                if !below {
+                    return over();
+                }
+                // One limit behind the other, rather than a choice of limits: the outer one becomes the
+                // synchronous reset of the register that takes the result.
+                let limited = if above {
+                    self.add_wiring(
+                        &format!("{name}_limited"),
                         format,
                         format.range(),
-                        Driver::Op(limit),
-                    );
-                    mux(over.id(), inside, limit)
-                }
+                        Driver::Op(over()),
+                    )
+                } else {
+                    inside
+                };
+                let ones = flag("low", Op::All(top.id()));
+                let off = not(ones, "mixed");
+                let under = flag("under", Op::And(sign.id(), off.id()));
+                mux(under.id(), limited, constant("least", format.min_raw()))
             }
         }
     }

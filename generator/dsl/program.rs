@@ -223,6 +223,18 @@ pub(crate) fn assemble(d: &Designer, program: &Program) {
         target: (targets.len() > 1).then(|| sequence_field("loop_target", address_width)),
         go_on: sequence_field("go_on", 1),
     };
+    let lines = d.with(|inner| inner.sequencer_lines);
+    let describe = |field: FieldId, doc: &str, line: Option<u16>| {
+        d.set_doc(d.field_net(field).id(), doc);
+        d.with(|inner| {
+            inner.design.control.fields[field.index()].lines = line.into_iter().collect();
+        });
+    };
+    if let Some(valid) = fields.valid {
+        describe(valid, "the word sets valid", lines.map(|[valid, _]| valid));
+    }
+    let line = lines.map(|[_, go_on]| go_on);
+    describe(fields.go_on, "0 in the last word", line);
     let words = words(d, steps, &sequences, &fields, &conditions);
     sequencer(
         d,

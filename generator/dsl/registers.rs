@@ -29,26 +29,29 @@ impl Designer {
                     Format::holding(raw, raw, format.frac),
                 )
             };
-            if to > most {
-                let most = limit("most", most);
-                let over = self.less(&format!("{name}_over"), most, value);
-                value = self.chosen_within(
-                    &format!("{name}_at_most"),
-                    over,
-                    [value, most],
-                    (from, most.range().0),
-                );
-            }
             if from < least {
                 let least = limit("least", least);
                 let under = self.less(&format!("{name}_under"), port, least);
-                let high = value.range().1;
                 value = self.chosen_within(
-                    &format!("{name}_clamped"),
+                    &format!("{name}_at_least"),
                     under,
                     [value, least],
-                    (least.range().0, high),
+                    (least.range().0, to),
                 );
+            }
+            if to > most {
+                let range = (value.range().0, most);
+                let one_bit = most > 0 && range.0 >= 0 && most.count_ones() == 1 && to < 2 * most;
+                let over = if one_bit {
+                    // At the limit it makes no difference which of the two is taken.
+                    value
+                        .bit(most.trailing_zeros())
+                        .named(&format!("{name}_over"))
+                } else {
+                    self.less(&format!("{name}_over"), limit("most", most), value)
+                };
+                let name = format!("{name}_at_most");
+                value = self.chosen_within(&name, over, [value, limit("most", most)], range);
             }
             value
         })
@@ -337,6 +340,11 @@ pub struct Select<'d> {
 }
 
 impl<'d> Select<'d> {
+    /// The lines themselves, for a mux in the datapath that some of them turn too.
+    pub fn out(self) -> Signal<'d> {
+        self.designer.field_net(self.field)
+    }
+
     pub(crate) fn field(self) -> FieldId {
         self.field
     }

@@ -50,9 +50,9 @@ module cosine_power_control #(
     assign accumulator_load = control_word[5];
     assign remaining_load = control_word[4];
     assign remaining_count = control_word[3];
-    wire valid_word = control_word[2];
+    wire valid_word = control_word[2];  // the word sets valid
     wire loop_word = control_word[1];
-    wire go_on = control_word[0];
+    wire go_on = control_word[0];  // 0 in the last word
     wire [2:0] following_word = word_address + 3'd1;
     wire condition = more;
     wire loop_back = loop_word & condition;

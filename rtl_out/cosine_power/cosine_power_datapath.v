@@ -46,7 +46,7 @@ module cosine_power_datapath (
     reg  [15:0] accumulator;    // u0.16: n/m*(1 - cos gamma), then the powers of W's base
     reg  [1:0]  remaining;      // squarings to come
 
-    wire cos_gamma_over = cos_gamma > COS_GAMMA_MOST;
+    wire cos_gamma_over = cos_gamma[20];
     wire [20:0] cos_gamma_at_most = cos_gamma_over ? COS_GAMMA_MOST : cos_gamma;  // u1.20
     wire cos_gamma_load = cos_gamma_write & idle;
     wire exponent_load = exponent_write & idle;

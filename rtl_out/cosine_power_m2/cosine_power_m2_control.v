@@ -41,8 +41,8 @@ module cosine_power_m2_control #(
 
     assign operand_select = control_word[4:3];
     assign accumulator_load = control_word[2];
-    wire valid_word = control_word[1];
-    wire go_on = control_word[0];
+    wire valid_word = control_word[1];  // the word sets valid
+    wire go_on = control_word[0];  // 0 in the last word
     wire [1:0] following_word = word_address + 2'd1;
     wire [1:0] next_word = go_on ? following_word : 2'd0;
     wire next_run = run ? go_on : start;

@@ -28,6 +28,9 @@
 // Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1; the control
 // ROM is its table 1, bit for bit.
 //
+// Register 13 takes the multiplier's product of the word before, which the patent's settling words
+// have left the time for.
+//
 // Writes while busy are ignored. The outputs follow register 13 and the colour registers: they hold
 // from valid until a colour is written or the next computation reaches its word 5.
 //
@@ -53,7 +56,7 @@ module rough_direct #(
     input  wire        cos_dgamma_write,       // input 58: writes cos_dgamma
     input  wire [9:0]  exponent,               // input 59: specular exponent n
     input  wire        exponent_write,         // input 60: writes exponent
-    // input 61: trigger 4: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
+    // input 61: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     input  wire        dgamma_negative,
     input  wire        dgamma_negative_write,  // input 62: writes dgamma_negative
     input  wire [7:0]  red,                    // input 32: intensity of the light times k_s

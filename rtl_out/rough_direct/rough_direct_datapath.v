@@ -17,7 +17,7 @@ module rough_direct_datapath #(
     input  wire        cos_dgamma_write,       // input 58: writes cos_dgamma
     input  wire [9:0]  exponent,               // input 59: specular exponent n
     input  wire        exponent_write,         // input 60: writes exponent
-    // input 61: trigger 4: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
+    // input 61: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     input  wire        dgamma_negative,
     input  wire        dgamma_negative_write,  // input 62: writes dgamma_negative
     input  wire [7:0]  red,                    // input 32: intensity of the light times k_s
@@ -43,8 +43,8 @@ module rough_direct_datapath #(
     localparam [17:0] COS_DGAMMA_MOST = 18'h20000;  // 1.0 in u1.17
     localparam [17:0] ONE = 18'h20000;  // 1.0 in u1.17
     localparam [16:0] ONE_2 = 17'h10000;  // 1.0 in u1.16
-    localparam [16:0] RESULT_LEAST = 17'h10000;  // -1.0 in s0.16
     localparam [16:0] RESULT_MOST = 17'hffff;  // 0.9999847412109375 in s0.16
+    localparam [16:0] RESULT_LEAST = 17'h10000;  // -1.0 in s0.16
     localparam [16:0] MINUS_ONE = 17'h10000;  // -1.0 in s0.16
     localparam [1:0] OPERAND_SELECT_COSINES = 2'd0;
     localparam [1:0] OPERAND_SELECT_SINES = 2'd1;
@@ -57,7 +57,7 @@ module rough_direct_datapath #(
     // register 2, u1.17: cosine of the angle by which the normal is perturbed
     reg         [17:0] cos_dgamma_reg;
     reg         [9:0]  exponent_reg;         // register 3: specular exponent n
-    // register 4: trigger 4: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
+    // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg                dgamma_negative_reg;
     reg         [7:0]  red_reg;              // register 5: intensity of the light times k_s
     reg         [7:0]  green_reg;            // register 6: intensity of the light times k_s
@@ -67,12 +67,14 @@ module rough_direct_datapath #(
     reg         [16:0] reg12_sin_sin;        // register 12, u0.17: sin gamma * sin dgamma
     // register 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
     reg  signed [16:0] reg13_result;
+    reg         [35:0] product_held;         // the product of the word before
+    reg         [9:0]  product_held_excess;
     reg         [16:0] sine_word;            // u0.17: sine of the addressed cosine
 
-    wire cos_gamma_over = cos_gamma > COS_GAMMA_MOST;
+    wire cos_gamma_over = cos_gamma[17];
     wire [17:0] cos_gamma_at_most = cos_gamma_over ? COS_GAMMA_MOST : cos_gamma;  // u1.17
     wire cos_gamma_load = cos_gamma_write & idle;
-    wire cos_dgamma_over = cos_dgamma > COS_DGAMMA_MOST;
+    wire cos_dgamma_over = cos_dgamma[17];
     wire [17:0] cos_dgamma_at_most = cos_dgamma_over ? COS_DGAMMA_MOST : cos_dgamma;  // u1.17
     wire cos_dgamma_load = cos_dgamma_write & idle;
     wire exponent_load = exponent_write & idle;
@@ -98,7 +100,7 @@ module rough_direct_datapath #(
     wire signed [18:0] adder15 = {1'b0, reg11_cos_cos} + mux14 + {18'd0, subtracts};
 
     wire [16:0] adder16 = reg13_result + ONE_2;  // adder 16, u1.16: register 13 + 1.0
-    wire [23:0] half_exponent = {exponent_reg, 14'd0};  // u9.15: n/2, by wiring
+    wire [9:0] half_exponent = exponent_reg;  // u9.1: n/2, by wiring
 
     // mux 8, s18.0: first operand of multiplier 10
     reg  signed [18:0] mux8;
@@ -113,27 +115,39 @@ module rough_direct_datapath #(
     end
 
     // mux 9: second operand of multiplier 10
-    reg  [23:0] mux9;
+    reg  [17:0] mux9;
     always @* begin
         case (operand_select)
-            OPERAND_SELECT_COSINES: mux9 = {6'd0, cos_dgamma_reg};
-            OPERAND_SELECT_SINES: mux9 = {7'd0, reg19_sin_gamma};
-            OPERAND_SELECT_HALF_N: mux9 = half_exponent;
-            OPERAND_SELECT_SQUARE: mux9 = {7'd0, adder16};
-            default: mux9 = {7'd0, adder16};
+            OPERAND_SELECT_COSINES: mux9 = cos_dgamma_reg;
+            OPERAND_SELECT_SINES: mux9 = {1'b0, reg19_sin_gamma};
+            OPERAND_SELECT_HALF_N: mux9 = {8'd0, half_exponent};
+            OPERAND_SELECT_SQUARE: mux9 = {1'b0, adder16};
+            default: mux9 = {1'b0, adder16};
         endcase
     end
 
-    // multiplier 10, s43.0: the shared product; its point depends on the operands
-    wire signed [43:0] multiplier10 = mux8 * $signed({1'b0, mux9});
+    // multiplier 10: the shared product; its point depends on the operands
+    wire [35:0] multiplier10 = mux8[17:0] * mux9;
+
+    // what the product of a negative operand is too large by, above its sign
+    wire [9:0] multiplier10_excess = mux8[18] ? mux9[9:0] : 10'd0;
 
     wire [17:0] cos_cos = multiplier10[34:17];  // u1.17
     wire [16:0] sin_sin = multiplier10[33:17];  // u0.17
-    wire signed [16:0] result_limit = multiplier10[42] ? RESULT_LEAST : RESULT_MOST;  // s0.16
+    wire [10:0] product_held_upper = product_held[28:18] - {1'b0, product_held_excess};
+    wire squares = operand_select[0];  // V2: which of its two products register 13 takes
+
+    // s10.32: n/2 * adder 15, or the square of adder 16
+    wire signed [42:0] line_or_square = squares ? {9'd0, product_held[33:0]} : {product_held_upper,
+            product_held[17:0], 14'd0};
 
     // s0.16
-    wire signed [16:0] result = ((|multiplier10[42:32]) & ~(&multiplier10[42:32])) ? result_limit :
-            multiplier10[32:16];
+    wire signed [16:0] result_limited = (~line_or_square[42] & (|line_or_square[41:32])) ?
+            RESULT_MOST : line_or_square[32:16];
+
+    // s0.16
+    wire signed [16:0] result = (line_or_square[42] & ~(&line_or_square[41:32])) ? RESULT_LEAST :
+            result_limited;
 
     wire facing = |cos_gamma_reg;  // the surface faces the half vector
     wire signed [16:0] facing_result = facing ? result : MINUS_ONE;  // s0.16
@@ -228,8 +242,13 @@ module rough_direct_datapath #(
         end
     end
 
+    always @(posedge clk) begin
+        product_held <= multiplier10;
+        product_held_excess <= multiplier10_excess;
+    end
+
     // Bits that nothing needs, among them those that narrowing drops.
-    wire unused = &{1'b0, mux17[6:0], multiplier10[15:0], multiplier10[43], red_product[14:0],
+    wire unused = &{1'b0, mux17[6:0], product_held[35:34], line_or_square[15:0], red_product[14:0],
             green_product[14:0], blue_product[14:0]};
 
 `ifdef FORMAL

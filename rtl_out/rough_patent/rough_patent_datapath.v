@@ -17,7 +17,7 @@ module rough_patent_datapath #(
     input  wire        cos_dgamma_write,       // input 58: writes cos_dgamma
     input  wire [9:0]  exponent,               // input 59: specular exponent n
     input  wire        exponent_write,         // input 60: writes exponent
-    // input 61: trigger 4: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
+    // input 61: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     input  wire        dgamma_negative,
     input  wire        dgamma_negative_write,  // input 62: writes dgamma_negative
     input  wire [7:0]  red,                    // input 32: intensity of the light times k_s
@@ -50,7 +50,7 @@ module rough_patent_datapath #(
     // register 2, u0.18: cosine of the angle by which the normal is perturbed
     reg  [17:0] cos_dgamma_reg;
     reg  [9:0]  exponent_reg;         // register 3: specular exponent n
-    // register 4: trigger 4: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
+    // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_reg;
     reg  [7:0]  red_reg;              // register 5: intensity of the light times k_s
     reg  [7:0]  green_reg;            // register 6: intensity of the light times k_s
@@ -59,6 +59,7 @@ module rough_patent_datapath #(
     reg  [17:0] reg11_cos_cos;        // register 11, u0.18: cos gamma * cos dgamma
     reg  [17:0] reg12_sin_sin;        // register 12, u0.18: sin gamma * sin dgamma
     reg  [17:0] reg13_result;         // register 13, u0.18: n/2*(cos(gamma +- dgamma) - 1), then f
+    reg  [35:0] product_held;         // the product of the word before
     reg  [17:0] sine_word;            // u0.18: sine of the addressed cosine
 
     wire cos_gamma_load = cos_gamma_write & idle;
@@ -84,7 +85,7 @@ module rough_patent_datapath #(
     // adder 16, u0.18: register 13 + 1 ulp, modulo 1.0
     wire [17:0] adder16 = reg13_result + 18'd0 + {17'd0, 1'b1};
 
-    wire [26:0] half_exponent = {exponent_reg[9:1], 18'd0};  // u9.18: n/2, by wiring
+    wire [8:0] half_exponent = exponent_reg[9:1];  // n/2, by wiring
 
     // mux 8: first operand of multiplier 10
     reg  [17:0] mux8;
@@ -99,23 +100,28 @@ module rough_patent_datapath #(
     end
 
     // mux 9: second operand of multiplier 10
-    reg  [26:0] mux9;
+    reg  [17:0] mux9;
     always @* begin
         case (operand_select)
-            OPERAND_SELECT_COSINES: mux9 = {9'd0, cos_dgamma_reg};
-            OPERAND_SELECT_SINES: mux9 = {9'd0, reg19_sin_gamma};
-            OPERAND_SELECT_HALF_N: mux9 = half_exponent;
-            OPERAND_SELECT_SQUARE: mux9 = {9'd0, adder16};
-            default: mux9 = {9'd0, adder16};
+            OPERAND_SELECT_COSINES: mux9 = cos_dgamma_reg;
+            OPERAND_SELECT_SINES: mux9 = reg19_sin_gamma;
+            OPERAND_SELECT_HALF_N: mux9 = {9'd0, half_exponent};
+            OPERAND_SELECT_SQUARE: mux9 = adder16;
+            default: mux9 = adder16;
         endcase
     end
 
     // multiplier 10: the shared product; its point depends on the operands
-    wire [44:0] multiplier10 = mux8 * mux9;
+    wire [35:0] multiplier10 = mux8 * mux9;
 
     wire [17:0] cos_cos = multiplier10[35:18];  // u0.18
     wire [17:0] sin_sin = multiplier10[35:18];  // u0.18
-    wire [17:0] result = multiplier10[35:18];  // u0.18
+    wire squares = operand_select[0];  // V2: which of its two products register 13 takes
+
+    // u9.36: n/2 * adder 15, or the square of adder 16
+    wire [44:0] line_or_square = squares ? {9'd0, product_held} : {product_held[26:0], 18'd0};
+
+    wire [17:0] result = line_or_square[35:18];  // u0.18
     wire [17:0] f = reg13_result;  // u0.18: the reflectance, once register 13 holds the square
     wire [25:0] red_product = f * red_reg;  // multiplier 20, u8.18: an output before it is rounded
     wire [7:0] red_intensity = red_product[25:18] + {7'd0, red_product[17]};
@@ -204,8 +210,12 @@ module rough_patent_datapath #(
         end
     end
 
+    always @(posedge clk) begin
+        product_held <= multiplier10;
+    end
+
     // Bits that nothing needs, among them those that narrowing drops.
-    wire unused = &{1'b0, exponent_reg[0], mux17[7:0], multiplier10[17:0], multiplier10[44:36],
+    wire unused = &{1'b0, exponent_reg[0], mux17[7:0], line_or_square[17:0], line_or_square[44:36],
             red_product[16:0], green_product[16:0], blue_product[16:0]};
 
 `ifdef FORMAL

@@ -17,7 +17,7 @@ module rough_small_datapath #(
     input  wire        cos_dgamma_write,       // input 58: writes cos_dgamma
     input  wire [7:0]  exponent,               // input 59: specular exponent n
     input  wire        exponent_write,         // input 60: writes exponent
-    // input 61: trigger 4: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
+    // input 61: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     input  wire        dgamma_negative,
     input  wire        dgamma_negative_write,  // input 62: writes dgamma_negative
     input  wire [7:0]  red,                    // input 32: intensity of the light times k_s
@@ -44,8 +44,8 @@ module rough_small_datapath #(
     localparam [18:0] ONE = 19'h40000;  // 1.0 in u1.18
     localparam [20:0] ONE_2 = 21'h100000;  // 1.0 in u1.20
     localparam [14:0] ONE_3 = 15'h4000;  // 1.0 in u1.14
-    localparam [14:0] RESULT_LEAST = 15'h4000;  // -1.0 in s0.14
     localparam [14:0] RESULT_MOST = 15'h3fff;  // 0.99993896484375 in s0.14
+    localparam [14:0] RESULT_LEAST = 15'h4000;  // -1.0 in s0.14
     localparam [14:0] MINUS_ONE = 15'h4000;  // -1.0 in s0.14
     localparam [1:0] OPERAND_SELECT_COSINES = 2'd0;
     localparam [1:0] OPERAND_SELECT_SINES = 2'd1;
@@ -58,7 +58,7 @@ module rough_small_datapath #(
     // register 2, u1.18: cosine of the angle by which the normal is perturbed
     reg         [18:0] cos_dgamma_reg;
     reg         [7:0]  exponent_reg;         // register 3: specular exponent n
-    // register 4: trigger 4: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
+    // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg                dgamma_negative_reg;
     reg         [7:0]  red_reg;              // register 5: intensity of the light times k_s
     reg         [7:0]  green_reg;            // register 6: intensity of the light times k_s
@@ -69,12 +69,14 @@ module rough_small_datapath #(
     // register 13, s0.14: n/2*(cos(gamma +- dgamma) - 1), then f
     reg  signed [14:0] reg13_result;
     reg         [11:0] sine_rest_held;       // u0.12
+    reg         [40:0] product_held;         // the product of the word before
+    reg         [7:0]  product_held_excess;
     reg         [31:0] sine_word;
 
-    wire cos_gamma_over = cos_gamma > COS_GAMMA_MOST;
+    wire cos_gamma_over = cos_gamma[18];
     wire [18:0] cos_gamma_at_most = cos_gamma_over ? COS_GAMMA_MOST : cos_gamma;  // u1.18
     wire cos_gamma_load = cos_gamma_write & idle;
-    wire cos_dgamma_over = cos_dgamma > COS_DGAMMA_MOST;
+    wire cos_dgamma_over = cos_dgamma[18];
     wire [18:0] cos_dgamma_at_most = cos_dgamma_over ? COS_DGAMMA_MOST : cos_dgamma;  // u1.18
     wire cos_dgamma_load = cos_dgamma_write & idle;
     wire exponent_load = exponent_write & idle;
@@ -87,27 +89,33 @@ module rough_small_datapath #(
     wire [18:0] mux17 = mux17_select ? cos_dgamma_reg : cos_gamma_reg;
 
     wire [18:0] complement = ONE - mux17;  // u1.18: 1.0 - cos
-    wire sine_in_range6 = |complement[18:4];
+    wire sine_in_range0 = |complement[18:16];  // u is in range 0 or in one above
+    wire [7:0] sine_word0 = sine_in_range0 ? {2'd2, complement[17:12]} : {1'b0, complement[15:9]};
+    wire [11:0] sine_rest0 = sine_in_range0 ? complement[11:0] : {complement[8:0], 3'd0};  // u0.12
+    wire sine_in_range2 = |complement[18:12];  // u is in range 2 or in one above
+    wire [8:0] sine_word2 = sine_in_range2 ? {3'd3, complement[13:8]} : {4'd8, complement[11:7]};
+
+    // u0.12
+    wire [11:0] sine_rest2 = sine_in_range2 ? {complement[7:0], 4'd0} : {complement[6:0], 5'd0};
+
+    wire sine_in_range1 = |complement[18:14];  // u is in range 1 or in one above
+    wire [8:0] sine_word1 = sine_in_range1 ? {1'b0, sine_word0} : sine_word2;
+    wire [11:0] sine_rest1 = sine_in_range1 ? sine_rest0 : sine_rest2;  // u0.12
+    wire sine_in_range4 = |complement[18:8];  // u is in range 4 or in one above
+    wire [8:0] sine_word4 = sine_in_range4 ? {5'd18, complement[9:6]} : {6'd40, complement[7:5]};
+
+    // u0.12
+    wire [11:0] sine_rest4 = sine_in_range4 ? {complement[5:0], 6'd0} : {complement[4:0], 7'd0};
+
+    wire sine_in_range6 = |complement[18:4];  // u is in range 6 or in one above
     wire [8:0] sine_word6 = sine_in_range6 ? {7'd82, complement[5:4]} : {5'd19, complement[3:0]};
     wire [11:0] sine_rest6 = sine_in_range6 ? {complement[3:0], 8'd0} : 12'd0;  // u0.12
-    wire sine_in_range5 = |complement[18:6];
-    wire [8:0] sine_word5 = sine_in_range5 ? {6'd40, complement[7:5]} : sine_word6;
-    wire [11:0] sine_rest5 = sine_in_range5 ? {complement[4:0], 7'd0} : sine_rest6;  // u0.12
-    wire sine_in_range4 = |complement[18:8];
-    wire [8:0] sine_word4 = sine_in_range4 ? {5'd18, complement[9:6]} : sine_word5;
-    wire [11:0] sine_rest4 = sine_in_range4 ? {complement[5:0], 6'd0} : sine_rest5;  // u0.12
-    wire sine_in_range3 = |complement[18:10];
-    wire [8:0] sine_word3 = sine_in_range3 ? {4'd8, complement[11:7]} : sine_word4;
-    wire [11:0] sine_rest3 = sine_in_range3 ? {complement[6:0], 5'd0} : sine_rest4;  // u0.12
-    wire sine_in_range2 = |complement[18:12];
-    wire [8:0] sine_word2 = sine_in_range2 ? {3'd3, complement[13:8]} : sine_word3;
-    wire [11:0] sine_rest2 = sine_in_range2 ? {complement[7:0], 4'd0} : sine_rest3;  // u0.12
-    wire sine_in_range1 = |complement[18:14];
-    wire [8:0] sine_word1 = sine_in_range1 ? {2'd0, complement[15:9]} : sine_word2;
-    wire [11:0] sine_rest1 = sine_in_range1 ? {complement[8:0], 3'd0} : sine_rest2;  // u0.12
-    wire sine_in_range0 = |complement[18:16];
-    wire [8:0] sine_word0 = sine_in_range0 ? {3'd2, complement[17:12]} : sine_word1;
-    wire [11:0] sine_rest0 = sine_in_range0 ? complement[11:0] : sine_rest1;  // u0.12
+    wire sine_in_range5 = |complement[18:6];  // u is in range 5 or in one above
+    wire [8:0] sine_word5 = sine_in_range5 ? sine_word4 : sine_word6;
+    wire [11:0] sine_rest5 = sine_in_range5 ? sine_rest4 : sine_rest6;  // u0.12
+    wire sine_in_range3 = |complement[18:10];  // u is in range 3 or in one above
+    wire [8:0] sine_word3 = sine_in_range3 ? sine_word1 : sine_word5;
+    wire [11:0] sine_rest3 = sine_in_range3 ? sine_rest1 : sine_rest5;  // u0.12
     wire [19:0] sine_base = sine_word[31:12];  // u0.20
     wire [11:0] sine_slope = sine_word[11:0];  // u-5.17
     wire [23:0] sine_rise = sine_slope * sine_rest_held;  // u-5.29
@@ -132,7 +140,7 @@ module rough_small_datapath #(
     wire signed [21:0] adder15 = {1'b0, reg11_cos_cos} + mux14 + {21'd0, subtracts};
 
     wire [14:0] adder16 = reg13_result + ONE_3;  // adder 16, u1.14: register 13 + 1.0
-    wire [14:0] half_exponent = {exponent_reg, 7'd0};  // u7.8: n/2, by wiring
+    wire [7:0] half_exponent = exponent_reg;  // u7.1: n/2, by wiring
 
     // mux 8, s21.0: first operand of multiplier 10
     reg  signed [21:0] mux8;
@@ -152,22 +160,34 @@ module rough_small_datapath #(
         case (operand_select)
             OPERAND_SELECT_COSINES: mux9 = {1'b0, cos_dgamma_reg};
             OPERAND_SELECT_SINES: mux9 = reg19_sin_gamma;
-            OPERAND_SELECT_HALF_N: mux9 = {5'd0, half_exponent};
+            OPERAND_SELECT_HALF_N: mux9 = {12'd0, half_exponent};
             OPERAND_SELECT_SQUARE: mux9 = {5'd0, adder16};
             default: mux9 = {5'd0, adder16};
         endcase
     end
 
-    // multiplier 10, s42.0: the shared product; its point depends on the operands
-    wire signed [42:0] multiplier10 = mux8 * $signed({1'b0, mux9});
+    // multiplier 10: the shared product; its point depends on the operands
+    wire [40:0] multiplier10 = mux8[20:0] * mux9;
+
+    // what the product of a negative operand is too large by, above its sign
+    wire [7:0] multiplier10_excess = mux8[21] ? mux9[7:0] : 8'd0;
 
     wire [20:0] cos_cos = multiplier10[36:16];  // u1.20
     wire [19:0] sin_sin = multiplier10[39:20];  // u0.20
-    wire signed [14:0] result_limit = multiplier10[36] ? RESULT_LEAST : RESULT_MOST;  // s0.14
+    wire [8:0] product_held_upper = product_held[29:21] - {1'b0, product_held_excess};
+    wire squares = operand_select[0];  // V2: which of its two products register 13 takes
+
+    // s8.28: n/2 * adder 15, or the square of adder 16
+    wire signed [36:0] line_or_square = squares ? {7'd0, product_held[29:0]} : {product_held_upper,
+            product_held[20:0], 7'd0};
 
     // s0.14
-    wire signed [14:0] result = ((|multiplier10[36:28]) & ~(&multiplier10[36:28])) ? result_limit :
-            multiplier10[28:14];
+    wire signed [14:0] result_limited = (~line_or_square[36] & (|line_or_square[35:28])) ?
+            RESULT_MOST : line_or_square[28:14];
+
+    // s0.14
+    wire signed [14:0] result = (line_or_square[36] & ~(&line_or_square[35:28])) ? RESULT_LEAST :
+            result_limited;
 
     wire facing = |cos_gamma_reg;  // the surface faces the half vector
     wire signed [14:0] facing_result = facing ? result : MINUS_ONE;  // s0.14
@@ -195,7 +215,7 @@ module rough_small_datapath #(
     // 2^-17 (12 bits)
     reg [31:0] sine_rom [0:331];
     initial $readmemh(SINE_FILE, sine_rom);
-    always @(posedge clk) sine_word <= sine_rom[sine_word0];
+    always @(posedge clk) sine_word <= sine_rom[sine_word3];
 
     always @(posedge clk) begin
         if (cos_gamma_load) begin
@@ -264,11 +284,13 @@ module rough_small_datapath #(
     end
 
     always @(posedge clk) begin
-        sine_rest_held <= sine_rest0;
+        sine_rest_held <= sine_rest3;
+        product_held <= multiplier10;
+        product_held_excess <= multiplier10_excess;
     end
 
     // Bits that nothing needs, among them those that narrowing drops.
-    wire unused = &{1'b0, sine_rise[8:0], multiplier10[13:0], multiplier10[42:40],
+    wire unused = &{1'b0, sine_rise[8:0], product_held[40:30], line_or_square[13:0],
             red_product[12:0], green_product[12:0], blue_product[12:0]};
 
 `ifdef FORMAL

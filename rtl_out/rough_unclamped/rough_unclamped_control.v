@@ -56,8 +56,8 @@ module rough_unclamped_control #(
     assign reg11_cos_cos_load = control_word[4];  // line 49
     assign reg12_sin_sin_load = control_word[3];  // line 50
     assign reg13_result_load = control_word[2];  // line 51
-    wire valid_word = control_word[1];
-    wire go_on = control_word[0];
+    wire valid_word = control_word[1];  // line 43: the word sets valid
+    wire go_on = control_word[0];  // line 44: 0 in the last word
     wire [3:0] following_word = word_address + 4'd1;
     wire [3:0] next_word = go_on ? following_word : 4'd0;
     wire next_run = run ? go_on : start;

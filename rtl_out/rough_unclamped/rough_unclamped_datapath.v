@@ -17,7 +17,7 @@ module rough_unclamped_datapath #(
     input  wire        cos_dgamma_write,       // input 58: writes cos_dgamma
     input  wire [9:0]  exponent,               // input 59: specular exponent n
     input  wire        exponent_write,         // input 60: writes exponent
-    // input 61: trigger 4: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
+    // input 61: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     input  wire        dgamma_negative,
     input  wire        dgamma_negative_write,  // input 62: writes dgamma_negative
     input  wire [7:0]  red,                    // input 32: intensity of the light times k_s
@@ -44,8 +44,8 @@ module rough_unclamped_datapath #(
     localparam [20:0] ONE = 21'h100000;  // 1.0 in u1.20
     localparam [22:0] ONE_2 = 23'h400000;  // 1.0 in u1.22
     localparam [18:0] ONE_3 = 19'h10000;  // 1.0 in u1.16
-    localparam [17:0] RESULT_LEAST = 18'h20000;  // -2.0 in s1.16
     localparam [17:0] RESULT_MOST = 18'h1ffff;  // 1.9999847412109375 in s1.16
+    localparam [17:0] RESULT_LEAST = 18'h20000;  // -2.0 in s1.16
     localparam [17:0] MINUS_ONE = 18'h30000;  // -1.0 in s0.16
     localparam [1:0] OPERAND_SELECT_COSINES = 2'd0;
     localparam [1:0] OPERAND_SELECT_SINES = 2'd1;
@@ -58,7 +58,7 @@ module rough_unclamped_datapath #(
     // register 2, u1.20: cosine of the angle by which the normal is perturbed
     reg         [20:0] cos_dgamma_reg;
     reg         [9:0]  exponent_reg;         // register 3: specular exponent n
-    // register 4: trigger 4: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
+    // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg                dgamma_negative_reg;
     reg         [7:0]  red_reg;              // register 5: intensity of the light times k_s
     reg         [7:0]  green_reg;            // register 6: intensity of the light times k_s
@@ -69,12 +69,13 @@ module rough_unclamped_datapath #(
     // register 13, s1.16: n/2*(cos(gamma +- dgamma) - 1), then f
     reg  signed [17:0] reg13_result;
     reg         [13:0] sine_rest_held;       // u0.14
+    reg  signed [46:0] product_held;         // s46.0: the product of the word before
     reg         [34:0] sine_word;
 
-    wire cos_gamma_over = cos_gamma > COS_GAMMA_MOST;
+    wire cos_gamma_over = cos_gamma[20];
     wire [20:0] cos_gamma_at_most = cos_gamma_over ? COS_GAMMA_MOST : cos_gamma;  // u1.20
     wire cos_gamma_load = cos_gamma_write & idle;
-    wire cos_dgamma_over = cos_dgamma > COS_DGAMMA_MOST;
+    wire cos_dgamma_over = cos_dgamma[20];
     wire [20:0] cos_dgamma_at_most = cos_dgamma_over ? COS_DGAMMA_MOST : cos_dgamma;  // u1.20
     wire cos_dgamma_load = cos_dgamma_write & idle;
     wire exponent_load = exponent_write & idle;
@@ -87,33 +88,39 @@ module rough_unclamped_datapath #(
     wire [20:0] mux17 = mux17_select ? cos_dgamma_reg : cos_gamma_reg;
 
     wire [20:0] complement = ONE - mux17;  // u1.20: 1.0 - cos
-    wire sine_in_range8 = |complement[20:2];
-    wire [9:0] sine_word8 = sine_in_range8 ? {8'd144, complement[3:2]} : {8'd145, complement[1:0]};
-    wire [13:0] sine_rest8 = sine_in_range8 ? {complement[1:0], 12'd0} : 14'd0;  // u0.14
-    wire sine_in_range7 = |complement[20:4];
-    wire [9:0] sine_word7 = sine_in_range7 ? {7'd71, complement[5:3]} : sine_word8;
-    wire [13:0] sine_rest7 = sine_in_range7 ? {complement[2:0], 11'd0} : sine_rest8;  // u0.14
-    wire sine_in_range6 = |complement[20:6];
-    wire [9:0] sine_word6 = sine_in_range6 ? {7'd70, complement[7:5]} : sine_word7;
-    wire [13:0] sine_rest6 = sine_in_range6 ? {complement[4:0], 9'd0} : sine_rest7;  // u0.14
-    wire sine_in_range5 = |complement[20:8];
-    wire [9:0] sine_word5 = sine_in_range5 ? {6'd34, complement[9:6]} : sine_word6;
-    wire [13:0] sine_rest5 = sine_in_range5 ? {complement[5:0], 8'd0} : sine_rest6;  // u0.14
-    wire sine_in_range4 = |complement[20:10];
-    wire [9:0] sine_word4 = sine_in_range4 ? {5'd16, complement[11:7]} : sine_word5;
-    wire [13:0] sine_rest4 = sine_in_range4 ? {complement[6:0], 7'd0} : sine_rest5;  // u0.14
-    wire sine_in_range3 = |complement[20:12];
-    wire [9:0] sine_word3 = sine_in_range3 ? {4'd7, complement[13:8]} : sine_word4;
-    wire [13:0] sine_rest3 = sine_in_range3 ? {complement[7:0], 6'd0} : sine_rest4;  // u0.14
-    wire sine_in_range2 = |complement[20:14];
+    wire sine_in_range0 = |complement[20:18];  // u is in range 0 or in one above
+    wire [8:0] sine_word0 = sine_in_range0 ? {3'd6, complement[19:14]} : {1'b0, complement[17:10]};
+    wire [13:0] sine_rest0 = sine_in_range0 ? complement[13:0] : {complement[9:0], 4'd0};  // u0.14
+    wire sine_in_range3 = |complement[20:12];  // u is in range 3 or in one above
+    wire [9:0] sine_word3 = sine_in_range3 ? {4'd7, complement[13:8]} : {5'd16, complement[11:7]};
+
+    // u0.14
+    wire [13:0] sine_rest3 = sine_in_range3 ? {complement[7:0], 6'd0} : {complement[6:0], 7'd0};
+
+    wire sine_in_range2 = |complement[20:14];  // u is in range 2 or in one above
     wire [9:0] sine_word2 = sine_in_range2 ? {3'd2, complement[15:9]} : sine_word3;
     wire [13:0] sine_rest2 = sine_in_range2 ? {complement[8:0], 5'd0} : sine_rest3;  // u0.14
-    wire sine_in_range1 = |complement[20:16];
-    wire [9:0] sine_word1 = sine_in_range1 ? {2'd0, complement[17:10]} : sine_word2;
-    wire [13:0] sine_rest1 = sine_in_range1 ? {complement[9:0], 4'd0} : sine_rest2;  // u0.14
-    wire sine_in_range0 = |complement[20:18];
-    wire [9:0] sine_word0 = sine_in_range0 ? {4'd6, complement[19:14]} : sine_word1;
-    wire [13:0] sine_rest0 = sine_in_range0 ? complement[13:0] : sine_rest1;  // u0.14
+    wire sine_in_range1 = |complement[20:16];  // u is in range 1 or in one above
+    wire [9:0] sine_word1 = sine_in_range1 ? {1'b0, sine_word0} : sine_word2;
+    wire [13:0] sine_rest1 = sine_in_range1 ? sine_rest0 : sine_rest2;  // u0.14
+    wire sine_in_range5 = |complement[20:8];  // u is in range 5 or in one above
+    wire [9:0] sine_word5 = sine_in_range5 ? {6'd34, complement[9:6]} : {7'd70, complement[7:5]};
+
+    // u0.14
+    wire [13:0] sine_rest5 = sine_in_range5 ? {complement[5:0], 8'd0} : {complement[4:0], 9'd0};
+
+    wire sine_in_range8 = |complement[20:2];  // u is in range 8 or in one above
+    wire [9:0] sine_word8 = sine_in_range8 ? {8'd144, complement[3:2]} : {8'd145, complement[1:0]};
+    wire [13:0] sine_rest8 = sine_in_range8 ? {complement[1:0], 12'd0} : 14'd0;  // u0.14
+    wire sine_in_range7 = |complement[20:4];  // u is in range 7 or in one above
+    wire [9:0] sine_word7 = sine_in_range7 ? {7'd71, complement[5:3]} : sine_word8;
+    wire [13:0] sine_rest7 = sine_in_range7 ? {complement[2:0], 11'd0} : sine_rest8;  // u0.14
+    wire sine_in_range6 = |complement[20:6];  // u is in range 6 or in one above
+    wire [9:0] sine_word6 = sine_in_range6 ? sine_word5 : sine_word7;
+    wire [13:0] sine_rest6 = sine_in_range6 ? sine_rest5 : sine_rest7;  // u0.14
+    wire sine_in_range4 = |complement[20:10];  // u is in range 4 or in one above
+    wire [9:0] sine_word4 = sine_in_range4 ? sine_word1 : sine_word6;
+    wire [13:0] sine_rest4 = sine_in_range4 ? sine_rest1 : sine_rest6;  // u0.14
     wire [21:0] sine_base = sine_word[34:13];  // u0.22
     wire [12:0] sine_slope = sine_word[12:0];  // u-5.18
     wire [26:0] sine_rise = sine_slope * sine_rest_held;  // u-5.32
@@ -140,7 +147,7 @@ module rough_unclamped_datapath #(
     // adder 16, s2.16: register 13 + 1.0
     wire signed [18:0] adder16 = {reg13_result[17], reg13_result} + ONE_3;
 
-    wire [18:0] half_exponent = {exponent_reg, 9'd0};  // u9.10: n/2, by wiring
+    wire [9:0] half_exponent = exponent_reg;  // u9.1: n/2, by wiring
 
     // mux 8, s23.0: first operand of multiplier 10
     reg  signed [23:0] mux8;
@@ -160,7 +167,7 @@ module rough_unclamped_datapath #(
         case (operand_select)
             OPERAND_SELECT_COSINES: mux9 = {2'd0, cos_dgamma_reg};
             OPERAND_SELECT_SINES: mux9 = {1'b0, reg19_sin_gamma};
-            OPERAND_SELECT_HALF_N: mux9 = {4'd0, half_exponent};
+            OPERAND_SELECT_HALF_N: mux9 = {13'd0, half_exponent};
             OPERAND_SELECT_SQUARE: mux9 = {{4{adder16[18]}}, adder16};
             default: mux9 = {{4{adder16[18]}}, adder16};
         endcase
@@ -171,11 +178,19 @@ module rough_unclamped_datapath #(
 
     wire [22:0] cos_cos = multiplier10[40:18];  // u1.22
     wire [21:0] sin_sin = multiplier10[43:22];  // u0.22
-    wire signed [17:0] result_limit = multiplier10[42] ? RESULT_LEAST : RESULT_MOST;  // s1.16
+    wire squares = operand_select[0];  // V2: which of its two products register 13 takes
+
+    // s10.32: n/2 * adder 15, or the square of adder 16
+    wire signed [42:0] line_or_square = squares ? {{6{product_held[36]}}, product_held[36:0]} :
+            {product_held[33:0], 9'd0};
 
     // s1.16
-    wire signed [17:0] result = ((|multiplier10[42:33]) & ~(&multiplier10[42:33])) ? result_limit :
-            multiplier10[33:16];
+    wire signed [17:0] result_limited = (~line_or_square[42] & (|line_or_square[41:33])) ?
+            RESULT_MOST : line_or_square[33:16];
+
+    // s1.16
+    wire signed [17:0] result = (line_or_square[42] & ~(&line_or_square[41:33])) ? RESULT_LEAST :
+            result_limited;
 
     wire facing = |cos_gamma_reg;  // the surface faces the half vector
     wire signed [17:0] facing_result = facing ? result : MINUS_ONE;  // s1.16
@@ -204,7 +219,7 @@ module rough_unclamped_datapath #(
     // 2^-18 (13 bits)
     reg [34:0] sine_rom [0:583];
     initial $readmemh(SINE_FILE, sine_rom);
-    always @(posedge clk) sine_word <= sine_rom[sine_word0];
+    always @(posedge clk) sine_word <= sine_rom[sine_word4];
 
     always @(posedge clk) begin
         if (cos_gamma_load) begin
@@ -273,11 +288,12 @@ module rough_unclamped_datapath #(
     end
 
     always @(posedge clk) begin
-        sine_rest_held <= sine_rest0;
+        sine_rest_held <= sine_rest4;
+        product_held <= multiplier10;
     end
 
     // Bits that nothing needs, among them those that narrowing drops.
-    wire unused = &{1'b0, sine_rise[9:0], multiplier10[15:0], multiplier10[46:44],
+    wire unused = &{1'b0, sine_rise[9:0], product_held[46:37], line_or_square[15:0],
             red_product[14:0], green_product[14:0], blue_product[14:0]};
 
 `ifdef FORMAL

@@ -16,7 +16,7 @@ module cosine_power_m4_tb #(
     parameter STIMULUS_FILE = "cosine_power_m4_stimulus.mem",
     parameter EXPECTED_FILE = "cosine_power_m4_expected.mem"
 );
-    localparam CLOCKS     = 185;
+    localparam CLOCKS     = 182;
     localparam KNOWN_FROM = 9;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

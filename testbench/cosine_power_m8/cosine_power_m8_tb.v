@@ -16,7 +16,7 @@ module cosine_power_m8_tb #(
     parameter STIMULUS_FILE = "cosine_power_m8_stimulus.mem",
     parameter EXPECTED_FILE = "cosine_power_m8_expected.mem"
 );
-    localparam CLOCKS     = 215;
+    localparam CLOCKS     = 220;
     localparam KNOWN_FROM = 10;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

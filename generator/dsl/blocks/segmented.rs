@@ -4,7 +4,7 @@
 //! range j holds u in [2^(C−2j−2), 2^(C−2j)) and is cut uniformly, by the k_j top bits of the
 //! (C−2j)-bit number. What lies below the last range has one entry a value, or is cut uniformly too. So
 //! the segments are fine where a function such as √u is steep, or where one such as −log₂(1 − u) must
-//! keep its relative accuracy, at a cost of one priority mux and no shifter.
+//! keep its relative accuracy, at a cost of one mux, a tree, and no shifter.
 
 use crate::dsl::{Designer, Signal};
 use crate::fixed::{Format, Overflow, Rounding};
@@ -329,30 +329,56 @@ fn address_and_rest<'d>(
         };
         (word, remainder)
     };
-    let mut picked: Option<(Signal<'d>, Signal<'d>)> = None;
-    for (at, block) in blocks.iter().enumerate().rev() {
-        let (word, remainder) = arm(block);
-        picked = Some(match picked {
-            None => (word, remainder),
-            Some((lower_word, lower_rest)) => {
-                // u is in range j or above when any bit from 2^(C−2j−2) up is set.
-                let low = block.bits - 2;
-                let top = u.format().width() - low;
-                let here = d.any(
-                    &format!("{name}_in_range{at}"),
-                    u.bits(low, Format::unsigned(top as i32, 0)),
-                );
-                let no_rest = lower_rest.range() == (0, 0) && remainder.range() == (0, 0);
-                (
-                    d.choose(&format!("{name}_word{at}"), here, [lower_word, word]),
-                    if no_rest {
-                        remainder
-                    } else {
-                        d.choose(&format!("{name}_rest{at}"), here, [lower_rest, remainder])
-                    },
-                )
-            }
-        });
+    let arms: Vec<_> = blocks.iter().map(arm).collect();
+    let in_range = |at: usize| {
+        let low = blocks[at].bits - 2;
+        let top = u.format().width() - low;
+        d.any(
+            &format!("{name}_in_range{at}"),
+            u.bits(low, Format::unsigned(top as i32, 0)),
+        )
+        .doc(&format!("u is in range {at} or in one above"))
+    };
+    let picker = Picker {
+        d,
+        name,
+        arms: &arms,
+        in_range: &in_range,
+    };
+    picker.pick(0, arms.len())
+}
+
+/// A word and a remainder.
+type Arm<'d> = (Signal<'d>, Signal<'d>);
+
+/// Chooses between the arms of the blocks, in a tree of two-input muxes.
+struct Picker<'a, 'd> {
+    d: &'d Designer,
+    name: &'a str,
+    arms: &'a [Arm<'d>],
+    /// 1 when u is in the range of that number or in one above it.
+    in_range: &'a dyn Fn(usize) -> Signal<'d>,
+}
+
+impl<'d> Picker<'_, 'd> {
+    /// Between the arms `from` to `to`, less one.
+    #[track_caller]
+    fn pick(&self, from: usize, to: usize) -> Arm<'d> {
+        if to - from == 1 {
+            return self.arms[from];
+        }
+        let middle = (from + to) / 2;
+        let at = middle - 1;
+        let (upper, lower) = (self.pick(from, middle), self.pick(middle, to));
+        let here = (self.in_range)(at);
+        let (d, name) = (self.d, self.name);
+        let word = d.choose(&format!("{name}_word{at}"), here, [lower.0, upper.0]);
+        let no_rest = lower.1.range() == (0, 0) && upper.1.range() == (0, 0);
+        let rest = if no_rest {
+            upper.1
+        } else {
+            d.choose(&format!("{name}_rest{at}"), here, [lower.1, upper.1])
+        };
+        (word, rest)
     }
-    picked.unwrap_or_else(|| arm(&blocks[0]))
 }

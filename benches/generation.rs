@@ -1,0 +1,54 @@
+//! What it takes to generate: from the text of a configuration to all files in memory, the vectors of
+//! the bench and the proof of the error bound among them. On Linux the peak of memory is printed too.
+
+use std::fs;
+use std::hint::black_box;
+
+use anyhow::{Context, Result, anyhow};
+use criterion::{Criterion, criterion_group, criterion_main};
+use glint::config;
+use glint::emit::OutputFile;
+use glint::flow::{BENCH_POINTS, BENCH_SEED, Unit};
+use glint::registry::Registry;
+
+/// One configuration of each device.
+const CONFIGS: [&str; 2] = ["configs/rough.toml", "configs/cosine_power.toml"];
+
+fn generate(registry: &Registry, path: &str, text: &str) -> Result<Vec<OutputFile>> {
+    let config =
+        config::parse(path, text, &registry.schemas()).map_err(|problems| anyhow!("{problems}"))?;
+    let device = registry.device(&config.device).context("a device")?;
+    let unit = Unit::new(*device, config)?;
+    black_box(unit.contract.bound());
+    unit.files(path, unit.vectors(BENCH_POINTS, BENCH_SEED)?)
+}
+
+fn both(registry: &Registry, texts: &[(&str, String)]) -> Result<Vec<Vec<OutputFile>>> {
+    let all = texts.iter();
+    all.map(|(path, text)| generate(registry, path, text))
+        .collect()
+}
+
+/// The most memory that the process has had, where the system tells.
+fn peak_memory() -> Option<String> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    let line = status
+        .lines()
+        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    Some(line.trim().to_owned())
+}
+
+fn all(criterion: &mut Criterion) {
+    let registry = Registry::catalogue();
+    let texts = CONFIGS.map(|path| (path, fs::read_to_string(path).expect("a configuration")));
+    let files = both(&registry, &texts).expect("files");
+    let count = files.iter().map(Vec::len).sum::<usize>();
+    let peak = peak_memory().unwrap_or_else(|| "unknown".to_owned());
+    println!("{count} files of {CONFIGS:?}; peak memory of the process: {peak}");
+    criterion.bench_function("generate both devices", |bencher| {
+        bencher.iter(|| black_box(both(&registry, &texts).expect("files, as before")));
+    });
+}
+
+criterion_group!(benches, all);
+criterion_main!(benches);

@@ -1,0 +1,73 @@
+// cosine_squared_formal: what is proved of the handshake of cosine_squared
+//
+// For formal tools alone: every input is free. To prove it, from a directory that holds the files of
+// both folders:
+//   $ yosys -q cosine_squared_formal.ys
+//   $ yosys-smtbmc -s z3 -t 4 cosine_squared_formal.smt2
+//   $ yosys-smtbmc -s z3 -i -t 4 cosine_squared_formal.smt2
+//
+// Generated files belong to their user, without conditions.
+
+`default_nettype none
+
+module cosine_squared_formal (
+    input  wire clk,
+    input  wire rst_n,
+    input  wire start,
+    input  wire [7:0] amplitude,
+    input  wire amplitude_write,
+    input  wire [29:0] delta_zeta,
+    input  wire delta_zeta_write,
+    input  wire [29:0] zeta_start,
+    input  wire zeta_start_write,
+    input  wire [11:0] length,
+    input  wire length_write
+);
+    wire       valid;
+    wire       busy;
+    wire       done;
+    wire       count;
+    wire       accumulate;
+    wire       write_angle;
+    wire [7:0] intensity_out;
+
+    cosine_squared dut (
+        .clk(clk),
+        .rst_n(rst_n),
+        .start(start),
+        .amplitude(amplitude),
+        .amplitude_write(amplitude_write),
+        .delta_zeta(delta_zeta),
+        .delta_zeta_write(delta_zeta_write),
+        .zeta_start(zeta_start),
+        .zeta_start_write(zeta_start_write),
+        .length(length),
+        .length_write(length_write),
+        .valid(valid),
+        .busy(busy),
+        .done(done),
+        .count(count),
+        .accumulate(accumulate),
+        .write_angle(write_angle),
+        .intensity_out(intensity_out)
+    );
+
+    // The initial set comes first; the state before it is arbitrary.
+    always @* if ($initstate) assume (!rst_n);
+
+    always @(posedge clk) if (!$initstate) begin
+        if (!$past(rst_n)) begin
+            // Idle after the initial set, whatever was before.
+            assert (!busy && !done);
+        end else if (!$past(busy)) begin
+            // Idle until start, busy from the clock after it.
+            assert (busy == $past(start));
+        end else begin
+            // Busy to the clock of done.
+            assert (busy == !$past(done));
+        end
+        if (done) assert (busy);
+    end
+endmodule
+
+`default_nettype wire

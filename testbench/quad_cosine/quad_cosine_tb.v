@@ -1,0 +1,171 @@
+// quad_cosine_tb: self-checking bench of quad_cosine
+//
+// Run it with any simulator from a directory that holds the files of both folders, for example
+//   $ iverilog -g2012 -o quad_cosine_tb quad_cosine*.v
+//   $ ./quad_cosine_tb
+// or, with Verilator 5,
+//   $ verilator --binary --timing --top-module quad_cosine_tb quad_cosine*.v
+//   $ obj_dir/Vquad_cosine_tb
+// Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
+//
+// Generated files belong to their user, without conditions.
+
+`default_nettype none
+
+module quad_cosine_tb #(
+    parameter STIMULUS_FILE = "quad_cosine_stimulus.mem",
+    parameter EXPECTED_FILE = "quad_cosine_expected.mem"
+);
+    localparam CLOCKS     = 53;
+    localparam KNOWN_FROM = 7;  // results are compared from this clock on
+    localparam REPORTED   = 20;  // differences that are printed
+
+    reg [92:0] stimulus [0:CLOCKS-1];
+    reg [13:0] expected [0:CLOCKS-1];
+    reg [13:0] want;
+
+    reg clk = 1'b0;
+    reg                rst_n;
+    reg                start;
+    reg         [7:0]  amplitude;
+    reg                amplitude_write;
+    reg  signed [27:0] delta_zeta;
+    reg                delta_zeta_write;
+    reg  signed [27:0] zeta_start;
+    reg                zeta_start_write;
+    reg         [11:0] length;
+    reg                length_write;
+    reg         [9:0]  exponent;
+    reg                exponent_write;
+    wire               valid;
+    wire               busy;
+    wire               done;
+    wire               count;
+    wire               accumulate;
+    wire               write_angle;
+    wire        [7:0]  intensity_out;
+
+    integer clock;
+    // Initial values stand here and not in the process below: Verilator 5.006 takes a variable for
+    // constant after a loop with delays when the process has set it before the loop.
+    integer errors = 0;
+    reg was_reset = 1'b0;  // the control unit is in a known state
+
+    quad_cosine dut (
+        .clk(clk),
+        .rst_n(rst_n),
+        .start(start),
+        .amplitude(amplitude),
+        .amplitude_write(amplitude_write),
+        .delta_zeta(delta_zeta),
+        .delta_zeta_write(delta_zeta_write),
+        .zeta_start(zeta_start),
+        .zeta_start_write(zeta_start_write),
+        .length(length),
+        .length_write(length_write),
+        .exponent(exponent),
+        .exponent_write(exponent_write),
+        .valid(valid),
+        .busy(busy),
+        .done(done),
+        .count(count),
+        .accumulate(accumulate),
+        .write_angle(write_angle),
+        .intensity_out(intensity_out)
+    );
+
+    // Prints the word of the microprogram that is executed.
+    task write_word;
+        case (dut.control.word_address)
+            3'd0: $write("word 0 (operands)");
+            3'd1: $write("word 1 (angle <- zeta_start: first point)");
+            3'd2: $write("word 2 (angle <- angle + delta_zeta: next point)");
+            3'd3: $write("word 3 (last point a clock away)");
+            3'd4: $write("word 4 (last point on the output)");
+            default: $write("no word");
+        endcase
+    endtask
+
+    initial begin
+        $readmemh(STIMULUS_FILE, stimulus);
+        $readmemh(EXPECTED_FILE, expected);
+        for (clock = 0; clock < CLOCKS; clock = clock + 1) begin
+            {rst_n, start, amplitude, amplitude_write, delta_zeta, delta_zeta_write, zeta_start,
+                    zeta_start_write, length, length_write, exponent, exponent_write} =
+                    stimulus[clock];
+            want = expected[clock];
+            #4;
+            if (was_reset) begin
+                if (valid !== want[13]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": valid is %h, expected %h", valid, want[13]);
+                    end
+                end
+                if (busy !== want[12]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": busy is %h, expected %h", busy, want[12]);
+                    end
+                end
+                if (done !== want[11]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": done is %h, expected %h", done, want[11]);
+                    end
+                end
+            end
+            if (clock >= KNOWN_FROM) begin
+                if (count !== want[10]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": count is %h, expected %h", count, want[10]);
+                    end
+                end
+                if (accumulate !== want[9]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": accumulate is %h, expected %h", accumulate, want[9]);
+                    end
+                end
+                if (write_angle !== want[8]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": write_angle is %h, expected %h", write_angle, want[8]);
+                    end
+                end
+                if (intensity_out !== want[7:0]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": intensity_out is %h, expected %h", intensity_out, want[7:0]);
+                    end
+                end
+            end
+            if (!rst_n) was_reset = 1'b1;
+            #1 clk = 1'b1;
+            #5 clk = 1'b0;
+        end
+        if (errors != 0) begin
+            $display("FAIL quad_cosine: %0d differences in %0d clocks", errors, CLOCKS);
+            $fatal;
+        end
+        $display("PASS quad_cosine: %0d clocks, no difference", CLOCKS);
+        $finish;
+    end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,101 @@
+//! A shared multiplier of operands of different signs: what each register takes is the product, whichever
+//! bus the negative operands are on, at once or a word later.
+
+use glint::dsl::{Designer, end, hold, step, valid};
+use glint::fixed::Format;
+use glint::netlist::Design;
+use glint::sim::Simulator;
+
+const SIGNED: Format = Format::signed(3, 2);
+const UNSIGNED: Format = Format::unsigned(4, 1);
+const LEFT: Format = Format::unsigned(1, 5);
+const RIGHT: Format = Format::unsigned(0, 7);
+
+/// Multiplies `a · b` and then `c · e`, and takes both into registers that hold every bit.
+fn device(a_first: bool, held: bool) -> Design {
+    let d = Designer::new("products");
+    let [a, b, c, e] = [("a", SIGNED), ("b", UNSIGNED), ("c", LEFT), ("e", RIGHT)]
+        .map(|(name, format)| d.operand(name, format).q());
+    let select = d.select("operands", &["signed", "unsigned"]);
+    let (first, second) = if a_first { (a, b) } else { (b, a) };
+    let left = d.bus("left", select, [first, c]);
+    let right = d.bus("right", select, [second, e]);
+    let mut product = d.shared_mul("product", &left, &right);
+    if held {
+        product = product.held("product_held");
+    }
+    let signed = product.of(first, second);
+    let of_signed = d.register("of_signed", signed.format());
+    of_signed.takes(signed);
+    let unsigned = product.of(c, e);
+    let of_unsigned = d.register("of_unsigned", unsigned.format());
+    of_unsigned.takes(unsigned);
+    d.microprogram([
+        step("idle", []),
+        step("settle a, b", [left.pick(first), right.pick(second)]),
+        step("take a, b", [hold(), of_signed.load()]),
+        step("settle c, e", [left.pick(c), right.pick(e)]),
+        step("take c, e", [hold(), of_unsigned.load()]),
+        step("end", [valid(), end()]),
+    ]);
+    d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"))
+}
+
+/// What the two registers hold after a run.
+fn run(design: &Design, operands: [u64; 4]) -> [i64; 2] {
+    let mut simulator: Simulator = Simulator::new(design).unwrap();
+    let input = |simulator: &Simulator, name: &str| simulator.input(name).unwrap();
+    simulator.clock().unwrap();
+    let reset = input(&simulator, "rst_n");
+    simulator.set(reset, 1);
+    for (name, bits) in ["a", "b", "c", "e"].into_iter().zip(operands) {
+        let (data, strobe) = (
+            input(&simulator, name),
+            input(&simulator, &format!("{name}_write")),
+        );
+        simulator.set(data, bits);
+        simulator.set(strobe, 1);
+    }
+    let start = input(&simulator, "start");
+    simulator.set(start, 1);
+    for _ in 0..7 {
+        simulator.clock().unwrap();
+        simulator.set(start, 0);
+    }
+    ["of_signed", "of_unsigned"].map(|name| {
+        let net = design.find(name).unwrap();
+        let (width, signed) = (design.width(net), design.net(net).format.signed);
+        let bits = simulator.value(net) as i64;
+        if signed && bits >> (width - 1) == 1 {
+            bits - (1 << width)
+        } else {
+            bits
+        }
+    })
+}
+
+#[test]
+fn every_product_is_whole() {
+    for (a_first, held) in [(false, false), (false, true), (true, false), (true, true)] {
+        let design = device(a_first, held);
+        for a in -32..32i64 {
+            for b in [0, 1, 2, 15, 16, 30, 31] {
+                let (c, e) = (63 - (a & 63), 127 - b);
+                let operands = [a & 63, b, c, e].map(|value| value as u64);
+                assert_eq!(
+                    run(&design, operands),
+                    [a * b, c * e],
+                    "a_first: {a_first}, held: {held}; {a} * {b}, {c} * {e}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn the_multiplier_has_no_sign_bits() {
+    let design = device(true, false);
+    let product = design.find("product").unwrap();
+    // 5 bits of `a` below its sign and 6 of `c`, times 7 of `e`.
+    assert_eq!(design.net(product).format, Format::unsigned(6 + 7, 0));
+}
