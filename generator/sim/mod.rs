@@ -5,6 +5,7 @@
 //! clock. rust_hdl is the kernel: every change goes through its `simulate()`, which updates the
 //! block until nothing changes.
 
+mod banks;
 mod circuit;
 mod compile;
 mod lower;
@@ -91,12 +92,26 @@ impl<const LANES: usize> Simulator<LANES> {
         self.circuit.set_lanes(input, lanes);
     }
 
+    /// The input ports in order of position, each with its lanes, for [`Simulator::set_lanes`] of many
+    /// at once.
+    pub fn inputs_mut(&mut self) -> &mut [[u64; LANES]] {
+        self.circuit.inputs_mut()
+    }
+
     /// The bit pattern of a net in each lane, after the latest clock.
     ///
     /// # Panics
     /// When the net is unnamed and was optimised away.
-    pub fn lanes(&self, net: NetId) -> &[u64; LANES] {
+    pub fn lanes(&self, net: NetId) -> [u64; LANES] {
         self.circuit.lanes(net)
+    }
+
+    /// The bit pattern of a net in one lane, after the latest clock.
+    ///
+    /// # Panics
+    /// When the net is unnamed and was optimised away, or there is no such lane.
+    pub fn lane(&self, net: NetId, lane: usize) -> u64 {
+        self.circuit.lane(net, lane)
     }
 
     /// One clock: the falling edge, with which inputs change, and the rising edge.
@@ -179,7 +194,6 @@ impl Simulator {
     /// When the net is unnamed and was optimised away.
     #[inline]
     pub fn value(&self, net: NetId) -> u64 {
-        let [bits] = *self.lanes(net);
-        bits
+        self.lane(net, 0)
     }
 }
