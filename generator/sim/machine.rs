@@ -1,6 +1,5 @@
 //! The interpreter of simulation programs.
 
-use std::array;
 use std::hint::select_unpredictable;
 use std::ops::{BitAnd, BitOr, BitXor, Shl, Shr};
 use std::sync::Arc;
@@ -230,8 +229,11 @@ fn take_inputs<W: Word, const LANES: usize>(
 ) -> Sources {
     let mut news = 0;
     for port in &bank.inputs {
-        let bits = inputs[port.at as usize].map(|bits| W::low(bits & port.mask));
-        news |= store(&mut slots[port.slot as usize], bits, port.source);
+        let mut bits = [W::ZERO; LANES];
+        map(&mut bits, &inputs[port.at as usize], |bits| {
+            W::low(bits & port.mask)
+        });
+        news |= store(&mut slots[port.slot as usize], &bits, port.source);
     }
     news
 }
@@ -245,19 +247,22 @@ fn clock<W: Word, const LANES: usize>(
 ) -> Sources {
     let mut news = 0;
     for edge in &bank.reads {
-        let address = &slots[edge.address as usize];
-        let word = address.map(|address| W::low(read(words, edge.words, address.into())));
-        news |= store(&mut slots[edge.to as usize], word, edge.source);
+        let mut word = [W::ZERO; LANES];
+        map(&mut word, &slots[edge.address as usize], |address| {
+            W::low(read(words, edge.words, address.into()))
+        });
+        news |= store(&mut slots[edge.to as usize], &word, edge.source);
     }
     for edge in &bank.registers {
         let [q, data, enable, keep] =
             [edge.q, edge.data, edge.enable, edge.keep].map(|slot| &slots[slot as usize]);
         let reset = W::low(edge.reset);
-        let next = array::from_fn(|lane| {
+        let mut next = [W::ZERO; LANES];
+        for lane in 0..LANES {
             let loaded = select_unpredictable(enable[lane] == W::ZERO, q[lane], data[lane]);
-            select_unpredictable(keep[lane] == W::ZERO, reset, loaded)
-        });
-        news |= store(&mut slots[edge.q as usize], next, edge.source);
+            next[lane] = select_unpredictable(keep[lane] == W::ZERO, reset, loaded);
+        }
+        news |= store(&mut slots[edge.q as usize], &next, edge.source);
     }
     news
 }
@@ -266,14 +271,14 @@ fn clock<W: Word, const LANES: usize>(
 #[inline(always)]
 fn store<W: Word, const LANES: usize>(
     slot: &mut [W; LANES],
-    new: [W; LANES],
+    new: &[W; LANES],
     source: Sources,
 ) -> Sources {
     let mut differences = W::ZERO;
-    for (old, new) in slot.iter_mut().zip(new) {
-        differences = differences | *old ^ new;
-        *old = new;
+    for lane in 0..LANES {
+        differences = differences | slot[lane] ^ new[lane];
     }
+    *slot = *new;
     if differences == W::ZERO { 0 } else { source }
 }
 
@@ -296,8 +301,9 @@ pub(super) fn execute<W: Word, const LANES: usize>(
             drop,
             source,
         } => {
-            let field = slots[a as usize].map(|a| a >> low & mask(drop));
-            return store(&mut slots[to as usize], field, 1 << source);
+            let mut field = [W::ZERO; LANES];
+            map(&mut field, &slots[a as usize], |a| a >> low & mask(drop));
+            return store(&mut slots[to as usize], &field, 1 << source);
         }
         I::Slice { to, a, low, drop } => unary(slots, to, a, |a| a >> low & mask(drop)),
         I::Place {
@@ -410,10 +416,10 @@ fn mux<W: Word, const LANES: usize>(
     let (to, select) = (&mut after[0], &slots[select as usize]);
     let last = choices.len() - 1;
     if LANES < VECTOR || choices.len() > COMPARED {
-        *to = array::from_fn(|lane| {
+        for lane in 0..LANES {
             let number: u64 = select[lane].into();
-            slots[choices[(number as usize).min(last)] as usize][lane]
-        });
+            to[lane] = slots[choices[(number as usize).min(last)] as usize][lane];
+        }
         return;
     }
     *to = slots[choices[last] as usize];
