@@ -12,7 +12,6 @@ use common::units::configurations;
 use glint::cosim::{Lockstep, Random};
 use glint::flow::Unit;
 use glint::netlist::{Design, Driver, NetId, Op, RomId};
-use glint::sim::Simulator;
 use rayon::prelude::*;
 
 /// Points after which a fault counts as unnoticed. Most are noticed within a few.
@@ -108,11 +107,8 @@ fn mux_inputs(design: &Design, id: NetId, inputs: usize, mutants: &mut Vec<Mutan
 /// Whether golden model and mutant agree on every clock.
 fn survives(unit: &Unit, mutant: &Mutant) -> bool {
     let model = (unit.device.model)(&unit.config);
-    let outcome = Simulator::new(&mutant.design)
-        .and_then(|simulator| {
-            Lockstep::new(&mutant.design, model, unit.contract.as_ref(), simulator, 3)
-        })
-        .and_then(|mut lockstep| lockstep.run(POINTS, None, &mut |_| ()))
+    let outcome = Lockstep::new(&mutant.design, model, unit.contract.as_ref(), 3)
+        .and_then(|lockstep| lockstep.run(POINTS, &|_| ()))
         .unwrap_or_else(|error| panic!("{}: {error:?}", mutant.what));
     outcome.mismatch.is_none()
 }

@@ -3,7 +3,9 @@
 pub mod exhaustive;
 pub mod external;
 mod lockstep;
+mod pairing;
 mod stimulus;
+mod streams;
 pub mod trial;
 
 pub use lockstep::{Lockstep, Mismatch, Outcome, Worst};

@@ -137,6 +137,14 @@ impl<const LANES: usize> Circuit<LANES> {
         self.machine.lane(net, lane)
     }
 
+    /// For each lane, a pattern that is 0 exactly if each net carries what is expected of it.
+    ///
+    /// # Panics
+    /// When a net is unnamed and was optimised away.
+    pub fn differences(&self, nets: &[NetId], expected: &[[u64; LANES]]) -> [u64; LANES] {
+        self.machine.differences(nets, expected)
+    }
+
     /// The number of input ports.
     pub fn inputs(&self) -> usize {
         self.inputs.len()

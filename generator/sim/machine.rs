@@ -1,6 +1,7 @@
 //! The interpreter of simulation programs.
 
 use std::hint::select_unpredictable;
+use std::mem;
 use std::ops::{BitAnd, BitOr, BitXor, Shl, Shr};
 use std::sync::Arc;
 
@@ -93,20 +94,21 @@ impl<const LANES: usize> Machine<LANES> {
             ..
         } = &*self.program;
         let (narrow, wide) = (self.narrow.as_mut_slice(), self.wide.as_mut_slice());
+        let mut changed = mem::take(&mut self.changed);
         let mut rest = steps.as_slice();
         for segment in segments {
             let (here, after) = rest.split_at(segment.len as usize);
             rest = after;
-            if self.changed & segment.sources == 0 {
+            if changed & segment.sources == 0 {
                 continue;
             }
             for step in here {
                 match *step {
                     Step::Narrow(instruction) => {
-                        self.changed |= execute(instruction, choices, words, narrow);
+                        changed |= execute(instruction, choices, words, narrow);
                     }
                     Step::Wide(instruction) => {
-                        self.changed |= execute(instruction, choices, words, wide);
+                        changed |= execute(instruction, choices, words, wide);
                     }
                     Step::Widen { to, a } => {
                         map(&mut wide[to as usize], &narrow[a as usize], u64::from);
@@ -138,7 +140,47 @@ impl<const LANES: usize> Machine<LANES> {
                 }
             }
         }
-        self.changed = 0;
+    }
+
+    /// For each lane, a pattern that is 0 exactly if each net carries what is expected of it.
+    ///
+    /// # Panics
+    /// When a net is unnamed and was optimised away.
+    pub fn differences(&self, nets: &[NetId], expected: &[[u64; LANES]]) -> [u64; LANES] {
+        #[cfg(target_arch = "x86_64")]
+        if is_x86_feature_detected!("avx2") {
+            // SAFETY: this processor has AVX2.
+            return unsafe { self.differences_avx2(nets, expected) };
+        }
+        self.differences_here(nets, expected)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn differences_avx2(&self, nets: &[NetId], expected: &[[u64; LANES]]) -> [u64; LANES] {
+        self.differences_here(nets, expected)
+    }
+
+    #[inline(always)]
+    fn differences_here(&self, nets: &[NetId], expected: &[[u64; LANES]]) -> [u64; LANES] {
+        let mut differences = [0; LANES];
+        for (net, expected) in nets.iter().zip(expected) {
+            match self.program.place(*net) {
+                Place::Narrow(slot) => {
+                    let bits = &self.narrow[slot as usize];
+                    for lane in 0..LANES {
+                        differences[lane] |= u64::from(bits[lane]) ^ expected[lane];
+                    }
+                }
+                Place::Wide(slot) => {
+                    let bits = &self.wide[slot as usize];
+                    for lane in 0..LANES {
+                        differences[lane] |= bits[lane] ^ expected[lane];
+                    }
+                }
+            }
+        }
+        differences
     }
 
     /// The bit pattern of a net in each lane.
@@ -350,9 +392,7 @@ pub(super) fn execute<W: Word, const LANES: usize>(
         }),
         I::Equal { to, a, b } => binary(slots, to, a, b, |a, b| W::from(a == b)),
         I::Any { to, a, low, drop } => {
-            unary(slots, to, a, |a| {
-                W::from(a >> low & mask(drop) != W::ZERO)
-            });
+            unary(slots, to, a, |a| W::from(a >> low & mask(drop) != W::ZERO));
         }
         I::LessUnsigned { to, a, b } => binary(slots, to, a, b, |a, b| W::from(a < b)),
         // With the sign bits inverted, the order is that of unsigned numbers.

@@ -53,14 +53,8 @@ pub fn everything(registry: &Registry, output: Output) -> Result<bool> {
 }
 
 fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<Finding> {
-    let mut shown = 0;
-    let outcome = one
-        .unit
-        .lockstep(BENCH_SEED)?
-        .run(POINTS, None, &mut |points| {
-            bar.inc(points - shown);
-            shown = points;
-        })?;
+    let lockstep = one.unit.lockstep(BENCH_SEED)?;
+    let outcome = lockstep.run(POINTS, &|points| bar.inc(points))?;
     let bound = one.unit.contract.bound();
     let faults = cosim::faults(&outcome, &bound);
     Ok(Finding {

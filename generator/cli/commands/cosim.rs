@@ -1,6 +1,6 @@
 //! `cosim`.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, OpenOptions};
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -13,7 +13,7 @@ use super::{Loaded, load};
 use crate::cli::failure::Usage;
 use crate::cli::{Output, POINTS, Simulator, progress, staged, tables};
 use crate::cosim::external::{self, BenchOutcome};
-use crate::cosim::{Outcome, Worst};
+use crate::cosim::{Lockstep, Outcome, Worst};
 use crate::golden::Bound;
 use crate::registry::Registry;
 
@@ -140,12 +140,8 @@ fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result
     let outcomes: Vec<Outcome> = loaded
         .par_iter()
         .map(|one| {
-            let mut shown = 0;
-            let mut progress = |points: u64| {
-                bar.inc(points - shown);
-                shown = points;
-            };
-            run(one, points, request, &mut progress).with_context(|| format!("`{}`", one.path))
+            let progress = |points: u64| bar.inc(points);
+            run(one, points, request, &progress).with_context(|| format!("`{}`", one.path))
         })
         .collect::<Result<_>>()?;
     bar.finish_and_clear();
@@ -190,22 +186,17 @@ fn run(
     one: &Loaded,
     points: u64,
     request: &CosimRequest,
-    progress: &mut dyn FnMut(u64),
+    progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Outcome> {
-    let mut lockstep = one.unit.lockstep(request.seed)?;
+    let lockstep = one.unit.lockstep(request.seed)?;
     let Some(path) = &request.vcd else {
-        return lockstep.run(points, None, progress);
+        return lockstep.run(points, progress);
     };
-    traced(&mut lockstep, path, points, progress)
+    traced(&lockstep, path, points, 0)
 }
 
-/// A run with a waveform: written beside its place and moved there when it is whole.
-fn traced(
-    lockstep: &mut crate::cosim::Lockstep<'_>,
-    path: &Path,
-    points: u64,
-    progress: &mut dyn FnMut(u64),
-) -> Result<Outcome> {
+/// A run with a waveform from clock `from` on: written beside its place and moved there when it is whole.
+fn traced(lockstep: &Lockstep<'_>, path: &Path, points: u64, from: u64) -> Result<Outcome> {
     let cannot = || format!("cannot write the waveform `{}`", path.display());
     // A pipe or a device is written itself; a file is replaced.
     if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
@@ -213,27 +204,19 @@ fn traced(
             .write(true)
             .open(path)
             .with_context(cannot)?;
-        return trace_to(lockstep, file, points, progress).with_context(cannot);
+        return lockstep
+            .trace(points, from, BufWriter::new(file))
+            .with_context(cannot);
     }
     let staged = staged::beside(path)?;
     let file = staged.reopen().with_context(cannot)?;
-    let outcome = trace_to(lockstep, file, points, progress).with_context(cannot)?;
+    let outcome = lockstep
+        .trace(points, from, BufWriter::new(file))
+        .with_context(cannot)?;
     staged
         .persist(path)
         .map_err(|error| error.error)
         .with_context(cannot)?;
-    Ok(outcome)
-}
-
-fn trace_to(
-    lockstep: &mut crate::cosim::Lockstep<'_>,
-    file: File,
-    points: u64,
-    progress: &mut dyn FnMut(u64),
-) -> Result<Outcome> {
-    lockstep.trace(BufWriter::new(file))?;
-    let outcome = lockstep.run(points, None, progress)?;
-    lockstep.end_trace()?;
     Ok(outcome)
 }
 

@@ -1,5 +1,7 @@
 //! `rough` clock by clock.
 
+use std::sync::Arc;
+
 use super::{Arithmetic, Params};
 use crate::config::Config;
 use crate::fixed::Format;
@@ -54,7 +56,7 @@ const END: u32 = 9;
 /// The device, clock by clock.
 #[derive(Clone, Debug)]
 pub struct RoughModel {
-    arithmetic: Arithmetic,
+    arithmetic: Arc<Arithmetic>,
     synchronous: bool,
     result_width: u32,
     handshake: Handshake,
@@ -89,7 +91,7 @@ impl RoughModel {
         let largest = params.largest_cosine();
         let colour = OperandRegister::new(params.colour_format());
         Ok(Self {
-            arithmetic: Arithmetic::new(params)?,
+            arithmetic: Arc::new(Arithmetic::new(params)?),
             synchronous: params.sine_synchronous,
             result_width: params.result_format().width(),
             handshake: Handshake::default(),
