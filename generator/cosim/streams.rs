@@ -48,7 +48,7 @@ pub(super) struct Streams<'a, const LANES: usize> {
     streams: Vec<Stream>,
     /// What the golden models say of each compared signal.
     golden: Vec<[u64; LANES]>,
-    /// Of the model's inputs in one lane; reused.
+    /// Those of a model, where it has an order of its own; reused.
     inputs: Vec<u64>,
 }
 
@@ -79,7 +79,7 @@ impl<'a, const LANES: usize> Streams<'a, LANES> {
             simulator,
             streams: streams.into_iter().take(LANES).map(stream).collect(),
             golden: vec![[0; LANES]; pairing.compared.len()],
-            inputs: vec![0; pairing.order.len()],
+            inputs: vec![0; pairing.model.inputs().len()],
         })
     }
 
@@ -170,10 +170,15 @@ impl<'a, const LANES: usize> Streams<'a, LANES> {
             for (input, &bits) in lanes.iter_mut().zip(inputs) {
                 input[lane] = bits;
             }
-            for (to, &from) in self.inputs.iter_mut().zip(&self.pairing.order) {
-                *to = inputs[from];
+            match &self.pairing.order {
+                None => stream.model.clock(inputs),
+                Some(order) => {
+                    for (to, &from) in self.inputs.iter_mut().zip(order) {
+                        *to = inputs[from];
+                    }
+                    stream.model.clock(&self.inputs);
+                }
             }
-            stream.model.clock(&self.inputs);
             for (column, &bits) in self.golden.iter_mut().zip(stream.model.values()) {
                 column[lane] = bits;
             }

@@ -1,5 +1,6 @@
 //! `rough` clock by clock.
 
+use std::array;
 use std::sync::Arc;
 
 use super::{Arithmetic, Params};
@@ -115,6 +116,10 @@ impl RoughModel {
         })
     }
 
+    fn operand_values(&self) -> [i64; 7] {
+        array::from_fn(|at| self.operands[at].value)
+    }
+
     /// The output of ROM 18, addressed by `operand` now.
     fn sine(&self, operand: i64) -> i64 {
         if self.synchronous {
@@ -129,8 +134,7 @@ impl RoughModel {
     /// What the word in force does to the datapath. Each odd word captures what the word before it
     /// let settle.
     fn execute(&mut self) {
-        let [cos_gamma, cos_dgamma, exponent, dgamma_negative, ..] =
-            self.operands.map(|it| it.value);
+        let [cos_gamma, cos_dgamma, exponent, dgamma_negative, ..] = self.operand_values();
         // Mux 17 addresses ROM 18 with register 2 from word 2 to the result, and else with register 1.
         let addressed = if (2..=VALID).contains(&self.handshake.word) {
             cos_dgamma
@@ -175,7 +179,7 @@ impl RoughModel {
             red,
             green,
             blue,
-        ] = self.operands.map(|it| it.value);
+        ] = self.operand_values();
         let f = self.arithmetic.f(self.reg13_result);
         let out = |colour| self.arithmetic.colour(f, colour) as u64;
         self.values = [
