@@ -185,6 +185,27 @@ impl Divider<'_> {
                 };
                 self.steps.push((sources, Step::Narrow(field)));
             }
+            I::ChooseAny {
+                of,
+                low,
+                drop,
+                a,
+                b,
+                ..
+            } if is_wide(of) && !is_wide(step.to) && fits(drop) => {
+                let of = self.cut(of, low, drop, sources);
+                let [a, b] = [a, b].map(|slot| self.operand(slot, false, sources));
+                let to = self.home(step.to);
+                let choose = I::ChooseAny {
+                    to,
+                    of,
+                    low: 0,
+                    drop,
+                    a,
+                    b,
+                };
+                self.steps.push((sources, Step::Narrow(choose)));
+            }
             I::Any { a, low, drop, .. } if is_wide(a) && fits(drop) => {
                 let a = self.cut(a, low, drop, sources);
                 let to = self.home(step.to);

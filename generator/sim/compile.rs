@@ -227,6 +227,31 @@ impl<'a> Compiler<'a> {
         }
     }
 
+    /// The slot, the lowest bit and the width, as a `drop`, of which a slot says whether any bit is 1.
+    pub(super) fn any(&self, slot: Slot) -> Option<(Slot, u8, u8)> {
+        match self.made_by.get(&slot) {
+            Some(Instruction::Any { a, low, drop, .. }) => Some((*a, *low, *drop)),
+            _ => None,
+        }
+    }
+
+    /// What a slot is the placement of: base, slot, lowest bit, width as a `drop`, and shift. A slice is
+    /// one on `zero`.
+    pub(super) fn placed(&self, slot: Slot, zero: Slot) -> Option<(Slot, Slot, u8, u8, u8)> {
+        match *self.made_by.get(&slot)? {
+            Instruction::Place {
+                base,
+                a,
+                low,
+                drop,
+                shift,
+                ..
+            } => Some((base, a, low, drop, shift)),
+            Instruction::Slice { a, low, drop, .. } => Some((zero, a, low, drop, 0)),
+            _ => None,
+        }
+    }
+
     /// The slot of a net whose inputs have been compiled.
     fn net(&mut self, id: NetId) -> Result<Slot> {
         let design = self.design;

@@ -367,6 +367,19 @@ pub(super) fn execute<W: Word, const LANES: usize>(
         I::Add { to, a, b, drop } => {
             binary(slots, to, a, b, |a, b| a.wrapping_add(b) & mask(drop));
         }
+        I::AddSlices {
+            to,
+            a,
+            b,
+            low_a,
+            drop_a,
+            low_b,
+            drop_b,
+            drop,
+        } => binary(slots, to, a, b, |a, b| {
+            let (a, b) = (a >> low_a & mask(drop_a), b >> low_b & mask(drop_b));
+            a.wrapping_add(b) & mask(drop)
+        }),
         I::AddCarry {
             to,
             a,
@@ -401,6 +414,30 @@ pub(super) fn execute<W: Word, const LANES: usize>(
         }),
         I::Choose { to, select, a, b } => ternary(slots, to, [select, a, b], |select, a, b| {
             select_unpredictable(select == W::ZERO, a, b)
+        }),
+        I::ChooseAny {
+            to,
+            of,
+            low,
+            drop,
+            a,
+            b,
+        } => ternary(slots, to, [of, a, b], |of, a, b| {
+            select_unpredictable(of >> low & mask(drop) == W::ZERO, a, b)
+        }),
+        I::ChoosePlace {
+            to,
+            of,
+            low,
+            drop,
+            a,
+            base,
+            place_low,
+            place_drop,
+            shift,
+        } => ternary(slots, to, [of, a, base], |of, a, base| {
+            let placed = base | (of >> place_low & mask(place_drop)) << shift;
+            select_unpredictable(of >> low & mask(drop) == W::ZERO, a, placed)
         }),
         I::Mux {
             to,

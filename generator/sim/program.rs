@@ -79,6 +79,17 @@ pub(super) enum Instruction {
         b: Slot,
         drop: u8,
     },
+    /// Sum of bits of `a` and bits of `b`: a value and what it is rounded up by, say.
+    AddSlices {
+        to: Slot,
+        a: Slot,
+        b: Slot,
+        low_a: u8,
+        drop_a: u8,
+        low_b: u8,
+        drop_b: u8,
+        drop: u8,
+    },
     /// Sum and carry.
     AddCarry {
         to: Slot,
@@ -130,6 +141,27 @@ pub(super) enum Instruction {
         a: Slot,
         b: Slot,
     },
+    /// `a` when the bits of `of` from `low` up are all 0, else `b`.
+    ChooseAny {
+        to: Slot,
+        of: Slot,
+        low: u8,
+        drop: u8,
+        a: Slot,
+        b: Slot,
+    },
+    /// `a` when the bits of `of` from `low` up are all 0, else other bits of it, placed as by `Place`.
+    ChoosePlace {
+        to: Slot,
+        of: Slot,
+        low: u8,
+        drop: u8,
+        a: Slot,
+        base: Slot,
+        place_low: u8,
+        place_drop: u8,
+        shift: u8,
+    },
     /// The slot that entry `first + select`, at most `last`, of the table of choices names.
     Mux {
         to: Slot,
@@ -163,6 +195,7 @@ impl Instruction {
             | Self::Or { to, a, b }
             | Self::Xor { to, a, b }
             | Self::Add { to, a, b, .. }
+            | Self::AddSlices { to, a, b, .. }
             | Self::Sub { to, a, b, .. }
             | Self::MulUnsigned { to, a, b }
             | Self::MulSigned { to, a, b, .. }
@@ -177,6 +210,20 @@ impl Instruction {
                 select: a,
                 a: b,
                 b: c,
+            }
+            | Self::ChooseAny {
+                to,
+                of: a,
+                a: b,
+                b: c,
+                ..
+            }
+            | Self::ChoosePlace {
+                to,
+                of: a,
+                a: b,
+                base: c,
+                ..
             } => vec![to, a, b, c],
         }
     }
