@@ -22,14 +22,18 @@ use crate::netlist::Design;
 /// Streams that share a simulator.
 const LANES: usize = 32;
 
-/// A run is one stream, or a multiple of so many: two cores have something to do then.
+/// Beyond so many streams, which keep two threads busy, there are multiples of it.
 const STREAMS: u64 = 2 * LANES as u64;
 
-/// A run is divided if each stream has at least so many points …
+/// A stream has at least so many points, and so many times those of the longest computation …
 const FEWEST_POINTS: u64 = 64;
+const COMPUTATIONS: u64 = 2;
 
-/// … and into twice as many streams and so on as long as each has so many.
+/// … or so many, where there are more than [`STREAMS`].
 const MANY_POINTS: u64 = 1024;
+
+/// A run of fewer streams is not divided.
+const FEWEST_STREAMS: u64 = 8;
 
 /// Clocks between two looks at whether another thread has made the rest unnecessary.
 const LOOK: u64 = 1024;
@@ -108,7 +112,7 @@ impl<'a> Lockstep<'a> {
     /// # Errors
     /// A design that cannot be simulated, or does not settle.
     pub fn run(&self, points: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Outcome> {
-        let streams = streams(points);
+        let streams = streams(points, self.pairing.longest());
         if streams == 1 {
             let nothing = AtomicU64::new(u64::MAX);
             let seen = self.group::<1>(points, 0..1, streams, &nothing, progress)?;
@@ -116,11 +120,12 @@ impl<'a> Lockstep<'a> {
         }
         // The first stream known to differ: those after it are of no interest.
         let differs = AtomicU64::new(u64::MAX);
-        let groups: Vec<Vec<Seen>> = (0..streams / LANES as u64)
+        let together = streams.div_ceil(2).min(LANES as u64);
+        let groups: Vec<Vec<Seen>> = (0..streams.div_ceil(together))
             .into_par_iter()
             .map(|group| {
-                let first = group * LANES as u64;
-                let group = first..first + LANES as u64;
+                let first = group * together;
+                let group = first..streams.min(first + together);
                 self.group::<LANES>(points, group, streams, &differs, progress)
             })
             .collect::<Result<_>>()?;
@@ -229,12 +234,13 @@ impl<'a> Lockstep<'a> {
     }
 }
 
-/// Into how many streams a run is divided.
-fn streams(points: u64) -> u64 {
-    if points < STREAMS * FEWEST_POINTS {
-        1
-    } else {
-        STREAMS * (points / (STREAMS * MANY_POINTS)).max(1)
+/// Into how many streams a run is divided, when a computation has up to `longest` results.
+fn streams(points: u64, longest: u64) -> u64 {
+    let fewest = FEWEST_POINTS.max(longest.saturating_mul(COMPUTATIONS));
+    match points / fewest {
+        ..FEWEST_STREAMS => 1,
+        most @ ..STREAMS => most,
+        _ => STREAMS * (points / (STREAMS * MANY_POINTS.max(fewest))).max(1),
     }
 }
 

@@ -110,6 +110,18 @@ impl<'a> Pairing<'a> {
         }
     }
 
+    /// A bound on the results of one computation.
+    pub(super) fn longest(&self) -> u64 {
+        let length = self.contract.length();
+        let operands = self.contract.operands().iter();
+        let operand = operands.filter(|operand| Some(operand.name.as_str()) == length);
+        // A length of 0 is a result too.
+        operand
+            .map(|it| it.domain.1.unsigned_abs() + 1)
+            .max()
+            .unwrap_or(1)
+    }
+
     /// How many registers a golden model must predict.
     pub(super) fn registers(&self) -> usize {
         registers(self.design).len()

@@ -96,7 +96,7 @@ impl<'a, const LANES: usize> Streams<'a, LANES> {
         true
     }
 
-    /// What each showed, and its seed.
+    /// What each showed.
     pub(super) fn into_seen(self) -> Vec<Seen> {
         self.streams.into_iter().map(|stream| stream.seen).collect()
     }

@@ -1,9 +1,15 @@
 //! The built-in simulator.
 //!
-//! A [`Design`] is compiled to a [`Program`] of levelised instructions, which a [`Machine`] runs;
-//! a [`Circuit`] is the machine as one rust_hdl block, and a [`Simulator`] the circuit with its
-//! clock. rust_hdl is the kernel: every change goes through its `simulate()`, which updates the
-//! block until nothing changes.
+//! A [`Design`] is compiled to a [`Program`] of levelised instructions, which a [`Machine`] runs for a
+//! number of independent instances at once, its lanes; a [`Circuit`] is the machine as one rust_hdl
+//! block, and a [`Simulator`] the circuit with its clock.
+//!
+//! rust_hdl is the kernel. Its part is exactly this: it owns the clock, a `Signal`; each half of a clock
+//! is one call of its `simulate()`, which updates the block, finds the edge, and updates again until
+//! nothing changes; its `check_all` checks the ports, and its probes see every named net and write the
+//! waveforms. What an update does with the netlist is ours: the registers at an edge, and then one pass
+//! over the program, which settles all nets, because it is in an order of evaluation. An own rust_hdl
+//! block for each cell would be settled by rust_hdl as well, a hundred times more slowly.
 
 mod banks;
 mod circuit;

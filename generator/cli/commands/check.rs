@@ -48,7 +48,7 @@ pub fn everything(registry: &Registry, output: Output) -> Result<bool> {
         tables::print_json(&json!({ "ok": holds, "configurations": list }));
         return Ok(holds);
     }
-    print(&loaded, &findings);
+    print(&loaded, &findings)?;
     Ok(holds)
 }
 
@@ -65,7 +65,7 @@ fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<Finding> {
     })
 }
 
-fn print(loaded: &[Loaded], findings: &[Finding]) {
+fn print(loaded: &[Loaded], findings: &[Finding]) -> Result<()> {
     let headings = [
         "device",
         "configuration",
@@ -125,7 +125,12 @@ fn print(loaded: &[Loaded], findings: &[Finding]) {
         for fault in &finding.faults {
             tables::print_line(&format!("  {}: FAILS: {fault}", one.path));
         }
+        if let Some(mismatch) = &finding.outcome.mismatch {
+            let where_to_look = cosim::reproduce(one, mismatch)?;
+            tables::print_line(&format!("  {}: {where_to_look}", one.path));
+        }
     }
+    Ok(())
 }
 
 fn as_json(one: &Loaded, finding: &Finding) -> Value {

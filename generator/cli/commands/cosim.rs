@@ -13,7 +13,7 @@ use super::{Loaded, load};
 use crate::cli::failure::Usage;
 use crate::cli::{Output, POINTS, Simulator, progress, staged, tables};
 use crate::cosim::external::{self, BenchOutcome};
-use crate::cosim::{Lockstep, Outcome, Worst};
+use crate::cosim::{Lockstep, Mismatch, Outcome, Worst};
 use crate::golden::Bound;
 use crate::registry::Registry;
 
@@ -22,6 +22,9 @@ const EXTERNAL_POINTS: u64 = 200;
 
 /// The most points for an external simulator, whose vectors are made in memory.
 const EXTERNAL_LIMIT: u64 = 1_000_000;
+
+/// Clocks in the waveform that ends with a difference.
+const WINDOW: u64 = 64;
 
 /// What `cosim` was asked for.
 pub struct CosimRequest {
@@ -175,6 +178,9 @@ fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result
         for fault in faults {
             tables::print_line(&format!("  FAILS: {fault}"));
         }
+        if let Some(mismatch) = &outcome.mismatch {
+            tables::print_line(&format!("  {}", reproduce(one, mismatch)?));
+        }
     }
     if output.json {
         tables::print_json(&json!({ "ok": holds, "configurations": list }));
@@ -193,6 +199,23 @@ fn run(
         return lockstep.run(points, progress);
     };
     traced(&lockstep, path, points, 0)
+}
+
+/// Writes the waveform of the clocks before a difference into the working directory, and says how to see
+/// all of it.
+pub fn reproduce(one: &Loaded, mismatch: &Mismatch) -> Result<String> {
+    let path = PathBuf::from(format!("{}_mismatch.vcd", one.unit.config.name));
+    let from = mismatch.clock.saturating_sub(WINDOW);
+    let lockstep = one.unit.lockstep(mismatch.seed)?;
+    let outcome = traced(&lockstep, &path, u64::MAX, from)?;
+    Ok(format!(
+        "`{}` shows clocks {from} to {}; all of them: glint cosim {} --seed {} --points {} --vcd FILE",
+        path.display(),
+        mismatch.clock,
+        one.path,
+        mismatch.seed,
+        outcome.points + 1,
+    ))
 }
 
 /// A run with a waveform from clock `from` on: written beside its place and moved there when it is whole.
@@ -225,8 +248,8 @@ pub fn faults(outcome: &Outcome, bound: &Bound) -> Vec<String> {
     let mut faults = Vec::new();
     if let Some(mismatch) = &outcome.mismatch {
         faults.push(format!(
-            "after clock {}, word `{}`: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
-            mismatch.clock, mismatch.word, mismatch.signal, mismatch.simulated, mismatch.golden
+            "seed {}, after clock {}, word `{}`: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
+            mismatch.seed, mismatch.clock, mismatch.word, mismatch.signal, mismatch.simulated, mismatch.golden
         ));
     }
     if let Some(worst) = &outcome.worst
