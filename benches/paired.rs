@@ -1,57 +1,93 @@
-//! Built-in simulator against Icarus Verilog, paired: the same stimulus, in turns, as a ratio.
+//! The built-in simulator against Verilator and Icarus Verilog, paired: the same stimulus, in turns, as
+//! ratios.
 //!
 //! ```text
 //! cargo bench --bench paired
 //! ```
 //!
-//! Prints, for each device, clocks per second of the built-in simulator through rust_hdl's
-//! `simulate()` on one thread, of the same with golden model and comparison of every register on
-//! every clock, and of `vvp` running the emitted bench (compilation excluded). Figures are the medians
-//! of several rounds; a shared machine disturbs both sides of a round alike.
+//! For each device, clocks per second and thread of
+//! - *design*: the built-in simulator through rust_hdl's `simulate()`, [`LANES`] streams side by side;
+//! - *golden*: `Lockstep::run` as `glint cosim` uses it: stimulus drawn, golden model, every register and
+//!   output compared on every clock, every result measured against the formula;
+//! - Verilator: the emitted Verilog (`-O3`, for this processor) under `paired.cpp`, building excluded;
+//! - Icarus Verilog: `vvp` running the emitted bench, compiling excluded.
+//!
+//! *design*, Verilator and Icarus replay the same recorded streams from memory, the latter two one stream
+//! after the other; a sum over all results shows that they did. Figures are by processor time, because
+//! other programs disturb wall time more; each is the median of several rounds, and ratios are medians
+//! of the ratios within a round. The last column is wall time, all threads, compiling the design
+//! included.
 
+use std::fmt::Write;
+use std::fs;
 use std::hint::black_box;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 use glint::config::Config;
 use glint::cosim::external::Tool;
 use glint::emit::Vectors;
 use glint::flow::Unit;
+use glint::netlist::{NetId, Role};
 use glint::registry::Registry;
 use glint::sim::Simulator;
 
-/// Results in the stimulus.
-const POINTS: u64 = 4_000;
+/// Streams side by side.
+const LANES: usize = 64;
+
+/// Results in each stream, about.
+const POINTS: u64 = 64;
+
+/// Replays in one measurement of the design; as many of Verilator.
+const PASSES: usize = 64;
+
+/// Results in one measurement with the golden model.
+const GOLDEN_POINTS: u64 = 131_072;
+
+/// Results in the measurement of the time to a verdict.
+const VERDICT_POINTS: u64 = 1_000_000;
 
 /// Rounds of each measurement.
 const ROUNDS: usize = 7;
 
+/// More than any run of a tool takes.
+const LIMIT: Duration = Duration::from_secs(600);
+
 fn main() -> Result<()> {
-    println!("clocks/s, median of {ROUNDS} rounds; ratios within a round");
-    println!("device         clocks  built-in  with golden    icarus  ratio  ratio with golden");
+    println!(
+        "million clocks per second of processor time and thread, and ratios: median of {ROUNDS}"
+    );
+    println!(
+        "device        design  golden  Verilator  Icarus  design/Verilator  golden/Verilator  \
+         design/Icarus  {VERDICT_POINTS} points"
+    );
     for device in Registry::catalogue().devices() {
-        let schema = (device.schema)();
-        let config = Config::defaults(&schema, &device.name.replace('-', "_"));
-        let unit = Unit::new(*device, config)?;
-        let vectors = unit.vectors(POINTS, 1)?;
-        let clocks = vectors.inputs.len();
-        let mut icarus = Icarus::new(&unit, &vectors)?;
+        let name = device.name.replace('-', "_");
+        let unit = Unit::new(*device, Config::defaults(&(device.schema)(), &name))?;
+        let streams = Streams::record(&unit)?;
+        let verilator = Verilator::build(&unit, &streams)?;
+        let icarus = Icarus::build(&unit, &streams)?;
         let mut rounds = Vec::new();
+        let mut verdicts = Vec::new();
         for _ in 0..ROUNDS {
-            let own = built_in(&unit, &vectors)?;
-            let golden = with_golden(&unit)?;
-            let outside = icarus.run()?;
-            rounds.push([own, golden, outside].map(|time| clocks as f64 / time.as_secs_f64()));
+            let design = streams.design(&unit)?;
+            let golden = golden(&unit)?;
+            rounds.push([design, golden, verilator.run()?, icarus.run()?].map(|rate| rate / 1e6));
+            verdicts.push(verdict(&unit)?);
         }
-        let figure = |of: fn(&[f64; 3]) -> f64| median(rounds.iter().map(of).collect());
+        let figure = |of: fn(&[f64; 4]) -> f64| median(rounds.iter().map(of).collect());
         println!(
-            "{:12} {clocks:8}  {:7.2}M  {:10.2}M  {:7.3}M  {:5.0}  {:5.0}",
+            "{:12} {:7.2} {:7.2} {:10.2} {:7.3} {:17.2} {:17.2} {:14.0} {:10.2} s",
             device.name,
-            figure(|round| round[0]) / 1e6,
-            figure(|round| round[1]) / 1e6,
-            figure(|round| round[2]) / 1e6,
+            figure(|round| round[0]),
+            figure(|round| round[1]),
+            figure(|round| round[2]),
+            figure(|round| round[3]),
             figure(|round| round[0] / round[2]),
             figure(|round| round[1] / round[2]),
+            figure(|round| round[0] / round[3]),
+            median(verdicts),
         );
     }
     Ok(())
@@ -62,67 +98,271 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-/// The recorded stimulus through the built-in simulator.
-fn built_in(unit: &Unit, vectors: &Vectors) -> Result<Duration> {
-    let mut simulator: Simulator = Simulator::new(&unit.design)?;
-    let output = unit.design.outputs().next().context("an output")?.net;
-    let begin = Instant::now();
-    let mut sum = 0u64;
-    for inputs in &vectors.inputs {
-        for (at, &bits) in inputs.iter().enumerate() {
-            simulator.set(at, bits);
-        }
-        simulator.clock()?;
-        sum = sum.wrapping_add(simulator.value(output));
+/// Seconds of processor time that this thread has used, or where the system does not tell, of wall time.
+fn processor_time(since: Instant) -> f64 {
+    let told = fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let used = told.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
+    used.map_or_else(
+        || since.elapsed().as_secs_f64(),
+        |nanoseconds| nanoseconds / 1e9,
+    )
+}
+
+/// As [`processor_time`], of programs that this one has run.
+fn children_time(since: Instant) -> f64 {
+    let told = fs::read_to_string("/proc/self/stat").unwrap_or_default();
+    // Behind the name, which may hold spaces: user and system time are numbers 13 and 14, in hundredths.
+    let fields = told
+        .rsplit(')')
+        .next()
+        .unwrap_or_default()
+        .split_whitespace();
+    let times: Vec<f64> = fields
+        .skip(13)
+        .take(2)
+        .filter_map(|field| field.parse().ok())
+        .collect();
+    match times[..] {
+        [user, system] => (user + system) / 100.0,
+        _ => since.elapsed().as_secs_f64(),
     }
-    black_box(sum);
-    Ok(begin.elapsed())
 }
 
-/// The same stimulus again, with the golden model beside it and every register compared.
-fn with_golden(unit: &Unit) -> Result<Duration> {
-    let mut lockstep = unit.lockstep(1)?;
-    let begin = Instant::now();
-    let outcome = lockstep.run(POINTS, None, &mut |_| ())?;
-    anyhow::ensure!(
-        outcome.mismatch.is_none(),
-        "golden model and simulation differ"
-    );
-    Ok(begin.elapsed())
+/// What `work` takes of this thread's processor time, in seconds.
+fn timed<T>(work: impl FnOnce() -> Result<T>) -> Result<(f64, T)> {
+    let since = Instant::now();
+    let begin = processor_time(since);
+    let done = work()?;
+    Ok((processor_time(since) - begin, done))
 }
 
-/// The emitted bench, compiled for Icarus Verilog.
-struct Icarus {
-    vvp: Tool,
-    place: tempfile::TempDir,
+/// The recorded inputs of [`LANES`] streams of the same length.
+struct Streams {
+    /// By stream, then by clock, then by input.
+    inputs: Vec<Vec<Vec<u64>>>,
+    valid: NetId,
+    /// One of the results.
+    result: NetId,
+    /// Of the results of all streams.
+    sum: u64,
 }
 
-impl Icarus {
-    fn new(unit: &Unit, vectors: &Vectors) -> Result<Self> {
-        let place = tempfile::tempdir()?;
-        let mut sources = Vec::new();
-        for file in unit.files("bench", vectors.clone())? {
-            let name = file.path.rsplit('/').next().context("a name")?.to_owned();
-            std::fs::write(place.path().join(&name), &file.contents)?;
-            if name.ends_with(".v") {
-                sources.push(name);
-            }
+impl Streams {
+    fn record(unit: &Unit) -> Result<Self> {
+        let role = |wanted| unit.design.port(move |role| role == wanted);
+        let mut streams = Self {
+            inputs: (1..=LANES as u64)
+                .map(|seed| Ok(unit.vectors(POINTS, seed)?.inputs))
+                .collect::<Result<_>>()?,
+            valid: role(Role::Valid).context("an output `valid`")?.net,
+            result: role(Role::Result).context("a result")?.net,
+            sum: 0,
+        };
+        let clocks = streams.inputs.iter().map(Vec::len).min().unwrap_or(0);
+        for stream in &mut streams.inputs {
+            stream.truncate(clocks);
         }
-        let mut arguments = vec!["-g2012".to_owned(), "-o".to_owned(), "bench.vvp".to_owned()];
-        arguments.extend(sources);
-        let limit = Duration::from_secs(120);
-        Tool::find("iverilog")?.run_to_success(arguments, place.path(), limit)?;
-        Ok(Self {
-            vvp: Tool::find("vvp")?,
-            place,
+        streams.sum = streams.replay(&unit.design, 1)?.1;
+        Ok(streams)
+    }
+
+    fn clocks(&self) -> usize {
+        self.inputs.iter().map(Vec::len).sum()
+    }
+
+    /// All streams, side by side: the seconds it took, and the sum of the results.
+    fn replay(&self, design: &glint::netlist::Design, passes: usize) -> Result<(f64, u64)> {
+        let clocks = self.inputs[0].len();
+        let inputs = self.inputs[0][0].len();
+        let lanes: Vec<[u64; LANES]> = (0..clocks * inputs)
+            .map(|at| std::array::from_fn(|lane| self.inputs[lane][at / inputs][at % inputs]))
+            .collect();
+        let mut simulator = Simulator::<LANES>::new(design)?;
+        timed(|| {
+            let mut sum = 0u64;
+            for _ in 0..passes {
+                for now in lanes.chunks_exact(inputs) {
+                    simulator.inputs_mut().copy_from_slice(now);
+                    simulator.clock()?;
+                    let valid = simulator.lanes(self.valid);
+                    let result = simulator.lanes(self.result);
+                    for lane in 0..LANES {
+                        sum = sum.wrapping_add(valid[lane] * result[lane]);
+                    }
+                }
+            }
+            Ok(black_box(sum))
         })
     }
 
-    fn run(&mut self) -> Result<Duration> {
-        let begin = Instant::now();
-        let limit = Duration::from_secs(600);
-        self.vvp
-            .run_to_success(["-n", "bench.vvp"], self.place.path(), limit)?;
-        Ok(begin.elapsed())
+    /// Clocks per second of the built-in simulator.
+    fn design(&self, unit: &Unit) -> Result<f64> {
+        let (seconds, sum) = self.replay(&unit.design, PASSES)?;
+        ensure!(sum == self.sum.wrapping_mul(PASSES as u64), "another sum");
+        Ok((PASSES * self.clocks()) as f64 / seconds)
+    }
+
+    /// All streams one after the other, with the outputs before each edge.
+    fn vectors(&self, unit: &Unit) -> Result<Vectors> {
+        let mut simulator: Simulator = Simulator::new(&unit.design)?;
+        let outputs: Vec<NetId> = unit.design.outputs().map(|port| port.net).collect();
+        let mut vectors = Vectors {
+            known_from: unit.vectors(1, 1)?.known_from,
+            ..Vectors::default()
+        };
+        for inputs in self.inputs.iter().flatten() {
+            let outputs = outputs.iter().map(|&net| simulator.value(net));
+            vectors.expected.push(outputs.collect());
+            vectors.inputs.push(inputs.clone());
+            for (at, &bits) in inputs.iter().enumerate() {
+                simulator.set(at, bits);
+            }
+            simulator.clock()?;
+        }
+        Ok(vectors)
+    }
+}
+
+/// Clocks per second of one thread with golden model and comparison.
+fn golden(unit: &Unit) -> Result<f64> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let lockstep = unit.lockstep(1)?;
+    let (seconds, outcome) = pool.install(|| timed(|| lockstep.run(GOLDEN_POINTS, &|_| ())))?;
+    ensure!(
+        outcome.mismatch.is_none(),
+        "golden model and simulation differ"
+    );
+    Ok(outcome.clocks as f64 / seconds)
+}
+
+/// Seconds of wall time from the configuration to the verdict, on all threads.
+fn verdict(unit: &Unit) -> Result<f64> {
+    let begin = Instant::now();
+    let unit = Unit::new(unit.device, unit.config.clone())?;
+    let outcome = unit.lockstep(1)?.run(VERDICT_POINTS, &|_| ())?;
+    ensure!(
+        outcome.mismatch.is_none(),
+        "golden model and simulation differ"
+    );
+    Ok(begin.elapsed().as_secs_f64())
+}
+
+/// Writes what the simulators outside need, and returns the names of the Verilog files.
+fn write(unit: &Unit, vectors: &Vectors, place: &Path) -> Result<Vec<String>> {
+    let mut sources = Vec::new();
+    for file in unit.files("bench", vectors.clone())? {
+        let name = file.path.rsplit('/').next().context("a name")?.to_owned();
+        fs::write(place.join(&name), &file.contents)?;
+        if name.ends_with(".v") {
+            sources.push(name);
+        }
+    }
+    Ok(sources)
+}
+
+/// The emitted Verilog as a program that replays the streams.
+struct Verilator {
+    program: Tool,
+    place: tempfile::TempDir,
+    clocks: usize,
+    sum: u64,
+}
+
+impl Verilator {
+    fn build(unit: &Unit, streams: &Streams) -> Result<Self> {
+        let place = tempfile::tempdir()?;
+        let name = |net: NetId| &unit.design.net(net).name;
+        let sources = write(unit, &streams.vectors(unit)?, place.path())?;
+        let mut ports = format!(
+            "constexpr int INPUTS = {};\n\nstatic void drive(Vtop& top, const uint64_t* row) {{\n",
+            unit.design.inputs().count()
+        );
+        for (at, port) in unit.design.inputs().enumerate() {
+            writeln!(ports, "    top.{} = row[{at}];", name(port.net))?;
+        }
+        let result = name(streams.result);
+        writeln!(
+            ports,
+            "}}\n\nstatic uint64_t result(const Vtop& top) {{ return top.{result}; }}"
+        )?;
+        fs::write(place.path().join("ports.h"), ports)?;
+        fs::write(place.path().join("paired.cpp"), include_str!("paired.cpp"))?;
+        let words = streams.inputs.iter().flatten().flatten();
+        let rows: Vec<u8> = words.flat_map(|word| word.to_ne_bytes()).collect();
+        fs::write(place.path().join("rows"), rows)?;
+        let mut arguments: Vec<&str> =
+            "--cc --exe --build -j 1 -O3 --x-assign fast --x-initial fast \
+             --noassert --prefix Vtop --Mdir build -o paired -CFLAGS -O3 -CFLAGS -march=native \
+             -CFLAGS -I.. --top-module"
+                .split(' ')
+                .filter(|argument| !argument.is_empty())
+                .collect();
+        arguments.push(&unit.config.name);
+        arguments.extend(
+            sources
+                .iter()
+                .map(String::as_str)
+                .filter(|file| !file.ends_with("_tb.v")),
+        );
+        arguments.push("paired.cpp");
+        Tool::find("verilator")?.run_to_success(arguments, place.path(), LIMIT)?;
+        Ok(Self {
+            program: Tool::find_in("paired", place.path().join("build").as_os_str())?,
+            place,
+            clocks: streams.clocks(),
+            sum: streams.sum,
+        })
+    }
+
+    /// Clocks per second.
+    fn run(&self) -> Result<f64> {
+        let passes = PASSES.to_string();
+        let arguments = ["rows", &passes];
+        let said = self
+            .program
+            .run_to_success(arguments, self.place.path(), LIMIT)?;
+        let numbers: Vec<&str> = said.split_whitespace().collect();
+        let [processor, _wall, sum] = numbers[..] else {
+            anyhow::bail!("the verilated model said `{said}`");
+        };
+        ensure!(
+            sum.parse() == Ok(self.sum.wrapping_mul(PASSES as u64)),
+            "Verilator has another sum of the results"
+        );
+        Ok((PASSES * self.clocks) as f64 / processor.parse::<f64>()?)
+    }
+}
+
+/// The emitted bench with the streams, compiled for Icarus Verilog.
+struct Icarus {
+    vvp: Tool,
+    place: tempfile::TempDir,
+    clocks: usize,
+}
+
+impl Icarus {
+    fn build(unit: &Unit, streams: &Streams) -> Result<Self> {
+        let place = tempfile::tempdir()?;
+        let sources = write(unit, &streams.vectors(unit)?, place.path())?;
+        let mut arguments = ["-g2012", "-o", "bench.vvp"].map(str::to_owned).to_vec();
+        arguments.extend(sources);
+        Tool::find("iverilog")?.run_to_success(arguments, place.path(), LIMIT)?;
+        Ok(Self {
+            vvp: Tool::find("vvp")?,
+            place,
+            clocks: streams.clocks(),
+        })
+    }
+
+    /// Clocks per second. Starting vvp takes a few milliseconds of it.
+    fn run(&self) -> Result<f64> {
+        let since = Instant::now();
+        let begin = children_time(since);
+        let directory = self.place.path();
+        let said = self
+            .vvp
+            .run_to_success(["-n", "bench.vvp"], directory, LIMIT)?;
+        ensure!(said.contains("PASS"), "the bench failed: {said}");
+        Ok(self.clocks as f64 / (children_time(since) - begin))
     }
 }

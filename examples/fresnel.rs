@@ -208,6 +208,7 @@ const OPERANDS: [&str; 5] = ["cos_half", "f0", "red", "green", "blue"];
 const SIGNALS: &str = "valid busy done run word_address power f red_out green_out blue_out";
 
 /// The device at one clock.
+#[derive(Clone)]
 struct FresnelModel {
     formats: Formats,
     handshake: Handshake,

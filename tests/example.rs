@@ -155,7 +155,7 @@ fn random_configurations_agree_on_every_clock() {
         let unit = Unit::new(FRESNEL, config).unwrap_or_else(|error| panic!("{error:#}"));
         let outcome = unit
             .lockstep(seed)
-            .and_then(|mut lockstep| lockstep.run(500, None, &mut |_| ()))
+            .and_then(|lockstep| lockstep.run(500, &|_| ()))
             .unwrap_or_else(|error| panic!("{error:#}"));
         assert!(outcome.mismatch.is_none(), "{seed}: {:?}", outcome.mismatch);
         let worst = outcome.worst.expect("results").units;

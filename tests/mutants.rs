@@ -11,7 +11,6 @@ use glint::fixed::Format;
 use glint::flow::Unit;
 use glint::golden::{Bound, Contract, Operand};
 use glint::netlist::{Design, Driver, NetId, Op, RegisterKind, RomId};
-use glint::sim::Simulator;
 use rayon::prelude::*;
 
 /// Points after which a fault counts as unnoticed. Most are noticed within a few.
@@ -65,6 +64,15 @@ impl Contract for Aimed<'_> {
     }
     fn reference(&self, control: &[i64]) -> f64 {
         self.contract.reference(control)
+    }
+    fn references(&self, control: &[i64]) -> [f64; 2] {
+        self.contract.references(control)
+    }
+    fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
+        self.contract.point(control, index)
+    }
+    fn length(&self) -> Option<&str> {
+        self.contract.length()
     }
     fn bound(&self) -> Bound {
         self.contract.bound()
@@ -154,9 +162,8 @@ fn mux_inputs(design: &Design, id: NetId, inputs: usize, mutants: &mut Vec<Mutan
 fn survives(unit: &Unit, mutant: &Mutant) -> bool {
     let model = (unit.device.model)(&unit.config);
     let contract = Aimed::new(unit.contract.as_ref(), mutant.aim.as_ref());
-    let outcome = Simulator::new(&mutant.design)
-        .and_then(|simulator| Lockstep::new(&mutant.design, model, &contract, simulator, 3))
-        .and_then(|mut lockstep| lockstep.run(POINTS, None, &mut |_| ()))
+    let outcome = Lockstep::new(&mutant.design, model, &contract, 3)
+        .and_then(|lockstep| lockstep.run(POINTS, &|_| ()))
         .unwrap_or_else(|error| panic!("{}: {error:?}", mutant.what));
     outcome.mismatch.is_none()
 }

@@ -71,7 +71,7 @@ fn agrees_within_its_bound(toml: &str, unit: &Unit) {
     let bound = unit.contract.bound();
     let outcome = unit
         .lockstep(7)
-        .and_then(|mut lockstep| lockstep.run(POINTS, None, &mut |_| ()))
+        .and_then(|lockstep| lockstep.run(POINTS, &|_| ()))
         .unwrap_or_else(|error| panic!("{error:?}\n{toml}"));
     assert!(outcome.mismatch.is_none(), "{:?}\n{toml}", outcome.mismatch);
     assert_eq!(outcome.points, POINTS);

@@ -1,12 +1,42 @@
 //! Golden model and simulated hardware side by side, every signal compared on every clock.
+//!
+//! A run is divided into *streams*: each starts at power-up, with a stimulus of its own. How many there
+//! are, their seeds and their points depend on the seed and the points of the run alone. [`LANES`] of
+//! them go through one simulator together, and as many simulators run as there are threads; neither
+//! has any influence on what is found. What counts is what streams showed in their order up to the
+//! first that differs.
 
-use anyhow::{Context, Result, anyhow, ensure};
+use std::io::Write;
+use std::sync::atomic::{AtomicU64, Ordering};
 
-use super::stimulus::Stimulus;
+use anyhow::{Result, ensure};
+use rayon::prelude::*;
+
+use super::pairing::Pairing;
+use super::stimulus::Random;
+use super::streams::{Seen, Streams};
 use crate::emit::Vectors;
-use crate::golden::{Contract, Model, nearer};
-use crate::netlist::{Design, NetId, Role};
-use crate::sim::Simulator;
+use crate::golden::{Contract, Model};
+use crate::netlist::Design;
+
+/// Streams that share a simulator.
+const LANES: usize = 32;
+
+/// Beyond so many streams, which keep two threads busy, there are multiples of it.
+const STREAMS: u64 = 2 * LANES as u64;
+
+/// A stream has at least so many points, and so many times those of the longest computation …
+const FEWEST_POINTS: u64 = 64;
+const COMPUTATIONS: u64 = 2;
+
+/// … or so many, where there are more than [`STREAMS`].
+const MANY_POINTS: u64 = 1024;
+
+/// A run of fewer streams is not divided.
+const FEWEST_STREAMS: u64 = 8;
+
+/// Clocks between two looks at whether another thread has made the rest unnecessary.
+const LOOK: u64 = 1024;
 
 /// What a run showed.
 #[derive(Clone, Debug, Default)]
@@ -26,7 +56,7 @@ pub struct Outcome {
 }
 
 /// The largest error against the formula, and where.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Worst {
     /// In output units.
     pub units: f64,
@@ -37,9 +67,12 @@ pub struct Worst {
 }
 
 /// A signal on which model and hardware differ.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
-    /// Rising edges so far.
+    /// The seed of the stream: a run with it that is not divided, [`Lockstep::trace`] say, goes the same
+    /// way from the first clock on.
+    pub seed: u64,
+    /// Rising edges of the stream so far.
     pub clock: u64,
     /// Its name.
     pub signal: String,
@@ -53,22 +86,8 @@ pub struct Mismatch {
 
 /// Golden model and simulator of one design.
 pub struct Lockstep<'a> {
-    design: &'a Design,
-    contract: &'a dyn Contract,
-    model: Box<dyn Model>,
-    simulator: Simulator,
-    stimulus: Stimulus,
-    outputs: Vec<NetId>,
-    /// For each input of the model its position among the design's.
-    order: Vec<usize>,
-    compared: Vec<NetId>,
-    model_inputs: Vec<u64>,
-    busy: NetId,
-    valid: NetId,
-    /// The operands of the contract, as positions in the stimulus.
-    operands: Vec<usize>,
-    colours: usize,
-    results: Vec<NetId>,
+    pairing: Pairing<'a>,
+    seed: u64,
 }
 
 impl<'a> Lockstep<'a> {
@@ -80,232 +99,157 @@ impl<'a> Lockstep<'a> {
         design: &'a Design,
         model: Box<dyn Model>,
         contract: &'a dyn Contract,
-        simulator: Simulator,
         seed: u64,
     ) -> Result<Self> {
-        let find = |name: &str| {
-            design.find(name).ok_or_else(|| {
-                anyhow!("the golden model speaks of `{name}`, which the design does not have")
-            })
-        };
-        let inputs: Vec<NetId> = design.inputs().map(|port| port.net).collect();
-        let outputs: Vec<NetId> = design.outputs().map(|port| port.net).collect();
-        let order = model
-            .inputs()
-            .iter()
-            .map(|name| {
-                let id = find(name)?;
-                let at = inputs.iter().position(|&input| input == id);
-                at.with_context(|| format!("the golden model takes `{name}` for an input"))
-            })
-            .collect::<Result<Vec<_>>>()?;
-        let compared = model
-            .signals()
-            .iter()
-            .map(|name| find(name))
-            .collect::<Result<Vec<_>>>()?;
-        for id in outputs.iter().chain(&registers(design)) {
-            let name = &design.net(*id).name;
-            ensure!(
-                compared.contains(id),
-                "the golden model does not predict `{name}`"
-            );
-        }
-        let mut stimulus = Stimulus::new(design, contract.operands(), seed);
-        if let Some(length) = contract.length() {
-            stimulus = stimulus.with_length(length);
-        }
-        let operands = contract
-            .operands()
-            .iter()
-            .map(|operand| {
-                let at = stimulus.position(&operand.name);
-                at.with_context(|| format!("the contract speaks of operand `{}`", operand.name))
-            })
-            .collect::<Result<Vec<_>>>()?;
-        let role = |wanted: fn(Role) -> bool| design.port(wanted).map(|port| port.net);
-        let busy = role(|role| role == Role::Busy).context("the design has no output `busy`")?;
-        let valid = role(|role| role == Role::Valid).context("the design has no output `valid`")?;
-        let results = contract
-            .outputs()
-            .iter()
-            .map(|name| find(name))
-            .collect::<Result<Vec<_>>>()?;
-        Ok(Self {
-            design,
-            contract,
-            model_inputs: vec![0; order.len()],
-            colours: contract
-                .operands()
-                .iter()
-                .filter(|operand| operand.colour)
-                .count(),
-            model,
-            simulator,
-            stimulus,
-            outputs,
-            order,
-            compared,
-            busy,
-            valid,
-            operands,
-            results,
-        })
+        let pairing = Pairing::new(design, model, contract)?;
+        Ok(Self { pairing, seed })
     }
 
-    /// Runs until `points` results were seen or something differs.
+    /// Runs until `points` results were seen or something differs, on all threads of rayon's pool.
     ///
-    /// `recording` takes the inputs of every clock, and the outputs before its edge; `progress` is told the points so far now
-    /// and then.
+    /// `progress` is told now and then how many points there are more.
     ///
     /// # Errors
-    /// A simulation that does not settle, or a VCD that cannot be written.
-    pub fn run(
-        &mut self,
+    /// A design that cannot be simulated, or does not settle.
+    pub fn run(&self, points: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Outcome> {
+        let streams = streams(points, self.pairing.longest());
+        if streams == 1 {
+            let nothing = AtomicU64::new(u64::MAX);
+            let seen = self.group::<1>(points, 0..1, streams, &nothing, progress)?;
+            return Ok(self.outcome(seen));
+        }
+        // The first stream known to differ: those after it are of no interest.
+        let differs = AtomicU64::new(u64::MAX);
+        let together = streams.div_ceil(2).min(LANES as u64);
+        let groups: Vec<Vec<Seen>> = (0..streams.div_ceil(together))
+            .into_par_iter()
+            .map(|group| {
+                let first = group * together;
+                let group = first..streams.min(first + together);
+                self.group::<LANES>(points, group, streams, &differs, progress)
+            })
+            .collect::<Result<_>>()?;
+        Ok(self.outcome(groups.into_iter().flatten()))
+    }
+
+    /// The streams of these numbers; cut short when one before them differs.
+    fn group<const N: usize>(
+        &self,
         points: u64,
-        mut recording: Option<&mut Vectors>,
-        progress: &mut dyn FnMut(u64),
-    ) -> Result<Outcome> {
-        let registers = registers(self.design).len();
+        numbers: std::ops::Range<u64>,
+        streams: u64,
+        differs: &AtomicU64,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> Result<Vec<Seen>> {
+        let first = numbers.start;
+        let share = |number| points / streams + u64::from(number < points % streams);
+        let given = numbers.map(|number| (stream_seed(self.seed, number), share(number)));
+        let mut group = Streams::<N>::new(&self.pairing, given)?;
+        while !group.ended() && differs.load(Ordering::Relaxed) >= first {
+            let mut more = 0;
+            for _ in 0..LOOK {
+                if group.ended() {
+                    break;
+                }
+                more += group.clock()?;
+            }
+            progress(more);
+        }
+        let seen = group.into_seen();
+        if let Some(at) = seen.iter().position(|seen| seen.mismatch.is_some()) {
+            differs.fetch_min(first + at as u64, Ordering::Relaxed);
+        }
+        Ok(seen)
+    }
+
+    /// What streams showed together, up to the first that differs.
+    fn outcome(&self, streams: impl IntoIterator<Item = Seen>) -> Outcome {
         let mut outcome = Outcome {
-            registers,
-            outputs: self.outputs.len(),
+            registers: self.pairing.registers(),
+            outputs: self.pairing.outputs.len(),
             ..Outcome::default()
         };
-        let mut busy = self.simulator.value(self.busy) == 1;
-        // Results since the latest start.
-        let mut index = 0;
-        while outcome.points < points {
-            let inputs = self.stimulus.next(busy);
-            for (at, &bits) in inputs.iter().enumerate() {
-                self.simulator.set(at, bits);
+        for seen in streams {
+            outcome.points += seen.points;
+            outcome.clocks += seen.clocks;
+            let units = |worst: &Option<Worst>| worst.as_ref().map_or(-1.0, |worst| worst.units);
+            if units(&seen.worst) > units(&outcome.worst) {
+                outcome.worst = seen.worst;
             }
-            for (to, &from) in self.model_inputs.iter_mut().zip(&self.order) {
-                *to = inputs[from];
-            }
-            if let Some(recording) = recording.as_deref_mut() {
-                recording.inputs.push(inputs.to_vec());
-                let values = self.outputs.iter().map(|&net| self.simulator.value(net));
-                recording.expected.push(values.collect());
-            }
-            let word = self.simulator.value(self.address());
-            self.simulator.clock()?;
-            self.model.clock(&self.model_inputs);
-            outcome.clocks += 1;
-            if let Some(mismatch) = self.compare(outcome.clocks, word) {
-                outcome.mismatch = Some(mismatch);
-                return Ok(outcome);
-            }
-            let was_busy = std::mem::replace(&mut busy, self.simulator.value(self.busy) == 1);
-            if busy && !was_busy {
-                index = 0;
-            }
-            if self.simulator.value(self.valid) == 1 {
-                if outcome.points == 0
-                    && let Some(recording) = recording.as_deref_mut()
-                {
-                    recording.known_from = recording.expected.len();
-                }
-                outcome.points += 1;
-                self.measure(index, &mut outcome);
-                index += 1;
-                if outcome.points.is_multiple_of(1024) {
-                    progress(outcome.points);
-                }
+            if seen.mismatch.is_some() {
+                outcome.mismatch = seen.mismatch;
+                break;
             }
         }
-        progress(outcome.points);
-        Ok(outcome)
+        outcome
     }
 
-    /// From now on, writes a waveform.
+    /// Stimulus and expected outputs for a bench: the inputs of every clock of one stream of `points`
+    /// results, and the outputs before its edge.
     ///
     /// # Errors
-    /// The file cannot be written.
-    pub fn trace(&mut self, file: impl std::io::Write + Send + 'static) -> Result<()> {
-        self.simulator.trace(file)
+    /// Golden model and simulation differ; a design that cannot be simulated, or does not settle.
+    pub fn record(&self, points: u64) -> Result<Vectors> {
+        let mut stream = Streams::<1>::new(&self.pairing, [(self.seed, points)])?;
+        let mut vectors = Vectors::default();
+        while !stream.ended() {
+            let outputs = self.pairing.outputs.iter();
+            let outputs = outputs.map(|&net| stream.simulator.value(net)).collect();
+            vectors.expected.push(outputs);
+            let first = stream.seen(0).points == 0;
+            if stream.clock()? > 0 && first {
+                vectors.known_from = vectors.expected.len();
+            }
+            let inputs = stream.simulator.inputs_mut().iter();
+            vectors.inputs.push(inputs.map(|&[bits]| bits).collect());
+        }
+        let mismatch = &stream.seen(0).mismatch;
+        ensure!(
+            mismatch.is_none(),
+            "golden model and simulation differ: {mismatch:?}"
+        );
+        Ok(vectors)
     }
 
-    /// Ends the waveform.
+    /// As [`Lockstep::run`], in one stream, of which `file` takes the waveform from clock `from` on.
     ///
     /// # Errors
-    /// The file cannot be written.
-    pub fn end_trace(&mut self) -> Result<()> {
-        self.simulator.end_trace()
-    }
-
-    fn address(&self) -> NetId {
-        self.design.register(self.design.control.address).q
-    }
-
-    fn compare(&self, clock: u64, word: u64) -> Option<Mismatch> {
-        for (at, (&net, &golden)) in self.compared.iter().zip(self.model.values()).enumerate() {
-            let simulated = self.simulator.value(net);
-            if simulated != golden {
-                let words = &self.design.control.words;
-                return Some(Mismatch {
-                    clock,
-                    signal: self.model.signals()[at].clone(),
-                    golden,
-                    simulated,
-                    word: words
-                        .get(word as usize)
-                        .map_or_else(String::new, |word| word.name.clone()),
-                });
-            }
+    /// Those of [`Lockstep::run`]; the file cannot be written.
+    pub fn trace(
+        &self,
+        points: u64,
+        from: u64,
+        file: impl Write + Send + 'static,
+    ) -> Result<Outcome> {
+        let mut stream = Streams::<1>::new(&self.pairing, [(self.seed, points)])?;
+        while !stream.ended() && stream.seen(0).clocks < from {
+            stream.clock()?;
         }
-        None
-    }
-
-    /// The error of the results that are on the outputs now, number `index` of their computation, where the
-    /// operands are in the domain.
-    fn measure(&self, index: u64, outcome: &mut Outcome) {
-        let operands = self.contract.operands();
-        let raw = |at: usize| self.stimulus.accepted(self.operands[at]);
-        let inside = operands
-            .iter()
-            .enumerate()
-            .all(|(at, operand)| (operand.domain.0..=operand.domain.1).contains(&raw(at)));
-        if !inside {
-            return;
+        stream.simulator.trace(file)?;
+        while !stream.ended() {
+            stream.clock()?;
         }
-        let control = operands.len() - self.colours;
-        let values: Vec<i64> = (0..control).map(raw).collect();
-        let f = self
-            .contract
-            .references(&self.contract.point(&values, index));
-        for (at, &net) in self.results.iter().enumerate() {
-            let colour = &operands[control + at];
-            let colour = colour.format.to_f64(i128::from(raw(control + at)));
-            let format = self.design.net(net).format;
-            let out = format.to_f64(format.raw(self.simulator.value(net)));
-            let units = nearer(out, f.map(|f| f * colour));
-            if outcome
-                .worst
-                .as_ref()
-                .is_none_or(|worst| units > worst.units)
-            {
-                outcome.worst = Some(Worst {
-                    units,
-                    output: self.design.net(net).name.clone(),
-                    operands: operands
-                        .iter()
-                        .enumerate()
-                        .map(|(at, operand)| (operand.name.clone(), raw(at)))
-                        .collect(),
-                });
-            }
-        }
+        stream.simulator.end_trace()?;
+        Ok(self.outcome(stream.into_seen()))
     }
 }
 
-/// The registers that a golden model must predict.
-fn registers(design: &Design) -> Vec<NetId> {
-    use crate::netlist::RegisterKind;
-    design
-        .registers
-        .iter()
-        .filter(|register| register.kind != RegisterKind::Internal)
-        .map(|register| register.q)
-        .collect()
+/// Into how many streams a run is divided, when a computation has up to `longest` results.
+fn streams(points: u64, longest: u64) -> u64 {
+    let fewest = FEWEST_POINTS.max(longest.saturating_mul(COMPUTATIONS));
+    match points / fewest {
+        ..FEWEST_STREAMS => 1,
+        most @ ..STREAMS => most,
+        _ => STREAMS * (points / (STREAMS * MANY_POINTS.max(fewest))).max(1),
+    }
+}
+
+/// The seed of a stream; the first has that of the run.
+fn stream_seed(seed: u64, number: u64) -> u64 {
+    if number == 0 {
+        seed
+    } else {
+        // Drawn, so that the streams are at distant places of the generator's cycle.
+        Random::new(seed ^ number.wrapping_mul(0xd134_2543_de82_ef95)).bits()
+    }
 }

@@ -4,7 +4,9 @@
 pub mod exhaustive;
 pub mod external;
 mod lockstep;
+mod pairing;
 mod stimulus;
+mod streams;
 pub mod synthesis;
 pub mod trial;
 

@@ -9,6 +9,7 @@
 //! resets come often in the middle of a computation of ten clocks, and still let most of one of thousands
 //! come to its end.
 
+use crate::fixed::mask;
 use crate::golden::Operand;
 use crate::netlist::{Design, NetId, Role};
 
@@ -44,7 +45,7 @@ impl Random {
 
     /// An integer from `low` to `high`.
     pub fn within(&mut self, low: i64, high: i64) -> i64 {
-        let span = (i128::from(high) - i128::from(low) + 1) as u64;
+        let span = high.wrapping_sub(low).wrapping_add(1) as u64;
         if span == 0 {
             self.bits() as i64
         } else {
@@ -63,6 +64,8 @@ struct Driven {
     data: usize,
     strobe: usize,
     operand: Operand,
+    /// Of its width.
+    mask: u64,
     /// The raw value that the register was last given while the device could take it.
     accepted: i64,
 }
@@ -126,6 +129,7 @@ impl Stimulus {
                     driven.push(Driven {
                         data: position(port.net),
                         strobe: position(strobe),
+                        mask: mask(operand.format.width()),
                         operand,
                         accepted: 0,
                     });
@@ -300,38 +304,36 @@ impl Stimulus {
     /// A bit pattern for an operand: mostly of its domain, often at its ends or close to one (or to 0, which
     /// is as good as an end), sometimes anything.
     fn value(&mut self, at: usize) -> u64 {
-        let (format, (low, high)) = (
-            self.operands[at].operand.format,
-            self.operands[at].operand.domain,
-        );
-        let reach = (i128::from(high) - i128::from(low)).max(1) as u64;
+        let Driven { operand, mask, .. } = &self.operands[at];
+        let (low, high) = operand.domain;
+        let reach = high.abs_diff(low).max(1);
         if self.length == Some(at) && !self.random.once_in(16) {
             // Of a random magnitude, small ones first: the smaller of two draws.
             let magnitudes = u64::from(64 - reach.leading_zeros()) + 1;
             let bits = self.random.below(magnitudes);
             let bits = bits.min(self.random.below(magnitudes));
             let above = self.random.below(1 << bits.min(62)).min(reach);
-            return format.bits(i128::from(low) + i128::from(above));
+            return low.wrapping_add(above as i64) as u64 & mask;
         }
         let raw = match self.random.below(16) {
-            0 => i128::from(low),
-            1 => i128::from(high),
-            2 => return self.random.bits() & crate::fixed::mask(format.width()),
+            0 => low,
+            1 => high,
+            2 => self.random.bits() as i64,
             // Off by a random power of two: from the upper end, from the lower, from 0 where that is between
             // (an angle, the component of a vector).
             choice @ 3..=13 if choice <= 8 || low < 0 && high > 0 => {
                 let bits = self.random.below(u64::from(64 - reach.leading_zeros()) + 1);
-                let off = i128::from(self.random.below(1 << bits.min(62)).min(reach));
+                let off = self.random.below(1 << bits.min(62)).min(reach) as i64;
                 match choice {
-                    3 | 4 => i128::from(high) - off,
-                    _ if low >= 0 || high <= 0 => i128::from(low) + off,
-                    _ if choice % 2 == 0 => off.min(i128::from(high)),
-                    _ => (-off).max(i128::from(low)),
+                    3 | 4 => high.wrapping_sub(off),
+                    _ if low >= 0 || high <= 0 => low.wrapping_add(off),
+                    _ if choice % 2 == 0 => off.min(high),
+                    _ => (-off).max(low),
                 }
             }
-            _ => i128::from(self.random.within(low, high)),
+            _ => self.random.within(low, high),
         };
-        format.bits(raw)
+        raw as u64 & mask
     }
 
     /// Notes what the registers take at this edge.

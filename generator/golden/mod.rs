@@ -29,7 +29,8 @@ use crate::fixed::Format;
 /// A clock-by-clock model of a device.
 ///
 /// Values are bit patterns. All state is zero before the first clock, as the built-in simulator's is.
-pub trait Model: Send {
+/// A run has many instances; tables are best shared among them (`Arc`).
+pub trait Model: CloneModel + Send + Sync {
     /// The names of the inputs, in the order in which [`Model::clock`] takes them: `rst_n`, `start`,
     /// and `<operand>` and `<operand>_write` for each operand. The order is the model's own.
     fn inputs(&self) -> &[String];
@@ -47,6 +48,18 @@ pub trait Model: Send {
 
     /// The values after the latest edge, in the order of [`Model::signals`].
     fn values(&self) -> &[u64];
+}
+
+/// What a [`Model`] has by being [`Clone`].
+pub trait CloneModel {
+    /// A copy, with the state that it has now.
+    fn boxed_clone(&self) -> Box<dyn Model>;
+}
+
+impl<M: Model + Clone + 'static> CloneModel for M {
+    fn boxed_clone(&self) -> Box<dyn Model> {
+        Box::new(self.clone())
+    }
 }
 
 /// An operand of a device as its accuracy contract sees it.

@@ -24,8 +24,8 @@ pub struct Circuit<const LANES: usize = 1> {
     machine: Machine<LANES>,
     /// What [`Circuit::set_lanes`] was told last, for each input port.
     inputs: Vec<[u64; LANES]>,
-    /// An input differs from what the machine has.
-    input_changed: bool,
+    /// The machine has yet to be told.
+    input_set: bool,
     /// The latest update changed something.
     changed: bool,
     connected: bool,
@@ -92,7 +92,7 @@ impl<const LANES: usize> Circuit<LANES> {
             clock: Signal::default(),
             machine: Machine::new(program),
             inputs,
-            input_changed: false,
+            input_set: false,
             changed: false,
             connected: false,
             ports,
@@ -111,16 +111,38 @@ impl<const LANES: usize> Circuit<LANES> {
     /// # Panics
     /// When there is no such port.
     pub fn set_lanes(&mut self, input: usize, lanes: [u64; LANES]) {
-        self.input_changed |= self.inputs[input] != lanes;
         self.inputs[input] = lanes;
+        self.input_set = true;
+    }
+
+    /// The input ports in order of declaration, for [`Circuit::set_lanes`] of many at once.
+    pub fn inputs_mut(&mut self) -> &mut [[u64; LANES]] {
+        self.input_set = true;
+        &mut self.inputs
     }
 
     /// The bit pattern of a net in each lane.
     ///
     /// # Panics
     /// When the net is unnamed and was optimised away.
-    pub fn lanes(&self, net: NetId) -> &[u64; LANES] {
+    pub fn lanes(&self, net: NetId) -> [u64; LANES] {
         self.machine.lanes(net)
+    }
+
+    /// The bit pattern of a net in one lane.
+    ///
+    /// # Panics
+    /// When the net is unnamed and was optimised away, or there is no such lane.
+    pub fn lane(&self, net: NetId, lane: usize) -> u64 {
+        self.machine.lane(net, lane)
+    }
+
+    /// For each lane, a pattern that is 0 exactly if each net carries what is expected of it.
+    ///
+    /// # Panics
+    /// When a net is unnamed and was optimised away.
+    pub fn differences(&self, nets: &[NetId], expected: &[[u64; LANES]]) -> [u64; LANES] {
+        self.machine.differences(nets, expected)
     }
 
     /// The number of input ports.
@@ -137,7 +159,7 @@ impl<const LANES: usize> Circuit<LANES> {
                 direction: net.direction,
                 connected: self.connected,
                 changed: self.changed,
-                bits: self.lanes(net.net)[0],
+                bits: self.lane(net.net, 0),
             };
             probe.visit_atom(&net.name, &wire);
         }
@@ -165,17 +187,10 @@ impl Microprogram {
 impl<const LANES: usize> Logic for Circuit<LANES> {
     fn update(&mut self) {
         let edge = self.clock.pos_edge();
-        if edge {
-            self.machine.edge();
-        }
-        if self.input_changed {
-            self.machine.set_inputs(&self.inputs);
-        }
-        if edge | self.input_changed {
-            self.machine.settle();
-        }
-        self.changed = edge | self.input_changed;
-        self.input_changed = false;
+        let inputs = self.input_set.then_some(self.inputs.as_slice());
+        let changed = (edge || inputs.is_some()) && self.machine.update(edge, inputs);
+        self.changed = edge || changed;
+        self.input_set = false;
     }
 
     fn connect(&mut self) {
@@ -211,8 +226,8 @@ impl<const LANES: usize> Block for Circuit<LANES> {
                 names: &self.word.names,
                 connected: self.connected,
                 changed: self.changed,
-                address: self.lanes(address)[0],
-                run: self.lanes(run)[0] == 1,
+                address: self.lane(address, 0),
+                run: self.lane(run, 0) == 1,
             };
             probe.visit_atom("word", &word);
         }

@@ -6,10 +6,11 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 
 use crate::fixed::mask;
 use crate::netlist::{Design, Driver, NetId, Role};
+use crate::sim::banks;
 use crate::sim::lower::drop_of;
 use crate::sim::machine::execute;
 use crate::sim::program::{
-    InputPort, Instruction, Program, ReadEdge, RegisterEdge, Segment, Slot, Sources, Span,
+    InputPort, Instruction, Program, ReadEdge, RegisterEdge, Slot, Sources, Span,
 };
 use crate::sim::references;
 
@@ -39,36 +40,38 @@ pub(super) fn compile(design: &Design) -> Result<Program> {
 const FIRST_FIELD: u32 = 40;
 
 /// An instruction and what orders it.
-struct Step {
-    sources: Sources,
-    to: Slot,
-    operands: Vec<Slot>,
-    instruction: Instruction,
+pub(super) struct Ordered {
+    pub(super) sources: Sources,
+    pub(super) to: Slot,
+    /// All that it reads, the inputs of a mux too.
+    pub(super) operands: Vec<Slot>,
+    pub(super) instruction: Instruction,
 }
 
+/// To it there is one bank of slots, 64 bits wide; [`banks`] divides it.
 pub(super) struct Compiler<'a> {
     pub(super) design: &'a Design,
     /// For each slot: the [`Sources`] it depends on within one clock; none for constants.
-    sources: Vec<Sources>,
+    pub(super) sources: Vec<Sources>,
     /// How many sources there are so far.
     numbered: u32,
     /// The next source for a field.
     next_field: u32,
     /// For each slot; the only lane is that of the folded constants.
-    initial: Vec<[u64; 1]>,
+    pub(super) initial: Vec<[u64; 1]>,
     constants: BTreeMap<u64, Slot>,
     /// Instructions already there, written to slot 0, and the slots that have their results.
     known: HashMap<Instruction, Slot>,
     /// The instruction that writes a slot, unless it is a field.
     made_by: HashMap<Slot, Instruction>,
     /// In an order of evaluation.
-    steps: Vec<Step>,
+    pub(super) steps: Vec<Ordered>,
     pub(super) choices: Vec<Slot>,
-    words: Vec<u64>,
+    pub(super) words: Vec<u64>,
     roms: Vec<Span>,
     /// For each net; `Slot::MAX` until the net has been compiled.
     pub(super) of_net: Vec<Slot>,
-    inputs: Vec<InputPort>,
+    pub(super) inputs: Vec<InputPort>,
     /// For each field of the control word, the number of its lowest bit.
     fields: Vec<u32>,
 }
@@ -104,6 +107,7 @@ impl<'a> Compiler<'a> {
             let slot = compiler.source();
             compiler.of_net[port.net.index()] = slot;
             compiler.inputs.push(InputPort {
+                at: compiler.inputs.len() as u32,
                 slot,
                 source: compiler.sources[slot as usize],
                 mask: mask(design.width(port.net)),
@@ -189,13 +193,7 @@ impl<'a> Compiler<'a> {
         let sources = self.sources_of(operands);
         let to = self.fresh(sources);
         if sources == 0 {
-            execute(
-                make(to),
-                &self.choices,
-                &self.words,
-                &mut self.initial,
-                &mut 0,
-            );
+            execute(make(to), &self.choices, &self.words, &mut self.initial);
             let [bits] = self.initial.pop().unwrap_or_default();
             self.sources.pop();
             return self.constant(bits);
@@ -207,7 +205,7 @@ impl<'a> Compiler<'a> {
     }
 
     fn push(&mut self, to: Slot, operands: &[Slot], instruction: Instruction) {
-        self.steps.push(Step {
+        self.steps.push(Ordered {
             sources: self.sources_of(operands),
             to,
             operands: operands.to_vec(),
@@ -226,6 +224,31 @@ impl<'a> Compiler<'a> {
         match self.made_by.get(&slot) {
             Some(Instruction::Slice { a, low, drop, .. }) => (*a, *low, *drop),
             _ => (slot, 0, 0),
+        }
+    }
+
+    /// The slot, the lowest bit and the width, as a `drop`, of which a slot says whether any bit is 1.
+    pub(super) fn any(&self, slot: Slot) -> Option<(Slot, u8, u8)> {
+        match self.made_by.get(&slot) {
+            Some(Instruction::Any { a, low, drop, .. }) => Some((*a, *low, *drop)),
+            _ => None,
+        }
+    }
+
+    /// What a slot is the placement of: base, slot, lowest bit, width as a `drop`, and shift. A slice is
+    /// one on `zero`.
+    pub(super) fn placed(&self, slot: Slot, zero: Slot) -> Option<(Slot, Slot, u8, u8, u8)> {
+        match *self.made_by.get(&slot)? {
+            Instruction::Place {
+                base,
+                a,
+                low,
+                drop,
+                shift,
+                ..
+            } => Some((base, a, low, drop, shift)),
+            Instruction::Slice { a, low, drop, .. } => Some((zero, a, low, drop, 0)),
+            _ => None,
         }
     }
 
@@ -327,29 +350,7 @@ impl<'a> Compiler<'a> {
         // smaller number; a field is the largest number among its own and those of its operands.
         // This remains an order of evaluation.
         self.steps.sort_by_key(|step| step.sources);
-        let segments = self
-            .steps
-            .chunk_by(|a, b| a.sources == b.sources)
-            .map(|chunk| Segment {
-                sources: chunk[0].sources,
-                len: chunk.len() as u32,
-            })
-            .collect();
-        Ok(Program {
-            instructions: self
-                .steps
-                .into_iter()
-                .map(|step| step.instruction)
-                .collect(),
-            segments,
-            reads,
-            registers,
-            choices: self.choices,
-            words: self.words,
-            initial: self.initial.into_iter().map(|[bits]| bits).collect(),
-            slots: self.of_net,
-            inputs: self.inputs,
-        })
+        Ok(banks::divide(&self, &reads, &registers))
     }
 
     /// Drops the instructions that neither the edge nor a named net or a port has a use for. What

@@ -82,7 +82,7 @@ impl Compiler<'_> {
                 wide(*b, width)?;
                 let (a, b) = (slot(*a), slot(*b));
                 match carry {
-                    None => self.emit(&[a, b], |to| Instruction::Add { to, a, b, drop }),
+                    None => self.add(a, b, drop),
                     Some(carry) => {
                         wide(*carry, 1)?;
                         let carry = slot(*carry);
@@ -202,6 +202,61 @@ impl Compiler<'_> {
         all
     }
 
+    fn add(&mut self, a: Slot, b: Slot, drop: u8) -> Slot {
+        let (of_a, low_a, drop_a) = self.sliced(a);
+        let (of_b, low_b, drop_b) = self.sliced(b);
+        if of_a == a || of_b == b {
+            return self.emit(&[a, b], |to| Instruction::Add { to, a, b, drop });
+        }
+        self.emit(&[of_a, of_b], |to| Instruction::AddSlices {
+            to,
+            a: of_a,
+            b: of_b,
+            low_a,
+            drop_a,
+            low_b,
+            drop_b,
+            drop,
+        })
+    }
+
+    /// A mux of two inputs, together with what only prepares its operands: chains of such muxes tell in
+    /// which range a value is.
+    fn choose(&mut self, select: Slot, a: Slot, b: Slot) -> Slot {
+        let Some((of, low, drop)) = self.any(select) else {
+            return self.emit(&[select, a, b], |to| Instruction::Choose {
+                to,
+                select,
+                a,
+                b,
+            });
+        };
+        let zero = self.constant(0);
+        match self.placed(b, zero) {
+            Some((base, place_of, place_low, place_drop, shift)) if place_of == of => {
+                self.emit(&[of, a, base], |to| Instruction::ChoosePlace {
+                    to,
+                    of,
+                    low,
+                    drop,
+                    a,
+                    base,
+                    place_low,
+                    place_drop,
+                    shift,
+                })
+            }
+            _ => self.emit(&[of, a, b], |to| Instruction::ChooseAny {
+                to,
+                of,
+                low,
+                drop,
+                a,
+                b,
+            }),
+        }
+    }
+
     fn mux(&mut self, select: Slot, inputs: &[Slot]) -> Result<Slot> {
         let [.., last] = inputs else {
             bail!("the mux has no inputs");
@@ -216,7 +271,7 @@ impl Compiler<'_> {
         let mut operands = vec![select];
         operands.extend(inputs);
         if let [a, b] = *inputs {
-            return Ok(self.emit(&operands, |to| Instruction::Choose { to, select, a, b }));
+            return Ok(self.choose(select, a, b));
         }
         let first = u32::try_from(self.choices.len()).context("too many muxes")?;
         let last = first + (inputs.len() - 1) as u32;

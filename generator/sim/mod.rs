@@ -1,10 +1,17 @@
 //! The built-in simulator.
 //!
-//! A [`Design`] is compiled to a [`Program`] of levelised instructions, which a [`Machine`] runs;
-//! a [`Circuit`] is the machine as one rust_hdl block, and a [`Simulator`] the circuit with its
-//! clock. rust_hdl is the kernel: every change goes through its `simulate()`, which updates the
-//! block until nothing changes.
+//! A [`Design`] is compiled to a [`Program`] of levelised instructions, which a [`Machine`] runs for a
+//! number of independent instances at once, its lanes; a [`Circuit`] is the machine as one rust_hdl
+//! block, and a [`Simulator`] the circuit with its clock.
+//!
+//! rust_hdl is the kernel. Its part is exactly this: it owns the clock, a `Signal`; each half of a clock
+//! is one call of its `simulate()`, which updates the block, finds the edge, and updates again until
+//! nothing changes; its `check_all` checks the ports, and its probes see every named net and write the
+//! waveforms. What an update does with the netlist is ours: the registers at an edge, and then one pass
+//! over the program, which settles all nets, because it is in an order of evaluation. An own rust_hdl
+//! block for each cell would be settled by rust_hdl as well, a hundred times more slowly.
 
+mod banks;
 mod circuit;
 mod compile;
 mod lower;
@@ -91,12 +98,34 @@ impl<const LANES: usize> Simulator<LANES> {
         self.circuit.set_lanes(input, lanes);
     }
 
+    /// The input ports in order of position, each with its lanes, for [`Simulator::set_lanes`] of many
+    /// at once.
+    pub fn inputs_mut(&mut self) -> &mut [[u64; LANES]] {
+        self.circuit.inputs_mut()
+    }
+
     /// The bit pattern of a net in each lane, after the latest clock.
     ///
     /// # Panics
     /// When the net is unnamed and was optimised away.
-    pub fn lanes(&self, net: NetId) -> &[u64; LANES] {
+    pub fn lanes(&self, net: NetId) -> [u64; LANES] {
         self.circuit.lanes(net)
+    }
+
+    /// The bit pattern of a net in one lane, after the latest clock.
+    ///
+    /// # Panics
+    /// When the net is unnamed and was optimised away, or there is no such lane.
+    pub fn lane(&self, net: NetId, lane: usize) -> u64 {
+        self.circuit.lane(net, lane)
+    }
+
+    /// For each lane, a pattern that is 0 exactly if each net carries what is expected of it.
+    ///
+    /// # Panics
+    /// When a net is unnamed and was optimised away.
+    pub fn differences(&self, nets: &[NetId], expected: &[[u64; LANES]]) -> [u64; LANES] {
+        self.circuit.differences(nets, expected)
     }
 
     /// One clock: the falling edge, with which inputs change, and the rising edge.
@@ -179,7 +208,6 @@ impl Simulator {
     /// When the net is unnamed and was optimised away.
     #[inline]
     pub fn value(&self, net: NetId) -> u64 {
-        let [bits] = *self.lanes(net);
-        bits
+        self.lane(net, 0)
     }
 }

@@ -48,19 +48,13 @@ pub fn everything(registry: &Registry, output: Output) -> Result<bool> {
         tables::print_json(&json!({ "ok": holds, "configurations": list }));
         return Ok(holds);
     }
-    print(&loaded, &findings);
+    print(&loaded, &findings)?;
     Ok(holds)
 }
 
 fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<Finding> {
-    let mut shown = 0;
-    let outcome = one
-        .unit
-        .lockstep(BENCH_SEED)?
-        .run(POINTS, None, &mut |points| {
-            bar.inc(points - shown);
-            shown = points;
-        })?;
+    let lockstep = one.unit.lockstep(BENCH_SEED)?;
+    let outcome = lockstep.run(POINTS, &|points| bar.inc(points))?;
     let bound = one.unit.contract.bound();
     let faults = cosim::faults(&outcome, &bound);
     Ok(Finding {
@@ -71,7 +65,7 @@ fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<Finding> {
     })
 }
 
-fn print(loaded: &[Loaded], findings: &[Finding]) {
+fn print(loaded: &[Loaded], findings: &[Finding]) -> Result<()> {
     let headings = [
         "device",
         "configuration",
@@ -131,7 +125,12 @@ fn print(loaded: &[Loaded], findings: &[Finding]) {
         for fault in &finding.faults {
             tables::print_line(&format!("  {}: FAILS: {fault}", one.path));
         }
+        if let Some(mismatch) = &finding.outcome.mismatch {
+            let where_to_look = cosim::reproduce(one, mismatch)?;
+            tables::print_line(&format!("  {}: {where_to_look}", one.path));
+        }
     }
+    Ok(())
 }
 
 fn as_json(one: &Loaded, finding: &Finding) -> Value {

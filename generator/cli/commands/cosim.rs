@@ -1,6 +1,6 @@
 //! `cosim`.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{self, OpenOptions};
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -13,7 +13,7 @@ use super::{Loaded, load};
 use crate::cli::failure::Usage;
 use crate::cli::{Output, POINTS, Simulator, progress, staged, tables};
 use crate::cosim::external::{self, BenchOutcome};
-use crate::cosim::{Outcome, Worst};
+use crate::cosim::{Lockstep, Mismatch, Outcome, Worst};
 use crate::golden::Bound;
 use crate::registry::Registry;
 
@@ -22,6 +22,9 @@ const EXTERNAL_POINTS: u64 = 200;
 
 /// The most points for an external simulator, whose vectors are made in memory.
 const EXTERNAL_LIMIT: u64 = 1_000_000;
+
+/// Clocks in the waveform that ends with a difference.
+const WINDOW: u64 = 64;
 
 /// What `cosim` was asked for.
 pub struct CosimRequest {
@@ -140,12 +143,8 @@ fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result
     let outcomes: Vec<Outcome> = loaded
         .par_iter()
         .map(|one| {
-            let mut shown = 0;
-            let mut progress = |points: u64| {
-                bar.inc(points - shown);
-                shown = points;
-            };
-            run(one, points, request, &mut progress).with_context(|| format!("`{}`", one.path))
+            let progress = |points: u64| bar.inc(points);
+            run(one, points, request, &progress).with_context(|| format!("`{}`", one.path))
         })
         .collect::<Result<_>>()?;
     bar.finish_and_clear();
@@ -179,6 +178,9 @@ fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result
         for fault in faults {
             tables::print_line(&format!("  FAILS: {fault}"));
         }
+        if let Some(mismatch) = &outcome.mismatch {
+            tables::print_line(&format!("  {}", reproduce(one, mismatch)?));
+        }
     }
     if output.json {
         tables::print_json(&json!({ "ok": holds, "configurations": list }));
@@ -190,22 +192,34 @@ fn run(
     one: &Loaded,
     points: u64,
     request: &CosimRequest,
-    progress: &mut dyn FnMut(u64),
+    progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Outcome> {
-    let mut lockstep = one.unit.lockstep(request.seed)?;
+    let lockstep = one.unit.lockstep(request.seed)?;
     let Some(path) = &request.vcd else {
-        return lockstep.run(points, None, progress);
+        return lockstep.run(points, progress);
     };
-    traced(&mut lockstep, path, points, progress)
+    traced(&lockstep, path, points, 0)
 }
 
-/// A run with a waveform: written beside its place and moved there when it is whole.
-fn traced(
-    lockstep: &mut crate::cosim::Lockstep<'_>,
-    path: &Path,
-    points: u64,
-    progress: &mut dyn FnMut(u64),
-) -> Result<Outcome> {
+/// Writes the waveform of the clocks before a difference into the working directory, and says how to see
+/// all of it.
+pub fn reproduce(one: &Loaded, mismatch: &Mismatch) -> Result<String> {
+    let path = PathBuf::from(format!("{}_mismatch.vcd", one.unit.config.name));
+    let from = mismatch.clock.saturating_sub(WINDOW);
+    let lockstep = one.unit.lockstep(mismatch.seed)?;
+    let outcome = traced(&lockstep, &path, u64::MAX, from)?;
+    Ok(format!(
+        "`{}` shows clocks {from} to {}; all of them: glint cosim {} --seed {} --points {} --vcd FILE",
+        path.display(),
+        mismatch.clock,
+        one.path,
+        mismatch.seed,
+        outcome.points + 1,
+    ))
+}
+
+/// A run with a waveform from clock `from` on: written beside its place and moved there when it is whole.
+fn traced(lockstep: &Lockstep<'_>, path: &Path, points: u64, from: u64) -> Result<Outcome> {
     let cannot = || format!("cannot write the waveform `{}`", path.display());
     // A pipe or a device is written itself; a file is replaced.
     if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
@@ -213,27 +227,19 @@ fn traced(
             .write(true)
             .open(path)
             .with_context(cannot)?;
-        return trace_to(lockstep, file, points, progress).with_context(cannot);
+        return lockstep
+            .trace(points, from, BufWriter::new(file))
+            .with_context(cannot);
     }
     let staged = staged::beside(path)?;
     let file = staged.reopen().with_context(cannot)?;
-    let outcome = trace_to(lockstep, file, points, progress).with_context(cannot)?;
+    let outcome = lockstep
+        .trace(points, from, BufWriter::new(file))
+        .with_context(cannot)?;
     staged
         .persist(path)
         .map_err(|error| error.error)
         .with_context(cannot)?;
-    Ok(outcome)
-}
-
-fn trace_to(
-    lockstep: &mut crate::cosim::Lockstep<'_>,
-    file: File,
-    points: u64,
-    progress: &mut dyn FnMut(u64),
-) -> Result<Outcome> {
-    lockstep.trace(BufWriter::new(file))?;
-    let outcome = lockstep.run(points, None, progress)?;
-    lockstep.end_trace()?;
     Ok(outcome)
 }
 
@@ -242,8 +248,8 @@ pub fn faults(outcome: &Outcome, bound: &Bound) -> Vec<String> {
     let mut faults = Vec::new();
     if let Some(mismatch) = &outcome.mismatch {
         faults.push(format!(
-            "after clock {}, word `{}`: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
-            mismatch.clock, mismatch.word, mismatch.signal, mismatch.simulated, mismatch.golden
+            "seed {}, after clock {}, word `{}`: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
+            mismatch.seed, mismatch.clock, mismatch.word, mismatch.signal, mismatch.simulated, mismatch.golden
         ));
     }
     if let Some(worst) = &outcome.worst

@@ -1,5 +1,7 @@
 //! `quad-cosine` clock by clock.
 
+use std::sync::Arc;
+
 use super::{Arithmetic, Params};
 use crate::config::Config;
 use crate::golden::Model;
@@ -12,7 +14,7 @@ const SIGNALS: [&str; 3] = ["intensity_out", "amplitude_reg", "exponent_reg"];
 /// The device, clock by clock.
 #[derive(Clone, Debug)]
 pub struct QuadCosineModel {
-    arithmetic: Arithmetic,
+    arithmetic: Arc<Arithmetic>,
     walker: Walker,
     amplitude: OperandRegister,
     exponent: OperandRegister,
@@ -47,7 +49,7 @@ impl QuadCosineModel {
         let inputs = ["rst_n", "start"].into_iter().map(String::from);
         let signals = Walker::SIGNALS.into_iter().chain(SIGNALS);
         Ok(Self {
-            arithmetic: Arithmetic::new(params),
+            arithmetic: Arc::new(Arithmetic::new(params)),
             walker: Walker::new(params.angle_format(), params.length_bits),
             amplitude: OperandRegister::new(params.colour_format()),
             exponent: OperandRegister::new(params.exponent_format()),

@@ -1,5 +1,8 @@
 //! `rough` clock by clock.
 
+use std::array;
+use std::sync::Arc;
+
 use super::{Arithmetic, Params};
 use crate::config::Config;
 use crate::fixed::Format;
@@ -54,7 +57,7 @@ const END: u32 = 9;
 /// The device, clock by clock.
 #[derive(Clone, Debug)]
 pub struct RoughModel {
-    arithmetic: Arithmetic,
+    arithmetic: Arc<Arithmetic>,
     synchronous: bool,
     result_width: u32,
     handshake: Handshake,
@@ -89,7 +92,7 @@ impl RoughModel {
         let largest = params.largest_cosine();
         let colour = OperandRegister::new(params.colour_format());
         Ok(Self {
-            arithmetic: Arithmetic::new(params)?,
+            arithmetic: Arc::new(Arithmetic::new(params)?),
             synchronous: params.sine_synchronous,
             result_width: params.result_format().width(),
             handshake: Handshake::default(),
@@ -113,6 +116,10 @@ impl RoughModel {
         })
     }
 
+    fn operand_values(&self) -> [i64; 7] {
+        array::from_fn(|at| self.operands[at].value)
+    }
+
     /// The output of ROM 18, addressed by `operand` now.
     fn sine(&self, operand: i64) -> i64 {
         if self.synchronous {
@@ -127,8 +134,7 @@ impl RoughModel {
     /// What the word in force does to the datapath. Each odd word captures what the word before it
     /// let settle.
     fn execute(&mut self) {
-        let [cos_gamma, cos_dgamma, exponent, dgamma_negative, ..] =
-            self.operands.map(|it| it.value);
+        let [cos_gamma, cos_dgamma, exponent, dgamma_negative, ..] = self.operand_values();
         // Mux 17 addresses ROM 18 with register 2 from word 2 to the result, and else with register 1.
         let addressed = if (2..=VALID).contains(&self.handshake.word) {
             cos_dgamma
@@ -173,7 +179,7 @@ impl RoughModel {
             red,
             green,
             blue,
-        ] = self.operands.map(|it| it.value);
+        ] = self.operand_values();
         let f = self.arithmetic.f(self.reg13_result);
         let out = |colour| self.arithmetic.colour(f, colour) as u64;
         self.values = [

@@ -267,7 +267,7 @@ fn lanes_are_independent() {
             alone.iter_mut().for_each(|s| s.clock().unwrap());
             for (id, _) in visible(&design) {
                 let expected = [0, 1, 2, 3, 4].map(|lane| alone[lane].value(id));
-                assert_eq!(together.lanes(id), &expected, "seed {seed}");
+                assert_eq!(together.lanes(id), expected, "seed {seed}");
             }
         }
     }
