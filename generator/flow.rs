@@ -1,9 +1,12 @@
 //! From a configuration to everything that is made of it.
 
+use std::time::Duration;
+
 use anyhow::{Context, Result};
 
 use crate::config::Config;
-use crate::cosim::{Lockstep, trial};
+use crate::cosim::batch::{Engine, Golden, RustHdl, Verilog};
+use crate::cosim::{Lockstep, external, trial};
 use crate::emit::{self, EmitInputs, OutputFile, PageInputs, Timing, Vectors};
 use crate::golden::Contract;
 use crate::netlist::Design;
@@ -14,6 +17,17 @@ pub const BENCH_POINTS: u64 = 24;
 
 /// The seed of the stimulus of a committed bench.
 pub const BENCH_SEED: u64 = 1;
+
+/// What computes with a device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Through {
+    /// The golden model's arithmetic.
+    Golden,
+    /// The built-in simulator.
+    RustHdl,
+    /// An outside simulator of the emitted Verilog, with a limit on each of its runs.
+    Verilog(external::Simulator, Duration),
+}
 
 /// A configuration with its design.
 pub struct Unit {
@@ -99,5 +113,28 @@ impl Unit {
             example: &trial::example(&self.design, self.contract.as_ref())?,
         };
         emit::page(&self.design, &inputs)
+    }
+
+    /// What computes many points of the device; see [`crate::cosim::batch`].
+    ///
+    /// # Errors
+    /// The design cannot be simulated or written as Verilog, or an outside tool is missing or refuses it.
+    pub fn engine(&self, through: Through) -> Result<Box<dyn Engine + '_>> {
+        let contract = self.contract.as_ref();
+        Ok(match through {
+            Through::Golden => Box::new(Golden(contract)),
+            Through::RustHdl => Box::new(RustHdl::new(&self.design, contract)?),
+            Through::Verilog(simulator, limit) => {
+                let files = emit::emit(&self.design, &EmitInputs::default())?;
+                let files = files.into_iter().filter_map(|file| {
+                    let name = file.path.rsplit('/').next()?.to_owned();
+                    let needed = name.ends_with(".v") || name.ends_with(".mem");
+                    needed.then_some((name, file.contents))
+                });
+                let design = &self.design;
+                let files = files.collect();
+                Box::new(Verilog::new(simulator, design, contract, files, limit)?)
+            }
+        })
     }
 }

@@ -5,7 +5,7 @@
 //! that prints without end costs neither memory nor a deadlock. Errors name the tool and quote the
 //! last lines that it wrote.
 //!
-//! [`run_bench`] builds and runs a self-checking Verilog bench.
+//! [`run_bench`] builds and runs a self-checking Verilog bench; a [`BuiltBench`] can be run repeatedly.
 
 use std::env;
 use std::ffi::OsStr;
@@ -21,7 +21,7 @@ use anyhow::{Context, Result, anyhow, bail};
 mod bench;
 mod capture;
 
-pub use bench::{BenchOutcome, Simulator, run_bench};
+pub use bench::{BenchOutcome, BuiltBench, Simulator, run_bench};
 use capture::Capture;
 
 /// What asking for a version may take: the first run of a WebAssembly tool compiles it.

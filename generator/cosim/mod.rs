@@ -1,6 +1,7 @@
 //! Co-simulation: stimulus, golden model against built-in simulator, external simulators,
 //! synthesis.
 
+pub mod batch;
 pub mod exhaustive;
 pub mod external;
 mod lockstep;

@@ -19,6 +19,7 @@ mod module;
 mod naming;
 mod page;
 mod plan;
+mod points;
 mod rows;
 mod text;
 mod top;
@@ -35,6 +36,7 @@ use naming::Naming;
 use plan::Plan;
 
 pub use page::{PageInputs, is_page, page};
+pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE, points_bench};
 
 /// A file to be written.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -8,6 +8,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail, ensure};
+use tempfile::TempDir;
 
 use super::{Tool, capture};
 
@@ -69,76 +70,136 @@ pub(super) fn run_bench_in<N: AsRef<str>, C: AsRef<[u8]>>(
     limit: Duration,
 ) -> Result<BenchOutcome> {
     let deadline = Instant::now() + limit;
-    let remaining = || deadline.saturating_duration_since(Instant::now());
-    // Missing tools are reported before anything is written.
-    let (compiler, runner) = match simulator {
-        Simulator::Icarus => (
-            Tool::find_in("iverilog", search)?,
-            Some(Tool::find_in("vvp", search)?),
-        ),
-        Simulator::Verilator => (Tool::find_in("verilator", search)?, None),
-    };
-    let place = tempfile::Builder::new()
-        .prefix("glint-bench-")
-        .tempdir()
-        .context("cannot make a temporary directory")?;
-    let directory = place.path();
-    let sources = write_files(directory, files)?;
+    let bench = BuiltBench::build_in(search, simulator, files, top, limit)?;
+    bench.run(deadline.saturating_duration_since(Instant::now()))
+}
 
-    let mut arguments: Vec<&str> = match simulator {
-        Simulator::Icarus => vec!["-g2012", "-Wall", "-s", top, "-o", "bench.vvp"],
-        Simulator::Verilator => vec![
-            "--binary",
-            "--timing",
-            // For sources without `timescale, which may stand beside some that have it.
-            "--timescale",
-            "1ns/1ps",
-            "-j",
-            "1",
-            "--top-module",
-            top,
-            "--Mdir",
-            "build",
-            "-o",
-            "bench",
-        ],
-    };
-    arguments.extend(sources);
-    let build = compiler
-        .run_to_success(arguments, directory, remaining())
-        .with_context(|| format!("{simulator} cannot build the bench `{top}`"))?;
+/// A bench that was built, in a temporary directory of its own, and that can be run again and again.
+pub struct BuiltBench {
+    place: TempDir,
+    simulator: Simulator,
+    top: String,
+    /// The program to run and its arguments.
+    program: (Tool, &'static [&'static str]),
+    /// What the compiler said.
+    build: String,
+}
 
-    let run = match runner {
-        // -n: a $stop ends the run instead of asking the terminal.
-        Some(vvp) => vvp.run(["-n", "bench.vvp"], directory, remaining()),
-        None => Tool::find_in("bench", directory.join("build").as_os_str())?.run(
-            [] as [&str; 0],
-            directory,
-            remaining(),
-        ),
+impl BuiltBench {
+    /// Builds a bench, with `files` as in [`run_bench`].
+    ///
+    /// # Errors
+    /// The simulator is missing; it rejects the sources (Verilator: or warns of them); that takes more
+    /// than `limit`.
+    pub fn build<N: AsRef<str>, C: AsRef<[u8]>>(
+        simulator: Simulator,
+        files: &[(N, C)],
+        top: &str,
+        limit: Duration,
+    ) -> Result<Self> {
+        let search = env::var_os("PATH").unwrap_or_default();
+        Self::build_in(&search, simulator, files, top, limit)
     }
-    .with_context(|| format!("the bench `{top}` under {simulator}"))?;
-    let transcript = run.output;
-    let passed = match verdict(&transcript) {
-        Some(passed) if run.status.success() => passed,
-        // $fatal ends the simulation with an error status.
-        Some(false) => false,
-        Some(true) => bail!(
-            "the bench `{top}` under {simulator} printed PASS and then ended badly ({}){}",
-            run.status,
-            capture::quote(&transcript)
-        ),
-        None => bail!(
-            "the bench `{top}` under {simulator} ended without a PASS or FAIL line ({}){}",
-            run.status,
-            capture::quote(&transcript)
-        ),
-    };
-    Ok(BenchOutcome {
-        passed,
-        build,
-        transcript,
-    })
+
+    fn build_in<N: AsRef<str>, C: AsRef<[u8]>>(
+        search: &OsStr,
+        simulator: Simulator,
+        files: &[(N, C)],
+        top: &str,
+        limit: Duration,
+    ) -> Result<Self> {
+        // Missing tools are reported before anything is written.
+        let (compiler, runner) = match simulator {
+            Simulator::Icarus => (
+                Tool::find_in("iverilog", search)?,
+                Some(Tool::find_in("vvp", search)?),
+            ),
+            Simulator::Verilator => (Tool::find_in("verilator", search)?, None),
+        };
+        let place = tempfile::Builder::new()
+            .prefix("glint-bench-")
+            .tempdir()
+            .context("cannot make a temporary directory")?;
+        let directory = place.path();
+        let sources = write_files(directory, files)?;
+
+        let mut arguments: Vec<&str> = match simulator {
+            Simulator::Icarus => vec!["-g2012", "-Wall", "-s", top, "-o", "bench.vvp"],
+            Simulator::Verilator => vec![
+                "--binary",
+                "--timing",
+                // For sources without `timescale, which may stand beside some that have it.
+                "--timescale",
+                "1ns/1ps",
+                "-j",
+                "1",
+                "--top-module",
+                top,
+                "--Mdir",
+                "build",
+                "-o",
+                "bench",
+            ],
+        };
+        arguments.extend(sources);
+        let build = compiler
+            .run_to_success(arguments, directory, limit)
+            .with_context(|| format!("{simulator} cannot build the bench `{top}`"))?;
+        let program: (Tool, &[&str]) = match runner {
+            // -n: a $stop ends the run instead of asking the terminal.
+            Some(vvp) => (vvp, &["-n", "bench.vvp"]),
+            None => {
+                let built = directory.join("build");
+                (Tool::find_in("bench", built.as_os_str())?, &[])
+            }
+        };
+        Ok(Self {
+            simulator,
+            top: top.to_owned(),
+            program,
+            build,
+            place,
+        })
+    }
+
+    /// Where it runs: beside its files, and those that it writes.
+    pub fn directory(&self) -> &Path {
+        self.place.path()
+    }
+
+    /// Runs the bench.
+    ///
+    /// # Errors
+    /// It takes more than `limit`, crashes, or ends without a verdict. A bench that fails is no error but
+    /// an outcome.
+    pub fn run(&self, limit: Duration) -> Result<BenchOutcome> {
+        let (top, simulator) = (&self.top, self.simulator);
+        let (program, arguments) = &self.program;
+        let run = program
+            .run(*arguments, self.directory(), limit)
+            .with_context(|| format!("the bench `{top}` under {simulator}"))?;
+        let transcript = run.output;
+        let passed = match verdict(&transcript) {
+            Some(passed) if run.status.success() => passed,
+            // $fatal ends the simulation with an error status.
+            Some(false) => false,
+            Some(true) => bail!(
+                "the bench `{top}` under {simulator} printed PASS and then ended badly ({}){}",
+                run.status,
+                capture::quote(&transcript)
+            ),
+            None => bail!(
+                "the bench `{top}` under {simulator} ended without a PASS or FAIL line ({}){}",
+                run.status,
+                capture::quote(&transcript)
+            ),
+        };
+        Ok(BenchOutcome {
+            passed,
+            build: self.build.clone(),
+            transcript,
+        })
+    }
 }
 
 /// Writes the files and returns the names of those to compile.

@@ -1,0 +1,146 @@
+//! Height maps, which turn the normals of a surface.
+
+use anyhow::{Context, Result, bail, ensure};
+use png::{BitDepth, ColorType, Decoder, Limits, Transformations};
+
+/// The most pixels along a side.
+const LARGEST_SIDE: u32 = 8192;
+
+/// Of a decoded map, in bytes, with what decoding takes.
+const MEMORY: usize = 512 << 20;
+
+/// The slopes of a height map. It is repeated in all directions.
+#[derive(Clone, Debug)]
+pub struct Relief {
+    width: usize,
+    height: usize,
+    /// The rise per pixel to the right and upward, where black to white is 1.
+    slopes: Vec<[f32; 2]>,
+    /// How high white stands over black, in the scene's unit.
+    depth: f64,
+    /// How often the map is repeated over a unit of texture coordinates.
+    repeat: f64,
+}
+
+impl Relief {
+    /// The map that a PNG file holds.
+    ///
+    /// # Errors
+    /// No PNG, one with colours or transparency, or too large a one.
+    pub fn decode(png: &[u8], depth: f64, repeat: f64) -> Result<Self> {
+        let limits = Limits { bytes: MEMORY };
+        let mut decoder = Decoder::new_with_limits(std::io::Cursor::new(png), limits);
+        decoder.set_transformations(Transformations::EXPAND);
+        let mut reader = decoder.read_info().context("it is not a PNG file")?;
+        let (width, height) = (reader.info().width, reader.info().height);
+        ensure!(
+            width <= LARGEST_SIDE && height <= LARGEST_SIDE,
+            "it has {width}x{height} pixels; at most {LARGEST_SIDE}x{LARGEST_SIDE} are possible"
+        );
+        let (colour, bits) = reader.output_color_type();
+        let kind = match colour {
+            ColorType::Grayscale => "",
+            ColorType::GrayscaleAlpha => "grey with transparency",
+            ColorType::Rgb | ColorType::Rgba => "in colour",
+            ColorType::Indexed => "in colour, from a palette",
+        };
+        if !kind.is_empty() {
+            bail!("it is {kind}; a height map is grey alone, with 1 to 16 bits");
+        }
+        let size = reader
+            .output_buffer_size()
+            .context("it is too large for this machine")?;
+        let mut bytes = vec![0; size];
+        reader
+            .next_frame(&mut bytes)
+            .context("it is not a whole PNG file")?;
+        let heights: Vec<f32> = match bits {
+            BitDepth::Sixteen => bytes
+                .chunks_exact(2)
+                .map(|pair| f32::from(u16::from_be_bytes([pair[0], pair[1]])) / 65535.0)
+                .collect(),
+            _ => bytes.iter().map(|&byte| f32::from(byte) / 255.0).collect(),
+        };
+        let (width, height) = (width as usize, height as usize);
+        ensure!(
+            heights.len() == width * height,
+            "it is not a whole PNG file"
+        );
+        Ok(Self {
+            slopes: slopes(&heights, width, height),
+            width,
+            height,
+            depth,
+            repeat,
+        })
+    }
+
+    /// How much the surface rises per unit of u and v, where it has the given texture coordinates.
+    ///
+    /// Slopes between the pixels are interpolated, so that no edges show.
+    pub fn rise(&self, u: f64, v: f64) -> [f64; 2] {
+        let (width, height) = (self.width as f64, self.height as f64);
+        // The first row is the upper edge, v = 1.
+        let x = (u * self.repeat).rem_euclid(1.0) * width - 0.5;
+        let y = (-v * self.repeat).rem_euclid(1.0) * height - 0.5;
+        let (left, above) = (x.floor(), y.floor());
+        let (right_share, below_share) = (x - left, y - above);
+        let slope = |dx: i64, dy: i64| {
+            let column = (left as i64 + dx).rem_euclid(self.width as i64) as usize;
+            let row = (above as i64 + dy).rem_euclid(self.height as i64) as usize;
+            self.slopes[row * self.width + column]
+        };
+        let corners = [slope(0, 0), slope(1, 0), slope(0, 1), slope(1, 1)];
+        let between = |axis: usize, scale: f64| {
+            let [a, b, c, d] = corners.map(|slope| f64::from(slope[axis]));
+            let above = a + (b - a) * right_share;
+            let below = c + (d - c) * right_share;
+            (above + (below - above) * below_share) * scale * self.repeat * self.depth
+        };
+        [between(0, width), between(1, height)]
+    }
+}
+
+/// The rise per pixel to the right and upward: half the difference of the neighbours.
+fn slopes(heights: &[f32], width: usize, height: usize) -> Vec<[f32; 2]> {
+    let at = |column: usize, row: usize| heights[row % height * width + column % width];
+    (0..height)
+        .flat_map(|row| (0..width).map(move |column| (column, row)))
+        .map(|(column, row)| {
+            let right = at(column + 1, row) - at(column + width - 1, row);
+            let up = at(column, row + height - 1) - at(column, row + 1);
+            [right / 2.0, up / 2.0]
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slopes_wrap_and_point_upward() {
+        // 3 × 2 pixels.
+        let slopes = slopes(&[0.0, 0.5, 1.0, 0.0, 0.0, 0.25], 3, 2);
+        assert_eq!(slopes[0], [-0.25, 0.0]);
+        assert_eq!(slopes[1], [0.5, 0.0]);
+        let tall = super::slopes(&[1.0, 0.5, 0.0], 1, 3);
+        assert_eq!(tall[1], [0.0, 0.5]);
+    }
+
+    #[test]
+    fn the_rise_is_per_unit_of_texture() {
+        let relief = Relief {
+            width: 2,
+            height: 1,
+            slopes: vec![[0.25, 0.0], [0.5, 0.0]],
+            depth: 0.5,
+            repeat: 3.0,
+        };
+        // The middles of the pixels of the first copy are at 1/12 and 3/12.
+        let rise = |u| relief.rise(u, 0.7)[0];
+        assert!((rise(1.0 / 12.0) - 0.25 * 2.0 * 3.0 * 0.5).abs() < 1e-12);
+        assert!((rise(3.0 / 12.0 - 1.0) - 0.5 * 2.0 * 3.0 * 0.5).abs() < 1e-12);
+        assert!((rise(2.0 / 12.0) - 0.375 * 3.0).abs() < 1e-12);
+    }
+}

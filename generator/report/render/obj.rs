@@ -1,0 +1,201 @@
+//! Wavefront OBJ: the geometry of a mesh.
+//!
+//! Everything but vertices, normals, texture coordinates and faces is passed over: groups, materials,
+//! lines, curves. A reader of its own, because a mistake is told with its line, and because faces whose
+//! corners have normals may stand beside faces without.
+
+use anyhow::{Context, Result, anyhow, bail, ensure};
+
+use super::mesh::{Mesh, RawCorner};
+use super::vector::Vector;
+
+/// The mesh that a file describes.
+///
+/// # Errors
+/// With the number of the line: a number that is none or not finite, a face with less than three corners or
+/// with one that does not exist. Without it: those of [`Mesh::new`].
+pub fn parse(text: &str) -> Result<Mesh> {
+    let mut read = Reader::default();
+    for (number, line) in text.lines().enumerate() {
+        read.line(line)
+            .with_context(|| format!("line {}", number + 1))?;
+    }
+    Mesh::new(read.positions, read.normals, read.textures, read.triangles)
+}
+
+#[derive(Default)]
+struct Reader {
+    positions: Vec<Vector>,
+    normals: Vec<Vector>,
+    textures: Vec<[f64; 2]>,
+    triangles: Vec<[RawCorner; 3]>,
+}
+
+impl Reader {
+    fn line(&mut self, line: &str) -> Result<()> {
+        let line = line.split('#').next().unwrap_or(line);
+        let mut words = line.split_whitespace();
+        match words.next() {
+            // A weight or a colour may follow the three coordinates.
+            Some("v") => self.positions.push(Vector(numbers("vertex", words)?)),
+            Some("vn") => self.normals.push(Vector(numbers("normal", words)?)),
+            Some("vt") => {
+                // One coordinate is a curve's, three a volume's.
+                let [u] = numbers("texture coordinate", words.clone())?;
+                let v = match words.nth(1) {
+                    Some(word) => number(word)?,
+                    None => 0.0,
+                };
+                self.textures.push([u, v]);
+            }
+            Some("f") => self.face(words)?,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// A face of n corners is a fan of n − 2 triangles.
+    fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Result<()> {
+        let corners: Vec<RawCorner> = words
+            .map(|word| {
+                self.corner(word)
+                    .with_context(|| format!("`{word}` is not a corner of a face"))
+            })
+            .collect::<Result<_>>()?;
+        ensure!(
+            corners.len() >= 3,
+            "a face has {} corners; it takes three",
+            corners.len()
+        );
+        let fan = corners[1..].windows(2);
+        self.triangles
+            .extend(fan.map(|pair| [corners[0], pair[0], pair[1]]));
+        Ok(())
+    }
+
+    /// `v`, `v/vt`, `v//vn` or `v/vt/vn`.
+    fn corner(&self, word: &str) -> Result<RawCorner> {
+        let mut parts = word.split('/');
+        let position = parts.next().unwrap_or_default();
+        let mut optional = |what, count| match parts.next() {
+            None | Some("") => Ok(None),
+            Some(part) => index(part, what, count).map(Some),
+        };
+        let texture = optional("texture coordinate", self.textures.len())?;
+        let normal = optional("normal", self.normals.len())?;
+        ensure!(parts.next().is_none(), "there are more than two `/`");
+        Ok(RawCorner {
+            position: index(position, "vertex", self.positions.len())?,
+            normal,
+            texture,
+        })
+    }
+}
+
+/// The first `N` words as finite numbers.
+fn numbers<'a, const N: usize>(
+    what: &str,
+    mut words: impl Iterator<Item = &'a str>,
+) -> Result<[f64; N]> {
+    let mut values = [0.0; N];
+    for value in &mut values {
+        let word = words.next();
+        let word = word.ok_or_else(|| anyhow!("a {what} takes {N} numbers"))?;
+        *value = number(word).with_context(|| format!("not a {what}"))?;
+    }
+    Ok(values)
+}
+
+fn number(word: &str) -> Result<f64> {
+    let value: f64 = word
+        .parse()
+        .map_err(|_| anyhow!("`{word}` is not a number"))?;
+    ensure!(value.is_finite(), "`{word}` is not a finite number");
+    Ok(value)
+}
+
+/// An index into the `count` entries so far: from 1, or from −1 backward.
+fn index(part: &str, what: &str, count: usize) -> Result<u32> {
+    let given: i64 = part
+        .parse()
+        .map_err(|_| anyhow!("`{part}` is not an integer"))?;
+    let index = match given {
+        0 => bail!("there is no {what} 0: they count from 1"),
+        1.. => given - 1,
+        _ => count as i64 + given,
+    };
+    match u32::try_from(index) {
+        Ok(index) if (index as usize) < count => Ok(index),
+        _ => bail!("there is no {what} {given}: there are {count} so far"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SQUARE: &str =
+        "v 0 0 0\nv 1 0 0 1.0\nv 1 1 0 0.5 0.5 0.5\nv 0 1 0 # last\nvn 0 0 2\nvt 0 0\nvt 1\n";
+
+    fn message(text: &str) -> String {
+        format!("{:#}", parse(text).unwrap_err())
+    }
+
+    #[test]
+    fn faces_of_all_kinds() {
+        let mesh = parse(&format!(
+            "{SQUARE}o one\nusemtl none\nf 1 2/1 3//1 -1/2/1\r\nl 1 2 3 4\n"
+        ))
+        .unwrap();
+        assert_eq!(mesh.triangles.len(), 2);
+        let [a, b, c] = mesh.triangles[0];
+        assert_eq!([a.position, b.position, c.position], [0, 1, 2]);
+        assert_eq!([a.texture, b.texture, c.texture], [None, Some(0), None]);
+        assert_eq!(c.normal, 0);
+        assert_eq!(mesh.normals[0], Vector::new(0.0, 0.0, 1.0));
+        assert_eq!(mesh.normals[a.normal as usize], Vector::new(0.0, 0.0, 1.0));
+        let [_, _, d] = mesh.triangles[1];
+        assert_eq!((d.position, d.texture, d.normal), (3, Some(1), 0));
+        assert!(!mesh.is_textured());
+    }
+
+    #[test]
+    fn mistakes_have_their_line() {
+        for (text, expected) in [
+            ("v 0 0\n", "line 1: a vertex takes 3 numbers"),
+            ("\nv 0 0 x\n", "line 2: not a vertex: `x` is not a number"),
+            (
+                "v 0 0 nan\n",
+                "line 1: not a vertex: `nan` is not a finite number",
+            ),
+            (
+                "vn 0 inf 0\n",
+                "line 1: not a normal: `inf` is not a finite number",
+            ),
+        ] {
+            assert_eq!(message(text), expected);
+        }
+        for (face, expected) in [
+            ("f 1 2", "a face has 2 corners; it takes three"),
+            (
+                "f 1 2 5",
+                "`5` is not a corner of a face: there is no vertex 5: there are 4 so far",
+            ),
+            ("f 1 2 -5", "there is no vertex -5"),
+            ("f 0 1 2", "there is no vertex 0: they count from 1"),
+            ("f 1 2 3//2", "there is no normal 2: there are 1 so far"),
+            ("f 1 2 3/1/1/1", "there are more than two `/`"),
+            ("f 1 2 three", "`three` is not an integer"),
+            ("f 1 2 99999999999999999999", "is not an integer"),
+        ] {
+            let found = message(&format!("{SQUARE}{face}\n"));
+            assert!(found.starts_with("line 8: "), "{found}");
+            assert!(found.contains(expected), "{found}");
+        }
+        assert_eq!(message(""), "there is no triangle");
+        assert_eq!(
+            message(&format!("{SQUARE}f 1 1 2\n")),
+            "all 1 triangles are without area"
+        );
+    }
+}

@@ -1,0 +1,147 @@
+//! Pictures of 8 bits a channel, and PNG.
+
+use anyhow::{Context, Result};
+use png::{BitDepth, ColorType, Compression, Encoder, Filter};
+
+use super::vector::Vector;
+
+/// Pixels in rows from the top.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Picture {
+    /// Pixels in a row.
+    pub width: u32,
+    /// Red, green and blue of each pixel.
+    pub pixels: Vec<[u8; 3]>,
+}
+
+impl Picture {
+    /// A picture without rows.
+    pub fn new(width: u32) -> Self {
+        Self {
+            width,
+            pixels: Vec::new(),
+        }
+    }
+
+    /// The number of rows.
+    pub fn height(&self) -> u32 {
+        (self.pixels.len() / self.width as usize) as u32
+    }
+
+    /// Pictures of one size side by side.
+    pub fn beside(pictures: &[&Self]) -> Self {
+        let mut all = Self::new(pictures.iter().map(|picture| picture.width).sum());
+        for row in 0..pictures.first().map_or(0, |picture| picture.height()) as usize {
+            for picture in pictures {
+                let width = picture.width as usize;
+                all.pixels
+                    .extend(&picture.pixels[row * width..(row + 1) * width]);
+            }
+        }
+        all
+    }
+
+    /// As a PNG file. The same pixels give the same bytes.
+    ///
+    /// # Errors
+    /// None that a user could cause.
+    pub fn png(&self) -> Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        let mut encoder = Encoder::new(&mut bytes, self.width, self.height());
+        encoder.set_color(ColorType::Rgb);
+        encoder.set_depth(BitDepth::Eight);
+        encoder.set_compression(Compression::Balanced);
+        encoder.set_filter(Filter::Adaptive);
+        let mut writer = encoder.write_header().context("cannot encode PNG")?;
+        writer
+            .write_image_data(self.pixels.as_flattened())
+            .context("cannot encode PNG")?;
+        writer.finish().context("cannot encode PNG")?;
+        Ok(bytes)
+    }
+}
+
+/// A colour of 0 … 255 a channel as a pixel: saturated, and rounded to the nearest.
+#[inline]
+pub fn pixel(colour: Vector) -> [u8; 3] {
+    colour.0.map(|value| (value + 0.5).clamp(0.0, 255.0) as u8)
+}
+
+/// How two pictures differ.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Difference {
+    /// The largest difference of a channel, in levels of 255.
+    pub largest: u8,
+    /// The peak signal-to-noise ratio in decibels, over the pixels of the things; none when they are equal.
+    pub psnr: Option<f64>,
+    /// By what the differences in [`Difference::picture`] are multiplied, for them to be seen.
+    pub gain: u8,
+    /// The absolute differences.
+    pub picture: Picture,
+}
+
+impl Difference {
+    /// Between two pictures of one size; `shown` says of each pixel whether it shows a thing.
+    pub fn new(a: &Picture, b: &Picture, shown: &[bool]) -> Self {
+        let pairs = a.pixels.iter().zip(&b.pixels);
+        let differences: Vec<[u8; 3]> = pairs
+            .map(|(a, b)| [0, 1, 2].map(|channel| a[channel].abs_diff(b[channel])))
+            .collect();
+        let channels = differences.as_flattened();
+        let largest = channels.iter().copied().max().unwrap_or(0);
+        let squares: u64 = channels.iter().map(|&d| u64::from(d) * u64::from(d)).sum();
+        let counted = 3 * shown.iter().filter(|&&shown| shown).count().max(1);
+        let mean = squares as f64 / counted as f64;
+        // The largest power of two that keeps the largest difference below white.
+        let gain = 1 << (255 / largest.max(1)).ilog2();
+        Self {
+            largest,
+            psnr: (squares > 0).then(|| 10.0 * libm::log10(255.0 * 255.0 / mean)),
+            gain,
+            picture: Picture {
+                width: a.width,
+                pixels: differences
+                    .into_iter()
+                    .map(|pixel| pixel.map(|channel| channel * gain))
+                    .collect(),
+            },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture(pixels: [[u8; 3]; 2]) -> Picture {
+        Picture {
+            width: 1,
+            pixels: pixels.to_vec(),
+        }
+    }
+
+    #[test]
+    fn differences_are_measured_over_what_is_shown() {
+        let a = picture([[10, 0, 255], [0; 3]]);
+        let b = picture([[0, 30, 255], [0; 3]]);
+        let difference = Difference::new(&a, &b, &[true, false]);
+        assert_eq!((difference.largest, difference.gain), (30, 8));
+        assert_eq!(difference.picture.pixels, [[80, 240, 0], [0; 3]]);
+        // 10·log₁₀(255²·3/1000).
+        assert!((difference.psnr.unwrap() - 22.901_6).abs() < 1e-3);
+        assert_eq!(Difference::new(&a, &a, &[true, true]).psnr, None);
+    }
+
+    #[test]
+    fn pixels_saturate() {
+        assert_eq!(pixel(Vector::new(-3.0, 254.5, 900.0)), [0, 255, 255]);
+        assert_eq!(pixel(Vector::new(0.49, 127.5, 254.49)), [0, 128, 254]);
+    }
+
+    #[test]
+    fn pictures_stand_beside_each_other() {
+        let both = Picture::beside(&[&picture([[1; 3], [2; 3]]), &picture([[3; 3], [4; 3]])]);
+        assert_eq!((both.width, both.height()), (2, 2));
+        assert_eq!(both.pixels, [[1; 3], [3; 3], [2; 3], [4; 3]]);
+    }
+}

@@ -1,0 +1,154 @@
+//! What a picture shows.
+
+use anyhow::Result;
+
+use super::height::Relief;
+use super::mesh::Mesh;
+use super::shapes;
+use super::vector::Vector;
+
+/// Things and lights.
+#[derive(Clone, Debug, Default)]
+pub struct Scene {
+    /// At least one.
+    pub objects: Vec<Object>,
+    /// They shine from everywhere.
+    pub lights: Vec<Light>,
+    /// What changes the normals of everything.
+    pub relief: Option<Relief>,
+}
+
+/// A thing.
+#[derive(Clone, Debug)]
+pub struct Object {
+    /// Its surface.
+    pub shape: Shape,
+    /// The colour of its ambient and diffuse light, 0 … 1.
+    pub colour: Vector,
+}
+
+/// A surface.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// A ball, exactly.
+    Ball {
+        /// Its middle.
+        middle: Vector,
+        /// Its radius.
+        radius: f64,
+    },
+    /// Triangles with interpolated normals.
+    Mesh(Mesh),
+}
+
+/// A light so far away that its direction is the same everywhere.
+#[derive(Clone, Copy, Debug)]
+pub struct Light {
+    /// Toward the light, of length 1.
+    pub direction: Vector,
+    /// Its colour, 0 … 1.
+    pub colour: Vector,
+}
+
+/// The scenes that need no file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BuiltIn {
+    /// A ball.
+    Sphere,
+    /// A ring.
+    Torus,
+    /// A vase.
+    Vase,
+    /// A vase, a ball and a ring.
+    Group,
+}
+
+/// The colour of things by default.
+pub const COLOUR: Vector = Vector::new(0.10, 0.33, 0.46);
+
+impl Scene {
+    /// A scene that needs no file; its things have the given colour, or colours of their own.
+    ///
+    /// # Errors
+    /// None that a user could cause.
+    pub fn built_in(which: BuiltIn, colour: Option<Vector>) -> Result<Vec<Object>> {
+        let ball = |middle, radius| Shape::Ball { middle, radius };
+        let of = |shape, own| Object {
+            shape,
+            colour: colour.unwrap_or(own),
+        };
+        let moved =
+            |mesh: Mesh, size: f64, tilt: f64, to: Vector| Shape::Mesh(place(mesh, size, tilt, to));
+        let origin = Vector::default();
+        Ok(match which {
+            BuiltIn::Sphere => vec![of(ball(origin, 1.0), COLOUR)],
+            BuiltIn::Torus => {
+                let mesh = shapes::torus(0.72, 0.28, [384, 160])?;
+                vec![of(moved(mesh, 1.0, 0.9, origin), COLOUR)]
+            }
+            BuiltIn::Vase => vec![of(Shape::Mesh(shapes::vase([384, 480])?), COLOUR)],
+            BuiltIn::Group => {
+                let vase = shapes::vase([384, 480])?;
+                let ring = shapes::torus(0.72, 0.28, [384, 160])?;
+                vec![
+                    of(
+                        moved(vase, 1.05, 0.0, Vector::new(-1.45, 0.05, -0.25)),
+                        Vector::new(0.45, 0.07, 0.06),
+                    ),
+                    of(ball(Vector::new(0.0, -0.2, 0.35), 0.8), COLOUR),
+                    of(
+                        moved(ring, 0.85, 1.05, Vector::new(1.5, -0.1, -0.1)),
+                        Vector::new(0.42, 0.27, 0.05),
+                    ),
+                ]
+            }
+        })
+    }
+
+    /// The middle and the radius of a ball around the boxes of everything.
+    pub fn extent(&self) -> (Vector, f64) {
+        let mut low = Vector([f64::INFINITY; 3]);
+        let mut high = Vector([f64::NEG_INFINITY; 3]);
+        for object in &self.objects {
+            let (least, most) = match &object.shape {
+                Shape::Ball { middle, radius } => {
+                    let half = Vector([*radius; 3]);
+                    (*middle - half, *middle + half)
+                }
+                Shape::Mesh(mesh) => mesh.bounds(),
+            };
+            for axis in 0..3 {
+                low.0[axis] = low.0[axis].min(least.0[axis]);
+                high.0[axis] = high.0[axis].max(most.0[axis]);
+            }
+        }
+        let middle = low * 0.5 + high * 0.5;
+        // A ball alone is its own.
+        let radius = match self.objects.as_slice() {
+            [
+                Object {
+                    shape: Shape::Ball { radius, .. },
+                    ..
+                },
+            ] => *radius,
+            _ => (high - middle).length(),
+        };
+        (middle, radius)
+    }
+}
+
+/// A mesh scaled, tilted about the x axis by an angle, and moved.
+fn place(mut mesh: Mesh, size: f64, tilt: f64, to: Vector) -> Mesh {
+    let (sin, cos) = (libm::sin(tilt), libm::cos(tilt));
+    let turn = |vector: Vector| {
+        let [x, y, z] = vector.0;
+        Vector::new(x, y * cos - z * sin, y * sin + z * cos)
+    };
+    for position in &mut mesh.positions {
+        *position = turn(*position) * size + to;
+    }
+    for normal in &mut mesh.normals {
+        *normal = turn(*normal);
+    }
+    mesh
+}

@@ -1,0 +1,121 @@
+//! Meshes that are computed.
+
+use std::f64::consts::TAU;
+
+use anyhow::Result;
+
+use super::mesh::{Mesh, RawCorner};
+use super::vector::Vector;
+
+/// A torus around the y axis: `major` from the middle to the tube's, `minor` the tube's radius, each way in
+/// so many steps.
+///
+/// # Errors
+/// Those of [`Mesh::new`].
+pub fn torus(major: f64, minor: f64, steps: [u32; 2]) -> Result<Mesh> {
+    grid(steps, [true, true], |u, v| {
+        let (around, across) = (u * TAU, v * TAU);
+        let from_axis = major + minor * libm::cos(across);
+        Vector::new(
+            from_axis * libm::sin(around),
+            minor * libm::sin(across),
+            from_axis * libm::cos(around),
+        )
+    })
+}
+
+/// A vase of height 2 around the y axis, open at the top: belly, neck and lip.
+///
+/// # Errors
+/// Those of [`Mesh::new`].
+pub fn vase(steps: [u32; 2]) -> Result<Mesh> {
+    grid(steps, [true, false], |u, v| {
+        // Outside from the foot to the lip, then down the inside.
+        let wall = 0.035;
+        let (height, inward) = match v {
+            ..0.6 => (v / 0.6, 0.0),
+            _ => ((1.0 - v) / 0.4, wall),
+        };
+        let height = if inward > 0.0 {
+            height * (1.0 - wall) + wall
+        } else {
+            height
+        };
+        let radius = (vase_radius(height) - inward).max(0.0);
+        let around = u * TAU;
+        Vector::new(
+            radius * libm::sin(around),
+            2.0 * height - 1.0,
+            radius * libm::cos(around),
+        )
+    })
+}
+
+/// The radius of the vase from the foot (0) to the lip (1).
+fn vase_radius(height: f64) -> f64 {
+    // A foot that closes, a belly, a neck, and a lip that opens.
+    let foot = (height * 14.0).min(1.0);
+    let foot = foot * (2.0 - foot);
+    let belly = 0.36 + 0.27 * libm::sin(height * 5.1 - 0.35);
+    let lip = 0.22 * libm::pow(height, 14.0);
+    (foot * belly + lip).max(0.0)
+}
+
+/// The surface `at` over the unit square, in steps; closed in a direction where its ends meet.
+fn grid(steps: [u32; 2], closed: [bool; 2], at: impl Fn(f64, f64) -> Vector) -> Result<Mesh> {
+    let [columns, rows] = steps;
+    let mut positions = Vec::new();
+    let mut textures = Vec::new();
+    for row in 0..=rows {
+        for column in 0..=columns {
+            // Where the ends meet they are the same point to the last bit.
+            let fraction = |at: u32, steps: u32, closed: bool| {
+                f64::from(if closed { at % steps } else { at }) / f64::from(steps)
+            };
+            positions.push(at(
+                fraction(column, columns, closed[0]),
+                fraction(row, rows, closed[1]),
+            ));
+            textures.push([
+                f64::from(column) / f64::from(columns),
+                f64::from(row) / f64::from(rows),
+            ]);
+        }
+    }
+    let mut triangles = Vec::new();
+    for row in 0..rows {
+        for column in 0..columns {
+            let corner = |right: u32, above: u32| {
+                let at = (row + above) * (columns + 1) + column + right;
+                RawCorner {
+                    position: at,
+                    normal: None,
+                    texture: Some(at),
+                }
+            };
+            let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
+            triangles.push([a, b, c]);
+            triangles.push([a, c, d]);
+        }
+    }
+    Mesh::new(positions, Vec::new(), textures, triangles)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_torus_has_the_normals_of_a_torus() {
+        let mesh = torus(1.0, 0.25, [96, 48]).unwrap();
+        assert_eq!((mesh.triangles.len(), mesh.degenerate), (2 * 96 * 48, 0));
+        for corner in mesh.triangles.iter().flatten() {
+            let point = mesh.positions[corner.position as usize];
+            let [x, _, z] = point.0;
+            let ring = Vector::new(x, 0.0, z).unit().unwrap();
+            let exact = (point - ring).unit().unwrap();
+            let normal = mesh.normals[corner.normal as usize];
+            assert!((normal - exact).length() < 0.01, "{point:?}: {normal:?}");
+        }
+    }
+}

@@ -1,0 +1,340 @@
+//! What is seen at each sample of the picture: a z-buffer, row bands in parallel.
+//!
+//! A triangle is a homogeneous one: with its corners in the camera's coordinates, the barycentric
+//! coordinates of the ray through a sample are its products with the normals of the three planes through
+//! the eye and an edge. There is no clipping, and triangles that share an edge leave no gap, since both
+//! compute the same number for it, with opposite signs. Where two are at the same depth, the first wins.
+
+use rayon::prelude::*;
+
+use super::camera::Camera;
+use super::scene::{Scene, Shape};
+use super::vector::Vector;
+
+/// Rows of samples that are worked on together.
+const BAND: usize = 16;
+
+/// What a ray meets first.
+#[derive(Clone, Copy, Debug)]
+pub struct Hit {
+    /// How far along the ray, whose third component is −1: the distance from the eye's plane.
+    pub depth: f64,
+    /// Of the scene.
+    pub object: u32,
+    /// Of the object's mesh; 0 for a ball.
+    pub triangle: u32,
+    /// The weights of the second and the third corner.
+    pub weights: [f64; 2],
+}
+
+const NOTHING: Hit = Hit {
+    depth: f64::INFINITY,
+    object: u32::MAX,
+    triangle: 0,
+    weights: [0.0; 2],
+};
+
+impl Hit {
+    /// Whether there is anything.
+    pub fn is_something(&self) -> bool {
+        self.object != u32::MAX
+    }
+}
+
+/// Samples in rows and columns, seen from a camera.
+#[derive(Clone, Copy, Debug)]
+pub struct Raster {
+    /// Samples in a row.
+    pub columns: usize,
+    /// Rows, from the top.
+    pub rows: usize,
+    /// Half the width and half the height of what is seen at distance 1.
+    half: (f64, f64),
+}
+
+impl Raster {
+    /// Of so many samples.
+    pub fn new(columns: usize, rows: usize, camera: &Camera) -> Self {
+        Self {
+            columns,
+            rows,
+            half: camera.half(),
+        }
+    }
+
+    /// The ray through the middle of a sample, in the camera's coordinates.
+    #[inline]
+    pub fn ray(&self, column: usize, row: usize) -> Vector {
+        let x = (2.0 * column as f64 + 1.0) / self.columns as f64 - 1.0;
+        let y = 1.0 - (2.0 * row as f64 + 1.0) / self.rows as f64;
+        Vector::new(x * self.half.0, y * self.half.1, -1.0)
+    }
+
+    /// The samples whose middles may lie between two slopes, `x/−z` or −`y/−z`: one more on each side.
+    fn span(&self, low: f64, high: f64, half: f64, count: usize) -> (u32, u32) {
+        let at = |slope: f64| (slope / half + 1.0) / 2.0 * count as f64 - 0.5;
+        let last = count as f64;
+        // Saturating conversions.
+        let first = (at(low) - 1.0).clamp(0.0, last) as u32;
+        let end = (at(high) + 2.0).clamp(0.0, last) as u32;
+        (first, end)
+    }
+}
+
+/// A scene in the camera's coordinates, sorted by rows.
+pub struct Visibility<'a> {
+    scene: &'a Scene,
+    raster: Raster,
+    /// Of each mesh, by object.
+    corners: Vec<Vec<Vector>>,
+    balls: Vec<(u32, Vector, f64)>,
+    /// For each band of rows what may be seen there: object, triangle, columns.
+    bands: Vec<Vec<Candidate>>,
+    /// What is nearer than this is not seen.
+    near: f64,
+}
+
+#[derive(Clone, Copy)]
+struct Candidate {
+    object: u32,
+    triangle: u32,
+    columns: (u32, u32),
+    rows: (u32, u32),
+}
+
+impl<'a> Visibility<'a> {
+    /// Sorts a scene, all of which lies in a ball of radius `size`.
+    pub fn new(scene: &'a Scene, camera: &Camera, raster: Raster, size: f64) -> Self {
+        let mut visibility = Self {
+            scene,
+            raster,
+            corners: Vec::new(),
+            balls: Vec::new(),
+            bands: vec![Vec::new(); raster.rows.div_ceil(BAND)],
+            near: size * 1e-6,
+        };
+        for (object, thing) in (0..).zip(&scene.objects) {
+            let mut corners = Vec::new();
+            match &thing.shape {
+                Shape::Ball { middle, radius } => {
+                    visibility
+                        .balls
+                        .push((object, camera.place(*middle), *radius));
+                }
+                Shape::Mesh(mesh) => {
+                    let points = mesh.positions.par_iter();
+                    corners = points.map(|&point| camera.place(point)).collect();
+                }
+            }
+            visibility.corners.push(corners);
+            visibility.sort(object);
+        }
+        visibility
+    }
+
+    /// Puts the triangles of an object into the bands, in their order.
+    fn sort(&mut self, object: u32) {
+        let Shape::Mesh(mesh) = &self.scene.objects[object as usize].shape else {
+            return;
+        };
+        let candidates: Vec<Option<Candidate>> = (0..mesh.triangles.len() as u32)
+            .into_par_iter()
+            .map(|triangle| self.candidate(object, triangle))
+            .collect();
+        for candidate in candidates.into_iter().flatten() {
+            let (first, end) = candidate.rows;
+            for band in first as usize / BAND..(end as usize).div_ceil(BAND) {
+                self.bands[band].push(candidate);
+            }
+        }
+    }
+
+    fn corners(&self, object: u32, triangle: u32) -> [Vector; 3] {
+        match &self.scene.objects[object as usize].shape {
+            Shape::Ball { .. } => [Vector::default(); 3],
+            Shape::Mesh(mesh) => mesh.triangles[triangle as usize]
+                .map(|corner| self.corners[object as usize][corner.position as usize]),
+        }
+    }
+
+    /// Where a triangle may be seen, if anywhere.
+    fn candidate(&self, object: u32, triangle: u32) -> Option<Candidate> {
+        let corners = self.corners(object, triangle);
+        let distances = corners.map(|corner| -corner.0[2]);
+        if distances.iter().all(|&distance| distance <= self.near) {
+            return None;
+        }
+        let Raster {
+            columns: width,
+            rows: height,
+            half,
+        } = self.raster;
+        let (columns, rows) = if distances.iter().all(|&distance| distance > self.near) {
+            let slopes = corners.map(|corner| {
+                let [x, y, z] = corner.0;
+                (x / -z, y / z)
+            });
+            let least = |pick: fn((f64, f64)) -> f64| {
+                slopes.map(pick).into_iter().fold(f64::INFINITY, f64::min)
+            };
+            let most = |pick: fn((f64, f64)) -> f64| {
+                slopes
+                    .map(pick)
+                    .into_iter()
+                    .fold(f64::NEG_INFINITY, f64::max)
+            };
+            let (x, y) = (|slope: (f64, f64)| slope.0, |slope: (f64, f64)| slope.1);
+            (
+                self.raster.span(least(x), most(x), half.0, width),
+                self.raster.span(least(y), most(y), half.1, height),
+            )
+        } else {
+            // It reaches behind the eye: it may be seen anywhere.
+            ((0, width as u32), (0, height as u32))
+        };
+        (columns.0 < columns.1 && rows.0 < rows.1).then_some(Candidate {
+            object,
+            triangle,
+            columns,
+            rows,
+        })
+    }
+
+    /// What is seen in some rows, row by row.
+    pub fn rows(&self, first: usize, end: usize) -> Vec<Hit> {
+        let width = self.raster.columns;
+        let mut hits = vec![NOTHING; width * (end - first)];
+        // Bands of the whole picture, of which the first and the last may be seen in part.
+        let mut parts = Vec::new();
+        let (mut rest, mut row) = (hits.as_mut_slice(), first);
+        while row < end {
+            let until = ((row / BAND + 1) * BAND).min(end);
+            let (part, after) = rest.split_at_mut((until - row) * width);
+            parts.push((row, part));
+            (rest, row) = (after, until);
+        }
+        parts
+            .into_par_iter()
+            .for_each(|(row, part)| self.band(row, part));
+        hits
+    }
+
+    /// Rows of one band, the first of which is number `first`.
+    fn band(&self, first: usize, hits: &mut [Hit]) {
+        let width = self.raster.columns;
+        let end = first + hits.len() / width;
+        for candidate in &self.bands[first / BAND] {
+            let corners = self.corners(candidate.object, candidate.triangle);
+            let Some(planes) = Planes::new(corners) else {
+                continue;
+            };
+            let (top, bottom) = candidate.rows;
+            for row in first.max(top as usize)..end.min(bottom as usize) {
+                let line = &mut hits[(row - first) * width..][..width];
+                for column in candidate.columns.0 as usize..candidate.columns.1 as usize {
+                    let ray = self.raster.ray(column, row);
+                    if let Some((depth, weights)) = planes.meet(ray)
+                        && depth > self.near
+                        && depth < line[column].depth
+                    {
+                        line[column] = Hit {
+                            depth,
+                            object: candidate.object,
+                            triangle: candidate.triangle,
+                            weights,
+                        };
+                    }
+                }
+            }
+        }
+        for &(object, middle, radius) in &self.balls {
+            for (at, hit) in hits.iter_mut().enumerate() {
+                let ray = self.raster.ray(at % width, first + at / width);
+                if let Some(depth) = meet_ball(ray, middle, radius)
+                    && depth > self.near
+                    && depth < hit.depth
+                {
+                    *hit = Hit {
+                        depth,
+                        object,
+                        ..NOTHING
+                    };
+                }
+            }
+        }
+    }
+}
+
+/// The planes through the eye and the edges of a triangle.
+struct Planes {
+    normals: [Vector; 3],
+    /// Six times the volume of eye and triangle.
+    volume: f64,
+}
+
+impl Planes {
+    /// `None` for a triangle that is seen from its edge.
+    fn new([a, b, c]: [Vector; 3]) -> Option<Self> {
+        let normals = [b.cross(c), c.cross(a), a.cross(b)];
+        let volume = a.dot(normals[0]);
+        (volume != 0.0).then_some(Self { normals, volume })
+    }
+
+    /// Where a ray meets the triangle, with the weights of the second and the third corner.
+    #[inline]
+    fn meet(&self, ray: Vector) -> Option<(f64, [f64; 2])> {
+        let [a, b, c] = self.normals.map(|normal| ray.dot(normal));
+        let inside = (a >= 0.0 && b >= 0.0 && c >= 0.0) || (a <= 0.0 && b <= 0.0 && c <= 0.0);
+        if !inside {
+            return None;
+        }
+        let sum = a + b + c;
+        let depth = self.volume / sum;
+        depth.is_finite().then(|| (depth, [b / sum, c / sum]))
+    }
+}
+
+/// Where a ray enters a ball.
+#[inline]
+fn meet_ball(ray: Vector, middle: Vector, radius: f64) -> Option<f64> {
+    let square = ray.dot(ray);
+    let along = ray.dot(middle);
+    let discriminant = along * along - square * (middle.dot(middle) - radius * radius);
+    (discriminant >= 0.0).then(|| (along - discriminant.sqrt()) / square)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_triangle_is_met_with_its_weights() {
+        let corners = [[0.0, 0.0, -2.0], [4.0, 0.0, -4.0], [0.0, 1.0, -1.0]].map(Vector);
+        let planes = Planes::new(corners).unwrap();
+        // A quarter, a half, a quarter: (2, 1/4, −11/4), along the ray of z = −1.
+        let point = Vector::new(2.0, 0.25, -2.75);
+        let (depth, [b, c]) = planes.meet(point * (1.0 / 2.75)).unwrap();
+        assert!(
+            (depth - 2.75).abs() < 1e-14 && (b - 0.5).abs() < 1e-14 && (c - 0.25).abs() < 1e-14
+        );
+        assert!(planes.meet(Vector::new(-0.1, 0.1, -1.0)).is_none());
+        // Behind the eye the depth is negative.
+        assert!(planes.meet(point * -1.0).unwrap().0 < 0.0);
+    }
+
+    #[test]
+    fn a_ball_is_met_in_front() {
+        let depth = meet_ball(
+            Vector::new(0.0, 0.0, -1.0),
+            Vector::new(0.0, 0.0, -5.0),
+            2.0,
+        );
+        assert_eq!(depth, Some(3.0));
+        let beside = meet_ball(
+            Vector::new(1.0, 0.0, -1.0),
+            Vector::new(0.0, 0.0, -5.0),
+            2.0,
+        );
+        assert_eq!(beside, None);
+    }
+}

@@ -1,0 +1,99 @@
+// ${ name }$: computes with ${ module }$ what a file lists
+//
+// Every line of POINTS_FILE has the operands of one computation in hexadecimal, in port order. For each
+// result, ${ name }$ writes a line to RESULTS_FILE with the outputs in hexadecimal, in port order, and
+// after the last result of a computation a line with a single dot.
+// Inputs change on the falling edge of the clock; outputs are read just before the rising edge.
+
+`default_nettype none
+
+module ${ name }$ #(
+    parameter POINTS_FILE  = "${ points_file }$",
+    parameter RESULTS_FILE = "${ results_file }$"
+);
+    localparam LIMIT = ${ limit }$;  // clocks that one computation may take
+
+    reg clk = 1'b0;
+<%- for line in declarations %>
+${ line }$
+<%- endfor %>
+
+    integer ${ names.points }$;
+    integer ${ names.results }$;
+    integer ${ names.read }$;
+    integer ${ names.clocks }$;
+    integer ${ names.total }$ = 0;
+
+    ${ module }$ ${ names.dut }$ (
+<%- for line in connections %>
+        ${ line }$
+<%- endfor %>
+    );
+
+    task ${ names.tick }$;
+        begin
+            #5 clk = 1'b1;
+            #5 clk = 1'b0;
+        end
+    endtask
+
+    initial begin
+        ${ names.points }$ = $fopen(POINTS_FILE, "r");
+        ${ names.results }$ = $fopen(RESULTS_FILE, "w");
+        ${ reset }$ = 1'b0;
+        ${ start }$ = 1'b0;
+<%- for strobe in strobes %>
+        ${ strobe }$ = 1'b0;
+<%- endfor %>
+        ${ names.tick }$;
+        ${ reset }$ = 1'b1;
+        ${ names.read }$ = $fscanf(
+            ${ names.points }$, "${ scan }$"
+<%- for operand in operands %>,
+            ${ operand }$
+<%- endfor %>
+        );
+        while (${ names.read }$ == ${ operands.len() }$) begin
+            // The registers take the operands in the clock that takes `start`.
+            ${ start }$ = 1'b1;
+<%- for strobe in strobes %>
+            ${ strobe }$ = 1'b1;
+<%- endfor %>
+            ${ names.tick }$;
+            ${ start }$ = 1'b0;
+<%- for strobe in strobes %>
+            ${ strobe }$ = 1'b0;
+<%- endfor %>
+            ${ names.clocks }$ = 0;
+            while (${ busy }$ && ${ names.clocks }$ < LIMIT) begin
+                if (${ valid }$) begin
+                    $fwrite(
+                        ${ names.results }$, "${ print }$\n"
+<%- for result in results %>,
+                        ${ result }$
+<%- endfor %>
+                    );
+                end
+                ${ names.tick }$;
+                ${ names.clocks }$ = ${ names.clocks }$ + 1;
+            end
+            if (${ busy }$) begin
+                $display("FAIL ${ module }$: computation %0d does not end", ${ names.total }$);
+                $fatal;
+            end
+            $fwrite(${ names.results }$, ".\n");
+            ${ names.total }$ = ${ names.total }$ + 1;
+            ${ names.read }$ = $fscanf(
+                ${ names.points }$, "${ scan }$"
+<%- for operand in operands %>,
+                ${ operand }$
+<%- endfor %>
+            );
+        end
+        $fclose(${ names.results }$);
+        $display("PASS ${ module }$: %0d computations", ${ names.total }$);
+        $finish;
+    end
+endmodule
+
+`default_nettype wire
