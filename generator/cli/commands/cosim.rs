@@ -1,6 +1,6 @@
 //! `cosim`.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -10,8 +10,9 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::{Loaded, load};
+use crate::cli::destination::Destination;
 use crate::cli::failure::Usage;
-use crate::cli::{Output, POINTS, Simulator, progress, staged, tables};
+use crate::cli::{Output, POINTS, Simulator, progress, tables};
 use crate::cosim::external::{self, BenchOutcome};
 use crate::cosim::{Outcome, Worst};
 use crate::golden::Bound;
@@ -199,7 +200,7 @@ fn run(
     traced(&mut lockstep, path, points, progress)
 }
 
-/// A run with a waveform: written beside its place and moved there when it is whole.
+/// A run with a waveform.
 fn traced(
     lockstep: &mut crate::cosim::Lockstep<'_>,
     path: &Path,
@@ -207,21 +208,9 @@ fn traced(
     progress: &mut dyn FnMut(u64),
 ) -> Result<Outcome> {
     let cannot = || format!("cannot write the waveform `{}`", path.display());
-    // A pipe or a device is written itself; a file is replaced.
-    if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
-        let file = OpenOptions::new()
-            .write(true)
-            .open(path)
-            .with_context(cannot)?;
-        return trace_to(lockstep, file, points, progress).with_context(cannot);
-    }
-    let staged = staged::beside(path)?;
-    let file = staged.reopen().with_context(cannot)?;
-    let outcome = trace_to(lockstep, file, points, progress).with_context(cannot)?;
-    staged
-        .persist(path)
-        .map_err(|error| error.error)
-        .with_context(cannot)?;
+    let destination = Destination::open(path)?;
+    let outcome = trace_to(lockstep, destination.file()?, points, progress).with_context(cannot)?;
+    destination.commit()?;
     Ok(outcome)
 }
 

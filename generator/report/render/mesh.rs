@@ -125,17 +125,10 @@ impl Mesh {
         corners.all(|corner| corner.texture.is_some())
     }
 
-    /// The corners of the box around the triangles.
-    pub fn bounds(&self) -> (Vector, Vector) {
-        let mut bounds = (Vector([f64::INFINITY; 3]), Vector([f64::NEG_INFINITY; 3]));
-        for corner in self.triangles.iter().flatten() {
-            let point = self.positions[corner.position as usize];
-            for axis in 0..3 {
-                bounds.0.0[axis] = bounds.0.0[axis].min(point.0[axis]);
-                bounds.1.0[axis] = bounds.1.0[axis].max(point.0[axis]);
-            }
-        }
-        bounds
+    /// The positions of all corners of all triangles.
+    pub fn corner_positions(&self) -> impl Iterator<Item = Vector> {
+        let corners = self.triangles.iter().flatten();
+        corners.map(|corner| self.positions[corner.position as usize])
     }
 }
 

@@ -153,7 +153,7 @@ pub fn render(
         "the mesh is too large for its size to be a number"
     );
     let aspect = f64::from(width) / f64::from(height);
-    let camera = Camera::new(&settings.view, aspect, middle, radius)?;
+    let camera = Camera::new(&settings.view, aspect, middle, scene.balls())?;
     let format = |name: &str| {
         let net = unit.design.find(name);
         net.map(|net| unit.design.net(net).format)
@@ -292,13 +292,25 @@ impl Portions<'_> {
         let operands = contract.operands();
         let control = operands.iter().filter(|operand| !operand.colour).count();
         let width = contract.outputs().len();
+        // What a unit of an output and of its colour operand stands for.
+        let units: Vec<(f64, f64)> = contract
+            .outputs()
+            .iter()
+            .zip(&operands[control..])
+            .map(|(output, colour)| {
+                let format = self.unit.design.find(output);
+                let format = format.map(|net| self.unit.design.net(net).format);
+                let unit = colour.format.to_f64(1);
+                (format.map_or(unit, |format| format.to_f64(1)), unit)
+            })
+            .collect();
         let errors = (0..points.len()).into_par_iter().map(|at| {
             let (setting, colours) = points.operands(at).split_at(control);
             let f = contract.reference(setting);
             let outputs = &outputs[at * width..(at + 1) * width];
-            let errors = outputs.iter().zip(colours).map(|(&out, &colour)| {
-                // Both are integers of the same unit.
-                (out as f64 - f * colour as f64).abs()
+            let each = outputs.iter().zip(colours).zip(&units);
+            let errors = each.map(|((&out, &colour), &(out_unit, colour_unit))| {
+                (out as f64 - f * colour as f64 * colour_unit / out_unit).abs()
             });
             errors.fold(0.0, f64::max)
         });

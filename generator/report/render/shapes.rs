@@ -94,8 +94,12 @@ fn grid(steps: [u32; 2], closed: [bool; 2], at: impl Fn(f64, f64) -> Vector) -> 
                 }
             };
             let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-            triangles.push([a, b, c]);
-            triangles.push([a, c, d]);
+            // Where a row is a single point, there is one triangle instead of two.
+            let differ = |corners: &[RawCorner; 3]| {
+                let [p, q, r] = corners.map(|corner| positions[corner.position as usize]);
+                p != q && q != r && r != p
+            };
+            triangles.extend([[a, b, c], [a, c, d]].into_iter().filter(differ));
         }
     }
     Mesh::new(positions, Vec::new(), textures, triangles)
