@@ -148,10 +148,6 @@ pub fn render(
     let (width, height) = settings.size;
     let samples = settings.samples as usize;
     let (middle, radius) = scene.extent();
-    ensure!(
-        radius.is_finite(),
-        "the mesh is too large for its size to be a number"
-    );
     let aspect = f64::from(width) / f64::from(height);
     let camera = Camera::new(&settings.view, aspect, middle, scene.balls())?;
     let format = |name: &str| {

@@ -64,7 +64,7 @@ pub enum BuiltIn {
 }
 
 /// The colour of things by default.
-pub const COLOUR: Vector = Vector::new(0.07, 0.30, 0.46);
+pub const COLOUR: Vector = Vector::new(0.08, 0.35, 0.54);
 
 impl Scene {
     /// A scene that needs no file; its things have the given colour, or colours of their own.
@@ -93,12 +93,12 @@ impl Scene {
                 vec![
                     of(
                         moved(vase, 1.0, 0.0, Vector::new(-1.12, 0.2, -0.45)),
-                        Vector::new(0.50, 0.07, 0.06),
+                        Vector::new(0.60, 0.08, 0.07),
                     ),
                     of(ball(Vector::new(0.0, -0.2, 0.4), 0.74), COLOUR),
                     of(
                         moved(ring, 0.85, 1.05, Vector::new(1.22, 0.12, -0.35)),
-                        Vector::new(0.50, 0.31, 0.05),
+                        Vector::new(0.62, 0.38, 0.06),
                     ),
                 ]
             }
