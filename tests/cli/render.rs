@@ -60,10 +60,17 @@ fn the_same_pixels_whichever_computes_them() {
     let place = Place::with("power.toml", COSINE_POWER);
     place.write("rough.toml", "device = \"rough\"\n");
     place.write("bumps.png", bumps());
-    for config in ["power.toml", "rough.toml"] {
+    place.write("quad.toml", "device = \"quad-cosine\"\n");
+    place.write("squared.toml", "device = \"cosine-squared\"\n");
+    for (config, more) in [
+        ("power.toml", &["--height", "bumps.png"][..]),
+        ("rough.toml", &["--height", "bumps.png"]),
+        ("quad.toml", &["--shape", "torus"]),
+        ("squared.toml", &[]),
+    ] {
         let mut pictures = Vec::new();
         for through in ["golden", "rust-hdl", "verilator"] {
-            let arguments = [config, "--height", "bumps.png", "--through", through];
+            let arguments = [&[config, "--through", through], more].concat();
             let out = place.done(render(&arguments));
             assert!(out.contains(&format!("through {through}")), "{out}");
             pictures.push(fs::read(place.at("out.png")).expect("a picture"));
@@ -142,6 +149,40 @@ fn a_highlight_is_where_it_should_be() {
     assert_eq!(at(20, 17), at(20, 23));
     assert!(at(20, 20) > at(22, 20) && at(22, 20) > at(24, 20));
     assert_eq!(at(28, 20), [0; 3]);
+}
+
+/// Lines of points along the spans of triangles, set up by the host.
+#[test]
+fn lines_along_triangles() {
+    let place = Place::with("quad.toml", "device = \"quad-cosine\"\n");
+    place.write(
+        "squared.toml",
+        "device = \"cosine-squared\"\nlength.bits = 4\n",
+    );
+    place.write("bumps.png", bumps());
+    // One large triangle whose normals turn from side to side: spans of up to 80 samples.
+    place.write(
+        "large.obj",
+        "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nvn -0.5 0.1 1\nvn 0.5 0.1 1\nvn 0 0.5 1\nf 1//1 2//2 3//3\n",
+    );
+    for (config, largest) in [("quad.toml", 12.0), ("squared.toml", 40.0)] {
+        let arguments = [config, "--compare", "--json", "--exponent", "20"];
+        let mesh = ["--mesh", "large.obj", "--light", "0,0.2,1"];
+        let run = place.glint(render(&[&arguments[..], &mesh].concat()));
+        assert_eq!(run.code, 0, "{run:?}");
+        let told = &run.json()["compare"];
+        let number = |key: &str| told[key].as_f64().expect("a number");
+        // Angles that grow evenly are up to 0.013 from those of interpolated normals here, which is 6 levels
+        // where cos²⁰γ is steepest; cos² itself is up to 12 % from it.
+        assert!(number("largest_difference") <= largest, "{told}");
+        let units = number("largest_error_of_the_formula_in_units");
+        assert!(units <= number("bound_in_units"), "{told}");
+    }
+    let run = place.glint(render(&["quad.toml", "--height", "bumps.png"]));
+    run.refused(
+        1,
+        &["walks lines of points, which a height map cannot perturb"],
+    );
 }
 
 #[test]

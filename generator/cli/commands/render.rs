@@ -139,7 +139,7 @@ pub fn render(registry: &Registry, output: Output, arguments: &RenderArguments) 
             arguments.out.display()
         )));
     }
-    let scene = scene(arguments)?;
+    let scene = scene(arguments, render::walks_lines(unit.contract.as_ref()))?;
     render::check(&settings, &scene).map_err(|error| Usage(error.to_string()))?;
     let destination = Destination::open(&arguments.out)?;
     let through = match arguments.through {
@@ -220,7 +220,8 @@ fn settings(unit: &Unit, arguments: &RenderArguments) -> Result<Settings> {
     })
 }
 
-fn scene(arguments: &RenderArguments) -> Result<Scene> {
+/// What is shown; `coarse`: in triangles that one can see.
+fn scene(arguments: &RenderArguments, coarse: bool) -> Result<Scene> {
     let objects = match &arguments.mesh {
         Some(path) => {
             let cannot = || format!("the mesh `{}` cannot be used", path.display());
@@ -240,7 +241,7 @@ fn scene(arguments: &RenderArguments) -> Result<Scene> {
                 ShapeName::Vase => BuiltIn::Vase,
                 ShapeName::Group => BuiltIn::Group,
             };
-            Scene::built_in(which, arguments.colour)?
+            Scene::built_in(which, arguments.colour, coarse)?
         }
     };
     let mut scene = Scene {

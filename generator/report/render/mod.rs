@@ -2,7 +2,8 @@
 //!
 //! The host finds what is seen, its normals and half vectors, and the ambient and diffuse light, all in
 //! f64. The specular term of every sample and light comes from the device, through an [`Engine`]: which one
-//! makes no difference. The sum is in the device's output units, without gamma, so that a unit of the
+//! makes no difference. A device that walks lines computes one along each run of samples on a triangle, for a
+//! colour at a time. The sum is in the device's output units, without gamma, so that a unit of the
 //! device is a level of the picture.
 //!
 //! The same picture has the same bytes on every machine: nothing depends on the number of threads, and
@@ -26,7 +27,7 @@ use rayon::prelude::*;
 pub use camera::View;
 pub use height::Relief;
 pub use mesh::Mesh;
-pub use operands::exponents;
+pub use operands::{exponents, walks_lines};
 pub use picture::{Difference, Picture};
 pub use scene::{BuiltIn, COLOUR, Light, Object, Scene, Shape};
 pub use shade::Material;
@@ -161,6 +162,11 @@ pub fn render(
         settings.material.exponent,
         format,
     )?;
+    ensure!(
+        feed.longest().is_none() || scene.relief.is_none(),
+        "the device `{}` walks lines of points, which a height map cannot perturb",
+        unit.device.name
+    );
     let raster = Raster::new(width as usize * samples, height as usize * samples, &camera);
     let visibility = Visibility::new(scene, &camera, raster, radius);
     let shader = Shader {
@@ -195,7 +201,7 @@ pub fn render(
             .par_chunks(raster.columns)
             .enumerate()
             .map(|(at, hits)| shader.shade(hits, |column| raster.ray(column, first + at)))
-            .collect();
+            .collect::<Result<_>>()?;
         result.add(&shaded, settings.compare)?;
         row = end;
         progress(row as u64);
@@ -230,11 +236,7 @@ impl Portions<'_> {
         }
         self.points += points.len() as u64;
         let outputs = self.engine.compute(&points)?;
-        let width = self.unit.contract.outputs().len();
-        let specular = outputs
-            .par_chunks(width)
-            .map(|outputs| self.feed.colour(outputs))
-            .collect();
+        let specular = self.specular(rows, &outputs);
         let device = self.pixels(rows, specular);
         self.picture.pixels.extend(device);
         if compare {
@@ -256,6 +258,29 @@ impl Portions<'_> {
             self.shown.extend(shown);
         }
         Ok(())
+    }
+
+    /// What was computed for each sample and each of its lights.
+    fn specular(&self, rows: &[Shaded], outputs: &[i64]) -> Vec<Vector> {
+        let width = self.unit.contract.outputs().len();
+        let result = |at: usize| &outputs[at * width..(at + 1) * width];
+        let mut all = Vec::new();
+        let mut first = 0;
+        for row in rows {
+            let count = row.points.result_count();
+            match &row.places {
+                None => {
+                    all.extend((first..first + count).map(|at| self.feed.colour(|_| result(at))))
+                }
+                Some(places) => all.extend(
+                    places
+                        .iter()
+                        .map(|places| self.feed.colour(|channel| result(first + places[channel]))),
+                ),
+            }
+            first += count;
+        }
+        all
     }
 
     /// The mean of the samples of each pixel: each with the specular light that was computed for it, and
@@ -300,15 +325,26 @@ impl Portions<'_> {
                 (format.map_or(unit, |format| format.to_f64(1)), unit)
             })
             .collect();
-        let errors = (0..points.len()).into_par_iter().map(|at| {
+        let starts: Vec<usize> = (0..points.len())
+            .scan(0, |next, at| {
+                let first = *next;
+                *next += points.results(at);
+                Some(first)
+            })
+            .collect();
+        let errors = starts.par_iter().enumerate().map(|(at, first)| {
             let (setting, colours) = points.operands(at).split_at(control);
-            let f = contract.reference(setting);
-            let outputs = &outputs[at * width..(at + 1) * width];
-            let each = outputs.iter().zip(colours).zip(&units);
-            let errors = each.map(|((&out, &colour), &(out_unit, colour_unit))| {
-                (out as f64 - f * colour as f64 * colour_unit / out_unit).abs()
-            });
-            errors.fold(0.0, f64::max)
+            let mut worst: f64 = 0.0;
+            for index in 0..points.results(at) {
+                let f = contract.reference(&contract.point(setting, index as u64));
+                let outputs = &outputs[(first + index) * width..];
+                let each = outputs.iter().zip(colours).zip(&units);
+                for ((&out, &colour), &(out_unit, colour_unit)) in each {
+                    let exact = f * colour as f64 * colour_unit / out_unit;
+                    worst = worst.max((out as f64 - exact).abs());
+                }
+            }
+            worst
         });
         errors.reduce(|| 0.0, f64::max)
     }

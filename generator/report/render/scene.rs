@@ -67,12 +67,22 @@ pub enum BuiltIn {
 pub const COLOUR: Vector = Vector::new(0.08, 0.35, 0.54);
 
 impl Scene {
-    /// A scene that needs no file; its things have the given colour, or colours of their own.
+    /// A scene that needs no file; its things have the given colour, or colours of their own. `coarse` ones
+    /// consist of triangles that one can see, for devices that interpolate along them.
     ///
     /// # Errors
     /// None that a user could cause.
-    pub fn built_in(which: BuiltIn, colour: Option<Vector>) -> Result<Vec<Object>> {
-        let ball = |middle, radius| Shape::Ball { middle, radius };
+    pub fn built_in(which: BuiltIn, colour: Option<Vector>, coarse: bool) -> Result<Vec<Object>> {
+        let ball = |middle, radius| match coarse {
+            false => Ok(Shape::Ball { middle, radius }),
+            true => shapes::ball(middle, radius, [64, 32]).map(Shape::Mesh),
+        };
+        let steps = |fine: [u32; 2]| match coarse {
+            false => fine,
+            true => fine.map(|steps| steps / 8),
+        };
+        let ring = || shapes::torus(0.72, 0.28, steps([384, 160]));
+        let vase = || shapes::vase(steps([384, 480]));
         let of = |shape, own| Object {
             shape,
             colour: colour.unwrap_or(own),
@@ -81,23 +91,18 @@ impl Scene {
             |mesh: Mesh, size: f64, tilt: f64, to: Vector| Shape::Mesh(place(mesh, size, tilt, to));
         let origin = Vector::default();
         Ok(match which {
-            BuiltIn::Sphere => vec![of(ball(origin, 1.0), COLOUR)],
-            BuiltIn::Torus => {
-                let mesh = shapes::torus(0.72, 0.28, [384, 160])?;
-                vec![of(moved(mesh, 1.0, 0.9, origin), COLOUR)]
-            }
-            BuiltIn::Vase => vec![of(Shape::Mesh(shapes::vase([384, 480])?), COLOUR)],
+            BuiltIn::Sphere => vec![of(ball(origin, 1.0)?, COLOUR)],
+            BuiltIn::Torus => vec![of(moved(ring()?, 1.0, 0.9, origin), COLOUR)],
+            BuiltIn::Vase => vec![of(Shape::Mesh(vase()?), COLOUR)],
             BuiltIn::Group => {
-                let vase = shapes::vase([384, 480])?;
-                let ring = shapes::torus(0.72, 0.28, [384, 160])?;
                 vec![
                     of(
-                        moved(vase, 1.0, 0.0, Vector::new(-1.12, 0.2, -0.45)),
+                        moved(vase()?, 1.0, 0.0, Vector::new(-1.12, 0.2, -0.45)),
                         Vector::new(0.60, 0.08, 0.07),
                     ),
-                    of(ball(Vector::new(0.0, -0.2, 0.4), 0.74), COLOUR),
+                    of(ball(Vector::new(0.0, -0.2, 0.4), 0.74)?, COLOUR),
                     of(
-                        moved(ring, 0.85, 1.05, Vector::new(1.22, 0.12, -0.35)),
+                        moved(ring()?, 0.85, 1.05, Vector::new(1.22, 0.12, -0.35)),
                         Vector::new(0.62, 0.38, 0.06),
                     ),
                 ]

@@ -1,6 +1,6 @@
 //! Meshes that are computed.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use anyhow::Result;
 
@@ -21,6 +21,28 @@ pub fn torus(major: f64, minor: f64, steps: [u32; 2]) -> Result<Mesh> {
             minor * libm::sin(across),
             from_axis * libm::cos(around),
         )
+    })
+}
+
+/// A ball, in so many steps around and from pole to pole.
+///
+/// # Errors
+/// Those of [`Mesh::new`].
+pub fn ball(middle: Vector, radius: f64, steps: [u32; 2]) -> Result<Mesh> {
+    grid(steps, [true, false], |u, v| {
+        let (around, down) = (u * TAU, v * PI);
+        // Exactly 0 at both poles.
+        let from_axis = if v == 0.0 || v == 1.0 {
+            0.0
+        } else {
+            radius * libm::sin(down)
+        };
+        let offset = Vector::new(
+            from_axis * libm::sin(around),
+            radius * libm::cos(down),
+            from_axis * libm::cos(around),
+        );
+        middle + offset
     })
 }
 
