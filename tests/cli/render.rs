@@ -81,6 +81,31 @@ fn the_same_pixels_whichever_computes_them() {
     place.assert_no_staging();
 }
 
+/// Every configuration that comes with Glint is understood, and stays within its bound in a picture.
+#[test]
+fn every_configuration_draws() {
+    let place = Place::new();
+    let configs = fs::read_dir("configs").expect("configs/");
+    let mut drawn = 0;
+    for entry in configs {
+        let path = fs::canonicalize(entry.expect("an entry").path()).expect("a path");
+        let path = path.to_str().expect("UTF-8");
+        let mut pictures = Vec::new();
+        for through in ["golden", "rust-hdl"] {
+            let run = place.glint(render(&[path, "--through", through, "--compare", "--json"]));
+            assert_eq!(run.code, 0, "{path}: {run:?}");
+            let told = &run.json()["compare"];
+            let number = |key: &str| told[key].as_f64().expect("a number");
+            let units = number("largest_error_of_the_formula_in_units");
+            assert!(units <= number("bound_in_units"), "{path}: {told}");
+            pictures.push(fs::read(place.at("out.png")).expect("a picture"));
+        }
+        assert!(pictures[0] == pictures[1], "{path}: golden, rust_hdl");
+        drawn += 1;
+    }
+    assert!(drawn > 0, "no configuration");
+}
+
 #[test]
 fn the_same_bytes_with_any_number_of_threads() {
     let place = Place::with("power.toml", COSINE_POWER);

@@ -35,6 +35,7 @@ pub use vector::Vector;
 
 use crate::cosim::batch::{Engine, Points};
 use crate::flow::Unit;
+use crate::golden::nearer;
 use camera::Camera;
 use operands::Feed;
 use shade::{Shaded, Shader};
@@ -336,12 +337,12 @@ impl Portions<'_> {
             let (setting, colours) = points.operands(at).split_at(control);
             let mut worst: f64 = 0.0;
             for index in 0..points.results(at) {
-                let f = contract.reference(&contract.point(setting, index as u64));
+                let right = contract.references(&contract.point(setting, index as u64));
                 let outputs = &outputs[(first + index) * width..];
                 let each = outputs.iter().zip(colours).zip(&units);
                 for ((&out, &colour), &(out_unit, colour_unit)) in each {
-                    let exact = f * colour as f64 * colour_unit / out_unit;
-                    worst = worst.max((out as f64 - exact).abs());
+                    let right = right.map(|f| f * colour as f64 * colour_unit / out_unit);
+                    worst = worst.max(nearer(out as f64, right));
                 }
             }
             worst

@@ -34,6 +34,8 @@ enum Quantity {
     CosDgamma,
     DgammaNegative,
     Exponent,
+    /// The exponent's logarithm to base 2, rounded.
+    Shift,
     Difference(usize),
     Colour(usize),
     ZetaStart,
@@ -49,9 +51,10 @@ impl Quantity {
 }
 
 /// Every name that is understood of a device that computes a point.
-const OF_POINTS: [(&str, Quantity); 10] = [
+const OF_POINTS: [(&str, Quantity); 11] = [
     ("cos_gamma", Quantity::CosGamma),
     ("exponent", Quantity::Exponent),
+    ("shift", Quantity::Shift),
     ("cos_dgamma", Quantity::CosDgamma),
     ("dgamma_negative", Quantity::DgammaNegative),
     ("dx", Quantity::Difference(0)),
@@ -201,6 +204,7 @@ impl Feed {
             Quantity::CosDgamma => point.cos_dgamma,
             Quantity::DgammaNegative => f64::from(u8::from(point.dgamma_negative)),
             Quantity::Exponent => f64::from(self.exponent),
+            Quantity::Shift => libm::log2(f64::from(self.exponent)).round(),
             Quantity::Difference(axis) => point.difference.0[axis],
             // The first follow below, and the others a point does not have.
             Quantity::Colour(_) | Quantity::Amplitude => 0.0,
