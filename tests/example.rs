@@ -72,6 +72,18 @@ fn every_command_works() {
     let text = succeed(directory, &eval);
     let out = text.lines().find(|line| line.starts_with("| red_out"));
     assert!(out.is_some_and(|line| line.contains(" 18 |")), "{text}");
+
+    // A picture has no f0.
+    let refused = run(directory, &["render", "f.toml", "--out", "out.png"]);
+    let errors = String::from_utf8_lossy(&refused.stderr);
+    assert_eq!(refused.status.code(), Some(1), "{errors}");
+    for part in [
+        "cannot supply `cos_half`",
+        "`f0` (",
+        "it supplies cos_gamma, exponent",
+    ] {
+        assert!(errors.contains(part), "no `{part}` in {errors}");
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The command line: the only code that prints and exits.
 
 mod commands;
+mod destination;
 mod failure;
 mod progress;
 mod staged;
@@ -44,6 +45,7 @@ Examples:
   glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
   glint describe my_core.toml                   ports, blocks, microprogram, accuracy: a page
   glint compare --exponent 100                  all devices side by side
+  glint render my_core.toml --out sphere.png    a picture through the bit-accurate device
 
 Exit codes: 0 everything holds; 1 something does not hold or could not be done; 2 wrong usage.";
 
@@ -192,6 +194,20 @@ Examples:
         #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
         time_limit: u64,
     },
+    /// Draw a picture whose highlights the device computes, bit by bit
+    ///
+    /// Ambient and diffuse light are f64, and so is all geometry; the specular term of every sample and light
+    /// is a result of the device. Without a configuration it is the first device of `glint list` with its
+    /// defaults. The same command gives the same bytes on every machine, whatever computes the points.
+    #[command(after_help = "\
+Examples:
+  glint render --out sphere.png
+  glint render configs/cosine_power.toml --shape group --exponent 80 --samples 4 --out group.png
+  glint render core.toml --mesh bunny.obj --light 1,2,3 --light -2,1,1,0.3,0.3,0.5 --out bunny.png
+  glint render configs/rough.toml --height grain.png --out rough.png
+  glint render core.toml --compare --out beside.png     device, Blinn in f64, and their difference
+  glint render core.toml --through verilator --out same.png")]
+    Render(Box<commands::RenderArguments>),
     /// Name the devices, and the configurations in configs/
     #[command(after_help = "\
 Example:
@@ -336,6 +352,7 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             };
             commands::compare(registry, output, &configs, &request)
         }
+        Some(Command::Render(arguments)) => commands::render(registry, output, &arguments),
         Some(Command::List) => commands::list(registry, output),
         Some(Command::New { device, name }) => {
             commands::new(registry, output, &device, name.as_deref())

@@ -10,3 +10,4 @@ mod output;
 mod place;
 mod questions;
 mod refusals;
+mod render;

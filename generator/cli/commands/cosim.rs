@@ -1,6 +1,5 @@
 //! `cosim`.
 
-use std::fs::{self, OpenOptions};
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -10,8 +9,9 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::{Loaded, load};
+use crate::cli::destination::Destination;
 use crate::cli::failure::Usage;
-use crate::cli::{Output, POINTS, Simulator, progress, staged, tables};
+use crate::cli::{Output, POINTS, Simulator, progress, tables};
 use crate::cosim::external::{self, BenchOutcome};
 use crate::cosim::{Lockstep, Mismatch, Outcome, Worst};
 use crate::golden::Bound;
@@ -220,26 +220,11 @@ pub fn reproduce(one: &Loaded, mismatch: &Mismatch) -> Result<String> {
 
 /// A run with a waveform from clock `from` on: written beside its place and moved there when it is whole.
 fn traced(lockstep: &Lockstep<'_>, path: &Path, points: u64, from: u64) -> Result<Outcome> {
-    let cannot = || format!("cannot write the waveform `{}`", path.display());
-    // A pipe or a device is written itself; a file is replaced.
-    if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
-        let file = OpenOptions::new()
-            .write(true)
-            .open(path)
-            .with_context(cannot)?;
-        return lockstep
-            .trace(points, from, BufWriter::new(file))
-            .with_context(cannot);
-    }
-    let staged = staged::beside(path)?;
-    let file = staged.reopen().with_context(cannot)?;
+    let destination = Destination::open(path)?;
     let outcome = lockstep
-        .trace(points, from, BufWriter::new(file))
-        .with_context(cannot)?;
-    staged
-        .persist(path)
-        .map_err(|error| error.error)
-        .with_context(cannot)?;
+        .trace(points, from, BufWriter::new(destination.file()?))
+        .with_context(|| format!("cannot write the waveform `{}`", path.display()))?;
+    destination.commit()?;
     Ok(outcome)
 }
 

@@ -8,6 +8,7 @@ mod describe;
 mod eval;
 mod exhaustive;
 mod generate;
+mod render;
 
 use std::path::{Path, PathBuf};
 
@@ -21,6 +22,7 @@ pub use describe::describe;
 pub use eval::eval;
 pub use exhaustive::{ExhaustiveRequest, exhaustive, merge};
 pub use generate::generate;
+pub use render::{RenderArguments, render};
 
 use super::failure::{self, Several};
 use crate::config;

@@ -29,27 +29,25 @@ pub struct View {
 /// From where things are seen by default: from the front, a little above.
 const DIRECTION: Vector = Vector::new(0.0, 0.28, 1.0);
 
-/// How much of the narrower side of the picture things fill, by default.
-const FILLED: f64 = 0.9;
+/// How much of the picture things fill, by default.
+const FILLED: f64 = 0.92;
 
 impl Camera {
-    /// A camera for a picture of the given aspect, width through height, that shows the ball of the given
-    /// middle and radius unless `view` says otherwise.
+    /// A camera for a picture of the given aspect, width through height, that shows all of `things`, balls
+    /// with their middle and radius, unless `view` says otherwise; `middle` is the middle of them all.
     ///
     /// # Errors
     /// An eye at its target.
-    pub fn new(view: &View, aspect: f64, middle: Vector, radius: f64) -> Result<Self> {
-        let half_field = (view.field / 2.0).to_radians();
-        let tangent = libm::tan(half_field);
+    pub fn new(
+        view: &View,
+        aspect: f64,
+        middle: Vector,
+        things: impl Iterator<Item = (Vector, f64)>,
+    ) -> Result<Self> {
+        let tangent = libm::tan((view.field / 2.0).to_radians());
         let target = view.target.unwrap_or(middle);
-        let narrow = libm::atan(tangent * aspect.min(1.0) * FILLED);
-        let eye = match (view.eye, DIRECTION.unit()) {
-            (Some(eye), _) => eye,
-            (None, direction) => {
-                target + direction.unwrap_or_default() * (radius / libm::sin(narrow))
-            }
-        };
-        let back = (eye - target).unit();
+        let from = view.eye.map_or(DIRECTION, |eye| eye - target);
+        let back = from.unit();
         let back = back.context("the camera stands where it looks at: --camera and --target")?;
         // Looking straight up or down, the upper edge is to the back.
         let upward = match back.0[0] == 0.0 && back.0[2] == 0.0 {
@@ -58,14 +56,32 @@ impl Camera {
         };
         let right = upward.cross(back).unit();
         let right = right.context("the camera has no upward direction")?;
-        ensure!(eye.finite(), "the camera is infinitely far away");
-        Ok(Self {
-            eye,
+        let mut camera = Self {
+            eye: view.eye.unwrap_or(target),
             right,
             up: back.cross(right),
             back,
             half: (tangent * aspect, tangent),
-        })
+        };
+        if view.eye.is_none() {
+            camera.eye = target + back * camera.distance(things);
+        }
+        ensure!(camera.eye.finite(), "the camera is infinitely far away");
+        Ok(camera)
+    }
+
+    /// How far the eye has to go back for it to see all of `things`.
+    fn distance(&self, things: impl Iterator<Item = (Vector, f64)>) -> f64 {
+        let slopes = [self.half.0 * FILLED, self.half.1 * FILLED];
+        let needed = things.flat_map(|(middle, radius)| {
+            let [x, y, z] = self.place(middle).0;
+            // The plane through the eye and an edge of the picture touches the ball.
+            let touching = |aside: f64, slope: f64| {
+                z + (aside.abs() + radius * (1.0 + slope * slope).sqrt()) / slope
+            };
+            [touching(x, slopes[0]), touching(y, slopes[1])]
+        });
+        needed.fold(0.0, f64::max)
     }
 
     /// Where it stands.
@@ -97,14 +113,21 @@ impl Camera {
 mod tests {
     use super::*;
 
+    const VIEW: View = View {
+        eye: None,
+        target: None,
+        field: 90.0,
+    };
+
     #[test]
     fn coordinates_of_the_camera() {
         let view = View {
             eye: Some(Vector::new(5.0, 0.0, 0.0)),
             target: Some(Vector::default()),
-            field: 90.0,
+            ..VIEW
         };
-        let camera = Camera::new(&view, 2.0, Vector::default(), 1.0).unwrap();
+        let none = || std::iter::empty();
+        let camera = Camera::new(&view, 2.0, Vector::default(), none()).unwrap();
         // From +x, +z is to the left.
         assert_eq!(
             camera.place(Vector::new(0.0, 2.0, 1.0)),
@@ -119,6 +142,28 @@ mod tests {
             eye: Some(Vector::default()),
             ..view
         };
-        assert!(Camera::new(&inside, 1.0, Vector::default(), 1.0).is_err());
+        assert!(Camera::new(&inside, 1.0, Vector::default(), none()).is_err());
+    }
+
+    #[test]
+    fn everything_is_seen() {
+        let things = [
+            (Vector::new(3.0, 0.0, 1.0), 0.0),
+            (Vector::new(-1.0, 2.0, -4.0), 1.5),
+        ];
+        for aspect in [0.25, 1.0, 3.0] {
+            let camera = Camera::new(&VIEW, aspect, Vector::default(), things.into_iter()).unwrap();
+            let mut fullest: f64 = 0.0;
+            for (middle, radius) in things {
+                let [x, y, z] = camera.place(middle).0;
+                for (aside, half) in [(x, camera.half().0), (y, camera.half().1)] {
+                    // The tangent from the eye beside the ball, in the plane of this axis.
+                    let angle =
+                        libm::atan(aside.abs() / -z) + libm::asin(radius / libm::hypot(aside, z));
+                    fullest = fullest.max(libm::tan(angle) / half);
+                }
+            }
+            assert!((fullest - FILLED).abs() < 1e-9, "{aspect}: {fullest}");
+        }
     }
 }

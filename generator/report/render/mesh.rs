@@ -9,6 +9,9 @@ use super::vector::Vector;
 /// The most triangles, which keeps their numbers in 32 bits and their memory in gigabytes.
 pub const MOST_TRIANGLES: usize = 20_000_000;
 
+/// The largest coordinate: areas and their squares are still numbers.
+const FARTHEST: f64 = 1e30;
+
 /// Triangles with a normal and perhaps texture coordinates at each corner.
 #[derive(Clone, Debug, Default)]
 pub struct Mesh {
@@ -52,7 +55,7 @@ impl Mesh {
     /// weighted by area.
     ///
     /// # Errors
-    /// No triangle with an area, or too many; numbers that are not finite.
+    /// No triangle with an area, or too many; numbers that are not finite, or coordinates beyond 10³⁰.
     pub fn new(
         positions: Vec<Vector>,
         mut normals: Vec<Vector>,
@@ -61,6 +64,10 @@ impl Mesh {
     ) -> Result<Self> {
         finite("vertex", &positions)?;
         finite("normal", &normals)?;
+        let far = |position: &Vector| position.0.iter().any(|x| x.abs() > FARTHEST);
+        if let Some(at) = positions.iter().position(far) {
+            bail!("vertex {} is farther away than {FARTHEST:e}", at + 1);
+        }
         if let Some(at) = textures
             .iter()
             .position(|at| !at.iter().all(|x| x.is_finite()))
@@ -125,17 +132,10 @@ impl Mesh {
         corners.all(|corner| corner.texture.is_some())
     }
 
-    /// The corners of the box around the triangles.
-    pub fn bounds(&self) -> (Vector, Vector) {
-        let mut bounds = (Vector([f64::INFINITY; 3]), Vector([f64::NEG_INFINITY; 3]));
-        for corner in self.triangles.iter().flatten() {
-            let point = self.positions[corner.position as usize];
-            for axis in 0..3 {
-                bounds.0.0[axis] = bounds.0.0[axis].min(point.0[axis]);
-                bounds.1.0[axis] = bounds.1.0[axis].max(point.0[axis]);
-            }
-        }
-        bounds
+    /// The positions of all corners of all triangles.
+    pub fn corner_positions(&self) -> impl Iterator<Item = Vector> {
+        let corners = self.triangles.iter().flatten();
+        corners.map(|corner| self.positions[corner.position as usize])
     }
 }
 

@@ -2,7 +2,8 @@
 //!
 //! The host finds what is seen, its normals and half vectors, and the ambient and diffuse light, all in
 //! f64. The specular term of every sample and light comes from the device, through an [`Engine`]: which one
-//! makes no difference. The sum is in the device's output units, without gamma, so that a unit of the
+//! makes no difference. A device that walks lines computes one along each run of samples on a triangle, for a
+//! colour at a time. The sum is in the device's output units, without gamma, so that a unit of the
 //! device is a level of the picture.
 //!
 //! The same picture has the same bytes on every machine: nothing depends on the number of threads, and
@@ -26,7 +27,7 @@ use rayon::prelude::*;
 pub use camera::View;
 pub use height::Relief;
 pub use mesh::Mesh;
-pub use operands::exponents;
+pub use operands::{exponents, walks_lines};
 pub use picture::{Difference, Picture};
 pub use scene::{BuiltIn, COLOUR, Light, Object, Scene, Shape};
 pub use shade::Material;
@@ -34,6 +35,7 @@ pub use vector::Vector;
 
 use crate::cosim::batch::{Engine, Points};
 use crate::flow::Unit;
+use crate::golden::nearer;
 use camera::Camera;
 use operands::Feed;
 use shade::{Shaded, Shader};
@@ -148,12 +150,8 @@ pub fn render(
     let (width, height) = settings.size;
     let samples = settings.samples as usize;
     let (middle, radius) = scene.extent();
-    ensure!(
-        radius.is_finite(),
-        "the mesh is too large for its size to be a number"
-    );
     let aspect = f64::from(width) / f64::from(height);
-    let camera = Camera::new(&settings.view, aspect, middle, radius)?;
+    let camera = Camera::new(&settings.view, aspect, middle, scene.balls())?;
     let format = |name: &str| {
         let net = unit.design.find(name);
         net.map(|net| unit.design.net(net).format)
@@ -165,6 +163,11 @@ pub fn render(
         settings.material.exponent,
         format,
     )?;
+    ensure!(
+        feed.longest().is_none() || scene.relief.is_none(),
+        "the device `{}` walks lines of points, which a height map cannot perturb",
+        unit.device.name
+    );
     let raster = Raster::new(width as usize * samples, height as usize * samples, &camera);
     let visibility = Visibility::new(scene, &camera, raster, radius);
     let shader = Shader {
@@ -199,7 +202,7 @@ pub fn render(
             .par_chunks(raster.columns)
             .enumerate()
             .map(|(at, hits)| shader.shade(hits, |column| raster.ray(column, first + at)))
-            .collect();
+            .collect::<Result<_>>()?;
         result.add(&shaded, settings.compare)?;
         row = end;
         progress(row as u64);
@@ -234,11 +237,7 @@ impl Portions<'_> {
         }
         self.points += points.len() as u64;
         let outputs = self.engine.compute(&points)?;
-        let width = self.unit.contract.outputs().len();
-        let specular = outputs
-            .par_chunks(width)
-            .map(|outputs| self.feed.colour(outputs))
-            .collect();
+        let specular = self.specular(rows, &outputs);
         let device = self.pixels(rows, specular);
         self.picture.pixels.extend(device);
         if compare {
@@ -260,6 +259,29 @@ impl Portions<'_> {
             self.shown.extend(shown);
         }
         Ok(())
+    }
+
+    /// What was computed for each sample and each of its lights.
+    fn specular(&self, rows: &[Shaded], outputs: &[i64]) -> Vec<Vector> {
+        let width = self.unit.contract.outputs().len();
+        let result = |at: usize| &outputs[at * width..(at + 1) * width];
+        let mut all = Vec::new();
+        let mut first = 0;
+        for row in rows {
+            let count = row.points.result_count();
+            match &row.places {
+                None => {
+                    all.extend((first..first + count).map(|at| self.feed.colour(|_| result(at))))
+                }
+                Some(places) => all.extend(
+                    places
+                        .iter()
+                        .map(|places| self.feed.colour(|channel| result(first + places[channel]))),
+                ),
+            }
+            first += count;
+        }
+        all
     }
 
     /// The mean of the samples of each pixel: each with the specular light that was computed for it, and
@@ -292,15 +314,38 @@ impl Portions<'_> {
         let operands = contract.operands();
         let control = operands.iter().filter(|operand| !operand.colour).count();
         let width = contract.outputs().len();
-        let errors = (0..points.len()).into_par_iter().map(|at| {
+        // What a unit of an output and of its colour operand stands for.
+        let units: Vec<(f64, f64)> = contract
+            .outputs()
+            .iter()
+            .zip(&operands[control..])
+            .map(|(output, colour)| {
+                let format = self.unit.design.find(output);
+                let format = format.map(|net| self.unit.design.net(net).format);
+                let unit = colour.format.to_f64(1);
+                (format.map_or(unit, |format| format.to_f64(1)), unit)
+            })
+            .collect();
+        let starts: Vec<usize> = (0..points.len())
+            .scan(0, |next, at| {
+                let first = *next;
+                *next += points.results(at);
+                Some(first)
+            })
+            .collect();
+        let errors = starts.par_iter().enumerate().map(|(at, first)| {
             let (setting, colours) = points.operands(at).split_at(control);
-            let f = contract.reference(setting);
-            let outputs = &outputs[at * width..(at + 1) * width];
-            let errors = outputs.iter().zip(colours).map(|(&out, &colour)| {
-                // Both are integers of the same unit.
-                (out as f64 - f * colour as f64).abs()
-            });
-            errors.fold(0.0, f64::max)
+            let mut worst: f64 = 0.0;
+            for index in 0..points.results(at) {
+                let right = contract.references(&contract.point(setting, index as u64));
+                let outputs = &outputs[(first + index) * width..];
+                let each = outputs.iter().zip(colours).zip(&units);
+                for ((&out, &colour), &(out_unit, colour_unit)) in each {
+                    let right = right.map(|f| f * colour as f64 * colour_unit / out_unit);
+                    worst = worst.max(nearer(out as f64, right));
+                }
+            }
+            worst
         });
         errors.reduce(|| 0.0, f64::max)
     }

@@ -64,15 +64,25 @@ pub enum BuiltIn {
 }
 
 /// The colour of things by default.
-pub const COLOUR: Vector = Vector::new(0.10, 0.33, 0.46);
+pub const COLOUR: Vector = Vector::new(0.08, 0.35, 0.54);
 
 impl Scene {
-    /// A scene that needs no file; its things have the given colour, or colours of their own.
+    /// A scene that needs no file; its things have the given colour, or colours of their own. `coarse` ones
+    /// consist of triangles that one can see, for devices that interpolate along them.
     ///
     /// # Errors
     /// None that a user could cause.
-    pub fn built_in(which: BuiltIn, colour: Option<Vector>) -> Result<Vec<Object>> {
-        let ball = |middle, radius| Shape::Ball { middle, radius };
+    pub fn built_in(which: BuiltIn, colour: Option<Vector>, coarse: bool) -> Result<Vec<Object>> {
+        let ball = |middle, radius| match coarse {
+            false => Ok(Shape::Ball { middle, radius }),
+            true => shapes::ball(middle, radius, [64, 32]).map(Shape::Mesh),
+        };
+        let steps = |fine: [u32; 2]| match coarse {
+            false => fine,
+            true => fine.map(|steps| steps / 8),
+        };
+        let ring = || shapes::torus(0.72, 0.28, steps([384, 160]));
+        let vase = || shapes::vase(steps([384, 480]));
         let of = |shape, own| Object {
             shape,
             colour: colour.unwrap_or(own),
@@ -81,59 +91,49 @@ impl Scene {
             |mesh: Mesh, size: f64, tilt: f64, to: Vector| Shape::Mesh(place(mesh, size, tilt, to));
         let origin = Vector::default();
         Ok(match which {
-            BuiltIn::Sphere => vec![of(ball(origin, 1.0), COLOUR)],
-            BuiltIn::Torus => {
-                let mesh = shapes::torus(0.72, 0.28, [384, 160])?;
-                vec![of(moved(mesh, 1.0, 0.9, origin), COLOUR)]
-            }
-            BuiltIn::Vase => vec![of(Shape::Mesh(shapes::vase([384, 480])?), COLOUR)],
+            BuiltIn::Sphere => vec![of(ball(origin, 1.0)?, COLOUR)],
+            BuiltIn::Torus => vec![of(moved(ring()?, 1.0, 0.9, origin), COLOUR)],
+            BuiltIn::Vase => vec![of(Shape::Mesh(vase()?), COLOUR)],
             BuiltIn::Group => {
-                let vase = shapes::vase([384, 480])?;
-                let ring = shapes::torus(0.72, 0.28, [384, 160])?;
                 vec![
                     of(
-                        moved(vase, 1.05, 0.0, Vector::new(-1.45, 0.05, -0.25)),
-                        Vector::new(0.45, 0.07, 0.06),
+                        moved(vase()?, 1.0, 0.0, Vector::new(-1.12, 0.2, -0.45)),
+                        Vector::new(0.60, 0.08, 0.07),
                     ),
-                    of(ball(Vector::new(0.0, -0.2, 0.35), 0.8), COLOUR),
+                    of(ball(Vector::new(0.0, -0.2, 0.4), 0.74)?, COLOUR),
                     of(
-                        moved(ring, 0.85, 1.05, Vector::new(1.5, -0.1, -0.1)),
-                        Vector::new(0.42, 0.27, 0.05),
+                        moved(ring()?, 0.85, 1.05, Vector::new(1.22, 0.12, -0.35)),
+                        Vector::new(0.62, 0.38, 0.06),
                     ),
                 ]
             }
         })
     }
 
-    /// The middle and the radius of a ball around the boxes of everything.
+    /// The middle and half the diagonal of the box around everything.
     pub fn extent(&self) -> (Vector, f64) {
         let mut low = Vector([f64::INFINITY; 3]);
         let mut high = Vector([f64::NEG_INFINITY; 3]);
-        for object in &self.objects {
-            let (least, most) = match &object.shape {
-                Shape::Ball { middle, radius } => {
-                    let half = Vector([*radius; 3]);
-                    (*middle - half, *middle + half)
-                }
-                Shape::Mesh(mesh) => mesh.bounds(),
-            };
+        for (middle, radius) in self.balls() {
             for axis in 0..3 {
-                low.0[axis] = low.0[axis].min(least.0[axis]);
-                high.0[axis] = high.0[axis].max(most.0[axis]);
+                low.0[axis] = low.0[axis].min(middle.0[axis] - radius);
+                high.0[axis] = high.0[axis].max(middle.0[axis] + radius);
             }
         }
-        let middle = low * 0.5 + high * 0.5;
-        // A ball alone is its own.
-        let radius = match self.objects.as_slice() {
-            [
-                Object {
-                    shape: Shape::Ball { radius, .. },
-                    ..
-                },
-            ] => *radius,
-            _ => (high - middle).length(),
-        };
-        (middle, radius)
+        // Halves first: the sum of two large numbers may be none.
+        ((low * 0.5 + high * 0.5), (high * 0.5 - low * 0.5).length())
+    }
+
+    /// Balls, with middle and radius, that are all that can be seen; the corners of meshes have no radius.
+    pub fn balls(&self) -> impl Iterator<Item = (Vector, f64)> {
+        self.objects.iter().flat_map(|object| {
+            let (ball, mesh) = match &object.shape {
+                Shape::Ball { middle, radius } => (Some((*middle, *radius)), None),
+                Shape::Mesh(mesh) => (None, Some(mesh)),
+            };
+            let corners = mesh.into_iter().flat_map(Mesh::corner_positions);
+            ball.into_iter().chain(corners.map(|corner| (corner, 0.0)))
+        })
     }
 }
 

@@ -5,12 +5,15 @@
 
 use std::f64::consts::{PI, TAU};
 
+use anyhow::Result;
+
 use super::camera::Camera;
 use super::operands::{Feed, Point};
-use super::scene::{Object, Scene, Shape};
+use super::scene::{Light, Object, Scene, Shape};
 use super::vector::Vector;
 use super::visibility::Hit;
 use crate::cosim::batch::Points;
+use crate::setup::Arc;
 
 /// How surfaces reflect; everything is a share of the light.
 #[derive(Clone, Copy, Debug)]
@@ -41,67 +44,161 @@ pub struct Shader<'a> {
     pub compare: bool,
 }
 
-/// Some samples, shaded but for what the device computes.
+/// Some samples of a row, shaded but for what the device computes.
 pub struct Shaded {
     /// Ambient and diffuse light or the background, 0 … 255, of each sample, and the number of lights for
     /// which the device computes a result.
     pub samples: Vec<(Vector, u32)>,
-    /// What it computes, sample by sample.
+    /// What it computes.
     pub points: Points,
-    /// For each of those Blinn's cosⁿγ times the light's colour, 0 … 255; empty unless it is wanted.
+    /// For each sample and each of its lights the numbers of the results with its red, green and blue.
+    /// `None` where every computation has one result, with all three, and they come in this order.
+    pub places: Option<Vec<[usize; 3]>>,
+    /// For each sample and each of its lights Blinn's cosⁿγ times the light's colour, 0 … 255; empty unless
+    /// it is wanted.
     pub blinn: Vec<Vector>,
     /// Points whose dγ is beyond the device's domain.
     pub beyond: usize,
 }
 
+/// A point of a surface.
+struct Surface {
+    colour: Vector,
+    smooth: Vector,
+    perturbed: Vector,
+    toward_eye: Vector,
+}
+
+impl Surface {
+    /// Whether a light falls on it. The device knows nothing of what lies in its own shadow.
+    fn is_lit(&self, light: &Light) -> bool {
+        self.smooth.dot(light.direction) > 0.0
+    }
+
+    /// H.
+    fn half(&self, light: &Light) -> Vector {
+        let sum = light.direction + self.toward_eye;
+        sum.unit().unwrap_or(self.smooth)
+    }
+}
+
 impl Shader<'_> {
-    /// What a device is to compute for some samples; `ray` gives the ray of each.
-    pub fn shade(&self, hits: &[Hit], ray: impl Fn(usize) -> Vector) -> Shaded {
+    /// What a device is to compute for a row of samples; `ray` gives the ray of each.
+    ///
+    /// # Errors
+    /// A line that the device cannot take.
+    pub fn shade(&self, hits: &[Hit], ray: impl Fn(usize) -> Vector) -> Result<Shaded> {
         let mut shaded = Shaded {
             samples: Vec::with_capacity(hits.len()),
             points: Points::new(self.feed.len()),
+            places: self.feed.longest().map(|_| Vec::new()),
             blinn: Vec::new(),
             beyond: 0,
         };
-        for (at, hit) in hits.iter().enumerate() {
-            let sample = if hit.is_something() {
-                self.surface(hit, ray(at), &mut shaded)
+        let same = |a: &Hit, b: &Hit| (a.object, a.triangle) == (b.object, b.triangle);
+        let mut column = 0;
+        for run in hits.chunk_by(same) {
+            if run[0].is_something() {
+                // A line has a point more than intervals.
+                let most = self.feed.longest().map_or(run.len(), |longest| longest + 1);
+                for part in run.chunks(most) {
+                    let surfaces: Vec<Surface> = (column..)
+                        .zip(part)
+                        .map(|(column, hit)| self.surface(hit, ray(column)))
+                        .collect();
+                    self.surfaces(&surfaces, &mut shaded)?;
+                    column += part.len();
+                }
             } else {
-                (self.background, 0)
-            };
-            shaded.samples.push(sample);
+                let background = run.iter().map(|_| (self.background, 0));
+                shaded.samples.extend(background);
+                column += run.len();
+            }
         }
-        shaded
+        Ok(shaded)
     }
 
-    fn surface(&self, hit: &Hit, ray: Vector, shaded: &mut Shaded) -> (Vector, u32) {
+    /// Samples beside each other on one triangle or ball.
+    fn surfaces(&self, surfaces: &[Surface], shaded: &mut Shaded) -> Result<()> {
+        let lines = match self.feed.longest() {
+            None => Vec::new(),
+            Some(_) => self.lines(surfaces, &mut shaded.points)?,
+        };
+        for (at, surface) in surfaces.iter().enumerate() {
+            let material = &self.material;
+            let mut light_sum = Vector::new(1.0, 1.0, 1.0) * material.ambient;
+            let mut computed = 0;
+            for (number, light) in self.scene.lights.iter().enumerate() {
+                let facing = surface.perturbed.dot(light.direction).max(0.0);
+                light_sum = light_sum + light.colour * (material.diffuse * facing);
+                if !surface.is_lit(light) {
+                    continue;
+                }
+                let specular = light.colour * material.specular;
+                let half = surface.half(light);
+                let point = point(surface.smooth, surface.perturbed, half, specular);
+                match &mut shaded.places {
+                    None => {
+                        let (raw, beyond) = self.feed.raw(&point);
+                        shaded.points.push(raw, 1);
+                        shaded.beyond += usize::from(beyond);
+                    }
+                    Some(places) => places.push(lines[number].map(|first| first + at)),
+                }
+                computed += 1;
+                if self.compare {
+                    let f = crate::reference::blinn(point.cos_shaded, f64::from(material.exponent));
+                    shaded.blinn.push(point.colour * (f * 255.0));
+                }
+            }
+            let base = surface.colour.times(light_sum) * 255.0;
+            shaded.samples.push((base, computed));
+        }
+        Ok(())
+    }
+
+    /// The lines along some samples: for each light the numbers of the first result of red, green and blue. A
+    /// light that falls on none of them has no line.
+    ///
+    /// The host's set-up is that of seed 000, from normals and half vectors at both ends.
+    fn lines(&self, surfaces: &[Surface], points: &mut Points) -> Result<Vec<[usize; 3]>> {
+        let (Some(first), Some(last)) = (surfaces.first(), surfaces.last()) else {
+            return Ok(Vec::new());
+        };
+        let count = surfaces.len();
+        let mut firsts = Vec::with_capacity(self.scene.lights.len());
+        for light in &self.scene.lights {
+            let mut numbers = [0; 3];
+            if surfaces.iter().any(|surface| surface.is_lit(light)) {
+                let arc = Arc::new(
+                    first.smooth.0,
+                    first.half(light).0,
+                    last.smooth.0,
+                    last.half(light).0,
+                )?;
+                let strengths = light.colour * self.material.specular;
+                for (number, strength) in numbers.iter_mut().zip(strengths.0) {
+                    *number = points.result_count();
+                    points.push(self.feed.line(&arc, strength, count - 1)?, count);
+                }
+            }
+            firsts.push(numbers);
+        }
+        Ok(firsts)
+    }
+
+    fn surface(&self, hit: &Hit, ray: Vector) -> Surface {
         let object = &self.scene.objects[hit.object as usize];
         let along = self.camera.outward(ray);
         let place = self.camera.eye() + along * hit.depth;
         let toward_eye = (-along).unit().unwrap_or_default();
         let (smooth, perturbed) = self.normals(object, hit, place, toward_eye);
-        let material = &self.material;
-        let mut light_sum = Vector::new(1.0, 1.0, 1.0) * material.ambient;
-        let mut computed = 0;
-        for light in &self.scene.lights {
-            let facing = perturbed.dot(light.direction).max(0.0);
-            light_sum = light_sum + light.colour * (material.diffuse * facing);
-            // The device knows nothing of what lies in its own shadow.
-            if smooth.dot(light.direction) <= 0.0 {
-                continue;
-            }
-            let half = (light.direction + toward_eye).unit().unwrap_or(smooth);
-            let point = point(smooth, perturbed, half, light.colour * material.specular);
-            let (raw, beyond) = self.feed.raw(&point);
-            shaded.points.push(raw, 1);
-            shaded.beyond += usize::from(beyond);
-            computed += 1;
-            if self.compare {
-                let f = crate::reference::blinn(point.cos_shaded, f64::from(material.exponent));
-                shaded.blinn.push(point.colour * (f * 255.0));
-            }
+        Surface {
+            colour: object.colour,
+            smooth,
+            perturbed,
+            toward_eye,
         }
-        (object.colour.times(light_sum) * 255.0, computed)
     }
 
     /// The normals of the smooth and of the perturbed surface, both toward the eye.

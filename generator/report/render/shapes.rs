@@ -1,6 +1,6 @@
 //! Meshes that are computed.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 use anyhow::Result;
 
@@ -21,6 +21,28 @@ pub fn torus(major: f64, minor: f64, steps: [u32; 2]) -> Result<Mesh> {
             minor * libm::sin(across),
             from_axis * libm::cos(around),
         )
+    })
+}
+
+/// A ball, in so many steps around and from pole to pole.
+///
+/// # Errors
+/// Those of [`Mesh::new`].
+pub fn ball(middle: Vector, radius: f64, steps: [u32; 2]) -> Result<Mesh> {
+    grid(steps, [true, false], |u, v| {
+        let (around, down) = (u * TAU, v * PI);
+        // Exactly 0 at both poles.
+        let from_axis = if v == 0.0 || v == 1.0 {
+            0.0
+        } else {
+            radius * libm::sin(down)
+        };
+        let offset = Vector::new(
+            from_axis * libm::sin(around),
+            radius * libm::cos(down),
+            from_axis * libm::cos(around),
+        );
+        middle + offset
     })
 }
 
@@ -94,8 +116,12 @@ fn grid(steps: [u32; 2], closed: [bool; 2], at: impl Fn(f64, f64) -> Vector) -> 
                 }
             };
             let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
-            triangles.push([a, b, c]);
-            triangles.push([a, c, d]);
+            // Where a row is a single point, there is one triangle instead of two.
+            let differ = |corners: &[RawCorner; 3]| {
+                let [p, q, r] = corners.map(|corner| positions[corner.position as usize]);
+                p != q && q != r && r != p
+            };
+            triangles.extend([[a, b, c], [a, c, d]].into_iter().filter(differ));
         }
     }
     Mesh::new(positions, Vec::new(), textures, triangles)

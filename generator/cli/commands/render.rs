@@ -1,0 +1,458 @@
+//! `render`.
+
+use std::fs::{self, File};
+use std::io::{Read, Write};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use anyhow::{Context, Result, anyhow, bail};
+use clap::{Args, ValueEnum};
+use serde_json::json;
+
+use super::load_one;
+use crate::cli::destination::Destination;
+use crate::cli::failure::{self, Usage};
+use crate::cli::{Output, progress, tables};
+use crate::config::Config;
+use crate::cosim::external;
+use crate::flow::{self, Unit};
+use crate::registry::Registry;
+use crate::report::render::{
+    self, BuiltIn, Difference, Light, Material, Mesh, Object, Picture, Relief, Rendered, Scene,
+    Settings, Shape, Vector, View,
+};
+
+/// The largest file that is read, in bytes: about the OBJ file of the largest mesh.
+const LARGEST_FILE: u64 = 4 << 30;
+
+/// n, where the device takes so much.
+const EXPONENT: u32 = 80;
+
+/// What `render` was asked for.
+#[derive(Args)]
+pub struct RenderArguments {
+    /// A configuration [default: the first device with its defaults]
+    config: Option<PathBuf>,
+    /// The picture, a PNG file
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+    /// What computes the specular term
+    #[arg(long, value_enum, default_value_t = Through::Golden)]
+    through: Through,
+    /// Beside it the picture of Blinn's cos^n in f64, and their difference, with its largest value and PSNR
+    #[arg(long)]
+    compare: bool,
+    /// Pixels
+    #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = size)]
+    size: (u32, u32),
+    /// Samples along each side of a pixel
+    #[arg(long, value_name = "N", default_value_t = 2)]
+    samples: u32,
+    /// What is shown
+    #[arg(long, value_enum, default_value_t = ShapeName::Sphere, conflicts_with = "mesh")]
+    shape: ShapeName,
+    /// Show the mesh of a Wavefront OBJ file; where it has no normals, smooth ones are computed
+    #[arg(long, value_name = "FILE")]
+    mesh: Option<PathBuf>,
+    /// A height map, a grey PNG file: it perturbs the normals, by dgamma where the device takes that
+    #[arg(long, value_name = "FILE")]
+    height: Option<PathBuf>,
+    /// How high white stands over black, in per cent of the radius of what is shown
+    #[arg(
+        long,
+        value_name = "PERCENT",
+        default_value_t = 1.0,
+        allow_negative_numbers = true,
+        requires = "height"
+    )]
+    height_depth: f64,
+    /// How often the height map is repeated
+    #[arg(long, value_name = "TIMES", default_value_t = 4.0, requires = "height")]
+    height_repeat: f64,
+    /// A light: the direction toward it and its colour, x right, y up, z to the front [default: a white one
+    /// from the upper left, a weaker one from behind on the right]
+    #[arg(long = "light", value_name = "X,Y,Z[,R,G,B]", allow_hyphen_values = true, value_parser = light)]
+    lights: Vec<Light>,
+    /// The specular exponent n [default: 80, or the largest that the device takes]
+    #[arg(long, value_name = "N")]
+    exponent: Option<u32>,
+    /// k_s, the share of the light that the device distributes, 0 to 1
+    #[arg(long, value_name = "SHARE", default_value_t = 0.7, value_parser = share)]
+    specular: f64,
+    /// The share of the light in the diffuse term, 0 to 1
+    #[arg(long, value_name = "SHARE", default_value_t = 0.75, value_parser = share)]
+    diffuse: f64,
+    /// The share of the light in the ambient term, 0 to 1
+    #[arg(long, value_name = "SHARE", default_value_t = 0.12, value_parser = share)]
+    ambient: f64,
+    /// The colour of things in ambient and diffuse light, each 0 to 1
+    #[arg(long, value_name = "R,G,B", value_parser = colour)]
+    colour: Option<Vector>,
+    /// The colour around them
+    #[arg(long, value_name = "R,G,B", default_value = "0.05,0.06,0.08", value_parser = colour)]
+    background: Vector,
+    /// Where the camera stands [default: in front, a little above, so that everything is seen]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
+    camera: Option<Vector>,
+    /// What it looks at [default: the middle of everything]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
+    target: Option<Vector>,
+    /// The angle from the lower to the upper edge, in degrees, 1 to 150
+    #[arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = field)]
+    fov: f64,
+    /// Seconds after which an external simulator is given up
+    #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    time_limit: u64,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Through {
+    /// The golden model
+    Golden,
+    /// The built-in simulator
+    RustHdl,
+    /// The emitted Verilog in Verilator
+    Verilator,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum ShapeName {
+    /// A ball
+    Sphere,
+    /// A ring
+    Torus,
+    /// A vase
+    Vase,
+    /// A vase, a ball and a ring
+    Group,
+}
+
+/// `glint render`.
+pub fn render(registry: &Registry, output: Output, arguments: &RenderArguments) -> Result<bool> {
+    let (name, unit) = unit(registry, arguments.config.as_deref())?;
+    let settings = settings(&unit, arguments)?;
+    if let Some(extension) = arguments.out.extension()
+        && !extension.eq_ignore_ascii_case("png")
+    {
+        bail!(Usage(format!(
+            "--out {}: the picture is a PNG file, and its name should end so",
+            arguments.out.display()
+        )));
+    }
+    let scene = scene(arguments, render::walks_lines(unit.contract.as_ref()))?;
+    render::check(&settings, &scene).map_err(|error| Usage(error.to_string()))?;
+    let destination = Destination::open(&arguments.out)?;
+    let through = match arguments.through {
+        Through::Golden => flow::Through::Golden,
+        Through::RustHdl => flow::Through::RustHdl,
+        Through::Verilator => flow::Through::Verilog(
+            external::Simulator::Verilator,
+            Duration::from_secs(arguments.time_limit),
+        ),
+    };
+    let bar = progress::bar(output, u64::from(settings.size.1), "rows rendered");
+    bar.tick();
+    let mut engine = unit.engine(through)?;
+    let rendered = render::render(&unit, engine.as_mut(), &scene, &settings, &mut |rows| {
+        bar.set_position(rows);
+    })?;
+    bar.finish_and_clear();
+    let picture = match &rendered.comparison {
+        None => rendered.picture.png()?,
+        Some(comparison) => Picture::beside(&[
+            &rendered.picture,
+            &comparison.blinn,
+            &comparison.difference.picture,
+        ])
+        .png()?,
+    };
+    let cannot = || format!("cannot write `{}`", arguments.out.display());
+    let mut file = destination.file()?;
+    file.write_all(&picture).with_context(cannot)?;
+    destination.commit()?;
+    tell(
+        output, arguments, &name, &unit, &scene, &settings, &rendered,
+    );
+    Ok(true)
+}
+
+/// What the configuration asks for, with its name for people.
+fn unit(registry: &Registry, config: Option<&Path>) -> Result<(String, Unit)> {
+    if let Some(path) = config {
+        let one = load_one(registry, &registry.schemas(), path)?;
+        return Ok((one.path, one.unit));
+    }
+    let device = registry.devices().first();
+    let device = *device.context("there is no device")?;
+    let schema = (device.schema)();
+    let config = Config::defaults(&schema, &device.name.replace('-', "_"));
+    let unit = Unit::new(device, config)?;
+    Ok((format!("the defaults of `{}`", device.name), unit))
+}
+
+fn settings(unit: &Unit, arguments: &RenderArguments) -> Result<Settings> {
+    let (least, most) = render::exponents(unit.contract.as_ref()).unwrap_or((0, i64::MAX));
+    let exponent = arguments
+        .exponent
+        .unwrap_or_else(|| i64::from(EXPONENT).clamp(least, most).max(0) as u32);
+    if !(least..=most).contains(&i64::from(exponent)) {
+        bail!(Usage(format!(
+            "--exponent {exponent}: `{}` takes {least} to {most}",
+            unit.config.name
+        )));
+    }
+    Ok(Settings {
+        size: arguments.size,
+        samples: arguments.samples,
+        view: View {
+            eye: arguments.camera,
+            target: arguments.target,
+            field: arguments.fov,
+        },
+        material: Material {
+            ambient: arguments.ambient,
+            diffuse: arguments.diffuse,
+            specular: arguments.specular,
+            exponent,
+        },
+        background: arguments.background,
+        compare: arguments.compare,
+    })
+}
+
+/// What is shown; `coarse`: in triangles that one can see.
+fn scene(arguments: &RenderArguments, coarse: bool) -> Result<Scene> {
+    let objects = match &arguments.mesh {
+        Some(path) => {
+            let cannot = || format!("the mesh `{}` cannot be used", path.display());
+            let bytes = read(path).with_context(cannot)?;
+            let text = String::from_utf8(bytes)
+                .map_err(|_| anyhow!("it is not text, which an OBJ file is"))
+                .with_context(cannot)?;
+            vec![Object {
+                shape: Shape::Mesh(render::obj::parse(&text).with_context(cannot)?),
+                colour: arguments.colour.unwrap_or(render::COLOUR),
+            }]
+        }
+        None => {
+            let which = match arguments.shape {
+                ShapeName::Sphere => BuiltIn::Sphere,
+                ShapeName::Torus => BuiltIn::Torus,
+                ShapeName::Vase => BuiltIn::Vase,
+                ShapeName::Group => BuiltIn::Group,
+            };
+            Scene::built_in(which, arguments.colour, coarse)?
+        }
+    };
+    let mut scene = Scene {
+        objects,
+        lights: lights(&arguments.lights),
+        relief: None,
+    };
+    if let Some(path) = &arguments.height {
+        for (option, value) in [
+            ("--height-depth", arguments.height_depth),
+            ("--height-repeat", arguments.height_repeat),
+        ] {
+            // Far beyond what can be seen, and far from what overflows.
+            if !(-1e6..=1e6).contains(&value) {
+                bail!(Usage(format!("{option} {value}: not beyond a million")));
+            }
+        }
+        let cannot = || format!("the height map `{}` cannot be used", path.display());
+        let bytes = read(path).with_context(cannot)?;
+        let depth = scene.extent().1 * arguments.height_depth / 100.0;
+        let relief = Relief::decode(&bytes, depth, arguments.height_repeat);
+        scene.relief = Some(relief.with_context(cannot)?);
+    }
+    Ok(scene)
+}
+
+/// Those given, or the default ones.
+fn lights(given: &[Light]) -> Vec<Light> {
+    if !given.is_empty() {
+        return given.to_vec();
+    }
+    let light = |direction: Vector, colour| Light {
+        direction: direction.unit().unwrap_or_default(),
+        colour,
+    };
+    vec![
+        light(Vector::new(-0.6, 0.8, 0.9), Vector::new(1.0, 1.0, 1.0)),
+        light(Vector::new(1.0, 0.35, -0.3), Vector::new(0.55, 0.47, 0.38)),
+    ]
+}
+
+/// A whole file, within reason.
+fn read(path: &Path) -> Result<Vec<u8>> {
+    if fs::metadata(path).is_ok_and(|found| found.is_dir()) {
+        bail!("it is a directory");
+    }
+    let mut bytes = Vec::new();
+    File::open(path)?
+        .take(LARGEST_FILE + 1)
+        .read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > LARGEST_FILE {
+        bail!("it has more than {LARGEST_FILE} bytes");
+    }
+    Ok(bytes)
+}
+
+/// Says what came of it.
+fn tell(
+    output: Output,
+    arguments: &RenderArguments,
+    name: &str,
+    unit: &Unit,
+    scene: &Scene,
+    settings: &Settings,
+    rendered: &Rendered,
+) {
+    let meshes: Vec<&Mesh> = scene
+        .objects
+        .iter()
+        .filter_map(|object| match &object.shape {
+            Shape::Ball { .. } => None,
+            Shape::Mesh(mesh) => Some(mesh),
+        })
+        .collect();
+    let triangles: usize = meshes.iter().map(|mesh| mesh.triangles.len()).sum();
+    let degenerate: usize = meshes.iter().map(|mesh| mesh.degenerate).sum();
+    let path = arguments.out.display().to_string();
+    let through = arguments.through.to_possible_value();
+    let through = through.map_or_else(String::new, |value| value.get_name().to_owned());
+    let bound = unit.contract.bound().units;
+    let (width, height) = settings.size;
+    if output.json {
+        let comparison = rendered.comparison.as_ref().map(|comparison| {
+            let Difference {
+                largest,
+                psnr,
+                gain,
+                ..
+            } = comparison.difference;
+            json!({
+                "largest_difference": largest,
+                "psnr": psnr,
+                "shown_times": gain,
+                "largest_error_of_the_formula_in_units": comparison.units,
+                "bound_in_units": bound,
+            })
+        });
+        tables::print_json(&json!({
+            "ok": true,
+            "config": arguments.config.as_ref().map(|_| name),
+            "device": unit.device.name,
+            "out": path,
+            "through": through,
+            "width": width,
+            "height": height,
+            "samples": settings.samples,
+            "exponent": settings.material.exponent,
+            "points": rendered.points,
+            "triangles": triangles,
+            "degenerate_triangles": degenerate,
+            "deviations_beyond_the_domain": rendered.beyond,
+            "compare": comparison,
+        }));
+        return;
+    }
+    tables::print_line(&format!(
+        "{path}: {width}x{height} pixels, n = {}, {} points of {name} through {through}",
+        settings.material.exponent,
+        tables::grouped(rendered.points)
+    ));
+    if degenerate > 0 {
+        failure::warn(&format!(
+            "{degenerate} triangles are without area and were left out"
+        ));
+    }
+    if rendered.beyond > 0 {
+        failure::warn(&format!(
+            "at {} points the deviation exceeds the device's domain and was shortened to it",
+            tables::grouped(rendered.beyond)
+        ));
+    }
+    if let Some(comparison) = &rendered.comparison {
+        let difference = &comparison.difference;
+        let psnr = match difference.psnr {
+            Some(psnr) => format!("PSNR {psnr:.2} dB"),
+            None => "the same picture".to_owned(),
+        };
+        tables::print_line(&format!(
+            "  from left to right: the device, Blinn in f64, their difference times {}",
+            difference.gain
+        ));
+        tables::print_line(&format!(
+            "  against Blinn: largest difference {} of 255, {psnr} over what is lit",
+            difference.largest
+        ));
+        tables::print_line(&format!(
+            "  against its own formula: largest error {:.3} units (bound {bound:.3})",
+            comparison.units
+        ));
+    }
+}
+
+/// `640x480`.
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let sides = text.split_once(['x', 'X']);
+    let sides = sides.and_then(|(width, height)| Some((width.parse().ok()?, height.parse().ok()?)));
+    sides.ok_or_else(|| "a size is WxH in pixels, as in 640x480".to_owned())
+}
+
+/// Finite numbers with commas between.
+fn numbers(text: &str) -> Result<Vec<f64>, String> {
+    text.split(',')
+        .map(|word| match word.trim().parse::<f64>() {
+            Ok(number) if number.is_finite() => Ok(number),
+            _ => Err(format!("`{word}` is not a finite number")),
+        })
+        .collect()
+}
+
+fn vector(text: &str) -> Result<Vector, String> {
+    match numbers(text)?.as_slice() {
+        &[x, y, z] => Ok(Vector::new(x, y, z)),
+        _ => Err("it takes three numbers, x,y,z".to_owned()),
+    }
+}
+
+fn colour(text: &str) -> Result<Vector, String> {
+    let colour = vector(text)?;
+    match colour.0.iter().all(|part| (0.0..=1.0).contains(part)) {
+        true => Ok(colour),
+        false => Err("a colour is three numbers from 0 to 1".to_owned()),
+    }
+}
+
+fn light(text: &str) -> Result<Light, String> {
+    let numbers = numbers(text)?;
+    let (direction, colour) = match *numbers.as_slice() {
+        [x, y, z] => (Vector::new(x, y, z), [1.0; 3]),
+        [x, y, z, r, g, b] => (Vector::new(x, y, z), [r, g, b]),
+        _ => return Err("a light is a direction x,y,z, or x,y,z,r,g,b with its colour".to_owned()),
+    };
+    if !colour.iter().all(|part| (0.0..=1.0).contains(part)) {
+        return Err("a colour is three numbers from 0 to 1".to_owned());
+    }
+    let direction = direction.unit();
+    Ok(Light {
+        direction: direction.ok_or("0,0,0 is no direction")?,
+        colour: Vector(colour),
+    })
+}
+
+fn share(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
+        _ => Err("a share is a number from 0 to 1".to_owned()),
+    }
+}
+
+fn field(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(degrees) if (1.0..=150.0).contains(&degrees) => Ok(degrees),
+        _ => Err("an angle from 1 to 150 degrees".to_owned()),
+    }
+}

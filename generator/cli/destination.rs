@@ -1,0 +1,72 @@
+//! A single file that is written whole or not at all, and that is known to be writable before the work for it.
+
+use std::fs::{self, File, OpenOptions};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use tempfile::NamedTempFile;
+
+use super::staged;
+
+/// Where a file goes: written beside its place and moved there when it is whole. A pipe or a device is
+/// written itself.
+pub struct Destination {
+    path: PathBuf,
+    place: Place,
+}
+
+enum Place {
+    Itself(File),
+    Beside(NamedTempFile),
+}
+
+impl Destination {
+    /// Makes sure that `path` can be written, before any work is done for it.
+    ///
+    /// # Errors
+    /// It cannot.
+    pub fn open(path: &Path) -> Result<Self> {
+        let place = if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+            let file = OpenOptions::new().write(true).open(path);
+            Place::Itself(file.with_context(|| cannot(path))?)
+        } else {
+            Place::Beside(staged::beside(path)?)
+        };
+        Ok(Self {
+            path: path.to_owned(),
+            place,
+        })
+    }
+
+    /// The file to write.
+    ///
+    /// # Errors
+    /// The system has no more files.
+    pub fn file(&self) -> Result<File> {
+        let file = match &self.place {
+            Place::Itself(file) => file.try_clone(),
+            Place::Beside(staged) => staged.reopen(),
+        };
+        file.with_context(|| cannot(&self.path))
+    }
+
+    /// Moves the file into its place.
+    ///
+    /// # Errors
+    /// It cannot be moved; then nothing was changed.
+    pub fn commit(self) -> Result<()> {
+        match self.place {
+            Place::Itself(_) => Ok(()),
+            Place::Beside(staged) => staged
+                .persist(&self.path)
+                .map(drop)
+                .map_err(|error| error.error)
+                .with_context(|| cannot(&self.path)),
+        }
+    }
+}
+
+/// What is said when it cannot be written.
+fn cannot(path: &Path) -> String {
+    format!("cannot write `{}`", path.display())
+}
