@@ -151,6 +151,8 @@ fn memories_are_whole(design: &Design, cells: &Cells, family: &Family, what: &st
     let large: Vec<&Rom> = design
         .roms
         .iter()
+        // A ROM whose words are all alike is wires.
+        .filter(|rom| rom.words.iter().any(|word| *word != rom.words[0]))
         .filter(|rom| rom.synchronous && bits(rom) >= WARRANTS_BLOCK_RAM)
         .collect();
     let rams: Vec<_> = family
