@@ -1,7 +1,7 @@
 // ${ name }$: what is proved of the handshake of ${ module }$
 //
-// For formal tools alone: every input is free. To prove it, from a directory that holds the files of
-// both folders:
+// For formal tools alone: every input is free. To prove it, from a directory that holds the files
+// of both folders:
 //   $ yosys -q ${ name }$.ys
 //   $ yosys-smtbmc -s z3 -t ${ depth }$ ${ name }$.smt2
 //   $ yosys-smtbmc -s z3 -i -t ${ depth }$ ${ name }$.smt2

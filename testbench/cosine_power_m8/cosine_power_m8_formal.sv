@@ -1,7 +1,7 @@
 // cosine_power_m8_formal: what is proved of the handshake of cosine_power_m8
 //
-// For formal tools alone: every input is free. To prove it, from a directory that holds the files of
-// both folders:
+// For formal tools alone: every input is free. To prove it, from a directory that holds the files
+// of both folders:
 //   $ yosys -q cosine_power_m8_formal.ys
 //   $ yosys-smtbmc -s z3 -t 9 cosine_power_m8_formal.smt2
 //   $ yosys-smtbmc -s z3 -i -t 9 cosine_power_m8_formal.smt2

@@ -1,7 +1,7 @@
 // rough_unclamped_formal: what is proved of the handshake of rough_unclamped
 //
-// For formal tools alone: every input is free. To prove it, from a directory that holds the files of
-// both folders:
+// For formal tools alone: every input is free. To prove it, from a directory that holds the files
+// of both folders:
 //   $ yosys -q rough_unclamped_formal.ys
 //   $ yosys-smtbmc -s z3 -t 13 rough_unclamped_formal.smt2
 //   $ yosys-smtbmc -s z3 -i -t 13 rough_unclamped_formal.smt2

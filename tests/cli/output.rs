@@ -117,9 +117,9 @@ fn a_waveform_that_does_not_fit() {
         "--vcd",
         "absent/wave.vcd",
     ]);
-    run.refused(1, &["cannot write the waveform `absent/wave.vcd`"]);
+    run.refused(1, &["cannot write `absent/wave.vcd`"]);
     let run = place.glint(["cosim", "core.toml", "--points", "5", "--vcd", "."]);
-    run.refused(1, &["cannot write the waveform `.`"]);
+    run.refused(1, &["cannot write `.`"]);
 }
 
 #[test]

@@ -1,0 +1,83 @@
+// lyon_formal: what is proved of the handshake of lyon
+//
+// For formal tools alone: every input is free. To prove it, from a directory that holds the files
+// of both folders:
+//   $ yosys -q lyon_formal.ys
+//   $ yosys-smtbmc -s z3 -t 4 lyon_formal.smt2
+//   $ yosys-smtbmc -s z3 -i -t 4 lyon_formal.smt2
+//
+// Generated files belong to their user, without conditions.
+
+`default_nettype none
+
+module lyon_formal (
+    input  wire clk,
+    input  wire rst_n,
+    input  wire start,
+    input  wire [17:0] dx,
+    input  wire dx_write,
+    input  wire [17:0] dy,
+    input  wire dy_write,
+    input  wire [17:0] dz,
+    input  wire dz_write,
+    input  wire [3:0] shift,
+    input  wire shift_write,
+    input  wire [7:0] red,
+    input  wire red_write,
+    input  wire [7:0] green,
+    input  wire green_write,
+    input  wire [7:0] blue,
+    input  wire blue_write
+);
+    wire       valid;
+    wire       busy;
+    wire       done;
+    wire [7:0] red_out;
+    wire [7:0] green_out;
+    wire [7:0] blue_out;
+
+    lyon dut (
+        .clk(clk),
+        .rst_n(rst_n),
+        .start(start),
+        .dx(dx),
+        .dx_write(dx_write),
+        .dy(dy),
+        .dy_write(dy_write),
+        .dz(dz),
+        .dz_write(dz_write),
+        .shift(shift),
+        .shift_write(shift_write),
+        .red(red),
+        .red_write(red_write),
+        .green(green),
+        .green_write(green_write),
+        .blue(blue),
+        .blue_write(blue_write),
+        .valid(valid),
+        .busy(busy),
+        .done(done),
+        .red_out(red_out),
+        .green_out(green_out),
+        .blue_out(blue_out)
+    );
+
+    // The initial set comes first; the state before it is arbitrary.
+    always @* if ($initstate) assume (!rst_n);
+
+    always @(posedge clk) if (!$initstate) begin
+        if (!$past(rst_n)) begin
+            // Idle after the initial set, whatever was before.
+            assert (!busy && !done);
+        end else if (!$past(busy)) begin
+            // Idle until start, busy from the clock after it.
+            assert (busy == $past(start));
+        end else begin
+            // Busy to the clock of done.
+            assert (busy == !$past(done));
+        end
+        if (done) assert (busy);
+    end
+endmodule
+
+`default_nettype wire

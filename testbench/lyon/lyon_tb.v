@@ -1,0 +1,169 @@
+// lyon_tb: self-checking bench of lyon
+//
+// Run it with any simulator from a directory that holds the files of both folders, for example
+//   $ iverilog -g2012 -o lyon_tb lyon*.v
+//   $ ./lyon_tb
+// or, with Verilator 5,
+//   $ verilator --binary --timing --top-module lyon_tb lyon*.v
+//   $ obj_dir/Vlyon_tb
+// Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
+//
+// Generated files belong to their user, without conditions.
+
+`default_nettype none
+
+module lyon_tb #(
+    parameter STIMULUS_FILE = "lyon_stimulus.mem",
+    parameter EXPECTED_FILE = "lyon_expected.mem"
+);
+    localparam CLOCKS     = 360;
+    localparam KNOWN_FROM = 14;  // results are compared from this clock on
+    localparam REPORTED   = 20;  // differences that are printed
+
+    reg [90:0] stimulus [0:CLOCKS-1];
+    reg [26:0] expected [0:CLOCKS-1];
+    reg [26:0] want;
+
+    reg clk = 1'b0;
+    reg                rst_n;
+    reg                start;
+    reg  signed [17:0] dx;
+    reg                dx_write;
+    reg  signed [17:0] dy;
+    reg                dy_write;
+    reg  signed [17:0] dz;
+    reg                dz_write;
+    reg         [3:0]  shift;
+    reg                shift_write;
+    reg         [7:0]  red;
+    reg                red_write;
+    reg         [7:0]  green;
+    reg                green_write;
+    reg         [7:0]  blue;
+    reg                blue_write;
+    wire               valid;
+    wire               busy;
+    wire               done;
+    wire        [7:0]  red_out;
+    wire        [7:0]  green_out;
+    wire        [7:0]  blue_out;
+
+    integer clock;
+    // Initial values stand here and not in the process below: Verilator 5.006 takes a variable for
+    // constant after a loop with delays when the process has set it before the loop.
+    integer errors = 0;
+    reg was_reset = 1'b0;  // the control unit is in a known state
+
+    lyon dut (
+        .clk(clk),
+        .rst_n(rst_n),
+        .start(start),
+        .dx(dx),
+        .dx_write(dx_write),
+        .dy(dy),
+        .dy_write(dy_write),
+        .dz(dz),
+        .dz_write(dz_write),
+        .shift(shift),
+        .shift_write(shift_write),
+        .red(red),
+        .red_write(red_write),
+        .green(green),
+        .green_write(green_write),
+        .blue(blue),
+        .blue_write(blue_write),
+        .valid(valid),
+        .busy(busy),
+        .done(done),
+        .red_out(red_out),
+        .green_out(green_out),
+        .blue_out(blue_out)
+    );
+
+    // Prints the word of the microprogram that is executed.
+    task write_word;
+        case (dut.control.word_address)
+            3'd0: $write("word 0 (operands dx, dy, dz)");
+            3'd1: $write("word 1 (shift_register <- D^2 / (4*power))");
+            3'd2: $write("word 2 (shift_register <- 2 * shift_register)");
+            3'd3: $write("word 3 (accumulator <- base^2)");
+            3'd4: $write("word 4 (accumulator <- accumulator^2)");
+            3'd5: $write("word 5 (result)");
+            default: $write("no word");
+        endcase
+    endtask
+
+    initial begin
+        $readmemh(STIMULUS_FILE, stimulus);
+        $readmemh(EXPECTED_FILE, expected);
+        for (clock = 0; clock < CLOCKS; clock = clock + 1) begin
+            {rst_n, start, dx, dx_write, dy, dy_write, dz, dz_write, shift, shift_write, red,
+                    red_write, green, green_write, blue, blue_write} = stimulus[clock];
+            want = expected[clock];
+            #4;
+            if (was_reset) begin
+                if (valid !== want[26]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": valid is %h, expected %h", valid, want[26]);
+                    end
+                end
+                if (busy !== want[25]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": busy is %h, expected %h", busy, want[25]);
+                    end
+                end
+                if (done !== want[24]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": done is %h, expected %h", done, want[24]);
+                    end
+                end
+            end
+            if (clock >= KNOWN_FROM) begin
+                if (red_out !== want[23:16]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": red_out is %h, expected %h", red_out, want[23:16]);
+                    end
+                end
+                if (green_out !== want[15:8]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": green_out is %h, expected %h", green_out, want[15:8]);
+                    end
+                end
+                if (blue_out !== want[7:0]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": blue_out is %h, expected %h", blue_out, want[7:0]);
+                    end
+                end
+            end
+            if (!rst_n) was_reset = 1'b1;
+            #1 clk = 1'b1;
+            #5 clk = 1'b0;
+        end
+        if (errors != 0) begin
+            $display("FAIL lyon: %0d differences in %0d clocks", errors, CLOCKS);
+            $fatal;
+        end
+        $display("PASS lyon: %0d clocks, no difference", CLOCKS);
+        $finish;
+    end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,159 @@
+// quadratic_tb: self-checking bench of quadratic
+//
+// Run it with any simulator from a directory that holds the files of both folders, for example
+//   $ iverilog -g2012 -o quadratic_tb quadratic*.v
+//   $ ./quadratic_tb
+// or, with Verilator 5,
+//   $ verilator --binary --timing --top-module quadratic_tb quadratic*.v
+//   $ obj_dir/Vquadratic_tb
+// Inputs change on the falling edge of the clock; outputs are compared just before the rising edge.
+//
+// Generated files belong to their user, without conditions.
+
+`default_nettype none
+
+module quadratic_tb #(
+    parameter STIMULUS_FILE = "quadratic_stimulus.mem",
+    parameter EXPECTED_FILE = "quadratic_expected.mem"
+);
+    localparam CLOCKS     = 162;
+    localparam KNOWN_FROM = 8;  // results are compared from this clock on
+    localparam REPORTED   = 20;  // differences that are printed
+
+    reg [61:0] stimulus [0:CLOCKS-1];
+    reg [26:0] expected [0:CLOCKS-1];
+    reg [26:0] want;
+
+    reg clk = 1'b0;
+    reg         rst_n;
+    reg         start;
+    reg  [9:0]  exponent;
+    reg         exponent_write;
+    reg  [20:0] cos_gamma;
+    reg         cos_gamma_write;
+    reg  [7:0]  red;
+    reg         red_write;
+    reg  [7:0]  green;
+    reg         green_write;
+    reg  [7:0]  blue;
+    reg         blue_write;
+    wire        valid;
+    wire        busy;
+    wire        done;
+    wire [7:0]  red_out;
+    wire [7:0]  green_out;
+    wire [7:0]  blue_out;
+
+    integer clock;
+    // Initial values stand here and not in the process below: Verilator 5.006 takes a variable for
+    // constant after a loop with delays when the process has set it before the loop.
+    integer errors = 0;
+    reg was_reset = 1'b0;  // the control unit is in a known state
+
+    quadratic dut (
+        .clk(clk),
+        .rst_n(rst_n),
+        .start(start),
+        .exponent(exponent),
+        .exponent_write(exponent_write),
+        .cos_gamma(cos_gamma),
+        .cos_gamma_write(cos_gamma_write),
+        .red(red),
+        .red_write(red_write),
+        .green(green),
+        .green_write(green_write),
+        .blue(blue),
+        .blue_write(blue_write),
+        .valid(valid),
+        .busy(busy),
+        .done(done),
+        .red_out(red_out),
+        .green_out(green_out),
+        .blue_out(blue_out)
+    );
+
+    // Prints the word of the microprogram that is executed.
+    task write_word;
+        case (dut.control.word_address)
+            2'd0: $write("word 0 (operands; ROM(n) addressed)");
+            2'd1: $write("word 1 (difference <- c^2 - c)");
+            2'd2: $write("word 2 (intensity <- c + a(n) * difference, not below 0)");
+            2'd3: $write("word 3 (result)");
+            default: $write("no word");
+        endcase
+    endtask
+
+    initial begin
+        $readmemh(STIMULUS_FILE, stimulus);
+        $readmemh(EXPECTED_FILE, expected);
+        for (clock = 0; clock < CLOCKS; clock = clock + 1) begin
+            {rst_n, start, exponent, exponent_write, cos_gamma, cos_gamma_write, red, red_write,
+                    green, green_write, blue, blue_write} = stimulus[clock];
+            want = expected[clock];
+            #4;
+            if (was_reset) begin
+                if (valid !== want[26]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": valid is %h, expected %h", valid, want[26]);
+                    end
+                end
+                if (busy !== want[25]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": busy is %h, expected %h", busy, want[25]);
+                    end
+                end
+                if (done !== want[24]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": done is %h, expected %h", done, want[24]);
+                    end
+                end
+            end
+            if (clock >= KNOWN_FROM) begin
+                if (red_out !== want[23:16]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": red_out is %h, expected %h", red_out, want[23:16]);
+                    end
+                end
+                if (green_out !== want[15:8]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": green_out is %h, expected %h", green_out, want[15:8]);
+                    end
+                end
+                if (blue_out !== want[7:0]) begin
+                    errors = errors + 1;
+                    if (errors <= REPORTED) begin
+                        $write("clock %0d, ", clock);
+                        write_word;
+                        $display(": blue_out is %h, expected %h", blue_out, want[7:0]);
+                    end
+                end
+            end
+            if (!rst_n) was_reset = 1'b1;
+            #1 clk = 1'b1;
+            #5 clk = 1'b0;
+        end
+        if (errors != 0) begin
+            $display("FAIL quadratic: %0d differences in %0d clocks", errors, CLOCKS);
+            $fatal;
+        end
+        $display("PASS quadratic: %0d clocks, no difference", CLOCKS);
+        $finish;
+    end
+endmodule
+
+`default_nettype wire
