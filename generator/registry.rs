@@ -85,6 +85,8 @@ impl Registry {
                 contract: |config| {
                     Box::new(golden::cosine_squared::CosineSquaredContract::new(config))
                 },
+            },
+            Device {
                 name: "blinn",
                 summary: "cos(gamma)^n itself, by tables of -log2 and 2^-x (seeds 000 to 002)",
                 schema: devices::blinn::schema,

@@ -4,9 +4,9 @@ pub mod blinn;
 mod common;
 pub mod cosine_power;
 pub mod cosine_squared;
-pub mod quad_cosine;
 mod decay;
 pub mod gauss;
+pub mod quad_cosine;
 pub mod rough;
 
 use crate::config::Config;

@@ -106,6 +106,8 @@ pub fn quad_cosine(delta: f64, n: i64) -> f64 {
 #[inline]
 pub fn cosine_squared(stretched: f64) -> f64 {
     lobe(stretched, 2)
+}
+
 /// The Gaussian of the angle (seed 002): `exp(−n·γ²/2)`, γ = arccos c.
 #[inline]
 pub fn gauss(c: f64, n: f64) -> f64 {

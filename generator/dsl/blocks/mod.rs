@@ -2,8 +2,8 @@
 
 pub mod angle;
 pub mod colour;
-pub mod line;
 pub mod exponential;
+pub mod line;
 pub mod multipartite;
 pub mod segmented;
 pub mod shift;
