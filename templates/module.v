@@ -49,11 +49,9 @@ ${ line }$
 <%- endfor %>
     reg ${ rom.range }$ ${ rom.memory }$ [0:${ rom.last }$];
     initial $readmem${ rom.radix }$(${ rom.parameter }$, ${ rom.memory }$);
-<%- if rom.synchronous %>
-    always @(posedge clk) ${ rom.data }$ <= ${ rom.memory }$[${ rom.address }$];
-<%- else %>
-    ${ rom.data }$ = ${ rom.memory }$[${ rom.address }$];
-<%- endif %>
+<%- for line in rom.read %>
+${ line }$
+<%- endfor %>
 <%- endmatch %>
 <%- endfor %>
 <%- for group in groups %>

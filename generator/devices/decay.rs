@@ -69,7 +69,7 @@ pub fn keys(defaults: &Defaults) -> Vec<Key> {
         ),
         Key::integer(
             "decay.slope_fraction",
-            23,
+            24,
             8..=28,
             "Fraction bits of the rise over a segment.",
         ),
@@ -101,7 +101,7 @@ pub fn keys(defaults: &Defaults) -> Vec<Key> {
         ),
         Key::integer(
             "exponential.fraction",
-            18,
+            19,
             8..=24,
             "Fraction bits of the tables of 2^-x.",
         ),
@@ -269,7 +269,7 @@ pub fn describe<'d>(d: &'d Designer, config: &Config, cos_gamma: Signal<'d>, cur
 
     let rounded = exponential::halvings(
         d,
-        "exponential",
+        "exp2",
         halvings.q(),
         &exponential,
         f.frac,

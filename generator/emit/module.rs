@@ -257,6 +257,18 @@ impl<'a> Builder<'a> {
             format!(": {}", rom.doc.join(" "))
         };
         let control = is_control_rom(self.plan.design, id);
+        let word = format!(
+            "{}[{}]",
+            self.naming.memories[id.index()],
+            self.expressions.address(rom)
+        );
+        let read = match rom.synchronous {
+            true => {
+                let data = &self.plan.design.net(rom.data).name;
+                format!("always @(posedge clk) {data} <= {word};")
+            }
+            false => format!("{} = {word};", self.target(rom.data)),
+        };
         Item::Rom(RomItem {
             comment: comment(4, &format!("{}{what}", rom_label(rom))),
             range: range(width),
@@ -264,12 +276,7 @@ impl<'a> Builder<'a> {
             last: rom.words.len().saturating_sub(1),
             radix: if control { 'b' } else { 'h' },
             parameter: self.naming.parameters[id.index()].clone(),
-            synchronous: rom.synchronous,
-            data: match rom.synchronous {
-                true => self.plan.design.net(rom.data).name.clone(),
-                false => self.target(rom.data),
-            },
-            address: self.expressions.address(rom),
+            read: statement(4, &read),
         })
     }
 

@@ -77,12 +77,8 @@ pub struct RomItem {
     pub radix: char,
     /// The parameter with the file name.
     pub parameter: String,
-    /// Reads on the clock.
-    pub synchronous: bool,
-    /// What takes the word: a name (synchronous), `assign x` or `wire [7:0] x`.
-    pub data: String,
-    /// The address.
-    pub address: String,
+    /// What reads a word.
+    pub read: Vec<String>,
 }
 
 /// The top module.

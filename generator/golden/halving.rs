@@ -270,7 +270,8 @@ mod tests {
                 assert!(error <= bound, "{y}: {error} > {bound}");
             }
         }
-        assert!(it.error() < 7e-4);
+        // Not idle either: 0.35 ulps of x, and a few of the tables.
+        assert!(it.error() < 1.5e-3);
     }
 
     #[test]

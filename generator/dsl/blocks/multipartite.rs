@@ -129,11 +129,9 @@ pub fn evaluate<'d>(
             distance
         } else {
             let slope = x.bits(bits - offset.address, integer(offset.address));
-            d.join(
-                &format!("{part}_address"),
-                &[slope, distance],
-                integer(offset.address + offset.bits - 1),
-            )
+            let name = format!("{part}_address");
+            let format = integer(offset.address + offset.bits - 1);
+            d.join(&name, &[slope, distance], format).named(&name)
         };
         let word = d
             .rom(&part, address, holding(words), words, synchronous)
