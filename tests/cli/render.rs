@@ -357,6 +357,7 @@ fn height_maps_that_cannot_be_used() {
         png(ColorType::Grayscale, BitDepth::Eight, 8193, &[0; 8193]),
     );
     place.write("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    place.write("rough.toml", "device = \"rough\"\n");
     let before = place.files();
     for (file, message) in [
         ("missing.png", "No such file"),
@@ -372,10 +373,16 @@ fn height_maps_that_cannot_be_used() {
     let run = place.glint(render(&["--height", "deep.png", "--mesh", "bare.obj"]));
     run.refused(2, &["texture coordinates (`vt`) at every corner"]);
     assert!(before == place.files());
-    place.done(render(&["--height", "deep.png"]));
+    place.done(render(&["rough.toml", "--height", "deep.png"]));
     // Steeper than 30°, the domain's largest dγ.
     place.write("bumps.png", bumps());
-    let run = place.glint(render(&["--height", "bumps.png", "--height-depth", "40"]));
+    let run = place.glint(render(&[
+        "rough.toml",
+        "--height",
+        "bumps.png",
+        "--height-depth",
+        "40",
+    ]));
     assert_eq!(run.code, 0, "{run:?}");
     assert!(
         run.err

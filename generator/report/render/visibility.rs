@@ -231,13 +231,14 @@ impl<'a> Visibility<'a> {
             let (top, bottom) = candidate.rows;
             for row in first.max(top as usize)..end.min(bottom as usize) {
                 let line = &mut hits[(row - first) * width..][..width];
-                for column in candidate.columns.0 as usize..candidate.columns.1 as usize {
+                let (left, right) = (candidate.columns.0 as usize, candidate.columns.1 as usize);
+                for (column, hit) in (left..right).zip(&mut line[left..right]) {
                     let ray = self.raster.ray(column, row);
                     if let Some((depth, weights)) = planes.meet(ray)
                         && depth > self.near
-                        && depth < line[column].depth
+                        && depth < hit.depth
                     {
-                        line[column] = Hit {
+                        *hit = Hit {
                             depth,
                             object: candidate.object,
                             triangle: candidate.triangle,
