@@ -53,10 +53,10 @@
 module blinn_small #(
     parameter CONTROL_FILE = "blinn_small_control.mem",
     parameter CURVE_FILE = "blinn_small_curve.mem",
-    parameter EXPONENTIAL_BEND_VALUE_FILE = "blinn_small_exponential_bend_value.mem",
-    parameter EXPONENTIAL_BEND_OFFSET1_FILE = "blinn_small_exponential_bend_offset1.mem",
-    parameter EXPONENTIAL_BEND_OFFSET2_FILE = "blinn_small_exponential_bend_offset2.mem",
-    parameter EXPONENTIAL_BEND_OFFSET3_FILE = "blinn_small_exponential_bend_offset3.mem"
+    parameter EXP2_BEND_VALUE_FILE = "blinn_small_exp2_bend_value.mem",
+    parameter EXP2_BEND_OFFSET1_FILE = "blinn_small_exp2_bend_offset1.mem",
+    parameter EXP2_BEND_OFFSET2_FILE = "blinn_small_exp2_bend_offset2.mem",
+    parameter EXP2_BEND_OFFSET3_FILE = "blinn_small_exp2_bend_offset3.mem"
 ) (
     input  wire        clk,
     input  wire        rst_n,            // initial set, active low
@@ -106,10 +106,10 @@ module blinn_small #(
 
     blinn_small_datapath #(
         .CURVE_FILE(CURVE_FILE),
-        .EXPONENTIAL_BEND_VALUE_FILE(EXPONENTIAL_BEND_VALUE_FILE),
-        .EXPONENTIAL_BEND_OFFSET1_FILE(EXPONENTIAL_BEND_OFFSET1_FILE),
-        .EXPONENTIAL_BEND_OFFSET2_FILE(EXPONENTIAL_BEND_OFFSET2_FILE),
-        .EXPONENTIAL_BEND_OFFSET3_FILE(EXPONENTIAL_BEND_OFFSET3_FILE)
+        .EXP2_BEND_VALUE_FILE(EXP2_BEND_VALUE_FILE),
+        .EXP2_BEND_OFFSET1_FILE(EXP2_BEND_OFFSET1_FILE),
+        .EXP2_BEND_OFFSET2_FILE(EXP2_BEND_OFFSET2_FILE),
+        .EXP2_BEND_OFFSET3_FILE(EXP2_BEND_OFFSET3_FILE)
     ) datapath (
         .clk(clk),
         .cos_gamma(cos_gamma),

@@ -7,10 +7,10 @@
 
 module blinn_small_datapath #(
     parameter CURVE_FILE = "blinn_small_curve.mem",
-    parameter EXPONENTIAL_BEND_VALUE_FILE = "blinn_small_exponential_bend_value.mem",
-    parameter EXPONENTIAL_BEND_OFFSET1_FILE = "blinn_small_exponential_bend_offset1.mem",
-    parameter EXPONENTIAL_BEND_OFFSET2_FILE = "blinn_small_exponential_bend_offset2.mem",
-    parameter EXPONENTIAL_BEND_OFFSET3_FILE = "blinn_small_exponential_bend_offset3.mem"
+    parameter EXP2_BEND_VALUE_FILE = "blinn_small_exp2_bend_value.mem",
+    parameter EXP2_BEND_OFFSET1_FILE = "blinn_small_exp2_bend_offset1.mem",
+    parameter EXP2_BEND_OFFSET2_FILE = "blinn_small_exp2_bend_offset2.mem",
+    parameter EXP2_BEND_OFFSET3_FILE = "blinn_small_exp2_bend_offset3.mem"
 ) (
     input  wire        clk,
     // u1.20: cosine of the angle between normal and half vector
@@ -41,24 +41,23 @@ module blinn_small_datapath #(
     // Registers
     // u1.20: cosine of the angle between normal and half vector
     reg         [20:0] cos_gamma_reg;
-    reg         [9:0]  exponent_reg;                    // specular exponent n
-    reg         [7:0]  red_reg;                         // intensity of the light times k_s
-    reg         [7:0]  green_reg;                       // intensity of the light times k_s
-    reg         [7:0]  blue_reg;                        // intensity of the light times k_s
-    reg         [20:0] decay;                           // u0.21: -log2(cos gamma * 2^octave)
-    // u5.13: n*decay: how often f is half of 1.0
-    reg         [17:0] halvings;
-    reg         [13:0] reflectance;                     // u0.14: f
-    reg         [14:0] curve_rest_held;                 // u0.15
-    reg                exponential_bend_offset1_upper;
-    reg                exponential_bend_offset2_upper;
-    reg                exponential_bend_offset3_upper;
-    reg         [12:0] exponential_x;                   // u0.13
-    reg         [36:0] curve_word;
-    reg         [10:0] exponential_bend_value_word;     // u-4.15
-    reg  signed [6:0]  exponential_bend_offset1_word;   // s-9.15
-    reg  signed [4:0]  exponential_bend_offset2_word;   // s-11.15
-    reg  signed [1:0]  exponential_bend_offset3_word;   // s-14.15
+    reg         [9:0]  exponent_reg;             // specular exponent n
+    reg         [7:0]  red_reg;                  // intensity of the light times k_s
+    reg         [7:0]  green_reg;                // intensity of the light times k_s
+    reg         [7:0]  blue_reg;                 // intensity of the light times k_s
+    reg         [21:0] decay;                    // u0.22: -log2(cos gamma * 2^octave)
+    reg         [17:0] halvings;                 // u5.13: n*decay: how often f is half of 1.0
+    reg         [13:0] reflectance;              // u0.14: f
+    reg         [14:0] curve_rest_held;          // u0.15
+    reg                exp2_bend_offset1_upper;
+    reg                exp2_bend_offset2_upper;
+    reg                exp2_bend_offset3_upper;
+    reg         [12:0] exp2_x;                   // u0.13
+    reg         [37:0] curve_word;
+    reg         [10:0] exp2_bend_value_word;     // u-4.15
+    reg  signed [6:0]  exp2_bend_offset1_word;   // s-9.15
+    reg  signed [4:0]  exp2_bend_offset2_word;   // s-11.15
+    reg  signed [1:0]  exp2_bend_offset3_word;   // s-14.15
 
     wire cos_gamma_over = cos_gamma[20];
     wire [20:0] cos_gamma_at_most = cos_gamma_over ? COS_GAMMA_MOST : cos_gamma;  // u1.20
@@ -104,15 +103,15 @@ module blinn_small_datapath #(
     wire curve_in_range1 = |distance[18:15];  // u is in range 1 or in one above
     wire [4:0] curve_word1 = curve_in_range1 ? curve_word0 : curve_word2;
     wire [14:0] curve_rest1 = curve_in_range1 ? curve_rest0 : curve_rest2;  // u0.15
-    wire [20:0] curve_base = curve_word[36:16];  // u0.21
+    wire [21:0] curve_base = curve_word[37:16];  // u0.22
     wire [15:0] curve_slope = curve_word[15:0];  // u-3.19
-    wire decay_large = |decay[20:19];
+    wire decay_large = |decay[21:20];
     wire octave_any = |octave;  // cos gamma is below one half
     wire decay_far = decay_large | octave_any;
     wire decay_small = ~decay_far;  // the decay is below 1/4, and all its bits count
 
     // the decay, its point by decay_small
-    wire [20:0] factor = decay_small ? {2'd0, decay[18:0]} : {octave, decay[20:5]};
+    wire [20:0] factor = decay_small ? {1'b0, decay[19:0]} : {octave, decay[21:6]};
 
     // first operand of the multiplier
     wire [20:0] first = operand_select ? factor : {5'd0, curve_slope};
@@ -121,103 +120,95 @@ module blinn_small_datapath #(
     wire [14:0] second = operand_select ? {5'd0, exponent_reg} : curve_rest_held;
 
     wire [35:0] product = first * second;  // its point depends on the operands
-    wire [20:0] curve_rise_cut = {3'd0, product[30:13]};  // u0.21
-    wire [21:0] curve_sum = {1'b0, curve_base} + {1'b0, curve_rise_cut};  // u1.21
-    wire [20:0] curve_value = curve_sum[21] ? 21'h1fffff : curve_sum[20:0];  // u0.21
+    wire [21:0] curve_rise_cut = {3'd0, product[30:12]};  // u0.22
+    wire [22:0] curve_sum = {1'b0, curve_base} + {1'b0, curve_rise_cut};  // u1.22
+    wire [21:0] curve_value = curve_sum[22] ? 22'h3fffff : curve_sum[21:0];  // u0.22
     wire [17:0] halvings_coarse = (|product[30:21]) ? 18'h3ffff : product[20:3];  // u5.13
-    wire [17:0] halvings_fine = (|product[30:26]) ? 18'h3ffff : product[25:8];  // u5.13
+    wire [17:0] halvings_fine = (|product[30:27]) ? 18'h3ffff : product[26:9];  // u5.13
     wire [17:0] halvings_next = decay_small ? halvings_fine : halvings_coarse;  // u5.13
-    wire exponential_bend_offset1_mirrored = ~halvings[6];
+    wire exp2_bend_offset1_mirrored = ~halvings[6];
 
     // distance from the middle of the field
-    wire exponential_bend_offset1_distance = halvings[7] ? halvings[6] :
-            exponential_bend_offset1_mirrored;
+    wire exp2_bend_offset1_distance = halvings[7] ? halvings[6] : exp2_bend_offset1_mirrored;
 
-    wire signed [6:0] exponential_bend_offset1_opposite = ~exponential_bend_offset1_word;  // s-9.15
+    wire [3:0] exp2_bend_offset1_address = {halvings[12:10], exp2_bend_offset1_distance};
+    wire signed [6:0] exp2_bend_offset1_opposite = ~exp2_bend_offset1_word;  // s-9.15
 
     // s-9.15: what the field adds, less half an ulp
-    wire signed [6:0] exponential_bend_offset1_term = exponential_bend_offset1_upper ?
-            exponential_bend_offset1_word : exponential_bend_offset1_opposite;
+    wire signed [6:0] exp2_bend_offset1_term = exp2_bend_offset1_upper ? exp2_bend_offset1_word :
+            exp2_bend_offset1_opposite;
 
     // s-4.15
-    wire signed [11:0] exponential_bend_offset1_sum = {1'b0, exponential_bend_value_word} +
-            {{5{exponential_bend_offset1_term[6]}}, exponential_bend_offset1_term};
+    wire signed [11:0] exp2_bend_offset1_sum = {1'b0, exp2_bend_value_word} +
+            {{5{exp2_bend_offset1_term[6]}}, exp2_bend_offset1_term};
 
-    wire [1:0] exponential_bend_offset2_mirrored = ~halvings[4:3];
+    wire [1:0] exp2_bend_offset2_mirrored = ~halvings[4:3];
 
     // distance from the middle of the field
-    wire [1:0] exponential_bend_offset2_distance = halvings[5] ? halvings[4:3] :
-            exponential_bend_offset2_mirrored;
+    wire [1:0] exp2_bend_offset2_distance = halvings[5] ? halvings[4:3] :
+            exp2_bend_offset2_mirrored;
 
-    // s-11.15
-    wire signed [4:0] exponential_bend_offset2_opposite = ~exponential_bend_offset2_word;
+    wire [3:0] exp2_bend_offset2_address = {halvings[12:11], exp2_bend_offset2_distance};
+    wire signed [4:0] exp2_bend_offset2_opposite = ~exp2_bend_offset2_word;  // s-11.15
 
     // s-11.15: what the field adds, less half an ulp
-    wire signed [4:0] exponential_bend_offset2_term = exponential_bend_offset2_upper ?
-            exponential_bend_offset2_word : exponential_bend_offset2_opposite;
+    wire signed [4:0] exp2_bend_offset2_term = exp2_bend_offset2_upper ? exp2_bend_offset2_word :
+            exp2_bend_offset2_opposite;
 
     // s-4.15
-    wire signed [11:0] exponential_bend_offset2_sum = exponential_bend_offset1_sum +
-            {{7{exponential_bend_offset2_term[4]}}, exponential_bend_offset2_term};
+    wire signed [11:0] exp2_bend_offset2_sum = exp2_bend_offset1_sum +
+            {{7{exp2_bend_offset2_term[4]}}, exp2_bend_offset2_term};
 
-    wire [1:0] exponential_bend_offset3_mirrored = ~halvings[1:0];
+    wire [1:0] exp2_bend_offset3_mirrored = ~halvings[1:0];
 
     // distance from the middle of the field
-    wire [1:0] exponential_bend_offset3_distance = halvings[2] ? halvings[1:0] :
-            exponential_bend_offset3_mirrored;
+    wire [1:0] exp2_bend_offset3_distance = halvings[2] ? halvings[1:0] :
+            exp2_bend_offset3_mirrored;
 
-    // s-14.15
-    wire signed [1:0] exponential_bend_offset3_opposite = ~exponential_bend_offset3_word;
+    wire [2:0] exp2_bend_offset3_address = {halvings[12], exp2_bend_offset3_distance};
+    wire signed [1:0] exp2_bend_offset3_opposite = ~exp2_bend_offset3_word;  // s-14.15
 
     // s-14.15: what the field adds, less half an ulp
-    wire signed [1:0] exponential_bend_offset3_term = exponential_bend_offset3_upper ?
-            exponential_bend_offset3_word : exponential_bend_offset3_opposite;
+    wire signed [1:0] exp2_bend_offset3_term = exp2_bend_offset3_upper ? exp2_bend_offset3_word :
+            exp2_bend_offset3_opposite;
 
     // s-4.15
-    wire signed [11:0] exponential_bend_offset3_sum = exponential_bend_offset2_sum +
-            {{10{exponential_bend_offset3_term[1]}}, exponential_bend_offset3_term};
+    wire signed [11:0] exp2_bend_offset3_sum = exp2_bend_offset2_sum +
+            {{10{exp2_bend_offset3_term[1]}}, exp2_bend_offset3_term};
 
-    wire [12:0] exponential_inverse = ~exponential_x;  // u0.13
+    wire [12:0] exp2_inverse = ~exp2_x;  // u0.13
 
     // u1.15: 2^-x of the fraction x
-    wire [15:0] exponential_mantissa = {2'd1, exponential_inverse, 1'b0} -
-            {{4{exponential_bend_offset3_sum[11]}}, exponential_bend_offset3_sum};
+    wire [15:0] exp2_mantissa = {2'd1, exp2_inverse, 1'b0} - {{4{exp2_bend_offset3_sum[11]}},
+            exp2_bend_offset3_sum};
+
+    wire [14:0] exp2_kept = exp2_mantissa[15] ? 15'h7fff : exp2_mantissa[14:0];  // u0.15
+    wire [14:0] exp2_shift_by16 = halvings[17] ? 15'd0 : exp2_kept;  // u0.15
 
     // u0.15
-    wire [14:0] exponential_kept = exponential_mantissa[15] ? 15'h7fff : exponential_mantissa[14:0];
-
-    wire [14:0] exponential_shift_by16 = halvings[17] ? 15'd0 : exponential_kept;  // u0.15
+    wire [14:0] exp2_shift_by8 = halvings[16] ? {8'd0, exp2_shift_by16[14:8]} : exp2_shift_by16;
 
     // u0.15
-    wire [14:0] exponential_shift_by8 = halvings[16] ? {8'd0, exponential_shift_by16[14:8]} :
-            exponential_shift_by16;
+    wire [14:0] exp2_shift_by4 = halvings[15] ? {4'd0, exp2_shift_by8[14:4]} : exp2_shift_by8;
 
     // u0.15
-    wire [14:0] exponential_shift_by4 = halvings[15] ? {4'd0, exponential_shift_by8[14:4]} :
-            exponential_shift_by8;
+    wire [14:0] exp2_shift_by2 = halvings[14] ? {2'd0, exp2_shift_by4[14:2]} : exp2_shift_by4;
 
     // u0.15
-    wire [14:0] exponential_shift_by2 = halvings[14] ? {2'd0, exponential_shift_by4[14:2]} :
-            exponential_shift_by4;
-
-    // u0.15
-    wire [14:0] exponential_shift_by1 = halvings[13] ? {1'b0, exponential_shift_by2[14:1]} :
-            exponential_shift_by2;
+    wire [14:0] exp2_shift_by1 = halvings[13] ? {1'b0, exp2_shift_by2[14:1]} : exp2_shift_by2;
 
     // u1.14
-    wire [14:0] exponential_rounded_nearest = {1'b0, exponential_shift_by1[14:1]} + {14'd0,
-            exponential_shift_by1[0]};
+    wire [14:0] exp2_rounded_nearest = {1'b0, exp2_shift_by1[14:1]} + {14'd0, exp2_shift_by1[0]};
 
     // u0.14
-    wire [13:0] exponential_rounded = exponential_rounded_nearest[14] ? 14'h3fff :
-            exponential_rounded_nearest[13:0];
+    wire [13:0] exp2_rounded = exp2_rounded_nearest[14] ? 14'h3fff : exp2_rounded_nearest[13:0];
 
     wire facing = |cos_gamma_reg;  // the surface faces the half vector
     wire fades = |halvings;
     wire aligned = cos_gamma_reg[20];  // cos gamma is 1.0
     wire level = ~fades;
     wire peak = aligned | level;  // f is 1.0, less an ulp
-    wire [13:0] lit = peak ? 14'h3fff : exponential_rounded;  // u0.14
+    wire [13:0] lit = peak ? 14'h3fff : exp2_rounded;  // u0.14
     wire [13:0] reflectance_next = facing ? lit : 14'd0;  // u0.14
     assign f_out = reflectance;  // u0.14: the reflectance, for a user's own multipliers
     wire [21:0] red_product = reflectance * red_reg;  // u8.14: an output before it is rounded
@@ -230,35 +221,38 @@ module blinn_small_datapath #(
     wire [7:0] blue_intensity = blue_product[21:14] + {7'd0, blue_product[13]};
     assign blue_out = blue_intensity;  // intensity on the output
 
-    // ROM curve: value at the start of a segment (u0.21), then its rise over the segment in units
+    // ROM curve: value at the start of a segment (u0.22), then its rise over the segment in units
     // of 2^-19 (16 bits)
-    reg [36:0] curve_rom [0:27];
+    reg [37:0] curve_rom [0:27];
     initial $readmemh(CURVE_FILE, curve_rom);
     always @(posedge clk) curve_word <= curve_rom[curve_word1];
 
-    // ROM exponential_bend_value: 1 - x/2 - 2^-x at the middle of each of 32 intervals of x, in
-    // units of 2^-15
-    reg [10:0] exponential_bend_value_rom [0:31];
-    initial $readmemh(EXPONENTIAL_BEND_VALUE_FILE, exponential_bend_value_rom);
-    always @(posedge clk) exponential_bend_value_word <= exponential_bend_value_rom[halvings[12:8]];
+    // ROM exp2_bend_value: 1 - x/2 - 2^-x at the middle of each of 32 intervals of x, in units of
+    // 2^-15
+    reg [10:0] exp2_bend_value_rom [0:31];
+    initial $readmemh(EXP2_BEND_VALUE_FILE, exp2_bend_value_rom);
+    always @(posedge clk) exp2_bend_value_word <= exp2_bend_value_rom[halvings[12:8]];
 
-    // ROM exponential_bend_offset1: slope of 1 - x/2 - 2^-x over 2^-3 of x, times the distance from
-    // the middle of bits 7 to 6 of x, in units of 2^-15, less a half
-    reg [6:0] exponential_bend_offset1_rom [0:15];
-    initial $readmemh(EXPONENTIAL_BEND_OFFSET1_FILE, exponential_bend_offset1_rom);
-    always @(posedge clk) exponential_bend_offset1_word <= exponential_bend_offset1_rom[{halvings[12:10], exponential_bend_offset1_distance}];
+    // ROM exp2_bend_offset1: slope of 1 - x/2 - 2^-x over 2^-3 of x, times the distance from the
+    // middle of bits 7 to 6 of x, in units of 2^-15, less a half
+    reg [6:0] exp2_bend_offset1_rom [0:15];
+    initial $readmemh(EXP2_BEND_OFFSET1_FILE, exp2_bend_offset1_rom);
+    always @(posedge clk) exp2_bend_offset1_word <=
+            exp2_bend_offset1_rom[exp2_bend_offset1_address];
 
-    // ROM exponential_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-2 of x, times the distance from
-    // the middle of bits 5 to 3 of x, in units of 2^-15, less a half
-    reg [4:0] exponential_bend_offset2_rom [0:15];
-    initial $readmemh(EXPONENTIAL_BEND_OFFSET2_FILE, exponential_bend_offset2_rom);
-    always @(posedge clk) exponential_bend_offset2_word <= exponential_bend_offset2_rom[{halvings[12:11], exponential_bend_offset2_distance}];
+    // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-2 of x, times the distance from the
+    // middle of bits 5 to 3 of x, in units of 2^-15, less a half
+    reg [4:0] exp2_bend_offset2_rom [0:15];
+    initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
+    always @(posedge clk) exp2_bend_offset2_word <=
+            exp2_bend_offset2_rom[exp2_bend_offset2_address];
 
-    // ROM exponential_bend_offset3: slope of 1 - x/2 - 2^-x over 2^-1 of x, times the distance from
-    // the middle of bits 2 to 0 of x, in units of 2^-15, less a half
-    reg [1:0] exponential_bend_offset3_rom [0:7];
-    initial $readmemh(EXPONENTIAL_BEND_OFFSET3_FILE, exponential_bend_offset3_rom);
-    always @(posedge clk) exponential_bend_offset3_word <= exponential_bend_offset3_rom[{halvings[12], exponential_bend_offset3_distance}];
+    // ROM exp2_bend_offset3: slope of 1 - x/2 - 2^-x over 2^-1 of x, times the distance from the
+    // middle of bits 2 to 0 of x, in units of 2^-15, less a half
+    reg [1:0] exp2_bend_offset3_rom [0:7];
+    initial $readmemh(EXP2_BEND_OFFSET3_FILE, exp2_bend_offset3_rom);
+    always @(posedge clk) exp2_bend_offset3_word <=
+            exp2_bend_offset3_rom[exp2_bend_offset3_address];
 
     always @(posedge clk) begin
         if (cos_gamma_load) begin
@@ -310,10 +304,10 @@ module blinn_small_datapath #(
 
     always @(posedge clk) begin
         curve_rest_held <= curve_rest1;
-        exponential_bend_offset1_upper <= halvings[7];
-        exponential_bend_offset2_upper <= halvings[5];
-        exponential_bend_offset3_upper <= halvings[2];
-        exponential_x <= halvings[12:0];
+        exp2_bend_offset1_upper <= halvings[7];
+        exp2_bend_offset2_upper <= halvings[5];
+        exp2_bend_offset3_upper <= halvings[2];
+        exp2_x <= halvings[12:0];
     end
 
     // Bits that nothing needs, among them those that narrowing drops.

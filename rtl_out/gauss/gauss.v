@@ -51,10 +51,10 @@
 module gauss #(
     parameter CONTROL_FILE = "gauss_control.mem",
     parameter CURVE_FILE = "gauss_curve.mem",
-    parameter EXPONENTIAL_BEND_VALUE_FILE = "gauss_exponential_bend_value.mem",
-    parameter EXPONENTIAL_BEND_OFFSET1_FILE = "gauss_exponential_bend_offset1.mem",
-    parameter EXPONENTIAL_BEND_OFFSET2_FILE = "gauss_exponential_bend_offset2.mem",
-    parameter EXPONENTIAL_BEND_OFFSET3_FILE = "gauss_exponential_bend_offset3.mem"
+    parameter EXP2_BEND_VALUE_FILE = "gauss_exp2_bend_value.mem",
+    parameter EXP2_BEND_OFFSET1_FILE = "gauss_exp2_bend_offset1.mem",
+    parameter EXP2_BEND_OFFSET2_FILE = "gauss_exp2_bend_offset2.mem",
+    parameter EXP2_BEND_OFFSET3_FILE = "gauss_exp2_bend_offset3.mem"
 ) (
     input  wire        clk,
     input  wire        rst_n,            // initial set, active low
@@ -104,10 +104,10 @@ module gauss #(
 
     gauss_datapath #(
         .CURVE_FILE(CURVE_FILE),
-        .EXPONENTIAL_BEND_VALUE_FILE(EXPONENTIAL_BEND_VALUE_FILE),
-        .EXPONENTIAL_BEND_OFFSET1_FILE(EXPONENTIAL_BEND_OFFSET1_FILE),
-        .EXPONENTIAL_BEND_OFFSET2_FILE(EXPONENTIAL_BEND_OFFSET2_FILE),
-        .EXPONENTIAL_BEND_OFFSET3_FILE(EXPONENTIAL_BEND_OFFSET3_FILE)
+        .EXP2_BEND_VALUE_FILE(EXP2_BEND_VALUE_FILE),
+        .EXP2_BEND_OFFSET1_FILE(EXP2_BEND_OFFSET1_FILE),
+        .EXP2_BEND_OFFSET2_FILE(EXP2_BEND_OFFSET2_FILE),
+        .EXP2_BEND_OFFSET3_FILE(EXP2_BEND_OFFSET3_FILE)
     ) datapath (
         .clk(clk),
         .cos_gamma(cos_gamma),

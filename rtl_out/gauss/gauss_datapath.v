@@ -7,10 +7,10 @@
 
 module gauss_datapath #(
     parameter CURVE_FILE = "gauss_curve.mem",
-    parameter EXPONENTIAL_BEND_VALUE_FILE = "gauss_exponential_bend_value.mem",
-    parameter EXPONENTIAL_BEND_OFFSET1_FILE = "gauss_exponential_bend_offset1.mem",
-    parameter EXPONENTIAL_BEND_OFFSET2_FILE = "gauss_exponential_bend_offset2.mem",
-    parameter EXPONENTIAL_BEND_OFFSET3_FILE = "gauss_exponential_bend_offset3.mem"
+    parameter EXP2_BEND_VALUE_FILE = "gauss_exp2_bend_value.mem",
+    parameter EXP2_BEND_OFFSET1_FILE = "gauss_exp2_bend_offset1.mem",
+    parameter EXP2_BEND_OFFSET2_FILE = "gauss_exp2_bend_offset2.mem",
+    parameter EXP2_BEND_OFFSET3_FILE = "gauss_exp2_bend_offset3.mem"
 ) (
     input  wire        clk,
     // u1.20: cosine of the angle between normal and half vector
@@ -41,24 +41,23 @@ module gauss_datapath #(
     // Registers
     // u1.20: cosine of the angle between normal and half vector
     reg         [20:0] cos_gamma_reg;
-    reg         [9:0]  exponent_reg;                    // specular exponent n
-    reg         [7:0]  red_reg;                         // intensity of the light times k_s
-    reg         [7:0]  green_reg;                       // intensity of the light times k_s
-    reg         [7:0]  blue_reg;                        // intensity of the light times k_s
-    reg         [25:0] decay;                           // u0.26: gamma^2/(4 ln 2), half the decay
-    // u5.16: n*decay: how often f is half of 1.0
-    reg         [20:0] halvings;
-    reg         [15:0] reflectance;                     // u0.16: f
-    reg         [13:0] curve_rest_held;                 // u0.14
-    reg                exponential_bend_offset1_upper;
-    reg                exponential_bend_offset2_upper;
-    reg                exponential_bend_offset3_upper;
-    reg         [15:0] exponential_x;                   // u0.16
-    reg         [43:0] curve_word;
-    reg         [13:0] exponential_bend_value_word;     // u-4.18
-    reg  signed [8:0]  exponential_bend_offset1_word;   // s-10.18
-    reg  signed [6:0]  exponential_bend_offset2_word;   // s-12.18
-    reg  signed [3:0]  exponential_bend_offset3_word;   // s-15.18
+    reg         [9:0]  exponent_reg;             // specular exponent n
+    reg         [7:0]  red_reg;                  // intensity of the light times k_s
+    reg         [7:0]  green_reg;                // intensity of the light times k_s
+    reg         [7:0]  blue_reg;                 // intensity of the light times k_s
+    reg         [25:0] decay;                    // u0.26: gamma^2/(4 ln 2), half the decay
+    reg         [20:0] halvings;                 // u5.16: n*decay: how often f is half of 1.0
+    reg         [15:0] reflectance;              // u0.16: f
+    reg         [13:0] curve_rest_held;          // u0.14
+    reg                exp2_bend_offset1_upper;
+    reg                exp2_bend_offset2_upper;
+    reg                exp2_bend_offset3_upper;
+    reg         [15:0] exp2_x;                   // u0.16
+    reg         [44:0] curve_word;
+    reg         [14:0] exp2_bend_value_word;     // u-4.19
+    reg  signed [9:0]  exp2_bend_offset1_word;   // s-10.19
+    reg  signed [7:0]  exp2_bend_offset2_word;   // s-12.19
+    reg  signed [4:0]  exp2_bend_offset3_word;   // s-15.19
 
     wire cos_gamma_over = cos_gamma[20];
     wire [20:0] cos_gamma_at_most = cos_gamma_over ? COS_GAMMA_MOST : cos_gamma;  // u1.20
@@ -89,8 +88,8 @@ module gauss_datapath #(
     wire curve_in_range2 = |distance[19:14];  // u is in range 2 or in one above
     wire [6:0] curve_word2 = curve_in_range2 ? curve_word0 : curve_word3;
     wire [13:0] curve_rest2 = curve_in_range2 ? curve_rest0 : curve_rest3;  // u0.14
-    wire [25:0] curve_base = curve_word[43:18];  // u0.26
-    wire [17:0] curve_slope = curve_word[17:0];  // u-5.23
+    wire [25:0] curve_base = curve_word[44:19];  // u0.26
+    wire [18:0] curve_slope = curve_word[18:0];  // u-5.24
     wire decay_large = |decay[25:24];
     wire decay_small = ~decay_large;  // the decay is below 1/4, and all its bits count
 
@@ -98,113 +97,101 @@ module gauss_datapath #(
     wire [23:0] factor = decay_small ? decay[23:0] : decay[25:2];
 
     // first operand of the multiplier
-    wire [23:0] first = operand_select ? factor : {6'd0, curve_slope};
+    wire [23:0] first = operand_select ? factor : {5'd0, curve_slope};
 
     // second operand of the multiplier
     wire [13:0] second = operand_select ? {4'd0, exponent_reg} : curve_rest_held;
 
     wire [37:0] product = first * second;  // its point depends on the operands
-    wire [25:0] curve_rise_cut = {5'd0, product[31:11]};  // u0.26
+    wire [25:0] curve_rise_cut = {5'd0, product[32:12]};  // u0.26
     wire [25:0] curve_sum = curve_base + curve_rise_cut;  // u0.26
     wire [25:0] curve_value = curve_sum;  // u0.26
     wire [20:0] halvings_coarse = (|product[33:28]) ? 21'h1fffff : product[27:7];  // u5.16
     wire [20:0] halvings_fine = (|product[33:30]) ? 21'h1fffff : product[29:9];  // u5.16
     wire [20:0] halvings_next = decay_small ? halvings_fine : halvings_coarse;  // u5.16
-    wire exponential_bend_offset1_mirrored = ~halvings[7];
+    wire exp2_bend_offset1_mirrored = ~halvings[7];
 
     // distance from the middle of the field
-    wire exponential_bend_offset1_distance = halvings[8] ? halvings[7] :
-            exponential_bend_offset1_mirrored;
+    wire exp2_bend_offset1_distance = halvings[8] ? halvings[7] : exp2_bend_offset1_mirrored;
 
-    // s-10.18
-    wire signed [8:0] exponential_bend_offset1_opposite = ~exponential_bend_offset1_word;
+    wire [6:0] exp2_bend_offset1_address = {halvings[15:10], exp2_bend_offset1_distance};
+    wire signed [9:0] exp2_bend_offset1_opposite = ~exp2_bend_offset1_word;  // s-10.19
 
-    // s-10.18: what the field adds, less half an ulp
-    wire signed [8:0] exponential_bend_offset1_term = exponential_bend_offset1_upper ?
-            exponential_bend_offset1_word : exponential_bend_offset1_opposite;
+    // s-10.19: what the field adds, less half an ulp
+    wire signed [9:0] exp2_bend_offset1_term = exp2_bend_offset1_upper ? exp2_bend_offset1_word :
+            exp2_bend_offset1_opposite;
 
-    // s-4.18
-    wire signed [14:0] exponential_bend_offset1_sum = {1'b0, exponential_bend_value_word} +
-            {{6{exponential_bend_offset1_term[8]}}, exponential_bend_offset1_term};
+    // s-4.19
+    wire signed [15:0] exp2_bend_offset1_sum = {1'b0, exp2_bend_value_word} +
+            {{6{exp2_bend_offset1_term[9]}}, exp2_bend_offset1_term};
 
-    wire [1:0] exponential_bend_offset2_mirrored = ~halvings[5:4];
-
-    // distance from the middle of the field
-    wire [1:0] exponential_bend_offset2_distance = halvings[6] ? halvings[5:4] :
-            exponential_bend_offset2_mirrored;
-
-    // s-12.18
-    wire signed [6:0] exponential_bend_offset2_opposite = ~exponential_bend_offset2_word;
-
-    // s-12.18: what the field adds, less half an ulp
-    wire signed [6:0] exponential_bend_offset2_term = exponential_bend_offset2_upper ?
-            exponential_bend_offset2_word : exponential_bend_offset2_opposite;
-
-    // s-4.18
-    wire signed [14:0] exponential_bend_offset2_sum = exponential_bend_offset1_sum +
-            {{8{exponential_bend_offset2_term[6]}}, exponential_bend_offset2_term};
-
-    wire [2:0] exponential_bend_offset3_mirrored = ~halvings[2:0];
+    wire [1:0] exp2_bend_offset2_mirrored = ~halvings[5:4];
 
     // distance from the middle of the field
-    wire [2:0] exponential_bend_offset3_distance = halvings[3] ? halvings[2:0] :
-            exponential_bend_offset3_mirrored;
+    wire [1:0] exp2_bend_offset2_distance = halvings[6] ? halvings[5:4] :
+            exp2_bend_offset2_mirrored;
 
-    // s-15.18
-    wire signed [3:0] exponential_bend_offset3_opposite = ~exponential_bend_offset3_word;
+    wire [6:0] exp2_bend_offset2_address = {halvings[15:11], exp2_bend_offset2_distance};
+    wire signed [7:0] exp2_bend_offset2_opposite = ~exp2_bend_offset2_word;  // s-12.19
 
-    // s-15.18: what the field adds, less half an ulp
-    wire signed [3:0] exponential_bend_offset3_term = exponential_bend_offset3_upper ?
-            exponential_bend_offset3_word : exponential_bend_offset3_opposite;
+    // s-12.19: what the field adds, less half an ulp
+    wire signed [7:0] exp2_bend_offset2_term = exp2_bend_offset2_upper ? exp2_bend_offset2_word :
+            exp2_bend_offset2_opposite;
 
-    // s-4.18
-    wire signed [14:0] exponential_bend_offset3_sum = exponential_bend_offset2_sum +
-            {{11{exponential_bend_offset3_term[3]}}, exponential_bend_offset3_term};
+    // s-4.19
+    wire signed [15:0] exp2_bend_offset2_sum = exp2_bend_offset1_sum +
+            {{8{exp2_bend_offset2_term[7]}}, exp2_bend_offset2_term};
 
-    wire [15:0] exponential_inverse = ~exponential_x;  // u0.16
+    wire [2:0] exp2_bend_offset3_mirrored = ~halvings[2:0];
 
-    // u1.18: 2^-x of the fraction x
-    wire [18:0] exponential_mantissa = {2'd1, exponential_inverse, 1'b0} -
-            {{4{exponential_bend_offset3_sum[14]}}, exponential_bend_offset3_sum};
+    // distance from the middle of the field
+    wire [2:0] exp2_bend_offset3_distance = halvings[3] ? halvings[2:0] :
+            exp2_bend_offset3_mirrored;
+
+    wire [5:0] exp2_bend_offset3_address = {halvings[15:13], exp2_bend_offset3_distance};
+    wire signed [4:0] exp2_bend_offset3_opposite = ~exp2_bend_offset3_word;  // s-15.19
+
+    // s-15.19: what the field adds, less half an ulp
+    wire signed [4:0] exp2_bend_offset3_term = exp2_bend_offset3_upper ? exp2_bend_offset3_word :
+            exp2_bend_offset3_opposite;
+
+    // s-4.19
+    wire signed [15:0] exp2_bend_offset3_sum = exp2_bend_offset2_sum +
+            {{11{exp2_bend_offset3_term[4]}}, exp2_bend_offset3_term};
+
+    wire [15:0] exp2_inverse = ~exp2_x;  // u0.16
+
+    // u1.19: 2^-x of the fraction x
+    wire [19:0] exp2_mantissa = {2'd1, exp2_inverse, 2'd0} - {{4{exp2_bend_offset3_sum[15]}},
+            exp2_bend_offset3_sum};
+
+    wire [16:0] exp2_kept = exp2_mantissa[19] ? 17'h1ffff : exp2_mantissa[18:2];  // u0.17
+    wire [16:0] exp2_shift_by16 = halvings[20] ? {16'd0, exp2_kept[16]} : exp2_kept;  // u0.17
 
     // u0.17
-    wire [16:0] exponential_kept = exponential_mantissa[18] ? 17'h1ffff :
-            exponential_mantissa[17:1];
+    wire [16:0] exp2_shift_by8 = halvings[19] ? {8'd0, exp2_shift_by16[16:8]} : exp2_shift_by16;
 
     // u0.17
-    wire [16:0] exponential_shift_by16 = halvings[20] ? {16'd0, exponential_kept[16]} :
-            exponential_kept;
+    wire [16:0] exp2_shift_by4 = halvings[18] ? {4'd0, exp2_shift_by8[16:4]} : exp2_shift_by8;
 
     // u0.17
-    wire [16:0] exponential_shift_by8 = halvings[19] ? {8'd0, exponential_shift_by16[16:8]} :
-            exponential_shift_by16;
+    wire [16:0] exp2_shift_by2 = halvings[17] ? {2'd0, exp2_shift_by4[16:2]} : exp2_shift_by4;
 
     // u0.17
-    wire [16:0] exponential_shift_by4 = halvings[18] ? {4'd0, exponential_shift_by8[16:4]} :
-            exponential_shift_by8;
-
-    // u0.17
-    wire [16:0] exponential_shift_by2 = halvings[17] ? {2'd0, exponential_shift_by4[16:2]} :
-            exponential_shift_by4;
-
-    // u0.17
-    wire [16:0] exponential_shift_by1 = halvings[16] ? {1'b0, exponential_shift_by2[16:1]} :
-            exponential_shift_by2;
+    wire [16:0] exp2_shift_by1 = halvings[16] ? {1'b0, exp2_shift_by2[16:1]} : exp2_shift_by2;
 
     // u1.16
-    wire [16:0] exponential_rounded_nearest = {1'b0, exponential_shift_by1[16:1]} + {16'd0,
-            exponential_shift_by1[0]};
+    wire [16:0] exp2_rounded_nearest = {1'b0, exp2_shift_by1[16:1]} + {16'd0, exp2_shift_by1[0]};
 
     // u0.16
-    wire [15:0] exponential_rounded = exponential_rounded_nearest[16] ? 16'hffff :
-            exponential_rounded_nearest[15:0];
+    wire [15:0] exp2_rounded = exp2_rounded_nearest[16] ? 16'hffff : exp2_rounded_nearest[15:0];
 
     wire facing = |cos_gamma_reg;  // the surface faces the half vector
     wire fades = |halvings;
     wire aligned = cos_gamma_reg[20];  // cos gamma is 1.0
     wire level = ~fades;
     wire peak = aligned | level;  // f is 1.0, less an ulp
-    wire [15:0] lit = peak ? 16'hffff : exponential_rounded;  // u0.16
+    wire [15:0] lit = peak ? 16'hffff : exp2_rounded;  // u0.16
     wire [15:0] reflectance_next = facing ? lit : 16'd0;  // u0.16
     assign f_out = reflectance;  // u0.16: the reflectance, for a user's own multipliers
     wire [23:0] red_product = reflectance * red_reg;  // u8.16: an output before it is rounded
@@ -218,34 +205,37 @@ module gauss_datapath #(
     assign blue_out = blue_intensity;  // intensity on the output
 
     // ROM curve: value at the start of a segment (u0.26), then its rise over the segment in units
-    // of 2^-23 (18 bits)
-    reg [43:0] curve_rom [0:95];
+    // of 2^-24 (19 bits)
+    reg [44:0] curve_rom [0:95];
     initial $readmemh(CURVE_FILE, curve_rom);
     always @(posedge clk) curve_word <= curve_rom[curve_word2];
 
-    // ROM exponential_bend_value: 1 - x/2 - 2^-x at the middle of each of 128 intervals of x, in
-    // units of 2^-18
-    reg [13:0] exponential_bend_value_rom [0:127];
-    initial $readmemh(EXPONENTIAL_BEND_VALUE_FILE, exponential_bend_value_rom);
-    always @(posedge clk) exponential_bend_value_word <= exponential_bend_value_rom[halvings[15:9]];
+    // ROM exp2_bend_value: 1 - x/2 - 2^-x at the middle of each of 128 intervals of x, in units of
+    // 2^-19
+    reg [14:0] exp2_bend_value_rom [0:127];
+    initial $readmemh(EXP2_BEND_VALUE_FILE, exp2_bend_value_rom);
+    always @(posedge clk) exp2_bend_value_word <= exp2_bend_value_rom[halvings[15:9]];
 
-    // ROM exponential_bend_offset1: slope of 1 - x/2 - 2^-x over 2^-6 of x, times the distance from
-    // the middle of bits 8 to 7 of x, in units of 2^-18, less a half
-    reg [8:0] exponential_bend_offset1_rom [0:127];
-    initial $readmemh(EXPONENTIAL_BEND_OFFSET1_FILE, exponential_bend_offset1_rom);
-    always @(posedge clk) exponential_bend_offset1_word <= exponential_bend_offset1_rom[{halvings[15:10], exponential_bend_offset1_distance}];
+    // ROM exp2_bend_offset1: slope of 1 - x/2 - 2^-x over 2^-6 of x, times the distance from the
+    // middle of bits 8 to 7 of x, in units of 2^-19, less a half
+    reg [9:0] exp2_bend_offset1_rom [0:127];
+    initial $readmemh(EXP2_BEND_OFFSET1_FILE, exp2_bend_offset1_rom);
+    always @(posedge clk) exp2_bend_offset1_word <=
+            exp2_bend_offset1_rom[exp2_bend_offset1_address];
 
-    // ROM exponential_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-5 of x, times the distance from
-    // the middle of bits 6 to 4 of x, in units of 2^-18, less a half
-    reg [6:0] exponential_bend_offset2_rom [0:127];
-    initial $readmemh(EXPONENTIAL_BEND_OFFSET2_FILE, exponential_bend_offset2_rom);
-    always @(posedge clk) exponential_bend_offset2_word <= exponential_bend_offset2_rom[{halvings[15:11], exponential_bend_offset2_distance}];
+    // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-5 of x, times the distance from the
+    // middle of bits 6 to 4 of x, in units of 2^-19, less a half
+    reg [7:0] exp2_bend_offset2_rom [0:127];
+    initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
+    always @(posedge clk) exp2_bend_offset2_word <=
+            exp2_bend_offset2_rom[exp2_bend_offset2_address];
 
-    // ROM exponential_bend_offset3: slope of 1 - x/2 - 2^-x over 2^-3 of x, times the distance from
-    // the middle of bits 3 to 0 of x, in units of 2^-18, less a half
-    reg [3:0] exponential_bend_offset3_rom [0:63];
-    initial $readmemh(EXPONENTIAL_BEND_OFFSET3_FILE, exponential_bend_offset3_rom);
-    always @(posedge clk) exponential_bend_offset3_word <= exponential_bend_offset3_rom[{halvings[15:13], exponential_bend_offset3_distance}];
+    // ROM exp2_bend_offset3: slope of 1 - x/2 - 2^-x over 2^-3 of x, times the distance from the
+    // middle of bits 3 to 0 of x, in units of 2^-19, less a half
+    reg [4:0] exp2_bend_offset3_rom [0:63];
+    initial $readmemh(EXP2_BEND_OFFSET3_FILE, exp2_bend_offset3_rom);
+    always @(posedge clk) exp2_bend_offset3_word <=
+            exp2_bend_offset3_rom[exp2_bend_offset3_address];
 
     always @(posedge clk) begin
         if (cos_gamma_load) begin
@@ -297,14 +287,14 @@ module gauss_datapath #(
 
     always @(posedge clk) begin
         curve_rest_held <= curve_rest2;
-        exponential_bend_offset1_upper <= halvings[8];
-        exponential_bend_offset2_upper <= halvings[6];
-        exponential_bend_offset3_upper <= halvings[3];
-        exponential_x <= halvings[15:0];
+        exp2_bend_offset1_upper <= halvings[8];
+        exp2_bend_offset2_upper <= halvings[6];
+        exp2_bend_offset3_upper <= halvings[3];
+        exp2_x <= halvings[15:0];
     end
 
     // Bits that nothing needs, among them those that narrowing drops.
-    wire unused = &{1'b0, product[6:0], product[37:34], exponential_mantissa[0], red_product[14:0],
+    wire unused = &{1'b0, product[6:0], product[37:34], exp2_mantissa[1:0], red_product[14:0],
             green_product[14:0], blue_product[14:0]};
 
 `ifdef FORMAL
