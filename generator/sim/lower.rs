@@ -64,7 +64,7 @@ impl Compiler<'_> {
             Op::Not(of) => {
                 wide(*of, width)?;
                 let (a, b) = (slot(*of), self.constant(mask(width)));
-                self.emit(&[a], |to| Instruction::Xor { to, a, b })
+                self.emit(&[a, b], |to| Instruction::Xor { to, a, b })
             }
             Op::And(a, b) | Op::Or(a, b) | Op::Xor(a, b) | Op::Sub(a, b) => {
                 wide(*a, width)?;
@@ -136,7 +136,7 @@ impl Compiler<'_> {
                     self.emit(&[a], |to| Instruction::Any { to, a, low, drop })
                 } else {
                     let b = self.constant(mask(design.width(*of)));
-                    self.emit(&[a], |to| Instruction::Equal { to, a, b })
+                    self.emit(&[a, b], |to| Instruction::Equal { to, a, b })
                 }
             }
             Op::Mux { select, inputs } => {

@@ -493,9 +493,9 @@ fn mux<W: Word, const LANES: usize>(
     let (to, select) = (&mut after[0], &slots[select as usize]);
     let last = choices.len() - 1;
     if LANES < VECTOR || choices.len() > COMPARED {
-        for lane in 0..LANES {
-            let number: u64 = select[lane].into();
-            to[lane] = slots[choices[(number as usize).min(last)] as usize][lane];
+        for (lane, (to, number)) in to.iter_mut().zip(select).enumerate() {
+            let number: u64 = (*number).into();
+            *to = slots[choices[(number as usize).min(last)] as usize][lane];
         }
         return;
     }
