@@ -244,6 +244,9 @@ impl Arithmetic {
     #[inline]
     fn f(&self, distance: i64, operand: i64) -> i64 {
         let base = self.base(self.beta_distance(distance, operand));
+        if base == 0 {
+            return 0;
+        }
         (0..self.squarings).fold(base, |power, _| self.square(power))
     }
 

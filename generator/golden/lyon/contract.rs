@@ -148,8 +148,13 @@ impl Contract for LyonContract {
             Rounding::Truncate => (word, word + 1.0),
             Rounding::Nearest => (word - 0.5, word + 0.5),
         };
-        let error = |at: f64| (f - self.formula(at.max(0.0) * self.ulps.1, operand)).abs();
-        error(low).max(error(high))
+        let formula = |at: f64| self.formula(at.max(0.0) * self.ulps.1, operand);
+        let nearest = formula(low);
+        // Beyond the zero, where most places are.
+        if f == 0.0 && nearest == 0.0 {
+            return 0.0;
+        }
+        (f - nearest).abs().max((f - formula(high)).abs())
     }
 
     /// Base and powers lie in 0 … 1, hardware's and formula's alike, so by the mean value theorem an error
