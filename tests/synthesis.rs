@@ -21,9 +21,6 @@ use rayon::prelude::*;
 /// Points of the bench that the netlist runs.
 const POINTS: u64 = 40;
 
-/// A smaller ROM may well be logic.
-const WARRANTS_BLOCK_RAM: u64 = 2048;
-
 /// What the names of the initial values of a family's block RAMs begin with, before so many hexadecimal
 /// digits.
 fn initial(family: &Family) -> (&'static [&'static str], usize) {
@@ -146,6 +143,16 @@ impl<'a> Cells<'a> {
     }
 }
 
+/// Bits of a synchronous ROM from which on it is in block RAM; a smaller one may well be logic.
+fn warrants_block_ram(family: &Family) -> u64 {
+    if family.command.starts_with("synth_xilinx") {
+        // A look-up table is a ROM of 64 bits, and a block RAM has 18 432.
+        8192
+    } else {
+        2048
+    }
+}
+
 /// Synchronous ROMs of some size are in block RAM, with every 1 of their contents.
 fn memories_are_whole(design: &Design, cells: &Cells, family: &Family, what: &str) {
     let bits = |rom: &Rom| rom.words.len() as u64 * u64::from(design.width(rom.data));
@@ -154,7 +161,7 @@ fn memories_are_whole(design: &Design, cells: &Cells, family: &Family, what: &st
         .iter()
         // A ROM whose words are all alike is wires.
         .filter(|rom| rom.words.iter().any(|word| *word != rom.words[0]))
-        .filter(|rom| rom.synchronous && bits(rom) >= WARRANTS_BLOCK_RAM)
+        .filter(|rom| rom.synchronous && bits(rom) >= warrants_block_ram(family))
         .collect();
     let rams: Vec<_> = family
         .block_rams
@@ -172,7 +179,7 @@ fn memories_are_whole(design: &Design, cells: &Cells, family: &Family, what: &st
     };
     // With any of the smaller ones, whole.
     let mut wanted = BTreeSet::from([large.iter().map(|rom| ones_of(rom)).sum::<u64>()]);
-    let small = |rom: &&Rom| rom.synchronous && bits(rom) < WARRANTS_BLOCK_RAM;
+    let small = |rom: &&Rom| rom.synchronous && bits(rom) < warrants_block_ram(family);
     for rom in design.roms.iter().filter(small) {
         let with: Vec<u64> = wanted.iter().map(|sum| sum + ones_of(rom)).collect();
         wanted.extend(with);
