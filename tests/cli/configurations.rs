@@ -45,9 +45,13 @@ fn files_that_cannot_be_read() {
         ],
     );
     place.write("empty.toml", "");
-    place
-        .glint(["generate", "empty.toml"])
-        .refused(1, &["the file is empty", "devices: rough, cosine-power"]);
+    place.glint(["generate", "empty.toml"]).refused(
+        1,
+        &[
+            "the file is empty",
+            "devices: quad-cosine, cosine-squared, lyon, rough",
+        ],
+    );
 }
 
 #[cfg(unix)]

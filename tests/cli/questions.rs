@@ -188,7 +188,7 @@ fn a_new_configuration_is_accepted() {
 fn new_with_wrong_words() {
     let place = Place::new();
     let run = place.glint(["new", "cosine_powr"]);
-    run.refused(2, &["there is no device `cosine_powr`; did you mean `cosine-power`? The devices are: rough, cosine-power"]);
+    run.refused(2, &["there is no device `cosine_powr`; did you mean `cosine-power`? The devices are: quad-cosine, cosine-squared"]);
     assert_eq!(run.out, "");
     for (name, message) in [
         ("always", "\"always\" is a keyword"),

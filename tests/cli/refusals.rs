@@ -41,7 +41,10 @@ pub fn unprivileged(place: &Place, arguments: &[&str]) -> crate::place::Run {
 fn wrong_usage() {
     let place = Place::with("core.toml", COSINE_POWER);
     for (arguments, message) in [
-        (&["generat"][..], "a similar subcommand exists: 'generate'"),
+        (
+            &["generat"][..],
+            "similar subcommands exist: 'render', 'generate'",
+        ),
         (
             &["cosim", "--point", "3"],
             "a similar argument exists: '--points'",

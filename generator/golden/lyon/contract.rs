@@ -126,7 +126,9 @@ impl Contract for LyonContract {
         if exponent as f64 != n || !(first..=last).contains(&exponent) {
             return None;
         }
-        let x = self.operands[0].format.quantise(2.0 * libm::sin(gamma / 2.0));
+        let x = self.operands[0]
+            .format
+            .quantise(2.0 * libm::sin(gamma / 2.0));
         Some(vec![x as i64, 0, 0, self.params.scale_operand(exponent)])
     }
 
