@@ -54,7 +54,7 @@ pub struct Measured {
     pub value: f64,
     /// The figure as the ledger prints it, with its unit.
     pub text: String,
-    /// Where it is found: the exponent.
+    /// The exponent at which it is found, where the definition leaves it open.
     pub n: Option<u32>,
 }
 
@@ -186,10 +186,15 @@ fn to_inflection(
     key: &str,
     what: &str,
 ) -> Option<Measured> {
-    let range = format!("{}…{}", exponents.start(), exponents.end());
+    let range = runs(&exponents.clone().collect::<Vec<u32>>());
+    let alone = exponents.start() == exponents.end();
     let worst = measure::over(function, exponents, Region::Inflection)?;
     let definition = format!("{what}, to the inflection point, n = {range}");
-    Some(error(worst, key.to_owned(), definition))
+    let found = error(worst, key.to_owned(), definition);
+    Some(Measured {
+        n: found.n.filter(|_| !alone),
+        ..found
+    })
 }
 
 #[cfg(test)]

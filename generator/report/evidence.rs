@@ -129,8 +129,8 @@ fn faster() -> Claim {
         seed: "2.3".to_owned(),
         ours: Vec::new(),
         verdict: Verdict::Elsewhere,
-        words: "A timing differs from run to run, so it stands apart: in the section on speed, which `glint report \
-                --benchmark` makes."
+        words: "A timing differs from run to run, so it stands apart: in the section on speed, which the option \
+                --benchmark adds."
             .to_owned(),
     }
 }

@@ -93,7 +93,10 @@ pub fn page(evidence: &Evidence, benchmark: Option<&Benchmark>) -> Result<String
         devices: evidence.devices.iter().map(device).collect::<Result<_>>()?,
         benchmark: benchmark.map(timings),
     };
+    // Neither a range nor a number and its unit is broken across lines.
     let mut text = page.render()?;
+    text = text.replace('\u{2026}', "&NoBreak;\u{2026}&NoBreak;");
+    text = text.replace(" %", "&nbsp;%");
     text.push('\n');
     Ok(text)
 }

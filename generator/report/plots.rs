@@ -187,9 +187,18 @@ fn ticks(axis: &Axis) -> Vec<f64> {
         }
         Scale::Logarithmic => {
             let (first, last) = (libm::log10(low), libm::log10(high));
-            let (first, last) = (libm::ceil(first - 1e-9), libm::floor(last + 1e-9));
-            (0..=(last - first) as u32)
-                .map(|at| libm::pow(10.0, first + f64::from(at)))
+            // Few decades have room for steps in between.
+            let steps: &[f64] = match last - first < 3.0 {
+                true => &[1.0, 2.0, 5.0],
+                false => &[1.0],
+            };
+            let (first, last) = (libm::floor(first) as i32, libm::ceil(last) as i32);
+            (first..=last)
+                .flat_map(|decade| {
+                    let decade = libm::pow(10.0, f64::from(decade));
+                    steps.iter().map(move |step| step * decade)
+                })
+                .filter(|tick| (low * 0.999..=high * 1.001).contains(tick))
                 .collect()
         }
     }
@@ -293,6 +302,10 @@ mod tests {
         let logarithmic = ticks(&Axis::logarithmic("", 0.05, 1000.0));
         let labels: Vec<String> = logarithmic.into_iter().map(number).collect();
         assert_eq!(labels, ["0.1", "1", "10", "100", "1000"]);
+        assert_eq!(
+            ticks(&Axis::logarithmic("", 2.0, 60.0)),
+            [2.0, 5.0, 10.0, 20.0, 50.0]
+        );
         assert_eq!([-0.5, 1e-5].map(number), ["\u{2212}0.5", "1e\u{2212}5"]);
     }
 }

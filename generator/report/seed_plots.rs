@@ -184,7 +184,7 @@ fn patent() -> Vec<SeedPlot> {
                 "cosine-squared-error",
                 "cos\u{b2}(a\u{b7}\u{3b4}) for cos\u{207f}\u{3b4}",
                 "Largest relative error of the prototype's function against n.",
-                (exponents(), Axis::linear(ERROR, 0.0, 14.0)),
+                (exponents(), Axis::linear(ERROR, 0.0, 15.0)),
                 &[
                     ("to the inflection point", &squared, Region::Inflection),
                     (
