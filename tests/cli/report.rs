@@ -140,7 +140,7 @@ fn a_directory_that_cannot_be() {
 #[cfg(unix)]
 #[test]
 fn synthesis_joins_the_ledger() {
-    let place = Place::new();
+    let place = Place::with("tools/what", "a Yosys that makes its figures up");
     place.script(
         "tools/yosys",
         "[ \"$1\" = --version ] && echo 'Yosys 0' && exit

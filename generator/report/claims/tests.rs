@@ -1,8 +1,11 @@
+use std::sync::LazyLock;
+
 use super::*;
 
-fn find(id: &str) -> Claim {
-    let claims = ledger();
-    let found = claims.into_iter().find(|claim| claim.id == id);
+static LEDGER: LazyLock<Vec<Claim>> = LazyLock::new(ledger);
+
+fn find(id: &str) -> &'static Claim {
+    let found = LEDGER.iter().find(|claim| claim.id == id);
     found.unwrap_or_else(|| panic!("no claim `{id}`"))
 }
 
@@ -90,7 +93,7 @@ fn five_multiplications() {
 
 #[test]
 fn ids_are_unique_and_words_are_plain() {
-    let claims = ledger();
+    let claims = &LEDGER;
     for (at, claim) in claims.iter().enumerate() {
         assert!(claims[..at].iter().all(|other| other.id != claim.id));
         assert!(!claim.ours.is_empty(), "{claim:?}");
