@@ -140,7 +140,7 @@ pub fn stretched(k: u32) -> impl Fn(f64, f64) -> f64 + Sync {
 
 /// `cosᵏ(√(n/k)·δ)` with the k that the device chooses by n.
 pub fn quad(delta: f64, n: f64) -> f64 {
-    reference::stretched_cosine(delta, n, reference::quad_power(n as i64))
+    reference::quad_cosine(delta, n as i64)
 }
 
 /// The ledger: what the paper says, then what the patent says.

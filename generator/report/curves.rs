@@ -132,8 +132,8 @@ fn over_angle(contract: &dyn Contract, n: f64) -> Option<Vec<AtAngle>> {
         let control = contract.at(gamma, n)?;
         let cosine = contract.cosine(&control);
         let cosine = cosine.unwrap_or_else(|| libm::cos(gamma));
-        let formula = contract.reference(&control);
         let f = format.to_f64(i128::from(contract.f(&control)));
+        let formula = comparison::formula(contract, &control, f);
         Some(AtAngle {
             formula: formula - reference::blinn(cosine, n),
             fixed_point: (f - formula).abs(),

@@ -7,9 +7,9 @@ use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 use serde_json::json;
-use tempfile::NamedTempFile;
 
-use crate::cli::{Output, progress, staged, tables};
+use crate::cli::destination::Destination;
+use crate::cli::{Output, progress, tables};
 use crate::cosim::external::Tool;
 use crate::registry::Registry;
 use crate::report::benchmark;
@@ -35,36 +35,36 @@ const JSON_MARKER: &str = "{\n  \"glint\":";
 /// A file to be, with the place to write it in.
 struct Target {
     path: PathBuf,
-    file: NamedTempFile,
+    destination: Destination,
 }
 
 impl Target {
     /// A file `name` in `directory`, if what is there under this name is ours.
     fn new(directory: &Path, name: &str, marker: &str) -> Result<Self> {
         let path = directory.join(name);
-        match fs::read_to_string(&path) {
-            Ok(text) if !text.contains(marker) => bail!(
+        // What else is wrong with it shows in writing.
+        let foreign = path.is_file()
+            && fs::read(&path).is_ok_and(|bytes| {
+                let found = std::str::from_utf8(&bytes);
+                !found.is_ok_and(|text| text.contains(marker))
+            });
+        if foreign {
+            bail!(
                 "`{}` is not a report of Glint: move it away, or give another directory with --out",
                 path.display()
-            ),
-            // Text of another encoding is nothing of ours either; what else is wrong shows in writing.
-            Err(error) if error.kind() == std::io::ErrorKind::InvalidData => bail!(
-                "`{}` is not a report of Glint: move it away, or give another directory with --out",
-                path.display()
-            ),
-            _ => {}
+            );
         }
-        let file = staged::beside(&path)?;
-        Ok(Self { path, file })
+        let destination = Destination::open(&path)?;
+        Ok(Self { path, destination })
     }
 
-    fn write(mut self, contents: &str) -> Result<String> {
-        let path = self.path;
-        self.file
-            .write_all(contents.as_bytes())
-            .and_then(|()| self.file.persist(&path).map_err(|error| error.error))
-            .with_context(|| format!("cannot write `{}`", path.display()))?;
-        Ok(path.display().to_string().replace('\\', "/"))
+    fn write(self, contents: &str) -> Result<String> {
+        let name = self.path.display().to_string().replace('\\', "/");
+        let mut file = self.destination.file()?;
+        file.write_all(contents.as_bytes())
+            .with_context(|| format!("cannot write `{name}`"))?;
+        self.destination.commit()?;
+        Ok(name)
     }
 }
 
