@@ -99,6 +99,21 @@ impl Unit {
         emit::emit(&self.design, &inputs)
     }
 
+    /// Verilog and ROM contents alone, pairs of a plain name and contents: what synthesis needs.
+    ///
+    /// # Errors
+    /// The design cannot be written as Verilog.
+    pub fn verilog(&self) -> Result<Vec<(String, String)>> {
+        let files = emit::emit(&self.design, &EmitInputs::default())?;
+        Ok(files
+            .into_iter()
+            .filter_map(|file| {
+                let name = file.path.rsplit('/').next()?.to_owned();
+                (name.ends_with(".v") || name.ends_with(".mem")).then_some((name, file.contents))
+            })
+            .collect())
+    }
+
     /// The page of the configuration, which the command line knows as `config`.
     ///
     /// # Errors

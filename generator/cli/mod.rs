@@ -208,6 +208,30 @@ Examples:
   glint render core.toml --compare --out beside.png     device, Blinn in f64, and their difference
   glint render core.toml --through verilator --out same.png")]
     Render(Box<commands::RenderArguments>),
+    /// Measure all devices and the seeds' claims, and write a page about them
+    ///
+    /// Writes report.html, one page that needs no network, and report.json with all its figures: error curves of
+    /// every device, the plots that the seeds describe, and the ledger of their claims, each with its verdict. Both are
+    /// the same whenever they are made with the same tools. With Yosys on PATH, W and Schlick's function are synthesised.
+    #[command(after_help = "\
+Examples:
+  glint report                            report/report.html and report/report.json
+  glint report --out build --benchmark    also times W against Schlick's function: build/benchmark.json
+  glint report --json                     the ledger, for scripts")]
+    Report {
+        /// Where the files go
+        #[arg(long, value_name = "DIR", default_value = "report")]
+        out: PathBuf,
+        /// Time W against Schlick's function; the timings stand apart from the other figures
+        #[arg(long)]
+        benchmark: bool,
+        /// Do not ask Yosys what W and Schlick's function take
+        #[arg(long)]
+        no_synthesis: bool,
+        /// Seconds after which a run of Yosys is given up
+        #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+        time_limit: u64,
+    },
     /// Name the devices, and the configurations in configs/
     #[command(after_help = "\
 Example:
@@ -353,6 +377,20 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             commands::compare(registry, output, &configs, &request)
         }
         Some(Command::Render(arguments)) => commands::render(registry, output, &arguments),
+        Some(Command::Report {
+            out,
+            benchmark,
+            no_synthesis,
+            time_limit,
+        }) => {
+            let request = commands::ReportRequest {
+                out,
+                benchmark,
+                synthesis: !no_synthesis,
+                time_limit: std::time::Duration::from_secs(time_limit),
+            };
+            commands::report(registry, output, &request)
+        }
         Some(Command::List) => commands::list(registry, output),
         Some(Command::New { device, name }) => {
             commands::new(registry, output, &device, name.as_deref())

@@ -161,6 +161,17 @@ pub fn schlick(c: f64, n: f64) -> f64 {
     }
 }
 
+/// Seed 000's approximation with any power: `cosᵏ(√(n/k)·δ)`, δ in radians; 0 where `√(n/k)·δ` is a right angle
+/// or more. k = 2 is the prototype's `cos²(aδ)`.
+#[inline]
+pub fn stretched_cosine(delta: f64, n: f64, k: u32) -> f64 {
+    let angle = (n / f64::from(k)).sqrt() * delta.abs();
+    if angle >= FRAC_PI_2 {
+        return 0.0;
+    }
+    libm::pow(libm::cos(angle), f64::from(k))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -221,5 +232,19 @@ mod tests {
         assert_eq!(quad_cosine(1.58, 3), 0.0);
         assert!(close(cosine_squared(-third), 0.25));
         assert_eq!(cosine_squared(1.6), 0.0);
+    }
+
+    #[test]
+    fn stretched_powers() {
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-15;
+        let third = std::f64::consts::FRAC_PI_3;
+        // n = k stretches nothing; √(64/16)·30° = 60°; √(64/16)·45° is a right angle.
+        assert!(close(stretched_cosine(-third, 3.0, 3), 0.125));
+        assert!(close(
+            stretched_cosine(third / 2.0, 64.0, 16),
+            libm::pow(0.5, 16.0)
+        ));
+        assert_eq!(stretched_cosine(0.786, 64.0, 16), 0.0);
+        assert_eq!([1, 2, 3, 6, 7, 1000].map(quad_power), [1, 2, 4, 4, 16, 16]);
     }
 }

@@ -52,6 +52,15 @@ pub struct Accuracy {
     pub fixed_point: Spread,
 }
 
+/// What the formula says at the quantised operands: where it jumps, the nearer to `f` of the values that are right.
+pub fn formula(contract: &dyn Contract, control: &[i64], f: f64) -> f64 {
+    let [one, other] = contract.references(control);
+    match (f - other).abs() < (f - one).abs() {
+        true => other,
+        false => one,
+    }
+}
+
 /// The errors over the grid of angles; `None` when the operands cannot denote `n`.
 pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
     let format = contract.f_format();
@@ -69,8 +78,8 @@ pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
         let denoted = contract
             .cosine(&control)
             .map_or(exact, |cosine| reference::blinn(cosine, n));
-        let formula = contract.reference(&control);
         let f = format.to_f64(i128::from(contract.f(&control)));
+        let formula = formula(contract, &control, f);
         accuracy.whole.take(f - exact);
         accuracy.formula.take(formula - denoted);
         accuracy.operands.take(denoted - exact);

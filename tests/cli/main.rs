@@ -11,3 +11,4 @@ mod place;
 mod questions;
 mod refusals;
 mod render;
+mod report;

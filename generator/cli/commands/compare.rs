@@ -14,7 +14,6 @@ use crate::cli::{Output, progress};
 use crate::config::{Config, Schema, Value};
 use crate::cosim::external::Tool;
 use crate::cosim::synthesis::{self, FAMILIES, Usage};
-use crate::emit::{self, EmitInputs};
 use crate::flow::Unit;
 use crate::golden::contract;
 use crate::registry::{Device, Registry};
@@ -177,7 +176,7 @@ fn synthesise(
 ) -> Result<Vec<Vec<Result<Usage, String>>>> {
     let files: Vec<Vec<(String, String)>> = units
         .iter()
-        .map(|(label, unit)| verilog(unit).with_context(|| format!("`{label}`")))
+        .map(|(label, unit)| unit.verilog().with_context(|| format!("`{label}`")))
         .collect::<Result<_>>()?;
     let runs: Vec<Result<Usage, String>> = (0..units.len() * FAMILIES.len())
         .into_par_iter()
@@ -190,18 +189,6 @@ fn synthesise(
         })
         .collect();
     Ok(runs.chunks(FAMILIES.len()).map(<[_]>::to_vec).collect())
-}
-
-/// Verilog and memories of a device, as plain names and contents.
-fn verilog(unit: &Unit) -> Result<Vec<(String, String)>> {
-    let files = emit::emit(&unit.design, &EmitInputs::default())?;
-    Ok(files
-        .into_iter()
-        .filter_map(|file| {
-            let name = file.path.rsplit('/').next()?.to_owned();
-            (name.ends_with(".v") || name.ends_with(".mem")).then_some((name, file.contents))
-        })
-        .collect())
 }
 
 /// Why a configuration has no errors to show.

@@ -9,6 +9,7 @@ mod eval;
 mod exhaustive;
 mod generate;
 mod render;
+mod report;
 
 use std::path::{Path, PathBuf};
 
@@ -23,6 +24,7 @@ pub use eval::eval;
 pub use exhaustive::{ExhaustiveRequest, exhaustive, merge};
 pub use generate::generate;
 pub use render::{RenderArguments, render};
+pub use report::{ReportRequest, report};
 
 use super::failure::{self, Several};
 use crate::config;

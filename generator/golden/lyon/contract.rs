@@ -118,25 +118,28 @@ impl Contract for LyonContract {
         self.formula(squares.sum::<i64>() as f64 * self.ulps.0, control[3])
     }
 
-    /// Unit vectors at an angle γ differ by 2·sin(γ/2), here along x. With a shift the exponent is the power of two
-    /// that the hardware has.
+    /// The normal is (0, 0, 1), and the half vector (sin γ, 0, cos γ).
     fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
         let (first, last) = self.params.exponents;
         let exponent = n as i64;
         if exponent as f64 != n || !(first..=last).contains(&exponent) {
             return None;
         }
-        let x = self.operands[0]
-            .format
-            .quantise(2.0 * libm::sin(gamma / 2.0));
-        Some(vec![x as i64, 0, 0, self.params.scale_operand(exponent)])
+        let component = |value: f64| self.operands[0].format.quantise(value) as i64;
+        // 1 − cos γ.
+        let half = libm::sin(gamma / 2.0);
+        Some(vec![
+            component(-libm::sin(gamma)),
+            0,
+            component(2.0 * half * half),
+            self.params.scale_operand(exponent),
+        ])
     }
 
-    /// `1 − D²/2`, from the quantised components.
+    /// Of unit vectors at the distance D: 1 − D²/2.
     fn cosine(&self, control: &[i64]) -> Option<f64> {
         let squares = control[..3].iter().map(|component| component * component);
-        let cosine = 1.0 - squares.sum::<i64>() as f64 * self.ulps.0 / 2.0;
-        Some(cosine.clamp(0.0, 1.0))
+        Some((1.0 - squares.sum::<i64>() as f64 * self.ulps.0 / 2.0).max(0.0))
     }
 
     /// The word of D² and the operand that scales it determine f: adders 1 and 2 and multipliers 1 to 3 are exact.

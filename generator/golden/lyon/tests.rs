@@ -50,6 +50,21 @@ fn exponents_round_to_powers_of_two_by_their_ratio() {
     assert_eq!(params.scale_format().width(), 3);
 }
 
+#[test]
+fn operands_of_an_angle() {
+    let contract = LyonContract::from_params(&small(4, Scale::Shift)).unwrap();
+    // N − H = (−sin 60°, 0, 1/2), in sixteenths; 11 is nearest to 2³.
+    let third = std::f64::consts::FRAC_PI_3;
+    let control = contract.at(third, 11.0).unwrap();
+    assert_eq!(control, [-14, 0, 8, 3]);
+    // D² = (196 + 64)/256.
+    assert_eq!(contract.cosine(&control), Some(1.0 - 260.0 / 512.0));
+    assert_eq!(
+        [0.0, 2.5, 16.0].map(|n| contract.at(third, n)),
+        [const { None }; 3]
+    );
+}
+
 /// The sweep's error is the worst over what rounds to a word.
 #[test]
 fn a_word_stands_for_an_interval() {

@@ -1,0 +1,153 @@
+//! `report`.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use anyhow::{Context, Result, bail};
+use serde_json::json;
+
+use crate::cli::destination::Destination;
+use crate::cli::{Output, progress, tables};
+use crate::cosim::external::Tool;
+use crate::registry::Registry;
+use crate::report::benchmark;
+use crate::report::claims::Verdict;
+use crate::report::evidence;
+use crate::report::page;
+
+/// What `report` was asked for.
+pub struct ReportRequest {
+    /// Where the files go.
+    pub out: PathBuf,
+    /// Time W against Schlick's function.
+    pub benchmark: bool,
+    /// Synthesise W and Schlick's function.
+    pub synthesis: bool,
+    /// After which a run of Yosys is given up.
+    pub time_limit: Duration,
+}
+
+/// What a JSON file of ours begins with.
+const JSON_MARKER: &str = "{\n  \"glint\":";
+
+/// A file to be, with the place to write it in.
+struct Target {
+    path: PathBuf,
+    destination: Destination,
+}
+
+impl Target {
+    /// A file `name` in `directory`, if what is there under this name is ours.
+    fn new(directory: &Path, name: &str, marker: &str) -> Result<Self> {
+        let path = directory.join(name);
+        // What else is wrong with it shows in writing.
+        let foreign = path.is_file()
+            && fs::read(&path).is_ok_and(|bytes| {
+                let found = std::str::from_utf8(&bytes);
+                !found.is_ok_and(|text| text.contains(marker))
+            });
+        if foreign {
+            bail!(
+                "`{}` is not a report of Glint: move it away, or give another directory with --out",
+                path.display()
+            );
+        }
+        let destination = Destination::open(&path)?;
+        Ok(Self { path, destination })
+    }
+
+    fn write(self, contents: &str) -> Result<String> {
+        let name = self.path.display().to_string().replace('\\', "/");
+        let mut file = self.destination.file()?;
+        file.write_all(contents.as_bytes())
+            .with_context(|| format!("cannot write `{name}`"))?;
+        self.destination.commit()?;
+        Ok(name)
+    }
+}
+
+/// `glint report`.
+pub fn report(registry: &Registry, output: Output, request: &ReportRequest) -> Result<bool> {
+    // Before the work: a directory that cannot be written is known now.
+    fs::create_dir_all(&request.out)
+        .with_context(|| format!("cannot make the directory `{}`", request.out.display()))?;
+    let html = Target::new(&request.out, "report.html", page::MARKER)?;
+    let figures = Target::new(&request.out, "report.json", JSON_MARKER)?;
+    let timings = match request.benchmark {
+        true => Some(Target::new(&request.out, "benchmark.json", JSON_MARKER)?),
+        false => None,
+    };
+    let mut notes = Vec::new();
+    let yosys = match request.synthesis.then(|| Tool::find("yosys")) {
+        None => None,
+        Some(Ok(yosys)) => Some(yosys),
+        Some(Err(missing)) => {
+            notes.push(format!("{missing}: nothing is synthesised"));
+            None
+        }
+    };
+    // Alone, before the processors are busy.
+    let timed = request.benchmark.then(benchmark::run);
+    let steps = evidence::steps(registry, yosys.is_some());
+    let bar = progress::bar(output, steps as u64, "measurements");
+    let synthesis = yosys.as_ref().map(|yosys| (yosys, request.time_limit));
+    let evidence = evidence::gather(registry, synthesis, &|| bar.inc(1))?;
+    bar.finish_and_clear();
+    notes.extend(evidence.notes.iter().cloned());
+    let mut written = vec![
+        figures.write(&text(&evidence)?)?,
+        html.write(&page::page(&evidence, timed.as_ref())?)?,
+    ];
+    if let (Some(target), Some(timed)) = (timings, &timed) {
+        written.push(target.write(&text(timed)?)?);
+    }
+    if output.json {
+        tables::print_json(&json!({
+            "ok": true,
+            "written": written,
+            "claims": evidence.claims,
+            "benchmark": timed,
+            "notes": notes,
+        }));
+        return Ok(true);
+    }
+    let rows = evidence.claims.iter().map(|claim| {
+        let ours: Vec<&str> = claim.ours.iter().map(|one| one.text.as_str()).collect();
+        vec![
+            claim.claim.clone(),
+            claim.seed.clone(),
+            ours.join("; "),
+            claim.verdict.words().to_owned(),
+        ]
+    });
+    tables::print(&["claim", "the seed", "ours", "verdict"], &[], rows);
+    let count = |verdict| {
+        let claims = evidence.claims.iter();
+        claims.filter(|claim| claim.verdict == verdict).count()
+    };
+    tables::print_line(&format!(
+        "{} claims: {} hold, {} depend on the definition, {} nearly hold, {} do not hold.",
+        evidence.claims.len(),
+        count(Verdict::Holds),
+        count(Verdict::Depends),
+        count(Verdict::Nearly),
+        count(Verdict::Fails),
+    ));
+    if let Some(timed) = &timed {
+        tables::print_line(&timed.words);
+    }
+    for note in notes {
+        tables::print_line(&format!("Note: {note}"));
+    }
+    tables::print_line(&format!("Written: {}", written.join(", ")));
+    Ok(true)
+}
+
+/// JSON, indented, with a newline at its end.
+fn text(value: &impl serde::Serialize) -> Result<String> {
+    let mut text = serde_json::to_string_pretty(value).context("cannot write JSON")?;
+    text.push('\n');
+    Ok(text)
+}

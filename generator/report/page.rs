@@ -1,0 +1,272 @@
+//! The report as one HTML page that needs nothing but itself.
+
+use anyhow::Result;
+use askama::Template;
+use rayon::prelude::*;
+
+use super::benchmark::Benchmark;
+use super::chart::{Chart, Scale};
+use super::claims::{Claim, Verdict, percent};
+use super::curves::DeviceCurves;
+use super::evidence::Evidence;
+use super::plots;
+use super::seed_plots::{Accuracy, Rom9Word};
+
+/// The rows of the table beside a plot.
+const ROWS: usize = 11;
+
+/// The words of ROM 9 in a row of its table.
+const WORDS: usize = 10;
+
+/// What marks a page of ours: nothing else is overwritten.
+pub const MARKER: &str = "<meta name=\"generator\" content=\"glint report\">";
+
+#[derive(Template)]
+#[template(path = "report.html")]
+struct Page<'a> {
+    marker: &'static str,
+    evidence: &'a Evidence,
+    counts: Vec<(&'static str, &'static str, usize)>,
+    claims: Vec<ClaimView<'a>>,
+    plots: Vec<Figure<'a>>,
+    powers: Vec<PowerRow>,
+    rom_9: Vec<RomRow>,
+    devices: Vec<DeviceView<'a>>,
+    benchmark: Option<BenchmarkView<'a>>,
+}
+
+struct ClaimView<'a> {
+    claim: &'a Claim,
+    class: &'static str,
+    verdict: &'static str,
+}
+
+struct Figure<'a> {
+    chart: &'a Chart,
+    /// Where the seed has it; empty for a figure of ours.
+    source: &'a str,
+    svg: String,
+    legend: Vec<(String, &'a str)>,
+    rows: Vec<(String, Vec<String>)>,
+}
+
+struct PowerRow {
+    error: String,
+    runs: Vec<String>,
+}
+
+struct RomRow {
+    first: u32,
+    words: Vec<String>,
+}
+
+struct DeviceView<'a> {
+    device: &'a DeviceCurves,
+    figures: Vec<Figure<'a>>,
+    bound: String,
+    rows: Vec<[String; 5]>,
+}
+
+struct BenchmarkView<'a> {
+    benchmark: &'a Benchmark,
+    rows: Vec<[String; 6]>,
+}
+
+/// The page. The benchmark's section is there only if it was run.
+///
+/// # Errors
+/// A chart cannot be plotted.
+pub fn page(evidence: &Evidence, benchmark: Option<&Benchmark>) -> Result<String> {
+    let plots: Vec<(&Chart, &str)> = evidence
+        .plots
+        .iter()
+        .map(|plot| (&plot.chart, plot.figure))
+        .collect();
+    let page = Page {
+        marker: MARKER,
+        evidence,
+        counts: counts(&evidence.claims),
+        claims: evidence.claims.iter().map(claim).collect(),
+        plots: figures(&plots)?,
+        powers: evidence.power_table.iter().map(powers).collect(),
+        rom_9: evidence.rom_9.chunks(WORDS).map(rom_row).collect(),
+        devices: evidence.devices.iter().map(device).collect::<Result<_>>()?,
+        benchmark: benchmark.map(timings),
+    };
+    // Neither a range nor a number and its unit is broken across lines.
+    let mut text = page.render()?;
+    text = text.replace('\u{2026}', "&NoBreak;\u{2026}&NoBreak;");
+    text = text.replace(" %", "&nbsp;%");
+    text.push('\n');
+    Ok(text)
+}
+
+/// The class of a verdict in the style sheet.
+fn class(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Holds => "holds",
+        Verdict::Depends => "depends",
+        Verdict::Nearly => "nearly",
+        Verdict::Fails => "fails",
+        Verdict::Elsewhere => "elsewhere",
+    }
+}
+
+/// How many claims have each verdict that occurs.
+fn counts(claims: &[Claim]) -> Vec<(&'static str, &'static str, usize)> {
+    [
+        Verdict::Holds,
+        Verdict::Depends,
+        Verdict::Nearly,
+        Verdict::Fails,
+        Verdict::Elsewhere,
+    ]
+    .into_iter()
+    .map(|verdict| {
+        let count = claims
+            .iter()
+            .filter(|claim| claim.verdict == verdict)
+            .count();
+        (class(verdict), verdict.words(), count)
+    })
+    .filter(|(_, _, count)| *count > 0)
+    .collect()
+}
+
+fn claim(claim: &Claim) -> ClaimView<'_> {
+    ClaimView {
+        claim,
+        class: class(claim.verdict),
+        verdict: claim.verdict.words(),
+    }
+}
+
+fn figures<'a>(charts: &[(&'a Chart, &'a str)]) -> Result<Vec<Figure<'a>>> {
+    charts
+        .par_iter()
+        .map(|(chart, source)| figure(chart, source))
+        .collect()
+}
+
+fn figure<'a>(chart: &'a Chart, source: &'a str) -> Result<Figure<'a>> {
+    let marks = chart
+        .marks
+        .iter()
+        .map(|mark| ("mark".to_owned(), mark.label.as_str()));
+    let legend = chart
+        .series
+        .iter()
+        .enumerate()
+        .map(|(at, series)| (plots::class(at), series.name.as_str()))
+        .chain(marks)
+        .collect();
+    let rows = chart
+        .rows(ROWS)
+        .into_iter()
+        .map(|at| {
+            let values = chart.series.iter();
+            let values = values.map(|series| cell(series.values[at], chart.y.scale));
+            (number(chart.places[at]), values.collect())
+        })
+        .collect();
+    Ok(Figure {
+        chart,
+        source,
+        svg: plots::svg(chart)?,
+        legend,
+        rows,
+    })
+}
+
+/// A value in a table: errors on a logarithmic axis keep their magnitude.
+fn cell(value: f64, scale: Scale) -> String {
+    match scale {
+        _ if value.is_nan() => "\u{2013}".to_owned(),
+        Scale::Logarithmic => scientific(value),
+        Scale::Linear => format!("{value:.4}").replace('-', "\u{2212}"),
+    }
+}
+
+fn scientific(value: f64) -> String {
+    match value {
+        0.0 => "0".to_owned(),
+        _ => format!("{value:.1e}").replace('-', "\u{2212}"),
+    }
+}
+
+/// At most three digits after the point.
+fn number(value: f64) -> String {
+    let text = format!("{value:.3}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+fn powers(accuracy: &Accuracy) -> PowerRow {
+    PowerRow {
+        error: percent(accuracy.error),
+        runs: accuracy
+            .powers
+            .iter()
+            .map(|run| match run.first == run.last {
+                true => format!("k = {}: n = {}", run.power, run.first),
+                false => format!("k = {}: n = {}\u{2026}{}", run.power, run.first, run.last),
+            })
+            .collect(),
+    }
+}
+
+fn rom_row(words: &[Rom9Word]) -> RomRow {
+    RomRow {
+        first: words.first().map_or(0, |word| word.n),
+        words: words
+            .iter()
+            .map(|word| format!("{:.4}", word.root))
+            .collect(),
+    }
+}
+
+fn device(device: &DeviceCurves) -> Result<DeviceView<'_>> {
+    let charts: Vec<(&Chart, &str)> = device.charts.iter().map(|chart| (chart, "")).collect();
+    let rows = device
+        .exponents
+        .iter()
+        .map(|at| {
+            [
+                at.n.to_string(),
+                scientific(at.formula),
+                scientific(at.fixed_point),
+                scientific(at.whole),
+                format!("{:.3}", at.fixed_point * device.largest_colour),
+            ]
+        })
+        .collect();
+    Ok(DeviceView {
+        device,
+        figures: figures(&charts)?,
+        bound: format!("{:.3}", device.bound_units),
+        rows,
+    })
+}
+
+fn timings(benchmark: &Benchmark) -> BenchmarkView<'_> {
+    let rows = benchmark
+        .pairs
+        .iter()
+        .map(|pair| {
+            [
+                pair.m.to_string(),
+                pair.precision.to_owned(),
+                match pair.dependent {
+                    true => "each waits for the one before".to_owned(),
+                    false => "many at once".to_owned(),
+                },
+                format!("{:.2}", pair.w_ns),
+                format!("{:.2}", pair.schlick_ns),
+                format!(
+                    "{:.2} ({:.2} to {:.2})",
+                    pair.ratio[1], pair.ratio[0], pair.ratio[2]
+                ),
+            ]
+        })
+        .collect();
+    BenchmarkView { benchmark, rows }
+}

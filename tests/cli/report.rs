@@ -1,0 +1,166 @@
+//! `report`: the ledger for scripts, the same bytes twice, a page that needs nothing but itself, and places
+//! that cannot be written.
+
+use serde_json::Value;
+
+use crate::place::{Place, Run};
+
+fn report(place: &Place, arguments: &[&str]) -> Run {
+    place.glint(["report", "--no-synthesis"].iter().chain(arguments))
+}
+
+#[test]
+fn twice_the_same_and_self_contained() {
+    let place = Place::new();
+    let run = report(&place, &["--out", "first", "--json"]);
+    assert_eq!((run.code, run.err.as_str()), (0, ""), "{run:?}");
+    let told = run.json();
+    assert_eq!(told["ok"], true);
+    assert_eq!(told["written"][0], "first/report.json");
+    let second = report(&place, &["--out", "second"]);
+    assert_eq!(second.code, 0, "{second:?}");
+    let page = place.read("first/report.html");
+    let figures = place.read("first/report.json");
+    assert_eq!(page, place.read("second/report.html"));
+    assert_eq!(figures, place.read("second/report.json"));
+    assert_eq!(place.files().len(), 4);
+    // Written over what is there, and nothing else comes to lie beside it.
+    let again = report(&place, &["--out", "first"]);
+    assert_eq!(again.code, 0, "{again:?}");
+    assert_eq!(place.files().len(), 4);
+
+    for reference in [
+        "http", "src=", "url(", "@import", "<link", "<script", "file:",
+    ] {
+        assert!(!page.contains(reference), "`{reference}` in the page");
+    }
+    let path = place.path().display().to_string();
+    assert!(!page.contains(&path) && !figures.contains(&path));
+    links_lead_somewhere(&page);
+    plots_are_described(&page);
+
+    let figures: Value = serde_json::from_str(&figures).expect("JSON");
+    assert_eq!(figures["rom_9"].as_array().map(Vec::len), Some(1000));
+    // √(7/16), and √(1000/16).
+    for (n, root) in [(7, 0.661_437_827_766_147_7), (1000, 7.905_694_150_420_948)] {
+        let word = &figures["rom_9"][n - 1]["root"];
+        assert!((word.as_f64().expect("a number") - root).abs() < 1e-15);
+    }
+    assert_eq!(figures["claims"], told["claims"]);
+    let devices = figures["devices"].as_array().expect("devices");
+    assert!(devices.iter().any(|device| device["device"] == "rough"));
+    assert_eq!(figures["hardware"], Value::Null);
+}
+
+/// Values of an attribute, in order.
+fn attributes<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
+    let opening = format!(" {name}=\"");
+    page.split(&opening)
+        .skip(1)
+        .filter_map(|rest| rest.split('"').next())
+        .collect()
+}
+
+fn links_lead_somewhere(page: &str) {
+    let mut ids = attributes(page, "id");
+    ids.sort_unstable();
+    let count = ids.len();
+    ids.dedup();
+    assert_eq!(ids.len(), count, "an id twice");
+    for link in attributes(page, "href") {
+        let target = link.strip_prefix('#').expect("a link within the page");
+        assert!(ids.binary_search(&target).is_ok(), "{link}");
+    }
+    for name in ["aria-labelledby", "aria-describedby"] {
+        for target in attributes(page, name) {
+            assert!(ids.binary_search(&target).is_ok(), "{target}");
+        }
+    }
+}
+
+fn plots_are_described(page: &str) {
+    let plots = page.matches("role=\"img\"").count();
+    assert!(plots > 10, "{plots}");
+    assert_eq!(page.matches("<figure>").count(), plots);
+    assert_eq!(page.matches("<figcaption").count(), plots);
+    assert_eq!(page.matches("Figures of this plot").count(), plots);
+}
+
+#[test]
+fn timings_stand_apart() {
+    let place = Place::new();
+    let plain = report(&place, &["--out", "plain"]);
+    let timed = report(&place, &["--out", "timed", "--benchmark", "--json"]);
+    assert_eq!((plain.code, timed.code), (0, 0), "{timed:?}");
+    assert_eq!(
+        place.read("plain/report.json"),
+        place.read("timed/report.json")
+    );
+    let timings: Value = serde_json::from_str(&place.read("timed/benchmark.json")).expect("JSON");
+    assert_eq!(timings["claimed"], 2.3);
+    // m = 2, 4, 8, 16; two precisions; one by one and many at once.
+    let pairs = timings["pairs"].as_array().expect("pairs");
+    assert_eq!(pairs.len(), 16);
+    for pair in pairs {
+        let ratio = pair["ratio"].as_array().expect("quartiles");
+        let ratio: Vec<f64> = ratio.iter().filter_map(Value::as_f64).collect();
+        assert!(ratio[0] > 0.0 && ratio.is_sorted(), "{pair}");
+    }
+    assert!(place.read("timed/report.html").contains("id=\"speed\""));
+    assert!(!place.read("plain/report.html").contains("id=\"speed\""));
+}
+
+#[test]
+fn what_is_not_ours_stays() {
+    for (name, text) in [
+        ("report.html", "<p>Sales, third quarter.</p>"),
+        ("report.json", "{}"),
+    ] {
+        let place = Place::with(&format!("report/{name}"), text);
+        let run = report(&place, &[]);
+        run.refused(1, &[name, "is not a report of Glint", "--out"]);
+        assert_eq!(place.read(&format!("report/{name}")), text);
+        assert_eq!(place.files().len(), 1);
+    }
+    let place = Place::with("report/report.html", [0xff, 0xfe, 0x00]);
+    report(&place, &[]).refused(1, &["is not a report of Glint"]);
+}
+
+#[test]
+fn a_directory_that_cannot_be() {
+    let place = Place::with("taken", "a file");
+    report(&place, &["--out", "taken"]).refused(1, &["cannot make the directory `taken`"]);
+    report(&place, &["--out", "taken/deeper"]).refused(1, &["cannot make the directory"]);
+    let run = report(&place, &["--out", "taken", "--json"]);
+    assert_eq!((run.code, run.json()["ok"] == false), (1, true), "{run:?}");
+    assert_eq!(place.read("taken"), "a file");
+}
+
+/// Yosys as a script that writes the statistics of a made-up netlist.
+#[cfg(unix)]
+#[test]
+fn synthesis_joins_the_ledger() {
+    let place = Place::with("tools/what", "a Yosys that makes its figures up");
+    place.script(
+        "tools/yosys",
+        "[ \"$1\" = --version ] && echo 'Yosys 0' && exit
+top=$(echo \"$3\" | sed 's/.*hierarchy -check -top \\([a-z_]*\\).*/\\1/')
+luts=100; [ $top = schlick ] && luts=120
+echo '{\"modules\":{\"\\\\\\\\'$top'\":{\"num_cells_by_type\":{\"SB_LUT4\":'$luts',\"LUT4\":'$luts',\"LUT6\":'$luts'}}}}' >statistics.json",
+    );
+    let mut command = place.command();
+    let tools = place.at("tools");
+    let search = std::env::join_paths(std::iter::once(tools).chain(std::env::split_paths(
+        &std::env::var_os("PATH").unwrap_or_default(),
+    )));
+    command.env("PATH", search.expect("a search path"));
+    let run = Run::of(command.args(["report", "--json"]).output());
+    assert_eq!(run.code, 0, "{run:?}");
+    let told = run.json();
+    let claims = told["claims"].as_array().expect("claims");
+    let simpler = claims.iter().find(|claim| claim["id"] == "simpler");
+    let simpler = simpler.expect("the claim of simplicity");
+    assert_eq!(simpler["verdict"], "holds", "{simpler}");
+    assert_eq!(simpler["ours"][1]["text"], "100 for 120");
+    assert!(place.read("report/report.html").contains("Yosys 0"));
+}
