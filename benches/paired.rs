@@ -2,10 +2,10 @@
 //! ratios.
 //!
 //! ```text
-//! cargo bench --bench paired
+//! cargo bench --bench paired [-- DEVICE ...]
 //! ```
 //!
-//! For each device, clocks per second and thread of
+//! For each device, or each that is named, clocks per second and thread of
 //! - *design*: the built-in simulator through rust_hdl's `simulate()`, [`LANES`] streams side by side;
 //! - *golden*: `Lockstep::run` as `glint cosim` uses it: stimulus drawn, golden model, every register and
 //!   output compared on every clock, every result measured against the formula;
@@ -43,7 +43,7 @@ const POINTS: u64 = 64;
 const PASSES: usize = 64;
 
 /// Results in one measurement with the golden model.
-const GOLDEN_POINTS: u64 = 131_072;
+const GOLDEN_POINTS: u64 = 1_000_000;
 
 /// Results in the measurement of the time to a verdict.
 const VERDICT_POINTS: u64 = 1_000_000;
@@ -62,7 +62,12 @@ fn main() -> Result<()> {
         "device        design  golden  Verilator  Icarus  design/Verilator  golden/Verilator  \
          design/Icarus  {VERDICT_POINTS} points"
     );
+    let named: Vec<String> = std::env::args().skip(1).collect();
+    let named: Vec<&String> = named.iter().filter(|it| !it.starts_with('-')).collect();
     for device in Registry::catalogue().devices() {
+        if !named.is_empty() && !named.iter().any(|name| *name == device.name) {
+            continue;
+        }
         let name = device.name.replace('-', "_");
         let unit = Unit::new(*device, Config::defaults(&(device.schema)(), &name))?;
         let streams = Streams::record(&unit)?;

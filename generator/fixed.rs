@@ -133,15 +133,7 @@ impl Format {
         let shifted = rounding.shift(raw, from_frac - self.frac);
         match overflow {
             Overflow::Saturate => shifted.clamp(self.min_raw(), self.max_raw()),
-            Overflow::Wrap => {
-                let modulus = 1i128 << self.width();
-                let wrapped = shifted.rem_euclid(modulus);
-                if wrapped > self.max_raw() {
-                    wrapped - modulus
-                } else {
-                    wrapped
-                }
-            }
+            Overflow::Wrap => self.raw(self.bits(shifted)),
         }
     }
 }

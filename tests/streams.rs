@@ -38,7 +38,8 @@ fn run(unit: &Unit, design: &Design, points: u64, threads: usize) -> Outcome {
 fn rarely_wrong(unit: &Unit) -> Design {
     let mut design = unit.design.clone();
     let sine = design.roms.iter_mut().find(|rom| rom.name.contains("sine"));
-    sine.expect("a sine").words[20] ^= 1;
+    // Low bits may be of a slope that is not used; this one is of the sine itself.
+    sine.expect("a sine").words[550] ^= 1 << 20;
     design
 }
 

@@ -7,14 +7,17 @@
 //! first that differs.
 
 use std::io::Write;
+use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use anyhow::{Result, ensure};
 use rayon::prelude::*;
 
+use super::alone::Alone;
 use super::pairing::Pairing;
 use super::stimulus::Random;
-use super::streams::{Seen, Streams};
+use super::stream::Seen;
+use super::together::Together;
 use crate::emit::Vectors;
 use crate::golden::{Contract, Model};
 use crate::netlist::Design;
@@ -34,9 +37,6 @@ const MANY_POINTS: u64 = 1024;
 
 /// A run of fewer streams is not divided.
 const FEWEST_STREAMS: u64 = 8;
-
-/// Clocks between two looks at whether another thread has made the rest unnecessary.
-const LOOK: u64 = 1024;
 
 /// What a run showed.
 #[derive(Clone, Debug, Default)]
@@ -114,9 +114,8 @@ impl<'a> Lockstep<'a> {
     pub fn run(&self, points: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Outcome> {
         let streams = streams(points, self.pairing.longest());
         if streams == 1 {
-            let nothing = AtomicU64::new(u64::MAX);
-            let seen = self.group::<1>(points, 0..1, streams, &nothing, progress)?;
-            return Ok(self.outcome(seen));
+            let alone = Alone::new(&self.pairing, self.seed, points)?;
+            return Ok(self.outcome([alone.run(progress)?]));
         }
         // The first stream known to differ: those after it are of no interest.
         let differs = AtomicU64::new(u64::MAX);
@@ -126,17 +125,17 @@ impl<'a> Lockstep<'a> {
             .map(|group| {
                 let first = group * together;
                 let group = first..streams.min(first + together);
-                self.group::<LANES>(points, group, streams, &differs, progress)
+                self.group(points, group, streams, &differs, progress)
             })
             .collect::<Result<_>>()?;
         Ok(self.outcome(groups.into_iter().flatten()))
     }
 
     /// The streams of these numbers; cut short when one before them differs.
-    fn group<const N: usize>(
+    fn group(
         &self,
         points: u64,
-        numbers: std::ops::Range<u64>,
+        numbers: Range<u64>,
         streams: u64,
         differs: &AtomicU64,
         progress: &(dyn Fn(u64) + Sync),
@@ -144,22 +143,14 @@ impl<'a> Lockstep<'a> {
         let first = numbers.start;
         let share = |number| points / streams + u64::from(number < points % streams);
         let given = numbers.map(|number| (stream_seed(self.seed, number), share(number)));
-        let mut group = Streams::<N>::new(&self.pairing, given)?;
+        let mut group = Together::<LANES>::new(&self.pairing, given)?;
         while !group.ended() && differs.load(Ordering::Relaxed) >= first {
-            let mut more = 0;
-            for _ in 0..LOOK {
-                if group.ended() {
-                    break;
-                }
-                more += group.clock()?;
-            }
-            progress(more);
+            progress(group.run()?);
         }
-        let seen = group.into_seen();
-        if let Some(at) = seen.iter().position(|seen| seen.mismatch.is_some()) {
+        if let Some(at) = group.first_that_differs() {
             differs.fetch_min(first + at as u64, Ordering::Relaxed);
         }
-        Ok(seen)
+        group.into_seen()
     }
 
     /// What streams showed together, up to the first that differs.
@@ -190,20 +181,19 @@ impl<'a> Lockstep<'a> {
     /// # Errors
     /// Golden model and simulation differ; a design that cannot be simulated, or does not settle.
     pub fn record(&self, points: u64) -> Result<Vectors> {
-        let mut stream = Streams::<1>::new(&self.pairing, [(self.seed, points)])?;
+        let mut alone = Alone::new(&self.pairing, self.seed, points)?;
         let mut vectors = Vectors::default();
-        while !stream.ended() {
+        while !alone.ended() {
             let outputs = self.pairing.outputs.iter();
-            let outputs = outputs.map(|&net| stream.simulator.value(net)).collect();
+            let outputs = outputs.map(|&net| alone.simulator.value(net)).collect();
             vectors.expected.push(outputs);
-            let first = stream.seen(0).points == 0;
-            if stream.clock()? > 0 && first {
+            let before = alone.seen().points;
+            vectors.inputs.push(alone.clock()?);
+            if before == 0 && alone.seen().points == 1 {
                 vectors.known_from = vectors.expected.len();
             }
-            let inputs = stream.simulator.inputs_mut().iter();
-            vectors.inputs.push(inputs.map(|&[bits]| bits).collect());
         }
-        let mismatch = &stream.seen(0).mismatch;
+        let mismatch = &alone.seen().mismatch;
         ensure!(
             mismatch.is_none(),
             "golden model and simulation differ: {mismatch:?}"
@@ -221,16 +211,16 @@ impl<'a> Lockstep<'a> {
         from: u64,
         file: impl Write + Send + 'static,
     ) -> Result<Outcome> {
-        let mut stream = Streams::<1>::new(&self.pairing, [(self.seed, points)])?;
-        while !stream.ended() && stream.seen(0).clocks < from {
-            stream.clock()?;
+        let mut alone = Alone::new(&self.pairing, self.seed, points)?;
+        while !alone.ended() && alone.seen().clocks < from {
+            alone.clock()?;
         }
-        stream.simulator.trace(file)?;
-        while !stream.ended() {
-            stream.clock()?;
+        alone.simulator.trace(file)?;
+        while !alone.ended() {
+            alone.clock()?;
         }
-        stream.simulator.end_trace()?;
-        Ok(self.outcome(stream.into_seen()))
+        alone.simulator.end_trace()?;
+        Ok(self.outcome([alone.seen().clone()]))
     }
 }
 

@@ -4,6 +4,8 @@ use anyhow::{Context, Result, anyhow, ensure};
 
 use super::lockstep::{Mismatch, Worst};
 use super::stimulus::Stimulus;
+use super::stream::Stream;
+use crate::fixed::{Format, MAX_WIDTH, exp2};
 use crate::golden::{Contract, Model, nearer};
 use crate::netlist::{Design, NetId, RegisterKind, Role};
 
@@ -18,14 +20,35 @@ pub(super) struct Pairing<'a> {
     pub(super) order: Option<Vec<usize>>,
     /// The nets that the model predicts, in its order.
     pub(super) compared: Vec<NetId>,
-    pub(super) busy: NetId,
-    pub(super) valid: NetId,
+    /// Of the outputs `busy` and `valid`, the positions among these.
+    pub(super) busy: usize,
+    pub(super) valid: usize,
     /// The address of the microprogram.
     pub(super) address: NetId,
     /// The operands of the contract, as positions in the stimulus.
     operands: Vec<usize>,
-    colours: usize,
-    results: Vec<NetId>,
+    /// Of each result: itself, and the unit of the colour operand that it is made of.
+    results: Vec<(Quantity, f64)>,
+}
+
+/// A net that carries a number.
+struct Quantity {
+    /// Its position among those that are compared.
+    at: usize,
+    format: Format,
+    /// The value of its last place.
+    unit: f64,
+}
+
+impl Quantity {
+    fn value(&self, bits: u64) -> f64 {
+        if self.format.signed {
+            let drop = MAX_WIDTH - self.format.width();
+            ((bits << drop) as i64 >> drop) as f64 * self.unit
+        } else {
+            bits as f64 * self.unit
+        }
+    }
 }
 
 impl<'a> Pairing<'a> {
@@ -76,15 +99,29 @@ impl<'a> Pairing<'a> {
                 at.with_context(|| format!("the contract speaks of operand `{}`", operand.name))
             })
             .collect::<Result<Vec<_>>>()?;
-        let role = |wanted: fn(Role) -> bool| design.port(wanted).map(|port| port.net);
+        let position = |net: NetId| compared.iter().position(|&other| other == net);
+        let role = |wanted: fn(Role) -> bool| position(design.port(wanted)?.net);
         let busy = role(|role| role == Role::Busy).context("the design has no output `busy`")?;
         let valid = role(|role| role == Role::Valid).context("the design has no output `valid`")?;
+        let colours = contract.operands().iter().filter(|it| it.colour);
+        ensure!(
+            colours.clone().count() == contract.outputs().len(),
+            "the contract has not one colour operand for each output"
+        );
         let results = contract
             .outputs()
             .iter()
-            .map(|name| find(name))
+            .zip(colours)
+            .map(|(name, colour)| {
+                let net = find(name)?;
+                let at = position(net);
+                let at =
+                    at.with_context(|| format!("the contract takes `{name}` for an output"))?;
+                let format = design.net(net).format;
+                let unit = exp2(-format.frac);
+                Ok((Quantity { at, format, unit }, exp2(-colour.format.frac)))
+            })
             .collect::<Result<Vec<_>>>()?;
-        let colours = contract.operands().iter().filter(|it| it.colour).count();
         Ok(Self {
             design,
             contract,
@@ -96,7 +133,6 @@ impl<'a> Pairing<'a> {
             valid,
             address: design.register(design.control.address).q,
             operands,
-            colours,
             results,
         })
     }
@@ -127,76 +163,67 @@ impl<'a> Pairing<'a> {
         registers(self.design).len()
     }
 
-    /// The first signal on which they differ, if they do, given what each signal carries in the
-    /// simulation and in the model. `word` was executed at the edge.
+    /// The first signal on which simulation and model differ after the latest clock of a stream, if they
+    /// do. `word` was executed at the edge.
     pub(super) fn mismatch(
         &self,
-        clock: u64,
+        stream: &Stream,
         word: u64,
         simulated: impl Fn(NetId) -> u64,
-        golden: &[u64],
     ) -> Option<Mismatch> {
-        let pairs = self.compared.iter().zip(golden);
-        let differs = |&(at, (&net, &golden)): &(usize, (&NetId, &u64))| {
-            let simulated = simulated(net);
-            (simulated != golden).then(|| Mismatch {
-                seed: 0,
-                clock,
-                signal: self.model.signals()[at].clone(),
-                golden,
-                simulated,
-                word: usize::try_from(word)
-                    .ok()
-                    .and_then(|word| self.design.control.words.get(word))
-                    .map_or_else(String::new, |word| word.name.clone()),
-            })
-        };
-        pairs.enumerate().find_map(|pair| differs(&pair))
+        let pairs = self.compared.iter().zip(stream.predicted());
+        let differs = |(&net, &golden): (&NetId, &u64)| simulated(net) != golden;
+        let at = pairs.clone().position(differs)?;
+        let words = &self.design.control.words;
+        let word = usize::try_from(word).ok().and_then(|word| words.get(word));
+        Some(Mismatch {
+            seed: stream.seed,
+            clock: stream.seen.clocks,
+            signal: self.model.signals()[at].clone(),
+            golden: stream.predicted()[at],
+            simulated: simulated(self.compared[at]),
+            word: word.map_or_else(String::new, |word| word.name.clone()),
+        })
     }
 
-    /// The largest error of the results that are on the outputs now, number `index` of their
-    /// computation, if it is beyond `units`; none where the operands are not in the domain.
+    /// The operands of the computation that runs, raw, in the order of the contract; whether they are in
+    /// the domain.
+    pub(super) fn operands(&self, stimulus: &Stimulus, raw: &mut Vec<i64>) -> bool {
+        raw.clear();
+        raw.extend(self.operands.iter().map(|&at| stimulus.accepted(at)));
+        let operands = self.contract.operands().iter();
+        operands
+            .zip(raw)
+            .all(|(operand, raw)| (operand.domain.0..=operand.domain.1).contains(raw))
+    }
+
+    /// The largest error of the results among these values, number `index` of the computation with these
+    /// operands, if it is beyond `units`.
     pub(super) fn worse(
         &self,
         units: f64,
+        operands: &[i64],
         index: u64,
-        stimulus: &Stimulus,
-        output: impl Fn(NetId) -> u64,
+        values: &[u64],
     ) -> Option<Worst> {
-        let operands = self.contract.operands();
-        let raw = |at: usize| stimulus.accepted(self.operands[at]);
-        let inside = operands
-            .iter()
-            .enumerate()
-            .all(|(at, operand)| (operand.domain.0..=operand.domain.1).contains(&raw(at)));
-        if !inside {
-            return None;
-        }
-        let control = operands.len() - self.colours;
-        let values: Vec<i64> = (0..control).map(raw).collect();
+        let (control, colours) = operands.split_at(operands.len() - self.results.len());
         let f = self
             .contract
-            .references(&self.contract.point(&values, index));
+            .references(&self.contract.point(control, index));
         let mut largest = (units, None);
-        for (at, &net) in self.results.iter().enumerate() {
-            let colour = &operands[control + at];
-            let colour = colour.format.to_f64(i128::from(raw(control + at)));
-            let format = self.design.net(net).format;
-            let out = format.to_f64(format.raw(output(net)));
-            let units = nearer(out, f.map(|f| f * colour));
+        for ((result, unit), &colour) in self.results.iter().zip(colours) {
+            let colour = colour as f64 * unit;
+            let units = nearer(result.value(values[result.at]), f.map(|f| f * colour));
             if units > largest.0 {
-                largest = (units, Some(net));
+                largest = (units, Some(result.at));
             }
         }
-        let (units, net) = largest;
+        let (units, at) = largest;
+        let names = self.contract.operands().iter().map(|it| it.name.clone());
         Some(Worst {
             units,
-            output: self.design.net(net?).name.clone(),
-            operands: operands
-                .iter()
-                .enumerate()
-                .map(|(at, operand)| (operand.name.clone(), raw(at)))
-                .collect(),
+            output: self.model.signals()[at?].clone(),
+            operands: names.zip(operands.iter().copied()).collect(),
         })
     }
 }

@@ -206,6 +206,12 @@ impl Stimulus {
         &self.inputs
     }
 
+    /// The latest inputs.
+    #[inline]
+    pub fn inputs(&self) -> &[u64] {
+        &self.inputs
+    }
+
     fn begin(&mut self) {
         self.inputs[self.start] = 1;
         self.disturbed = false;

@@ -1,0 +1,129 @@
+//! Streams side by side in the lanes of one simulator.
+
+use anyhow::Result;
+
+use super::alone::Alone;
+use super::pairing::Pairing;
+use super::stream::{Seen, Stream};
+use crate::sim::Simulator;
+
+/// Clocks for which each stream in turn is ahead of the simulator. Its model and stimulus then stay in
+/// the processor's cache and their branches are foreseen, and what they leave for the simulator still
+/// fits in.
+const AHEAD: usize = 8;
+
+/// As many streams as there are lanes, or fewer.
+///
+/// A stream reacts to `busy` as its model predicts it. That is what the simulation does, unless they
+/// differ; and a stream in which anything differs is gone through once more, alone.
+pub(super) struct Together<'a, const LANES: usize> {
+    pairing: &'a Pairing<'a>,
+    simulator: Simulator<LANES>,
+    /// The first are in the first lanes.
+    streams: Vec<Stream>,
+    /// Those in which something differs.
+    differ: [bool; LANES],
+    /// The clocks to come.
+    ahead: Vec<Clock<LANES>>,
+}
+
+/// The inputs of a clock and what is predicted after it, for each lane.
+struct Clock<const LANES: usize> {
+    inputs: Vec<[u64; LANES]>,
+    predicted: Vec<[u64; LANES]>,
+    /// Streams that have ended before are not compared: all ones where one has not.
+    compared: [u64; LANES],
+}
+
+impl<'a, const LANES: usize> Together<'a, LANES> {
+    /// Streams at power-up, each given by its seed and its number of points.
+    ///
+    /// # Errors
+    /// A design that cannot be simulated.
+    pub(super) fn new(
+        pairing: &'a Pairing<'a>,
+        streams: impl IntoIterator<Item = (u64, u64)>,
+    ) -> Result<Self> {
+        let simulator = Simulator::new(pairing.design)?;
+        let busy = simulator.lane(pairing.compared[pairing.busy], 0) == 1;
+        let stream = |(seed, points)| Stream::new(pairing, seed, points, busy);
+        let clock = || Clock {
+            inputs: vec![[0; LANES]; simulator.inputs().len()],
+            predicted: vec![[0; LANES]; pairing.compared.len()],
+            compared: [0; LANES],
+        };
+        Ok(Self {
+            pairing,
+            streams: streams.into_iter().take(LANES).map(stream).collect(),
+            differ: [false; LANES],
+            ahead: std::iter::repeat_with(clock).take(AHEAD).collect(),
+            simulator,
+        })
+    }
+
+    /// Whether every stream has ended that comes before the first that differs.
+    pub(super) fn ended(&self) -> bool {
+        let before = self.streams.iter().zip(self.differ);
+        let mut before = before.take_while(|(_, differs)| !differs);
+        before.all(|(stream, _)| stream.ended())
+    }
+
+    /// The first stream in which something differs.
+    pub(super) fn first_that_differs(&self) -> Option<usize> {
+        self.differ.iter().position(|&differs| differs)
+    }
+
+    /// Some clocks of all streams that have not ended. The results seen in them.
+    ///
+    /// # Errors
+    /// A simulation that does not settle.
+    pub(super) fn run(&mut self) -> Result<u64> {
+        let mut points = 0;
+        for (lane, stream) in self.streams.iter_mut().enumerate() {
+            let before = stream.seen.points;
+            for clock in &mut self.ahead {
+                if self.differ[lane] || stream.ended() {
+                    clock.compared[lane] = 0;
+                    continue;
+                }
+                clock.compared[lane] = u64::MAX;
+                let inputs = stream.clock(self.pairing);
+                for (input, &bits) in clock.inputs.iter_mut().zip(inputs) {
+                    input[lane] = bits;
+                }
+                for (column, &bits) in clock.predicted.iter_mut().zip(stream.predicted()) {
+                    column[lane] = bits;
+                }
+                stream.note(self.pairing);
+            }
+            points += stream.seen.points - before;
+        }
+        for clock in &self.ahead {
+            self.simulator.inputs_mut().copy_from_slice(&clock.inputs);
+            self.simulator.clock()?;
+            let nets = &self.pairing.compared;
+            let differences = self.simulator.differences(nets, &clock.predicted);
+            for lane in 0..LANES {
+                self.differ[lane] |= differences[lane] & clock.compared[lane] != 0;
+            }
+        }
+        Ok(points)
+    }
+
+    /// What each showed, up to the first that differs.
+    ///
+    /// # Errors
+    /// A simulation that does not settle.
+    pub(super) fn into_seen(self) -> Result<Vec<Seen>> {
+        let mut all = Vec::new();
+        for (stream, differs) in self.streams.into_iter().zip(self.differ) {
+            if differs {
+                let alone = Alone::new(self.pairing, stream.seed, stream.points)?;
+                all.push(alone.run(&|_| ())?);
+                break;
+            }
+            all.push(stream.seen);
+        }
+        Ok(all)
+    }
+}
