@@ -147,24 +147,3 @@ fn parameters_out_of_range_are_named() {
     let refused = LyonContract::from_params(&params).unwrap_err();
     assert!(refused.contains("distance.fraction"), "{refused}");
 }
-
-#[test]
-fn operands_of_an_angle() {
-    let at = |scale, n| {
-        let params = Params {
-            scale,
-            ..Params::default()
-        };
-        let contract = LyonContract::from_params(&params).unwrap();
-        // Vectors at 60 degrees differ by a unit.
-        let control = contract.at(std::f64::consts::FRAC_PI_3, n)?;
-        let cosine = contract.cosine(&control)?;
-        assert!((cosine - 0.5).abs() < 1e-4, "{cosine}");
-        Some(control[3])
-    };
-    assert_eq!(at(Scale::Multiplier, 35.0), Some(35));
-    // 35 is taken for 32.
-    assert_eq!(at(Scale::Shift, 35.0), Some(5));
-    assert_eq!(at(Scale::Shift, 1001.0), None);
-    assert_eq!(at(Scale::Multiplier, 2.5), None);
-}
