@@ -3,8 +3,8 @@
 // For formal tools alone: every input is free. To prove it, from a directory that holds the files
 // of both folders:
 //   $ yosys -q ${ name }$.ys
-//   $ yosys-smtbmc -s z3 -t ${ depth }$ ${ name }$.smt2
-//   $ yosys-smtbmc -s z3 -i -t ${ depth }$ ${ name }$.smt2
+//   $ yosys-smtbmc ${ solver }$ -t ${ depth }$ ${ name }$.smt2
+//   $ yosys-smtbmc ${ solver }$ -i -t ${ depth }$ ${ name }$.smt2
 //
 // Generated files belong to their user, without conditions.
 

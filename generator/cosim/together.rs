@@ -103,8 +103,9 @@ impl<'a, const LANES: usize> Together<'a, LANES> {
             self.simulator.clock()?;
             let nets = &self.pairing.compared;
             let differences = self.simulator.differences(nets, &clock.predicted);
-            for lane in 0..LANES {
-                self.differ[lane] |= differences[lane] & clock.compared[lane] != 0;
+            let lanes = differences.iter().zip(&clock.compared);
+            for (differ, (differences, compared)) in self.differ.iter_mut().zip(lanes) {
+                *differ |= differences & compared != 0;
             }
         }
         Ok(points)

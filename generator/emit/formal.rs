@@ -19,6 +19,8 @@ struct Wrapper {
     name: String,
     module: String,
     depth: u32,
+    /// The solver, as the command line of yosys-smtbmc has it.
+    solver: &'static str,
     instance: String,
     age: String,
     age_range: String,
@@ -161,6 +163,12 @@ pub fn files(
         name: name.clone(),
         module: module.clone(),
         depth,
+        // A few steps with much state between them z3 solves at once when they are unrolled; many it
+        // solves faster when they are not.
+        solver: match exact {
+            Some(_) => "-s z3",
+            None => "--unroll -s z3",
+        },
         instance: instance.clone(),
         age: names.fresh("age"),
         age_range: range(age_width),

@@ -3,8 +3,8 @@
 // For formal tools alone: every input is free. To prove it, from a directory that holds the files
 // of both folders:
 //   $ yosys -q lyon_formal.ys
-//   $ yosys-smtbmc -s z3 -t 4 lyon_formal.smt2
-//   $ yosys-smtbmc -s z3 -i -t 4 lyon_formal.smt2
+//   $ yosys-smtbmc --unroll -s z3 -t 4 lyon_formal.smt2
+//   $ yosys-smtbmc --unroll -s z3 -i -t 4 lyon_formal.smt2
 //
 // Generated files belong to their user, without conditions.
 
