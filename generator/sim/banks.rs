@@ -17,9 +17,20 @@ pub(super) fn divide(
     reads: &[ReadEdge],
     registers: &[RegisterEdge],
 ) -> Program {
+    let mut is_wide: Vec<bool> = widths(compiler).iter().map(|&bits| bits > NARROW).collect();
+    // What takes a wide slot at the edge is itself wide, and so is what takes that.
+    let reads_of = reads.iter().map(|edge| (edge.to, edge.address));
+    let pairs = reads_of.chain(registers.iter().map(|edge| (edge.q, edge.data)));
+    let pairs: Vec<(Slot, Slot)> = pairs.collect();
+    while let Some((to, _)) = pairs
+        .iter()
+        .find(|(to, from)| is_wide[*from as usize] && !is_wide[*to as usize])
+    {
+        is_wide[*to as usize] = true;
+    }
     let mut divider = Divider {
         compiler,
-        is_wide: widths(compiler).iter().map(|&bits| bits > NARROW).collect(),
+        is_wide,
         narrow: Bank::default(),
         wide: Bank::default(),
         narrow_of: vec![None; compiler.sources.len()],

@@ -167,7 +167,20 @@ impl Compiler<'_> {
             return Ok(self.constant(0));
         }
         let (low, drop) = (inner_low + low as u8, drop_of(width).max(64 - left));
+        // Beyond what the operand holds there are only the zeros that extend it.
+        if u32::from(low) >= self.held(a) {
+            return Ok(self.constant(0));
+        }
         Ok(self.emit(&[a], |to| Instruction::Slice { to, a, low, drop }))
+    }
+
+    /// The width of what a slot holds: that of the narrowest net in it, of which the others are extensions.
+    fn held(&self, slot: Slot) -> u32 {
+        let nets = self.of_net.iter().zip(&self.design.nets);
+        let widths = nets
+            .filter(|(own, _)| **own == slot)
+            .map(|(_, net)| net.format.width());
+        widths.min().unwrap_or(MAX_WIDTH)
     }
 
     /// The operands side by side; together they are no wider than a net.
