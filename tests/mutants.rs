@@ -14,7 +14,7 @@ use glint::netlist::{Design, Driver, NetId, Op, RegisterKind, RomId};
 use rayon::prelude::*;
 
 /// Points after which a fault counts as unnoticed. Most are noticed within a few.
-const POINTS: u64 = 200_000;
+const POINTS: u64 = 500_000;
 
 /// Pairs of words drawn from a ROM that has too many for all of them.
 const SAMPLE: usize = 300;
