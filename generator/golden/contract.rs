@@ -15,7 +15,7 @@ const COLOURS: [&str; 3] = ["red", "green", "blue"];
 /// One contribution to the error of `f`: its configuration key, what it is, and its size.
 pub type Share = (&'static str, &'static str, f64);
 
-/// The operands of [`crate::dsl::blocks::colour::Colours`]; every value is in the domain.
+/// The operands of the building block `Colours`; every value is in the domain.
 pub fn colour_operands(format: Format) -> impl Iterator<Item = Operand> {
     COLOURS.into_iter().map(move |colour| Operand {
         name: colour.to_string(),
@@ -26,12 +26,12 @@ pub fn colour_operands(format: Format) -> impl Iterator<Item = Operand> {
     })
 }
 
-/// The outputs of [`crate::dsl::blocks::colour::Colours`].
+/// The outputs of the building block `Colours`.
 pub fn colour_outputs() -> Vec<String> {
     COLOURS.map(|colour| format!("{colour}_out")).to_vec()
 }
 
-/// The operand of [`crate::dsl::blocks::colour::Colours::amplitude`]; every value is in the domain.
+/// The operand of the building block `Colours::amplitude`; every value is in the domain.
 pub fn amplitude_operand(format: Format) -> Operand {
     Operand {
         name: "amplitude".to_string(),
@@ -43,7 +43,7 @@ pub fn amplitude_operand(format: Format) -> Operand {
     }
 }
 
-/// The output of [`crate::dsl::blocks::colour::Colours::amplitude`].
+/// The output of the building block `Colours::amplitude`.
 pub fn intensity_output() -> Vec<String> {
     vec!["intensity_out".to_string()]
 }

@@ -40,7 +40,7 @@ pub trait Model: CloneModel + Send + Sync {
     /// Nothing that a device shows may be missing: the outputs (`valid`, `busy`, `done`, results and
     /// flags); the sequencer's registers `run` and `word_address`; the register `<operand>_reg` of each
     /// operand; and the registers and counters of the description by their names. Registers inside a
-    /// block ([`crate::dsl::Designer::pipeline`], synchronous ROMs) need not be there.
+    /// block (pipeline stages, synchronous ROMs) need not be there.
     fn signals(&self) -> &[String];
 
     /// One rising edge, with the inputs as they stand just before it.
