@@ -105,13 +105,7 @@ impl Unit {
     /// The design cannot be written as Verilog.
     pub fn verilog(&self) -> Result<Vec<(String, String)>> {
         let files = emit::emit(&self.design, &EmitInputs::default())?;
-        Ok(files
-            .into_iter()
-            .filter_map(|file| {
-                let name = file.path.rsplit('/').next()?.to_owned();
-                (name.ends_with(".v") || name.ends_with(".mem")).then_some((name, file.contents))
-            })
-            .collect())
+        Ok(emit::sources(files))
     }
 
     /// The page of the configuration, which the command line knows as `config`.
@@ -140,14 +134,7 @@ impl Unit {
             Through::Golden => Box::new(Golden(contract)),
             Through::RustHdl => Box::new(RustHdl::new(&self.design, contract)?),
             Through::Verilog(simulator, limit) => {
-                let files = emit::emit(&self.design, &EmitInputs::default())?;
-                let files = files.into_iter().filter_map(|file| {
-                    let name = file.path.rsplit('/').next()?.to_owned();
-                    let needed = name.ends_with(".v") || name.ends_with(".mem");
-                    needed.then_some((name, file.contents))
-                });
-                let design = &self.design;
-                let files = files.collect();
+                let (design, files) = (&self.design, self.verilog()?);
                 Box::new(Verilog::new(simulator, design, contract, files, limit)?)
             }
         })

@@ -47,6 +47,23 @@ pub struct OutputFile {
     pub contents: String,
 }
 
+impl OutputFile {
+    /// The last part of the path.
+    pub fn name(&self) -> &str {
+        self.path.rsplit('/').next().unwrap_or(&self.path)
+    }
+}
+
+/// What simulators and synthesisers read of some files: Verilog and memories, each with its plain name.
+pub fn sources(files: Vec<OutputFile>) -> Vec<(String, String)> {
+    let needed = |name: &str| name.ends_with(".v") || name.ends_with(".mem");
+    files
+        .into_iter()
+        .filter(|file| needed(file.name()))
+        .map(|file| (file.name().to_owned(), file.contents))
+        .collect()
+}
+
 /// What the files say beyond the design.
 #[derive(Clone, Debug, Default)]
 pub struct EmitInputs {

@@ -14,6 +14,7 @@ use crate::cli::failure::Usage;
 use crate::cli::{Output, POINTS, Simulator, progress, tables};
 use crate::cosim::external::{self, BenchOutcome};
 use crate::cosim::{Lockstep, Mismatch, Outcome, Worst};
+use crate::emit;
 use crate::golden::Bound;
 use crate::registry::Registry;
 
@@ -120,14 +121,7 @@ fn bench(
 ) -> Result<(usize, BenchOutcome)> {
     let vectors = one.unit.vectors(points, request.seed)?;
     let clocks = vectors.inputs.len();
-    let files = one.unit.files(&one.path, vectors)?;
-    let files: Vec<(String, String)> = files
-        .into_iter()
-        .filter_map(|file| {
-            let name = file.path.rsplit('/').next()?.to_owned();
-            (name.ends_with(".v") || name.ends_with(".mem")).then_some((name, file.contents))
-        })
-        .collect();
+    let files = emit::sources(one.unit.files(&one.path, vectors)?);
     let top = format!("{}_tb", one.unit.config.name);
     let run = external::run_bench(which, &files, &top, request.time_limit)?;
     Ok((clocks, run))
