@@ -59,6 +59,12 @@ impl Unit {
         })
     }
 
+    /// Tells this configuration, and version of Glint, from others: SHA-256 in hexadecimal.
+    pub fn digest(&self) -> String {
+        let text = self.config.to_toml(&(self.device.schema)());
+        emit::digest(format!("{}\n{text}", env!("CARGO_PKG_VERSION")).as_bytes())
+    }
+
     /// Golden model and built-in simulator, side by side.
     ///
     /// # Errors

@@ -23,3 +23,5 @@ pub mod registry;
 pub mod report;
 pub mod setup;
 pub mod sim;
+pub mod verify;
+mod words;

@@ -3,6 +3,7 @@
 mod commands;
 mod destination;
 mod failure;
+mod own_file;
 mod progress;
 mod staged;
 mod store;
@@ -45,6 +46,7 @@ Examples:
   glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
   glint describe my_core.toml                   ports, blocks, microprogram, accuracy: a page
   glint compare --exponent 100                  all devices side by side
+  glint verify my_core.toml                     every proof and test there is, and a page about it
   glint render my_core.toml --out sphere.png    a picture through the bit-accurate device
 
 Exit codes: 0 everything holds; 1 something does not hold or could not be done; 2 wrong usage.";
@@ -232,6 +234,35 @@ Examples:
         #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
         time_limit: u64,
     },
+    /// Verify configurations by every means that Glint has, and write a page about each
+    ///
+    /// Writes DIR/<name>.html, one page that needs no network, and DIR/<name>.json with the same for scripts: what was
+    /// shown, by which leg, over which domain, with which tools, and what is left open. Both are the same whenever they are
+    /// made with the same tools, but for the page's last section: how long each leg took, which DIR/<name>.timings.json has too.
+    /// The exit code is 0 only if every leg that covers the configuration was run and holds: a tool that is missing
+    /// leaves the verification incomplete.
+    #[command(after_help = "\
+Examples:
+  glint verify my_core.toml                       every leg, in a minute or two
+  glint verify my_core.toml --full                the whole proof, all faults: minutes to hours
+  glint verify my_core.toml --without-tools       what needs no simulator, solver or synthesiser
+  glint verify --json                             everything in configs/, for scripts")]
+    Verify {
+        #[command(flatten)]
+        configs: Configs,
+        /// Do everything, however long it takes
+        #[arg(long)]
+        full: bool,
+        /// Only the legs that need no tool outside Glint
+        #[arg(long)]
+        without_tools: bool,
+        /// Where the files go
+        #[arg(long, value_name = "DIR", default_value = "verification")]
+        out: PathBuf,
+        /// Seconds after which a run of an outside tool is given up
+        #[arg(long, value_name = "SECONDS", default_value_t = 3600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+        time_limit: u64,
+    },
     /// Name the devices, and the configurations in configs/
     #[command(after_help = "\
 Example:
@@ -390,6 +421,21 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
                 time_limit: std::time::Duration::from_secs(time_limit),
             };
             commands::report(registry, output, &request)
+        }
+        Some(Command::Verify {
+            configs,
+            full,
+            without_tools,
+            out,
+            time_limit,
+        }) => {
+            let request = commands::VerifyRequest {
+                full,
+                without_tools,
+                out,
+                time_limit: std::time::Duration::from_secs(time_limit),
+            };
+            commands::verify(registry, output, &configs.configs, &request)
         }
         Some(Command::List) => commands::list(registry, output),
         Some(Command::New { device, name }) => {

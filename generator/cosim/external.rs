@@ -20,9 +20,11 @@ use anyhow::{Context, Result, anyhow, bail};
 
 mod bench;
 mod capture;
+mod lint;
 
 pub use bench::{BenchOutcome, BuiltBench, Simulator, run_bench};
 use capture::Capture;
+pub use lint::lint;
 
 /// What asking for a version may take: the first run of a WebAssembly tool compiles it.
 const VERSION_LIMIT: Duration = Duration::from_secs(600);

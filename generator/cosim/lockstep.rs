@@ -19,7 +19,7 @@ use super::stimulus::Random;
 use super::stream::Seen;
 use super::together::Together;
 use crate::emit::Vectors;
-use crate::golden::{Contract, Model};
+use crate::golden::{Bound, Contract, Model};
 use crate::netlist::Design;
 
 /// Streams that share a simulator.
@@ -53,6 +53,28 @@ pub struct Outcome {
     pub worst: Option<Worst>,
     /// The first difference, at which the run ended.
     pub mismatch: Option<Mismatch>,
+}
+
+impl Outcome {
+    /// What does not hold, with a contract whose bound this is.
+    pub fn faults(&self, bound: &Bound) -> Vec<String> {
+        let mut faults = Vec::new();
+        if let Some(mismatch) = &self.mismatch {
+            faults.push(format!(
+                "seed {}, after clock {}, word `{}`: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
+                mismatch.seed, mismatch.clock, mismatch.word, mismatch.signal, mismatch.simulated, mismatch.golden
+            ));
+        }
+        if let Some(worst) = &self.worst
+            && worst.units > bound.units
+        {
+            faults.push(format!(
+                "`{}` is off by {:.4} units, beyond the stated bound of {:.4}",
+                worst.output, worst.units, bound.units
+            ));
+        }
+        faults
+    }
 }
 
 /// The largest error against the formula, and where.

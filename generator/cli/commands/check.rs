@@ -13,6 +13,7 @@ use crate::emit::Timing;
 use crate::flow::BENCH_SEED;
 use crate::golden::Bound;
 use crate::registry::Registry;
+use crate::words;
 
 /// What the main job found of one configuration.
 struct Finding {
@@ -56,7 +57,7 @@ fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<Finding> {
     let lockstep = one.unit.lockstep(BENCH_SEED)?;
     let outcome = lockstep.run(POINTS, &|points| bar.inc(points))?;
     let bound = one.unit.contract.bound();
-    let faults = cosim::faults(&outcome, &bound);
+    let faults = outcome.faults(&bound);
     Ok(Finding {
         timing: one.unit.timing()?,
         bound,
@@ -85,11 +86,11 @@ fn print(loaded: &[Loaded], findings: &[Finding]) -> Result<()> {
             one.unit.device.name.to_owned(),
             one.path.clone(),
             clocks.map_or_else(|| "varies".to_owned(), |clocks| clocks.to_string()),
-            tables::grouped(finding.outcome.points),
-            tables::grouped(finding.outcome.clocks),
+            words::grouped(finding.outcome.points),
+            words::grouped(finding.outcome.clocks),
             finding.outcome.registers.to_string(),
             finding.outcome.outputs.to_string(),
-            tables::grouped(one.unit.design.rom_bits()),
+            words::grouped(one.unit.design.rom_bits()),
             format!("{:.3}", finding.bound.units),
             finding
                 .outcome

@@ -17,6 +17,7 @@ use crate::cosim::{Lockstep, Mismatch, Outcome, Worst};
 use crate::emit;
 use crate::golden::Bound;
 use crate::registry::Registry;
+use crate::words;
 
 /// Points when an external simulator runs.
 const EXTERNAL_POINTS: u64 = 200;
@@ -146,7 +147,7 @@ fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result
     let mut list = Vec::new();
     for (one, outcome) in loaded.iter().zip(&outcomes) {
         let bound = one.unit.contract.bound();
-        let faults = faults(outcome, &bound);
+        let faults = outcome.faults(&bound);
         holds &= faults.is_empty();
         if output.json {
             list.push(as_json(one, outcome, &bound, &faults));
@@ -155,8 +156,8 @@ fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result
         tables::print_line(&format!(
             "{}: {} points, {} clocks; {} registers and {} outputs equal the golden model on each: {}",
             one.path,
-            tables::grouped(outcome.points),
-            tables::grouped(outcome.clocks),
+            words::grouped(outcome.points),
+            words::grouped(outcome.clocks),
             outcome.registers,
             outcome.outputs,
             if faults.is_empty() { "holds" } else { "FAILS" },
@@ -220,26 +221,6 @@ fn traced(lockstep: &Lockstep<'_>, path: &Path, points: u64, from: u64) -> Resul
         .with_context(|| format!("cannot write the waveform `{}`", path.display()))?;
     destination.commit()?;
     Ok(outcome)
-}
-
-/// What does not hold.
-pub fn faults(outcome: &Outcome, bound: &Bound) -> Vec<String> {
-    let mut faults = Vec::new();
-    if let Some(mismatch) = &outcome.mismatch {
-        faults.push(format!(
-            "seed {}, after clock {}, word `{}`: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
-            mismatch.seed, mismatch.clock, mismatch.word, mismatch.signal, mismatch.simulated, mismatch.golden
-        ));
-    }
-    if let Some(worst) = &outcome.worst
-        && worst.units > bound.units
-    {
-        faults.push(format!(
-            "`{}` is off by {:.4} units, beyond the stated bound of {:.4}",
-            worst.output, worst.units, bound.units
-        ));
-    }
-    faults
 }
 
 /// The operands of the largest error, as values.

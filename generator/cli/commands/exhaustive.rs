@@ -12,9 +12,9 @@ use super::{Loaded, load};
 use crate::cli::failure::Usage;
 use crate::cli::{Output, progress, staged, tables};
 use crate::cosim::exhaustive::{Job, Places, Proof, Shard, State};
-use crate::emit::digest;
-use crate::golden::{Axis, Values};
+use crate::golden::Values;
 use crate::registry::Registry;
+use crate::words;
 
 /// How often the state is written.
 const SAVE: Duration = Duration::from_secs(5);
@@ -45,7 +45,7 @@ pub fn exhaustive(
     let mut holds = true;
     for one in &loaded {
         let job = Job::new(one.unit.contract.as_ref());
-        let mut state = State::new(&identity(one), request.shard.unwrap_or(Shard::WHOLE));
+        let mut state = State::new(&one.unit.digest(), request.shard.unwrap_or(Shard::WHOLE));
         if let Some(path) = &request.resume
             && let Some(found) = read(path)?
         {
@@ -87,7 +87,7 @@ pub fn merge(
         .map(|path| read(path)?.with_context(|| format!("there is no `{}`", path.display())))
         .collect::<Result<Vec<_>>>()?;
     ensure!(
-        states.iter().any(|state| state.digest == identity(one)),
+        states.iter().any(|state| state.digest == one.unit.digest()),
         "these shards are not of `{}` as it stands, or of another version of Glint",
         one.path
     );
@@ -101,13 +101,6 @@ pub fn merge(
         tables::print_json(&json!({ "ok": holds, "configurations": list }));
     }
     Ok(holds)
-}
-
-/// What a state is of.
-fn identity(one: &Loaded) -> String {
-    let schema = (one.unit.device.schema)();
-    let text = one.unit.config.to_toml(&schema);
-    digest(format!("{}\n{text}", env!("CARGO_PKG_VERSION")).as_bytes())
 }
 
 /// The state that a file holds, if there is one.
@@ -165,13 +158,12 @@ fn prove(output: Output, job: &Job<'_>, state: &mut State, file: Option<&Path>) 
 
 /// What is about to be done, and what is not.
 fn announce(one: &Loaded, job: &Job<'_>, state: &State) {
-    let axes: Vec<String> = job.f.sweep().axes.iter().map(axis_text).collect();
     tables::print_line(&format!(
         "{}: {} evaluations of f ({}), {} colour products",
         one.path,
-        tables::grouped(job.f.count()),
-        axes.join(" x "),
-        tables::grouped(job.colours.count())
+        words::grouped(job.f.count()),
+        job.f.sweep().words(),
+        words::grouped(job.colours.count())
     ));
     if !job.f.sweep().omits.is_empty() {
         tables::print_line(&format!("  not covered: {}", job.f.sweep().omits));
@@ -181,15 +173,8 @@ fn announce(one: &Loaded, job: &Job<'_>, state: &State) {
         tables::print_line(&format!(
             "  shard {}: {} evaluations to do here",
             state.shard,
-            tables::grouped(left)
+            words::grouped(left)
         ));
-    }
-}
-
-fn axis_text(axis: &Axis) -> String {
-    match &axis.values {
-        Values::Range(low, high) => format!("{} = {low} to {high}", axis.name),
-        Values::List(values) => format!("{} settings of {}", values.len(), axis.name),
     }
 }
 

@@ -10,6 +10,7 @@ mod exhaustive;
 mod generate;
 mod render;
 mod report;
+mod verify;
 
 use std::path::{Path, PathBuf};
 
@@ -25,6 +26,7 @@ pub use exhaustive::{ExhaustiveRequest, exhaustive, merge};
 pub use generate::generate;
 pub use render::{RenderArguments, render};
 pub use report::{ReportRequest, report};
+pub use verify::{VerifyRequest, verify};
 
 use super::failure::{self, Several};
 use crate::config;
