@@ -16,14 +16,14 @@ use rayon::prelude::*;
 use super::alone::Alone;
 use super::pairing::Pairing;
 use super::stimulus::Random;
-use super::stream::Seen;
+use super::stream::{Course, Seen};
 use super::together::Together;
 use crate::emit::Vectors;
 use crate::golden::{Contract, Model};
 use crate::netlist::Design;
 
 /// Streams that share a simulator.
-const LANES: usize = 32;
+pub(super) const LANES: usize = 32;
 
 /// Beyond so many streams, which keep two threads busy, there are multiples of it.
 const STREAMS: u64 = 2 * LANES as u64;
@@ -70,7 +70,7 @@ pub struct Worst {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
     /// The seed of the stream: a run with it that is not divided, [`Lockstep::trace`] say, goes the same
-    /// way from the first clock on.
+    /// way from the first clock on. Where combinations are gone through, the place of the one that runs.
     pub seed: u64,
     /// Rising edges of the stream so far.
     pub clock: u64,
@@ -114,7 +114,7 @@ impl<'a> Lockstep<'a> {
     pub fn run(&self, points: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Outcome> {
         let streams = streams(points, self.pairing.longest());
         if streams == 1 {
-            let alone = Alone::new(&self.pairing, self.seed, points)?;
+            let alone = self.alone(points)?;
             return Ok(self.outcome([alone.run(progress)?]));
         }
         // The first stream known to differ: those after it are of no interest.
@@ -141,9 +141,15 @@ impl<'a> Lockstep<'a> {
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Vec<Seen>> {
         let first = numbers.start;
+        if differs.load(Ordering::Relaxed) < first {
+            return Ok(Vec::new());
+        }
         let share = |number| points / streams + u64::from(number < points % streams);
-        let given = numbers.map(|number| (stream_seed(self.seed, number), share(number)));
-        let mut group = Together::<LANES>::new(&self.pairing, given)?;
+        let courses = numbers.map(|number| Course::Random {
+            seed: stream_seed(self.seed, number),
+            points: share(number),
+        });
+        let mut group = Together::<LANES>::new(&self.pairing, courses)?;
         while !group.ended() && differs.load(Ordering::Relaxed) >= first {
             progress(group.run()?);
         }
@@ -151,6 +157,12 @@ impl<'a> Lockstep<'a> {
             differs.fetch_min(first + at as u64, Ordering::Relaxed);
         }
         group.into_seen()
+    }
+
+    /// One stream of so many points under the seed of the run.
+    fn alone(&self, points: u64) -> Result<Alone<'_>> {
+        let seed = self.seed;
+        Alone::new(&self.pairing, Course::Random { seed, points })
     }
 
     /// What streams showed together, up to the first that differs.
@@ -181,7 +193,7 @@ impl<'a> Lockstep<'a> {
     /// # Errors
     /// Golden model and simulation differ; a design that cannot be simulated, or does not settle.
     pub fn record(&self, points: u64) -> Result<Vectors> {
-        let mut alone = Alone::new(&self.pairing, self.seed, points)?;
+        let mut alone = self.alone(points)?;
         let mut vectors = Vectors::default();
         while !alone.ended() {
             let outputs = self.pairing.outputs.iter();
@@ -211,7 +223,7 @@ impl<'a> Lockstep<'a> {
         from: u64,
         file: impl Write + Send + 'static,
     ) -> Result<Outcome> {
-        let mut alone = Alone::new(&self.pairing, self.seed, points)?;
+        let mut alone = self.alone(points)?;
         while !alone.ended() && alone.seen().clocks < from {
             alone.clock()?;
         }
