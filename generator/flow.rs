@@ -6,6 +6,7 @@ use anyhow::{Context, Result};
 
 use crate::config::Config;
 use crate::cosim::batch::{Engine, Golden, RustHdl, Verilog};
+use crate::cosim::exhaustive::{Clocks, Job};
 use crate::cosim::{Lockstep, external, trial};
 use crate::emit::{self, EmitInputs, OutputFile, PageInputs, Timing, Vectors};
 use crate::golden::Contract;
@@ -72,6 +73,24 @@ impl Unit {
     pub fn lockstep(&self, seed: u64) -> Result<Lockstep<'_>> {
         let model = (self.device.model)(&self.config);
         Lockstep::new(&self.design, model, self.contract.as_ref(), seed)
+    }
+
+    /// The exhaustive check: the proof of the contract and, where they are not too many, every
+    /// combination of operands clock by clock.
+    ///
+    /// # Errors
+    /// Model and design do not name the same signals.
+    pub fn job(&self) -> Result<Job<'_>> {
+        Ok(Job::new(self.contract.as_ref()).with(self.clocks()?))
+    }
+
+    /// Every combination of operands, golden model against built-in simulator.
+    ///
+    /// # Errors
+    /// Model and design do not name the same signals.
+    pub fn clocks(&self) -> Result<Clocks<'_>> {
+        let model = (self.device.model)(&self.config);
+        Clocks::new(&self.design, model, self.contract.as_ref())
     }
 
     /// Clocks between the events of the handshake.

@@ -6,6 +6,7 @@
 //! has any influence on what is found. What counts is what streams showed in their order up to the
 //! first that differs.
 
+use std::fmt;
 use std::io::Write;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -16,14 +17,14 @@ use rayon::prelude::*;
 use super::alone::Alone;
 use super::pairing::Pairing;
 use super::stimulus::Random;
-use super::stream::Seen;
+use super::stream::{Course, Seen};
 use super::together::Together;
 use crate::emit::Vectors;
 use crate::golden::{Bound, Contract, Model};
 use crate::netlist::Design;
 
 /// Streams that share a simulator.
-const LANES: usize = 32;
+pub(super) const LANES: usize = 32;
 
 /// Beyond so many streams, which keep two threads busy, there are multiples of it.
 const STREAMS: u64 = 2 * LANES as u64;
@@ -61,8 +62,8 @@ impl Outcome {
         let mut faults = Vec::new();
         if let Some(mismatch) = &self.mismatch {
             faults.push(format!(
-                "seed {}, after clock {}, word `{}`: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
-                mismatch.seed, mismatch.clock, mismatch.word, mismatch.signal, mismatch.simulated, mismatch.golden
+                "seed {}, after clock {}, {mismatch}",
+                mismatch.seed, mismatch.clock
             ));
         }
         if let Some(worst) = &self.worst
@@ -92,7 +93,7 @@ pub struct Worst {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
     /// The seed of the stream: a run with it that is not divided, [`Lockstep::trace`] say, goes the same
-    /// way from the first clock on.
+    /// way from the first clock on. Where combinations are gone through, the place of the one that runs.
     pub seed: u64,
     /// Rising edges of the stream so far.
     pub clock: u64,
@@ -104,6 +105,16 @@ pub struct Mismatch {
     pub simulated: u64,
     /// The word of the microprogram that was executed at the edge.
     pub word: String,
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "word `{}`: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
+            self.word, self.signal, self.simulated, self.golden
+        )
+    }
 }
 
 /// Golden model and simulator of one design.
@@ -136,7 +147,7 @@ impl<'a> Lockstep<'a> {
     pub fn run(&self, points: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Outcome> {
         let streams = streams(points, self.pairing.longest());
         if streams == 1 {
-            let alone = Alone::new(&self.pairing, self.seed, points)?;
+            let alone = self.alone(points)?;
             return Ok(self.outcome([alone.run(progress)?]));
         }
         // The first stream known to differ: those after it are of no interest.
@@ -163,9 +174,15 @@ impl<'a> Lockstep<'a> {
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Vec<Seen>> {
         let first = numbers.start;
+        if differs.load(Ordering::Relaxed) < first {
+            return Ok(Vec::new());
+        }
         let share = |number| points / streams + u64::from(number < points % streams);
-        let given = numbers.map(|number| (stream_seed(self.seed, number), share(number)));
-        let mut group = Together::<LANES>::new(&self.pairing, given)?;
+        let courses = numbers.map(|number| Course::Random {
+            seed: stream_seed(self.seed, number),
+            points: share(number),
+        });
+        let mut group = Together::<LANES>::new(&self.pairing, courses)?;
         while !group.ended() && differs.load(Ordering::Relaxed) >= first {
             progress(group.run()?);
         }
@@ -173,6 +190,12 @@ impl<'a> Lockstep<'a> {
             differs.fetch_min(first + at as u64, Ordering::Relaxed);
         }
         group.into_seen()
+    }
+
+    /// One stream of so many points under the seed of the run.
+    fn alone(&self, points: u64) -> Result<Alone<'_>> {
+        let seed = self.seed;
+        Alone::new(&self.pairing, Course::Random { seed, points })
     }
 
     /// What streams showed together, up to the first that differs.
@@ -203,7 +226,7 @@ impl<'a> Lockstep<'a> {
     /// # Errors
     /// Golden model and simulation differ; a design that cannot be simulated, or does not settle.
     pub fn record(&self, points: u64) -> Result<Vectors> {
-        let mut alone = Alone::new(&self.pairing, self.seed, points)?;
+        let mut alone = self.alone(points)?;
         let mut vectors = Vectors::default();
         while !alone.ended() {
             let outputs = self.pairing.outputs.iter();
@@ -233,7 +256,7 @@ impl<'a> Lockstep<'a> {
         from: u64,
         file: impl Write + Send + 'static,
     ) -> Result<Outcome> {
-        let mut alone = Alone::new(&self.pairing, self.seed, points)?;
+        let mut alone = self.alone(points)?;
         while !alone.ended() && alone.seen().clocks < from {
             alone.clock()?;
         }

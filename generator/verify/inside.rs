@@ -120,8 +120,8 @@ fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
     }
     let job = Job::new(contract);
     let mut state = State::new("", Shard::WHOLE);
-    // Nothing stops it.
-    let _ = job.run(&mut state, progress, &mut |_| ControlFlow::Continue(()));
+    let whole = job.run(&mut state, progress, &mut |_| ControlFlow::Continue(()))?;
+    debug_assert!(whole.is_continue(), "nothing stops it");
     let proof = Proof::new(contract, state.f.peak, state.colours.peak);
     Ok(Finding::new(
         Verdict::Proved,
@@ -142,3 +142,37 @@ fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
     )
     .open(job.f.sweep().omits.clone()))
 }
+
+/// Every combination of operands.
+pub const CLOCKS: Leg = Leg {
+    id: "clocks",
+    title: "Golden model against simulation, every operand",
+    question: "Has every register and output the value that the golden model predicts, on every clock, for every combination of operands?",
+    tools: &[],
+    steps: |subject| {
+        let clocks = subject.unit.clocks();
+        clocks.map_or(1, |clocks| clocks.count().max(1))
+    },
+    run: |subject, _, progress| {
+        let clocks = subject.unit.clocks()?;
+        if clocks.count() == 0 {
+            return Ok(Finding::without(Verdict::NotCovered, clocks.omits()));
+        }
+        let differs = clocks.check((0..clocks.blocks()).collect(), progress)?;
+        let faults = match differs {
+            Some(place) => vec![clocks.difference(place)?.to_string()],
+            None => Vec::new(),
+        };
+        Ok(Finding::new(
+            Verdict::Proved,
+            format!(
+                "{} combinations of {} operand bits",
+                grouped(clocks.count()),
+                clocks.bits()
+            ),
+            "Every register and output equals the golden model on every clock.".to_owned(),
+            faults,
+        )
+        .open(clocks.omits()))
+    },
+};

@@ -134,9 +134,10 @@ pub struct Leg {
 }
 
 /// All legs: first those that need nothing but Glint.
-pub const LEGS: [&Leg; 7] = [
+pub const LEGS: [&Leg; 8] = [
     &inside::DESIGN,
     &inside::LOCKSTEP,
+    &inside::CLOCKS,
     &inside::CONTRACT,
     &outside::LINT,
     &outside::ICARUS,

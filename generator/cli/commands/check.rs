@@ -6,6 +6,7 @@ use anyhow::Result;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
+use super::mismatch::Reproducer;
 use super::{Loaded, cosim, generate, load};
 use crate::cli::{Output, POINTS, progress, tables};
 use crate::cosim::Outcome;
@@ -45,7 +46,7 @@ pub fn everything(registry: &Registry, output: Output) -> Result<bool> {
             .iter()
             .zip(&findings)
             .map(|(one, finding)| as_json(one, finding))
-            .collect();
+            .collect::<Result<_>>()?;
         tables::print_json(&json!({ "ok": holds, "configurations": list }));
         return Ok(holds);
     }
@@ -127,15 +128,15 @@ fn print(loaded: &[Loaded], findings: &[Finding]) -> Result<()> {
             tables::print_line(&format!("  {}: FAILS: {fault}", one.path));
         }
         if let Some(mismatch) = &finding.outcome.mismatch {
-            let where_to_look = cosim::reproduce(one, mismatch)?;
+            let where_to_look = Reproducer::of_run(one, mismatch)?.text(mismatch);
             tables::print_line(&format!("  {}: {where_to_look}", one.path));
         }
     }
     Ok(())
 }
 
-fn as_json(one: &Loaded, finding: &Finding) -> Value {
-    let mut value = cosim::as_json(one, &finding.outcome, &finding.bound, &finding.faults);
+fn as_json(one: &Loaded, finding: &Finding) -> Result<Value> {
+    let mut value = cosim::as_json(one, &finding.outcome, &finding.bound, &finding.faults)?;
     value["clocks_per_point"] = json!(finding.timing.clocks_per_point());
-    value
+    Ok(value)
 }

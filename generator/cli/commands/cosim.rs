@@ -1,19 +1,18 @@
 //! `cosim`.
 
-use std::io::BufWriter;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
+use super::mismatch::{self, Reproducer};
 use super::{Loaded, load};
-use crate::cli::destination::Destination;
 use crate::cli::failure::Usage;
 use crate::cli::{Output, POINTS, Simulator, progress, tables};
 use crate::cosim::external::{self, BenchOutcome};
-use crate::cosim::{Lockstep, Mismatch, Outcome, Worst};
+use crate::cosim::{Outcome, Worst};
 use crate::emit;
 use crate::golden::Bound;
 use crate::registry::Registry;
@@ -24,9 +23,6 @@ const EXTERNAL_POINTS: u64 = 200;
 
 /// The most points for an external simulator, whose vectors are made in memory.
 const EXTERNAL_LIMIT: u64 = 1_000_000;
-
-/// Clocks in the waveform that ends with a difference.
-const WINDOW: u64 = 64;
 
 /// What `cosim` was asked for.
 pub struct CosimRequest {
@@ -150,7 +146,7 @@ fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result
         let faults = outcome.faults(&bound);
         holds &= faults.is_empty();
         if output.json {
-            list.push(as_json(one, outcome, &bound, &faults));
+            list.push(as_json(one, outcome, &bound, &faults)?);
             continue;
         }
         tables::print_line(&format!(
@@ -174,7 +170,8 @@ fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result
             tables::print_line(&format!("  FAILS: {fault}"));
         }
         if let Some(mismatch) = &outcome.mismatch {
-            tables::print_line(&format!("  {}", reproduce(one, mismatch)?));
+            let reproducer = Reproducer::of_run(one, mismatch)?;
+            tables::print_line(&format!("  {}", reproducer.text(mismatch)));
         }
     }
     if output.json {
@@ -193,34 +190,7 @@ fn run(
     let Some(path) = &request.vcd else {
         return lockstep.run(points, progress);
     };
-    traced(&lockstep, path, points, 0)
-}
-
-/// Writes the waveform of the clocks before a difference into the working directory, and says how to see
-/// all of it.
-pub fn reproduce(one: &Loaded, mismatch: &Mismatch) -> Result<String> {
-    let path = PathBuf::from(format!("{}_mismatch.vcd", one.unit.config.name));
-    let from = mismatch.clock.saturating_sub(WINDOW);
-    let lockstep = one.unit.lockstep(mismatch.seed)?;
-    let outcome = traced(&lockstep, &path, u64::MAX, from)?;
-    Ok(format!(
-        "`{}` shows clocks {from} to {}; all of them: glint cosim {} --seed {} --points {} --vcd FILE",
-        path.display(),
-        mismatch.clock,
-        one.path,
-        mismatch.seed,
-        outcome.points + 1,
-    ))
-}
-
-/// A run with a waveform from clock `from` on: written beside its place and moved there when it is whole.
-fn traced(lockstep: &Lockstep<'_>, path: &Path, points: u64, from: u64) -> Result<Outcome> {
-    let destination = Destination::open(path)?;
-    let outcome = lockstep
-        .trace(points, from, BufWriter::new(destination.file()?))
-        .with_context(|| format!("cannot write the waveform `{}`", path.display()))?;
-    destination.commit()?;
-    Ok(outcome)
+    mismatch::traced(&lockstep, path, points, 0)
 }
 
 /// The operands of the largest error, as values.
@@ -240,14 +210,18 @@ pub fn place(one: &Loaded, worst: &Worst) -> String {
     format!("{} for {}", worst.output, values.join(" "))
 }
 
-/// An outcome for scripts.
-pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, faults: &[String]) -> Value {
+/// An outcome for scripts. What differs leaves a waveform.
+pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, faults: &[String]) -> Result<Value> {
+    let mismatch = outcome.mismatch.as_ref().map(|mismatch| {
+        let reproducer = Reproducer::of_run(one, mismatch)?;
+        anyhow::Ok(reproducer.json(mismatch))
+    });
     let terms: Vec<Value> = bound
         .terms
         .iter()
         .map(|term| json!({ "key": term.key, "what": term.what, "units": term.units }))
         .collect();
-    json!({
+    Ok(json!({
         "device": one.unit.device.name,
         "config": one.path,
         "name": one.unit.config.name,
@@ -264,5 +238,6 @@ pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, faults: &[String]
         "rom_bits": one.unit.design.rom_bits(),
         "holds": faults.is_empty(),
         "faults": faults,
-    })
+        "mismatch": mismatch.transpose()?,
+    }))
 }

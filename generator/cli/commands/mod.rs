@@ -8,6 +8,7 @@ mod describe;
 mod eval;
 mod exhaustive;
 mod generate;
+mod mismatch;
 mod render;
 mod report;
 mod verify;
