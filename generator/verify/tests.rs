@@ -9,7 +9,7 @@ use crate::registry::Registry;
 
 fn unit() -> Unit {
     let registry = Registry::catalogue();
-    let device = *registry.device("cosine-power").expect("a device");
+    let device = *registry.device("threshold").expect("a device");
     let config = Config::defaults(&(device.schema)(), "core");
     Unit::new(device, config).expect("a design")
 }
