@@ -21,6 +21,7 @@ use super::together::Together;
 use crate::emit::Vectors;
 use crate::golden::{Contract, Model};
 use crate::netlist::Design;
+use crate::sim::Simulator;
 
 /// Streams that share a simulator.
 const LANES: usize = 32;
@@ -141,8 +142,7 @@ impl<'a> Lockstep<'a> {
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Vec<Seen>> {
         let first = numbers.start;
-        let share = |number| points / streams + u64::from(number < points % streams);
-        let given = numbers.map(|number| (stream_seed(self.seed, number), share(number)));
+        let given = numbers.map(|number| self.stream(points, streams, number));
         let mut group = Together::<LANES>::new(&self.pairing, given)?;
         while !group.ended() && differs.load(Ordering::Relaxed) >= first {
             progress(group.run()?);
@@ -151,6 +151,12 @@ impl<'a> Lockstep<'a> {
             differs.fetch_min(first + at as u64, Ordering::Relaxed);
         }
         group.into_seen()
+    }
+
+    /// The seed and the points of a stream.
+    fn stream(&self, points: u64, streams: u64, number: u64) -> (u64, u64) {
+        let share = points / streams + u64::from(number < points % streams);
+        (stream_seed(self.seed, number), share)
     }
 
     /// What streams showed together, up to the first that differs.
@@ -173,6 +179,43 @@ impl<'a> Lockstep<'a> {
             }
         }
         outcome
+    }
+
+    /// As [`Lockstep::run`], in one stream.
+    ///
+    /// # Errors
+    /// Those of [`Lockstep::run`].
+    pub fn run_alone(&self, points: u64) -> Result<Outcome> {
+        let alone = Alone::new(&self.pairing, self.seed, points)?;
+        Ok(self.outcome([alone.run(&|_| ())?]))
+    }
+
+    /// Goes through the streams of a run of `points` results, each alone. `begin` makes what watches a stream,
+    /// of its seed; after each clock `note` shows it the results so far and the simulator. They come back
+    /// in the order of the streams.
+    ///
+    /// # Errors
+    /// Those of [`Lockstep::run`].
+    pub fn watch<W: Send>(
+        &self,
+        points: u64,
+        begin: impl Fn(u64) -> W + Sync,
+        note: impl Fn(&mut W, u64, &Simulator) + Sync,
+    ) -> Result<Vec<W>> {
+        let streams = streams(points, self.pairing.longest());
+        (0..streams)
+            .into_par_iter()
+            .map(|number| {
+                let (seed, points) = self.stream(points, streams, number);
+                let mut watch = begin(seed);
+                let mut alone = Alone::new(&self.pairing, seed, points)?;
+                while !alone.ended() {
+                    alone.clock()?;
+                    note(&mut watch, alone.seen().points, &alone.simulator);
+                }
+                Ok(watch)
+            })
+            .collect()
     }
 
     /// Stimulus and expected outputs for a bench: the inputs of every clock of one stream of `points`

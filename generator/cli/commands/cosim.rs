@@ -11,9 +11,10 @@ use serde_json::{Value, json};
 use super::{Loaded, load};
 use crate::cli::destination::Destination;
 use crate::cli::failure::Usage;
-use crate::cli::{Output, POINTS, Simulator, progress, tables};
+use crate::cli::{Output, Simulator, progress, tables};
 use crate::cosim::external::{self, BenchOutcome};
 use crate::cosim::{Lockstep, Mismatch, Outcome, Worst};
+use crate::flow::TEST_POINTS;
 use crate::golden::Bound;
 use crate::registry::Registry;
 
@@ -134,7 +135,7 @@ fn bench(
 }
 
 fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result<bool> {
-    let points = request.points.unwrap_or(POINTS);
+    let points = request.points.unwrap_or(TEST_POINTS);
     let bar = progress::bar(
         output,
         points.saturating_mul(loaded.len() as u64),
@@ -205,17 +206,24 @@ fn run(
 /// all of it.
 pub fn reproduce(one: &Loaded, mismatch: &Mismatch) -> Result<String> {
     let path = PathBuf::from(format!("{}_mismatch.vcd", one.unit.config.name));
-    let from = mismatch.clock.saturating_sub(WINDOW);
     let lockstep = one.unit.lockstep(mismatch.seed)?;
-    let outcome = traced(&lockstep, &path, u64::MAX, from)?;
+    let (from, points) = window(&lockstep, &path, mismatch)?;
     Ok(format!(
         "`{}` shows clocks {from} to {}; all of them: glint cosim {} --seed {} --points {} --vcd FILE",
         path.display(),
         mismatch.clock,
         one.path,
         mismatch.seed,
-        outcome.points + 1,
+        points + 1,
     ))
+}
+
+/// Writes the waveform of the clocks before a difference, which a lock-step of its seed shows again. The
+/// first of the clocks, and the results seen before the difference.
+pub fn window(lockstep: &Lockstep<'_>, path: &Path, mismatch: &Mismatch) -> Result<(u64, u64)> {
+    let from = mismatch.clock.saturating_sub(WINDOW);
+    let outcome = traced(lockstep, path, u64::MAX, from)?;
+    Ok((from, outcome.points))
 }
 
 /// A run with a waveform from clock `from` on: written beside its place and moved there when it is whole.
@@ -232,10 +240,7 @@ fn traced(lockstep: &Lockstep<'_>, path: &Path, points: u64, from: u64) -> Resul
 pub fn faults(outcome: &Outcome, bound: &Bound) -> Vec<String> {
     let mut faults = Vec::new();
     if let Some(mismatch) = &outcome.mismatch {
-        faults.push(format!(
-            "seed {}, after clock {}, word `{}`: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
-            mismatch.seed, mismatch.clock, mismatch.word, mismatch.signal, mismatch.simulated, mismatch.golden
-        ));
+        faults.push(difference(mismatch));
     }
     if let Some(worst) = &outcome.worst
         && worst.units > bound.units
@@ -246,6 +251,19 @@ pub fn faults(outcome: &Outcome, bound: &Bound) -> Vec<String> {
         ));
     }
     faults
+}
+
+/// Where and in what hardware and model differ.
+pub fn difference(mismatch: &Mismatch) -> String {
+    format!(
+        "seed {}, after clock {}, word `{}`: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
+        mismatch.seed,
+        mismatch.clock,
+        mismatch.word,
+        mismatch.signal,
+        mismatch.simulated,
+        mismatch.golden
+    )
 }
 
 /// The operands of the largest error, as values.

@@ -8,6 +8,7 @@ mod describe;
 mod eval;
 mod exhaustive;
 mod generate;
+mod mutate;
 mod render;
 mod report;
 
@@ -23,6 +24,7 @@ pub use describe::describe;
 pub use eval::eval;
 pub use exhaustive::{ExhaustiveRequest, exhaustive, merge};
 pub use generate::generate;
+pub use mutate::{MutateRequest, mutate};
 pub use render::{RenderArguments, render};
 pub use report::{ReportRequest, report};
 
