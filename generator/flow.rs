@@ -13,6 +13,13 @@ use crate::golden::Contract;
 use crate::netlist::Design;
 use crate::registry::Device;
 
+/// Results that the main job and `cosim` check of each configuration, unless told otherwise: the default
+/// test.
+pub const TEST_POINTS: u64 = 100_000;
+
+/// The seed of the default test.
+pub const TEST_SEED: u64 = 1;
+
 /// Results in the stimulus of a committed bench.
 pub const BENCH_POINTS: u64 = 24;
 

@@ -17,6 +17,7 @@ pub mod flow;
 pub mod golden;
 pub mod identifier;
 pub mod microcode;
+pub mod mutate;
 pub mod netlist;
 pub mod reference;
 pub mod registry;

@@ -16,10 +16,8 @@ use std::process::ExitCode;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::cosim::exhaustive::Shard;
+use crate::flow::TEST_SEED;
 use crate::registry::Registry;
-
-/// The points that the main job and `cosim` check of each configuration.
-const POINTS: u64 = 100_000;
 
 /// Specular-shading hardware from Rust descriptions: Verilog, co-simulation, accuracy.
 ///
@@ -43,6 +41,7 @@ Examples:
   glint cosim my_core.toml --points 1000000     golden model against hardware, every clock
   glint cosim my_core.toml --simulator icarus   the emitted Verilog in Icarus Verilog
   glint cosim my_core.toml --points 20 --vcd wave.vcd
+  glint mutate my_core.toml                     are faults noticed? Plants thousands, one at a time
   glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
   glint describe my_core.toml                   ports, blocks, microprogram, accuracy: a page
   glint compare --exponent 100                  all devices side by side
@@ -91,7 +90,7 @@ Examples:
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
         points: Option<u64>,
         /// Seed of the stimulus
-        #[arg(long, value_name = "S", default_value_t = 1)]
+        #[arg(long, value_name = "S", default_value_t = TEST_SEED)]
         seed: u64,
         /// What simulates the hardware
         #[arg(long, value_enum, default_value_t = Simulator::RustHdl)]
@@ -123,6 +122,31 @@ Example, on four machines and then on one:
         /// The files of all parts
         #[arg(value_name = "FILE", required = true)]
         files: Vec<PathBuf>,
+    },
+    /// Plant faults one at a time, and show which of them the tests notice
+    ///
+    /// Stuck and inverted bits, swapped mux inputs, wrong operators, constants, enables, every bit of every control
+    /// word, a sample of ROM words: each is put into the netlist, and the default test of `cosim` is run on it. A
+    /// mutant is caught, or proved to change nothing that is compared, or open. The exit code is 0 if at most 1 % of
+    /// each configuration's are open.
+    #[command(after_help = "\
+Examples:
+  glint mutate my_core.toml                               the score, and what is open
+  glint mutate my_core.toml --list                        the names of all faults
+  glint mutate my_core.toml --only 'result[3]:inverted'   one of them: where it shows, and a waveform
+  glint mutate --out mutation                             a record of each configuration in configs/")]
+    Mutate {
+        #[command(flatten)]
+        configs: Configs,
+        /// Name the faults, and plant none
+        #[arg(long, conflicts_with_all = ["only", "out"])]
+        list: bool,
+        /// Plant this fault alone; where it is caught, write the waveform around it
+        #[arg(long, value_name = "ID", conflicts_with = "out")]
+        only: Option<String>,
+        /// Write the record of each configuration, <name>.json, into this directory
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
     },
     /// Compute one point: golden registers, outputs and the formula in f64
     #[command(after_help = "\
@@ -373,6 +397,15 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
                 time_limit: std::time::Duration::from_secs(time_limit),
             };
             commands::cosim(registry, output, &configs.configs, &request)
+        }
+        Some(Command::Mutate {
+            configs,
+            list,
+            only,
+            out,
+        }) => {
+            let request = commands::MutateRequest { list, only, out };
+            commands::mutate(registry, output, &configs.configs, &request)
         }
         Some(Command::Eval { config, operands }) => {
             commands::eval(registry, output, &config, &operands)

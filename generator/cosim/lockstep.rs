@@ -22,6 +22,7 @@ use super::together::Together;
 use crate::emit::Vectors;
 use crate::golden::{Bound, Contract, Model};
 use crate::netlist::Design;
+use crate::sim::Simulator;
 
 /// Streams that share a simulator.
 pub(super) const LANES: usize = 32;
@@ -177,11 +178,7 @@ impl<'a> Lockstep<'a> {
         if differs.load(Ordering::Relaxed) < first {
             return Ok(Vec::new());
         }
-        let share = |number| points / streams + u64::from(number < points % streams);
-        let courses = numbers.map(|number| Course::Random {
-            seed: stream_seed(self.seed, number),
-            points: share(number),
-        });
+        let courses = numbers.map(|number| self.stream(points, streams, number));
         let mut group = Together::<LANES>::new(&self.pairing, courses)?;
         while !group.ended() && differs.load(Ordering::Relaxed) >= first {
             progress(group.run()?);
@@ -196,6 +193,14 @@ impl<'a> Lockstep<'a> {
     fn alone(&self, points: u64) -> Result<Alone<'_>> {
         let seed = self.seed;
         Alone::new(&self.pairing, Course::Random { seed, points })
+    }
+
+    /// One of the streams of a run.
+    fn stream(&self, points: u64, streams: u64, number: u64) -> Course {
+        Course::Random {
+            seed: stream_seed(self.seed, number),
+            points: points / streams + u64::from(number < points % streams),
+        }
     }
 
     /// What streams showed together, up to the first that differs.
@@ -218,6 +223,42 @@ impl<'a> Lockstep<'a> {
             }
         }
         outcome
+    }
+
+    /// As [`Lockstep::run`], in one stream.
+    ///
+    /// # Errors
+    /// Those of [`Lockstep::run`].
+    pub fn run_alone(&self, points: u64) -> Result<Outcome> {
+        Ok(self.outcome([self.alone(points)?.run(&|_| ())?]))
+    }
+
+    /// Goes through the streams of a run of `points` results, each alone. `begin` makes what watches a stream,
+    /// of its seed; after each clock `note` shows it the results so far and the simulator. They come back
+    /// in the order of the streams.
+    ///
+    /// # Errors
+    /// Those of [`Lockstep::run`].
+    pub fn watch<W: Send>(
+        &self,
+        points: u64,
+        begin: impl Fn(u64) -> W + Sync,
+        note: impl Fn(&mut W, u64, &Simulator) + Sync,
+    ) -> Result<Vec<W>> {
+        let streams = streams(points, self.pairing.longest());
+        (0..streams)
+            .into_par_iter()
+            .map(|number| {
+                let mut watch = begin(stream_seed(self.seed, number));
+                let course = self.stream(points, streams, number);
+                let mut alone = Alone::new(&self.pairing, course)?;
+                while !alone.ended() {
+                    alone.clock()?;
+                    note(&mut watch, alone.seen().points, &alone.simulator);
+                }
+                Ok(watch)
+            })
+            .collect()
     }
 
     /// Stimulus and expected outputs for a bench: the inputs of every clock of one stream of `points`

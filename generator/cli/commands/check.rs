@@ -8,10 +8,10 @@ use serde_json::{Value, json};
 
 use super::mismatch::Reproducer;
 use super::{Loaded, cosim, generate, load};
-use crate::cli::{Output, POINTS, progress, tables};
+use crate::cli::{Output, progress, tables};
 use crate::cosim::Outcome;
 use crate::emit::Timing;
-use crate::flow::BENCH_SEED;
+use crate::flow::{TEST_POINTS, TEST_SEED};
 use crate::golden::Bound;
 use crate::registry::Registry;
 use crate::words;
@@ -34,7 +34,7 @@ pub fn everything(registry: &Registry, output: Output) -> Result<bool> {
     for (one, files) in loaded.iter().zip(generate::all_files(output, &loaded)?) {
         generate::write(Path::new("."), one, &files, false)?;
     }
-    let bar = progress::bar(output, POINTS * loaded.len() as u64, "points checked");
+    let bar = progress::bar(output, TEST_POINTS * loaded.len() as u64, "points checked");
     let findings: Vec<Finding> = loaded
         .par_iter()
         .map(|one| finding(one, &bar))
@@ -55,8 +55,8 @@ pub fn everything(registry: &Registry, output: Output) -> Result<bool> {
 }
 
 fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<Finding> {
-    let lockstep = one.unit.lockstep(BENCH_SEED)?;
-    let outcome = lockstep.run(POINTS, &|points| bar.inc(points))?;
+    let lockstep = one.unit.lockstep(TEST_SEED)?;
+    let outcome = lockstep.run(TEST_POINTS, &|points| bar.inc(points))?;
     let bound = one.unit.contract.bound();
     let faults = outcome.faults(&bound);
     Ok(Finding {

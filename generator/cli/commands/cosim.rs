@@ -10,10 +10,11 @@ use serde_json::{Value, json};
 use super::mismatch::{self, Reproducer};
 use super::{Loaded, load};
 use crate::cli::failure::Usage;
-use crate::cli::{Output, POINTS, Simulator, progress, tables};
+use crate::cli::{Output, Simulator, progress, tables};
 use crate::cosim::external::{self, BenchOutcome};
 use crate::cosim::{Outcome, Worst};
 use crate::emit;
+use crate::flow::TEST_POINTS;
 use crate::golden::Bound;
 use crate::registry::Registry;
 use crate::words;
@@ -125,7 +126,7 @@ fn bench(
 }
 
 fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result<bool> {
-    let points = request.points.unwrap_or(POINTS);
+    let points = request.points.unwrap_or(TEST_POINTS);
     let bar = progress::bar(
         output,
         points.saturating_mul(loaded.len() as u64),

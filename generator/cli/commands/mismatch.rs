@@ -100,7 +100,12 @@ pub fn as_json(mismatch: &Mismatch) -> Value {
 /// The file for the waveform of a difference, and the clock at which it begins.
 fn window(one: &Loaded, mismatch: &Mismatch) -> (PathBuf, u64) {
     let path = PathBuf::from(format!("{}_mismatch.vcd", one.unit.config.name));
-    (path, mismatch.clock.saturating_sub(WINDOW))
+    (path, first_clock(mismatch))
+}
+
+/// The clock at which the waveform of a difference begins.
+pub fn first_clock(mismatch: &Mismatch) -> u64 {
+    mismatch.clock.saturating_sub(WINDOW)
 }
 
 /// A run with a waveform from clock `from` on: written beside its place and moved there when it is whole.
