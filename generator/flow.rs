@@ -8,7 +8,7 @@ use crate::config::Config;
 use crate::cosim::batch::{Engine, Golden, RustHdl, Verilog};
 use crate::cosim::exhaustive::{Clocks, Job};
 use crate::cosim::{Lockstep, external, trial};
-use crate::emit::{self, EmitInputs, OutputFile, PageInputs, Timing, Vectors};
+use crate::emit::{self, Accuracy, EmitInputs, OutputFile, PageInputs, Timing, Vectors};
 use crate::golden::Contract;
 use crate::netlist::Design;
 use crate::registry::Device;
@@ -126,6 +126,8 @@ impl Unit {
             config: config.to_owned(),
             timing: self.timing()?,
             example: Some(trial::example(&self.design, self.contract.as_ref())?),
+            accuracy: Some(Accuracy::new(self.contract.as_ref())),
+            computations: trial::computations(&self.design, self.contract.as_ref())?,
             vectors: Some(vectors),
         };
         emit::emit(&self.design, &inputs)

@@ -13,9 +13,10 @@ use anyhow::{Context, Result, bail};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::emit::{OutputFile, digest, is_page};
+use super::staged;
+use crate::emit::{Comment, OutputFile, digest, is_sealed};
 
-/// What [`write()`] did with the directories of a configuration, or [`write_page`] with its page.
+/// What [`write()`] did with the directories of a configuration, or [`write_sealed`] with a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Written {
     /// They were there already, byte for byte.
@@ -52,16 +53,15 @@ pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Resul
     Ok(Written::Replaced)
 }
 
-/// Writes the page of configuration `name` into `out`, as `<name>.md`.
+/// Writes a file whose last line vouches for it.
 ///
 /// # Errors
-/// A file there that is no page of Glint's or was edited since, unless `force`; a directory that cannot be
+/// A file there that is not Glint's or was edited since, unless `force`; a directory that cannot be
 /// written. Whatever fails, what was there before is there after.
-pub fn write_page(out: &Path, name: &str, page: &str, force: bool) -> Result<Written> {
-    let path = out.join(format!("{name}.md"));
-    match fs::read(&path) {
-        Ok(found) if found == page.as_bytes() => return Ok(Written::Unchanged),
-        Ok(found) if !force && !is_page(&found) => bail!(
+pub fn write_sealed(path: &Path, text: &str, comment: Comment, force: bool) -> Result<Written> {
+    match fs::read(path) {
+        Ok(found) if found == text.as_bytes() => return Ok(Written::Unchanged),
+        Ok(found) if !force && !is_sealed(&found, comment) => bail!(
             "`{}` was not written by Glint, or was edited since; nothing was changed\n\
              move it away, choose another --out, or replace it with --force",
             path.display()
@@ -72,11 +72,8 @@ pub fn write_page(out: &Path, name: &str, page: &str, force: bool) -> Result<Wri
             return Err(error).with_context(|| format!("cannot read `{}`", path.display()));
         }
     }
-    create_directory(out)?;
-    let staging = staging(out)?;
-    let new = staging.path().join("page.md");
-    fs::write(&new, page).with_context(|| format!("cannot write `{}`", path.display()))?;
-    Moves::default().rename(&new, &path)?;
+    create_parent(path)?;
+    staged::replace(path, text.as_bytes())?;
     Ok(Written::Replaced)
 }
 
@@ -87,18 +84,8 @@ pub fn write_page(out: &Path, name: &str, page: &str, force: bool) -> Result<Wri
 pub fn differences(out: &Path, name: &str, files: &[OutputFile]) -> Result<Vec<String>> {
     let mut different = Vec::new();
     for file in files {
-        let path = out.join(&file.path);
-        match fs::read(&path) {
-            Ok(found) if found == file.contents.as_bytes() => {}
-            Ok(_) => different.push(file.path.clone()),
-            Err(error) if error.kind() == ErrorKind::NotFound => different.push(file.path.clone()),
-            // A file where a directory should be.
-            Err(error) if error.kind() == ErrorKind::NotADirectory => {
-                different.push(file.path.clone())
-            }
-            Err(error) => {
-                return Err(error).with_context(|| format!("cannot read `{}`", path.display()));
-            }
+        if differs(out, file)? {
+            different.push(file.path.clone());
         }
     }
     for path in present(out, name)? {
@@ -109,6 +96,22 @@ pub fn differences(out: &Path, name: &str, files: &[OutputFile]) -> Result<Vec<S
     }
     different.sort();
     Ok(different)
+}
+
+/// Whether a file below `out` is not as it would be written, or missing.
+///
+/// # Errors
+/// It cannot be read.
+pub fn differs(out: &Path, file: &OutputFile) -> Result<bool> {
+    let path = out.join(&file.path);
+    match fs::read(&path) {
+        Ok(found) => Ok(found != file.contents.as_bytes()),
+        // Or a file where a directory should be.
+        Err(error) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&error.kind()) => {
+            Ok(true)
+        }
+        Err(error) => Err(error).with_context(|| format!("cannot read `{}`", path.display())),
+    }
 }
 
 /// The directories of a configuration.

@@ -109,6 +109,15 @@ pub trait Contract: Send + Sync {
         [self.reference(control); 2]
     }
 
+    /// The values of [`Contract::references`] as expressions of Python, for benches that have no other second
+    /// opinion; none where nobody wrote them.
+    ///
+    /// They speak of the control operands by name, as values and not raw, of the result's number (from 0) as
+    /// `index`, of the words of a ROM as values by its name, and of `math`'s functions.
+    fn expressions(&self) -> Vec<String> {
+        Vec::new()
+    }
+
     /// The control operands of the one point that result number `index` (from 0) of a computation shows.
     ///
     /// A device with one result per `start` shows the point of its operands. One that walks a line of

@@ -8,6 +8,7 @@ use askama::Template;
 
 use super::facts::{self, Sequence};
 use super::naming::Naming;
+use super::seal::{Comment, sealed};
 use super::{Quantity, Timing, WorkedExample};
 use crate::config::{Config, Schema, Value};
 use crate::golden::{Bound, Contract, Values};
@@ -106,23 +107,7 @@ pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
         keys: keys(inputs.schema, inputs.config),
         config: inputs.path,
     })?;
-    let seal = seal(text.as_bytes());
-    Ok(text + &seal)
-}
-
-/// Whether a file is a page as [`page`] made it: its last line vouches for those above.
-pub fn is_page(contents: &[u8]) -> bool {
-    let Some(body) = contents.strip_suffix(b"\n") else {
-        return false;
-    };
-    let last = body.iter().rposition(|&byte| byte == b'\n');
-    let (above, line) = contents.split_at(last.map_or(0, |at| at + 1));
-    line == seal(above).as_bytes()
-}
-
-/// The last line of a page, which no reader sees.
-fn seal(above: &[u8]) -> String {
-    format!("<!-- sha256 {} -->\n", super::digest(above))
+    Ok(sealed(text, Comment::Markdown))
 }
 
 fn number(number: Option<u16>) -> String {
@@ -433,17 +418,6 @@ fn short(value: f64) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn an_edited_page_is_no_page() {
-        let page = format!("# title\n\ntext\n{}", seal(b"# title\n\ntext\n"));
-        assert!(is_page(page.as_bytes()));
-        assert!(!is_page(page.replace("text", "test").as_bytes()));
-        assert!(!is_page(format!("{page}more\n").as_bytes()));
-        assert!(!is_page(page.trim_end().as_bytes()));
-        assert!(!is_page(b""));
-        assert!(!is_page(b"# title\n"));
-    }
 
     #[test]
     fn values_are_short() {
