@@ -5,6 +5,7 @@
 //! the templates in `templates/` print views and decide nothing. Emission is pure: it returns files
 //! and writes none, and the same design gives the same bytes.
 
+pub mod account;
 mod bench;
 mod bits;
 mod core;
@@ -35,7 +36,8 @@ use interface::Interface;
 use naming::Naming;
 use plan::Plan;
 
-pub use page::{PageInputs, is_page, page};
+pub use account::PageInputs;
+pub use page::{is_page, page};
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE, points_bench};
 
 /// A file to be written.
