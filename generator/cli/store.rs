@@ -13,9 +13,10 @@ use anyhow::{Context, Result, bail};
 use serde_json::Value;
 use tempfile::TempDir;
 
-use crate::emit::{OutputFile, digest, is_page};
+use super::staged;
+use crate::emit::{OutputFile, digest, is_page, is_sealed_json};
 
-/// What [`write()`] did with the directories of a configuration, or [`write_page`] with its page.
+/// What [`write()`] did with the directories of a configuration, or [`write_sealed`] with a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Written {
     /// They were there already, byte for byte.
@@ -55,29 +56,41 @@ pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Resul
 /// Writes the page of configuration `name` into `out`, as `<name>.md`.
 ///
 /// # Errors
-/// A file there that is no page of Glint's or was edited since, unless `force`; a directory that cannot be
-/// written. Whatever fails, what was there before is there after.
+/// Those of [`write_sealed`].
 pub fn write_page(out: &Path, name: &str, page: &str, force: bool) -> Result<Written> {
-    let path = out.join(format!("{name}.md"));
-    match fs::read(&path) {
-        Ok(found) if found == page.as_bytes() => return Ok(Written::Unchanged),
-        Ok(found) if !force && !is_page(&found) => bail!(
+    write_sealed(&out.join(format!("{name}.md")), page, force)
+}
+
+/// Writes a single file whose contents tell whether Glint wrote them as they are.
+///
+/// # Errors
+/// A file there that Glint did not write or that was edited since, unless `force`; a directory that cannot be
+/// written. Whatever fails, what was there before is there after.
+pub fn write_sealed(path: &Path, text: &str, force: bool) -> Result<Written> {
+    if may_write(path, force)?.is_some_and(|found| found == text.as_bytes()) {
+        return Ok(Written::Unchanged);
+    }
+    let directory = path.parent().unwrap_or(Path::new(""));
+    create_directory(directory)?;
+    staged::replace(path, text.as_bytes())?;
+    Ok(Written::Replaced)
+}
+
+/// Whether [`write_sealed`] would refuse to replace what is there, which it returns.
+///
+/// # Errors
+/// A file that Glint did not write or that was edited since, unless `force`; one that cannot be read.
+pub fn may_write(path: &Path, force: bool) -> Result<Option<Vec<u8>>> {
+    match fs::read(path) {
+        Ok(found) if !force && !is_page(&found) && !is_sealed_json(&found) => bail!(
             "`{}` was not written by Glint, or was edited since; nothing was changed\n\
              move it away, choose another --out, or replace it with --force",
             path.display()
         ),
-        Ok(_) => {}
-        Err(error) if error.kind() == ErrorKind::NotFound => {}
-        Err(error) => {
-            return Err(error).with_context(|| format!("cannot read `{}`", path.display()));
-        }
+        Ok(found) => Ok(Some(found)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error).with_context(|| format!("cannot read `{}`", path.display())),
     }
-    create_directory(out)?;
-    let staging = staging(out)?;
-    let new = staging.path().join("page.md");
-    fs::write(&new, page).with_context(|| format!("cannot write `{}`", path.display()))?;
-    Moves::default().rename(&new, &path)?;
-    Ok(Written::Replaced)
 }
 
 /// The files below `out` that differ from `files`, or are missing, or stand there beside them.

@@ -13,6 +13,7 @@ mod expression;
 mod facts;
 mod formal;
 mod header;
+mod instance;
 mod interface;
 mod manifest;
 mod memory;
@@ -37,7 +38,8 @@ use naming::Naming;
 use plan::Plan;
 
 pub use account::PageInputs;
-pub use page::{is_page, page};
+pub use instance::instance;
+pub use page::{is_page, is_sealed_json, page, sealed, sealed_json};
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE, points_bench};
 
 /// A file to be written.
