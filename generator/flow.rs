@@ -8,7 +8,9 @@ use crate::config::Config;
 use crate::cosim::batch::{Engine, Golden, RustHdl, Verilog};
 use crate::cosim::exhaustive::{Clocks, Job};
 use crate::cosim::{Lockstep, external, trial};
-use crate::emit::{self, Accuracy, EmitInputs, OutputFile, PageInputs, Timing, Vectors};
+use crate::emit::{
+    self, Accuracy, EmitInputs, OutputFile, PageInputs, Timing, Vectors, WorkedExample,
+};
 use crate::golden::Contract;
 use crate::netlist::Design;
 use crate::registry::Device;
@@ -108,6 +110,14 @@ impl Unit {
         trial::timing(&self.design, self.contract.as_ref())
     }
 
+    /// One computation with all its numbers.
+    ///
+    /// # Errors
+    /// A device that does not end.
+    pub fn example(&self) -> Result<WorkedExample> {
+        trial::example(&self.design, self.contract.as_ref())
+    }
+
     /// Stimulus and expected outputs for a bench; the golden model and the built-in simulator agree on
     /// them.
     ///
@@ -125,7 +135,7 @@ impl Unit {
         let inputs = EmitInputs {
             config: config.to_owned(),
             timing: self.timing()?,
-            example: Some(trial::example(&self.design, self.contract.as_ref())?),
+            example: Some(self.example()?),
             accuracy: Some(Accuracy::new(self.contract.as_ref())),
             computations: trial::computations(&self.design, self.contract.as_ref())?,
             vectors: Some(vectors),
@@ -153,7 +163,7 @@ impl Unit {
             schema: &(self.device.schema)(),
             contract: self.contract.as_ref(),
             timing: &self.timing()?,
-            example: &trial::example(&self.design, self.contract.as_ref())?,
+            example: &self.example()?,
         };
         emit::page(&self.design, &inputs)
     }

@@ -44,6 +44,7 @@ Examples:
   glint mutate my_core.toml                     are faults noticed? Plants thousands, one at a time
   glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
   glint describe my_core.toml                   ports, blocks, microprogram, accuracy: a page
+  glint datasheet my_core.toml                  the same as a product guide in HTML, with diagrams and plots
   glint compare --exponent 100                  all devices side by side
   glint verify my_core.toml                     every proof and test there is, and a page about it
   glint render my_core.toml --out sphere.png    a picture through the bit-accurate device
@@ -180,6 +181,41 @@ Examples:
         /// Replace pages that Glint did not write or that were edited since
         #[arg(long, requires = "out")]
         force: bool,
+    },
+    /// Write a datasheet, one HTML page that needs no network
+    ///
+    /// A page as a vendor's product guide: figures at a glance, block diagram, ports and formats, a worked
+    /// example, a timing diagram from simulation, the microprogram by control lines, latency and throughput, the error
+    /// bound with its proof and plots, a rendered highlight, an instance in Verilog, and where everything comes from. With
+    /// Yosys on PATH it says what the device takes of iCE40, ECP5 and Xilinx 7, which takes a minute or more. A file
+    /// that Glint did not write, or that was edited since, is left alone unless --force is given.
+    #[command(after_help = "\
+Examples:
+  glint datasheet                                       all of configs/, into datasheets/
+  glint datasheet my_core.toml --no-synthesis           in a second or two
+  glint datasheet my_core.toml --out core.html          one page, under this name
+  glint datasheet configs/rough.toml --wavedrom         also datasheets/rough.wavedrom.json")]
+    Datasheet {
+        #[command(flatten)]
+        configs: Configs,
+        /// A directory, or for one configuration a file that ends in .html
+        #[arg(long, value_name = "DIR|FILE.html", default_value = "datasheets")]
+        out: PathBuf,
+        /// Where records of `cosim --exhaustive --json` are, as <name>.json
+        #[arg(long, value_name = "DIR", default_value = "proofs")]
+        proofs: PathBuf,
+        /// Write the timing diagram for WaveDrom too, beside the page
+        #[arg(long)]
+        wavedrom: bool,
+        /// Replace files that Glint did not write or that were edited since
+        #[arg(long)]
+        force: bool,
+        /// Do not ask Yosys what the device takes
+        #[arg(long)]
+        no_synthesis: bool,
+        /// Seconds after which a run of Yosys is given up
+        #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+        time_limit: u64,
     },
     /// Weigh all devices against cos^n gamma at one exponent, side by side
     ///
@@ -415,6 +451,25 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             out,
             force,
         }) => commands::describe(registry, output, &configs.configs, out.as_deref(), force),
+        Some(Command::Datasheet {
+            configs,
+            out,
+            proofs,
+            wavedrom,
+            force,
+            no_synthesis,
+            time_limit,
+        }) => {
+            let request = commands::DatasheetRequest {
+                out,
+                proofs,
+                wavedrom,
+                force,
+                synthesis: !no_synthesis,
+                time_limit: std::time::Duration::from_secs(time_limit),
+            };
+            commands::datasheet(registry, output, &configs.configs, &request)
+        }
         Some(Command::Compare {
             configs,
             exponent,

@@ -5,6 +5,7 @@
 //! the templates in `templates/` print views and decide nothing. Emission is pure: it returns files
 //! and writes none, and the same design gives the same bytes.
 
+pub mod account;
 mod bench;
 mod bits;
 mod cocotb;
@@ -13,6 +14,7 @@ mod expression;
 mod facts;
 mod formal;
 mod header;
+mod instance;
 mod interface;
 mod manifest;
 mod memory;
@@ -38,10 +40,12 @@ use interface::Interface;
 use naming::Naming;
 use plan::Plan;
 
+pub use account::PageInputs;
 pub use cocotb::driver;
-pub use page::{PageInputs, page};
+pub use instance::instance;
+pub use page::page;
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE, points_bench};
-pub use seal::{Comment, is_sealed};
+pub use seal::{Seal, is_sealed, sealed, sealed_json};
 
 /// A file to be written.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -9,7 +9,7 @@ use serde_json::json;
 use super::{Loaded, load};
 use crate::cli::store::{self, Written};
 use crate::cli::{Output, progress, tables};
-use crate::emit::{self, Comment, OutputFile};
+use crate::emit::{self, OutputFile, Seal};
 use crate::flow::{BENCH_POINTS, BENCH_SEED};
 use crate::registry::Registry;
 
@@ -85,7 +85,7 @@ pub fn write(out: &Path, one: &Loaded, files: &[OutputFile], force: bool) -> Res
     store::write_sealed(
         &out.join(&driver.path),
         &driver.contents,
-        Comment::Python,
+        Seal::Python,
         force,
     )?;
     store::write(out, &one.unit.config.name, files, force)
