@@ -6,11 +6,12 @@ use anyhow::Result;
 
 use super::{Finding, Leg, Subject, Verdict};
 use crate::cosim::exhaustive::{Job, Proof, Shard, State};
-use crate::flow::BENCH_SEED;
+use crate::flow::{TEST_POINTS, TEST_SEED};
+use crate::mutate::{self, Faults, Score};
 use crate::words::{counted, grouped};
 
 /// Results that lock-step compares, and with full effort.
-const POINTS: [u64; 2] = [100_000, 10_000_000];
+const POINTS: [u64; 2] = [TEST_POINTS, 100 * TEST_POINTS];
 
 /// Without full effort a proof has no more evaluations than some seconds allow.
 const EVALUATIONS: u64 = 1 << 28;
@@ -63,7 +64,7 @@ fn points(subject: &Subject<'_>) -> u64 {
 fn lockstep(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
     let outcome = subject
         .unit
-        .lockstep(BENCH_SEED)?
+        .lockstep(TEST_SEED)?
         .run(points(subject), progress)?;
     let bound = subject.unit.contract.bound();
     let worst = outcome.worst.as_ref().map_or_else(String::new, |worst| {
@@ -75,7 +76,7 @@ fn lockstep(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
     Ok(Finding::new(
         Verdict::Passed,
         format!(
-            "{} results in {} clocks, with resets, pauses, starts and writes while busy (seed {BENCH_SEED})",
+            "{} results in {} clocks, with resets, pauses, starts and writes while busy (seed {TEST_SEED})",
             grouped(outcome.points),
             grouped(outcome.clocks)
         ),
@@ -174,5 +175,36 @@ pub const CLOCKS: Leg = Leg {
             faults,
         )
         .open(clocks.omits()))
+    },
+};
+
+/// Faults in the netlist.
+pub const MUTATION: Leg = Leg {
+    id: "mutation",
+    title: "Faults in the netlist",
+    question: "Does the test notice each of the faults that are planted in the netlist, one at a time?",
+    tools: &[],
+    steps: |subject| Faults::of(&subject.unit.design).len() as u64,
+    run: |subject, _, progress| {
+        let faults = Faults::of(&subject.unit.design);
+        let found = mutate::run(subject.unit, faults.iter(), &|| progress(1))?;
+        let score = Score::of(&found);
+        let all = &score.all;
+        let (caught, equivalent) = (all.all_caught(), all.all_equivalent());
+        let faults = match score.holds() {
+            true => Vec::new(),
+            false => vec![format!("open: {}", score.open.join(", "))],
+        };
+        Ok(Finding::new(
+            Verdict::Passed,
+            counted(all.planted, "fault"),
+            format!(
+                "{caught} are caught, {equivalent} are proved to change nothing that is compared, {} are open ({:.2} %).",
+                all.open,
+                100.0 * all.share_open()
+            ),
+            faults,
+        )
+        .open(score.open.join(", ")))
     },
 };

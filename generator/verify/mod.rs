@@ -134,14 +134,17 @@ pub struct Leg {
 }
 
 /// All legs: first those that need nothing but Glint.
-pub const LEGS: [&Leg; 8] = [
+pub const LEGS: [&Leg; 11] = [
     &inside::DESIGN,
     &inside::LOCKSTEP,
     &inside::CLOCKS,
     &inside::CONTRACT,
+    &inside::MUTATION,
     &outside::LINT,
     &outside::ICARUS,
     &outside::VERILATOR,
+    &outside::COCOTB,
+    &outside::FORMAL,
     &outside::SYNTHESIS,
 ];
 

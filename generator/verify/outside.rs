@@ -4,12 +4,13 @@ use std::fs;
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
+use tempfile::TempDir;
 
 use super::{Finding, Leg, Subject, Verdict};
-use crate::cosim::external::{Simulator, lint, run_bench};
+use crate::cosim::external::{Simulator, lint, prove, run_bench};
 use crate::cosim::synthesis::{FAMILIES, synthesise};
 use crate::emit;
-use crate::flow::BENCH_SEED;
+use crate::flow::{BENCH_POINTS, BENCH_SEED};
 use crate::words::grouped;
 
 /// Results of a bench, and with full effort.
@@ -123,3 +124,98 @@ pub const SYNTHESIS: Leg = Leg {
         ))
     },
 };
+
+/// Properties of the emitted Verilog.
+pub const FORMAL: Leg = Leg {
+    id: "formal",
+    title: "Proof of the handshake",
+    question: "Do valid, busy and done come exactly when they should, for all inputs and from any state, and are operands stable meanwhile?",
+    tools: &["yosys", "yosys-smtbmc", "z3"],
+    steps: |_| 1,
+    run: |subject, _, _| {
+        let place = place(subject)?;
+        let (name, limit) = (&subject.unit.config.name, subject.effort.time_limit);
+        let flat = place.path().join("proof");
+        fs::create_dir(&flat).context("cannot make a directory for the proof")?;
+        for directory in ["rtl_out", "testbench"] {
+            let directory = place.path().join(directory).join(name);
+            for entry in directory
+                .read_dir()
+                .context("cannot read what was emitted")?
+            {
+                let entry = entry.context("cannot read what was emitted")?;
+                fs::copy(entry.path(), flat.join(entry.file_name()))
+                    .context("cannot copy what was emitted")?;
+            }
+        }
+        prove(&flat, name, limit)?;
+        Ok(Finding::new(
+            Verdict::Proved,
+            "all inputs, any state, any number of clocks".to_owned(),
+            format!("The properties of {name}_formal.sv are proved by k-induction."),
+            Vec::new(),
+        )
+        .open("Values: products and ROMs of the datapath are cut away."))
+    },
+};
+
+/// The emitted Verilog driven from Python.
+pub const COCOTB: Leg = Leg {
+    id: "cocotb",
+    title: "Emitted Verilog driven from Python",
+    question: "Does the core do what its manifest says, for a bench in Python that knows nothing else of it?",
+    tools: &["python3", "iverilog"],
+    steps: |_| 1,
+    run: |subject, tools, _| {
+        let limit = subject.effort.time_limit;
+        let (python, here) = (&tools[0], std::path::Path::new("."));
+        let version = python.run(
+            ["-c", "import cocotb; print(cocotb.__version__)"],
+            here,
+            limit,
+        )?;
+        if !version.status.success() {
+            let why = format!(
+                "{} has no cocotb; `bash tools/install` makes an environment that has, target/tools/venv: \
+                 put its bin/ first on PATH",
+                python.path().display()
+            );
+            return Ok(Finding::without(Verdict::NotRun, why));
+        }
+        let place = place(subject)?;
+        let name = &subject.unit.config.name;
+        let bench = format!("testbench/{name}/test_{name}.py");
+        let run = python.run([&bench], place.path(), limit)?;
+        let verdict = run
+            .output
+            .lines()
+            .rev()
+            .find(|line| line.contains(&format!("{name}: ")));
+        let faults = match (run.status.success(), verdict) {
+            (true, Some(_)) => Vec::new(),
+            _ => vec![run.output.trim().to_owned()],
+        };
+        Ok(Finding::new(
+            Verdict::Passed,
+            format!("{bench}, with cocotb {}", version.output.trim()),
+            verdict.unwrap_or_default().to_owned(),
+            faults,
+        )
+        .open("Operands that were not drawn."))
+    },
+};
+
+/// Everything that is emitted, in a directory of its own.
+fn place(subject: &Subject<'_>) -> Result<TempDir> {
+    let place = tempfile::tempdir().context("cannot make a directory for what is emitted")?;
+    let vectors = subject.unit.vectors(BENCH_POINTS, BENCH_SEED)?;
+    let files = subject.unit.files(subject.path, vectors)?;
+    for file in files.iter().chain([&emit::driver()]) {
+        let path = place.path().join(&file.path);
+        path.parent()
+            .map_or(Ok(()), fs::create_dir_all)
+            .and_then(|()| fs::write(&path, &file.contents))
+            .with_context(|| format!("cannot write `{}` for a tool", file.path))?;
+    }
+    Ok(place)
+}
