@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::{Align, NUMBER, Table, code, format_text};
-use crate::netlist::{Design, Driver, NetId, Op, RegisterKind, Rom, Unit};
+use crate::netlist::{Design, Driver, FieldId, NetId, Op, RegisterKind, Rom, Unit};
 
 /// The blocks in order of their number; those that the source does not number follow.
 pub fn table(design: &Design) -> Table {
@@ -274,7 +274,25 @@ impl<'a> Blocks<'a> {
 
     /// The outputs of the blocks, ports and ROMs behind nets, in the order in which they are met.
     pub fn sources(&self, nets: impl IntoIterator<Item = NetId>) -> Vec<NetId> {
-        let mut found = Vec::new();
+        self.behind(nets).0
+    }
+
+    /// The fields of the control word that turn a block: its select or enable, and what its logic takes of them.
+    pub fn fields(&self, id: NetId) -> Vec<FieldId> {
+        self.behind(match &self.design.net(id).driver {
+            Driver::Register(register) => {
+                self.design.register(*register).enable.into_iter().collect()
+            }
+            Driver::Rom(rom) => vec![self.design.rom(*rom).address],
+            Driver::Op(op) => op.operands(),
+            _ => Vec::new(),
+        })
+        .1
+    }
+
+    /// The outputs of blocks, ports and ROMs behind nets, and the fields of the control word.
+    fn behind(&self, nets: impl IntoIterator<Item = NetId>) -> (Vec<NetId>, Vec<FieldId>) {
+        let (mut found, mut fields) = (Vec::new(), Vec::new());
         let mut seen = vec![false; self.design.nets.len()];
         let mut pending: Vec<NetId> = nets.into_iter().collect();
         pending.reverse();
@@ -290,9 +308,10 @@ impl<'a> Blocks<'a> {
                 Driver::Rom(_) => found.push(id),
                 Driver::Register(register) => pending.extend(self.design.register(*register).data),
                 Driver::Op(op) => pending.extend(op.operands().into_iter().rev()),
-                Driver::Undriven | Driver::Input | Driver::Constant(_) | Driver::Field(_) => {}
+                Driver::Field(field) => fields.push(*field),
+                Driver::Undriven | Driver::Input | Driver::Constant(_) => {}
             }
         }
-        found
+        (found, fields)
     }
 }

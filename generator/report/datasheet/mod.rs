@@ -2,6 +2,7 @@
 //!
 //! Everything on it comes from the design, the golden model and simulation; nothing knows a device by name.
 
+mod diagram;
 mod microprogram;
 mod page;
 mod record;

@@ -7,7 +7,7 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::microprogram::Microprogram;
 use super::table::{TableView, html};
-use super::{Measured, Subject, timing};
+use super::{Measured, Subject, diagram, timing};
 use crate::emit::account::{self, PageInputs, blocks, short};
 use crate::emit::{self, Seal, Timing};
 use crate::netlist::Design;
@@ -29,6 +29,7 @@ struct Page<'a> {
     source: String,
     notes: Vec<String>,
     glance: Vec<(&'static str, String)>,
+    diagram: String,
     numbering: &'static str,
     formats: String,
     ports: TableView,
@@ -104,6 +105,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         source: html(&about.source),
         notes: about.notes.iter().map(|note| html(note)).collect(),
         glance: glance(subject, measured),
+        diagram: diagram::drawing(design).svg()?,
         numbering: account::numbering(design),
         formats: html(account::FORMATS),
         ports: TableView::new("Ports", &account::ports(design)),

@@ -1,0 +1,305 @@
+//! How wires run: horizontally through columns, vertically between them, around a box where they lead back.
+
+use std::collections::HashMap;
+
+use super::graph::Graph;
+use super::place::Placement;
+use super::tracks::{Side, Trunk, assign};
+
+/// From one track to the next.
+const TRACK: f64 = 9.0;
+
+/// Beside the tracks of a gap.
+const MARGIN: f64 = 14.0;
+
+/// From the border of a box to its first pin.
+const EDGE: f64 = 8.0;
+
+/// Of the way around a box for each wire that leads back.
+pub const LANE: f64 = 10.0;
+
+/// A box as the routes see it, from above.
+#[derive(Clone, Copy, Debug)]
+pub struct Body {
+    /// Where lanes around it begin.
+    pub top: f64,
+    /// The upper edge of the box.
+    pub upper: f64,
+    /// The lower edge.
+    pub lower: f64,
+    /// From left to right.
+    pub width: f64,
+}
+
+/// A straight piece, horizontal or vertical.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Piece {
+    /// One end.
+    pub from: (f64, f64),
+    /// The other.
+    pub to: (f64, f64),
+}
+
+/// The way of all wires that one box drives.
+#[derive(Clone, Debug, Default)]
+pub struct Net {
+    /// In no order.
+    pub pieces: Vec<Piece>,
+    /// Where three or more pieces meet.
+    pub junctions: Vec<(f64, f64)>,
+    /// Where arrows point into boxes.
+    pub pins: Vec<(f64, f64)>,
+}
+
+/// A finished layout.
+pub struct Routes {
+    /// The left edge of each box.
+    pub left: Vec<f64>,
+    /// By the box that drives it.
+    pub nets: Vec<Net>,
+    /// From left to right.
+    pub width: f64,
+}
+
+/// The boxes around which wires lead back, with the nets that do; each takes a [`LANE`].
+pub fn lanes(graph: &Graph, back: &[bool]) -> Vec<Vec<usize>> {
+    let mut lanes = vec![Vec::new(); graph.boxes.len()];
+    for (wire, _) in graph.wires.iter().zip(back).filter(|(_, back)| **back) {
+        for at in [wire.from, wire.to] {
+            if !lanes[at].contains(&wire.from) {
+                lanes[at].push(wire.from);
+            }
+        }
+    }
+    lanes
+}
+
+/// Routes the wires between boxes that stand where `placement` says.
+pub fn routes(
+    graph: &Graph,
+    placement: &Placement,
+    bodies: &[Body],
+    lanes: &[Vec<usize>],
+) -> Routes {
+    let mut router = Router {
+        graph,
+        placement,
+        bodies,
+        lanes,
+        gaps: vec![Vec::new(); placement.columns + 1],
+        crossings: Vec::new(),
+        passes: HashMap::new(),
+    };
+    // The longest first: shorter wires of the net go with it.
+    let mut order: Vec<usize> = (0..graph.wires.len()).collect();
+    order.sort_by_key(|&wire| std::cmp::Reverse(placement.passes[wire].len()));
+    let pins = router.pins(&order);
+    for &wire in &order {
+        router.wire(wire, pins[wire]);
+    }
+    router.finish(&pins)
+}
+
+struct Router<'a> {
+    graph: &'a Graph,
+    placement: &'a Placement,
+    bodies: &'a [Body],
+    lanes: &'a [Vec<usize>],
+    /// Gap number k is left of column k.
+    gaps: Vec<Vec<Trunk>>,
+    /// The net that crosses a column, and where.
+    crossings: Vec<(usize, usize, f64)>,
+    /// Where a net passes a column, to the right or back.
+    passes: HashMap<(usize, usize, bool), f64>,
+}
+
+impl Router<'_> {
+    /// Where the output of a box is: in the middle of its place, where wires that pass other columns begin.
+    fn out(&self, at: usize) -> f64 {
+        let body = &self.bodies[at];
+        self.placement.middle[at].clamp(body.upper + EDGE, body.lower - EDGE)
+    }
+
+    fn lane(&self, at: usize, net: usize) -> f64 {
+        let lane = self.lanes[at].iter().position(|&other| other == net);
+        self.bodies[at].top + LANE * (lane.unwrap_or(0) as f64 + 0.5)
+    }
+
+    /// The heights at which a wire passes the columns between its ends, in its direction.
+    fn between(&mut self, wire: usize) -> Vec<(usize, f64)> {
+        let (net, back) = (self.graph.wires[wire].from, self.placement.back[wire]);
+        let passes = self.placement.passes[wire].iter();
+        passes
+            .map(|&(column, y)| {
+                let y = *self.passes.entry((net, column, back)).or_insert(y);
+                (column, y)
+            })
+            .collect()
+    }
+
+    /// Where each wire enters its box: pins from above in the order in which the wires come.
+    fn pins(&mut self, order: &[usize]) -> Vec<f64> {
+        let mut coming: Vec<Vec<(f64, usize)>> = vec![Vec::new(); self.graph.boxes.len()];
+        for &at in order {
+            let wire = self.graph.wires[at];
+            let y = match (self.placement.back[at], self.between(at).last()) {
+                (true, _) => self.lane(wire.to, wire.from),
+                (false, Some(&(_, y))) => y,
+                (false, None) => self.out(wire.from),
+            };
+            coming[wire.to].push((y, at));
+        }
+        let mut pins = vec![0.0; self.graph.wires.len()];
+        for (body, mut coming) in self.bodies.iter().zip(coming) {
+            coming.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let (first, last) = (body.upper + EDGE, body.lower - EDGE);
+            if let [(y, wire)] = coming[..] {
+                pins[wire] = y.clamp(first, last);
+                continue;
+            }
+            let step = (last - first) / (coming.len().max(2) - 1) as f64;
+            for (at, (_, wire)) in coming.into_iter().enumerate() {
+                pins[wire] = first + step * at as f64;
+            }
+        }
+        pins
+    }
+
+    fn wire(&mut self, at: usize, pin: f64) {
+        let wire = self.graph.wires[at];
+        let net = wire.from;
+        let (from, to) = (
+            self.placement.column[wire.from],
+            self.placement.column[wire.to],
+        );
+        let between = self.between(at);
+        let mut y = self.out(net);
+        if !self.placement.back[at] {
+            for &(column, pass) in &between {
+                self.hop(net, column, (y, Side::Left), (pass, Side::Right));
+                self.crossings.push((net, column, pass));
+                y = pass;
+            }
+            self.hop(net, to, (y, Side::Left), (pin, Side::Right));
+            return;
+        }
+        // Out to the right, over the box, and back.
+        let (over, into) = (self.lane(wire.from, net), self.lane(wire.to, net));
+        self.hop(net, from + 1, (y, Side::Left), (over, Side::Left));
+        self.crossings.push((net, from, over));
+        y = over;
+        for &(column, pass) in &between {
+            self.hop(net, column + 1, (y, Side::Right), (pass, Side::Left));
+            self.crossings.push((net, column, pass));
+            y = pass;
+        }
+        if wire.from != wire.to {
+            self.hop(net, to + 1, (y, Side::Right), (into, Side::Left));
+            self.crossings.push((net, to, into));
+            y = into;
+        }
+        self.hop(net, to, (y, Side::Right), (pin, Side::Right));
+    }
+
+    /// A net that enters a gap goes to all its exits along one trunk.
+    fn hop(&mut self, net: usize, gap: usize, entry: (f64, Side), exit: (f64, Side)) {
+        let trunks = &mut self.gaps[gap];
+        let found = trunks
+            .iter_mut()
+            .find(|it| it.net == net && it.entry == entry);
+        match found {
+            Some(trunk) if trunk.exits.contains(&exit) => {}
+            Some(trunk) => trunk.exits.push(exit),
+            None => trunks.push(Trunk {
+                net,
+                entry,
+                exits: vec![exit],
+                track: 0,
+            }),
+        }
+    }
+
+    fn finish(mut self, pins: &[f64]) -> Routes {
+        let columns = self.placement.columns;
+        let tracks: Vec<usize> = self.gaps.iter_mut().map(|gap| assign(gap)).collect();
+        let widest = |column: usize| {
+            let of = |(at, body): (usize, &Body)| {
+                (self.placement.column[at] == column).then_some(body.width)
+            };
+            let widths = self.bodies.iter().enumerate().filter_map(of);
+            widths.fold(0.0, f64::max)
+        };
+        // The borders of gaps; a column is between one gap and the next.
+        let mut borders: Vec<(f64, f64)> = Vec::new();
+        let mut x = 0.0;
+        for gap in 0..=columns {
+            let outside = (gap == 0 || gap == columns) && tracks[gap] == 0;
+            let wide = match outside {
+                true => 0.0,
+                false => 2.0 * MARGIN + TRACK * tracks[gap].saturating_sub(1) as f64,
+            };
+            borders.push((x, x + wide));
+            x += wide + if gap < columns { widest(gap) } else { 0.0 };
+        }
+        let left = |at: usize| {
+            let column = self.placement.column[at];
+            let (from, to) = (borders[column].1, borders[column + 1].0);
+            from + (to - from - self.bodies[at].width) / 2.0
+        };
+        let left: Vec<f64> = (0..self.bodies.len()).map(left).collect();
+        let mut nets = vec![Net::default(); self.bodies.len()];
+        for (gap, trunks) in self.gaps.iter().enumerate() {
+            for trunk in trunks {
+                nets[trunk.net].trunk(trunk, borders[gap]);
+            }
+        }
+        for &(net, column, y) in &self.crossings {
+            nets[net].piece((borders[column].1, y), (borders[column + 1].0, y));
+        }
+        for (wire, &pin) in self.graph.wires.iter().zip(pins) {
+            let (from, to) = (wire.from, wire.to);
+            let (start, y) = (left[from] + self.bodies[from].width, self.out(from));
+            let (column, net) = (self.placement.column[from], &mut nets[from]);
+            net.piece((start, y), (borders[column + 1].0, y));
+            net.piece((borders[self.placement.column[to]].1, pin), (left[to], pin));
+            net.pins.push((left[to], pin));
+        }
+        Routes {
+            left,
+            nets,
+            width: x,
+        }
+    }
+}
+
+impl Net {
+    fn piece(&mut self, from: (f64, f64), to: (f64, f64)) {
+        let piece = Piece { from, to };
+        if from != to && !self.pieces.contains(&piece) {
+            self.pieces.push(piece);
+        }
+    }
+
+    /// The vertical line and its taps.
+    fn trunk(&mut self, trunk: &Trunk, (left, right): (f64, f64)) {
+        if trunk.is_straight() {
+            self.piece((left, trunk.entry.0), (right, trunk.entry.0));
+            return;
+        }
+        let x = left + MARGIN + TRACK * trunk.track as f64;
+        let (low, high) = trunk.reach();
+        self.piece((x, low), (x, high));
+        for (y, side) in trunk.taps() {
+            match side {
+                Side::Left => self.piece((left, y), (x, y)),
+                Side::Right => self.piece((x, y), (right, y)),
+            }
+            let inside = low < y && y < high;
+            let taps = trunk.taps().filter(|(other, _)| (other - y).abs() < 0.5);
+            // Ways from here: taps, and the trunk to one side or both.
+            if taps.count() + 1 + usize::from(inside) >= 3 {
+                self.junctions.push((x, y));
+            }
+        }
+    }
+}

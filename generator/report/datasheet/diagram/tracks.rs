@@ -1,0 +1,156 @@
+//! Wires between two columns: vertical trunks, each on a track of its own where it would touch another.
+
+/// Nearer than this, lines seem to touch.
+const NEAR: f64 = 5.0;
+
+/// Worse than any number of crossings: two wires would lie upon each other.
+const OVERLAP: usize = 1000;
+
+/// The border of the gap at which a wire comes or goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Toward lower columns.
+    Left,
+    /// Toward higher columns.
+    Right,
+}
+
+/// What one net does in a gap: a vertical line with taps to both sides.
+#[derive(Clone, Debug)]
+pub struct Trunk {
+    /// The box that drives it.
+    pub net: usize,
+    /// Where it comes in; the first tap.
+    pub entry: (f64, Side),
+    /// Where it leaves.
+    pub exits: Vec<(f64, Side)>,
+    /// From the left; set by [`assign`].
+    pub track: usize,
+}
+
+impl Trunk {
+    /// All taps.
+    pub fn taps(&self) -> impl Iterator<Item = (f64, Side)> + '_ {
+        std::iter::once(self.entry).chain(self.exits.iter().copied())
+    }
+
+    /// The upper and the lower end.
+    pub fn reach(&self) -> (f64, f64) {
+        self.taps()
+            .fold((f64::MAX, f64::MIN), |(low, high), (y, _)| {
+                (low.min(y), high.max(y))
+            })
+    }
+
+    /// Whether it goes straight from side to side.
+    pub fn is_straight(&self) -> bool {
+        let (low, high) = self.reach();
+        high - low < 0.5
+    }
+
+    /// Crossings and overlaps when it is left of another.
+    fn left_of(&self, other: &Self) -> usize {
+        let within = |trunk: &Self, y: f64| {
+            let (low, high) = trunk.reach();
+            (low..=high).contains(&y)
+        };
+        let right = || self.taps().filter(|(_, side)| *side == Side::Right);
+        let left = || other.taps().filter(|(_, side)| *side == Side::Left);
+        let crossings = right().filter(|(y, _)| within(other, *y)).count()
+            + left().filter(|(y, _)| within(self, *y)).count();
+        let overlaps = right()
+            .flat_map(|(y, _)| left().map(move |(z, _)| (y - z).abs()))
+            .filter(|distance| *distance < NEAR)
+            .count();
+        crossings + OVERLAP * overlaps
+    }
+
+    /// Whether the two cannot share a track.
+    fn meets(&self, other: &Self) -> bool {
+        let ((low, high), (from, to)) = (self.reach(), other.reach());
+        from < high + NEAR && low < to + NEAR
+    }
+}
+
+/// Orders the trunks of a gap so that few wires cross, and gives each its track. How many there are.
+pub fn assign(trunks: &mut [Trunk]) -> usize {
+    trunks.sort_by(|a, b| a.reach().0.total_cmp(&b.reach().0));
+    // As long as it helps to exchange neighbours; each exchange lessens the sum.
+    let mut better = true;
+    while better {
+        better = false;
+        for at in 1..trunks.len() {
+            let (a, b) = (&trunks[at - 1], &trunks[at]);
+            if b.left_of(a) < a.left_of(b) {
+                trunks.swap(at - 1, at);
+                better = true;
+            }
+        }
+    }
+    let mut tracks = 0;
+    for at in 0..trunks.len() {
+        if trunks[at].is_straight() {
+            continue;
+        }
+        let before = trunks[..at].iter().filter(|other| {
+            let bound = other.meets(&trunks[at]) || trunks[at].left_of(other) >= OVERLAP;
+            bound && !other.is_straight()
+        });
+        let track = before.map(|other| other.track + 1).max().unwrap_or(0);
+        trunks[at].track = track;
+        tracks = tracks.max(track + 1);
+    }
+    tracks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn trunk(net: usize, from: f64, to: f64) -> Trunk {
+        Trunk {
+            net,
+            entry: (from, Side::Left),
+            exits: vec![(to, Side::Right)],
+            track: 0,
+        }
+    }
+
+    fn tracks(trunks: &[Trunk]) -> Vec<(usize, usize)> {
+        let mut tracks: Vec<_> = trunks.iter().map(|it| (it.net, it.track)).collect();
+        tracks.sort_unstable();
+        tracks
+    }
+
+    #[test]
+    fn wires_that_do_not_meet_share_a_track() {
+        let mut trunks = [
+            trunk(0, 0.0, 20.0),
+            trunk(1, 50.0, 80.0),
+            trunk(2, 90.0, 90.0),
+        ];
+        assert_eq!(assign(&mut trunks), 1);
+        assert_eq!(tracks(&trunks), [(0, 0), (1, 0), (2, 0)]);
+    }
+
+    #[test]
+    fn parallel_wires_do_not_cross() {
+        // Both go down: the lower one must turn first.
+        let mut trunks = [trunk(0, 0.0, 40.0), trunk(1, 20.0, 60.0)];
+        assert_eq!(assign(&mut trunks), 2);
+        assert_eq!(
+            tracks(&trunks),
+            [(0, 1), (1, 0)].map(|(net, track)| (net, track))
+        );
+        assert_eq!(trunks[0].left_of(&trunks[1]), 0);
+    }
+
+    #[test]
+    fn wires_never_lie_upon_each_other() {
+        // One ends at the right where the other begins at the left.
+        let mut trunks = [trunk(0, 0.0, 50.0), trunk(1, 50.0, 100.0)];
+        assert_eq!(assign(&mut trunks), 2);
+        let track = |net| trunks.iter().find(|it| it.net == net).map(|it| it.track);
+        assert!(track(0) > track(1), "{trunks:?}");
+    }
+}
