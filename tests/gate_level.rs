@@ -5,13 +5,14 @@ mod common;
 
 use std::fs;
 
-use common::netlist::{self, POINTS, SIMULATED, synthesise};
+use common::netlist::{self, POINTS, synthesise};
 use common::units::{Emitted, configuration};
+use glint::cosim::gates;
 use glint::cosim::synthesis::{FAMILIES, Family};
 use rayon::prelude::*;
 
 fn families() -> impl ParallelIterator<Item = &'static Family> {
-    let simulated = |family: &&Family| SIMULATED.contains(&family.name);
+    let simulated = |family: &&Family| gates::is_simulated(family);
     FAMILIES.par_iter().filter(simulated)
 }
 

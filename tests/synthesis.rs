@@ -10,9 +10,10 @@ mod common;
 use std::collections::BTreeSet;
 use std::fs;
 
-use common::netlist::{self, POINTS, SIMULATED, synthesise};
+use common::netlist::{self, POINTS, synthesise};
 use common::tools::{LIMIT, tool};
 use common::units::{Emitted, configuration, configurations};
+use glint::cosim::gates;
 use glint::cosim::synthesis::{self, FAMILIES, Family, Kinds, Usage};
 use glint::netlist::{Design, Driver, Op, Rom};
 use rayon::prelude::*;
@@ -51,7 +52,7 @@ fn every_configuration_is_synthesised_whole() {
                 cells.count_all(family.block_rams),
                 cells.0.len()
             );
-            if SIMULATED.contains(&family.name) {
+            if gates::is_simulated(family) {
                 let netlist =
                     fs::read_to_string(place.path().join("netlist.v")).expect("a netlist");
                 netlist::bench(&emitted, netlist, family).assert_passes();

@@ -6,6 +6,7 @@ pub mod batch;
 mod combinations;
 pub mod exhaustive;
 pub mod external;
+pub mod gates;
 mod lockstep;
 mod pairing;
 mod stimulus;

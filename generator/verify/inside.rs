@@ -191,9 +191,10 @@ pub const MUTATION: Leg = Leg {
         let score = Score::of(&found);
         let all = &score.all;
         let (caught, equivalent) = (all.all_caught(), all.all_equivalent());
+        let open = named(&score.open);
         let faults = match score.holds() {
             true => Vec::new(),
-            false => vec![format!("open: {}", score.open.join(", "))],
+            false => vec![format!("more than 1 % are open: {open}")],
         };
         Ok(Finding::new(
             Verdict::Passed,
@@ -205,6 +206,18 @@ pub const MUTATION: Leg = Leg {
             ),
             faults,
         )
-        .open(score.open.join(", ")))
+        .open(open))
     },
 };
+
+/// The most faults that are named.
+const NAMED: usize = 20;
+
+/// Some of the faults, and how many more there are.
+fn named(ids: &[String]) -> String {
+    let named = ids[..ids.len().min(NAMED)].join(", ");
+    match ids.len() - ids.len().min(NAMED) {
+        0 => named,
+        more => format!("{named} and {more} more; `glint mutate` names all"),
+    }
+}

@@ -134,7 +134,7 @@ pub struct Leg {
 }
 
 /// All legs: first those that need nothing but Glint.
-pub const LEGS: [&Leg; 11] = [
+pub const LEGS: [&Leg; 12] = [
     &inside::DESIGN,
     &inside::LOCKSTEP,
     &inside::CLOCKS,
@@ -146,6 +146,7 @@ pub const LEGS: [&Leg; 11] = [
     &outside::COCOTB,
     &outside::FORMAL,
     &outside::SYNTHESIS,
+    &outside::GATES,
 ];
 
 impl Leg {

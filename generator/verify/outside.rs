@@ -8,13 +8,17 @@ use tempfile::TempDir;
 
 use super::{Finding, Leg, Subject, Verdict};
 use crate::cosim::external::{Simulator, lint, prove, run_bench};
-use crate::cosim::synthesis::{FAMILIES, synthesise};
+use crate::cosim::gates;
+use crate::cosim::synthesis::{FAMILIES, Family, synthesise};
 use crate::emit;
 use crate::flow::{BENCH_POINTS, BENCH_SEED};
 use crate::words::grouped;
 
 /// Results of a bench, and with full effort.
 const POINTS: [u64; 2] = [200, 20_000];
+
+/// Results of a bench around a netlist.
+const GATE_POINTS: u64 = 40;
 
 /// The emitted text.
 pub const LINT: Leg = Leg {
@@ -218,4 +222,51 @@ fn place(subject: &Subject<'_>) -> Result<TempDir> {
             .with_context(|| format!("cannot write `{}` for a tool", file.path))?;
     }
     Ok(place)
+}
+
+/// The synthesised netlists.
+pub const GATES: Leg = Leg {
+    id: "gates",
+    title: "Netlists at gate level",
+    question: "Do the netlists that synthesis makes for FPGAs, ROM contents and all, pass the bench of their source?",
+    tools: &["yosys", "iverilog", "vvp"],
+    steps: |_| simulated().count() as u64,
+    run: |subject, tools, progress| {
+        let (name, limit) = (&subject.unit.config.name, subject.effort.time_limit);
+        let vectors = subject.unit.vectors(GATE_POINTS, BENCH_SEED)?;
+        let clocks = vectors.inputs.len() as u64;
+        let sources = emit::sources(subject.unit.files(subject.path, vectors)?);
+        let rtl = subject.unit.verilog()?;
+        let names: Vec<String> = rtl.iter().map(|(name, _)| name.clone()).collect();
+        let families: Vec<_> = simulated().collect();
+        let faults: Vec<Option<String>> = families
+            .par_iter()
+            .map(|family| {
+                let netlist = gates::netlist(&tools[0], &rtl, name, family, limit)?;
+                let files = gates::bench(&tools[0], sources.clone(), &names, netlist, family)?;
+                let outcome = run_bench(Simulator::Icarus, &files, &format!("{name}_tb"), limit)?;
+                progress(1);
+                let fault = || format!("{}: {}", family.title, outcome.transcript.trim());
+                Ok((!outcome.passed).then(fault))
+            })
+            .collect::<Result<_>>()?;
+        let titles: Vec<&str> = families.iter().map(|family| family.title).collect();
+        Ok(Finding::new(
+            Verdict::Passed,
+            format!(
+                "{} results in {} clocks (seed {BENCH_SEED}) of the netlists for {}",
+                grouped(GATE_POINTS),
+                grouped(clocks),
+                titles.join(" and ")
+            ),
+            "Every output is right on every clock.".to_owned(),
+            faults.into_iter().flatten().collect(),
+        )
+        .open("Timing: the models of the cells have none. Families without models of all cells."))
+    },
+};
+
+/// The families whose netlists can be simulated.
+fn simulated() -> impl Iterator<Item = &'static Family> {
+    FAMILIES.iter().filter(|family| gates::is_simulated(family))
 }
