@@ -20,10 +20,12 @@ use anyhow::{Context, Result, anyhow, bail};
 
 mod bench;
 mod capture;
+mod difference;
 mod lint;
 
-pub use bench::{BenchOutcome, BuiltBench, Simulator, run_bench};
+pub use bench::{BenchOutcome, BuiltBench, Simulator, Waveform, run_bench};
 use capture::Capture;
+pub use difference::{BenchDifference, bench_waveform};
 pub use lint::lint;
 
 /// What asking for a version may take: the first run of a WebAssembly tool compiles it.
