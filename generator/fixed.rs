@@ -11,6 +11,9 @@ use std::str::FromStr;
 /// The widest net that Glint handles, in bits.
 pub const MAX_WIDTH: u32 = 64;
 
+/// How many places the point can be off the bits: the value of an ulp is an f64.
+pub const MAX_POINT: i32 = 1000;
+
 /// A fixed-point format, `uI.F` or `sI.F`.
 ///
 /// I and F may be negative as long as the width stays positive: `u-3.15` is a 12-bit fraction whose

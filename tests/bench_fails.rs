@@ -3,7 +3,7 @@
 mod common;
 
 use common::tools::LIMIT;
-use glint::cosim::external::{BenchOutcome, Simulator, run_bench};
+use glint::cosim::external::{BenchDifference, BenchOutcome, Simulator, bench_waveform, run_bench};
 use glint::dsl::{Designer, end, step, valid};
 use glint::emit::{EmitInputs, Vectors, emit, sources};
 use glint::fixed::{Format, Overflow, Rounding};
@@ -49,14 +49,47 @@ fn vectors() -> Vectors {
     }
 }
 
-fn run(simulator: Simulator, vectors: Vectors) -> BenchOutcome {
+fn files(vectors: Vectors) -> Vec<(String, String)> {
     let inputs = EmitInputs {
         vectors: Some(vectors),
         ..EmitInputs::default()
     };
-    let files = emit(&squarer(), &inputs).unwrap_or_else(|error| panic!("{error:?}"));
-    let files = sources(files);
-    run_bench(simulator, &files, "squarer_tb", LIMIT).unwrap_or_else(|error| panic!("{error:?}"))
+    sources(emit(&squarer(), &inputs).unwrap_or_else(|error| panic!("{error:?}")))
+}
+
+fn run(simulator: Simulator, vectors: Vectors) -> BenchOutcome {
+    run_bench(simulator, &files(vectors), "squarer_tb", LIMIT)
+        .unwrap_or_else(|error| panic!("{error:?}"))
+}
+
+#[test]
+fn the_clocks_before_a_difference_can_be_seen_in_both_simulators() {
+    let mut wrong = vectors();
+    wrong.expected[5][3] ^= 1;
+    // Clock 3 begins at 30 units of time, clock 5 ends at 60; a unit is 1 s in Icarus, 1 ns in Verilator.
+    for (simulator, unit) in [(Simulator::Icarus, 1), (Simulator::Verilator, 1000)] {
+        let transcript = run(simulator, wrong.clone()).transcript;
+        let found = BenchDifference::first(&transcript).expect("a difference");
+        assert_eq!((found.clock, found.word.as_str()), (5, "idle 100%"));
+        let values = (
+            found.signal.as_str(),
+            found.simulated.as_str(),
+            found.expected.as_str(),
+        );
+        assert_eq!(values, ("y_out", "9", "8"));
+        let files = files(wrong.clone());
+        let waveform = bench_waveform(simulator, &files, "squarer_tb", (3, 5), LIMIT)
+            .unwrap_or_else(|error| panic!("{error:?}"));
+        let text = String::from_utf8(waveform).expect("a VCD is text");
+        assert!(text.contains(" y_out "), "{simulator}:\n{text}");
+        let times = text
+            .lines()
+            .filter_map(|line| line.strip_prefix('#')?.parse::<u64>().ok());
+        let times: Vec<u64> = times.collect();
+        let inside = |time: &u64| (30 * unit..=60 * unit).contains(time);
+        let all = times.len() > 2 && times.iter().all(inside);
+        assert!(all, "{simulator}: {times:?}");
+    }
 }
 
 #[test]

@@ -458,3 +458,48 @@ fn a_jump_around_words() {
         ["word `first` goes to `nowhere`, but no word has that name"]
     );
 }
+
+#[test]
+fn a_name_of_the_sequencer() {
+    // The second of the two is where the program is, which is what makes it.
+    let found = mistakes(|d| {
+        d.operand("word_address", BYTE);
+    });
+    assert_eq!(found, ["the name `word_address` is used twice"]);
+}
+
+#[test]
+fn formats_that_no_net_can_have() {
+    let found = mistakes(|d| {
+        d.constant("nothing", 0.0, Format::unsigned(-3, 1));
+        d.raw_constant("huge", 0, Format::unsigned(i32::MAX, 1));
+        d.register("far", Format::unsigned(2001, -2000));
+        let a = d.operand("a", BYTE).q();
+        let _ = a.bits(u32::MAX, Format::BIT);
+        let _ = a.with_fraction(500);
+        let _ = a.shift_left(i32::MIN);
+        d.narrow(
+            "none",
+            a,
+            Format::signed(0, -1),
+            Rounding::Truncate,
+            Overflow::Saturate,
+        );
+    });
+    let expected = [
+        "`nothing` would be -2 bits wide (u-3.1); a net has 1 to 64",
+        "`huge` would be 2147483648 bits wide (u2147483647.1); a net has 1 to 64",
+        "`far` would have -2000 fraction bits (u2001.-2000); -1000 to 1000 are possible",
+        "bits 4294967295 to 4294967295 of `a_reg`, which has 8",
+        "`a_reg_scaled` would be 500 bits wide (u0.500); a net has 1 to 64",
+    ];
+    assert_eq!(found[..expected.len()], expected);
+    assert!(
+        found[expected.len()].starts_with("`a_reg_shifted` would"),
+        "{found:?}"
+    );
+    assert!(
+        found[expected.len() + 1].starts_with("`none` would be 0 bits wide"),
+        "{found:?}"
+    );
+}

@@ -83,7 +83,8 @@ Examples:
   glint cosim my_core.toml --points 1000000 --seed 7      more points, another stimulus
   glint cosim my_core.toml --simulator icarus --json      the emitted Verilog, result for scripts
   glint cosim my_core.toml --points 20 --vcd wave.vcd     a waveform for a viewer
-  glint cosim my_core.toml --exhaustive                   the accuracy contract, every control operand")]
+  glint cosim my_core.toml --exhaustive                   the accuracy contract, every control operand
+  glint cosim configs/reduced/rough.toml --exhaustive     and every combination of operands, every clock")]
     Cosim {
         #[command(flatten)]
         configs: Configs,
@@ -96,7 +97,8 @@ Examples:
         /// What simulates the hardware
         #[arg(long, value_enum, default_value_t = Simulator::RustHdl)]
         simulator: Simulator,
-        /// Prove the accuracy contract instead: f over all control operands, every word f with every colour
+        /// Prove the accuracy contract instead: f over all control operands, every word f with every colour;
+        /// and, if the operands have at most 26 bits, every register on every clock for every combination
         #[arg(long, conflicts_with_all = ["points", "seed", "simulator", "vcd"])]
         exhaustive: bool,
         /// With --exhaustive: keep what is done in FILE, and go on from there

@@ -20,11 +20,13 @@ use anyhow::{Context, Result, anyhow, bail};
 
 mod bench;
 mod capture;
+mod difference;
 mod lint;
 mod proof;
 
-pub use bench::{BenchOutcome, BuiltBench, Simulator, run_bench};
+pub use bench::{BenchOutcome, BuiltBench, Simulator, Waveform, run_bench};
 use capture::Capture;
+pub use difference::{BenchDifference, bench_waveform};
 pub use lint::lint;
 pub use proof::prove;
 

@@ -73,6 +73,14 @@ fn check(config: &Config, problems: &mut Problems) {
             format!("at most {fraction}, or a larger angle.fraction"),
         );
     }
+    let product = integer("angle.multiplied") + integer("root.fraction");
+    if integer("table.address") > product {
+        problems.push(
+            "table.address",
+            format!("the angle times the root has {product} fraction bits"),
+            format!("at most {product}, or a larger angle.multiplied or root.fraction"),
+        );
+    }
     common::check_rom_size(
         "table.address",
         "ROM 12",

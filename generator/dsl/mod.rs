@@ -53,7 +53,7 @@ pub use signal::{Mux, Signal};
 pub use crate::netlist::About;
 
 use crate::check::{self, Diagnostic, Diagnostics};
-use crate::fixed::{Format, MAX_WIDTH};
+use crate::fixed::{Format, MAX_POINT, MAX_WIDTH};
 use crate::netlist::{
     Control, Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, Port,
     Register as NetRegister, RegisterKind, Role, Rom as NetRom, RomId, Unit,
@@ -158,6 +158,7 @@ impl Designer {
     /// A constant of the given format; `value` must be exactly representable.
     #[track_caller]
     pub fn constant(&self, name: &str, value: f64, format: Format) -> Signal<'_> {
+        let format = self.sound(name, format);
         let raw = format.quantise(value);
         if format.to_f64(raw) != value {
             self.error(format!(
@@ -171,6 +172,7 @@ impl Designer {
     /// The constant `raw`, an integer, in the given format.
     #[track_caller]
     pub fn raw_constant(&self, name: &str, raw: i128, format: Format) -> Signal<'_> {
+        let format = self.sound(name, format);
         if !format.holds(raw) {
             self.error(format!("constant `{name}`: {raw} does not fit {format}"));
         }
@@ -219,6 +221,7 @@ impl Designer {
         words: &[i128],
         synchronous: bool,
     ) -> Rom<'_> {
+        let format = self.sound(&format!("{name}_word"), format);
         let (low, high) = address.range();
         if address.format().frac != 0 || low < 0 || high >= words.len() as i128 {
             self.error(format!(
@@ -347,7 +350,8 @@ impl Designer {
     pub fn finish(self) -> Result<Design, Diagnostics> {
         let program = self.inner.borrow_mut().program.take();
         if let Some(program) = program {
-            program::assemble(&self, &program);
+            let place = program.location;
+            self.placed(place, || program::assemble(&self, &program));
         } else {
             let place = self.net(self.start).location;
             self.report(Diagnostic::new(
@@ -389,6 +393,7 @@ impl Designer {
     /// A net that the author named.
     #[track_caller]
     pub(crate) fn add_named(&self, name: &str, format: Format, driver: Driver) -> NetId {
+        let format = self.sound(name, format);
         self.add_net(name, format, format.range(), driver, true)
     }
 
@@ -418,6 +423,42 @@ impl Designer {
         self.add_net(&name, format, range, driver, false)
     }
 
+    /// What `act` adds stands at `place`, wherever in the builder it is made: its names may be at fault.
+    pub(crate) fn placed<T>(&self, place: Place, act: impl FnOnce() -> T) -> T {
+        let own = self.with(|inner| (inner.design.nets.len(), inner.design.roms.len()));
+        let made = act();
+        self.with(|Inner { design, .. }| {
+            let nets = design.nets[own.0..].iter_mut();
+            let roms = design.roms[own.1..].iter_mut();
+            let places = nets.map(|net| &mut net.location);
+            for location in places.chain(roms.map(|rom| &mut rom.location)) {
+                *location = place;
+            }
+        });
+        made
+    }
+
+    /// The format, if a net can have it. If not that is an error, and one bit is what to go on with, so that
+    /// the rest of the description is checked too.
+    #[track_caller]
+    pub(crate) fn sound(&self, name: &str, format: Format) -> Format {
+        let width = i64::from(format.int) + i64::from(format.frac) + i64::from(format.signed);
+        let point = format.frac.clamp(-MAX_POINT, MAX_POINT);
+        if !(1..=i64::from(MAX_WIDTH)).contains(&width) {
+            self.error(format!(
+                "`{name}` would be {width} bits wide ({format}); a net has 1 to {MAX_WIDTH}"
+            ));
+        } else if point != format.frac {
+            self.error(format!(
+                "`{name}` would have {} fraction bits ({format}); -{MAX_POINT} to {MAX_POINT} are possible",
+                format.frac
+            ));
+        } else {
+            return format;
+        }
+        Format::unsigned(1 - point, point)
+    }
+
     #[track_caller]
     pub(crate) fn add_net(
         &self,
@@ -427,17 +468,9 @@ impl Designer {
         driver: Driver,
         named: bool,
     ) -> NetId {
-        let width = i64::from(format.int) + i64::from(format.frac) + i64::from(format.signed);
-        let mut format = format;
-        let mut range = range;
-        if !(1..=i64::from(MAX_WIDTH)).contains(&width) {
-            self.error(format!(
-                "`{name}` would be {width} bits wide ({format}); a net has 1 to {MAX_WIDTH}"
-            ));
-            // Go on with one bit, so that the rest of the description is checked too.
-            format = Format::unsigned(1 - format.frac, format.frac);
-            range = (0, 1);
-        }
+        let sound = self.sound(name, format);
+        let range = if sound == format { range } else { (0, 1) };
+        let format = sound;
         // Inside the closure the caller would be this file.
         let location = Location::caller();
         self.with(|inner| {

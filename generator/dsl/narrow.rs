@@ -1,5 +1,7 @@
 //! Narrowing: where bits are given up, with stated rounding and overflow.
 
+use std::panic::Location;
+
 use super::{Designer, Signal};
 use crate::fixed::{Format, Overflow, Rounding};
 use crate::netlist::{Driver, NetId, Op};
@@ -19,6 +21,7 @@ impl Designer {
         rounding: Rounding,
         overflow: Overflow,
     ) -> Signal<'d> {
+        let format = self.sound(name, format);
         let rounded = self.rounded(name, a, format.frac, rounding);
         let (low, high) = rounded.range();
         let fits = format.holds(low) && format.holds(high);
@@ -26,7 +29,7 @@ impl Designer {
             (true, _) => (Op::Relabel(self.resized(rounded, format)), (low, high)),
             (false, Overflow::Wrap) => (self.low_bits(rounded, format), format.range()),
             (false, Overflow::Saturate) => (
-                self.saturated(name, rounded, format),
+                self.placed(Location::caller(), || self.saturated(name, rounded, format)),
                 (
                     low.clamp(format.min_raw(), format.max_raw()),
                     high.clamp(format.min_raw(), format.max_raw()),

@@ -18,6 +18,7 @@ impl Designer {
     /// larger value loads the limit. Both must be representable.
     #[track_caller]
     pub fn operand_clamped(&self, name: &str, format: Format, low: f64, high: f64) -> Operand<'_> {
+        let format = self.sound(name, format);
         self.operand_port(name, format, |port| {
             let (least, most) = (format.quantise(low), format.quantise(high));
             let (from, to) = format.range();
@@ -114,6 +115,7 @@ impl Designer {
     pub fn register(&self, name: &str, format: Format) -> Register<'_> {
         let field = self.add_field(&format!("{name}_load"), 1, FieldKind::Enable);
         let enable = self.field_net(field).id();
+        let format = self.sound(name, format);
         let q = self.add_register(name, format, format.range(), RegisterKind::Architectural);
         self.with(|inner| {
             if let Some(register) = inner.design.registers.last_mut() {

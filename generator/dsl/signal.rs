@@ -70,8 +70,8 @@ impl<'d> Signal<'d> {
     #[track_caller]
     pub fn shift_right(self, places: i32) -> Self {
         let mut format = self.format();
-        format.int -= places;
-        format.frac += places;
+        format.int = format.int.saturating_sub(places);
+        format.frac = format.frac.saturating_add(places);
         self.relabelled(format)
     }
 
@@ -79,7 +79,7 @@ impl<'d> Signal<'d> {
     #[must_use]
     #[track_caller]
     pub fn shift_left(self, places: i32) -> Self {
-        self.shift_right(-places)
+        self.shift_right(places.saturating_neg())
     }
 
     /// The same value with `frac` fraction bits: zeros are appended. Fewer than it has is an error.
@@ -87,7 +87,7 @@ impl<'d> Signal<'d> {
     #[track_caller]
     pub fn with_fraction(self, frac: i32) -> Self {
         let format = self.format();
-        let places = frac - format.frac;
+        let places = frac.saturating_sub(format.frac);
         if places == 0 {
             return self;
         }
@@ -98,13 +98,19 @@ impl<'d> Signal<'d> {
             ));
             return self;
         }
+        let name = format!("{}_scaled", self.name());
+        let scaled = Format { frac, ..format };
+        let sound = self.designer.sound(&name, scaled);
+        if sound != scaled {
+            return self.designer.raw_constant("zeros", 0, sound);
+        }
         let zeros = self
             .designer
             .raw_constant("zeros", 0, Format::unsigned(places, 0));
         let (low, high) = self.range();
         self.wiring(
             "scaled",
-            Format { frac, ..format },
+            scaled,
             (low << places, high << places),
             Op::Concat(vec![self.id, zeros.id]),
         )
@@ -115,10 +121,12 @@ impl<'d> Signal<'d> {
     #[track_caller]
     pub fn bits(self, low: u32, format: Format) -> Self {
         let have = self.format().width();
-        if low + format.width() > have {
+        let name = format!("{}_bits", self.name());
+        let format = self.designer.sound(&name, format);
+        if low.saturating_add(format.width()) > have {
             self.designer.error(format!(
                 "bits {low} to {} of `{}`, which has {have}",
-                low + format.width() - 1,
+                u64::from(low) + u64::from(format.width()) - 1,
                 self.name()
             ));
             return self.designer.raw_constant("zeros", 0, format);
@@ -147,6 +155,8 @@ impl<'d> Signal<'d> {
     #[track_caller]
     pub fn above(self, low: Signal<'d>, format: Format) -> Self {
         let width = self.format().width() + low.format().width();
+        let name = format!("{}_above", self.name());
+        let format = self.designer.sound(&name, format);
         if width != format.width() {
             self.designer.error(format!(
                 "`{}` above `{}` is {width} bits, which is not {format}",
@@ -361,6 +371,7 @@ impl Designer {
     #[track_caller]
     pub fn join<'d>(&'d self, name: &str, parts: &[Signal<'d>], format: Format) -> Signal<'d> {
         let width: u32 = parts.iter().map(|part| part.format().width()).sum();
+        let format = self.sound(name, format);
         if width != format.width() {
             self.error(format!(
                 "`{name}` joins {width} bits to a word of {} ({format})",
@@ -553,9 +564,11 @@ fn aligned<'d>(a: Signal<'d>, b: Signal<'d>) -> (Signal<'d>, Signal<'d>) {
 
 /// The interval of the products of two intervals.
 pub(crate) fn product_range(a: (i128, i128), b: (i128, i128)) -> (i128, i128) {
-    let corners = [a.0 * b.0, a.0 * b.1, a.1 * b.0, a.1 * b.1];
+    // What is not exact here is a product of more than 64 bits, which no net can have.
+    let corners = [(a.0, b.0), (a.0, b.1), (a.1, b.0), (a.1, b.1)];
     corners
         .into_iter()
+        .map(|(a, b)| a.saturating_mul(b))
         .fold((i128::MAX, i128::MIN), |(low, high), corner| {
             (low.min(corner), high.max(corner))
         })

@@ -28,6 +28,7 @@ mod seal;
 mod text;
 mod top;
 mod view;
+mod window;
 
 use anyhow::{Result, ensure};
 use askama::Template;
@@ -46,6 +47,7 @@ pub use instance::instance;
 pub use page::page;
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE, points_bench};
 pub use seal::{Seal, is_sealed, sealed, sealed_json};
+pub use window::{WINDOW_FILE, window};
 
 /// A file to be written.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -225,6 +225,54 @@ fn a_simulator_that_fails() {
     assert!(wrong.out.contains("FAILS\nFAIL: red_out"), "{wrong:?}");
 }
 
+/// Verilog in which red is multiplied as green should be, as far as the simulator knows.
+#[cfg(unix)]
+#[test]
+fn what_differs_in_verilog_is_told_with_its_place() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    fs::create_dir(place.at("tools")).unwrap();
+    let spoil = "/bin/sed -i 's/accumulator . red_reg;/accumulator * green_reg;/' core_datapath.v";
+    place.script(
+        "tools/iverilog",
+        &format!("{spoil}\nexec /usr/bin/env PATH=\"$SOUND\" iverilog \"$@\""),
+    );
+    place.script("tools/vvp", "exec /usr/bin/env PATH=\"$SOUND\" vvp \"$@\"");
+    let run = |json: &[&str]| {
+        let mut command = place.command();
+        command.env("SOUND", std::env::var_os("PATH").unwrap());
+        command.env("PATH", place.at("tools"));
+        command.args([
+            "cosim",
+            "core.toml",
+            "--points",
+            "9",
+            "--simulator",
+            "icarus",
+        ]);
+        crate::place::Run::of(command.args(json).output())
+    };
+    let value = run(&["--json"]).json();
+    let one = &value["configurations"][0]["mismatch"];
+    assert_eq!(
+        (&one["signal"], &one["seed"]),
+        (&"red_out".into(), &1.into()),
+        "{value}"
+    );
+    assert_eq!(one["vcd"], "core_mismatch.vcd");
+    assert_ne!(one["golden"], one["simulated"]);
+    assert!(place.read("core_mismatch.vcd").contains("red_out"));
+    let (clock, word) = (&one["clock"], one["word"].as_str().unwrap());
+    let told = format!("FAILS: seed 1, clock {clock}, word `{word}`: `red_out` is ");
+    let text = run(&[]);
+    assert_eq!(text.code, 1, "{text:?}");
+    assert!(text.out.contains(&told), "{told}\n{}", text.out);
+    let again = one["reproduce"].as_str().unwrap();
+    assert_eq!(
+        again,
+        "glint cosim core.toml --simulator icarus --seed 1 --points 9"
+    );
+}
+
 #[cfg(unix)]
 #[test]
 fn a_simulator_that_hangs() {
@@ -258,6 +306,15 @@ fn exhaustive() {
         (&1799.into(), &1024.into())
     );
     assert_eq!(one["not_covered"], "");
+    // 9 bits of cosine, 3 of exponent, 2 of each colour.
+    assert_eq!(
+        (
+            &one["clocks"]["operand_bits"],
+            &one["clocks"]["combinations"]
+        ),
+        (&18.into(), &262_144.into())
+    );
+    assert_eq!(one["clocks"]["mismatch"], Value::Null);
     assert!(one["together"].as_f64() <= one["bound"].as_f64(), "{one}");
     let text = place.done(["cosim", "core.toml", "--exhaustive"]);
     assert!(
@@ -265,6 +322,24 @@ fn exhaustive() {
         "{text}"
     );
     assert!(text.contains(": holds\n"), "{text}");
+    assert!(
+        text.contains("every register and output at every clock for 262 144 combinations of 18"),
+        "{text}"
+    );
+    assert!(
+        text.contains("  less than a second on ") || text.contains("  about "),
+        "{text}"
+    );
+    // Of a wide configuration it says that it does not cover them.
+    place.write(
+        "wide.toml",
+        "device = \"cosine-power\"\npower = 2\ndomain.exponent_max = 2\n",
+    );
+    let text = place.done(["cosim", "wide.toml", "--exhaustive"]);
+    assert!(
+        text.contains("not covered: registers at every clock: the operands have 55 bits"),
+        "{text}"
+    );
     let run = place.glint(["cosim", "core.toml", "--exhaustive", "--points", "5"]);
     assert_eq!(run.code, 2, "{run:?}");
     assert!(run.err.contains("--exhaustive"), "{run:?}");
@@ -273,7 +348,17 @@ fn exhaustive() {
 /// A job that is killed, resumed, and divided reports what an uninterrupted one does.
 #[test]
 fn exhaustive_in_parts() {
-    let text = "device = \"cosine-power\"\npower = 2\ndomain.exponent_max = 100\n";
+    // The operands of the one are too many for all combinations, those of the other few.
+    let wide = "device = \"cosine-power\"\npower = 2\ndomain.exponent_max = 100\n";
+    for text in [
+        wide,
+        include_str!("../../configs/reduced/cosine_power.toml"),
+    ] {
+        in_parts(text);
+    }
+}
+
+fn in_parts(text: &str) {
     let place = Place::with("core.toml", text);
     let whole = place.done(["cosim", "core.toml", "--exhaustive", "--json"]);
     let proof = ["cosim", "core.toml", "--exhaustive", "--json", "--resume"];

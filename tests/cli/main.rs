@@ -1,10 +1,13 @@
 //! The command line as a user meets it: the built program, in a directory of its own; messages, exit
 //! codes, and what is in the directory afterwards.
 
+#[path = "../common/mod.rs"]
+mod common;
 mod compare;
 mod configurations;
 mod cosim;
 mod describe;
+mod fuzz;
 mod generate;
 mod output;
 mod place;

@@ -4,3 +4,15 @@ pub mod bench;
 pub mod netlist;
 pub mod tools;
 pub mod units;
+
+/// Cases of a fuzz test: so many by default, or what `GLINT_FUZZ_CASES` says.
+///
+/// # Panics
+/// It does not say a number.
+#[allow(dead_code)]
+pub fn cases(default: u32) -> u32 {
+    match std::env::var("GLINT_FUZZ_CASES") {
+        Ok(text) => text.parse().expect("GLINT_FUZZ_CASES is a number"),
+        Err(_) => default,
+    }
+}

@@ -1,5 +1,7 @@
 //! `cosim`.
 
+mod benches;
+
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -11,19 +13,13 @@ use super::mismatch::{self, Reproducer};
 use super::{Loaded, load};
 use crate::cli::failure::Usage;
 use crate::cli::{Output, Simulator, progress, tables};
-use crate::cosim::external::{self, BenchOutcome};
+use crate::cosim::external;
 use crate::cosim::{Outcome, Worst};
-use crate::emit;
 use crate::flow::TEST_POINTS;
 use crate::golden::Bound;
 use crate::registry::Registry;
 use crate::words;
-
-/// Points when an external simulator runs.
-const EXTERNAL_POINTS: u64 = 200;
-
-/// The most points for an external simulator, whose vectors are made in memory.
-const EXTERNAL_LIMIT: u64 = 1_000_000;
+use benches::benches;
 
 /// What `cosim` was asked for.
 pub struct CosimRequest {
@@ -58,71 +54,7 @@ pub fn cosim(
         Simulator::Icarus => external::Simulator::Icarus,
         Simulator::Verilator => external::Simulator::Verilator,
     };
-    if request.vcd.is_some() {
-        bail!(Usage("--vcd is for the built-in simulator".to_owned()));
-    }
-    let points = request.points.unwrap_or(EXTERNAL_POINTS);
-    if points > EXTERNAL_LIMIT {
-        bail!(Usage(format!(
-            "--points {points}: an external simulator takes at most {EXTERNAL_LIMIT}"
-        )));
-    }
-    let bar = progress::bar(output, loaded.len() as u64, "benches run");
-    let runs: Vec<(usize, BenchOutcome)> = loaded
-        .par_iter()
-        .map(|one| {
-            let run = bench(one, which, points, request);
-            bar.inc(1);
-            run.with_context(|| format!("`{}`", one.path))
-        })
-        .collect::<Result<_>>()?;
-    bar.finish_and_clear();
-    let holds = runs.iter().all(|(_, run)| run.passed);
-    if output.json {
-        let list: Vec<Value> = loaded
-            .iter()
-            .zip(&runs)
-            .map(|(one, (clocks, run))| {
-                json!({
-                    "config": one.path,
-                    "simulator": format!("{:?}", request.simulator).to_lowercase(),
-                    "points": points,
-                    "clocks": clocks,
-                    "passed": run.passed,
-                    "transcript": run.transcript,
-                })
-            })
-            .collect();
-        tables::print_json(&json!({ "ok": holds, "configurations": list }));
-        return Ok(holds);
-    }
-    for (one, (clocks, run)) in loaded.iter().zip(&runs) {
-        let verdict = if run.passed { "holds" } else { "FAILS" };
-        tables::print_line(&format!(
-            "{}: {points} points, {clocks} clocks: {verdict}",
-            one.path
-        ));
-        if !run.passed {
-            tables::print_line(&run.transcript);
-        }
-    }
-    Ok(holds)
-}
-
-/// The emitted bench in an external simulator. The expected values are those on which golden model
-/// and built-in simulator agree.
-fn bench(
-    one: &Loaded,
-    which: external::Simulator,
-    points: u64,
-    request: &CosimRequest,
-) -> Result<(usize, BenchOutcome)> {
-    let vectors = one.unit.vectors(points, request.seed)?;
-    let clocks = vectors.inputs.len();
-    let files = emit::sources(one.unit.files(&one.path, vectors)?);
-    let top = format!("{}_tb", one.unit.config.name);
-    let run = external::run_bench(which, &files, &top, request.time_limit)?;
-    Ok((clocks, run))
+    benches(output, &loaded, request, which)
 }
 
 fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result<bool> {

@@ -99,13 +99,17 @@ pub fn as_json(mismatch: &Mismatch) -> Value {
 
 /// The file for the waveform of a difference, and the clock at which it begins.
 fn window(one: &Loaded, mismatch: &Mismatch) -> (PathBuf, u64) {
-    let path = PathBuf::from(format!("{}_mismatch.vcd", one.unit.config.name));
-    (path, first_clock(mismatch))
+    (waveform_of(one), first_clock(mismatch.clock))
 }
 
-/// The clock at which the waveform of a difference begins.
-pub fn first_clock(mismatch: &Mismatch) -> u64 {
-    mismatch.clock.saturating_sub(WINDOW)
+/// The file for the waveform of a difference, in the working directory.
+pub fn waveform_of(one: &Loaded) -> PathBuf {
+    PathBuf::from(format!("{}_mismatch.vcd", one.unit.config.name))
+}
+
+/// The clock at which the waveform of a difference begins that ends at `clock`.
+pub fn first_clock(clock: u64) -> u64 {
+    clock.saturating_sub(WINDOW)
 }
 
 /// A run with a waveform from clock `from` on: written beside its place and moved there when it is whole.

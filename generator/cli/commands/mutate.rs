@@ -115,7 +115,7 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
         let model = (one.unit.device.model)(&one.unit.config);
         let lockstep = Lockstep::new(&mutant, model, one.unit.contract.as_ref(), mismatch.seed)?;
         let path = PathBuf::from(format!("{}_mutant.vcd", one.unit.config.name));
-        let from = first_clock(mismatch);
+        let from = first_clock(mismatch.clock);
         traced(&lockstep, &path, u64::MAX, from)?;
         waveform = Some((path, from, mismatch.clock));
     }

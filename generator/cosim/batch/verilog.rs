@@ -7,7 +7,7 @@ use std::time::Duration;
 use anyhow::{Context, Result, ensure};
 
 use super::{Engine, Points};
-use crate::cosim::external::{BuiltBench, Simulator};
+use crate::cosim::external::{BuiltBench, Simulator, Waveform};
 use crate::emit::{POINTS_FILE, RESULTS_FILE, points_bench};
 use crate::fixed::Format;
 use crate::golden::Contract;
@@ -62,7 +62,7 @@ impl Verilog {
             .collect::<Result<_>>()?;
         files.push((format!("{}.v", bench.name), bench.text));
         Ok(Self {
-            bench: BuiltBench::build(simulator, &files, &bench.name, limit)?,
+            bench: BuiltBench::build(simulator, &files, &bench.name, Waveform::None, limit)?,
             limit,
             operands,
             results,

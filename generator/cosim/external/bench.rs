@@ -21,6 +21,15 @@ pub enum Simulator {
     Verilator,
 }
 
+/// Whether a bench writes a waveform, which Verilator wants to know when it builds it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Waveform {
+    /// It writes none.
+    None,
+    /// It calls `$dumpvars`.
+    Written,
+}
+
 /// What came of a bench.
 #[derive(Clone, Debug)]
 pub struct BenchOutcome {
@@ -70,7 +79,7 @@ pub(super) fn run_bench_in<N: AsRef<str>, C: AsRef<[u8]>>(
     limit: Duration,
 ) -> Result<BenchOutcome> {
     let deadline = Instant::now() + limit;
-    let bench = BuiltBench::build_in(search, simulator, files, top, limit)?;
+    let bench = BuiltBench::build_in(search, simulator, files, top, Waveform::None, limit)?;
     bench.run(deadline.saturating_duration_since(Instant::now()))
 }
 
@@ -95,10 +104,11 @@ impl BuiltBench {
         simulator: Simulator,
         files: &[(N, C)],
         top: &str,
+        waveform: Waveform,
         limit: Duration,
     ) -> Result<Self> {
         let search = env::var_os("PATH").unwrap_or_default();
-        Self::build_in(&search, simulator, files, top, limit)
+        Self::build_in(&search, simulator, files, top, waveform, limit)
     }
 
     fn build_in<N: AsRef<str>, C: AsRef<[u8]>>(
@@ -106,6 +116,7 @@ impl BuiltBench {
         simulator: Simulator,
         files: &[(N, C)],
         top: &str,
+        waveform: Waveform,
         limit: Duration,
     ) -> Result<Self> {
         // Missing tools are reported before anything is written.
@@ -141,6 +152,9 @@ impl BuiltBench {
                 "bench",
             ],
         };
+        if (simulator, waveform) == (Simulator::Verilator, Waveform::Written) {
+            arguments.push("--trace");
+        }
         arguments.extend(sources);
         let build = compiler
             .run_to_success(arguments, directory, limit)

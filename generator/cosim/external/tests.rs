@@ -279,3 +279,33 @@ fn the_version_is_the_first_line() {
     assert_eq!(version("iverilog").unwrap(), "Icarus Verilog version 11.0");
     assert!(message(version("silent")).contains("printed nothing"));
 }
+
+#[test]
+fn the_first_difference_is_read() {
+    let line = "clock 12, word 3 (say: 100% (result)): red_out is 1x, expected 20";
+    let transcript =
+        format!("VCD info\n{line}\nclock 13, no word: busy is 0, expected 1\nFAIL x\n");
+    let found = BenchDifference::first(&transcript).unwrap();
+    assert_eq!(
+        (found.clock, found.word.as_str()),
+        (12, "say: 100% (result)")
+    );
+    assert_eq!(
+        (
+            found.signal.as_str(),
+            found.simulated.as_str(),
+            found.expected.as_str()
+        ),
+        ("red_out", "1x", "20")
+    );
+    let lost = BenchDifference::first("clock 13, no word: busy is 0, expected 1").unwrap();
+    assert_eq!((lost.word.as_str(), lost.signal.as_str()), ("", "busy"));
+    for text in [
+        "",
+        "PASS x: 3 clocks, no difference",
+        "clock , word",
+        "clock 1, a: b",
+    ] {
+        assert_eq!(BenchDifference::first(text), None, "{text}");
+    }
+}

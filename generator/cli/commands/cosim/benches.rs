@@ -1,0 +1,177 @@
+//! `cosim --simulator`: the emitted bench in an external simulator.
+
+use anyhow::{Context, Result, bail};
+use rayon::prelude::*;
+use serde_json::{Value, json};
+
+use super::CosimRequest;
+use crate::cli::commands::Loaded;
+use crate::cli::commands::mismatch::{first_clock, waveform_of};
+use crate::cli::failure::{self, Usage};
+use crate::cli::{Output, progress, staged, tables};
+use crate::cosim::external::{BenchDifference, BenchOutcome, Simulator, bench_waveform, run_bench};
+use crate::emit;
+
+/// Points when an external simulator runs.
+const POINTS: u64 = 200;
+
+/// The most points for an external simulator, whose vectors are made in memory.
+const MOST_POINTS: u64 = 1_000_000;
+
+/// What came of a bench.
+struct Run {
+    clocks: usize,
+    outcome: BenchOutcome,
+    mismatch: Option<Mismatch>,
+}
+
+/// The first difference of a bench, with the means to see it again.
+struct Mismatch {
+    difference: BenchDifference,
+    /// The waveform, if it could be written.
+    vcd: Option<String>,
+    /// The first clock in it.
+    from: u64,
+    command: String,
+}
+
+/// Runs the benches of configurations.
+///
+/// # Errors
+/// Wrong usage; a simulator that is missing, refuses a bench, or does not end in time.
+pub fn benches(
+    output: Output,
+    loaded: &[Loaded],
+    request: &CosimRequest,
+    which: Simulator,
+) -> Result<bool> {
+    if request.vcd.is_some() {
+        bail!(Usage("--vcd is for the built-in simulator".to_owned()));
+    }
+    let points = request.points.unwrap_or(POINTS);
+    if points > MOST_POINTS {
+        bail!(Usage(format!(
+            "--points {points}: an external simulator takes at most {MOST_POINTS}"
+        )));
+    }
+    let bar = progress::bar(output, loaded.len() as u64, "benches run");
+    let runs: Vec<Run> = loaded
+        .par_iter()
+        .map(|one| {
+            let run = bench(one, which, points, request);
+            bar.inc(1);
+            run.with_context(|| format!("`{}`", one.path))
+        })
+        .collect::<Result<_>>()?;
+    bar.finish_and_clear();
+    let holds = runs.iter().all(|run| run.outcome.passed);
+    if output.json {
+        let list: Vec<Value> = loaded
+            .iter()
+            .zip(&runs)
+            .map(|(one, run)| as_json(one, run, points, request))
+            .collect();
+        tables::print_json(&json!({ "ok": holds, "configurations": list }));
+        return Ok(holds);
+    }
+    for (one, run) in loaded.iter().zip(&runs) {
+        print(one, run, points, request.seed, which);
+    }
+    Ok(holds)
+}
+
+/// The emitted bench in an external simulator. The expected values are those on which golden model
+/// and built-in simulator agree.
+fn bench(one: &Loaded, which: Simulator, points: u64, request: &CosimRequest) -> Result<Run> {
+    let vectors = one.unit.vectors(points, request.seed)?;
+    let clocks = vectors.inputs.len();
+    let files = emit::sources(one.unit.files(&one.path, vectors)?);
+    let top = format!("{}_tb", one.unit.config.name);
+    let outcome = run_bench(which, &files, &top, request.time_limit)?;
+    let mismatch = BenchDifference::first(&outcome.transcript).map(|difference| {
+        let from = first_clock(difference.clock);
+        let clocks = (from, difference.clock);
+        let path = waveform_of(one);
+        let written = bench_waveform(which, &files, &top, clocks, request.time_limit)
+            .and_then(|waveform| staged::replace(&path, &waveform));
+        if let Err(error) = &written {
+            // What differs is worth more than its waveform.
+            failure::warn(&format!("{}: no waveform: {error:#}", one.path));
+        }
+        Mismatch {
+            difference,
+            vcd: written.is_ok().then(|| path.display().to_string()),
+            from,
+            command: format!(
+                "glint cosim {} --simulator {} --seed {} --points {points}",
+                one.path,
+                name(request),
+                request.seed
+            ),
+        }
+    });
+    Ok(Run {
+        clocks,
+        outcome,
+        mismatch,
+    })
+}
+
+/// The simulator as the command line names it.
+fn name(request: &CosimRequest) -> String {
+    format!("{:?}", request.simulator).to_lowercase()
+}
+
+fn print(one: &Loaded, run: &Run, points: u64, seed: u64, which: Simulator) {
+    let passed = run.outcome.passed;
+    let verdict = if passed { "holds" } else { "FAILS" };
+    tables::print_line(&format!(
+        "{}: {points} points, {} clocks: {verdict}",
+        one.path, run.clocks
+    ));
+    if !passed {
+        tables::print_line(&run.outcome.transcript);
+    }
+    let Some(mismatch) = &run.mismatch else {
+        return;
+    };
+    let BenchDifference {
+        clock,
+        word,
+        signal,
+        simulated,
+        expected,
+    } = &mismatch.difference;
+    tables::print_line(&format!(
+        "  FAILS: seed {seed}, clock {clock}, word `{word}`: `{signal}` is {simulated} in {which} and {expected} in the golden model"
+    ));
+    let window = mismatch.vcd.as_ref().map_or_else(String::new, |vcd| {
+        format!("`{vcd}` shows clocks {} to {clock}; ", mismatch.from)
+    });
+    tables::print_line(&format!("  {window}again: {}", mismatch.command));
+}
+
+fn as_json(one: &Loaded, run: &Run, points: u64, request: &CosimRequest) -> Value {
+    let mismatch = run.mismatch.as_ref().map(|mismatch| {
+        let difference = &mismatch.difference;
+        json!({
+            "seed": request.seed,
+            "clock": difference.clock,
+            "word": difference.word,
+            "signal": difference.signal,
+            "golden": format!("0x{}", difference.expected),
+            "simulated": format!("0x{}", difference.simulated),
+            "vcd": mismatch.vcd,
+            "reproduce": mismatch.command,
+        })
+    });
+    json!({
+        "config": one.path,
+        "simulator": name(request),
+        "points": points,
+        "clocks": run.clocks,
+        "passed": run.outcome.passed,
+        "transcript": run.outcome.transcript,
+        "mismatch": mismatch,
+    })
+}
