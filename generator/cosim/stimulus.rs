@@ -74,7 +74,7 @@ impl Random {
                 match choice {
                     3 | 4 => high.wrapping_sub(off),
                     _ if low >= 0 || high <= 0 => low.wrapping_add(off),
-                    _ if choice % 2 == 0 => off.min(high),
+                    _ if choice.is_multiple_of(2) => off.min(high),
                     _ => (-off).max(low),
                 }
             }

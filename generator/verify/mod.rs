@@ -118,6 +118,9 @@ impl Finding {
     }
 }
 
+/// What a leg does, with its tools; it tells the steps that are done.
+type Run = fn(&Subject<'_>, &[Tool], &(dyn Fn(u64) + Sync)) -> Result<Finding>;
+
 /// One question about a configuration.
 pub struct Leg {
     /// For scripts.
@@ -130,7 +133,7 @@ pub struct Leg {
     tools: &'static [&'static str],
     /// How many steps its progress has.
     steps: fn(&Subject<'_>) -> u64,
-    run: fn(&Subject<'_>, &[Tool], &(dyn Fn(u64) + Sync)) -> Result<Finding>,
+    run: Run,
 }
 
 /// All legs: first those that need nothing but Glint.
