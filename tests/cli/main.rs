@@ -4,6 +4,7 @@
 mod compare;
 mod configurations;
 mod cosim;
+mod datasheet;
 mod describe;
 mod generate;
 mod output;
