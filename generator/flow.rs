@@ -6,11 +6,21 @@ use anyhow::{Context, Result};
 
 use crate::config::Config;
 use crate::cosim::batch::{Engine, Golden, RustHdl, Verilog};
+use crate::cosim::exhaustive::{Clocks, Job};
 use crate::cosim::{Lockstep, external, trial};
-use crate::emit::{self, EmitInputs, OutputFile, PageInputs, Timing, Vectors, WorkedExample};
+use crate::emit::{
+    self, Accuracy, EmitInputs, OutputFile, PageInputs, Timing, Vectors, WorkedExample,
+};
 use crate::golden::Contract;
 use crate::netlist::Design;
 use crate::registry::Device;
+
+/// Results that the main job and `cosim` check of each configuration, unless told otherwise: the default
+/// test.
+pub const TEST_POINTS: u64 = 100_000;
+
+/// The seed of the default test.
+pub const TEST_SEED: u64 = 1;
 
 /// Results in the stimulus of a committed bench.
 pub const BENCH_POINTS: u64 = 24;
@@ -59,6 +69,12 @@ impl Unit {
         })
     }
 
+    /// Tells this configuration, and version of Glint, from others: SHA-256 in hexadecimal.
+    pub fn digest(&self) -> String {
+        let text = self.config.to_toml(&(self.device.schema)());
+        emit::digest(format!("{}\n{text}", env!("CARGO_PKG_VERSION")).as_bytes())
+    }
+
     /// Golden model and built-in simulator, side by side.
     ///
     /// # Errors
@@ -66,6 +82,24 @@ impl Unit {
     pub fn lockstep(&self, seed: u64) -> Result<Lockstep<'_>> {
         let model = (self.device.model)(&self.config);
         Lockstep::new(&self.design, model, self.contract.as_ref(), seed)
+    }
+
+    /// The exhaustive check: the proof of the contract and, where they are not too many, every
+    /// combination of operands clock by clock.
+    ///
+    /// # Errors
+    /// Model and design do not name the same signals.
+    pub fn job(&self) -> Result<Job<'_>> {
+        Ok(Job::new(self.contract.as_ref()).with(self.clocks()?))
+    }
+
+    /// Every combination of operands, golden model against built-in simulator.
+    ///
+    /// # Errors
+    /// Model and design do not name the same signals.
+    pub fn clocks(&self) -> Result<Clocks<'_>> {
+        let model = (self.device.model)(&self.config);
+        Clocks::new(&self.design, model, self.contract.as_ref())
     }
 
     /// Clocks between the events of the handshake.
@@ -102,6 +136,8 @@ impl Unit {
             config: config.to_owned(),
             timing: self.timing()?,
             example: Some(self.example()?),
+            accuracy: Some(Accuracy::new(self.contract.as_ref())),
+            computations: trial::computations(&self.design, self.contract.as_ref())?,
             vectors: Some(vectors),
         };
         emit::emit(&self.design, &inputs)
@@ -113,13 +149,7 @@ impl Unit {
     /// The design cannot be written as Verilog.
     pub fn verilog(&self) -> Result<Vec<(String, String)>> {
         let files = emit::emit(&self.design, &EmitInputs::default())?;
-        Ok(files
-            .into_iter()
-            .filter_map(|file| {
-                let name = file.path.rsplit('/').next()?.to_owned();
-                (name.ends_with(".v") || name.ends_with(".mem")).then_some((name, file.contents))
-            })
-            .collect())
+        Ok(emit::sources(files))
     }
 
     /// The page of the configuration, which the command line knows as `config`.
@@ -148,14 +178,7 @@ impl Unit {
             Through::Golden => Box::new(Golden(contract)),
             Through::RustHdl => Box::new(RustHdl::new(&self.design, contract)?),
             Through::Verilog(simulator, limit) => {
-                let files = emit::emit(&self.design, &EmitInputs::default())?;
-                let files = files.into_iter().filter_map(|file| {
-                    let name = file.path.rsplit('/').next()?.to_owned();
-                    let needed = name.ends_with(".v") || name.ends_with(".mem");
-                    needed.then_some((name, file.contents))
-                });
-                let design = &self.design;
-                let files = files.collect();
+                let (design, files) = (&self.design, self.verilog()?);
                 Box::new(Verilog::new(simulator, design, contract, files, limit)?)
             }
         })

@@ -14,7 +14,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use super::staged;
-use crate::emit::{OutputFile, digest, is_page, is_sealed_json};
+use crate::emit::{OutputFile, Seal, digest, is_sealed};
 
 /// What [`write()`] did with the directories of a configuration, or [`write_sealed`] with a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,25 +53,16 @@ pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Resul
     Ok(Written::Replaced)
 }
 
-/// Writes the page of configuration `name` into `out`, as `<name>.md`.
-///
-/// # Errors
-/// Those of [`write_sealed`].
-pub fn write_page(out: &Path, name: &str, page: &str, force: bool) -> Result<Written> {
-    write_sealed(&out.join(format!("{name}.md")), page, force)
-}
-
-/// Writes a single file whose contents tell whether Glint wrote them as they are.
+/// Writes a single file that vouches for itself.
 ///
 /// # Errors
 /// A file there that Glint did not write or that was edited since, unless `force`; a directory that cannot be
 /// written. Whatever fails, what was there before is there after.
-pub fn write_sealed(path: &Path, text: &str, force: bool) -> Result<Written> {
-    if may_write(path, force)?.is_some_and(|found| found == text.as_bytes()) {
+pub fn write_sealed(path: &Path, text: &str, seal: Seal, force: bool) -> Result<Written> {
+    if may_write(path, seal, force)?.is_some_and(|found| found == text.as_bytes()) {
         return Ok(Written::Unchanged);
     }
-    let directory = path.parent().unwrap_or(Path::new(""));
-    create_directory(directory)?;
+    create_parent(path)?;
     staged::replace(path, text.as_bytes())?;
     Ok(Written::Replaced)
 }
@@ -80,9 +71,9 @@ pub fn write_sealed(path: &Path, text: &str, force: bool) -> Result<Written> {
 ///
 /// # Errors
 /// A file that Glint did not write or that was edited since, unless `force`; one that cannot be read.
-pub fn may_write(path: &Path, force: bool) -> Result<Option<Vec<u8>>> {
+pub fn may_write(path: &Path, seal: Seal, force: bool) -> Result<Option<Vec<u8>>> {
     match fs::read(path) {
-        Ok(found) if !force && !is_page(&found) && !is_sealed_json(&found) => bail!(
+        Ok(found) if !force && !is_sealed(&found, seal) => bail!(
             "`{}` was not written by Glint, or was edited since; nothing was changed\n\
              move it away, choose another --out, or replace it with --force",
             path.display()
@@ -100,18 +91,8 @@ pub fn may_write(path: &Path, force: bool) -> Result<Option<Vec<u8>>> {
 pub fn differences(out: &Path, name: &str, files: &[OutputFile]) -> Result<Vec<String>> {
     let mut different = Vec::new();
     for file in files {
-        let path = out.join(&file.path);
-        match fs::read(&path) {
-            Ok(found) if found == file.contents.as_bytes() => {}
-            Ok(_) => different.push(file.path.clone()),
-            Err(error) if error.kind() == ErrorKind::NotFound => different.push(file.path.clone()),
-            // A file where a directory should be.
-            Err(error) if error.kind() == ErrorKind::NotADirectory => {
-                different.push(file.path.clone())
-            }
-            Err(error) => {
-                return Err(error).with_context(|| format!("cannot read `{}`", path.display()));
-            }
+        if differs(out, file)? {
+            different.push(file.path.clone());
         }
     }
     for path in present(out, name)? {
@@ -122,6 +103,22 @@ pub fn differences(out: &Path, name: &str, files: &[OutputFile]) -> Result<Vec<S
     }
     different.sort();
     Ok(different)
+}
+
+/// Whether a file below `out` is not as it would be written, or missing.
+///
+/// # Errors
+/// It cannot be read.
+pub fn differs(out: &Path, file: &OutputFile) -> Result<bool> {
+    let path = out.join(&file.path);
+    match fs::read(&path) {
+        Ok(found) => Ok(found != file.contents.as_bytes()),
+        // Or a file where a directory should be.
+        Err(error) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&error.kind()) => {
+            Ok(true)
+        }
+        Err(error) => Err(error).with_context(|| format!("cannot read `{}`", path.display())),
+    }
 }
 
 /// The directories of a configuration.

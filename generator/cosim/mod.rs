@@ -3,8 +3,10 @@
 
 mod alone;
 pub mod batch;
+mod combinations;
 pub mod exhaustive;
 pub mod external;
+pub mod gates;
 mod lockstep;
 mod pairing;
 mod stimulus;

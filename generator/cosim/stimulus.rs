@@ -52,7 +52,39 @@ impl Random {
             low.wrapping_add(self.below(span) as i64)
         }
     }
+
+    /// A raw value from `low` to `high`: often one of its ends or close to one (or to 0, which is as good as an
+    /// end).
+    pub fn of_domain(&mut self, domain: (i64, i64)) -> i64 {
+        let choice = self.below(16);
+        self.near_an_end(choice, domain)
+    }
+
+    /// By one of 16 choices: an end, close to one, anywhere.
+    fn near_an_end(&mut self, choice: u64, (low, high): (i64, i64)) -> i64 {
+        match choice {
+            0 => low,
+            1 => high,
+            // Off by a random power of two: from the upper end, from the lower, from 0 where that is between
+            // (an angle, the component of a vector).
+            3..=13 if choice <= 8 || low < 0 && high > 0 => {
+                let reach = high.abs_diff(low).max(1);
+                let bits = self.below(u64::from(64 - reach.leading_zeros()) + 1);
+                let off = self.below(1 << bits.min(62)).min(reach) as i64;
+                match choice {
+                    3 | 4 => high.wrapping_sub(off),
+                    _ if low >= 0 || high <= 0 => low.wrapping_add(off),
+                    _ if choice % 2 == 0 => off.min(high),
+                    _ => (-off).max(low),
+                }
+            }
+            _ => self.within(low, high),
+        }
+    }
 }
+
+/// The choice of 16 that a stimulus takes for any bit pattern at all.
+const ANYTHING: u64 = 2;
 
 /// Resets come within 2⁰, 2¹, … clocks after a start, in equal parts up to this many powers: as long as
 /// the longest line.
@@ -322,22 +354,8 @@ impl Stimulus {
             return low.wrapping_add(above as i64) as u64 & mask;
         }
         let raw = match self.random.below(16) {
-            0 => low,
-            1 => high,
-            2 => self.random.bits() as i64,
-            // Off by a random power of two: from the upper end, from the lower, from 0 where that is between
-            // (an angle, the component of a vector).
-            choice @ 3..=13 if choice <= 8 || low < 0 && high > 0 => {
-                let bits = self.random.below(u64::from(64 - reach.leading_zeros()) + 1);
-                let off = self.random.below(1 << bits.min(62)).min(reach) as i64;
-                match choice {
-                    3 | 4 => high.wrapping_sub(off),
-                    _ if low >= 0 || high <= 0 => low.wrapping_add(off),
-                    _ if choice % 2 == 0 => off.min(high),
-                    _ => (-off).max(low),
-                }
-            }
-            _ => self.random.within(low, high),
+            ANYTHING => self.random.bits() as i64,
+            choice => self.random.near_an_end(choice, (low, high)),
         };
         raw as u64 & mask
     }

@@ -6,6 +6,7 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 use serde_json::Value;
+use tempfile::TempDir;
 
 use super::external::Tool;
 
@@ -89,6 +90,21 @@ pub fn synthesise(
     limit: Duration,
 ) -> Result<Usage> {
     const STATISTICS: &str = "statistics.json";
+    let command = format!("tee -q -o {STATISTICS} stat -json");
+    let place = run(yosys, files, top, family, &command, limit)?;
+    usage(&place.path().join(STATISTICS), top, family)
+        .with_context(|| format!("`{}` for {}", family.command, family.title))
+}
+
+/// Synthesises, has Yosys run `command` on the netlist, and returns the directory in which it did.
+pub(super) fn run(
+    yosys: &Tool,
+    files: &[(String, String)],
+    top: &str,
+    family: &Family,
+    command: &str,
+    limit: Duration,
+) -> Result<TempDir> {
     let place = tempfile::tempdir().context("cannot make a directory for synthesis")?;
     for (name, contents) in files {
         fs::write(place.path().join(name), contents)
@@ -100,13 +116,12 @@ pub fn synthesise(
         .filter(|name| name.ends_with(".v"))
         .collect();
     let script = format!(
-        "read_verilog {}; hierarchy -check -top {top}; {} -top {top}; tee -q -o {STATISTICS} stat -json",
+        "read_verilog {}; hierarchy -check -top {top}; {} -top {top}; {command}",
         sources.join(" "),
         family.command,
     );
     yosys.run_to_success(["-q", "-p", &script], place.path(), limit)?;
-    usage(&place.path().join(STATISTICS), top, family)
-        .with_context(|| format!("`{}` for {}", family.command, family.title))
+    Ok(place)
 }
 
 /// Reads what `stat -json` has written.

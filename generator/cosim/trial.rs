@@ -1,8 +1,10 @@
-//! One computation of a design in the built-in simulator: its timing, a worked example, and a recording.
+//! One computation of a design in the built-in simulator: its timing, a worked example, a recording, and a
+//! list of computations for whoever checks the device without a model.
 
 use anyhow::{Context, Result, ensure};
 
-use crate::emit::{Quantity, Timing, WorkedExample};
+use super::Random;
+use crate::emit::{Computation, Quantity, Shown, Timing, WorkedExample};
 use crate::fixed::Format;
 use crate::golden::{Contract, Operand};
 use crate::netlist::{Design, NetId, Role};
@@ -11,15 +13,27 @@ use crate::sim::Simulator;
 /// More clocks than any device takes.
 const LIMIT: u32 = 1 << 16;
 
+/// Computations in a list, the first of them the corners of the domain.
+const COMPUTATIONS: usize = 40;
+
+/// The most results of a computation in a list, unless it is a corner of the domain: a line is short.
+const SHORT: i64 = 9;
+
 /// What one computation showed.
 struct Trial {
     timing: Timing,
-    /// Clocks in which `valid` is high.
-    results: u32,
+    /// The result outputs whenever `valid` is high.
+    results: Vec<(u32, Vec<u64>)>,
+}
+
+impl Trial {
     /// The clocks from each result to the next; where it is as from the one before, it is left out.
-    distances: Vec<u32>,
-    /// The result outputs at the first `valid`.
-    outputs: Vec<u64>,
+    fn distances(&self) -> Vec<u32> {
+        let pairs = self.results.windows(2);
+        let mut distances: Vec<u32> = pairs.map(|pair| pair[1].0 - pair[0].0).collect();
+        distances.dedup();
+        distances
+    }
 }
 
 /// The clocks between the events of the handshake, where they are the same for all of some operands
@@ -28,18 +42,11 @@ struct Trial {
 /// # Errors
 /// A device that never ends, or never raises `valid`.
 pub fn timing(design: &Design, contract: &dyn Contract) -> Result<Timing> {
-    let corner =
-        |pick: fn(&Operand) -> i64| contract.operands().iter().map(pick).collect::<Vec<_>>();
-    let corners = [
-        corner(|operand| operand.domain.0),
-        corner(|operand| operand.domain.1),
-        corner(|operand| operand.domain.0.midpoint(operand.domain.1)),
-    ];
     let mut common: Option<Timing> = None;
     let mut distances = Vec::new();
-    for operands in corners {
+    for operands in corners(contract) {
         let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
-        distances.extend(trial.distances);
+        distances.extend(trial.distances());
         let seen = trial.timing;
         common = Some(match common {
             None => seen,
@@ -64,6 +71,79 @@ pub fn timing(design: &Design, contract: &dyn Contract) -> Result<Timing> {
     })
 }
 
+/// The lowest operands of the domain, the highest, and those in the middle.
+fn corners(contract: &dyn Contract) -> [Vec<i64>; 3] {
+    let corner =
+        |pick: fn(&Operand) -> i64| contract.operands().iter().map(pick).collect::<Vec<_>>();
+    [
+        corner(|operand| operand.domain.0),
+        corner(|operand| operand.domain.1),
+        corner(|operand| operand.domain.0.midpoint(operand.domain.1)),
+    ]
+}
+
+/// Computations with all that they show, over the domain: its corners, and points at random. The golden
+/// model computes the same results.
+///
+/// # Errors
+/// Those of [`timing`]; golden model and simulation do not agree.
+pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Computation>> {
+    let mut random = Random::new(1);
+    let mut points = Vec::from(corners(contract));
+    points.resize_with(COMPUTATIONS, || {
+        let operands = contract.operands().iter();
+        let draw = operands.map(|operand| random.of_domain(operand.domain));
+        draw.collect()
+    });
+    let length = contract.length().and_then(|name| {
+        let mut operands = contract.operands().iter();
+        operands.position(|operand| operand.name == name)
+    });
+    if let Some(at) = length {
+        for point in &mut points {
+            point[at] = point[at].min(random.within(0, SHORT));
+        }
+    }
+    points
+        .into_iter()
+        .map(|operands| computation(design, contract, operands))
+        .collect()
+}
+
+fn computation(
+    design: &Design,
+    contract: &dyn Contract,
+    operands: Vec<i64>,
+) -> Result<Computation> {
+    let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
+    let nets = results(design, contract);
+    let control = operands.len() - contract.outputs().len();
+    let (control, colours) = operands.split_at(control);
+    let mut shown = Vec::with_capacity(trial.results.len());
+    for (index, (clock, bits)) in trial.results.iter().enumerate() {
+        let f = contract.f(&contract.point(control, index as u64));
+        let right = colours.iter().map(|&colour| contract.colour(f, colour));
+        let right: Vec<i64> = right.collect();
+        let raw = |(&net, &bits): (&NetId, &u64)| design.net(net).format.raw(bits) as i64;
+        let simulated: Vec<i64> = nets.iter().zip(bits).map(raw).collect();
+        ensure!(
+            right == simulated,
+            "golden model and simulation of `{}` do not agree on result {index} of {operands:?}: \
+             {right:?} and {simulated:?}",
+            design.name
+        );
+        shown.push(Shown {
+            clock: *clock,
+            outputs: right,
+        });
+    }
+    Ok(Computation {
+        done: trial.timing.start_to_done.context("it is never done")?,
+        results: shown,
+        operands,
+    })
+}
+
 /// The clocks of one computation, from `start` to the next, and the results that it shows.
 ///
 /// # Errors
@@ -75,7 +155,7 @@ pub fn throughput(
 ) -> Result<(u32, u32)> {
     let trial = run(design, contract, operands, &mut |_| Ok(()))?;
     let clocks = trial.timing.start_to_start.context("it does not end")?;
-    Ok((clocks, trial.results))
+    Ok((clocks, trial.results.len() as u32))
 }
 
 /// A computation with all its numbers: operands of the domain for which f is neither 0 nor 1. Of several
@@ -92,6 +172,7 @@ pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample
         value: format.to_f64(i128::from(raw)),
     };
     let results = results(design, contract);
+    let (_, first) = trial.results.first().context("it shows no result")?;
     Ok(WorkedExample {
         operands: contract
             .operands()
@@ -101,7 +182,7 @@ pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample
             .collect(),
         outputs: results
             .iter()
-            .zip(&trial.outputs)
+            .zip(first)
             .map(|(&net, &bits)| {
                 let net = design.net(net);
                 quantity(&net.name, net.format, net.format.raw(bits) as i64)
@@ -230,25 +311,16 @@ fn run(
     simulator.set(start, 0);
     let mut trial = Trial {
         timing: Timing::default(),
-        results: 0,
-        distances: Vec::new(),
-        outputs: Vec::new(),
+        results: Vec::new(),
     };
-    let mut latest = None;
+    let nets = results(design, contract);
     // Clock 0 was the one that took `start`.
     for clock in 1..LIMIT {
         watch(&mut simulator)?;
         if simulator.value(valid) == 1 {
-            trial.results += 1;
-            if trial.timing.start_to_valid.is_none() {
-                trial.timing.start_to_valid = Some(clock);
-                let nets = results(design, contract);
-                trial.outputs = nets.iter().map(|&net| simulator.value(net)).collect();
-            }
-            if let Some(before) = latest.replace(clock) {
-                trial.distances.push(clock - before);
-                trial.distances.dedup();
-            }
+            trial.timing.start_to_valid.get_or_insert(clock);
+            let outputs = nets.iter().map(|&net| simulator.value(net));
+            trial.results.push((clock, outputs.collect()));
         }
         if simulator.value(done) == 1 {
             trial.timing.start_to_done = Some(clock);

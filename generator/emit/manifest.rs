@@ -2,11 +2,12 @@
 
 use anyhow::Result;
 use serde::Serialize;
+use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Value, json};
 
 use super::facts::{self, Port, Rom};
 use super::naming::Naming;
-use super::{EmitInputs, OutputFile, Quantity, Timing, digest};
+use super::{Accuracy, Computation, EmitInputs, OutputFile, Quantity, Timing, digest};
 use crate::netlist::{Design, RegId};
 
 #[derive(Serialize)]
@@ -27,6 +28,10 @@ struct Manifest<'a> {
     sha256: serde_json::Map<String, Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
     example: Option<Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    accuracy: Option<Value>,
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    computations: Vec<Box<RawValue>>,
 }
 
 /// The files that the manifest lists.
@@ -86,8 +91,49 @@ pub fn contents(
             }
             entry
         }),
+        accuracy: inputs.accuracy.as_ref().map(accuracy),
+        computations: inputs
+            .computations
+            .iter()
+            .map(computation)
+            .collect::<Result<_>>()?,
     };
     Ok(serde_json::to_string_pretty(&manifest)? + "\n")
+}
+
+fn accuracy(accuracy: &Accuracy) -> Value {
+    let outputs = accuracy.outputs.iter();
+    let outputs: serde_json::Map<_, _> = outputs
+        .map(|(output, operand)| (output.clone(), json!(operand)))
+        .collect();
+    let domain = accuracy.domain.iter();
+    let domain: serde_json::Map<_, _> = domain
+        .map(|(operand, (low, high))| (operand.clone(), json!({ "low": low, "high": high })))
+        .collect();
+    let mut entry = json!({
+        "statement": "|output - operand * f| <= bound in units of the output, for raw operands of the domain",
+        "domain": domain,
+        "outputs": outputs,
+        "f": accuracy.f,
+        "bound": accuracy.bound,
+    });
+    if let Some(length) = &accuracy.length {
+        entry["length"] = json!(length);
+    }
+    entry
+}
+
+/// In a line, raw values in the order of `accuracy`.
+fn computation(computation: &Computation) -> Result<Box<RawValue>> {
+    let results = computation.results.iter();
+    let valid: Vec<u32> = results.clone().map(|result| result.clock).collect();
+    let results: Vec<_> = results.map(|result| &result.outputs).collect();
+    Ok(to_raw_value(&json!({
+        "operands": computation.operands,
+        "valid": valid,
+        "results": results,
+        "done": computation.done,
+    }))?)
 }
 
 fn control(design: &Design) -> Value {

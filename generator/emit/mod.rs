@@ -8,6 +8,7 @@
 pub mod account;
 mod bench;
 mod bits;
+mod cocotb;
 mod core;
 mod expression;
 mod facts;
@@ -23,6 +24,7 @@ mod page;
 mod plan;
 mod points;
 mod rows;
+mod seal;
 mod text;
 mod top;
 mod view;
@@ -32,15 +34,18 @@ use askama::Template;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 
+use crate::golden::Contract;
 use crate::netlist::{Design, RomId, Unit};
 use interface::Interface;
 use naming::Naming;
 use plan::Plan;
 
 pub use account::PageInputs;
+pub use cocotb::driver;
 pub use instance::instance;
-pub use page::{is_page, is_sealed_json, page, sealed, sealed_json};
+pub use page::page;
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE, points_bench};
+pub use seal::{Seal, is_sealed, sealed, sealed_json};
 
 /// A file to be written.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -49,6 +54,23 @@ pub struct OutputFile {
     pub path: String,
     /// The whole text, ending with a newline.
     pub contents: String,
+}
+
+impl OutputFile {
+    /// The last part of the path.
+    pub fn name(&self) -> &str {
+        self.path.rsplit('/').next().unwrap_or(&self.path)
+    }
+}
+
+/// What simulators and synthesisers read of some files: Verilog and memories, each with its plain name.
+pub fn sources(files: Vec<OutputFile>) -> Vec<(String, String)> {
+    let needed = |name: &str| name.ends_with(".v") || name.ends_with(".mem");
+    files
+        .into_iter()
+        .filter(|file| needed(file.name()))
+        .map(|file| (file.name().to_owned(), file.contents))
+        .collect()
 }
 
 /// What the files say beyond the design.
@@ -60,6 +82,10 @@ pub struct EmitInputs {
     pub timing: Timing,
     /// One computation with all its numbers, for the manifest.
     pub example: Option<WorkedExample>,
+    /// What the results are to be, for the manifest.
+    pub accuracy: Option<Accuracy>,
+    /// Computations with all that they show, for the manifest.
+    pub computations: Vec<Computation>,
     /// Stimulus and expected outputs; without them there is no bench.
     pub vectors: Option<Vectors>,
 }
@@ -95,6 +121,64 @@ pub struct WorkedExample {
     pub operands: Vec<Quantity>,
     /// In the order of the result ports.
     pub outputs: Vec<Quantity>,
+}
+
+/// What a device promises of its results, as far as a program can use it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Accuracy {
+    /// The operands with the smallest and the largest raw value for which it promises anything.
+    pub domain: Vec<(String, (i64, i64))>,
+    /// The result outputs, each with the operand by which it multiplies f.
+    pub outputs: Vec<(String, String)>,
+    /// The operand that says how many results there are beyond the first, where one does.
+    pub length: Option<String>,
+    /// The values that are right for f, as expressions of Python.
+    pub f: Vec<String>,
+    /// The largest error of an output, in its units.
+    pub bound: f64,
+}
+
+impl Accuracy {
+    /// What a contract says.
+    pub fn new(contract: &dyn Contract) -> Self {
+        let operands = contract.operands();
+        let colours = operands.iter().filter(|operand| operand.colour);
+        let domain = operands.iter();
+        Self {
+            domain: domain
+                .map(|operand| (operand.name.clone(), operand.domain))
+                .collect(),
+            outputs: contract
+                .outputs()
+                .iter()
+                .zip(colours)
+                .map(|(output, colour)| (output.clone(), colour.name.clone()))
+                .collect(),
+            length: contract.length().map(str::to_owned),
+            f: contract.expressions(),
+            bound: contract.bound().units,
+        }
+    }
+}
+
+/// A computation as its handshake shows it. The clock in which `start` is taken is number 0.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Computation {
+    /// Raw, in the order of [`Accuracy::domain`].
+    pub operands: Vec<i64>,
+    /// What is on the outputs whenever `valid` is high.
+    pub results: Vec<Shown>,
+    /// The clock in which `done` is high.
+    pub done: u32,
+}
+
+/// A result.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Shown {
+    /// The clock in which `valid` is high.
+    pub clock: u32,
+    /// Raw, in the order of [`Accuracy::outputs`].
+    pub outputs: Vec<i64>,
 }
 
 /// A number on a port.
@@ -162,6 +246,9 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         ));
         let formal = formal::files(design, &naming, &inputs.timing, &names_of(&rtl))?;
         testbench.splice(0..0, formal);
+        if let Some(example) = &inputs.example {
+            testbench.insert(0, cocotb::bench(design, example)?);
+        }
     }
 
     let (rtl_names, memory_names) = (names_of(&rtl), names_of(&memories));

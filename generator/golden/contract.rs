@@ -82,6 +82,16 @@ pub fn bound(shares: &[Share], frac: u32, colour_bits: u32, output_rounding: Rou
     }
 }
 
+/// An expression of Python, 0 where it would be negative.
+pub fn clamped_at_0(expression: &str) -> String {
+    format!("max({expression}, 0)")
+}
+
+/// An expression of Python, 0 where the surface faces away.
+pub fn where_it_faces(expression: &str) -> String {
+    format!("{expression} if {COSINE} > 0 else 0")
+}
+
 /// The raw value of the operand for the exponent `n`; `None` where its domain or its format has none.
 pub fn exponent_at(operand: &Operand, n: f64) -> Option<i64> {
     let raw = operand.format.quantise(n);

@@ -170,6 +170,13 @@ pub fn angle_at(format: Format, start: i64, delta: i64, index: u64) -> i64 {
     format.narrow(sum, format.frac, Rounding::Truncate, Overflow::Wrap) as i64
 }
 
+/// The angle of the point `index` of a line, in right angles, as an expression of Python.
+pub fn angle_expression(format: Format) -> String {
+    let turn = exp2(format.width() as i32 - format.frac);
+    let half = turn / 2.0;
+    format!("((zeta_start + index * delta_zeta + {half}) % {turn} - {half})")
+}
+
 /// `delta_zeta` and `zeta_start` as the contract sees them: every value is in the domain.
 pub fn angle_operands(format: Format) -> [Operand; 2] {
     let operand = |name: &str, doc: &str| Operand {

@@ -24,6 +24,8 @@ pub mod schlick;
 pub mod sine;
 pub mod threshold;
 
+use std::fmt;
+
 use crate::fixed::Format;
 
 /// A clock-by-clock model of a device.
@@ -105,6 +107,15 @@ pub trait Contract: Send + Sync {
     /// taken from the nearer.
     fn references(&self, control: &[i64]) -> [f64; 2] {
         [self.reference(control); 2]
+    }
+
+    /// The values of [`Contract::references`] as expressions of Python, for benches that have no other second
+    /// opinion; none where nobody wrote them.
+    ///
+    /// They speak of the control operands by name, as values and not raw, of the result's number (from 0) as
+    /// `index`, of the words of a ROM as values by its name, and of `math`'s functions.
+    fn expressions(&self) -> Vec<String> {
+        Vec::new()
     }
 
     /// The control operands of the one point that result number `index` (from 0) of a computation shows.
@@ -206,6 +217,23 @@ pub enum Values {
     Range(i64, i64),
     /// These.
     List(Vec<i64>),
+}
+
+impl Sweep {
+    /// Its axes in a sentence.
+    pub fn words(&self) -> String {
+        let axes: Vec<String> = self.axes.iter().map(Axis::to_string).collect();
+        axes.join(" x ")
+    }
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.values {
+            Values::Range(low, high) => write!(f, "{} = {low} to {high}", self.name),
+            Values::List(values) => write!(f, "{} settings of {}", values.len(), self.name),
+        }
+    }
 }
 
 impl Values {

@@ -13,3 +13,4 @@ mod questions;
 mod refusals;
 mod render;
 mod report;
+mod verify;

@@ -14,6 +14,7 @@ use crate::cli::failure::Usage;
 use crate::cli::store::{self, Written};
 use crate::cli::{Configs, Output, progress, tables};
 use crate::cosim::external::Tool;
+use crate::emit::Seal;
 use crate::flow::Unit;
 use crate::registry::Registry;
 use crate::report::datasheet::{self, Proof, Subject};
@@ -65,7 +66,7 @@ pub fn datasheet(
     let mut proofs = Vec::new();
     for one in &loaded {
         proofs.push(proof(&request.proofs, &one.unit)?);
-        store::may_write(&path(request, one, single), request.force)?;
+        store::may_write(&path(request, one, single), Seal::Markup, request.force)?;
     }
     let mut notes = Vec::new();
     let yosys = match (!request.no_synthesis).then(|| Tool::find("yosys")) {
@@ -91,12 +92,13 @@ pub fn datasheet(
         let made = datasheet::datasheet(&subject, &|| bar.inc(1));
         let made = made.with_context(|| format!("`{}`", one.path))?;
         let page = path(request, one, single);
-        let mut files = vec![(page.clone(), made.page)];
+        let mut files = vec![(page.clone(), made.page, Seal::Markup)];
         if request.wavedrom {
-            files.push((page.with_extension("wavedrom.json"), made.wavedrom));
+            let path = page.with_extension("wavedrom.json");
+            files.push((path, made.wavedrom, Seal::Json));
         }
-        for (path, text) in files {
-            let written = store::write_sealed(&path, &text, request.force);
+        for (path, text, seal) in files {
+            let written = store::write_sealed(&path, &text, seal, request.force);
             let written = written.with_context(|| format!("`{}` has no datasheet", one.path))?;
             report.push((one, path.display().to_string().replace('\\', "/"), written));
         }

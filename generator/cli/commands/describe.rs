@@ -8,6 +8,7 @@ use serde_json::json;
 use super::load;
 use crate::cli::store::{self, Written};
 use crate::cli::{Output, tables};
+use crate::emit::Seal;
 use crate::registry::Registry;
 
 /// `glint describe`.
@@ -26,7 +27,12 @@ pub fn describe(
         let name = &one.unit.config.name;
         let written = match out {
             Some(out) => {
-                let written = store::write_page(out, name, &page, force);
+                let written = store::write_sealed(
+                    &out.join(format!("{name}.md")),
+                    &page,
+                    Seal::Markup,
+                    force,
+                );
                 Some(written.with_context(|| format!("`{}` was not described", one.path))?)
             }
             None => None,

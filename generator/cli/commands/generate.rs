@@ -9,7 +9,7 @@ use serde_json::json;
 use super::{Loaded, load};
 use crate::cli::store::{self, Written};
 use crate::cli::{Output, progress, tables};
-use crate::emit::OutputFile;
+use crate::emit::{self, OutputFile, Seal};
 use crate::flow::{BENCH_POINTS, BENCH_SEED};
 use crate::registry::Registry;
 
@@ -79,8 +79,15 @@ fn files(one: &Loaded) -> Result<Vec<OutputFile>> {
         .with_context(|| format!("`{}`", one.path))
 }
 
-/// Writes the files of a configuration.
+/// Writes the files of a configuration, and the driver that its bench in Python shares with others.
 pub fn write(out: &Path, one: &Loaded, files: &[OutputFile], force: bool) -> Result<Written> {
+    let driver = emit::driver();
+    store::write_sealed(
+        &out.join(&driver.path),
+        &driver.contents,
+        Seal::Python,
+        force,
+    )?;
     store::write(out, &one.unit.config.name, files, force)
         .with_context(|| format!("`{}` was not generated", one.path))
 }
@@ -93,6 +100,10 @@ fn compare(
     made: &[Vec<OutputFile>],
 ) -> Result<bool> {
     let mut all = Vec::new();
+    let driver = emit::driver();
+    if store::differs(out, &driver)? {
+        all.push(driver.path);
+    }
     for (one, files) in loaded.iter().zip(made) {
         all.extend(store::differences(out, &one.unit.config.name, files)?);
     }

@@ -9,8 +9,11 @@ mod describe;
 mod eval;
 mod exhaustive;
 mod generate;
+mod mismatch;
+mod mutate;
 mod render;
 mod report;
+mod verify;
 
 use std::path::{Path, PathBuf};
 
@@ -25,8 +28,10 @@ pub use describe::describe;
 pub use eval::eval;
 pub use exhaustive::{ExhaustiveRequest, exhaustive, merge};
 pub use generate::generate;
+pub use mutate::{MutateRequest, mutate};
 pub use render::{RenderArguments, render};
 pub use report::{ReportRequest, report};
+pub use verify::{VerifyRequest, verify};
 
 use super::failure::{self, Several};
 use crate::config;

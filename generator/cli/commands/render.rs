@@ -21,6 +21,7 @@ use crate::report::render::{
     self, BuiltIn, Difference, Light, Material, Mesh, Object, Picture, Relief, Rendered, Scene,
     Settings, Shape, Vector, View,
 };
+use crate::words;
 
 /// The largest file that is read, in bytes: about the OBJ file of the largest mesh.
 const LARGEST_FILE: u64 = 4 << 30;
@@ -345,7 +346,7 @@ fn tell(
     tables::print_line(&format!(
         "{path}: {width}x{height} pixels, n = {}, {} points of {name} through {through}",
         settings.material.exponent,
-        tables::grouped(rendered.points)
+        words::grouped(rendered.points)
     ));
     if degenerate > 0 {
         failure::warn(&format!(
@@ -355,7 +356,7 @@ fn tell(
     if rendered.beyond > 0 {
         failure::warn(&format!(
             "at {} points the deviation exceeds the device's domain and was shortened to it",
-            tables::grouped(rendered.beyond)
+            words::grouped(rendered.beyond)
         ));
     }
     if let Some(comparison) = &rendered.comparison {

@@ -2,11 +2,11 @@
 
 mod markdown;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use askama::Template;
-use serde_json::Value;
 
 use super::account::{self, PageInputs};
+use super::seal::{Seal, sealed};
 use crate::netlist::Design;
 use markdown::{prose, table};
 
@@ -73,66 +73,5 @@ pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
         keys: table(&account::keys(inputs.schema, inputs.config)),
         config: inputs.path,
     })?;
-    Ok(sealed(text))
-}
-
-/// A page with a last line that vouches for those above. It ends with a newline, as the text must.
-pub fn sealed(text: String) -> String {
-    let seal = seal(text.as_bytes());
-    text + &seal
-}
-
-/// Whether a file is a page as [`sealed`] made it.
-pub fn is_page(contents: &[u8]) -> bool {
-    let Some(body) = contents.strip_suffix(b"\n") else {
-        return false;
-    };
-    let last = body.iter().rposition(|&byte| byte == b'\n');
-    let (above, line) = contents.split_at(last.map_or(0, |at| at + 1));
-    line == seal(above).as_bytes()
-}
-
-/// JSON, an object, with a member `sha256` that vouches for the others; it ends with a newline.
-///
-/// # Errors
-/// The value is no object.
-pub fn sealed_json(mut value: Value) -> Result<String> {
-    let digest = super::digest(value.to_string().as_bytes());
-    let members = value.as_object_mut().context("no object")?;
-    members.insert(DIGEST.to_owned(), Value::String(digest));
-    Ok(serde_json::to_string_pretty(&value)? + "\n")
-}
-
-/// Whether a file holds the value of [`sealed_json`].
-pub fn is_sealed_json(contents: &[u8]) -> bool {
-    let Ok(Value::Object(mut members)) = serde_json::from_slice(contents) else {
-        return false;
-    };
-    let digest = members.remove(DIGEST);
-    let others = Value::Object(members).to_string();
-    digest == Some(Value::String(super::digest(others.as_bytes())))
-}
-
-/// The member of sealed JSON that vouches for the others.
-const DIGEST: &str = "sha256";
-
-/// The last line of a page, which no reader sees.
-fn seal(above: &[u8]) -> String {
-    format!("<!-- sha256 {} -->\n", super::digest(above))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_edited_page_is_no_page() {
-        let page = format!("# title\n\ntext\n{}", seal(b"# title\n\ntext\n"));
-        assert!(is_page(page.as_bytes()));
-        assert!(!is_page(page.replace("text", "test").as_bytes()));
-        assert!(!is_page(format!("{page}more\n").as_bytes()));
-        assert!(!is_page(page.trim_end().as_bytes()));
-        assert!(!is_page(b""));
-        assert!(!is_page(b"# title\n"));
-    }
+    Ok(sealed(text, Seal::Markup))
 }

@@ -97,6 +97,13 @@ impl Contract for CosinePowerContract {
         reference::cosine_power(cosine, control[1] as f64, self.params.power)
     }
 
+    fn expressions(&self) -> Vec<String> {
+        let power = self.params.power;
+        let base = format!("exponent / {power} * (cos_gamma - 1) + 1");
+        let base = shared::clamped_at_0(&base);
+        vec![shared::where_it_faces(&format!("{base} ** {power}"))]
+    }
+
     /// Every quantity here lies in 0 … 1, hardware's and formula's alike, so by the mean value
     /// theorem an error ε before a power p grows to at most p·ε.
     ///

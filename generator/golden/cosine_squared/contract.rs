@@ -77,6 +77,11 @@ impl Contract for CosineSquaredContract {
         reference::cosine_squared(control[1] as f64 / right * FRAC_PI_2)
     }
 
+    fn expressions(&self) -> Vec<String> {
+        let angle = line::angle_expression(self.params.angle_format());
+        vec![format!("cos(pi / 2 * min(abs({angle}), 1)) ** 2")]
+    }
+
     fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
         let format = self.params.angle_format();
         let angle = line::angle_at(format, control[1], control[0], index);

@@ -118,6 +118,13 @@ impl Contract for DecayContract {
         }
     }
 
+    fn expressions(&self) -> Vec<String> {
+        vec![shared::where_it_faces(match self.params.function {
+            Function::Logarithm => "cos_gamma ** exponent",
+            Function::Angle => "exp(-exponent * acos(cos_gamma) ** 2 / 2)",
+        })]
+    }
+
     /// Let y = n·decay be exact and z the hardware's product before it is cut to the fraction bits of the tables of 2^−x.
     ///
     /// - |z − y| ≤ n·e, where e is the error of the decay's segment and of the bits that a coarse decay

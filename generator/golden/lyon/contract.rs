@@ -118,6 +118,17 @@ impl Contract for LyonContract {
         self.formula(squares.sum::<i64>() as f64 * self.ulps.0, control[3])
     }
 
+    fn expressions(&self) -> Vec<String> {
+        let power = self.params.power;
+        let exponent = match self.params.scale {
+            Scale::Shift => "2 ** shift",
+            Scale::Multiplier => "exponent",
+        };
+        let distance = "(dx ** 2 + dy ** 2 + dz ** 2)";
+        let base = format!("1 - {exponent} / {} * {distance}", 2 * power);
+        vec![format!("{} ** {power}", shared::clamped_at_0(&base))]
+    }
+
     /// The normal is (0, 0, 1), and the half vector (sin γ, 0, cos γ).
     fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
         let (first, last) = self.params.exponents;

@@ -107,6 +107,15 @@ impl Contract for QuadCosineContract {
         reference::quad_cosine(angle * FRAC_PI_2, n)
     }
 
+    fn expressions(&self) -> Vec<String> {
+        let angle = line::angle_expression(self.params.angle_format());
+        let power = "{1: 1, 2: 2, 3: 4, 4: 4, 5: 4, 6: 4}.get(exponent, 16)";
+        let stretched = format!("sqrt(exponent / {power}) * abs({angle})");
+        vec![format!(
+            "cos(pi / 2 * min({stretched}, 1)) ** {power} if -1 <= {angle} < 1 else 0"
+        )]
+    }
+
     fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
         let format = self.params.angle_format();
         let angle = line::angle_at(format, control[1], control[0], index);

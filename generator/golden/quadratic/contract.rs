@@ -96,6 +96,16 @@ impl Contract for QuadraticContract {
         reference::quadratic(cosine, self.arithmetic.exact[control[1] as usize])
     }
 
+    /// The coefficient of the least largest error has no closed form; ROM(n) holds it.
+    fn expressions(&self) -> Vec<String> {
+        let coefficient = match self.params.scheme {
+            Scheme::Taylor => "(max(exponent, 1) - 1)",
+            Scheme::Minimax { .. } => "coefficient[int(exponent)]",
+        };
+        let f = format!("cos_gamma * (1 - {coefficient} * (1 - cos_gamma))");
+        vec![shared::where_it_faces(&shared::clamped_at_0(&f))]
+    }
+
     /// The error of `c − a·g`, with g = c − c² in 0 … 1/4. Where formula and hardware are both clamped there is
     /// none; otherwise `a·g ≤ c`, that is `1 − c ≤ 1/a`, for one of the two, and g is at most 1/a.
     ///

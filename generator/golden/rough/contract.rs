@@ -140,6 +140,18 @@ impl Contract for RoughContract {
         }
     }
 
+    fn expressions(&self) -> Vec<String> {
+        let sines = "sqrt((1 - cos_gamma ** 2) * (1 - cos_dgamma ** 2))";
+        let turned = format!("cos_gamma * cos_dgamma + (2 * dgamma_negative - 1) * {sines}");
+        let base = format!("exponent / 2 * ({turned} - 1) + 1");
+        vec![contract::where_it_faces(
+            &match (self.params.arithmetic, self.params.clamp) {
+                (Kind::Exact, false) => format!("min(({base}) ** 2, 1)"),
+                _ => format!("{} ** 2", contract::clamped_at_0(&base)),
+            },
+        )]
+    }
+
     /// With dγ = 0.
     fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
         let no_deviation = [("cos_dgamma", self.largest_cosine)];

@@ -95,6 +95,12 @@ impl Contract for SchlickContract {
         reference::schlick(cosine * self.ulp, control[1] as f64)
     }
 
+    fn expressions(&self) -> Vec<String> {
+        vec![shared::where_it_faces(
+            "cos_gamma / (exponent * (1 - cos_gamma) + cos_gamma)",
+        )]
+    }
+
     /// Dividend and divisor are exact, so that nothing but the quotient's own last bit is lost: it is
     /// truncated, and 1.0 becomes the largest fraction. Both are at most an ulp below the formula.
     fn bound(&self) -> Bound {

@@ -120,6 +120,21 @@ impl Contract for ThresholdContract {
         }
     }
 
+    /// With ROM(n) as it stands.
+    fn expressions(&self) -> Vec<String> {
+        let square = format!(
+            "{} ** 2",
+            shared::clamped_at_0("exponent / 2 * (cos_gamma - 1) + 1")
+        );
+        let margin = self.margin;
+        ["-", "+"]
+            .map(|side| {
+                let level = format!("levels[int(exponent)] {side} {margin:e}");
+                shared::where_it_faces(&format!("({square} if {square} >= {level} else 0)"))
+            })
+            .to_vec()
+    }
+
     fn bound(&self) -> Bound {
         bound(&self.params)
     }

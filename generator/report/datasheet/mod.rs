@@ -44,7 +44,7 @@ pub struct Subject<'a> {
 
 /// What was made of it.
 pub struct Datasheet {
-    /// The page, whose last line vouches for those above; see [`crate::emit::is_page`].
+    /// The page, whose last line vouches for those above; see [`crate::emit::is_sealed`].
     pub page: String,
     /// The timing diagram for WaveDrom.
     pub wavedrom: String,

@@ -9,7 +9,7 @@ use super::microprogram::Microprogram;
 use super::table::{TableView, html};
 use super::{Measured, Subject, diagram, timing};
 use crate::emit::account::{self, PageInputs, blocks, short};
-use crate::emit::{self, Timing};
+use crate::emit::{self, Seal, Timing};
 use crate::netlist::Design;
 use crate::report::chart::Chart;
 use crate::report::comparison::{self, Multiplier};
@@ -161,7 +161,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
     };
     let mut text = page.render()?;
     text.push('\n');
-    Ok(emit::sealed(text))
+    Ok(emit::sealed(text, Seal::Markup))
 }
 
 /// What one wants to know first.

@@ -1,0 +1,361 @@
+"""Drives a core that Glint generated, from Python, by its manifest alone.
+
+`Manifest` reads rtl_out/<name>/<name>.json; `Core` plays the host, clock by clock, and checks the
+handshake in every one of them; the tests below hold for every core. A bench, such as
+testbench/<name>/test_<name>.py, imports them, adds its own, and has a simulator `run` them.
+
+Inputs change after the falling edge of the clock; outputs are read at the rising edge, as they
+were before it. Needs cocotb 2.1 and Icarus Verilog: cocotb refuses Verilator before 5.036.
+
+Generated files belong to their user, without conditions.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import random
+import shutil
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import cocotb
+from cocotb.clock import Clock
+from cocotb.triggers import FallingEdge, RisingEdge
+
+ROOT = Path(__file__).resolve().parents[1]
+"""The directory that holds rtl_out/ and testbench/."""
+
+LONGEST = 1 << 16
+"""More clocks than any computation takes."""
+
+Raw = dict[str, int]
+"""Ports by name, with the integers that their bits denote."""
+
+
+@dataclass
+class Computation:
+    """What a computation shows. The clock that takes `start` is number 0."""
+
+    valid: list[int]
+    """The clocks in which `valid` is high."""
+    results: list[Raw]
+    """The outputs in each of them."""
+    done: int
+    """The clock in which `done` is high."""
+
+
+class Manifest:
+    """What a core promises: ports, timing, accuracy, and computations with their results."""
+
+    def __init__(self, name: str) -> None:
+        """Read the manifest of core `name`."""
+        self.directory = ROOT / "rtl_out" / name
+        facts = json.loads((self.directory / f"{name}.json").read_text(encoding="utf-8"))
+        self.ports: dict[str, dict[str, Any]] = {port["name"]: port for port in facts["ports"]}
+        self.sources = [self.directory / file for file in facts["files"]["rtl"]]
+        self.memories = [self.directory / file for file in facts["files"]["memories"]]
+        self.timing: dict[str, int | None] = facts["timing"]
+        accuracy = facts["accuracy"]
+        self.domain: dict[str, dict[str, int]] = accuracy["domain"]
+        self.outputs: dict[str, str] = accuracy["outputs"]
+        self.length: str | None = accuracy.get("length")
+        self.bound: float = accuracy["bound"]
+        self.computations: list[tuple[Raw, Computation]] = [
+            self._computation(entry) for entry in facts["computations"]
+        ]
+        expressions: list[str] = accuracy["f"]
+        self._f = [compile(text, f"f of {name}", "eval") for text in expressions]
+        self._names: dict[str, Any] = {"__builtins__": {}, **vars(math)}
+        self._names.update(min=min, max=max, abs=abs, int=int)
+        for rom in facts["roms"]:
+            if any(rom["name"] in code.co_names for code in self._f):
+                self._names[rom["name"]] = self._words(rom)
+
+    def _computation(self, entry: dict[str, Any]) -> tuple[Raw, Computation]:
+        operands = dict(zip(self.domain, entry["operands"], strict=True))
+        results = [dict(zip(self.outputs, row, strict=True)) for row in entry["results"]]
+        return operands, Computation(entry["valid"], results, entry["done"])
+
+    def _words(self, rom: dict[str, Any]) -> list[float]:
+        """The words of a ROM of unsigned values; `format` is u<integer bits>.<fraction bits>."""
+        fraction_bits = int(rom["format"].rpartition(".")[2])
+        lines = (self.directory / rom["file"]).read_text(encoding="utf-8").splitlines()
+        words = [line.partition("//")[0].replace("_", "").strip() for line in lines]
+        return [int(word, rom["radix"]) / 2**fraction_bits for word in words if word]
+
+    def named(self, role: str) -> str:
+        """The one port of a role."""
+        (name,) = (name for name, port in self.ports.items() if port["role"] == role)
+        return name
+
+    def value(self, name: str, raw: int) -> float:
+        """What a raw integer on a port stands for."""
+        return raw / 2 ** self.ports[name]["fraction_bits"]
+
+    def result_count(self, operands: Mapping[str, int]) -> int:
+        """How many results a computation has."""
+        return 1 if self.length is None else operands[self.length] + 1
+
+    @property
+    def has_formula(self) -> bool:
+        """Whether the formula is there for Python to evaluate."""
+        return bool(self._f)
+
+    def f(self, operands: Mapping[str, int], index: int) -> list[float]:
+        """The values that are right for f in result number `index`: one, or two where f jumps."""
+        values = {name: self.value(name, raw) for name, raw in operands.items()}
+        return [eval(code, self._names, values | {"index": index}) for code in self._f]
+
+    def draw(self, source: random.Random) -> Raw:
+        """Operands of the domain, with a line's length short; every other one near an end or 0."""
+        operands = {}
+        for name, domain in self.domain.items():
+            low, high = domain["low"], domain["high"]
+            if name == self.length:
+                high = min(high, low + 12)
+            off = source.randrange(1 << source.randint(0, (high - low).bit_length()))
+            near = [low + off, high - off, off, -off]
+            chosen = source.choice(near + 4 * [source.randint(low, high)])
+            operands[name] = min(max(chosen, low), high)
+        return operands
+
+
+class Core:
+    """The host of a core: drives the inputs and watches the handshake."""
+
+    def __init__(self, dut: Any, seed: int = 1) -> None:
+        """Take over the inputs of `dut`; what is random follows from `seed`."""
+        self.dut = dut
+        self.manifest = Manifest(dut._name)
+        self.random = random.Random(seed)
+        self.clocks = 0
+        self._busy: bool | None = None
+        """What `busy` must be in the next clock; nothing is known before the first reset."""
+        self._age = 0
+        """The number of the next clock of the computation that runs."""
+        roles = {port["role"]: name for name, port in self.manifest.ports.items()}
+        self._clk = getattr(dut, roles["clock"])
+        self._rst_n = getattr(dut, roles["reset"])
+        self._start = getattr(dut, roles["start"])
+        self._handshake = {role: getattr(dut, roles[role]) for role in ("valid", "busy", "done")}
+        self._operands = [
+            (name, getattr(dut, name), getattr(dut, self.manifest.ports[name]["strobe"]))
+            for name in self.manifest.domain
+        ]
+
+    @classmethod
+    async def after_reset(cls, dut: Any, seed: int = 1) -> Core:
+        """A core whose clock runs and that has been reset."""
+        core = cls(dut, seed)
+        Clock(core._clk, 10, unit="ns").start(start_high=False)
+        await core.reset()
+        return core
+
+    async def reset(self) -> None:
+        """A clock of the initial set."""
+        await self.clock(rst_n=0)
+
+    async def clock(
+        self, *, start: int = 0, writes: Mapping[str, int] | None = None, rst_n: int = 1
+    ) -> dict[str, int]:
+        """One clock with these inputs; the handshake in it.
+
+        What is on an operand's input while its strobe is low does not matter, and is noise.
+        """
+        writes = writes or {}
+        await FallingEdge(self._clk)
+        self._rst_n.value = rst_n
+        self._start.value = start
+        for name, data, strobe in self._operands:
+            written = name in writes
+            strobe.value = int(written)
+            noise = self.random.getrandbits(len(data))
+            data.value = writes[name] & ((1 << len(data)) - 1) if written else noise
+        await RisingEdge(self._clk)
+        self.clocks += 1
+        if self._busy is None:
+            seen = {"valid": 0, "busy": 0, "done": 0}
+        else:
+            seen = {name: int(handle.value) for name, handle in self._handshake.items()}
+            self._check(seen)
+        self._follow(bool(start), bool(rst_n), seen)
+        return seen
+
+    def _check(self, seen: Mapping[str, int]) -> None:
+        """The handshake of this clock against what went before and what the manifest promises."""
+        at = f"clock {self.clocks} after the beginning, {self._age} after start"
+        assert seen["busy"] == self._busy, f"busy is {seen['busy']}, {at}"
+        if not seen["busy"]:
+            assert not seen["valid"] and not seen["done"], f"{seen} while idle, {at}"
+            return
+        done, first = self.manifest.timing["start_to_done"], self.manifest.timing["start_to_valid"]
+        if done is not None:
+            assert seen["done"] == (self._age == done), f"done is {seen['done']}, {at}"
+        if first is not None:
+            # One result, or one every so many clocks.
+            every = self.manifest.timing.get("valid_to_valid")
+            due = self._age == first
+            if every and self._age > first:
+                due = bool(seen["valid"]) and (self._age - first) % every == 0
+            assert seen["valid"] == due, f"valid is {seen['valid']}, {at}"
+
+    def _follow(self, start: bool, rst_n: bool, seen: Mapping[str, int]) -> None:
+        if not rst_n:
+            self._busy, self._age = False, 0
+        elif not self._busy:
+            self._busy, self._age = (start, 1) if self._busy is not None else (None, 0)
+        else:
+            self._busy, self._age = not seen["done"], self._age + 1
+
+    def outputs(self) -> Raw:
+        """The results as they are on the outputs now."""
+        results = {}
+        for name in self.manifest.outputs:
+            value = getattr(self.dut, name).value
+            signed = self.manifest.ports[name]["signed"]
+            results[name] = value.to_signed() if signed else value.to_unsigned()
+        return results
+
+    async def write_in_parts(self, operands: Mapping[str, int]) -> Raw:
+        """Some operands one by one, with pauses; what is left may be written with `start`."""
+        left = dict(operands)
+        for name in self.random.sample(list(left), self.random.randint(0, len(left))):
+            await self.clock(writes={name: left.pop(name)})
+            for _ in range(self.random.choice((0, 0, 0, 1, 3))):
+                await self.clock()
+        return left
+
+    async def compute(self, **operands: int) -> Computation:
+        """Writes the operands together with `start`, and waits for the end."""
+        await self.clock(start=1, writes=operands)
+        return await self.finish()
+
+    async def finish(self, disturbed: bool = False) -> Computation:
+        """What the computation that was started shows, through writes and starts to be ignored."""
+        valid: list[int] = []
+        results: list[Raw] = []
+        for clock in range(1, LONGEST):
+            writes = self.manifest.draw(self.random) if disturbed else {}
+            seen = await self.clock(start=int(disturbed), writes=writes)
+            if seen["valid"]:
+                valid.append(clock)
+                results.append(self.outputs())
+            if seen["done"]:
+                return Computation(valid, results, clock)
+        raise AssertionError(f"not done within {LONGEST} clocks")
+
+
+@cocotb.test()
+async def computations_are_exact(dut: Any) -> None:
+    """Every computation of the manifest: results, clocks of `valid`, clock of `done`."""
+    core = await Core.after_reset(dut)
+    for operands, wanted in core.manifest.computations:
+        left = await core.write_in_parts(operands)
+        assert await core.compute(**left) == wanted, f"{operands}: not {wanted}"
+    dut._log.info("%d computations in %d clocks", len(core.manifest.computations), core.clocks)
+
+
+@cocotb.test()
+async def writes_and_starts_while_busy_are_ignored(dut: Any) -> None:
+    """The operands keep their values through a computation in which others are offered."""
+    core = await Core.after_reset(dut)
+    for operands, wanted in core.manifest.computations:
+        await core.clock(start=1, writes=operands)
+        assert await core.finish(disturbed=True) == wanted, f"{operands}, disturbed: not {wanted}"
+        # Nothing was written, so that a start alone repeats it.
+        assert await core.compute() == wanted, f"{operands}, a second time: not {wanted}"
+
+
+@cocotb.test()
+async def held_start_repeats(dut: Any) -> None:
+    """A `start` that is held is taken whenever the core is idle: one clock after `done`."""
+    core = await Core.after_reset(dut)
+    for operands, wanted in core.manifest.computations:
+        period = core.manifest.timing["start_to_start"]
+        assert period in (None, wanted.done + 1)
+        await core.clock(writes=operands)
+        for clock in range(3 * (wanted.done + 1)):
+            seen = await core.clock(start=1)
+            age = clock % (wanted.done + 1)
+            expected = {
+                "valid": int(age in wanted.valid),
+                "busy": int(age > 0),
+                "done": int(age == wanted.done),
+            }
+            assert seen == expected, f"{operands}: {seen} in clock {age}"
+            if seen["valid"]:
+                assert core.outputs() == wanted.results[wanted.valid.index(age)]
+
+
+@cocotb.test()
+async def reset_ends_a_computation(dut: Any) -> None:
+    """A reset in any clock leaves the core idle, and the next computation is right."""
+    core = await Core.after_reset(dut)
+    operands, wanted = max(core.manifest.computations, key=lambda pair: len(pair[1].valid))
+    for age in range(wanted.done + 1):
+        await core.clock(start=1, writes=operands)
+        for _ in range(age):
+            await core.clock()
+        await core.reset()
+        for _ in range(3):
+            assert not any((await core.clock()).values())
+        assert await core.compute(**operands) == wanted, f"after a reset in clock {age}"
+
+
+@cocotb.test()
+async def formula_holds_at_random_points(dut: Any) -> None:
+    """The results at random points are within the manifest's bound of its formula in floats."""
+    core = await Core.after_reset(dut, seed=2)
+    manifest = core.manifest
+    assert manifest.has_formula, "the manifest has no formula that Python could evaluate"
+    worst = 0.0
+    for _ in range(250):
+        operands = manifest.draw(core.random)
+        left = await core.write_in_parts(operands)
+        shown = await core.compute(**left)
+        assert len(shown.results) == manifest.result_count(operands), f"{operands}: {shown}"
+        for index, result in enumerate(shown.results):
+            right = manifest.f(operands, index)
+            for output, operand in manifest.outputs.items():
+                error = min(abs(result[output] - operands[operand] * f) for f in right)
+                worst = max(worst, error)
+                assert error <= manifest.bound, (
+                    f"{output} is {result[output]}, off by {error} units at {operands}, "
+                    f"result {index}; the bound is {manifest.bound}"
+                )
+    dut._log.info("worst error %.3f units, bound %.3f", worst, manifest.bound)
+
+
+def run(name: str) -> None:
+    """Builds core `name` in sim_build/<name>/ and runs its bench; ends the process."""
+    from cocotb_tools.check_results import get_results
+    from cocotb_tools.runner import get_runner
+
+    manifest = Manifest(name)
+    place = Path("sim_build") / name
+    place.mkdir(parents=True, exist_ok=True)
+    for memory in manifest.memories:
+        shutil.copy(memory, place)
+    runner = get_runner("icarus")
+    runner.build(
+        sources=manifest.sources,
+        hdl_toplevel=name,
+        build_dir=place,
+        build_args=["-g2005", "-Wall"],
+        timescale=("1ns", "1ps"),
+        always=True,
+    )
+    sys.path.insert(0, str(ROOT / "testbench" / name))
+    report = runner.test(
+        hdl_toplevel=name, test_module=f"test_{name}", build_dir=place, test_dir=place
+    )
+    tests, failed = get_results(report)
+    print(f"{'FAIL' if failed or not tests else 'PASS'} {name}: {tests} tests, {failed} failed")
+    sys.exit(1 if failed or not tests else 0)
+
+
+# sha256 e34295cfd997f1d91173d177c64ababe10651c31425b65ed920d793bb5fdf324

@@ -1,0 +1,45 @@
+//! Netlists from synthesis, and their simulation with models of the family's cells.
+
+// Each test crate uses a part of this.
+#![allow(dead_code)]
+
+use std::path::Path;
+
+use glint::cosim::external::Simulator;
+use glint::cosim::gates;
+use glint::cosim::synthesis::Family;
+
+use super::bench::Bench;
+use super::tools::{tool, verilog_files, yosys};
+use super::units::{Emitted, write};
+
+/// Points of the bench that a netlist runs.
+pub const POINTS: u64 = 40;
+
+/// Writes the RTL into a directory, synthesises it, and leaves `netlist.json` and `netlist.v` there.
+///
+/// # Panics
+/// Yosys fails or warns, or there is a latch.
+pub fn synthesise(directory: &Path, emitted: &Emitted, family: &Family) {
+    write(directory, &emitted.rtl());
+    let commands = format!(
+        "read_verilog {}; hierarchy -check -top {top}; proc; \
+         select -assert-none t:$dlatch t:$adlatch t:$dlatchsr t:$sr; \
+         {} -top {top}; check -assert; write_json netlist.json; write_verilog -noattr netlist.v",
+        verilog_files(directory).join(" "),
+        family.command,
+        top = emitted.name,
+    );
+    yosys(directory, &commands);
+}
+
+/// The bench of the source around a netlist, ROM contents within.
+///
+/// # Panics
+/// Icarus Verilog refuses it, or the models of the cells are not where Yosys has them.
+pub fn bench(emitted: &Emitted, netlist: String, family: &Family) -> Bench {
+    let rtl: Vec<String> = emitted.rtl().into_iter().map(|(name, _)| name).collect();
+    let files = gates::bench(&tool("yosys"), emitted.simulated(), &rtl, netlist, family)
+        .unwrap_or_else(|error| panic!("{error:#}"));
+    Bench::build_quietly(Simulator::Icarus, &files, &emitted.bench())
+}
