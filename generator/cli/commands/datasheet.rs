@@ -27,7 +27,7 @@ pub struct DatasheetArguments {
     /// A directory, or for one configuration a file that ends in .html
     #[arg(long, value_name = "DIR|FILE.html", default_value = "datasheets")]
     out: PathBuf,
-    /// Where records of `cosim --exhaustive --json` are, as <name>.json
+    /// Where records of `cosim --exhaustive --json` are, as `<name>.json`
     #[arg(long, value_name = "DIR", default_value = "proofs")]
     proofs: PathBuf,
     /// Write the timing diagram for WaveDrom too, beside the page
