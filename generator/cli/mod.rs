@@ -197,28 +197,7 @@ Examples:
   glint datasheet my_core.toml --no-synthesis           in a second or two
   glint datasheet my_core.toml --out core.html          one page, under this name
   glint datasheet configs/rough.toml --wavedrom         also datasheets/rough.wavedrom.json")]
-    Datasheet {
-        #[command(flatten)]
-        configs: Configs,
-        /// A directory, or for one configuration a file that ends in .html
-        #[arg(long, value_name = "DIR|FILE.html", default_value = "datasheets")]
-        out: PathBuf,
-        /// Where records of `cosim --exhaustive --json` are, as <name>.json
-        #[arg(long, value_name = "DIR", default_value = "proofs")]
-        proofs: PathBuf,
-        /// Write the timing diagram for WaveDrom too, beside the page
-        #[arg(long)]
-        wavedrom: bool,
-        /// Replace files that Glint did not write or that were edited since
-        #[arg(long)]
-        force: bool,
-        /// Do not ask Yosys what the device takes
-        #[arg(long)]
-        no_synthesis: bool,
-        /// Seconds after which a run of Yosys is given up
-        #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
-        time_limit: u64,
-    },
+    Datasheet(commands::DatasheetArguments),
     /// Weigh all devices against cos^n gamma at one exponent, side by side
     ///
     /// Every device is compared with the defaults of its configuration, in which the widths below are
@@ -453,25 +432,7 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             out,
             force,
         }) => commands::describe(registry, output, &configs.configs, out.as_deref(), force),
-        Some(Command::Datasheet {
-            configs,
-            out,
-            proofs,
-            wavedrom,
-            force,
-            no_synthesis,
-            time_limit,
-        }) => {
-            let request = commands::DatasheetRequest {
-                out,
-                proofs,
-                wavedrom,
-                force,
-                synthesis: !no_synthesis,
-                time_limit: std::time::Duration::from_secs(time_limit),
-            };
-            commands::datasheet(registry, output, &configs.configs, &request)
-        }
+        Some(Command::Datasheet(arguments)) => commands::datasheet(registry, output, &arguments),
         Some(Command::Compare {
             configs,
             exponent,

@@ -6,6 +6,7 @@ mod common;
 mod compare;
 mod configurations;
 mod cosim;
+mod datasheet;
 mod describe;
 mod fuzz;
 mod generate;

@@ -136,24 +136,11 @@ fn a_directory_that_cannot_be() {
     assert_eq!(place.read("taken"), "a file");
 }
 
-/// Yosys as a script that writes the statistics of a made-up netlist.
 #[cfg(unix)]
 #[test]
 fn synthesis_joins_the_ledger() {
-    let place = Place::with("tools/what", "a Yosys that makes its figures up");
-    place.script(
-        "tools/yosys",
-        "[ \"$1\" = --version ] && echo 'Yosys 0' && exit
-top=$(echo \"$3\" | sed 's/.*hierarchy -check -top \\([a-z_]*\\).*/\\1/')
-luts=100; [ $top = schlick ] && luts=120
-echo '{\"modules\":{\"\\\\\\\\'$top'\":{\"num_cells_by_type\":{\"SB_LUT4\":'$luts',\"LUT4\":'$luts',\"LUT6\":'$luts'}}}}' >statistics.json",
-    );
-    let mut command = place.command();
-    let tools = place.at("tools");
-    let search = std::env::join_paths(std::iter::once(tools).chain(std::env::split_paths(
-        &std::env::var_os("PATH").unwrap_or_default(),
-    )));
-    command.env("PATH", search.expect("a search path"));
+    let place = Place::new();
+    let mut command = place.with_yosys();
     let run = Run::of(command.args(["report", "--json"]).output());
     assert_eq!(run.code, 0, "{run:?}");
     let told = run.json();

@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
+use clap::Args;
 use serde_json::json;
 
 use super::{Loaded, load};
 use crate::cli::failure::Usage;
 use crate::cli::store::{self, Written};
-use crate::cli::{Output, progress, tables};
+use crate::cli::{Configs, Output, progress, tables};
 use crate::cosim::external::Tool;
 use crate::emit::Seal;
 use crate::flow::Unit;
@@ -19,29 +20,37 @@ use crate::registry::Registry;
 use crate::report::datasheet::{self, Proof, Subject};
 
 /// What `datasheet` was asked for.
-pub struct DatasheetRequest {
-    /// A directory, or the page of the only configuration.
-    pub out: PathBuf,
-    /// Where the records of exhaustive checks are.
-    pub proofs: PathBuf,
-    /// Write the timing diagram for WaveDrom too.
-    pub wavedrom: bool,
-    /// Replace files that Glint did not write or that were edited since.
-    pub force: bool,
-    /// Synthesise.
-    pub synthesis: bool,
-    /// After which a run of Yosys is given up.
-    pub time_limit: Duration,
+#[derive(Args)]
+pub struct DatasheetArguments {
+    #[command(flatten)]
+    configs: Configs,
+    /// A directory, or for one configuration a file that ends in .html
+    #[arg(long, value_name = "DIR|FILE.html", default_value = "datasheets")]
+    out: PathBuf,
+    /// Where records of `cosim --exhaustive --json` are, as `<name>.json`
+    #[arg(long, value_name = "DIR", default_value = "proofs")]
+    proofs: PathBuf,
+    /// Write the timing diagram for WaveDrom too, beside the page
+    #[arg(long)]
+    wavedrom: bool,
+    /// Replace files that Glint did not write or that were edited since
+    #[arg(long)]
+    force: bool,
+    /// Do not ask Yosys what the device takes
+    #[arg(long)]
+    no_synthesis: bool,
+    /// Seconds after which a run of Yosys is given up
+    #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    time_limit: u64,
 }
 
 /// `glint datasheet`.
 pub fn datasheet(
     registry: &Registry,
     output: Output,
-    configs: &[PathBuf],
-    request: &DatasheetRequest,
+    request: &DatasheetArguments,
 ) -> Result<bool> {
-    let loaded = load(registry, configs)?;
+    let loaded = load(registry, &request.configs.configs)?;
     let single = request
         .out
         .extension()
@@ -60,7 +69,7 @@ pub fn datasheet(
         store::may_write(&path(request, one, single), Seal::Markup, request.force)?;
     }
     let mut notes = Vec::new();
-    let yosys = match request.synthesis.then(|| Tool::find("yosys")) {
+    let yosys = match (!request.no_synthesis).then(|| Tool::find("yosys")) {
         None => None,
         Some(Ok(yosys)) => Some(yosys),
         Some(Err(missing)) => {
@@ -68,6 +77,7 @@ pub fn datasheet(
             None
         }
     };
+    let limit = Duration::from_secs(request.time_limit);
     let steps = loaded.len() * datasheet::steps(yosys.is_some());
     let bar = progress::bar(output, steps as u64, "datasheets");
     bar.tick();
@@ -77,7 +87,7 @@ pub fn datasheet(
             unit: &one.unit,
             path: &one.path,
             proof,
-            synthesis: yosys.as_ref().map(|yosys| (yosys, request.time_limit)),
+            synthesis: yosys.as_ref().map(|yosys| (yosys, limit)),
         };
         let made = datasheet::datasheet(&subject, &|| bar.inc(1));
         let made = made.with_context(|| format!("`{}`", one.path))?;
@@ -99,7 +109,7 @@ pub fn datasheet(
 }
 
 /// The page of a configuration.
-fn path(request: &DatasheetRequest, one: &Loaded, single: bool) -> PathBuf {
+fn path(request: &DatasheetArguments, one: &Loaded, single: bool) -> PathBuf {
     match single {
         true => request.out.clone(),
         false => request.out.join(format!("{}.html", one.unit.config.name)),

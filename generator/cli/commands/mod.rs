@@ -23,7 +23,7 @@ pub use catalogue::{list, new};
 pub use check::everything;
 pub use compare::{CompareRequest, compare};
 pub use cosim::{CosimRequest, cosim};
-pub use datasheet::{DatasheetRequest, datasheet};
+pub use datasheet::{DatasheetArguments, datasheet};
 pub use describe::describe;
 pub use eval::eval;
 pub use exhaustive::{ExhaustiveRequest, exhaustive, merge};

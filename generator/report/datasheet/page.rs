@@ -12,7 +12,7 @@ use crate::emit::account::{self, PageInputs, blocks, short};
 use crate::emit::{self, Seal, Timing};
 use crate::netlist::Design;
 use crate::report::chart::Chart;
-use crate::report::comparison;
+use crate::report::comparison::{self, Multiplier};
 use crate::report::figure::{Figure, figures, scientific};
 use crate::report::hardware::FamilyUsage;
 
@@ -65,7 +65,6 @@ struct ProofView {
     error: String,
     units: String,
     together: String,
-    not_covered: String,
 }
 
 struct HighlightView {
@@ -137,7 +136,6 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
             error: scientific(proof.f.error),
             units: format!("{:.3}", proof.f.units),
             together: format!("{:.3}", proof.together),
-            not_covered: html(&proof.not_covered),
         }),
         remarks: contract.remarks().iter().map(|it| html(it)).collect(),
         figures: figures(&charts)?,
@@ -173,8 +171,6 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
     let clocks = |clocks: Option<u32>| clocks.map_or("by data".to_owned(), |it| it.to_string());
     let timing = &measured.timing;
     let outputs = contract.outputs().len();
-    let multipliers = comparison::multipliers(design);
-    let multipliers: Vec<String> = multipliers.iter().map(ToString::to_string).collect();
     let registers = design.registers.iter();
     let flip_flops: u32 = registers.map(|register| design.width(register.q)).sum();
     let mut glance = vec![
@@ -189,7 +185,7 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
         ("Control words", design.control.words.len().to_string()),
         ("ROM", format!("{} bits", grouped(design.rom_bits()))),
         ("Register bits", flip_flops.to_string()),
-        ("Multipliers", multipliers.join(", ").replace('x', " × ")),
+        ("Multipliers", multipliers(design)),
     ];
     if let Some((_, usage)) = &measured.synthesis
         && let Some(usage) = usage.first()
@@ -203,6 +199,28 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
         ));
     }
     glance
+}
+
+/// How many there are of each size, the largest first.
+fn multipliers(design: &Design) -> String {
+    let mut sizes: Vec<(Multiplier, usize)> = Vec::new();
+    for multiplier in comparison::multipliers(design) {
+        match sizes.last_mut() {
+            Some((size, count)) if *size == multiplier => *count += 1,
+            _ => sizes.push((multiplier, 1)),
+        }
+    }
+    let sizes = sizes.iter().map(|(size, count)| {
+        let (first, second) = (size.first, size.second);
+        match count {
+            1 => format!("{first}\u{a0}×\u{a0}{second}"),
+            _ => format!("{count}\u{a0}of {first}\u{a0}×\u{a0}{second}"),
+        }
+    });
+    match sizes.collect::<Vec<_>>()[..] {
+        [] => "none".to_owned(),
+        ref sizes => sizes.join(", "),
+    }
 }
 
 fn throughput(timing: &Timing) -> String {

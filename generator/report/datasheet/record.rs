@@ -23,9 +23,6 @@ pub struct Proof {
     pub f: Peak,
     /// The largest error of an output that the check allows for, in output units.
     pub together: f64,
-    /// What it left out; empty when nothing.
-    #[serde(default)]
-    pub not_covered: String,
     /// Whether the bound held everywhere.
     pub holds: bool,
 }

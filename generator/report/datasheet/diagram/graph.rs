@@ -9,13 +9,13 @@ use crate::netlist::{Design, Driver, FieldId, NetId, Role, Sequence};
 /// Boxes and the wires between them.
 pub struct Graph {
     /// Ports, blocks, and the control unit.
-    pub boxes: Vec<Box>,
+    pub boxes: Vec<Node>,
     /// From the output of a box to another's input, each pair once.
     pub wires: Vec<Wire>,
 }
 
 /// A box of the diagram.
-pub struct Box {
+pub struct Node {
     /// How it is drawn.
     pub form: Form,
     /// In the source's figure.
@@ -93,7 +93,7 @@ struct Builder<'a> {
 }
 
 impl<'a> Builder<'a> {
-    fn add(&mut self, added: Box) -> usize {
+    fn add(&mut self, added: Node) -> usize {
         self.graph.boxes.push(added);
         self.graph.boxes.len() - 1
     }
@@ -114,7 +114,7 @@ impl<'a> Builder<'a> {
     fn port(&mut self, net: NetId, form: Form) -> usize {
         let found = self.design.net(net);
         let format = format_text(found.format);
-        self.add(Box {
+        self.add(Node {
             form,
             number: found.block,
             name: found.name.clone(),
@@ -155,7 +155,7 @@ impl<'a> Builder<'a> {
         let control = &self.design.control;
         let rom = self.design.rom(control.rom);
         let (words, width) = (control.words.len(), self.design.width(rom.data));
-        let at = self.add(Box {
+        let at = self.add(Node {
             form: Form::Control,
             number: rom.block,
             name: "control unit".to_owned(),
@@ -188,7 +188,7 @@ impl<'a> Builder<'a> {
                 continue;
             }
             let kind = block.kind.to_string();
-            let at = self.add(Box {
+            let at = self.add(Node {
                 form: Form::Block(block.kind),
                 number: block.number,
                 name: block.name.to_owned(),

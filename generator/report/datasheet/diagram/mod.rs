@@ -8,7 +8,7 @@ mod tracks;
 use crate::emit::account::blocks::Kind;
 use crate::netlist::Design;
 use crate::report::drawing::{Drawing, Item, text_width};
-use graph::{Box, Form, Graph};
+use graph::{Form, Graph, Node};
 use place::Placement;
 use route::{Body, LANE, Net, Routes};
 
@@ -122,7 +122,7 @@ impl Sizes {
 }
 
 /// The first line of a box.
-fn head(one: &Box) -> String {
+fn head(one: &Node) -> String {
     match one.number {
         Some(number) => format!("{number} {}", one.name),
         None => one.name.clone(),
@@ -145,7 +145,7 @@ fn point((x, y): (f64, f64)) -> String {
     format!("{} {}", coordinate(x), coordinate(y))
 }
 
-fn draw_net(net: &Net, driver: &Box, items: &mut Vec<Item>) {
+fn draw_net(net: &Net, driver: &Node, items: &mut Vec<Item>) {
     if net.pieces.is_empty() {
         return;
     }
@@ -169,7 +169,7 @@ fn draw_net(net: &Net, driver: &Box, items: &mut Vec<Item>) {
     items.push(Item::Close);
 }
 
-fn draw_box(one: &Box, left: f64, body: &Body, items: &mut Vec<Item>) {
+fn draw_box(one: &Node, left: f64, body: &Body, items: &mut Vec<Item>) {
     let (x, y) = (coordinate(left), coordinate(body.upper));
     let (width, height) = (
         body.width.round() as i32,

@@ -232,11 +232,11 @@ impl Router<'_> {
         // The borders of gaps; a column is between one gap and the next.
         let mut borders: Vec<(f64, f64)> = Vec::new();
         let mut x = 0.0;
-        for gap in 0..=columns {
-            let outside = (gap == 0 || gap == columns) && tracks[gap] == 0;
+        for (gap, &tracks) in tracks.iter().enumerate() {
+            let outside = (gap == 0 || gap == columns) && tracks == 0;
             let wide = match outside {
                 true => 0.0,
-                false => 2.0 * MARGIN + TRACK * tracks[gap].saturating_sub(1) as f64,
+                false => 2.0 * MARGIN + TRACK * tracks.saturating_sub(1) as f64,
             };
             borders.push((x, x + wide));
             x += wide + if gap < columns { widest(gap) } else { 0.0 };

@@ -138,10 +138,7 @@ mod tests {
         // Both go down: the lower one must turn first.
         let mut trunks = [trunk(0, 0.0, 40.0), trunk(1, 20.0, 60.0)];
         assert_eq!(assign(&mut trunks), 2);
-        assert_eq!(
-            tracks(&trunks),
-            [(0, 1), (1, 0)].map(|(net, track)| (net, track))
-        );
+        assert_eq!(tracks(&trunks), [(0, 1), (1, 0)]);
         assert_eq!(trunks[0].left_of(&trunks[1]), 0);
     }
 
