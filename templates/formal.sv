@@ -77,6 +77,10 @@ ${ line }$
 <%- endfor %>
             endcase
         end
+<%- if bounded.ends_with_result %>
+        // No computation ends without a result.
+        if (done) assert (valid);
+<%- endif %>
 <%- if let Some(first) = bounded.first %>
         // From the clock that the manifest promises a result a clock, to the end.
         assert (valid == (busy && ${ age.name }$ >= ${ first }$));

@@ -7,11 +7,11 @@
 use anyhow::Result;
 use askama::Template;
 
-use super::Timing;
 use super::naming::Naming;
 use super::rows::{Row, separated};
 use super::termination::{self, Left};
 use super::text::{Names, literal, range};
+use super::{Computation, EmitInputs, Timing};
 use crate::netlist::{Design, NetId, RegId, RegisterKind, Sequence, Unit};
 
 /// Steps of an induction where the clocks depend on the data: more than a result takes through a pipeline.
@@ -70,6 +70,8 @@ struct Bounded {
     word: String,
     most: String,
     words: Vec<Word>,
+    /// In the clock of `done` there is a result.
+    ends_with_result: bool,
     /// The clock of the first result, where one follows another from then on to the end.
     first: Option<String>,
 }
@@ -173,9 +175,10 @@ fn datapath(design: &Design, was_busy: &str) -> Vec<String> {
 pub fn files(
     design: &Design,
     naming: &Naming,
-    timing: &Timing,
+    inputs: &EmitInputs,
     sources: Sources,
 ) -> Result<Vec<(String, String)>> {
+    let timing = &inputs.timing;
     let module = &design.name;
     let name = format!("{module}_formal");
     let mut names = Names::new(
@@ -261,6 +264,11 @@ pub fn files(
                     Some(1) => timing.start_to_valid.map(|first| age.literal(first)),
                     _ => None,
                 },
+                ends_with_result: !inputs.computations.is_empty()
+                    && inputs
+                        .computations
+                        .iter()
+                        .all(Computation::ends_with_result),
                 ..bounded_view(design, naming, &instance, &mut names, (&words, most), age)
             }),
         age: age.as_ref().map(|age| AgeView {
@@ -352,6 +360,7 @@ fn bounded_view(
         word,
         most: age.literal(most),
         first: None,
+        ends_with_result: false,
         inside,
     }
 }

@@ -157,6 +157,14 @@ pub struct Computation {
     pub done: u32,
 }
 
+impl Computation {
+    /// Whether the last result comes with `done`.
+    pub fn ends_with_result(&self) -> bool {
+        let last = self.results.last();
+        last.is_some_and(|result| result.clock == self.done)
+    }
+}
+
 /// A result.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Shown {
@@ -233,7 +241,7 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
             rtl: &names_of(&rtl),
             memories: &names_of(&memories),
         };
-        let formal = formal::files(design, &naming, &inputs.timing, sources)?;
+        let formal = formal::files(design, &naming, inputs, sources)?;
         testbench.splice(0..0, formal);
         if let (Some(example), Some(accuracy)) = (&inputs.example, &inputs.accuracy) {
             testbench.insert(0, cocotb::bench(design, example, accuracy)?);
