@@ -256,7 +256,7 @@ fn verdict(unit: &Unit) -> Result<f64> {
 fn write(unit: &Unit, vectors: &Vectors, place: &Path) -> Result<Vec<String>> {
     let mut sources = Vec::new();
     for file in unit.files("bench", vectors.clone())? {
-        let name = file.path.rsplit('/').next().context("a name")?.to_owned();
+        let name = file.name().to_owned();
         fs::write(place.join(&name), &file.contents)?;
         if name.ends_with(".v") {
             sources.push(name);

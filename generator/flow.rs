@@ -6,11 +6,21 @@ use anyhow::{Context, Result};
 
 use crate::config::Config;
 use crate::cosim::batch::{Engine, Golden, RustHdl, Verilog};
+use crate::cosim::exhaustive::{Clocks, Job};
 use crate::cosim::{Lockstep, external, trial};
-use crate::emit::{self, Accuracy, EmitInputs, OutputFile, PageInputs, Timing, Vectors};
+use crate::emit::{
+    self, Accuracy, EmitInputs, OutputFile, PageInputs, Timing, Vectors, WorkedExample,
+};
 use crate::golden::Contract;
 use crate::netlist::Design;
 use crate::registry::Device;
+
+/// Results that the main job and `cosim` check of each configuration, unless told otherwise: the default
+/// test.
+pub const TEST_POINTS: u64 = 100_000;
+
+/// The seed of the default test.
+pub const TEST_SEED: u64 = 1;
 
 /// Results in the stimulus of a committed bench.
 pub const BENCH_POINTS: u64 = 24;
@@ -59,6 +69,12 @@ impl Unit {
         })
     }
 
+    /// Tells this configuration, and version of Glint, from others: SHA-256 in hexadecimal.
+    pub fn digest(&self) -> String {
+        let text = self.config.to_toml(&(self.device.schema)());
+        emit::digest(format!("{}\n{text}", env!("CARGO_PKG_VERSION")).as_bytes())
+    }
+
     /// Golden model and built-in simulator, side by side.
     ///
     /// # Errors
@@ -68,12 +84,38 @@ impl Unit {
         Lockstep::new(&self.design, model, self.contract.as_ref(), seed)
     }
 
+    /// The exhaustive check: the proof of the contract and, where they are not too many, every
+    /// combination of operands clock by clock.
+    ///
+    /// # Errors
+    /// Model and design do not name the same signals.
+    pub fn job(&self) -> Result<Job<'_>> {
+        Ok(Job::new(self.contract.as_ref()).with(self.clocks()?))
+    }
+
+    /// Every combination of operands, golden model against built-in simulator.
+    ///
+    /// # Errors
+    /// Model and design do not name the same signals.
+    pub fn clocks(&self) -> Result<Clocks<'_>> {
+        let model = (self.device.model)(&self.config);
+        Clocks::new(&self.design, model, self.contract.as_ref())
+    }
+
     /// Clocks between the events of the handshake.
     ///
     /// # Errors
     /// A device that does not end.
     pub fn timing(&self) -> Result<Timing> {
         trial::timing(&self.design, self.contract.as_ref())
+    }
+
+    /// One computation with all its numbers.
+    ///
+    /// # Errors
+    /// A device that does not end.
+    pub fn example(&self) -> Result<WorkedExample> {
+        trial::example(&self.design, self.contract.as_ref())
     }
 
     /// Stimulus and expected outputs for a bench; the golden model and the built-in simulator agree on
@@ -93,7 +135,7 @@ impl Unit {
         let inputs = EmitInputs {
             config: config.to_owned(),
             timing: self.timing()?,
-            example: Some(trial::example(&self.design, self.contract.as_ref())?),
+            example: Some(self.example()?),
             accuracy: Some(Accuracy::new(self.contract.as_ref())),
             computations: trial::computations(&self.design, self.contract.as_ref())?,
             vectors: Some(vectors),
@@ -107,13 +149,7 @@ impl Unit {
     /// The design cannot be written as Verilog.
     pub fn verilog(&self) -> Result<Vec<(String, String)>> {
         let files = emit::emit(&self.design, &EmitInputs::default())?;
-        Ok(files
-            .into_iter()
-            .filter_map(|file| {
-                let name = file.path.rsplit('/').next()?.to_owned();
-                (name.ends_with(".v") || name.ends_with(".mem")).then_some((name, file.contents))
-            })
-            .collect())
+        Ok(emit::sources(files))
     }
 
     /// The page of the configuration, which the command line knows as `config`.
@@ -127,7 +163,7 @@ impl Unit {
             schema: &(self.device.schema)(),
             contract: self.contract.as_ref(),
             timing: &self.timing()?,
-            example: &trial::example(&self.design, self.contract.as_ref())?,
+            example: &self.example()?,
         };
         emit::page(&self.design, &inputs)
     }
@@ -142,14 +178,7 @@ impl Unit {
             Through::Golden => Box::new(Golden(contract)),
             Through::RustHdl => Box::new(RustHdl::new(&self.design, contract)?),
             Through::Verilog(simulator, limit) => {
-                let files = emit::emit(&self.design, &EmitInputs::default())?;
-                let files = files.into_iter().filter_map(|file| {
-                    let name = file.path.rsplit('/').next()?.to_owned();
-                    let needed = name.ends_with(".v") || name.ends_with(".mem");
-                    needed.then_some((name, file.contents))
-                });
-                let design = &self.design;
-                let files = files.collect();
+                let (design, files) = (&self.design, self.verilog()?);
                 Box::new(Verilog::new(simulator, design, contract, files, limit)?)
             }
         })

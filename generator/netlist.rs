@@ -182,6 +182,33 @@ impl Op {
         }
     }
 
+    /// Every operand, in order of writing, to be replaced by others.
+    pub fn operands_mut(&mut self) -> Vec<&mut NetId> {
+        match self {
+            Self::Relabel(a)
+            | Self::Extend(a)
+            | Self::Not(a)
+            | Self::Any(a)
+            | Self::All(a)
+            | Self::Slice { of: a, .. } => vec![a],
+            Self::Concat(parts) => parts.iter_mut().collect(),
+            Self::And(a, b)
+            | Self::Or(a, b)
+            | Self::Xor(a, b)
+            | Self::Sub(a, b)
+            | Self::Mul(a, b)
+            | Self::Equal(a, b)
+            | Self::Less(a, b) => vec![a, b],
+            Self::Add { a, b, carry } => [Some(a), Some(b), carry.as_mut()]
+                .into_iter()
+                .flatten()
+                .collect(),
+            Self::Mux { select, inputs } => {
+                std::iter::once(select).chain(inputs.iter_mut()).collect()
+            }
+        }
+    }
+
     /// The name of the cell in dumps and diagrams.
     pub fn mnemonic(&self) -> &'static str {
         match self {

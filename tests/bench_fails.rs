@@ -5,7 +5,7 @@ mod common;
 use common::tools::LIMIT;
 use glint::cosim::external::{BenchOutcome, Simulator, run_bench};
 use glint::dsl::{Designer, end, step, valid};
-use glint::emit::{EmitInputs, Vectors, emit};
+use glint::emit::{EmitInputs, Vectors, emit, sources};
 use glint::fixed::{Format, Overflow, Rounding};
 use glint::netlist::Design;
 
@@ -54,15 +54,8 @@ fn run(simulator: Simulator, vectors: Vectors) -> BenchOutcome {
         vectors: Some(vectors),
         ..EmitInputs::default()
     };
-    let files: Vec<_> = emit(&squarer(), &inputs)
-        .unwrap_or_else(|error| panic!("{error:?}"))
-        .into_iter()
-        .map(|file| {
-            let name = file.path.rsplit('/').next().unwrap_or_default().to_owned();
-            (name, file.contents)
-        })
-        .filter(|(name, _)| name.ends_with(".v") || name.ends_with(".mem"))
-        .collect();
+    let files = emit(&squarer(), &inputs).unwrap_or_else(|error| panic!("{error:?}"));
+    let files = sources(files);
     run_bench(simulator, &files, "squarer_tb", LIMIT).unwrap_or_else(|error| panic!("{error:?}"))
 }
 

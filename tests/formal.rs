@@ -127,7 +127,6 @@ const OF_QUAD_COSINE: [Fault; 6] = [
 fn faults_break_the_proof() {
     let faults = |config, faults: &'static [Fault]| faults.iter().map(move |fault| (config, fault));
     let faults: Vec<(&str, &Fault)> = faults("rough", &OF_ALL)
-        .chain(faults("lyon_multiplier", &OF_ALL))
         .chain(faults("lyon", &OF_ALL[..7]))
         .chain(faults("quad_cosine", &OF_ALL))
         .chain(faults("lyon", &OF_LYON))

@@ -3,6 +3,7 @@
 mod commands;
 mod destination;
 mod failure;
+mod own_file;
 mod progress;
 mod staged;
 mod store;
@@ -15,10 +16,8 @@ use std::process::ExitCode;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
 use crate::cosim::exhaustive::Shard;
+use crate::flow::TEST_SEED;
 use crate::registry::Registry;
-
-/// The points that the main job and `cosim` check of each configuration.
-const POINTS: u64 = 100_000;
 
 /// Specular-shading hardware from Rust descriptions: Verilog, co-simulation, accuracy.
 ///
@@ -42,9 +41,12 @@ Examples:
   glint cosim my_core.toml --points 1000000     golden model against hardware, every clock
   glint cosim my_core.toml --simulator icarus   the emitted Verilog in Icarus Verilog
   glint cosim my_core.toml --points 20 --vcd wave.vcd
+  glint mutate my_core.toml                     are faults noticed? Plants thousands, one at a time
   glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
   glint describe my_core.toml                   ports, blocks, microprogram, accuracy: a page
+  glint datasheet my_core.toml                  the same as a product guide in HTML, with diagrams and plots
   glint compare --exponent 100                  all devices side by side
+  glint verify my_core.toml                     every proof and test there is, and a page about it
   glint render my_core.toml --out sphere.png    a picture through the bit-accurate device
 
 Exit codes: 0 everything holds; 1 something does not hold or could not be done; 2 wrong usage.";
@@ -89,7 +91,7 @@ Examples:
         #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
         points: Option<u64>,
         /// Seed of the stimulus
-        #[arg(long, value_name = "S", default_value_t = 1)]
+        #[arg(long, value_name = "S", default_value_t = TEST_SEED)]
         seed: u64,
         /// What simulates the hardware
         #[arg(long, value_enum, default_value_t = Simulator::RustHdl)]
@@ -121,6 +123,31 @@ Example, on four machines and then on one:
         /// The files of all parts
         #[arg(value_name = "FILE", required = true)]
         files: Vec<PathBuf>,
+    },
+    /// Plant faults one at a time, and show which of them the tests notice
+    ///
+    /// Stuck and inverted bits, swapped mux inputs, wrong operators, constants, enables, every bit of every control
+    /// word, a sample of ROM words: each is put into the netlist, and the default test of `cosim` is run on it. A
+    /// mutant is caught, or proved to change nothing that is compared, or open. The exit code is 0 if at most 1 % of
+    /// each configuration's are open.
+    #[command(after_help = "\
+Examples:
+  glint mutate my_core.toml                               the score, and what is open
+  glint mutate my_core.toml --list                        the names of all faults
+  glint mutate my_core.toml --only 'result[3]:inverted'   one of them: where it shows, and a waveform
+  glint mutate --out mutation                             a record of each configuration in configs/")]
+    Mutate {
+        #[command(flatten)]
+        configs: Configs,
+        /// Name the faults, and plant none
+        #[arg(long, conflicts_with_all = ["only", "out"])]
+        list: bool,
+        /// Plant this fault alone; where it is caught, write the waveform around it
+        #[arg(long, value_name = "ID", conflicts_with = "out")]
+        only: Option<String>,
+        /// Write the record of each configuration, <name>.json, into this directory
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
     },
     /// Compute one point: golden registers, outputs and the formula in f64
     #[command(after_help = "\
@@ -154,6 +181,41 @@ Examples:
         /// Replace pages that Glint did not write or that were edited since
         #[arg(long, requires = "out")]
         force: bool,
+    },
+    /// Write a datasheet, one HTML page that needs no network
+    ///
+    /// A page as a vendor's product guide: figures at a glance, block diagram, ports and formats, a worked
+    /// example, a timing diagram from simulation, the microprogram by control lines, latency and throughput, the error
+    /// bound with its proof and plots, a rendered highlight, an instance in Verilog, and where everything comes from. With
+    /// Yosys on PATH it says what the device takes of iCE40, ECP5 and Xilinx 7, which takes a minute or more. A file
+    /// that Glint did not write, or that was edited since, is left alone unless --force is given.
+    #[command(after_help = "\
+Examples:
+  glint datasheet                                       all of configs/, into datasheets/
+  glint datasheet my_core.toml --no-synthesis           in a second or two
+  glint datasheet my_core.toml --out core.html          one page, under this name
+  glint datasheet configs/rough.toml --wavedrom         also datasheets/rough.wavedrom.json")]
+    Datasheet {
+        #[command(flatten)]
+        configs: Configs,
+        /// A directory, or for one configuration a file that ends in .html
+        #[arg(long, value_name = "DIR|FILE.html", default_value = "datasheets")]
+        out: PathBuf,
+        /// Where records of `cosim --exhaustive --json` are, as <name>.json
+        #[arg(long, value_name = "DIR", default_value = "proofs")]
+        proofs: PathBuf,
+        /// Write the timing diagram for WaveDrom too, beside the page
+        #[arg(long)]
+        wavedrom: bool,
+        /// Replace files that Glint did not write or that were edited since
+        #[arg(long)]
+        force: bool,
+        /// Do not ask Yosys what the device takes
+        #[arg(long)]
+        no_synthesis: bool,
+        /// Seconds after which a run of Yosys is given up
+        #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+        time_limit: u64,
     },
     /// Weigh all devices against cos^n gamma at one exponent, side by side
     ///
@@ -230,6 +292,35 @@ Examples:
         no_synthesis: bool,
         /// Seconds after which a run of Yosys is given up
         #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+        time_limit: u64,
+    },
+    /// Verify configurations by every means that Glint has, and write a page about each
+    ///
+    /// Writes DIR/<name>.html, one page that needs no network, and DIR/<name>.json with the same for scripts: what was
+    /// shown, by which leg, over which domain, with which tools, and what is left open. Both are the same whenever they are
+    /// made with the same tools, but for the page's last section: how long each leg took, which DIR/<name>.timings.json has too.
+    /// The exit code is 0 only if every leg that covers the configuration was run and holds: a tool that is missing
+    /// leaves the verification incomplete.
+    #[command(after_help = "\
+Examples:
+  glint verify my_core.toml                       every leg, in a minute or two
+  glint verify my_core.toml --full                the whole proof, all faults: minutes to hours
+  glint verify my_core.toml --without-tools       what needs no simulator, solver or synthesiser
+  glint verify --json                             everything in configs/, for scripts")]
+    Verify {
+        #[command(flatten)]
+        configs: Configs,
+        /// Do everything, however long it takes
+        #[arg(long)]
+        full: bool,
+        /// Only the legs that need no tool outside Glint
+        #[arg(long)]
+        without_tools: bool,
+        /// Where the files go
+        #[arg(long, value_name = "DIR", default_value = "verification")]
+        out: PathBuf,
+        /// Seconds after which a run of an outside tool is given up
+        #[arg(long, value_name = "SECONDS", default_value_t = 3600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
         time_limit: u64,
     },
     /// Name the devices, and the configurations in configs/
@@ -343,6 +434,15 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             };
             commands::cosim(registry, output, &configs.configs, &request)
         }
+        Some(Command::Mutate {
+            configs,
+            list,
+            only,
+            out,
+        }) => {
+            let request = commands::MutateRequest { list, only, out };
+            commands::mutate(registry, output, &configs.configs, &request)
+        }
         Some(Command::Eval { config, operands }) => {
             commands::eval(registry, output, &config, &operands)
         }
@@ -351,6 +451,25 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             out,
             force,
         }) => commands::describe(registry, output, &configs.configs, out.as_deref(), force),
+        Some(Command::Datasheet {
+            configs,
+            out,
+            proofs,
+            wavedrom,
+            force,
+            no_synthesis,
+            time_limit,
+        }) => {
+            let request = commands::DatasheetRequest {
+                out,
+                proofs,
+                wavedrom,
+                force,
+                synthesis: !no_synthesis,
+                time_limit: std::time::Duration::from_secs(time_limit),
+            };
+            commands::datasheet(registry, output, &configs.configs, &request)
+        }
         Some(Command::Compare {
             configs,
             exponent,
@@ -390,6 +509,21 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
                 time_limit: std::time::Duration::from_secs(time_limit),
             };
             commands::report(registry, output, &request)
+        }
+        Some(Command::Verify {
+            configs,
+            full,
+            without_tools,
+            out,
+            time_limit,
+        }) => {
+            let request = commands::VerifyRequest {
+                full,
+                without_tools,
+                out,
+                time_limit: std::time::Duration::from_secs(time_limit),
+            };
+            commands::verify(registry, output, &configs.configs, &request)
         }
         Some(Command::List) => commands::list(registry, output),
         Some(Command::New { device, name }) => {

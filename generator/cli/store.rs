@@ -14,7 +14,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use super::staged;
-use crate::emit::{Comment, OutputFile, digest, is_sealed};
+use crate::emit::{OutputFile, Seal, digest, is_sealed};
 
 /// What [`write()`] did with the directories of a configuration, or [`write_sealed`] with a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,28 +53,35 @@ pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Resul
     Ok(Written::Replaced)
 }
 
-/// Writes a file whose last line vouches for it.
+/// Writes a single file that vouches for itself.
 ///
 /// # Errors
-/// A file there that is not Glint's or was edited since, unless `force`; a directory that cannot be
+/// A file there that Glint did not write or that was edited since, unless `force`; a directory that cannot be
 /// written. Whatever fails, what was there before is there after.
-pub fn write_sealed(path: &Path, text: &str, comment: Comment, force: bool) -> Result<Written> {
-    match fs::read(path) {
-        Ok(found) if found == text.as_bytes() => return Ok(Written::Unchanged),
-        Ok(found) if !force && !is_sealed(&found, comment) => bail!(
-            "`{}` was not written by Glint, or was edited since; nothing was changed\n\
-             move it away, choose another --out, or replace it with --force",
-            path.display()
-        ),
-        Ok(_) => {}
-        Err(error) if error.kind() == ErrorKind::NotFound => {}
-        Err(error) => {
-            return Err(error).with_context(|| format!("cannot read `{}`", path.display()));
-        }
+pub fn write_sealed(path: &Path, text: &str, seal: Seal, force: bool) -> Result<Written> {
+    if may_write(path, seal, force)?.is_some_and(|found| found == text.as_bytes()) {
+        return Ok(Written::Unchanged);
     }
     create_parent(path)?;
     staged::replace(path, text.as_bytes())?;
     Ok(Written::Replaced)
+}
+
+/// Whether [`write_sealed`] would refuse to replace what is there, which it returns.
+///
+/// # Errors
+/// A file that Glint did not write or that was edited since, unless `force`; one that cannot be read.
+pub fn may_write(path: &Path, seal: Seal, force: bool) -> Result<Option<Vec<u8>>> {
+    match fs::read(path) {
+        Ok(found) if !force && !is_sealed(&found, seal) => bail!(
+            "`{}` was not written by Glint, or was edited since; nothing was changed\n\
+             move it away, choose another --out, or replace it with --force",
+            path.display()
+        ),
+        Ok(found) => Ok(Some(found)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error).with_context(|| format!("cannot read `{}`", path.display())),
+    }
 }
 
 /// The files below `out` that differ from `files`, or are missing, or stand there beside them.

@@ -54,16 +54,3 @@ pub fn finish() -> Result<()> {
         None => Ok(()),
     }
 }
-
-/// An integer with spaces between the thousands.
-pub fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (at, digit) in digits.chars().enumerate() {
-        if at > 0 && (digits.len() - at).is_multiple_of(3) {
-            text.push(' ');
-        }
-        text.push(digit);
-    }
-    text
-}

@@ -3,7 +3,7 @@
 use anyhow::Result;
 
 use super::pairing::Pairing;
-use super::stream::{Seen, Stream};
+use super::stream::{Course, Seen, Stream};
 use crate::sim::Simulator;
 
 /// One stream in a simulator of its own.
@@ -18,11 +18,11 @@ impl<'a> Alone<'a> {
     ///
     /// # Errors
     /// A design that cannot be simulated.
-    pub(super) fn new(pairing: &'a Pairing<'a>, seed: u64, points: u64) -> Result<Self> {
+    pub(super) fn new(pairing: &'a Pairing<'a>, course: Course) -> Result<Self> {
         let simulator: Simulator = Simulator::new(pairing.design)?;
         let busy = simulator.value(pairing.compared[pairing.busy]) == 1;
         Ok(Self {
-            stream: Stream::new(pairing, seed, points, busy),
+            stream: Stream::new(pairing, course, busy),
             simulator,
             pairing,
         })
@@ -36,6 +36,11 @@ impl<'a> Alone<'a> {
     /// What it has shown so far.
     pub(super) fn seen(&self) -> &Seen {
         &self.stream.seen
+    }
+
+    /// Clocks since the latest start, where combinations are gone through.
+    pub(super) fn since_start(&self) -> u64 {
+        self.stream.since_start()
     }
 
     /// One clock. Its inputs.

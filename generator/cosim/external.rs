@@ -20,9 +20,13 @@ use anyhow::{Context, Result, anyhow, bail};
 
 mod bench;
 mod capture;
+mod lint;
+mod proof;
 
 pub use bench::{BenchOutcome, BuiltBench, Simulator, run_bench};
 use capture::Capture;
+pub use lint::lint;
+pub use proof::prove;
 
 /// What asking for a version may take: the first run of a WebAssembly tool compiles it.
 const VERSION_LIMIT: Duration = Duration::from_secs(600);

@@ -6,6 +6,7 @@
 //! has any influence on what is found. What counts is what streams showed in their order up to the
 //! first that differs.
 
+use std::fmt;
 use std::io::Write;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -16,14 +17,15 @@ use rayon::prelude::*;
 use super::alone::Alone;
 use super::pairing::Pairing;
 use super::stimulus::Random;
-use super::stream::Seen;
+use super::stream::{Course, Seen};
 use super::together::Together;
 use crate::emit::Vectors;
-use crate::golden::{Contract, Model};
+use crate::golden::{Bound, Contract, Model};
 use crate::netlist::Design;
+use crate::sim::Simulator;
 
 /// Streams that share a simulator.
-const LANES: usize = 32;
+pub(super) const LANES: usize = 32;
 
 /// Beyond so many streams, which keep two threads busy, there are multiples of it.
 const STREAMS: u64 = 2 * LANES as u64;
@@ -55,6 +57,28 @@ pub struct Outcome {
     pub mismatch: Option<Mismatch>,
 }
 
+impl Outcome {
+    /// What does not hold, with a contract whose bound this is.
+    pub fn faults(&self, bound: &Bound) -> Vec<String> {
+        let mut faults = Vec::new();
+        if let Some(mismatch) = &self.mismatch {
+            faults.push(format!(
+                "seed {}, after clock {}, {mismatch}",
+                mismatch.seed, mismatch.clock
+            ));
+        }
+        if let Some(worst) = &self.worst
+            && worst.units > bound.units
+        {
+            faults.push(format!(
+                "`{}` is off by {:.4} units, beyond the stated bound of {:.4}",
+                worst.output, worst.units, bound.units
+            ));
+        }
+        faults
+    }
+}
+
 /// The largest error against the formula, and where.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Worst {
@@ -70,7 +94,7 @@ pub struct Worst {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
     /// The seed of the stream: a run with it that is not divided, [`Lockstep::trace`] say, goes the same
-    /// way from the first clock on.
+    /// way from the first clock on. Where combinations are gone through, the place of the one that runs.
     pub seed: u64,
     /// Rising edges of the stream so far.
     pub clock: u64,
@@ -82,6 +106,16 @@ pub struct Mismatch {
     pub simulated: u64,
     /// The word of the microprogram that was executed at the edge.
     pub word: String,
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "word `{}`: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
+            self.word, self.signal, self.simulated, self.golden
+        )
+    }
 }
 
 /// Golden model and simulator of one design.
@@ -114,7 +148,7 @@ impl<'a> Lockstep<'a> {
     pub fn run(&self, points: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Outcome> {
         let streams = streams(points, self.pairing.longest());
         if streams == 1 {
-            let alone = Alone::new(&self.pairing, self.seed, points)?;
+            let alone = self.alone(points)?;
             return Ok(self.outcome([alone.run(progress)?]));
         }
         // The first stream known to differ: those after it are of no interest.
@@ -141,9 +175,11 @@ impl<'a> Lockstep<'a> {
         progress: &(dyn Fn(u64) + Sync),
     ) -> Result<Vec<Seen>> {
         let first = numbers.start;
-        let share = |number| points / streams + u64::from(number < points % streams);
-        let given = numbers.map(|number| (stream_seed(self.seed, number), share(number)));
-        let mut group = Together::<LANES>::new(&self.pairing, given)?;
+        if differs.load(Ordering::Relaxed) < first {
+            return Ok(Vec::new());
+        }
+        let courses = numbers.map(|number| self.stream(points, streams, number));
+        let mut group = Together::<LANES>::new(&self.pairing, courses)?;
         while !group.ended() && differs.load(Ordering::Relaxed) >= first {
             progress(group.run()?);
         }
@@ -151,6 +187,20 @@ impl<'a> Lockstep<'a> {
             differs.fetch_min(first + at as u64, Ordering::Relaxed);
         }
         group.into_seen()
+    }
+
+    /// One stream of so many points under the seed of the run.
+    fn alone(&self, points: u64) -> Result<Alone<'_>> {
+        let seed = self.seed;
+        Alone::new(&self.pairing, Course::Random { seed, points })
+    }
+
+    /// One of the streams of a run.
+    fn stream(&self, points: u64, streams: u64, number: u64) -> Course {
+        Course::Random {
+            seed: stream_seed(self.seed, number),
+            points: points / streams + u64::from(number < points % streams),
+        }
     }
 
     /// What streams showed together, up to the first that differs.
@@ -175,13 +225,49 @@ impl<'a> Lockstep<'a> {
         outcome
     }
 
+    /// As [`Lockstep::run`], in one stream.
+    ///
+    /// # Errors
+    /// Those of [`Lockstep::run`].
+    pub fn run_alone(&self, points: u64) -> Result<Outcome> {
+        Ok(self.outcome([self.alone(points)?.run(&|_| ())?]))
+    }
+
+    /// Goes through the streams of a run of `points` results, each alone. `begin` makes what watches a stream,
+    /// of its seed; after each clock `note` shows it the results so far and the simulator. They come back
+    /// in the order of the streams.
+    ///
+    /// # Errors
+    /// Those of [`Lockstep::run`].
+    pub fn watch<W: Send>(
+        &self,
+        points: u64,
+        begin: impl Fn(u64) -> W + Sync,
+        note: impl Fn(&mut W, u64, &Simulator) + Sync,
+    ) -> Result<Vec<W>> {
+        let streams = streams(points, self.pairing.longest());
+        (0..streams)
+            .into_par_iter()
+            .map(|number| {
+                let mut watch = begin(stream_seed(self.seed, number));
+                let course = self.stream(points, streams, number);
+                let mut alone = Alone::new(&self.pairing, course)?;
+                while !alone.ended() {
+                    alone.clock()?;
+                    note(&mut watch, alone.seen().points, &alone.simulator);
+                }
+                Ok(watch)
+            })
+            .collect()
+    }
+
     /// Stimulus and expected outputs for a bench: the inputs of every clock of one stream of `points`
     /// results, and the outputs before its edge.
     ///
     /// # Errors
     /// Golden model and simulation differ; a design that cannot be simulated, or does not settle.
     pub fn record(&self, points: u64) -> Result<Vectors> {
-        let mut alone = Alone::new(&self.pairing, self.seed, points)?;
+        let mut alone = self.alone(points)?;
         let mut vectors = Vectors::default();
         while !alone.ended() {
             let outputs = self.pairing.outputs.iter();
@@ -211,7 +297,7 @@ impl<'a> Lockstep<'a> {
         from: u64,
         file: impl Write + Send + 'static,
     ) -> Result<Outcome> {
-        let mut alone = Alone::new(&self.pairing, self.seed, points)?;
+        let mut alone = self.alone(points)?;
         while !alone.ended() && alone.seen().clocks < from {
             alone.clock()?;
         }

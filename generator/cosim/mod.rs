@@ -3,6 +3,7 @@
 
 mod alone;
 pub mod batch;
+mod combinations;
 pub mod exhaustive;
 pub mod external;
 mod lockstep;

@@ -1,7 +1,10 @@
 //! What of a golden model belongs to what of a design.
 
+use std::sync::Arc;
+
 use anyhow::{Context, Result, anyhow, ensure};
 
+use super::combinations::{Combinations, Ports};
 use super::lockstep::{Mismatch, Worst};
 use super::stimulus::Stimulus;
 use super::stream::Stream;
@@ -25,6 +28,7 @@ pub(super) struct Pairing<'a> {
     pub(super) valid: usize,
     /// The address of the microprogram.
     pub(super) address: NetId,
+    pub(super) ports: Arc<Ports>,
     /// The operands of the contract, as positions in the stimulus.
     operands: Vec<usize>,
     /// Of each result: itself, and the unit of the colour operand that it is made of.
@@ -131,6 +135,7 @@ impl<'a> Pairing<'a> {
             compared,
             busy,
             valid,
+            ports: Arc::new(Ports::new(design)),
             address: design.register(design.control.address).q,
             operands,
             results,
@@ -144,6 +149,11 @@ impl<'a> Pairing<'a> {
             Some(length) => stimulus.with_length(length),
             None => stimulus,
         }
+    }
+
+    /// The combinations of operands at so many places, from the first on.
+    pub(super) fn combinations(&self, first: u64, count: u64) -> Combinations {
+        Combinations::new(self.ports.clone(), first, count)
     }
 
     /// A bound on the results of one computation.
@@ -177,7 +187,7 @@ impl<'a> Pairing<'a> {
         let words = &self.design.control.words;
         let word = usize::try_from(word).ok().and_then(|word| words.get(word));
         Some(Mismatch {
-            seed: stream.seed,
+            seed: stream.seed(),
             clock: stream.seen.clocks,
             signal: self.model.signals()[at].clone(),
             golden: stream.predicted()[at],

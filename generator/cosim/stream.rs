@@ -1,7 +1,8 @@
-//! A stream: a stimulus from power-up on, and the golden model under it.
+//! A stream: inputs from power-up on, and the golden model under them.
 
 use std::mem;
 
+use super::combinations::Combinations;
 use super::lockstep::{Mismatch, Worst};
 use super::pairing::Pairing;
 use super::stimulus::Stimulus;
@@ -16,13 +17,29 @@ pub(super) struct Seen {
     pub(super) mismatch: Option<Mismatch>,
 }
 
+/// What a stream goes through.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Course {
+    /// So many results under the stimulus of a seed.
+    Random { seed: u64, points: u64 },
+    /// The combinations of operands at so many places, from the first on.
+    Combinations { first: u64, count: u64 },
+}
+
+/// What makes the inputs.
+enum Source {
+    Random {
+        stimulus: Stimulus,
+        seed: u64,
+        points: u64,
+    },
+    Combinations(Combinations),
+}
+
 /// A stream. What the simulated hardware makes of it is for others to say.
 pub(super) struct Stream {
-    pub(super) seed: u64,
-    /// It ends after so many points.
-    pub(super) points: u64,
     pub(super) seen: Seen,
-    stimulus: Stimulus,
+    source: Source,
     model: Box<dyn Model>,
     busy: bool,
     /// Results since the latest start.
@@ -36,12 +53,20 @@ pub(super) struct Stream {
 
 impl Stream {
     /// At power-up, when the device shows `busy`.
-    pub(super) fn new(pairing: &Pairing, seed: u64, points: u64, busy: bool) -> Self {
+    pub(super) fn new(pairing: &Pairing, course: Course, busy: bool) -> Self {
+        let source = match course {
+            Course::Random { seed, points } => Source::Random {
+                stimulus: pairing.stimulus(seed),
+                seed,
+                points,
+            },
+            Course::Combinations { first, count } => {
+                Source::Combinations(pairing.combinations(first, count))
+            }
+        };
         Self {
-            seed,
-            points,
             seen: Seen::default(),
-            stimulus: pairing.stimulus(seed),
+            source,
             model: pairing.model.boxed_clone(),
             busy,
             index: 0,
@@ -52,13 +77,44 @@ impl Stream {
     }
 
     pub(super) fn ended(&self) -> bool {
-        self.seen.mismatch.is_some() || self.seen.points >= self.points
+        self.seen.mismatch.is_some()
+            || match &self.source {
+                Source::Random { points, .. } => self.seen.points >= *points,
+                Source::Combinations(combinations) => !self.busy && combinations.all_started(),
+            }
+    }
+
+    /// What it goes through, for another to go the same way.
+    pub(super) fn course(&self) -> Course {
+        match &self.source {
+            &Source::Random { seed, points, .. } => Course::Random { seed, points },
+            Source::Combinations(combinations) => combinations.course(),
+        }
+    }
+
+    /// What the inputs can be made again from: the seed, or the place of the combination that runs.
+    pub(super) fn seed(&self) -> u64 {
+        match &self.source {
+            Source::Random { seed, .. } => *seed,
+            Source::Combinations(combinations) => combinations.place(),
+        }
+    }
+
+    /// Clocks since the latest start, where combinations are gone through: 0 for the one that takes it.
+    pub(super) fn since_start(&self) -> u64 {
+        match &self.source {
+            Source::Combinations(combinations) => combinations.since_start(),
+            Source::Random { .. } => 0,
+        }
     }
 
     /// Clocks the model, and returns the inputs with which that was done.
     #[inline]
     pub(super) fn clock(&mut self, pairing: &Pairing) -> &[u64] {
-        let inputs = self.stimulus.next(self.busy);
+        let inputs = match &mut self.source {
+            Source::Random { stimulus, .. } => stimulus.next(self.busy),
+            Source::Combinations(combinations) => combinations.next(self.busy),
+        };
         match &pairing.order {
             None => self.model.clock(inputs),
             Some(order) => {
@@ -68,7 +124,10 @@ impl Stream {
             }
         }
         self.seen.clocks += 1;
-        self.stimulus.inputs()
+        match &self.source {
+            Source::Random { stimulus, .. } => stimulus.inputs(),
+            Source::Combinations(combinations) => combinations.inputs(),
+        }
     }
 
     /// What the model predicts after the latest clock.
@@ -89,8 +148,12 @@ impl Stream {
             return;
         }
         self.seen.points += 1;
+        // All combinations against the formula: that is the proof of the contract.
+        let Source::Random { stimulus, .. } = &self.source else {
+            return;
+        };
         if self.index == 0 {
-            self.inside = pairing.operands(&self.stimulus, &mut self.operands);
+            self.inside = pairing.operands(stimulus, &mut self.operands);
         }
         if self.inside {
             let worst = &mut self.seen.worst;

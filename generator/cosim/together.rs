@@ -4,7 +4,7 @@ use anyhow::Result;
 
 use super::alone::Alone;
 use super::pairing::Pairing;
-use super::stream::{Seen, Stream};
+use super::stream::{Course, Seen, Stream};
 use crate::sim::Simulator;
 
 /// Clocks for which each stream in turn is ahead of the simulator. Its model and stimulus then stay in
@@ -36,17 +36,17 @@ struct Clock<const LANES: usize> {
 }
 
 impl<'a, const LANES: usize> Together<'a, LANES> {
-    /// Streams at power-up, each given by its seed and its number of points.
+    /// Streams at power-up.
     ///
     /// # Errors
     /// A design that cannot be simulated.
     pub(super) fn new(
         pairing: &'a Pairing<'a>,
-        streams: impl IntoIterator<Item = (u64, u64)>,
+        courses: impl IntoIterator<Item = Course>,
     ) -> Result<Self> {
         let simulator = Simulator::new(pairing.design)?;
         let busy = simulator.lane(pairing.compared[pairing.busy], 0) == 1;
-        let stream = |(seed, points)| Stream::new(pairing, seed, points, busy);
+        let stream = |course| Stream::new(pairing, course, busy);
         let clock = || Clock {
             inputs: vec![[0; LANES]; simulator.inputs().len()],
             predicted: vec![[0; LANES]; pairing.compared.len()],
@@ -54,7 +54,7 @@ impl<'a, const LANES: usize> Together<'a, LANES> {
         };
         Ok(Self {
             pairing,
-            streams: streams.into_iter().take(LANES).map(stream).collect(),
+            streams: courses.into_iter().take(LANES).map(stream).collect(),
             differ: [false; LANES],
             ahead: std::iter::repeat_with(clock).take(AHEAD).collect(),
             simulator,
@@ -119,7 +119,7 @@ impl<'a, const LANES: usize> Together<'a, LANES> {
         let mut all = Vec::new();
         for (stream, differs) in self.streams.into_iter().zip(self.differ) {
             if differs {
-                let alone = Alone::new(self.pairing, stream.seed, stream.points)?;
+                let alone = Alone::new(self.pairing, stream.course())?;
                 all.push(alone.run(&|_| ())?);
                 break;
             }

@@ -1,5 +1,5 @@
-//! One computation of a design in the built-in simulator: its timing, a worked example, and a list of
-//! computations for whoever checks the device without a model.
+//! One computation of a design in the built-in simulator: its timing, a worked example, a recording, and a
+//! list of computations for whoever checks the device without a model.
 
 use anyhow::{Context, Result, ensure};
 
@@ -45,7 +45,7 @@ pub fn timing(design: &Design, contract: &dyn Contract) -> Result<Timing> {
     let mut common: Option<Timing> = None;
     let mut distances = Vec::new();
     for operands in corners(contract) {
-        let trial = run(design, contract, &operands)?;
+        let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
         distances.extend(trial.distances());
         let seen = trial.timing;
         common = Some(match common {
@@ -122,7 +122,7 @@ fn computation(
     contract: &dyn Contract,
     operands: Vec<i64>,
 ) -> Result<Computation> {
-    let trial = run(design, contract, &operands)?;
+    let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
     let nets = results(design, contract);
     let control = operands.len() - contract.outputs().len();
     let (control, colours) = operands.split_at(control);
@@ -160,7 +160,7 @@ pub fn throughput(
     contract: &dyn Contract,
     operands: &[i64],
 ) -> Result<(u32, u32)> {
-    let trial = run(design, contract, operands)?;
+    let trial = run(design, contract, operands, &mut |_| Ok(()))?;
     let clocks = trial.timing.start_to_start.context("it does not end")?;
     Ok((clocks, trial.results.len() as u32))
 }
@@ -172,7 +172,7 @@ pub fn throughput(
 /// Those of [`timing`].
 pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample> {
     let operands = example_operands(contract);
-    let trial = run(design, contract, &operands)?;
+    let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
     let quantity = |name: &str, format: Format, raw: i64| Quantity {
         name: name.to_owned(),
         raw: i128::from(raw),
@@ -255,9 +255,38 @@ fn results(design: &Design, contract: &dyn Contract) -> Vec<NetId> {
         .collect()
 }
 
+/// What nets carry in each clock of the computation of [`example`], from clock 0, in which `start` is high, to the
+/// first in which the device is idle again: the bit patterns just before the clock's rising edge, in the order of
+/// `nets`, all of which are named.
+///
+/// # Errors
+/// Those of [`timing`].
+pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Result<Vec<Vec<u64>>> {
+    let mut clocks = Vec::new();
+    run(
+        design,
+        contract,
+        &example_operands(contract),
+        &mut |simulator| {
+            simulator.settle()?;
+            clocks.push(nets.iter().map(|&net| simulator.value(net)).collect());
+            Ok(())
+        },
+    )?;
+    Ok(clocks)
+}
+
+/// Sees the simulator in each clock, before its rising edge.
+type Watch<'a> = &'a mut dyn FnMut(&mut Simulator) -> Result<()>;
+
 /// Resets, writes the operands, starts, and waits for the end.
-fn run(design: &Design, contract: &dyn Contract, operands: &[i64]) -> Result<Trial> {
-    let mut simulator = Simulator::new(design)?;
+fn run(
+    design: &Design,
+    contract: &dyn Contract,
+    operands: &[i64],
+    watch: Watch<'_>,
+) -> Result<Trial> {
+    let mut simulator: Simulator = Simulator::new(design)?;
     let output = |wanted: fn(Role) -> bool| {
         design
             .port(wanted)
@@ -281,6 +310,7 @@ fn run(design: &Design, contract: &dyn Contract, operands: &[i64]) -> Result<Tri
         simulator.set(input(&format!("{}_write", operand.name))?, 1);
     }
     simulator.set(start, 1);
+    watch(&mut simulator)?;
     simulator.clock()?;
     for operand in contract.operands() {
         simulator.set(input(&format!("{}_write", operand.name))?, 0);
@@ -293,6 +323,7 @@ fn run(design: &Design, contract: &dyn Contract, operands: &[i64]) -> Result<Tri
     let nets = results(design, contract);
     // Clock 0 was the one that took `start`.
     for clock in 1..LIMIT {
+        watch(&mut simulator)?;
         if simulator.value(valid) == 1 {
             trial.timing.start_to_valid.get_or_insert(clock);
             let outputs = nets.iter().map(|&net| simulator.value(net));

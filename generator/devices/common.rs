@@ -11,7 +11,7 @@ pub fn cosine_fraction(default: i64) -> Key {
     Key::integer(
         "cosine.fraction",
         default,
-        8..=24,
+        6..=24,
         "Fraction bits of the cosine operands; 1.0 is representable.",
     )
 }
@@ -95,7 +95,7 @@ pub fn angle_fraction(default: i64) -> Key {
     Key::integer(
         "angle.fraction",
         default,
-        8..=28,
+        4..=28,
         "Fraction bits of the angles, in right angles. A line adds up their rounding: one bit more halves its drift.",
     )
 }

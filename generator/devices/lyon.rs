@@ -28,7 +28,7 @@ pub fn schema() -> Schema {
             Key::integer(
                 "vector.fraction",
                 16,
-                8..=20,
+                4..=20,
                 "Fraction bits of the components of D = N - H, which run from -2.0 up to 2.0.",
             ),
             Key::integer(

@@ -33,7 +33,7 @@ pub fn schema() -> Schema {
             Key::integer(
                 "angle.multiplied",
                 17,
-                8..=24,
+                4..=24,
                 "Fraction bits of the angle that multiplier 11 takes: the leading ones.",
             ),
             Key::integer(

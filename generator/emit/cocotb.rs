@@ -3,7 +3,7 @@
 use anyhow::Result;
 use askama::Template;
 
-use super::seal::{Comment, sealed};
+use super::seal::{Seal, sealed};
 use super::{Accuracy, OutputFile, Quantity, WorkedExample};
 use crate::netlist::Design;
 
@@ -51,6 +51,6 @@ pub fn driver() -> OutputFile {
     let text = include_str!("../../templates/glint_cocotb.py");
     OutputFile {
         path: "testbench/glint_cocotb.py".to_owned(),
-        contents: sealed(text.to_owned(), Comment::Python),
+        contents: sealed(text.to_owned(), Seal::Python),
     }
 }

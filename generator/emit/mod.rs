@@ -5,6 +5,7 @@
 //! the templates in `templates/` print views and decide nothing. Emission is pure: it returns files
 //! and writes none, and the same design gives the same bytes.
 
+pub mod account;
 mod bench;
 mod bits;
 mod cocotb;
@@ -13,6 +14,7 @@ mod expression;
 mod facts;
 mod formal;
 mod header;
+mod instance;
 mod interface;
 mod manifest;
 mod memory;
@@ -39,10 +41,12 @@ use interface::Interface;
 use naming::Naming;
 use plan::Plan;
 
+pub use account::PageInputs;
 pub use cocotb::driver;
-pub use page::{PageInputs, page};
+pub use instance::instance;
+pub use page::page;
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE, points_bench};
-pub use seal::{Comment, is_sealed};
+pub use seal::{Seal, is_sealed, sealed, sealed_json};
 pub use termination::latest_done;
 
 /// A file to be written.
@@ -52,6 +56,23 @@ pub struct OutputFile {
     pub path: String,
     /// The whole text, ending with a newline.
     pub contents: String,
+}
+
+impl OutputFile {
+    /// The last part of the path.
+    pub fn name(&self) -> &str {
+        self.path.rsplit('/').next().unwrap_or(&self.path)
+    }
+}
+
+/// What simulators and synthesisers read of some files: Verilog and memories, each with its plain name.
+pub fn sources(files: Vec<OutputFile>) -> Vec<(String, String)> {
+    let needed = |name: &str| name.ends_with(".v") || name.ends_with(".mem");
+    files
+        .into_iter()
+        .filter(|file| needed(file.name()))
+        .map(|file| (file.name().to_owned(), file.contents))
+        .collect()
 }
 
 /// What the files say beyond the design.

@@ -1,61 +1,106 @@
-//! A last line that vouches for those above, in files that no manifest speaks of.
+//! What vouches for a file of which no manifest speaks: that it is as Glint wrote it.
+
+use anyhow::{Context, Result};
+use serde_json::Value;
 
 use super::digest;
 
-/// How the last line is a comment, in the language of the file.
+/// Where a file of some language has the digest of the rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Comment {
-    /// `<!-- … -->`, which no reader of the page sees.
-    Markdown,
-    /// `# …`.
+pub enum Seal {
+    /// Markdown and HTML: a last line `<!-- … -->`, which no reader of the page sees.
+    Markup,
+    /// Python: a last line `# …`.
     Python,
+    /// JSON: a member of the object.
+    Json,
 }
 
-impl Comment {
-    fn line(self, above: &[u8]) -> String {
-        let digest = digest(above);
-        match self {
-            Self::Markdown => format!("<!-- sha256 {digest} -->\n"),
-            Self::Python => format!("# sha256 {digest}\n"),
-        }
-    }
-}
+/// The member of sealed JSON that vouches for the others.
+const MEMBER: &str = "sha256";
 
-/// The text, which ends with a newline, and the line that vouches for it.
-pub fn sealed(text: String, comment: Comment) -> String {
-    let line = comment.line(text.as_bytes());
+/// The text, which ends with a newline, and a last line that vouches for it. JSON has none, and is left as it
+/// is: see [`sealed_json`].
+pub fn sealed(text: String, seal: Seal) -> String {
+    let line = last_line(text.as_bytes(), seal);
     text + &line
 }
 
-/// Whether a file is as Glint wrote it: its last line vouches for those above.
-pub fn is_sealed(contents: &[u8], comment: Comment) -> bool {
+fn last_line(above: &[u8], seal: Seal) -> String {
+    match seal {
+        Seal::Markup => format!("<!-- sha256 {} -->\n", digest(above)),
+        Seal::Python => format!("# sha256 {}\n", digest(above)),
+        Seal::Json => String::new(),
+    }
+}
+
+/// JSON, an object, with a member that vouches for the others; it ends with a newline.
+///
+/// # Errors
+/// The value is no object.
+pub fn sealed_json(mut value: Value) -> Result<String> {
+    let digest = digest(value.to_string().as_bytes());
+    let members = value.as_object_mut().context("no object")?;
+    members.insert(MEMBER.to_owned(), Value::String(digest));
+    Ok(serde_json::to_string_pretty(&value)? + "\n")
+}
+
+/// Whether a file is as Glint wrote it.
+pub fn is_sealed(contents: &[u8], seal: Seal) -> bool {
+    match seal {
+        Seal::Json => is_sealed_json(contents),
+        Seal::Markup | Seal::Python => ends_with_seal(contents, seal),
+    }
+}
+
+fn ends_with_seal(contents: &[u8], seal: Seal) -> bool {
     let Some(body) = contents.strip_suffix(b"\n") else {
         return false;
     };
     let last = body.iter().rposition(|&byte| byte == b'\n');
     let (above, line) = contents.split_at(last.map_or(0, |at| at + 1));
-    line == comment.line(above).as_bytes()
+    line == last_line(above, seal).as_bytes()
+}
+
+fn is_sealed_json(contents: &[u8]) -> bool {
+    let Ok(Value::Object(mut members)) = serde_json::from_slice(contents) else {
+        return false;
+    };
+    let found = members.remove(MEMBER);
+    let others = Value::Object(members).to_string();
+    found == Some(Value::String(digest(others.as_bytes())))
 }
 
 #[cfg(test)]
 mod tests {
+    use serde_json::json;
+
     use super::*;
 
     #[test]
     fn an_edited_file_is_not_glints() {
-        for (comment, other) in [
-            (Comment::Markdown, Comment::Python),
-            (Comment::Python, Comment::Markdown),
-        ] {
-            let file = sealed("# title\n\ntext\n".to_owned(), comment);
-            let is_sealed = |text: &str| super::is_sealed(text.as_bytes(), comment);
+        for (seal, other) in [(Seal::Markup, Seal::Python), (Seal::Python, Seal::Markup)] {
+            let file = sealed("# title\n\ntext\n".to_owned(), seal);
+            let is_sealed = |text: &str| super::is_sealed(text.as_bytes(), seal);
             assert!(is_sealed(&file));
             assert!(!super::is_sealed(file.as_bytes(), other));
+            assert!(!super::is_sealed(file.as_bytes(), Seal::Json));
             assert!(!is_sealed(&file.replace("text", "test")));
             assert!(!is_sealed(&format!("{file}more\n")));
             assert!(!is_sealed(file.trim_end()));
             assert!(!is_sealed(""));
             assert!(!is_sealed("# title\n"));
         }
+    }
+
+    #[test]
+    fn edited_json_is_not_glints() {
+        let file = sealed_json(json!({ "a": 1, "b": [2] })).expect("an object");
+        let is_sealed = |text: &str| super::is_sealed(text.as_bytes(), Seal::Json);
+        assert!(is_sealed(&file));
+        assert!(!is_sealed(&file.replace('2', "3")));
+        assert!(!is_sealed("{}"));
+        assert!(!is_sealed("[]"));
+        assert!(sealed_json(json!([1])).is_err());
     }
 }

@@ -24,6 +24,8 @@ pub mod schlick;
 pub mod sine;
 pub mod threshold;
 
+use std::fmt;
+
 use crate::fixed::Format;
 
 /// A clock-by-clock model of a device.
@@ -215,6 +217,23 @@ pub enum Values {
     Range(i64, i64),
     /// These.
     List(Vec<i64>),
+}
+
+impl Sweep {
+    /// Its axes in a sentence.
+    pub fn words(&self) -> String {
+        let axes: Vec<String> = self.axes.iter().map(Axis::to_string).collect();
+        axes.join(" x ")
+    }
+}
+
+impl fmt::Display for Axis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match &self.values {
+            Values::Range(low, high) => write!(f, "{} = {low} to {high}", self.name),
+            Values::List(values) => write!(f, "{} settings of {}", values.len(), self.name),
+        }
+    }
 }
 
 impl Values {

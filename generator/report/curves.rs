@@ -1,4 +1,4 @@
-//! Error curves of a device's default configuration: its formula against `cosⁿγ`, and its fixed point
+//! Error curves of a configuration: its formula against `cosⁿγ`, and its fixed point
 //! against its formula, over the exponent and over the angle.
 
 use serde::Serialize;
@@ -70,11 +70,19 @@ struct AtAngle {
 
 /// Measures the defaults of a device.
 pub fn device(device: &Device, done: &(dyn Fn() + Sync)) -> DeviceCurves {
-    use rayon::prelude::*;
-
     let config = Config::defaults(&(device.schema)(), &device.name.replace('-', "_"));
     let contract = (device.contract)(&config);
-    let contract = contract.as_ref();
+    configuration(device, contract.as_ref(), done)
+}
+
+/// Measures a configuration of a device, which has this contract.
+pub fn configuration(
+    device: &Device,
+    contract: &dyn Contract,
+    done: &(dyn Fn() + Sync),
+) -> DeviceCurves {
+    use rayon::prelude::*;
+
     let exponents: Vec<AtExponent> = EXPONENTS
         .par_iter()
         .filter_map(|&n| {

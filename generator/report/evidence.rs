@@ -1,16 +1,13 @@
 //! Everything that the report shows, measured when it is made; `report.json` is this.
 
-use std::time::Duration;
-
 use anyhow::Result;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::claims::{self, Claim, Verdict};
 use super::curves::{self, DeviceCurves};
-use super::hardware::{self, Hardware};
+use super::hardware::{self, Hardware, Synthesis};
 use super::seed_plots::{self, Accuracy, Rom9Word, SeedPlot};
-use crate::cosim::external::Tool;
 use crate::registry::Registry;
 
 /// The report's contents. The same program and tools give the same; no timing is in it.
@@ -34,9 +31,6 @@ pub struct Evidence {
     pub notes: Vec<String>,
 }
 
-/// The synthesis tool, and after which a run of it is given up.
-pub type Synthesis<'a> = (&'a Tool, Duration);
-
 /// The steps of work that [`gather`] reports as done.
 pub fn steps(registry: &Registry, synthesis: bool) -> usize {
     let hardware = if synthesis { hardware::STEPS } else { 0 };
@@ -54,7 +48,7 @@ pub fn gather(
 ) -> Result<Evidence> {
     let (hardware, (devices, (mut claims, (plots, power_table)))) = rayon::join(
         || match synthesis {
-            Some((yosys, limit)) => hardware::synthesised(registry, yosys, limit, done),
+            Some(synthesis) => hardware::synthesised(registry, synthesis, done),
             None => Ok(None),
         },
         || {

@@ -10,7 +10,7 @@ use super::claims::Measured;
 use super::comparison;
 use crate::config::Config;
 use crate::cosim::external::Tool;
-use crate::cosim::synthesis::{self, FAMILIES};
+use crate::cosim::synthesis::{self, FAMILIES, Family};
 use crate::flow::Unit;
 use crate::registry::Registry;
 
@@ -19,6 +19,9 @@ const RIVALS: [&str; 2] = ["cosine-power", "schlick"];
 
 /// The exponent at which clocks are counted.
 const EXPONENT: f64 = 35.0;
+
+/// The synthesis tool, and after which a run of it is given up.
+pub type Synthesis<'a> = (&'a Tool, Duration);
 
 /// The steps of work that [`synthesised`] reports as done.
 pub const STEPS: usize = RIVALS.len() * FAMILIES.len();
@@ -98,8 +101,7 @@ impl Hardware {
 /// Yosys fails, or takes longer than `limit`.
 pub fn synthesised(
     registry: &Registry,
-    yosys: &Tool,
-    limit: Duration,
+    (yosys, limit): Synthesis,
     done: &(dyn Fn() + Sync),
 ) -> Result<Option<Hardware>> {
     let Some(rivals) = RIVALS
@@ -122,16 +124,9 @@ pub fn synthesised(
         .into_par_iter()
         .map(|step| {
             let (one, family) = (step / FAMILIES.len(), &FAMILIES[step % FAMILIES.len()]);
-            let top = &units[one].config.name;
-            let usage = synthesis::synthesise(yosys, &files[one], top, family, limit)
-                .with_context(|| format!("{top} for {}", family.title))?;
+            let usage = take(yosys, &files[one], &units[one].config.name, family, limit);
             done();
-            Ok(FamilyUsage {
-                family: family.title,
-                luts: usage.luts,
-                dsps: usage.dsps,
-                block_rams: usage.block_rams,
-            })
+            usage
         })
         .collect::<Result<_>>()?;
     let devices: Vec<Rival> = units
@@ -156,6 +151,44 @@ pub fn synthesised(
         simpler,
         words,
     }))
+}
+
+/// What the design `top` takes of a family.
+fn take(
+    yosys: &Tool,
+    files: &[(String, String)],
+    top: &str,
+    family: &Family,
+    limit: Duration,
+) -> Result<FamilyUsage> {
+    let usage = synthesis::synthesise(yosys, files, top, family, limit)
+        .with_context(|| format!("{top} for {}", family.title))?;
+    Ok(FamilyUsage {
+        family: family.title,
+        luts: usage.luts,
+        dsps: usage.dsps,
+        block_rams: usage.block_rams,
+    })
+}
+
+/// What one configuration takes of every family; `done` is called after each.
+///
+/// # Errors
+/// Yosys fails, or takes longer than `limit`.
+pub fn usage(
+    unit: &Unit,
+    (yosys, limit): Synthesis,
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<FamilyUsage>> {
+    let files = unit.verilog()?;
+    let families = FAMILIES.par_iter();
+    families
+        .map(|family| {
+            let usage = take(yosys, &files, &unit.config.name, family, limit);
+            done();
+            usage
+        })
+        .collect()
 }
 
 /// Whether W takes no more of anything, and that in words.

@@ -2,18 +2,14 @@
 
 use anyhow::Result;
 use askama::Template;
-use rayon::prelude::*;
 
 use super::benchmark::Benchmark;
-use super::chart::{Chart, Scale};
+use super::chart::Chart;
 use super::claims::{Claim, Verdict, percent};
 use super::curves::DeviceCurves;
 use super::evidence::Evidence;
-use super::plots;
+use super::figure::{Figure, figures, scientific};
 use super::seed_plots::{Accuracy, Rom9Word};
-
-/// The rows of the table beside a plot.
-const ROWS: usize = 11;
 
 /// The words of ROM 9 in a row of its table.
 const WORDS: usize = 10;
@@ -39,15 +35,6 @@ struct ClaimView<'a> {
     claim: &'a Claim,
     class: &'static str,
     verdict: &'static str,
-}
-
-struct Figure<'a> {
-    chart: &'a Chart,
-    /// Where the seed has it; empty for a figure of ours.
-    source: &'a str,
-    svg: String,
-    legend: Vec<(String, &'a str)>,
-    rows: Vec<(String, Vec<String>)>,
 }
 
 struct PowerRow {
@@ -139,65 +126,6 @@ fn claim(claim: &Claim) -> ClaimView<'_> {
         class: class(claim.verdict),
         verdict: claim.verdict.words(),
     }
-}
-
-fn figures<'a>(charts: &[(&'a Chart, &'a str)]) -> Result<Vec<Figure<'a>>> {
-    charts
-        .par_iter()
-        .map(|(chart, source)| figure(chart, source))
-        .collect()
-}
-
-fn figure<'a>(chart: &'a Chart, source: &'a str) -> Result<Figure<'a>> {
-    let marks = chart
-        .marks
-        .iter()
-        .map(|mark| ("mark".to_owned(), mark.label.as_str()));
-    let legend = chart
-        .series
-        .iter()
-        .enumerate()
-        .map(|(at, series)| (plots::class(at), series.name.as_str()))
-        .chain(marks)
-        .collect();
-    let rows = chart
-        .rows(ROWS)
-        .into_iter()
-        .map(|at| {
-            let values = chart.series.iter();
-            let values = values.map(|series| cell(series.values[at], chart.y.scale));
-            (number(chart.places[at]), values.collect())
-        })
-        .collect();
-    Ok(Figure {
-        chart,
-        source,
-        svg: plots::svg(chart)?,
-        legend,
-        rows,
-    })
-}
-
-/// A value in a table: errors on a logarithmic axis keep their magnitude.
-fn cell(value: f64, scale: Scale) -> String {
-    match scale {
-        _ if value.is_nan() => "\u{2013}".to_owned(),
-        Scale::Logarithmic => scientific(value),
-        Scale::Linear => format!("{value:.4}").replace('-', "\u{2212}"),
-    }
-}
-
-fn scientific(value: f64) -> String {
-    match value {
-        0.0 => "0".to_owned(),
-        _ => format!("{value:.1e}").replace('-', "\u{2212}"),
-    }
-}
-
-/// At most three digits after the point.
-fn number(value: f64) -> String {
-    let text = format!("{value:.3}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 fn powers(accuracy: &Accuracy) -> PowerRow {

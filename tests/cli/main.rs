@@ -12,3 +12,4 @@ mod questions;
 mod refusals;
 mod render;
 mod report;
+mod verify;

@@ -10,7 +10,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use glint::cosim::external::{BenchOutcome, Simulator, Tool, run_bench};
+use glint::cosim::external::{BenchOutcome, Simulator, Tool, lint, run_bench};
 
 /// What a run of any tool may take.
 pub const LIMIT: Duration = Duration::from_secs(300);
@@ -56,25 +56,11 @@ pub fn assert_bench_passes(
 /// One of them has.
 pub fn assert_lint_clean(directory: &Path, top: &str) {
     let sources = verilog_files(directory);
-    let icarus = tool("iverilog");
-    let arguments = ["-g2005", "-Wall", "-t", "null", "-s", top];
-    let arguments = arguments
-        .into_iter()
-        .chain(sources.iter().map(String::as_str));
-    lint(&icarus, arguments.collect(), directory);
-    let verilator = tool("verilator");
-    let arguments = ["--lint-only", "-Wall", "--top-module", top];
-    let arguments = arguments
-        .into_iter()
-        .chain(sources.iter().map(String::as_str));
-    lint(&verilator, arguments.collect(), directory);
-}
-
-fn lint(tool: &Tool, arguments: Vec<&str>, directory: &Path) {
-    let output = tool
-        .run_to_success(arguments, directory, LIMIT)
-        .unwrap_or_else(|error| panic!("{}: {error:#}", directory.display()));
-    assert_eq!(output, "", "{tool} has remarks on {}", directory.display());
+    for tool in ["iverilog", "verilator"].map(tool) {
+        let output = lint(&tool, directory, &sources, top, LIMIT)
+            .unwrap_or_else(|error| panic!("{}: {error:#}", directory.display()));
+        assert_eq!(output, "", "{tool} has remarks on {}", directory.display());
+    }
 }
 
 /// A warning of Yosys 0.23 about its own model of a Xilinx block RAM; those of the outputs are given as

@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use glint::config;
-use glint::emit::OutputFile;
+use glint::emit::{OutputFile, sources};
 use glint::flow::Unit;
 use glint::registry::{Device, Registry};
 
@@ -97,15 +97,9 @@ impl Emitted {
     }
 
     fn below(&self, directory: &str) -> Files {
-        let needed = |path: &str| path.ends_with(".v") || path.ends_with(".mem");
         let files = self.files.iter();
-        files
-            .filter(|file| file.path.starts_with(directory) && needed(&file.path))
-            .map(|file| {
-                let name = file.path.rsplit('/').next().unwrap_or(&file.path);
-                (name.to_owned(), file.contents.clone())
-            })
-            .collect()
+        let below = files.filter(|file| file.path.starts_with(directory));
+        sources(below.cloned().collect())
     }
 }
 

@@ -34,7 +34,7 @@ fn emitted_verilog_means_what_the_netlist_means() {
         let directory = tempfile::tempdir().expect("a directory");
         let mut texts = Vec::new();
         for file in files {
-            let name = file.path.rsplit('/').next().unwrap_or_default().to_owned();
+            let name = file.name().to_owned();
             if file.path.starts_with("rtl_out/") {
                 std::fs::write(directory.path().join(&name), &file.contents).expect("a file");
             }

@@ -6,13 +6,15 @@ use anyhow::Result;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
+use super::mismatch::Reproducer;
 use super::{Loaded, cosim, generate, load};
-use crate::cli::{Output, POINTS, progress, tables};
+use crate::cli::{Output, progress, tables};
 use crate::cosim::Outcome;
 use crate::emit::Timing;
-use crate::flow::BENCH_SEED;
+use crate::flow::{TEST_POINTS, TEST_SEED};
 use crate::golden::Bound;
 use crate::registry::Registry;
+use crate::words;
 
 /// What the main job found of one configuration.
 struct Finding {
@@ -32,7 +34,7 @@ pub fn everything(registry: &Registry, output: Output) -> Result<bool> {
     for (one, files) in loaded.iter().zip(generate::all_files(output, &loaded)?) {
         generate::write(Path::new("."), one, &files, false)?;
     }
-    let bar = progress::bar(output, POINTS * loaded.len() as u64, "points checked");
+    let bar = progress::bar(output, TEST_POINTS * loaded.len() as u64, "points checked");
     let findings: Vec<Finding> = loaded
         .par_iter()
         .map(|one| finding(one, &bar))
@@ -44,7 +46,7 @@ pub fn everything(registry: &Registry, output: Output) -> Result<bool> {
             .iter()
             .zip(&findings)
             .map(|(one, finding)| as_json(one, finding))
-            .collect();
+            .collect::<Result<_>>()?;
         tables::print_json(&json!({ "ok": holds, "configurations": list }));
         return Ok(holds);
     }
@@ -53,10 +55,10 @@ pub fn everything(registry: &Registry, output: Output) -> Result<bool> {
 }
 
 fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<Finding> {
-    let lockstep = one.unit.lockstep(BENCH_SEED)?;
-    let outcome = lockstep.run(POINTS, &|points| bar.inc(points))?;
+    let lockstep = one.unit.lockstep(TEST_SEED)?;
+    let outcome = lockstep.run(TEST_POINTS, &|points| bar.inc(points))?;
     let bound = one.unit.contract.bound();
-    let faults = cosim::faults(&outcome, &bound);
+    let faults = outcome.faults(&bound);
     Ok(Finding {
         timing: one.unit.timing()?,
         bound,
@@ -85,11 +87,11 @@ fn print(loaded: &[Loaded], findings: &[Finding]) -> Result<()> {
             one.unit.device.name.to_owned(),
             one.path.clone(),
             clocks.map_or_else(|| "varies".to_owned(), |clocks| clocks.to_string()),
-            tables::grouped(finding.outcome.points),
-            tables::grouped(finding.outcome.clocks),
+            words::grouped(finding.outcome.points),
+            words::grouped(finding.outcome.clocks),
             finding.outcome.registers.to_string(),
             finding.outcome.outputs.to_string(),
-            tables::grouped(one.unit.design.rom_bits()),
+            words::grouped(one.unit.design.rom_bits()),
             format!("{:.3}", finding.bound.units),
             finding
                 .outcome
@@ -126,15 +128,15 @@ fn print(loaded: &[Loaded], findings: &[Finding]) -> Result<()> {
             tables::print_line(&format!("  {}: FAILS: {fault}", one.path));
         }
         if let Some(mismatch) = &finding.outcome.mismatch {
-            let where_to_look = cosim::reproduce(one, mismatch)?;
+            let where_to_look = Reproducer::of_run(one, mismatch)?.text(mismatch);
             tables::print_line(&format!("  {}: {where_to_look}", one.path));
         }
     }
     Ok(())
 }
 
-fn as_json(one: &Loaded, finding: &Finding) -> Value {
-    let mut value = cosim::as_json(one, &finding.outcome, &finding.bound, &finding.faults);
+fn as_json(one: &Loaded, finding: &Finding) -> Result<Value> {
+    let mut value = cosim::as_json(one, &finding.outcome, &finding.bound, &finding.faults)?;
     value["clocks_per_point"] = json!(finding.timing.clocks_per_point());
-    value
+    Ok(value)
 }

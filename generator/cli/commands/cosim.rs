@@ -1,30 +1,29 @@
 //! `cosim`.
 
-use std::io::BufWriter;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
+use super::mismatch::{self, Reproducer};
 use super::{Loaded, load};
-use crate::cli::destination::Destination;
 use crate::cli::failure::Usage;
-use crate::cli::{Output, POINTS, Simulator, progress, tables};
+use crate::cli::{Output, Simulator, progress, tables};
 use crate::cosim::external::{self, BenchOutcome};
-use crate::cosim::{Lockstep, Mismatch, Outcome, Worst};
+use crate::cosim::{Outcome, Worst};
+use crate::emit;
+use crate::flow::TEST_POINTS;
 use crate::golden::Bound;
 use crate::registry::Registry;
+use crate::words;
 
 /// Points when an external simulator runs.
 const EXTERNAL_POINTS: u64 = 200;
 
 /// The most points for an external simulator, whose vectors are made in memory.
 const EXTERNAL_LIMIT: u64 = 1_000_000;
-
-/// Clocks in the waveform that ends with a difference.
-const WINDOW: u64 = 64;
 
 /// What `cosim` was asked for.
 pub struct CosimRequest {
@@ -120,21 +119,14 @@ fn bench(
 ) -> Result<(usize, BenchOutcome)> {
     let vectors = one.unit.vectors(points, request.seed)?;
     let clocks = vectors.inputs.len();
-    let files = one.unit.files(&one.path, vectors)?;
-    let files: Vec<(String, String)> = files
-        .into_iter()
-        .filter_map(|file| {
-            let name = file.path.rsplit('/').next()?.to_owned();
-            (name.ends_with(".v") || name.ends_with(".mem")).then_some((name, file.contents))
-        })
-        .collect();
+    let files = emit::sources(one.unit.files(&one.path, vectors)?);
     let top = format!("{}_tb", one.unit.config.name);
     let run = external::run_bench(which, &files, &top, request.time_limit)?;
     Ok((clocks, run))
 }
 
 fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result<bool> {
-    let points = request.points.unwrap_or(POINTS);
+    let points = request.points.unwrap_or(TEST_POINTS);
     let bar = progress::bar(
         output,
         points.saturating_mul(loaded.len() as u64),
@@ -152,17 +144,17 @@ fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result
     let mut list = Vec::new();
     for (one, outcome) in loaded.iter().zip(&outcomes) {
         let bound = one.unit.contract.bound();
-        let faults = faults(outcome, &bound);
+        let faults = outcome.faults(&bound);
         holds &= faults.is_empty();
         if output.json {
-            list.push(as_json(one, outcome, &bound, &faults));
+            list.push(as_json(one, outcome, &bound, &faults)?);
             continue;
         }
         tables::print_line(&format!(
             "{}: {} points, {} clocks; {} registers and {} outputs equal the golden model on each: {}",
             one.path,
-            tables::grouped(outcome.points),
-            tables::grouped(outcome.clocks),
+            words::grouped(outcome.points),
+            words::grouped(outcome.clocks),
             outcome.registers,
             outcome.outputs,
             if faults.is_empty() { "holds" } else { "FAILS" },
@@ -179,7 +171,8 @@ fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result
             tables::print_line(&format!("  FAILS: {fault}"));
         }
         if let Some(mismatch) = &outcome.mismatch {
-            tables::print_line(&format!("  {}", reproduce(one, mismatch)?));
+            let reproducer = Reproducer::of_run(one, mismatch)?;
+            tables::print_line(&format!("  {}", reproducer.text(mismatch)));
         }
     }
     if output.json {
@@ -198,54 +191,7 @@ fn run(
     let Some(path) = &request.vcd else {
         return lockstep.run(points, progress);
     };
-    traced(&lockstep, path, points, 0)
-}
-
-/// Writes the waveform of the clocks before a difference into the working directory, and says how to see
-/// all of it.
-pub fn reproduce(one: &Loaded, mismatch: &Mismatch) -> Result<String> {
-    let path = PathBuf::from(format!("{}_mismatch.vcd", one.unit.config.name));
-    let from = mismatch.clock.saturating_sub(WINDOW);
-    let lockstep = one.unit.lockstep(mismatch.seed)?;
-    let outcome = traced(&lockstep, &path, u64::MAX, from)?;
-    Ok(format!(
-        "`{}` shows clocks {from} to {}; all of them: glint cosim {} --seed {} --points {} --vcd FILE",
-        path.display(),
-        mismatch.clock,
-        one.path,
-        mismatch.seed,
-        outcome.points + 1,
-    ))
-}
-
-/// A run with a waveform from clock `from` on: written beside its place and moved there when it is whole.
-fn traced(lockstep: &Lockstep<'_>, path: &Path, points: u64, from: u64) -> Result<Outcome> {
-    let destination = Destination::open(path)?;
-    let outcome = lockstep
-        .trace(points, from, BufWriter::new(destination.file()?))
-        .with_context(|| format!("cannot write the waveform `{}`", path.display()))?;
-    destination.commit()?;
-    Ok(outcome)
-}
-
-/// What does not hold.
-pub fn faults(outcome: &Outcome, bound: &Bound) -> Vec<String> {
-    let mut faults = Vec::new();
-    if let Some(mismatch) = &outcome.mismatch {
-        faults.push(format!(
-            "seed {}, after clock {}, word `{}`: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
-            mismatch.seed, mismatch.clock, mismatch.word, mismatch.signal, mismatch.simulated, mismatch.golden
-        ));
-    }
-    if let Some(worst) = &outcome.worst
-        && worst.units > bound.units
-    {
-        faults.push(format!(
-            "`{}` is off by {:.4} units, beyond the stated bound of {:.4}",
-            worst.output, worst.units, bound.units
-        ));
-    }
-    faults
+    mismatch::traced(&lockstep, path, points, 0)
 }
 
 /// The operands of the largest error, as values.
@@ -265,14 +211,18 @@ pub fn place(one: &Loaded, worst: &Worst) -> String {
     format!("{} for {}", worst.output, values.join(" "))
 }
 
-/// An outcome for scripts.
-pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, faults: &[String]) -> Value {
+/// An outcome for scripts. What differs leaves a waveform.
+pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, faults: &[String]) -> Result<Value> {
+    let mismatch = outcome.mismatch.as_ref().map(|mismatch| {
+        let reproducer = Reproducer::of_run(one, mismatch)?;
+        anyhow::Ok(reproducer.json(mismatch))
+    });
     let terms: Vec<Value> = bound
         .terms
         .iter()
         .map(|term| json!({ "key": term.key, "what": term.what, "units": term.units }))
         .collect();
-    json!({
+    Ok(json!({
         "device": one.unit.device.name,
         "config": one.path,
         "name": one.unit.config.name,
@@ -289,5 +239,6 @@ pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, faults: &[String]
         "rom_bits": one.unit.design.rom_bits(),
         "holds": faults.is_empty(),
         "faults": faults,
-    })
+        "mismatch": mismatch.transpose()?,
+    }))
 }

@@ -8,7 +8,7 @@ use serde_json::json;
 use super::load;
 use crate::cli::store::{self, Written};
 use crate::cli::{Output, tables};
-use crate::emit::Comment;
+use crate::emit::Seal;
 use crate::registry::Registry;
 
 /// `glint describe`.
@@ -30,7 +30,7 @@ pub fn describe(
                 let written = store::write_sealed(
                     &out.join(format!("{name}.md")),
                     &page,
-                    Comment::Markdown,
+                    Seal::Markup,
                     force,
                 );
                 Some(written.with_context(|| format!("`{}` was not described", one.path))?)

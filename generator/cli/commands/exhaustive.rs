@@ -1,20 +1,22 @@
 //! `cosim --exhaustive` and `merge`.
 
+mod show;
+
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use serde_json::{Value, json};
+use indicatif::HumanDuration;
+use serde_json::json;
 
-use super::{Loaded, load};
+use super::load;
 use crate::cli::failure::Usage;
 use crate::cli::{Output, progress, staged, tables};
-use crate::cosim::exhaustive::{Job, Places, Proof, Shard, State};
-use crate::emit::digest;
-use crate::golden::{Axis, Values};
+use crate::cosim::exhaustive::{Job, Shard, State};
 use crate::registry::Registry;
+use show::{announce, report};
 
 /// How often the state is written.
 const SAVE: Duration = Duration::from_secs(5);
@@ -27,7 +29,8 @@ pub struct ExhaustiveRequest {
     pub shard: Option<Shard>,
 }
 
-/// `glint cosim --exhaustive`: the factored proof of the accuracy contract.
+/// `glint cosim --exhaustive`: the factored proof of the accuracy contract and, where they are not too many,
+/// every combination of operands clock by clock.
 pub fn exhaustive(
     registry: &Registry,
     output: Output,
@@ -44,8 +47,8 @@ pub fn exhaustive(
     let mut list = Vec::new();
     let mut holds = true;
     for one in &loaded {
-        let job = Job::new(one.unit.contract.as_ref());
-        let mut state = State::new(&identity(one), request.shard.unwrap_or(Shard::WHOLE));
+        let job = one.unit.job()?;
+        let mut state = State::new(&one.unit.digest(), request.shard.unwrap_or(Shard::WHOLE));
         if let Some(path) = &request.resume
             && let Some(found) = read(path)?
         {
@@ -58,9 +61,10 @@ pub fn exhaustive(
         }
         if !output.json {
             announce(one, &job, &state);
+            announce_duration(&job, &state)?;
         }
         prove(output, &job, &mut state, request.resume.as_deref())?;
-        holds &= report(output, one, &job, &state, &mut list);
+        holds &= report(output, one, &job, &state, &mut list)?;
     }
     if output.json {
         tables::print_json(&json!({ "ok": holds, "configurations": list }));
@@ -77,7 +81,7 @@ pub fn merge(
 ) -> Result<bool> {
     let loaded = load(registry, &[config.to_path_buf()])?;
     let one = &loaded[0];
-    let job = Job::new(one.unit.contract.as_ref());
+    let job = one.unit.job()?;
     let names: Vec<String> = files
         .iter()
         .map(|path| path.display().to_string())
@@ -87,7 +91,7 @@ pub fn merge(
         .map(|path| read(path)?.with_context(|| format!("there is no `{}`", path.display())))
         .collect::<Result<Vec<_>>>()?;
     ensure!(
-        states.iter().any(|state| state.digest == identity(one)),
+        states.iter().any(|state| state.digest == one.unit.digest()),
         "these shards are not of `{}` as it stands, or of another version of Glint",
         one.path
     );
@@ -96,18 +100,11 @@ pub fn merge(
         announce(one, &job, &State::new("", Shard::WHOLE));
     }
     let mut list = Vec::new();
-    let holds = report(output, one, &job, &merged, &mut list);
+    let holds = report(output, one, &job, &merged, &mut list)?;
     if output.json {
         tables::print_json(&json!({ "ok": holds, "configurations": list }));
     }
     Ok(holds)
-}
-
-/// What a state is of.
-fn identity(one: &Loaded) -> String {
-    let schema = (one.unit.device.schema)();
-    let text = one.unit.config.to_toml(&schema);
-    digest(format!("{}\n{text}", env!("CARGO_PKG_VERSION")).as_bytes())
 }
 
 /// The state that a file holds, if there is one.
@@ -157,125 +154,23 @@ fn prove(output: Output, job: &Job<'_>, state: &mut State, file: Option<&Path>) 
         }
     });
     bar.finish_and_clear();
-    match (end, failure) {
+    match (end?, failure) {
         (ControlFlow::Break(()), Some(error)) => Err(error),
         _ => save(state),
     }
 }
 
-/// What is about to be done, and what is not.
-fn announce(one: &Loaded, job: &Job<'_>, state: &State) {
-    let axes: Vec<String> = job.f.sweep().axes.iter().map(axis_text).collect();
-    tables::print_line(&format!(
-        "{}: {} evaluations of f ({}), {} colour products",
-        one.path,
-        tables::grouped(job.f.count()),
-        axes.join(" x "),
-        tables::grouped(job.colours.count())
-    ));
-    if !job.f.sweep().omits.is_empty() {
-        tables::print_line(&format!("  not covered: {}", job.f.sweep().omits));
+/// How long it will take, by a sample.
+fn announce_duration(job: &Job<'_>, state: &State) -> Result<()> {
+    if job.remaining(state) == 0 {
+        return Ok(());
     }
-    let (all, left) = (job.f.count() + job.colours.count(), job.remaining(state));
-    if left != all {
-        tables::print_line(&format!(
-            "  shard {}: {} evaluations to do here",
-            state.shard,
-            tables::grouped(left)
-        ));
-    }
-}
-
-fn axis_text(axis: &Axis) -> String {
-    match &axis.values {
-        Values::Range(low, high) => format!("{} = {low} to {high}", axis.name),
-        Values::List(values) => format!("{} settings of {}", values.len(), axis.name),
-    }
-}
-
-/// Says what a state means; whether it is within the bound.
-fn report(
-    output: Output,
-    one: &Loaded,
-    job: &Job<'_>,
-    state: &State,
-    list: &mut Vec<Value>,
-) -> bool {
-    let contract = one.unit.contract.as_ref();
-    let proof = Proof::new(contract, state.f.peak, state.colours.peak);
-    if output.json {
-        list.push(as_json(one, &job.f, &proof, state, job.colours.count()));
-    } else {
-        print(one, &job.f, &proof, state);
-    }
-    proof.faults.is_empty()
-}
-
-fn print(one: &Loaded, places: &Places<'_>, proof: &Proof, state: &State) {
-    let at: Vec<String> = places
-        .sweep()
-        .axes
-        .iter()
-        .zip(places.place(proof.f.place))
-        .map(|(axis, value)| format!("{}={value}", axis.name))
-        .collect();
-    let verdict = match (proof.faults.is_empty(), state.shard == Shard::WHOLE) {
-        (true, true) => "holds",
-        (true, false) => "holds so far; `glint merge` joins the shards",
-        (false, _) => "FAILS",
+    let threads = rayon::current_num_threads();
+    let duration = job.estimate(state, threads)?;
+    let duration = match duration.as_secs() {
+        0 => "less than a second".to_owned(),
+        seconds => format!("about {}", HumanDuration(Duration::from_secs(seconds))),
     };
-    tables::print_line(&format!(
-        "  f is off by {:.3e} at most, {:.3} units, at raw {}; a colour multiplier by {:.3}; together {:.3} (bound {:.3}): {verdict}",
-        proof.f.error,
-        proof.f_units,
-        at.join(" "),
-        proof.colours.error,
-        proof.together(),
-        one.unit.contract.bound().units,
-    ));
-    for fault in &proof.faults {
-        tables::print_line(&format!("  FAILS: {fault}"));
-    }
-}
-
-/// A proof for scripts, and for the record.
-fn as_json(
-    one: &Loaded,
-    places: &Places<'_>,
-    proof: &Proof,
-    state: &State,
-    products: u64,
-) -> Value {
-    let axes: Vec<Value> = places
-        .sweep()
-        .axes
-        .iter()
-        .map(|axis| match &axis.values {
-            Values::Range(low, high) => json!({ "name": axis.name, "from": low, "to": high }),
-            Values::List(values) => json!({ "name": axis.name, "values": values }),
-        })
-        .collect();
-    let mut value = json!({
-        "config": one.path,
-        "device": one.unit.device.name,
-        "axes": axes,
-        "not_covered": places.sweep().omits,
-        "evaluations": places.count(),
-        "colour_products": products,
-        "f": {
-            "error": proof.f.error,
-            "units": proof.f_units,
-            "place": proof.f.place,
-            "at": places.place(proof.f.place),
-        },
-        "colour_units": proof.colours.error,
-        "together": proof.together(),
-        "bound": one.unit.contract.bound().units,
-        "holds": proof.faults.is_empty(),
-        "faults": proof.faults,
-    });
-    if state.shard != Shard::WHOLE {
-        value["shard"] = json!(state.shard.to_string());
-    }
-    value
+    tables::print_line(&format!("  {duration} on {threads} threads"));
+    Ok(())
 }

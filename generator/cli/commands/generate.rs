@@ -9,7 +9,7 @@ use serde_json::json;
 use super::{Loaded, load};
 use crate::cli::store::{self, Written};
 use crate::cli::{Output, progress, tables};
-use crate::emit::{self, Comment, OutputFile};
+use crate::emit::{self, OutputFile, Seal};
 use crate::flow::{BENCH_POINTS, BENCH_SEED};
 use crate::registry::Registry;
 
@@ -85,7 +85,7 @@ pub fn write(out: &Path, one: &Loaded, files: &[OutputFile], force: bool) -> Res
         .with_context(|| format!("`{}` was not generated", one.path))?;
     let driver = emit::driver();
     let path = out.join(&driver.path);
-    store::write_sealed(&path, &driver.contents, Comment::Python, force)?;
+    store::write_sealed(&path, &driver.contents, Seal::Python, force)?;
     Ok(written)
 }
 

@@ -4,12 +4,16 @@ mod catalogue;
 mod check;
 mod compare;
 mod cosim;
+mod datasheet;
 mod describe;
 mod eval;
 mod exhaustive;
 mod generate;
+mod mismatch;
+mod mutate;
 mod render;
 mod report;
+mod verify;
 
 use std::path::{Path, PathBuf};
 
@@ -19,12 +23,15 @@ pub use catalogue::{list, new};
 pub use check::everything;
 pub use compare::{CompareRequest, compare};
 pub use cosim::{CosimRequest, cosim};
+pub use datasheet::{DatasheetRequest, datasheet};
 pub use describe::describe;
 pub use eval::eval;
 pub use exhaustive::{ExhaustiveRequest, exhaustive, merge};
 pub use generate::generate;
+pub use mutate::{MutateRequest, mutate};
 pub use render::{RenderArguments, render};
 pub use report::{ReportRequest, report};
+pub use verify::{VerifyRequest, verify};
 
 use super::failure::{self, Several};
 use crate::config;

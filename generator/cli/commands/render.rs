@@ -21,12 +21,10 @@ use crate::report::render::{
     self, BuiltIn, Difference, Light, Material, Mesh, Object, Picture, Relief, Rendered, Scene,
     Settings, Shape, Vector, View,
 };
+use crate::words;
 
 /// The largest file that is read, in bytes: about the OBJ file of the largest mesh.
 const LARGEST_FILE: u64 = 4 << 30;
-
-/// n, where the device takes so much.
-const EXPONENT: u32 = 80;
 
 /// What `render` was asked for.
 #[derive(Args)]
@@ -77,13 +75,13 @@ pub struct RenderArguments {
     #[arg(long, value_name = "N")]
     exponent: Option<u32>,
     /// k_s, the share of the light that the device distributes, 0 to 1
-    #[arg(long, value_name = "SHARE", default_value_t = 0.7, value_parser = share)]
+    #[arg(long, value_name = "SHARE", default_value_t = Material::usual(0).specular, value_parser = share)]
     specular: f64,
     /// The share of the light in the diffuse term, 0 to 1
-    #[arg(long, value_name = "SHARE", default_value_t = 0.75, value_parser = share)]
+    #[arg(long, value_name = "SHARE", default_value_t = Material::usual(0).diffuse, value_parser = share)]
     diffuse: f64,
     /// The share of the light in the ambient term, 0 to 1
-    #[arg(long, value_name = "SHARE", default_value_t = 0.12, value_parser = share)]
+    #[arg(long, value_name = "SHARE", default_value_t = Material::usual(0).ambient, value_parser = share)]
     ambient: f64,
     /// The colour of things in ambient and diffuse light, each 0 to 1
     #[arg(long, value_name = "R,G,B", value_parser = colour)]
@@ -194,7 +192,7 @@ fn settings(unit: &Unit, arguments: &RenderArguments) -> Result<Settings> {
     let (least, most) = render::exponents(unit.contract.as_ref()).unwrap_or((0, i64::MAX));
     let exponent = arguments
         .exponent
-        .unwrap_or_else(|| i64::from(EXPONENT).clamp(least, most).max(0) as u32);
+        .unwrap_or_else(|| render::usual_exponent(unit.contract.as_ref()));
     if !(least..=most).contains(&i64::from(exponent)) {
         bail!(Usage(format!(
             "--exponent {exponent}: `{}` takes {least} to {most}",
@@ -246,7 +244,10 @@ fn scene(arguments: &RenderArguments, coarse: bool) -> Result<Scene> {
     };
     let mut scene = Scene {
         objects,
-        lights: lights(&arguments.lights),
+        lights: match arguments.lights[..] {
+            [] => Light::usual(),
+            _ => arguments.lights.clone(),
+        },
         relief: None,
     };
     if let Some(path) = &arguments.height {
@@ -266,21 +267,6 @@ fn scene(arguments: &RenderArguments, coarse: bool) -> Result<Scene> {
         scene.relief = Some(relief.with_context(cannot)?);
     }
     Ok(scene)
-}
-
-/// Those given, or the default ones.
-fn lights(given: &[Light]) -> Vec<Light> {
-    if !given.is_empty() {
-        return given.to_vec();
-    }
-    let light = |direction: Vector, colour| Light {
-        direction: direction.unit().unwrap_or_default(),
-        colour,
-    };
-    vec![
-        light(Vector::new(-0.6, 0.8, 0.9), Vector::new(1.0, 1.0, 1.0)),
-        light(Vector::new(1.0, 0.35, -0.3), Vector::new(0.55, 0.47, 0.38)),
-    ]
 }
 
 /// A whole file, within reason.
@@ -360,7 +346,7 @@ fn tell(
     tables::print_line(&format!(
         "{path}: {width}x{height} pixels, n = {}, {} points of {name} through {through}",
         settings.material.exponent,
-        tables::grouped(rendered.points)
+        words::grouped(rendered.points)
     ));
     if degenerate > 0 {
         failure::warn(&format!(
@@ -370,7 +356,7 @@ fn tell(
     if rendered.beyond > 0 {
         failure::warn(&format!(
             "at {} points the deviation exceeds the device's domain and was shortened to it",
-            tables::grouped(rendered.beyond)
+            words::grouped(rendered.beyond)
         ));
     }
     if let Some(comparison) = &rendered.comparison {

@@ -1,14 +1,13 @@
 //! `report`.
 
 use std::fs;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use serde_json::json;
 
-use crate::cli::destination::Destination;
+use crate::cli::own_file::OwnFile;
 use crate::cli::{Output, progress, tables};
 use crate::cosim::external::Tool;
 use crate::registry::Registry;
@@ -29,54 +28,15 @@ pub struct ReportRequest {
     pub time_limit: Duration,
 }
 
-/// What a JSON file of ours begins with.
-const JSON_MARKER: &str = "{\n  \"glint\":";
-
-/// A file to be, with the place to write it in.
-struct Target {
-    path: PathBuf,
-    destination: Destination,
-}
-
-impl Target {
-    /// A file `name` in `directory`, if what is there under this name is ours.
-    fn new(directory: &Path, name: &str, marker: &str) -> Result<Self> {
-        let path = directory.join(name);
-        // What else is wrong with it shows in writing.
-        let foreign = path.is_file()
-            && fs::read(&path).is_ok_and(|bytes| {
-                let found = std::str::from_utf8(&bytes);
-                !found.is_ok_and(|text| text.contains(marker))
-            });
-        if foreign {
-            bail!(
-                "`{}` is not a report of Glint: move it away, or give another directory with --out",
-                path.display()
-            );
-        }
-        let destination = Destination::open(&path)?;
-        Ok(Self { path, destination })
-    }
-
-    fn write(self, contents: &str) -> Result<String> {
-        let name = self.path.display().to_string().replace('\\', "/");
-        let mut file = self.destination.file()?;
-        file.write_all(contents.as_bytes())
-            .with_context(|| format!("cannot write `{name}`"))?;
-        self.destination.commit()?;
-        Ok(name)
-    }
-}
-
 /// `glint report`.
 pub fn report(registry: &Registry, output: Output, request: &ReportRequest) -> Result<bool> {
     // Before the work: a directory that cannot be written is known now.
     fs::create_dir_all(&request.out)
         .with_context(|| format!("cannot make the directory `{}`", request.out.display()))?;
-    let html = Target::new(&request.out, "report.html", page::MARKER)?;
-    let figures = Target::new(&request.out, "report.json", JSON_MARKER)?;
+    let html = OwnFile::new(&request.out, "report.html", page::MARKER)?;
+    let figures = OwnFile::new(&request.out, "report.json", OwnFile::JSON)?;
     let timings = match request.benchmark {
-        true => Some(Target::new(&request.out, "benchmark.json", JSON_MARKER)?),
+        true => Some(OwnFile::new(&request.out, "benchmark.json", OwnFile::JSON)?),
         false => None,
     };
     let mut notes = Vec::new();
@@ -97,11 +57,11 @@ pub fn report(registry: &Registry, output: Output, request: &ReportRequest) -> R
     bar.finish_and_clear();
     notes.extend(evidence.notes.iter().cloned());
     let mut written = vec![
-        figures.write(&text(&evidence)?)?,
+        figures.write_json(&evidence)?,
         html.write(&page::page(&evidence, timed.as_ref())?)?,
     ];
     if let (Some(target), Some(timed)) = (timings, &timed) {
-        written.push(target.write(&text(timed)?)?);
+        written.push(target.write_json(timed)?);
     }
     if output.json {
         tables::print_json(&json!({
@@ -143,11 +103,4 @@ pub fn report(registry: &Registry, output: Output, request: &ReportRequest) -> R
     }
     tables::print_line(&format!("Written: {}", written.join(", ")));
     Ok(true)
-}
-
-/// JSON, indented, with a newline at its end.
-fn text(value: &impl serde::Serialize) -> Result<String> {
-    let mut text = serde_json::to_string_pretty(value).context("cannot write JSON")?;
-    text.push('\n');
-    Ok(text)
 }

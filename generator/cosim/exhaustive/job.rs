@@ -7,10 +7,12 @@
 use std::fmt;
 use std::ops::ControlFlow;
 use std::str::FromStr;
+use std::time::Duration;
 
 use anyhow::{Result, ensure};
 use serde::{Deserialize, Serialize};
 
+use super::clocks::{Clocks, Steps};
 use super::places::{Peak, Places};
 use crate::golden::Contract;
 
@@ -38,6 +40,12 @@ impl Shard {
     /// Block number `at` of the shard.
     fn block(self, at: u64) -> u64 {
         self.number - 1 + at * self.of
+    }
+
+    /// The next blocks of the shard, which has `count`, when so many are done; how many are done then.
+    fn chunk(self, done: u64, count: u64) -> (u64, Vec<u64>) {
+        let end = (done + CHUNK).min(count);
+        (end, (done..end).map(|at| self.block(at)).collect())
     }
 }
 
@@ -80,6 +88,9 @@ pub struct State {
     pub f: Progress,
     /// The colour products.
     pub colours: Progress,
+    /// The combinations of operands, clock by clock. A state of before there were such has not begun them.
+    #[serde(default)]
+    pub clocks: Steps,
 }
 
 impl State {
@@ -94,6 +105,7 @@ impl State {
             shard,
             f: nothing,
             colours: nothing,
+            clocks: Steps::default(),
         }
     }
 }
@@ -104,6 +116,8 @@ pub struct Job<'a> {
     pub f: Places<'a>,
     /// The colour products.
     pub colours: Places<'a>,
+    /// The combinations of operands, clock by clock.
+    pub clocks: Option<Clocks<'a>>,
 }
 
 impl<'a> Job<'a> {
@@ -112,41 +126,103 @@ impl<'a> Job<'a> {
         Self {
             f: Places::of_f(contract),
             colours: Places::of_colours(contract),
+            clocks: None,
         }
+    }
+
+    /// The same, and every combination of operands clock by clock, if they are not too many.
+    #[must_use]
+    pub fn with(mut self, clocks: Clocks<'a>) -> Self {
+        self.clocks = Some(clocks);
+        self
+    }
+
+    /// Blocks of the combinations of operands.
+    fn blocks_of_clocks(&self) -> u64 {
+        self.clocks.as_ref().map_or(0, Clocks::blocks)
     }
 
     /// Places of the shard that are still to be visited.
     pub fn remaining(&self, state: &State) -> u64 {
-        let part = |places: &Places<'_>, progress: Progress| {
-            let count = state.shard.count(places.blocks());
-            let blocks = progress.done.min(count)..count;
-            places.visits(blocks.map(|at| state.shard.block(at)))
+        self.parts_remaining(state).iter().sum()
+    }
+
+    /// The same of each part: of `f`, of the colours, of the combinations.
+    fn parts_remaining(&self, state: &State) -> [u64; 3] {
+        let shard = state.shard;
+        let blocks = |done: u64, blocks| {
+            let count = shard.count(blocks);
+            (done.min(count)..count).map(move |at| shard.block(at))
         };
-        part(&self.f, state.f) + part(&self.colours, state.colours)
+        let part = |places: &Places<'_>, done| places.visits(blocks(done, places.blocks()));
+        let clocks =
+            |clocks: &Clocks<'_>| clocks.visits(blocks(state.clocks.done, clocks.blocks()));
+        [
+            part(&self.f, state.f.done),
+            part(&self.colours, state.colours.done),
+            self.clocks.as_ref().map_or(0, clocks),
+        ]
+    }
+
+    /// How long the rest of the shard takes on `threads` threads: a short sample of each part is timed.
+    ///
+    /// # Errors
+    /// A design that cannot be simulated, or does not settle.
+    pub fn estimate(&self, state: &State, threads: usize) -> Result<Duration> {
+        let [f, colours, clocks] = self.parts_remaining(state);
+        let seconds = |count: u64, pace: Duration| count as f64 * pace.as_secs_f64();
+        let mut sum = 0.0;
+        for (count, places) in [(f, &self.f), (colours, &self.colours)] {
+            if count > 0 {
+                sum += seconds(count, places.pace());
+            }
+        }
+        if let Some(own) = self.clocks.as_ref().filter(|_| clocks > 0) {
+            sum += seconds(clocks, own.pace()?);
+        }
+        Ok(Duration::from_secs_f64(sum / threads.max(1) as f64))
     }
 
     /// Goes on from `state` to the end of its shard, or until `look`, which sees the state now and then,
     /// breaks; `progress` is told the places of each block that is done.
+    ///
+    /// # Errors
+    /// A design that cannot be simulated, or does not settle.
     pub fn run(
         &self,
         state: &mut State,
         progress: &(dyn Fn(u64) + Sync),
         look: &mut dyn FnMut(&State) -> ControlFlow<()>,
-    ) -> ControlFlow<()> {
+    ) -> Result<ControlFlow<()>> {
         let shard = state.shard;
         for part in [Part::F, Part::Colours] {
             let places = part.places(self);
             let count = shard.count(places.blocks());
             while part.progress(state).done < count {
                 let own = part.progress(state);
-                let end = (own.done + CHUNK).min(count);
-                let blocks: Vec<u64> = (own.done..end).map(|at| shard.block(at)).collect();
+                let (end, blocks) = shard.chunk(own.done, count);
                 own.peak = own.peak.join(places.check(blocks, progress));
                 own.done = end;
-                look(state)?;
+                if look(state).is_break() {
+                    return Ok(ControlFlow::Break(()));
+                }
             }
         }
-        ControlFlow::Continue(())
+        let count = shard.count(self.blocks_of_clocks());
+        while let Some(clocks) = &self.clocks
+            && state.clocks.done < count
+        {
+            let (end, blocks) = shard.chunk(state.clocks.done, count);
+            state.clocks.differs = clocks.check(blocks, progress)?;
+            state.clocks.done = match state.clocks.differs {
+                Some(_) => count,
+                None => end,
+            };
+            if look(state).is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+        }
+        Ok(ControlFlow::Continue(()))
     }
 
     /// What the shards of one job give together.
@@ -186,6 +262,12 @@ impl<'a> Job<'a> {
             *place = Some(name);
             merged.f.peak = merged.f.peak.join(state.f.peak);
             merged.colours.peak = merged.colours.peak.join(state.colours.peak);
+            let differ = merged
+                .clocks
+                .differs
+                .into_iter()
+                .chain(state.clocks.differs);
+            merged.clocks.differs = differ.min();
         }
         let missing: Vec<String> = (1u64..)
             .zip(&seen)
@@ -195,6 +277,7 @@ impl<'a> Job<'a> {
         ensure!(missing.is_empty(), "missing: shard {}", missing.join(", "));
         merged.f.done = self.f.blocks();
         merged.colours.done = self.colours.blocks();
+        merged.clocks.done = self.blocks_of_clocks();
         Ok(merged)
     }
 }

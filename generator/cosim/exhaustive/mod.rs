@@ -1,15 +1,18 @@
 //! The factored proof of an accuracy contract: every place of its sweep for `f`, every word `f` with every
-//! colour, and what both give together.
+//! colour, and what both give together. And, of a device with few bits of operands, every combination of
+//! them clock by clock.
 //!
 //! Places are numbered, the last axis fastest, and cut into blocks; any set of blocks can be checked
 //! anywhere, in any order, and the outcomes joined: the result does not depend on how the work was divided.
 
+mod clocks;
 mod job;
 mod places;
 
 #[cfg(test)]
 mod tests;
 
+pub use clocks::{Clocks, Difference, MOST_BITS, Steps};
 pub use job::{Job, Progress, Shard, State};
 pub use places::{Peak, Places};
 

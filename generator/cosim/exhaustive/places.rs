@@ -1,5 +1,8 @@
 //! Places by number: what an exhaustive check goes through, in blocks.
 
+use std::ops::Range;
+use std::time::{Duration, Instant};
+
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
@@ -7,6 +10,9 @@ use crate::golden::{Axis, Contract, Sweep, Values};
 
 /// Places of a block: some milliseconds of work.
 pub const BLOCK: u64 = 1 << 17;
+
+/// Places of which the time is taken.
+const SAMPLE: u64 = 4096;
 
 /// The largest error of some places, and the first of them at which it occurs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -142,7 +148,7 @@ impl<'a> Places<'a> {
     }
 
     /// The places of one block.
-    fn of_block(&self, block: u64) -> std::ops::Range<u64> {
+    fn of_block(&self, block: u64) -> Range<u64> {
         block * BLOCK..((block + 1) * BLOCK).min(self.count())
     }
 
@@ -156,13 +162,22 @@ impl<'a> Places<'a> {
             .sum()
     }
 
-    /// The peak of one block.
-    fn block(&self, block: u64) -> Peak {
+    /// How long one place takes on one thread.
+    pub(super) fn pace(&self) -> Duration {
+        let count = self.count().min(SAMPLE);
+        let first = (self.count() - count) / 2;
+        let begin = Instant::now();
+        self.peak(first..first + count);
+        begin.elapsed() / count.max(1) as u32
+    }
+
+    /// The peak of places that follow one another.
+    fn peak(&self, places: Range<u64>) -> Peak {
         let mut peak = Peak::NONE;
         let Some(inner) = self.sweep.axes.last() else {
             return peak;
         };
-        let (places, count) = (self.of_block(block), inner.values.count());
+        let count = inner.values.count();
         let mut number = places.start;
         while number < places.end {
             // Along the last axis only its own value moves.
@@ -194,8 +209,8 @@ impl<'a> Places<'a> {
         blocks
             .into_par_iter()
             .map(|block| {
-                let peak = self.block(block);
                 let places = self.of_block(block);
+                let peak = self.peak(places.clone());
                 progress(places.end - places.start);
                 peak
             })

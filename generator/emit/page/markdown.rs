@@ -1,98 +1,51 @@
 //! Markdown: tables, and text that Markdown would take for something else.
 
-/// Where a column's cells stand.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub enum Align {
-    /// Words.
-    Left,
-    /// Numbers.
-    Right,
-}
+use crate::emit::account::{Align, Table};
 
-/// A table. Its columns are padded, so that it reads well as text too; the last one is not.
-pub struct Table {
-    columns: Vec<(String, Align)>,
-    rows: Vec<Vec<String>>,
-}
-
-impl Table {
-    /// A table of these columns.
-    pub fn new(columns: &[(&str, Align)]) -> Self {
-        Self {
-            columns: columns
-                .iter()
-                .map(|&(heading, align)| (heading.to_owned(), align))
-                .collect(),
-            rows: Vec::new(),
-        }
-    }
-
-    /// One row more, with a cell for each column.
-    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
-        self.rows.push(cells.into_iter().collect());
-    }
-
-    /// Leaves out a column in which no row says anything.
-    pub fn without_empty(mut self, heading: &str) -> Self {
-        let at = self.columns.iter().position(|column| column.0 == heading);
-        if let Some(at) = at
-            && self.rows.iter().all(|row| row[at].is_empty())
-        {
-            self.columns.remove(at);
-            for row in &mut self.rows {
-                row.remove(at);
-            }
-        }
-        self
-    }
-
-    /// The lines, without the last newline.
-    pub fn text(&self) -> String {
-        let width = |at: usize| {
-            let cells = self.rows.iter().map(|row| row[at].chars().count());
-            let heading = self.columns[at].0.chars().count();
-            cells.fold(heading.max(3), usize::max)
-        };
-        let last = self.columns.len() - 1;
-        let widths: Vec<usize> = (0..=last)
-            .map(|at| if at == last { 3 } else { width(at) })
-            .collect();
-        let line = |cells: &mut dyn Iterator<Item = &str>| {
-            let cells: Vec<String> = cells
-                .zip(self.columns.iter().zip(&widths))
-                .map(|(cell, ((_, align), &width))| match align {
-                    Align::Left => format!("{cell:width$}"),
-                    Align::Right => format!("{cell:>width$}"),
-                })
-                .collect();
-            format!("| {} |", cells.join(" | "))
-        };
-        let rule: Vec<String> = self
-            .columns
+/// The lines of a table, without the last newline. Its columns are padded, so that it reads well as text too; the last
+/// one is not.
+pub fn table(table: &Table) -> String {
+    let headings: Vec<String> = table
+        .columns
+        .iter()
+        .map(|column| prose(&column.heading))
+        .collect();
+    let rows: Vec<Vec<String>> = table
+        .rows
+        .iter()
+        .map(|row| row.iter().map(|cell| prose(cell)).collect())
+        .collect();
+    let width = |at: usize| {
+        let cells = rows.iter().map(|row| row[at].chars().count());
+        cells.fold(headings[at].chars().count().max(3), usize::max)
+    };
+    let last = table.columns.len() - 1;
+    let widths: Vec<usize> = (0..=last)
+        .map(|at| if at == last { 3 } else { width(at) })
+        .collect();
+    let line = |cells: &[String]| {
+        let cells: Vec<String> = cells
             .iter()
-            .zip(&widths)
-            .map(|((_, align), &width)| match align {
-                Align::Left => "-".repeat(width),
-                Align::Right => "-".repeat(width - 1) + ":",
+            .zip(table.columns.iter().zip(&widths))
+            .map(|(cell, (column, &width))| match column.align {
+                Align::Left => format!("{cell:width$}"),
+                Align::Right => format!("{cell:>width$}"),
             })
             .collect();
-        let mut lines = vec![
-            line(&mut self.columns.iter().map(|column| column.0.as_str())),
-            line(&mut rule.iter().map(String::as_str)),
-        ];
-        for row in &self.rows {
-            lines.push(line(&mut row.iter().map(String::as_str)));
-        }
-        lines.join("\n")
-    }
-}
-
-/// A name or a number as the files write it; nothing for nothing.
-pub fn code(text: &str) -> String {
-    if text.is_empty() {
-        return String::new();
-    }
-    format!("`{}`", text.replace('|', "\\|"))
+        format!("| {} |", cells.join(" | "))
+    };
+    let rule: Vec<String> = table
+        .columns
+        .iter()
+        .zip(&widths)
+        .map(|(column, &width)| match column.align {
+            Align::Left => "-".repeat(width),
+            Align::Right => "-".repeat(width - 1) + ":",
+        })
+        .collect();
+    let mut lines = vec![line(&headings), line(&rule)];
+    lines.extend(rows.iter().map(|row| line(row)));
+    lines.join("\n")
 }
 
 /// Prose in which no sign is Markdown's, but for names in backquotes.
@@ -139,17 +92,7 @@ mod tests {
 | ------- | ---: | --- |
 | `a`     |   10 | short |
 | `bcdef` |    7 | this is longer |";
-        assert_eq!(table.text(), expected);
-    }
-
-    #[test]
-    fn an_empty_column_goes() {
-        let mut table = Table::new(&[("no.", Align::Right), ("name", Align::Left)]);
-        table.row([String::new(), "a".to_owned()]);
-        assert_eq!(
-            table.without_empty("no.").text(),
-            "| name |\n| --- |\n| a   |"
-        );
+        assert_eq!(super::table(&table), expected);
     }
 
     #[test]
@@ -158,6 +101,6 @@ mod tests {
             prose("a*b <- c|d `_x|*` k_s _a <b>"),
             "a\\*b <- c\\|d `_x\\|*` k_s \\_a \\<b>"
         );
-        assert_eq!(code("a|b"), "`a\\|b`");
+        assert_eq!(prose("`a|b`"), "`a\\|b`");
     }
 }

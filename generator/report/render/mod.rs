@@ -29,13 +29,13 @@ pub use height::Relief;
 pub use mesh::Mesh;
 pub use operands::{exponents, walks_lines};
 pub use picture::{Difference, Picture};
-pub use scene::{BuiltIn, COLOUR, Light, Object, Scene, Shape};
+pub use scene::{BACKGROUND, BuiltIn, COLOUR, Light, Object, Scene, Shape};
 pub use shade::Material;
 pub use vector::Vector;
 
 use crate::cosim::batch::{Engine, Points};
 use crate::flow::Unit;
-use crate::golden::nearer;
+use crate::golden::{Contract, nearer};
 use camera::Camera;
 use operands::Feed;
 use shade::{Shaded, Shader};
@@ -52,6 +52,9 @@ pub const LARGEST: u64 = 1 << 28;
 
 /// The most lights.
 pub const MOST_LIGHTS: usize = 16;
+
+/// n by default, where the device takes so much.
+const EXPONENT: i64 = 80;
 
 /// Points, about, that are handed to the device at once.
 const PORTION: usize = 1 << 18;
@@ -95,6 +98,12 @@ pub struct Comparison {
     pub difference: Difference,
     /// The largest error of an output against the device's own formula, in output units.
     pub units: f64,
+}
+
+/// The exponent at which a picture is rendered by default: one that the device takes.
+pub fn usual_exponent(contract: &dyn Contract) -> u32 {
+    let (least, most) = exponents(contract).unwrap_or((0, i64::MAX));
+    EXPONENT.clamp(least, most).max(0) as u32
 }
 
 /// Checks what is to be rendered.

@@ -66,6 +66,23 @@ pub enum BuiltIn {
 /// The colour of things by default.
 pub const COLOUR: Vector = Vector::new(0.08, 0.35, 0.54);
 
+/// The colour around things by default.
+pub const BACKGROUND: Vector = Vector::new(0.05, 0.06, 0.08);
+
+impl Light {
+    /// The lights by default: a white one from the upper left, a weaker one from behind on the right.
+    pub fn usual() -> Vec<Self> {
+        let light = |direction: Vector, colour| Self {
+            direction: direction.unit().unwrap_or_default(),
+            colour,
+        };
+        vec![
+            light(Vector::new(-0.6, 0.8, 0.9), Vector::new(1.0, 1.0, 1.0)),
+            light(Vector::new(1.0, 0.35, -0.3), Vector::new(0.55, 0.47, 0.38)),
+        ]
+    }
+}
+
 impl Scene {
     /// A scene that needs no file; its things have the given colour, or colours of their own. `coarse` ones
     /// consist of triangles that one can see, for devices that interpolate along them.

@@ -28,6 +28,18 @@ pub struct Material {
     pub exponent: u32,
 }
 
+impl Material {
+    /// How things reflect by default.
+    pub const fn usual(exponent: u32) -> Self {
+        Self {
+            ambient: 0.12,
+            diffuse: 0.75,
+            specular: 0.7,
+            exponent,
+        }
+    }
+}
+
 /// What is needed to shade.
 pub struct Shader<'a> {
     /// Things and lights.

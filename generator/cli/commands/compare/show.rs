@@ -6,6 +6,7 @@ use super::{CompareRequest, Entry};
 use crate::cli::{Output, failure, tables};
 use crate::cosim::synthesis::{FAMILIES, Usage};
 use crate::report::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, Multiplier, Spread};
+use crate::words;
 
 /// Prints everything in the form that was asked for.
 pub fn show(
@@ -109,7 +110,7 @@ fn print_hardware(entries: &[Entry]) {
         let mut row = vec![
             entry.label.clone(),
             clocks(entry.figures.clocks_per_point),
-            tables::grouped(entry.unit.design.rom_bits()),
+            words::grouped(entry.unit.design.rom_bits()),
             sizes(&entry.figures.multipliers),
         ];
         for usage in &entry.usage {

@@ -1,0 +1,145 @@
+//! `datasheet`.
+
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use anyhow::{Context, Result, bail};
+use serde_json::json;
+
+use super::{Loaded, load};
+use crate::cli::failure::Usage;
+use crate::cli::store::{self, Written};
+use crate::cli::{Output, progress, tables};
+use crate::cosim::external::Tool;
+use crate::emit::Seal;
+use crate::flow::Unit;
+use crate::registry::Registry;
+use crate::report::datasheet::{self, Proof, Subject};
+
+/// What `datasheet` was asked for.
+pub struct DatasheetRequest {
+    /// A directory, or the page of the only configuration.
+    pub out: PathBuf,
+    /// Where the records of exhaustive checks are.
+    pub proofs: PathBuf,
+    /// Write the timing diagram for WaveDrom too.
+    pub wavedrom: bool,
+    /// Replace files that Glint did not write or that were edited since.
+    pub force: bool,
+    /// Synthesise.
+    pub synthesis: bool,
+    /// After which a run of Yosys is given up.
+    pub time_limit: Duration,
+}
+
+/// `glint datasheet`.
+pub fn datasheet(
+    registry: &Registry,
+    output: Output,
+    configs: &[PathBuf],
+    request: &DatasheetRequest,
+) -> Result<bool> {
+    let loaded = load(registry, configs)?;
+    let single = request
+        .out
+        .extension()
+        .is_some_and(|it| it.eq_ignore_ascii_case("html"));
+    if single && loaded.len() != 1 {
+        bail!(Usage(format!(
+            "--out {}: a file takes one configuration, and there are {}; give a directory",
+            request.out.display(),
+            loaded.len()
+        )));
+    }
+    // Before the work: whether everything can be written, and which records there are.
+    let mut proofs = Vec::new();
+    for one in &loaded {
+        proofs.push(proof(&request.proofs, &one.unit)?);
+        store::may_write(&path(request, one, single), Seal::Markup, request.force)?;
+    }
+    let mut notes = Vec::new();
+    let yosys = match request.synthesis.then(|| Tool::find("yosys")) {
+        None => None,
+        Some(Ok(yosys)) => Some(yosys),
+        Some(Err(missing)) => {
+            notes.push(format!("{missing}: nothing is synthesised"));
+            None
+        }
+    };
+    let steps = loaded.len() * datasheet::steps(yosys.is_some());
+    let bar = progress::bar(output, steps as u64, "datasheets");
+    bar.tick();
+    let mut report = Vec::new();
+    for (one, proof) in loaded.iter().zip(proofs) {
+        let subject = Subject {
+            unit: &one.unit,
+            path: &one.path,
+            proof,
+            synthesis: yosys.as_ref().map(|yosys| (yosys, request.time_limit)),
+        };
+        let made = datasheet::datasheet(&subject, &|| bar.inc(1));
+        let made = made.with_context(|| format!("`{}`", one.path))?;
+        let page = path(request, one, single);
+        let mut files = vec![(page.clone(), made.page, Seal::Markup)];
+        if request.wavedrom {
+            let path = page.with_extension("wavedrom.json");
+            files.push((path, made.wavedrom, Seal::Json));
+        }
+        for (path, text, seal) in files {
+            let written = store::write_sealed(&path, &text, seal, request.force);
+            let written = written.with_context(|| format!("`{}` has no datasheet", one.path))?;
+            report.push((one, path.display().to_string().replace('\\', "/"), written));
+        }
+    }
+    bar.finish_and_clear();
+    tell(output, &report, &notes);
+    Ok(true)
+}
+
+/// The page of a configuration.
+fn path(request: &DatasheetRequest, one: &Loaded, single: bool) -> PathBuf {
+    match single {
+        true => request.out.clone(),
+        false => request.out.join(format!("{}.html", one.unit.config.name)),
+    }
+}
+
+/// The record of a configuration's exhaustive check, if there is one.
+fn proof(directory: &Path, unit: &Unit) -> Result<Option<Proof>> {
+    let path = directory.join(format!("{}.json", unit.config.name));
+    match fs::read_to_string(&path) {
+        Ok(text) => Proof::parse(&text, unit)
+            .map(Some)
+            .with_context(|| format!("the record `{}` cannot be used", path.display())),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(error).with_context(|| format!("cannot read `{}`", path.display())),
+    }
+}
+
+fn tell(output: Output, report: &[(&Loaded, String, Written)], notes: &[String]) {
+    if output.json {
+        let files = report.iter().map(|(one, path, written)| {
+            json!({
+                "config": one.path,
+                "name": one.unit.config.name,
+                "file": path,
+                "written": *written == Written::Replaced,
+            })
+        });
+        let files: Vec<_> = files.collect();
+        tables::print_json(&json!({ "ok": true, "datasheets": files, "notes": notes }));
+        return;
+    }
+    for (one, path, written) in report {
+        let what = match written {
+            Written::Unchanged => "up to date",
+            Written::Replaced => "written",
+        };
+        tables::print_line(&format!("{}: {path} {what}", one.path));
+    }
+    for note in notes {
+        tables::print_line(&format!("Note: {note}"));
+    }
+}

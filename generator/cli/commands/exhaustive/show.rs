@@ -1,0 +1,180 @@
+//! What `cosim --exhaustive` and `merge` say.
+
+use std::collections::BTreeMap;
+
+use anyhow::Result;
+use serde_json::{Value, json};
+
+use crate::cli::commands::Loaded;
+use crate::cli::commands::mismatch::Reproducer;
+use crate::cli::{Output, tables};
+use crate::cosim::exhaustive::{Difference, Job, Proof, Shard, State};
+use crate::golden::Values;
+use crate::words;
+
+/// What is about to be done, and what is not.
+pub fn announce(one: &Loaded, job: &Job<'_>, state: &State) {
+    tables::print_line(&format!(
+        "{}: {} evaluations of f ({}), {} colour products",
+        one.path,
+        words::grouped(job.f.count()),
+        job.f.sweep().words(),
+        words::grouped(job.colours.count())
+    ));
+    if !job.f.sweep().omits.is_empty() {
+        tables::print_line(&format!("  not covered: {}", job.f.sweep().omits));
+    }
+    if let Some(clocks) = &job.clocks {
+        match clocks.count() {
+            0 => (),
+            count => tables::print_line(&format!(
+                "  every register and output at every clock for {} combinations of {} operand bits",
+                words::grouped(count),
+                clocks.bits()
+            )),
+        }
+        tables::print_line(&format!("  not covered: {}", clocks.omits()));
+    }
+    let left = job.remaining(state);
+    let all = job.remaining(&State::new("", Shard::WHOLE));
+    if left != all {
+        tables::print_line(&format!(
+            "  shard {}: {} evaluations to do here",
+            state.shard,
+            words::grouped(left)
+        ));
+    }
+}
+
+/// Says what a state means; whether it is within the bound, and nothing differs.
+///
+/// # Errors
+/// A design that cannot be simulated; the waveform of a difference cannot be written.
+pub fn report(
+    output: Output,
+    one: &Loaded,
+    job: &Job<'_>,
+    state: &State,
+    list: &mut Vec<Value>,
+) -> Result<bool> {
+    let contract = one.unit.contract.as_ref();
+    let mut proof = Proof::new(contract, state.f.peak, state.colours.peak);
+    let found = found(one, job, state)?;
+    if let Some((difference, _)) = &found {
+        proof.faults.push(difference.to_string());
+    }
+    if output.json {
+        list.push(as_json(one, job, &proof, state, found.as_ref()));
+    } else {
+        print(one, job, &proof, state);
+        if let Some((difference, reproducer)) = &found {
+            let text = reproducer.text(&difference.mismatch);
+            tables::print_line(&format!("  {text}"));
+        }
+    }
+    Ok(proof.faults.is_empty())
+}
+
+/// The first combination that differs, with its waveform.
+fn found(one: &Loaded, job: &Job<'_>, state: &State) -> Result<Option<(Difference, Reproducer)>> {
+    let (Some(clocks), Some(place)) = (&job.clocks, state.clocks.differs) else {
+        return Ok(None);
+    };
+    let difference = clocks.difference(place)?;
+    let reproducer = Reproducer::of_combination(one, clocks, &difference)?;
+    Ok(Some((difference, reproducer)))
+}
+
+fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &State) {
+    let at: Vec<String> = job
+        .f
+        .sweep()
+        .axes
+        .iter()
+        .zip(job.f.place(proof.f.place))
+        .map(|(axis, value)| format!("{}={value}", axis.name))
+        .collect();
+    let verdict = match (proof.faults.is_empty(), state.shard == Shard::WHOLE) {
+        (true, true) => "holds",
+        (true, false) => "holds so far; `glint merge` joins the shards",
+        (false, _) => "FAILS",
+    };
+    tables::print_line(&format!(
+        "  f is off by {:.3e} at most, {:.3} units, at raw {}; a colour multiplier by {:.3}; together {:.3} (bound {:.3}): {verdict}",
+        proof.f.error,
+        proof.f_units,
+        at.join(" "),
+        proof.colours.error,
+        proof.together(),
+        one.unit.contract.bound().units,
+    ));
+    for fault in &proof.faults {
+        tables::print_line(&format!("  FAILS: {fault}"));
+    }
+}
+
+/// A proof for scripts, and for the record.
+fn as_json(
+    one: &Loaded,
+    job: &Job<'_>,
+    proof: &Proof,
+    state: &State,
+    found: Option<&(Difference, Reproducer)>,
+) -> Value {
+    let places = &job.f;
+    let axes: Vec<Value> = places
+        .sweep()
+        .axes
+        .iter()
+        .map(|axis| match &axis.values {
+            Values::Range(low, high) => json!({ "name": axis.name, "from": low, "to": high }),
+            Values::List(values) => json!({ "name": axis.name, "values": values }),
+        })
+        .collect();
+    let mut value = json!({
+        "config": one.path,
+        "device": one.unit.device.name,
+        "axes": axes,
+        "not_covered": places.sweep().omits,
+        "evaluations": places.count(),
+        "colour_products": job.colours.count(),
+        "f": {
+            "error": proof.f.error,
+            "units": proof.f_units,
+            "place": proof.f.place,
+            "at": places.place(proof.f.place),
+        },
+        "colour_units": proof.colours.error,
+        "together": proof.together(),
+        "bound": one.unit.contract.bound().units,
+        "holds": proof.faults.is_empty(),
+        "faults": proof.faults,
+    });
+    if let Some(clocks) = &job.clocks {
+        value["clocks"] = json!({
+            "operand_bits": clocks.bits(),
+            "combinations": clocks.count(),
+            "not_covered": clocks.omits(),
+            "mismatch": found.map(mismatch_json),
+        });
+    }
+    if state.shard != Shard::WHOLE {
+        value["shard"] = json!(state.shard.to_string());
+    }
+    value
+}
+
+/// A difference for scripts: that of a run, with the combination in place of a seed.
+fn mismatch_json((difference, reproducer): &(Difference, Reproducer)) -> Value {
+    let mut value = reproducer.json(&difference.mismatch);
+    let operands: BTreeMap<&str, String> = difference
+        .operands
+        .iter()
+        .map(|(name, bits)| (name.as_str(), format!("{bits:#x}")))
+        .collect();
+    value["seed"] = Value::Null;
+    value["combination"] = json!(difference.place);
+    value["clock_of_computation"] = json!(difference.clock);
+    value["operands"] = json!(operands);
+    value
+}

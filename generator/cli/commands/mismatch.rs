@@ -1,0 +1,126 @@
+//! A first difference as people and scripts are told of it, with the means to see it again.
+
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use serde_json::{Value, json};
+
+use super::Loaded;
+use crate::cli::destination::Destination;
+use crate::cosim::exhaustive::{Clocks, Difference};
+use crate::cosim::{Lockstep, Mismatch, Outcome};
+
+/// Clocks in the waveform that ends with a difference.
+const WINDOW: u64 = 64;
+
+/// Where a difference can be seen, and had again.
+pub struct Reproducer {
+    /// The waveform of the clocks before it.
+    vcd: PathBuf,
+    /// The first of them.
+    from: u64,
+    /// The command that shows all of them.
+    command: String,
+}
+
+impl Reproducer {
+    /// Writes the waveform of the clocks before a difference into the working directory.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn of_run(one: &Loaded, mismatch: &Mismatch) -> Result<Self> {
+        let (vcd, from) = window(one, mismatch);
+        let lockstep = one.unit.lockstep(mismatch.seed)?;
+        let outcome = traced(&lockstep, &vcd, u64::MAX, from)?;
+        Ok(Self {
+            vcd,
+            from,
+            command: format!(
+                "glint cosim {} --seed {} --points {} --vcd FILE",
+                one.path,
+                mismatch.seed,
+                outcome.points + 1
+            ),
+        })
+    }
+
+    /// The same for a combination of operands.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn of_combination(
+        one: &Loaded,
+        clocks: &Clocks<'_>,
+        difference: &Difference,
+    ) -> Result<Self> {
+        let (vcd, from) = window(one, &difference.mismatch);
+        write(&vcd, |file| clocks.trace(difference.place, from, file))?;
+        Ok(Self {
+            vcd,
+            from,
+            command: format!("glint cosim {} --exhaustive", one.path),
+        })
+    }
+
+    /// For people.
+    pub fn text(&self, mismatch: &Mismatch) -> String {
+        format!(
+            "`{}` shows clocks {} to {}; all of them: {}",
+            self.vcd.display(),
+            self.from,
+            mismatch.clock,
+            self.command
+        )
+    }
+
+    /// For scripts: a difference with its place and how to have it again.
+    pub fn json(&self, mismatch: &Mismatch) -> Value {
+        let mut value = as_json(mismatch);
+        value["vcd"] = json!(self.vcd.display().to_string());
+        value["reproduce"] = json!(self.command);
+        value
+    }
+}
+
+/// A difference for scripts. Values are bit patterns and may have 64 bits, which not every reader's
+/// numbers hold: they are text.
+pub fn as_json(mismatch: &Mismatch) -> Value {
+    json!({
+        "seed": mismatch.seed,
+        "clock": mismatch.clock,
+        "word": mismatch.word,
+        "signal": mismatch.signal,
+        "golden": format!("{:#x}", mismatch.golden),
+        "simulated": format!("{:#x}", mismatch.simulated),
+    })
+}
+
+/// The file for the waveform of a difference, and the clock at which it begins.
+fn window(one: &Loaded, mismatch: &Mismatch) -> (PathBuf, u64) {
+    let path = PathBuf::from(format!("{}_mismatch.vcd", one.unit.config.name));
+    (path, first_clock(mismatch))
+}
+
+/// The clock at which the waveform of a difference begins.
+pub fn first_clock(mismatch: &Mismatch) -> u64 {
+    mismatch.clock.saturating_sub(WINDOW)
+}
+
+/// A run with a waveform from clock `from` on: written beside its place and moved there when it is whole.
+///
+/// # Errors
+/// Those of [`Lockstep::trace`]; the file cannot be written.
+pub fn traced(lockstep: &Lockstep<'_>, path: &Path, points: u64, from: u64) -> Result<Outcome> {
+    write(path, |file| lockstep.trace(points, from, file))
+}
+
+/// Has a waveform written beside its place, and moves it there when it is whole.
+fn write<T>(path: &Path, trace: impl FnOnce(BufWriter<File>) -> Result<T>) -> Result<T> {
+    let destination = Destination::open(path)?;
+    let outcome = trace(BufWriter::new(destination.file()?))
+        .with_context(|| format!("cannot write the waveform `{}`", path.display()))?;
+    destination.commit()?;
+    Ok(outcome)
+}

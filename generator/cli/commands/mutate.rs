@@ -1,0 +1,220 @@
+//! `mutate`.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use serde_json::{Value, json};
+
+use super::mismatch::{self, first_clock, traced};
+use super::{Loaded, load};
+use crate::cli::destination::Destination;
+use crate::cli::failure::Usage;
+use crate::cli::{Output, progress, tables};
+use crate::cosim::Lockstep;
+use crate::mutate::{self, Fault, Faults, Score, Tally, Verdict};
+use crate::registry::Registry;
+
+/// What `mutate` was asked for.
+pub struct MutateRequest {
+    /// Name the faults, and plant none.
+    pub list: bool,
+    /// The fault of this id alone.
+    pub only: Option<String>,
+    /// The directory of the records.
+    pub out: Option<PathBuf>,
+}
+
+/// `glint mutate`.
+pub fn mutate(
+    registry: &Registry,
+    output: Output,
+    configs: &[PathBuf],
+    request: &MutateRequest,
+) -> Result<bool> {
+    let loaded = load(registry, configs)?;
+    if let Some(id) = &request.only {
+        return match &loaded[..] {
+            [one] => only(output, one, id),
+            _ => bail!(Usage(format!(
+                "--only is for one configuration; here are {}",
+                loaded.len()
+            ))),
+        };
+    }
+    let faults: Vec<Faults> = loaded
+        .iter()
+        .map(|one| Faults::of(&one.unit.design))
+        .collect();
+    if request.list {
+        list(output, &loaded, &faults);
+        return Ok(true);
+    }
+    let total: usize = faults.iter().map(Faults::len).sum();
+    let bar = progress::bar(output, total as u64, "faults planted");
+    let mut scores = Vec::new();
+    for (one, faults) in loaded.iter().zip(&faults) {
+        let found = mutate::run(&one.unit, faults.iter(), &|| bar.inc(1));
+        let score = Score::of(&found.with_context(|| format!("`{}`", one.path))?);
+        if let Some(directory) = &request.out {
+            record(directory, one, &score)?;
+        }
+        if !output.json {
+            bar.suspend(|| print(one, &score));
+        }
+        scores.push(score);
+    }
+    bar.finish_and_clear();
+    let holds = scores.iter().all(Score::holds);
+    if output.json {
+        let list: Vec<Value> = loaded
+            .iter()
+            .zip(&scores)
+            .map(|(one, score)| as_json(one, score))
+            .collect();
+        tables::print_json(&json!({ "ok": holds, "configurations": list }));
+    }
+    Ok(holds)
+}
+
+/// The names of all faults.
+fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) {
+    let mut list = Vec::new();
+    for (one, faults) in loaded.iter().zip(faults) {
+        if output.json {
+            let named = |fault: &Fault| json!({ "id": fault.id, "kind": fault.kind });
+            let faults: Vec<Value> = faults.iter().map(named).collect();
+            list.push(json!({ "config": one.path, "faults": faults }));
+            continue;
+        }
+        tables::print_line(&format!("{}: {} faults", one.path, faults.len()));
+        for fault in faults.iter() {
+            tables::print_line(&format!("  {}  {}", fault.id, fault.kind));
+        }
+    }
+    if output.json {
+        tables::print_json(&json!({ "ok": true, "configurations": list }));
+    }
+}
+
+/// One fault, with what reproduces it.
+fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
+    let faults = Faults::of(&one.unit.design);
+    let Some(fault) = faults.find(id) else {
+        bail!(Usage(format!(
+            "`{}` has no fault `{id}`; `glint mutate {} --list` names them",
+            one.path, one.path
+        )));
+    };
+    let found = mutate::run(&one.unit, [fault], &|| ())?;
+    let verdict = found.into_iter().next().map(|found| found.verdict);
+    let verdict = verdict.context("a fault without a verdict")?;
+    let mut waveform = None;
+    if let Verdict::Caught(_, mismatch) = &verdict {
+        let mutant = fault.planted(&one.unit.design);
+        let model = (one.unit.device.model)(&one.unit.config);
+        let lockstep = Lockstep::new(&mutant, model, one.unit.contract.as_ref(), mismatch.seed)?;
+        let path = PathBuf::from(format!("{}_mutant.vcd", one.unit.config.name));
+        let from = first_clock(mismatch);
+        traced(&lockstep, &path, u64::MAX, from)?;
+        waveform = Some((path, from, mismatch.clock));
+    }
+    if output.json {
+        tables::print_json(&verdict_as_json(one, fault, &verdict));
+        return Ok(verdict != Verdict::Open);
+    }
+    let said = match &verdict {
+        Verdict::Caught(leg, mismatch) => format!(
+            "caught by {leg}: seed {}, after clock {}, {mismatch}",
+            mismatch.seed, mismatch.clock
+        ),
+        Verdict::Equivalent(how) => format!("equivalent, {how}"),
+        Verdict::Open => "OPEN: not caught, and not proved equivalent".to_owned(),
+    };
+    tables::print_line(&format!(
+        "{}: {} ({}): {said}",
+        one.path, fault.id, fault.kind
+    ));
+    if let Some((path, from, to)) = waveform {
+        tables::print_line(&format!(
+            "  `{}` shows clocks {from} to {to}",
+            path.display()
+        ));
+    }
+    Ok(verdict != Verdict::Open)
+}
+
+fn verdict_as_json(one: &Loaded, fault: &Fault, verdict: &Verdict) -> Value {
+    let (caught, equivalent) = match verdict {
+        Verdict::Caught(leg, mismatch) => {
+            let mut caught = mismatch::as_json(mismatch);
+            caught["by"] = json!(leg);
+            (Some(caught), None)
+        }
+        Verdict::Equivalent(how) => (None, Some(how)),
+        Verdict::Open => (None, None),
+    };
+    json!({
+        "ok": *verdict != Verdict::Open,
+        "config": one.path,
+        "id": fault.id,
+        "kind": fault.kind,
+        "caught": caught,
+        "equivalent": equivalent,
+    })
+}
+
+fn as_json(one: &Loaded, score: &Score) -> Value {
+    json!({
+        "config": one.path,
+        "device": one.unit.device.name,
+        "netlist": score,
+    })
+}
+
+/// Writes the record of a configuration.
+fn record(directory: &Path, one: &Loaded, score: &Score) -> Result<()> {
+    std::fs::create_dir_all(directory)
+        .with_context(|| format!("cannot make the directory `{}`", directory.display()))?;
+    let path = directory.join(format!("{}.json", one.unit.config.name));
+    let destination = Destination::open(&path)?;
+    let text = format!("{:#}\n", as_json(one, score));
+    let mut file = destination.file()?;
+    file.write_all(text.as_bytes())
+        .with_context(|| format!("cannot write `{}`", path.display()))?;
+    destination.commit()
+}
+
+fn print(one: &Loaded, score: &Score) {
+    tables::print_line(&format!("{}:", one.path));
+    let row = |name: String, tally: &Tally| {
+        let caught = |leg| tally.caught.get(&leg).copied().unwrap_or(0).to_string();
+        vec![
+            name,
+            tally.planted.to_string(),
+            caught(mutate::Leg::Cosim),
+            caught(mutate::Leg::Aimed),
+            tally.all_equivalent().to_string(),
+            tally.open.to_string(),
+        ]
+    };
+    let kinds = score
+        .kinds
+        .iter()
+        .map(|(kind, tally)| row(kind.to_string(), tally));
+    let all = row("all".to_owned(), &score.all);
+    let headings = ["fault", "planted", "caught", "aimed", "equivalent", "open"];
+    tables::print(&headings, &headings[1..], kinds.chain([all]));
+    tables::print_line(&format!(
+        "  {:.2} % open: {}",
+        100.0 * score.all.share_open(),
+        if score.holds() {
+            "holds"
+        } else {
+            "FAILS, at most 1 % may be"
+        }
+    ));
+    for id in &score.open {
+        tables::print_line(&format!("  open: {id}"));
+    }
+}

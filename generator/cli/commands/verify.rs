@@ -1,0 +1,145 @@
+//! `verify`.
+
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+use serde_json::json;
+
+use super::{Loaded, load};
+use crate::cli::own_file::OwnFile;
+use crate::cli::{Output, progress, tables};
+use crate::registry::Registry;
+use crate::verify::{Answer, Conclusion, Effort, LEGS, Record, Subject, Timing, Verdict, page};
+
+/// What `verify` was asked for.
+pub struct VerifyRequest {
+    /// Everything, however long it takes.
+    pub full: bool,
+    /// Only the legs that need no tool outside Glint.
+    pub without_tools: bool,
+    /// Where the files go.
+    pub out: PathBuf,
+    /// After which a run of an outside tool is given up.
+    pub time_limit: Duration,
+}
+
+/// The files of one configuration.
+struct Files {
+    page: OwnFile,
+    record: OwnFile,
+    timings: OwnFile,
+}
+
+impl Files {
+    fn new(directory: &Path, name: &str) -> Result<Self> {
+        let file =
+            |suffix: &str, marker| OwnFile::new(directory, &format!("{name}{suffix}"), marker);
+        Ok(Self {
+            page: file(".html", page::MARKER)?,
+            record: file(".json", OwnFile::JSON)?,
+            timings: file(".timings.json", OwnFile::JSON)?,
+        })
+    }
+
+    fn write(self, record: &Record, timings: &[Timing]) -> Result<[String; 3]> {
+        let times = json!({ "glint": record.glint, "config": record.config, "seconds": timings });
+        Ok([
+            self.page.write(&page::page(record, timings)?)?,
+            self.record.write_json(record)?,
+            self.timings.write_json(&times)?,
+        ])
+    }
+}
+
+/// `glint verify`.
+pub fn verify(
+    registry: &Registry,
+    output: Output,
+    configs: &[PathBuf],
+    request: &VerifyRequest,
+) -> Result<bool> {
+    let loaded = load(registry, configs)?;
+    // Before the work: a directory that cannot be written is known now.
+    std::fs::create_dir_all(&request.out)
+        .with_context(|| format!("cannot make the directory `{}`", request.out.display()))?;
+    let files = loaded
+        .iter()
+        .map(|one| Files::new(&request.out, &one.unit.config.name));
+    let files = files.collect::<Result<Vec<_>>>()?;
+    let mut list = Vec::new();
+    let mut verified = true;
+    for (one, files) in loaded.iter().zip(files) {
+        let (record, timings) = one_configuration(output, one, request)?;
+        verified &= record.conclusion == Conclusion::Verified;
+        let written = files.write(&record, &timings)?;
+        if output.json {
+            list.push(json!({ "written": written, "record": record }));
+            continue;
+        }
+        tables::print_line(&format!(
+            "{}: {}. Written: {}",
+            one.path,
+            record.conclusion.words(),
+            written.join(", ")
+        ));
+    }
+    if output.json {
+        tables::print_json(&json!({ "ok": verified, "configurations": list }));
+    }
+    Ok(verified)
+}
+
+fn one_configuration(
+    output: Output,
+    one: &Loaded,
+    request: &VerifyRequest,
+) -> Result<(Record, Vec<Timing>)> {
+    one.contract()?;
+    let effort = Effort {
+        full: request.full,
+        time_limit: request.time_limit,
+    };
+    let subject = Subject {
+        path: &one.path,
+        unit: &one.unit,
+        effort,
+    };
+    let mut answers: Vec<Answer> = Vec::new();
+    for leg in LEGS {
+        if leg.is_outside() && request.without_tools {
+            continue;
+        }
+        let bar = progress::bar(output, leg.steps(&subject), leg.title);
+        let answer = leg.run(&subject, &|steps| bar.inc(steps));
+        bar.finish_and_clear();
+        if !output.json {
+            print(one, &answer);
+        }
+        answers.push(answer);
+    }
+    let timings = answers.iter().map(|answer| answer.timing).collect();
+    Ok((Record::new(&subject, answers), timings))
+}
+
+/// A leg in a line or two, as soon as it has ended.
+fn print(one: &Loaded, answer: &Answer) {
+    let finding = &answer.finding;
+    let domain = match finding.domain.is_empty() {
+        true => String::new(),
+        false => format!(" [{}]", finding.domain),
+    };
+    tables::print_line(&format!(
+        "{}: {}: {} ({:.1} s){domain}",
+        one.path,
+        answer.title,
+        finding.verdict.words(),
+        answer.timing.seconds
+    ));
+    if !finding.words.is_empty() && finding.verdict != Verdict::Failed {
+        tables::print_line(&format!("  {}", finding.words));
+    }
+    for fault in &finding.faults {
+        tables::print_line(&format!("  FAILS: {fault}"));
+    }
+}

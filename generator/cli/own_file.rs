@@ -1,0 +1,66 @@
+//! Single files that Glint writes again and again: what is not one of them is not overwritten.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use serde::Serialize;
+
+use super::destination::Destination;
+
+/// A file to be, with the place to write it in.
+pub struct OwnFile {
+    path: PathBuf,
+    destination: Destination,
+}
+
+impl OwnFile {
+    /// What a JSON file of ours begins with.
+    pub const JSON: &str = "{\n  \"glint\":";
+
+    /// A file `name` in `directory`, if what is there under this name contains `marker`, or nothing is there.
+    ///
+    /// # Errors
+    /// Something else is there; it cannot be written.
+    pub fn new(directory: &Path, name: &str, marker: &str) -> Result<Self> {
+        let path = directory.join(name);
+        // What else is wrong with it shows in writing.
+        let foreign = path.is_file()
+            && fs::read(&path).is_ok_and(|bytes| {
+                let found = std::str::from_utf8(&bytes);
+                !found.is_ok_and(|text| text.contains(marker))
+            });
+        if foreign {
+            bail!(
+                "`{}` is not of Glint's making: move it away, or give another directory with --out",
+                path.display()
+            );
+        }
+        let destination = Destination::open(&path)?;
+        Ok(Self { path, destination })
+    }
+
+    /// Its name, when it is written.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn write(self, contents: &str) -> Result<String> {
+        let name = self.path.display().to_string().replace('\\', "/");
+        let mut file = self.destination.file()?;
+        file.write_all(contents.as_bytes())
+            .with_context(|| format!("cannot write `{name}`"))?;
+        self.destination.commit()?;
+        Ok(name)
+    }
+
+    /// As [`OwnFile::write`], JSON, indented, with a newline at its end.
+    ///
+    /// # Errors
+    /// It cannot be written.
+    pub fn write_json(self, value: &impl Serialize) -> Result<String> {
+        let mut text = serde_json::to_string_pretty(value).context("cannot write JSON")?;
+        text.push('\n');
+        self.write(&text)
+    }
+}

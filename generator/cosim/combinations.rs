@@ -1,0 +1,165 @@
+//! Every combination of the bit patterns of all operands, one computation after another.
+//!
+//! A combination is the bits of all operands side by side. They come in an order in which one has little in
+//! common with the one before it, so that a register that should have been loaded and was not seldom holds
+//! what was wanted by chance: *place* p has the combination p·k mod 2^bits for an odd constant k.
+
+use std::sync::Arc;
+
+use super::stream::Course;
+use crate::fixed::mask;
+use crate::netlist::{Design, NetId, Role};
+
+/// Odd, and without a pattern in its bits: 2^64 by the golden ratio.
+const SCATTER: u64 = 0x9e37_79b9_7f4a_7c15;
+
+/// Where a device takes what.
+#[derive(Debug)]
+pub(super) struct Ports {
+    reset: usize,
+    start: usize,
+    inputs: usize,
+    operands: Vec<Port>,
+}
+
+/// An operand among the inputs.
+#[derive(Debug)]
+struct Port {
+    name: String,
+    data: usize,
+    strobe: usize,
+    width: u32,
+}
+
+impl Ports {
+    /// The ports of a design, in its order.
+    pub(super) fn new(design: &Design) -> Self {
+        let inputs: Vec<NetId> = design.inputs().map(|port| port.net).collect();
+        let position = |net| inputs.iter().position(|&input| input == net).unwrap_or(0);
+        let mut ports = Self {
+            reset: 0,
+            start: 0,
+            inputs: inputs.len(),
+            operands: Vec::new(),
+        };
+        for port in design.inputs() {
+            let data = position(port.net);
+            match port.role {
+                Role::Reset => ports.reset = data,
+                Role::Start => ports.start = data,
+                Role::Operand { strobe } => ports.operands.push(Port {
+                    name: design.net(port.net).name.clone(),
+                    data,
+                    strobe: position(strobe),
+                    width: design.net(port.net).format.width(),
+                }),
+                _ => {}
+            }
+        }
+        ports
+    }
+
+    /// The bits of all operands together.
+    pub(super) fn bits(&self) -> u32 {
+        self.operands.iter().map(|port| port.width).sum()
+    }
+
+    /// The bit patterns of the operands at a place, in the order of the ports.
+    fn at(&self, place: u64) -> impl Iterator<Item = (&Port, u64)> {
+        let mut bits = place.wrapping_mul(SCATTER);
+        self.operands.iter().map(move |port| {
+            let pattern = bits & mask(port.width);
+            bits = bits.checked_shr(port.width).unwrap_or(0);
+            (port, pattern)
+        })
+    }
+
+    /// The bit patterns of the operands at a place, by name.
+    pub(super) fn named(&self, place: u64) -> Vec<(String, u64)> {
+        let operands = self.at(place);
+        operands
+            .map(|(port, pattern)| (port.name.clone(), pattern))
+            .collect()
+    }
+}
+
+/// The inputs of a device that goes through combinations, clock by clock: one clock of reset; then all
+/// operands are written in the clock of `start`, and the next computation starts in the first clock in
+/// which the device is not busy. While it is, the data show the complement of what was written.
+pub(super) struct Combinations {
+    ports: Arc<Ports>,
+    first: u64,
+    count: u64,
+    started: u64,
+    since_start: u64,
+    reset: bool,
+    inputs: Vec<u64>,
+}
+
+impl Combinations {
+    /// Those at so many places, from the first on.
+    pub(super) fn new(ports: Arc<Ports>, first: u64, count: u64) -> Self {
+        Self {
+            inputs: vec![0; ports.inputs],
+            ports,
+            first,
+            count,
+            started: 0,
+            since_start: 0,
+            reset: false,
+        }
+    }
+
+    pub(super) fn course(&self) -> Course {
+        Course::Combinations {
+            first: self.first,
+            count: self.count,
+        }
+    }
+
+    /// Whether no computation is left to start.
+    pub(super) fn all_started(&self) -> bool {
+        self.started == self.count
+    }
+
+    /// The place of the computation that runs, or ran last.
+    pub(super) fn place(&self) -> u64 {
+        self.first + self.started.saturating_sub(1)
+    }
+
+    /// Clocks since `start`: 0 for the one that takes it.
+    pub(super) fn since_start(&self) -> u64 {
+        self.since_start
+    }
+
+    /// The inputs of the next clock, given `busy` as it stands before the edge.
+    pub(super) fn next(&mut self, busy: bool) -> &[u64] {
+        let starting = !busy && self.reset && self.started < self.count;
+        self.inputs[self.ports.reset] = u64::from(self.reset);
+        self.inputs[self.ports.start] = u64::from(starting);
+        if starting {
+            let place = self.first + self.started;
+            for (port, pattern) in self.ports.at(place) {
+                self.inputs[port.data] = pattern;
+                self.inputs[port.strobe] = 1;
+            }
+            self.started += 1;
+            self.since_start = 0;
+        } else {
+            self.since_start += 1;
+            if self.since_start == 1 {
+                for port in &self.ports.operands {
+                    self.inputs[port.data] ^= mask(port.width);
+                    self.inputs[port.strobe] = 0;
+                }
+            }
+        }
+        self.reset = true;
+        &self.inputs
+    }
+
+    /// The latest inputs.
+    pub(super) fn inputs(&self) -> &[u64] {
+        &self.inputs
+    }
+}

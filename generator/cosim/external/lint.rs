@@ -1,0 +1,30 @@
+//! Linters on Verilog.
+
+use std::path::Path;
+use std::time::Duration;
+
+use anyhow::{Result, bail};
+
+use super::Tool;
+
+/// What `iverilog` or `verilator` has to say, at its strictest, about the Verilog files `sources` of a
+/// directory: nothing, if they are clean.
+///
+/// # Errors
+/// The tool is neither; it rejects the sources, or takes longer than `limit`.
+pub fn lint(
+    tool: &Tool,
+    directory: &Path,
+    sources: &[String],
+    top: &str,
+    limit: Duration,
+) -> Result<String> {
+    let options: &[&str] = match tool.name() {
+        "iverilog" => &["-g2005", "-Wall", "-t", "null", "-s", top],
+        "verilator" => &["--lint-only", "-Wall", "--top-module", top],
+        other => bail!("`{other}` is no linter that Glint knows"),
+    };
+    let sources = sources.iter().map(String::as_str);
+    let arguments = options.iter().copied().chain(sources);
+    tool.run_to_success(arguments, directory, limit)
+}

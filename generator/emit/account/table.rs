@@ -1,0 +1,89 @@
+//! A table of text.
+
+/// Where a column's cells stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Align {
+    /// Words.
+    Left,
+    /// Numbers.
+    Right,
+}
+
+/// A column of a table.
+#[derive(Clone, Debug)]
+pub struct Column {
+    /// What stands in it.
+    pub heading: String,
+    /// Where.
+    pub align: Align,
+}
+
+/// A table; its cells are plain text with names in backquotes.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// From the left.
+    pub columns: Vec<Column>,
+    /// From the top, with a cell for each column.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table of these columns, yet without rows.
+    pub fn new(columns: &[(&str, Align)]) -> Self {
+        Self {
+            columns: columns
+                .iter()
+                .map(|&(heading, align)| Column {
+                    heading: heading.to_owned(),
+                    align,
+                })
+                .collect(),
+            rows: Vec::new(),
+        }
+    }
+
+    /// One row more, with a cell for each column.
+    pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
+        self.rows.push(cells.into_iter().collect());
+    }
+
+    /// Leaves out a column in which no row says anything.
+    #[must_use]
+    pub fn without_empty(mut self, heading: &str) -> Self {
+        let at = self
+            .columns
+            .iter()
+            .position(|column| column.heading == heading);
+        if let Some(at) = at
+            && self.rows.iter().all(|row| row[at].is_empty())
+        {
+            self.columns.remove(at);
+            for row in &mut self.rows {
+                row.remove(at);
+            }
+        }
+        self
+    }
+}
+
+/// A name or a number as the files write it; nothing for nothing.
+pub fn code(text: &str) -> String {
+    match text {
+        "" => String::new(),
+        _ => format!("`{text}`"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_empty_column_goes() {
+        let mut table = Table::new(&[("no.", Align::Right), ("name", Align::Left)]);
+        table.row([String::new(), code("a")]);
+        let table = table.without_empty("no.");
+        assert_eq!(table.columns.len(), 1);
+        assert_eq!(table.rows, [["`a`"]]);
+    }
+}

@@ -1,0 +1,17 @@
+//! Mutation: do the tests notice faults?
+//!
+//! Faults are planted one at a time, in the netlist ([`Faults`]) and in the emitted Verilog, and what a
+//! configuration is tested with is run on each mutant. A mutant is *caught*, or *equivalent*, which is
+//! proved, or *open*. What the test does not notice is never called equivalent for that reason.
+
+mod coverage;
+mod fault;
+mod operators;
+mod plant;
+mod proof;
+mod run;
+mod score;
+
+pub use fault::{Bit, Fault, Faults, Kind, Site};
+pub use run::{Found, How, Leg, Verdict, run};
+pub use score::{Score, TOLERATED, Tally};

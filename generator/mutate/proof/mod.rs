@@ -1,0 +1,361 @@
+//! Faults that change nothing that is compared, and the proof of it.
+//!
+//! The proof is an induction over clocks. In every word of the microprogram, sound design and mutant are
+//! evaluated side by side over known bits, with the bits noted in which they may differ. Where neither an
+//! output nor a register that the golden model predicts differs in any word, while registers inside of
+//! blocks may differ as far as the words before have left them so, they never do.
+
+mod known;
+mod sound;
+
+use known::Known;
+use sound::Sound;
+
+use super::fault::{Bit, Site};
+use crate::fixed::mask;
+use crate::netlist::{Design, Driver, NetId, Op, RegId, RegisterKind, RomId};
+
+/// Proves faults of one design equivalent.
+pub(super) struct Prover<'a> {
+    sound: Sound<'a>,
+    /// Of each net, the bits that are compared in every clock.
+    compared: Vec<u64>,
+}
+
+/// Where sound design and mutant may differ, after power-up in no bit.
+#[derive(Clone, Debug, PartialEq)]
+struct State {
+    registers: Vec<u64>,
+    roms: Vec<u64>,
+}
+
+/// The nets of the mutant in one word.
+struct Nets {
+    /// What is known of the mutant's.
+    known: Vec<Known>,
+    /// The bits that may differ from the sound design's.
+    differ: Vec<u64>,
+}
+
+impl<'a> Prover<'a> {
+    /// `None` for a design with a combinational loop.
+    pub(super) fn new(design: &'a Design) -> Option<Self> {
+        let mut compared = vec![0; design.nets.len()];
+        let outputs = design.outputs().map(|port| port.net);
+        let registers = design.registers.iter();
+        let registers = registers.filter(|register| register.kind != RegisterKind::Internal);
+        for net in outputs.chain(registers.map(|register| register.q)) {
+            compared[net.index()] = mask(design.width(net));
+        }
+        Some(Self {
+            sound: Sound::of(design)?,
+            compared,
+        })
+    }
+
+    /// Whether nothing that is compared ever differs with this fault.
+    pub(super) fn proves(&self, site: &Site) -> bool {
+        let design = self.sound.design;
+        let resets = |id: &RegId| design.register(*id).reset;
+        match site {
+            // What reset does is no part of the proof.
+            Site::Reset(_) => return false,
+            Site::Bit(net, bit, how) => {
+                if let Driver::Register(id) = &design.net(*net).driver
+                    && resets(id).is_some_and(|reset| how.applied(reset, *bit) != reset)
+                {
+                    return false;
+                }
+            }
+            _ => {}
+        }
+        let words = design.control.words.len();
+        let nothing = State {
+            registers: vec![0; design.registers.len()],
+            roms: vec![0; design.roms.len()],
+        };
+        let mut states = vec![nothing; words];
+        let mut todo: Vec<usize> = (0..words).collect();
+        while let Some(word) = todo.pop() {
+            let nets = self.settle(word, &states[word], site);
+            let seen = |(net, bits): (&u64, &u64)| net & bits != 0;
+            if nets.differ.iter().zip(&self.compared).any(seen) {
+                return false;
+            }
+            let next = self.next(word, &nets, site);
+            for (register, differ) in design.registers.iter().zip(&next.registers) {
+                if *differ != 0 && register.kind != RegisterKind::Internal {
+                    return false;
+                }
+            }
+            for &to in &self.sound.following[word] {
+                let mut joined = states[to].clone();
+                let pairs = joined.registers.iter_mut().zip(&next.registers);
+                pairs.for_each(|(all, more)| *all |= more);
+                joined
+                    .roms
+                    .iter_mut()
+                    .zip(&next.roms)
+                    .for_each(|(all, more)| *all |= more);
+                if joined != states[to] {
+                    states[to] = joined;
+                    todo.push(to);
+                }
+            }
+        }
+        true
+    }
+
+    fn settle(&self, word: usize, state: &State, site: &Site) -> Nets {
+        let design = self.sound.design;
+        let sound = &self.sound.words[word];
+        let mut nets = Nets {
+            known: sound.clone(),
+            differ: vec![0; design.nets.len()],
+        };
+        for &id in &self.sound.order {
+            let width = design.width(id);
+            let (mut known, mut differ) = match (&design.net(id).driver, site) {
+                (_, Site::Driver(net, driver)) if *net == id => {
+                    self.replaced(word, id, driver, &nets)
+                }
+                (Driver::Op(op), _)
+                    if op.operands().iter().any(|it| nets.differ[it.index()] != 0) =>
+                {
+                    let value = |net: NetId| nets.known[net.index()];
+                    (
+                        known::cell(design, op, width, &value),
+                        self.cell(word, op, &nets),
+                    )
+                }
+                (Driver::Register(register), _) => {
+                    let differ = state.registers[register.index()];
+                    (sound[id.index()].without(differ), differ)
+                }
+                (Driver::Rom(rom), _) => self.rom(*rom, state, site, &nets, sound[id.index()]),
+                (Driver::Field(field), Site::Words(rom, words)) if *rom == design.control.rom => {
+                    let other = words.iter().find(|(at, _)| *at == word);
+                    other.map_or((sound[id.index()], 0), |(_, bits)| {
+                        let low = design.field_positions()[field.index()];
+                        let known = Known::all(bits >> low, width);
+                        (known, known.value ^ sound[id.index()].value)
+                    })
+                }
+                _ => (sound[id.index()], 0),
+            };
+            if let Site::Bit(net, bit, how) = site
+                && *net == id
+                && !matches!(design.net(id).driver, Driver::Register(_))
+            {
+                (known, differ) = stuck(known, differ, *bit, *how);
+            }
+            let agree = known.agree(sound[id.index()]);
+            nets.known[id.index()] = known;
+            nets.differ[id.index()] = differ & !agree & mask(width);
+        }
+        nets
+    }
+
+    /// A net with another driver than in the sound design.
+    fn replaced(&self, word: usize, id: NetId, driver: &Driver, nets: &Nets) -> (Known, u64) {
+        let design = self.sound.design;
+        let width = design.width(id);
+        let sound = &self.sound.words[word];
+        let value = |net: NetId| nets.known[net.index()];
+        let known = match driver {
+            Driver::Constant(bits) => Known::all(*bits, width),
+            Driver::Op(op) => known::cell(design, op, width, &value),
+            _ => Known::NOTHING,
+        };
+        let before = taken(&design.net(id).driver, &|net| sound[net.index()]);
+        let after = taken(driver, &value);
+        let differ = match before.zip(after) {
+            Some((a, b)) if self.sound.same[a.index()] == self.sound.same[b.index()] => {
+                nets.differ[a.index()] | nets.differ[b.index()]
+            }
+            _ => u64::MAX,
+        };
+        (known, differ)
+    }
+
+    /// The bits in which the result of a cell may differ.
+    fn cell(&self, word: usize, op: &Op, nets: &Nets) -> u64 {
+        let design = self.sound.design;
+        let differ = |net: &NetId| nets.differ[net.index()];
+        match op {
+            Op::Relabel(a) | Op::Not(a) => differ(a),
+            Op::Extend(a) => {
+                let sign =
+                    design.net(*a).format.signed && differ(a) >> (design.width(*a) - 1) & 1 == 1;
+                differ(a) | if sign { !mask(design.width(*a)) } else { 0 }
+            }
+            Op::Slice { of, low } => differ(of) >> low,
+            Op::Concat(parts) => parts.iter().fold(0, |sum: u64, part| {
+                sum.checked_shl(design.width(*part)).unwrap_or(0) | differ(part)
+            }),
+            Op::And(a, b) | Op::Or(a, b) | Op::Xor(a, b) => differ(a) | differ(b),
+            Op::Add { a, b, carry } => {
+                above(differ(a) | differ(b) | carry.as_ref().map_or(0, differ))
+            }
+            Op::Sub(a, b) | Op::Mul(a, b) => above(differ(a) | differ(b)),
+            Op::Equal(..) | Op::Less(..) | Op::Any(_) | Op::All(_) => 1,
+            Op::Mux { select, inputs } => {
+                let after = nets.known[select.index()];
+                if differ(select) == 0 {
+                    return known::choices(after, inputs)
+                        .fold(0, |all, input| all | differ(&input));
+                }
+                let before = self.sound.words[word][select.index()];
+                let possible = known::choices(before, inputs).chain(known::choices(after, inputs));
+                let possible: Vec<NetId> = possible.collect();
+                let same = |net: &NetId| self.sound.same[net.index()];
+                match possible.iter().all(|net| same(net) == same(&possible[0])) {
+                    true => possible.iter().fold(0, |all, net| all | differ(net)),
+                    false => u64::MAX,
+                }
+            }
+        }
+    }
+
+    fn rom(
+        &self,
+        id: RomId,
+        state: &State,
+        site: &Site,
+        nets: &Nets,
+        sound: Known,
+    ) -> (Known, u64) {
+        let rom = self.sound.design.rom(id);
+        let differ = match rom.synchronous {
+            true => state.roms[id.index()],
+            false => self.read(id, site, nets),
+        };
+        (sound.without(differ), differ)
+    }
+
+    /// The bits in which a word read may differ.
+    fn read(&self, id: RomId, site: &Site, nets: &Nets) -> u64 {
+        let rom = self.sound.design.rom(id);
+        let mut differ = match nets.differ[rom.address.index()] {
+            0 => 0,
+            _ => u64::MAX,
+        };
+        if let Site::Words(at_fault, words) = site
+            && *at_fault == id
+        {
+            let address = nets.known[rom.address.index()];
+            for &(at, word) in words.iter().filter(|(at, _)| address.may_be(*at as u64)) {
+                differ |= word ^ rom.words[at];
+            }
+        }
+        differ
+    }
+
+    /// What may differ after the clock.
+    fn next(&self, word: usize, nets: &Nets, site: &Site) -> State {
+        let design = self.sound.design;
+        let registers = (0..design.registers.len() as u32).map(RegId);
+        State {
+            registers: registers
+                .map(|id| self.taken(word, id, nets, site))
+                .collect(),
+            roms: (0..design.roms.len() as u32)
+                .map(|id| self.read(RomId(id), site, nets))
+                .collect(),
+        }
+    }
+
+    fn taken(&self, word: usize, id: RegId, nets: &Nets, site: &Site) -> u64 {
+        let design = self.sound.design;
+        let sound = &self.sound.words[word];
+        let register = design.register(id);
+        let (q, width) = (register.q.index(), design.width(register.q));
+        let Some(data) = register.data.map(NetId::index) else {
+            return 0;
+        };
+        let (mut offered, mut differ) = (nets.known[data], nets.differ[data]);
+        if let Site::Bit(net, bit, how) = site
+            && *net == register.q
+        {
+            (offered, differ) = stuck(offered, differ, *bit, *how);
+            differ &= !offered.agree(sound[data]);
+        }
+        let one = Known::all(1, 1);
+        let before = register
+            .enable
+            .map_or(one, |net| sound[net.index()])
+            .whole(1);
+        let (after, same) = match site {
+            Site::Enable(at_fault, always) if *at_fault == id => {
+                let after = Some(u64::from(*always));
+                (after, before == after)
+            }
+            _ => {
+                let after = register.enable.map_or(one, |net| nets.known[net.index()]);
+                (
+                    after.whole(1),
+                    register
+                        .enable
+                        .is_none_or(|net| nets.differ[net.index()] == 0),
+                )
+            }
+        };
+        match (before, after) {
+            (Some(1), Some(1)) => differ,
+            (Some(0), Some(0)) => nets.differ[q],
+            _ if same => differ | nets.differ[q],
+            // One takes and the other holds, or who knows.
+            _ if self.sound.same[data] == self.sound.same[q] => differ | nets.differ[q],
+            _ => {
+                let side = |enable, taken: Known, held: Known| match enable {
+                    Some(1) => taken,
+                    Some(_) => held,
+                    None => taken.join(held),
+                };
+                let sound = side(before, sound[data], sound[q]);
+                let mutant = side(after, offered, nets.known[q]);
+                mask(width) & !sound.agree(mutant)
+            }
+        }
+    }
+}
+
+/// The net whose value a net takes, if it takes one.
+fn taken(driver: &Driver, value: &impl Fn(NetId) -> Known) -> Option<NetId> {
+    match driver {
+        Driver::Op(Op::Relabel(a)) => Some(*a),
+        Driver::Op(Op::Mux { select, inputs }) => {
+            let mut possible = known::choices(value(*select), inputs);
+            let first = possible.next();
+            possible.next().is_none().then_some(first).flatten()
+        }
+        _ => None,
+    }
+}
+
+/// A bit at fault.
+fn stuck(known: Known, differ: u64, bit: u32, how: Bit) -> (Known, u64) {
+    let one = 1 << bit;
+    match how {
+        Bit::Stuck0 | Bit::Stuck1 => (
+            Known {
+                mask: known.mask | one,
+                value: how.applied(known.value, bit),
+            },
+            differ | one,
+        ),
+        Bit::Inverted => (
+            Known {
+                mask: known.mask,
+                value: (known.value ^ one) & known.mask,
+            },
+            differ | one,
+        ),
+    }
+}
+
+/// From the lowest of these bits up.
+fn above(bits: u64) -> u64 {
+    bits.checked_ilog2()
+        .map_or(0, |_| u64::MAX << bits.trailing_zeros())
+}

@@ -1,0 +1,181 @@
+//! What is known of the sound design in each word of its microprogram.
+
+use super::known::{self, Known};
+use crate::netlist::{Design, Driver, NetId, Op, Register, RegisterKind, Sequence};
+
+/// What is known in each word, whatever the inputs are.
+pub(super) struct Sound<'a> {
+    pub(super) design: &'a Design,
+    /// An order of evaluation.
+    pub(super) order: Vec<NetId>,
+    /// For each word, each net.
+    pub(super) words: Vec<Vec<Known>>,
+    /// For each word those that may follow it.
+    pub(super) following: Vec<Vec<usize>>,
+    /// For each net the first that has the same driver: the same value.
+    pub(super) same: Vec<NetId>,
+}
+
+impl<'a> Sound<'a> {
+    /// `None` for a design with a combinational loop.
+    pub(super) fn of(design: &'a Design) -> Option<Self> {
+        let order = design.levelise().ok()?;
+        let words = design.control.words.len();
+        let mut sound = Self {
+            design,
+            same: same(design, &order),
+            order,
+            words: Vec::new(),
+            following: (0..words).map(|word| following(design, word)).collect(),
+        };
+        // What registers hold in each word: at power-up 0, in word 0.
+        let mut held: Vec<Option<Vec<Known>>> = vec![None; words];
+        held[0] = Some(vec![Known::all(0, 64); design.registers.len()]);
+        let mut changed = vec![0];
+        while let Some(word) = changed.pop() {
+            let Some(before) = held[word].clone() else {
+                continue;
+            };
+            let nets = sound.settle(word, &before);
+            let after: Vec<Known> = design
+                .registers
+                .iter()
+                .map(|register| sound.next(register, &nets))
+                .collect();
+            for &to in &sound.following[word] {
+                let joined = match &held[to] {
+                    None => after.clone(),
+                    Some(there) => there.iter().zip(&after).map(|(a, b)| a.join(*b)).collect(),
+                };
+                if held[to].as_ref() != Some(&joined) {
+                    held[to] = Some(joined);
+                    changed.push(to);
+                }
+            }
+        }
+        let nothing = || vec![Known::NOTHING; design.registers.len()];
+        sound.words = (0..words)
+            .map(|word| sound.settle(word, &held[word].clone().unwrap_or_else(nothing)))
+            .collect();
+        Some(sound)
+    }
+
+    /// All nets in a word, with what registers hold.
+    fn settle(&self, word: usize, held: &[Known]) -> Vec<Known> {
+        let design = self.design;
+        let mut nets = vec![Known::NOTHING; design.nets.len()];
+        for &id in &self.order {
+            let net = design.net(id);
+            let width = design.width(id);
+            let known = match &net.driver {
+                Driver::Constant(bits) => Known::all(*bits, width),
+                Driver::Register(register) if *register == design.control.address => {
+                    Known::all(word as u64, width)
+                }
+                Driver::Register(register) => held[register.index()],
+                Driver::Field(field) => {
+                    Known::all(design.control.words[word].values[field.index()], width)
+                }
+                Driver::Rom(rom) => {
+                    // At power-up a synchronous ROM shows 0.
+                    let rom = design.rom(*rom);
+                    let words = rom.words.iter().map(|&word| Known::all(word, width));
+                    let start = rom.synchronous.then_some(Known::all(0, width));
+                    words.chain(start).reduce(Known::join).unwrap_or_default()
+                }
+                Driver::Op(op) => known::cell(design, op, width, &|net| nets[net.index()]),
+                Driver::Input | Driver::Undriven => Known::NOTHING,
+            };
+            nets[id.index()] = match net.driver {
+                // Of registers alone: the interval of a view of a shared multiplier, and of what is made of
+                // it, holds in some words only.
+                Driver::Register(register) if self.trusted(design.register(register)) => {
+                    known.and_also(Known::of_interval(net.range, width))
+                }
+                _ => known,
+            };
+        }
+        nets
+    }
+
+    /// Whether the interval of a register holds in every clock from power-up on.
+    fn trusted(&self, register: &Register) -> bool {
+        let (low, high) = self.design.net(register.q).range;
+        register.kind != RegisterKind::Internal && low <= 0 && high >= 0
+    }
+
+    fn next(&self, register: &Register, nets: &[Known]) -> Known {
+        let held = nets[register.q.index()];
+        let Some(data) = register.data else {
+            return held;
+        };
+        let taken = nets[data.index()];
+        let enable = register
+            .enable
+            .map_or(Known::all(1, 1), |net| nets[net.index()]);
+        let next = match enable.whole(1) {
+            Some(1) => taken,
+            Some(_) => held,
+            None => held.join(taken),
+        };
+        match register.reset {
+            Some(reset) => next.join(Known::all(reset, self.design.width(register.q))),
+            None => next,
+        }
+    }
+}
+
+/// The words that may follow a word. Reset leads to word 0 from any, and word 0 is also that of a device
+/// that waits.
+fn following(design: &Design, word: usize) -> Vec<usize> {
+    let mut following = vec![0];
+    let last = design.control.words.len() - 1;
+    let next = (word + 1).min(last);
+    match design.control.words[word].sequence {
+        Sequence::Next => following.push(next),
+        Sequence::WaitStart => following.extend([word, next]),
+        Sequence::LoopWhile { to, .. } => following.extend([to, next]),
+        Sequence::End => {}
+    }
+    following.sort_unstable();
+    following.dedup();
+    following
+}
+
+/// For each net the first with the same driver.
+fn same(design: &Design, order: &[NetId]) -> Vec<NetId> {
+    let mut same: Vec<NetId> = design.iter().map(|(id, _)| id).collect();
+    let mut drivers: Vec<(Driver, u32, bool, NetId)> = Vec::new();
+    for &id in order {
+        let net = design.net(id);
+        let mut driver = net.driver.clone();
+        let mut signed = false;
+        match &mut driver {
+            Driver::Op(Op::Relabel(of)) => {
+                same[id.index()] = same[of.index()];
+                continue;
+            }
+            Driver::Op(op) => {
+                // Whether an operand is signed counts where it is extended, compared or multiplied.
+                signed = op
+                    .operands()
+                    .iter()
+                    .any(|net| design.net(*net).format.signed);
+                for operand in op.operands_mut() {
+                    *operand = same[operand.index()];
+                }
+            }
+            Driver::Constant(_) => {}
+            _ => continue,
+        }
+        let width = design.width(id);
+        let known = drivers
+            .iter()
+            .find(|(other, bits, sign, _)| *other == driver && *bits == width && *sign == signed);
+        match known {
+            Some((.., first)) => same[id.index()] = *first,
+            None => drivers.push((driver, width, signed, id)),
+        }
+    }
+    same
+}

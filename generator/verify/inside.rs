@@ -1,0 +1,210 @@
+//! Legs that need nothing but Glint.
+
+use std::ops::ControlFlow;
+
+use anyhow::Result;
+
+use super::{Finding, Leg, Subject, Verdict};
+use crate::cosim::exhaustive::{Job, Proof, Shard, State};
+use crate::flow::{TEST_POINTS, TEST_SEED};
+use crate::mutate::{self, Faults, Score};
+use crate::words::{counted, grouped};
+
+/// Results that lock-step compares, and with full effort.
+const POINTS: [u64; 2] = [TEST_POINTS, 100 * TEST_POINTS];
+
+/// Without full effort a proof has no more evaluations than some seconds allow.
+const EVALUATIONS: u64 = 1 << 28;
+
+/// The description, as it was built.
+pub const DESIGN: Leg = Leg {
+    id: "design",
+    title: "Design rules",
+    question: "Is every net driven once, every width explicit, every value within its interval, and is there no loop?",
+    tools: &[],
+    steps: |_| 1,
+    run: |subject, _, _| {
+        let (design, bound) = (&subject.unit.design, subject.unit.contract.bound());
+        let finding = Finding::new(
+            Verdict::Proved,
+            "all nets, registers, ROMs and words of the microprogram".to_owned(),
+            format!(
+                "{}, {}, {} and {} obey the rules. The stated bound on an output is {:.3} units.",
+                counted(design.nets.len(), "net"),
+                counted(design.registers.len(), "register"),
+                counted(design.roms.len(), "ROM"),
+                counted(design.control.words.len(), "word"),
+                bound.units,
+            ),
+            Vec::new(),
+        );
+        Ok(match bound.units < 1.0 {
+            true => finding,
+            false => finding.open(
+                "The bound is not below one unit: the configuration is outside the accuracy contract.",
+            ),
+        })
+    },
+};
+
+/// Golden model and simulation.
+pub const LOCKSTEP: Leg = Leg {
+    id: "lockstep",
+    title: "Golden model against simulation",
+    question: "Has every register and output the value that the golden model predicts, on every clock?",
+    tools: &[],
+    steps: points,
+    run: |subject, _, progress| lockstep(subject, progress),
+};
+
+fn points(subject: &Subject<'_>) -> u64 {
+    POINTS[usize::from(subject.effort.full)]
+}
+
+fn lockstep(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
+    let outcome = subject
+        .unit
+        .lockstep(TEST_SEED)?
+        .run(points(subject), progress)?;
+    let bound = subject.unit.contract.bound();
+    let worst = outcome.worst.as_ref().map_or_else(String::new, |worst| {
+        format!(
+            " The largest error against the formula in f64 is {:.3} units, of a stated {:.3}.",
+            worst.units, bound.units
+        )
+    });
+    Ok(Finding::new(
+        Verdict::Passed,
+        format!(
+            "{} results in {} clocks, with resets, pauses, starts and writes while busy (seed {TEST_SEED})",
+            grouped(outcome.points),
+            grouped(outcome.clocks)
+        ),
+        format!(
+            "{} and {} equal the golden model on every clock.{worst}",
+            counted(outcome.registers, "register"),
+            counted(outcome.outputs, "output"),
+        ),
+        outcome.faults(&bound),
+    )
+    .open("Operands that were not drawn."))
+}
+
+/// The accuracy contract.
+pub const CONTRACT: Leg = Leg {
+    id: "contract",
+    title: "Golden model against the formula",
+    question: "Is no output further from the formula in f64 than the stated bound, for any operands?",
+    tools: &[],
+    steps: |subject| match evaluations(subject) {
+        all if is_covered(subject, all) => all,
+        _ => 1,
+    },
+    run: |subject, _, progress| contract(subject, progress),
+};
+
+fn evaluations(subject: &Subject<'_>) -> u64 {
+    let job = Job::new(subject.unit.contract.as_ref());
+    job.f.count() + job.colours.count()
+}
+
+fn is_covered(subject: &Subject<'_>, evaluations: u64) -> bool {
+    subject.effort.full || evaluations <= EVALUATIONS
+}
+
+fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
+    let contract = subject.unit.contract.as_ref();
+    let all = evaluations(subject);
+    if !is_covered(subject, all) {
+        let why = format!("It has {} evaluations; --full does them.", grouped(all));
+        return Ok(Finding::without(Verdict::NotCovered, why));
+    }
+    let job = Job::new(contract);
+    let mut state = State::new("", Shard::WHOLE);
+    let whole = job.run(&mut state, progress, &mut |_| ControlFlow::Continue(()))?;
+    debug_assert!(whole.is_continue(), "nothing stops it");
+    let proof = Proof::new(contract, state.f.peak, state.colours.peak);
+    Ok(Finding::new(
+        Verdict::Proved,
+        format!(
+            "{} evaluations of f and {} colour products: {}",
+            grouped(job.f.count()),
+            grouped(job.colours.count()),
+            job.f.sweep().words(),
+        ),
+        format!(
+            "f is off by {:.3} units at most, a colour multiplier by {:.3}, together {:.3} of a stated {:.3}.",
+            proof.f_units,
+            proof.colours.error,
+            proof.together(),
+            contract.bound().units
+        ),
+        proof.faults,
+    )
+    .open(job.f.sweep().omits.clone()))
+}
+
+/// Every combination of operands.
+pub const CLOCKS: Leg = Leg {
+    id: "clocks",
+    title: "Golden model against simulation, every operand",
+    question: "Has every register and output the value that the golden model predicts, on every clock, for every combination of operands?",
+    tools: &[],
+    steps: |subject| {
+        let clocks = subject.unit.clocks();
+        clocks.map_or(1, |clocks| clocks.count().max(1))
+    },
+    run: |subject, _, progress| {
+        let clocks = subject.unit.clocks()?;
+        if clocks.count() == 0 {
+            return Ok(Finding::without(Verdict::NotCovered, clocks.omits()));
+        }
+        let differs = clocks.check((0..clocks.blocks()).collect(), progress)?;
+        let faults = match differs {
+            Some(place) => vec![clocks.difference(place)?.to_string()],
+            None => Vec::new(),
+        };
+        Ok(Finding::new(
+            Verdict::Proved,
+            format!(
+                "{} combinations of {} operand bits",
+                grouped(clocks.count()),
+                clocks.bits()
+            ),
+            "Every register and output equals the golden model on every clock.".to_owned(),
+            faults,
+        )
+        .open(clocks.omits()))
+    },
+};
+
+/// Faults in the netlist.
+pub const MUTATION: Leg = Leg {
+    id: "mutation",
+    title: "Faults in the netlist",
+    question: "Does the test notice each of the faults that are planted in the netlist, one at a time?",
+    tools: &[],
+    steps: |subject| Faults::of(&subject.unit.design).len() as u64,
+    run: |subject, _, progress| {
+        let faults = Faults::of(&subject.unit.design);
+        let found = mutate::run(subject.unit, faults.iter(), &|| progress(1))?;
+        let score = Score::of(&found);
+        let all = &score.all;
+        let (caught, equivalent) = (all.all_caught(), all.all_equivalent());
+        let faults = match score.holds() {
+            true => Vec::new(),
+            false => vec![format!("open: {}", score.open.join(", "))],
+        };
+        Ok(Finding::new(
+            Verdict::Passed,
+            counted(all.planted, "fault"),
+            format!(
+                "{caught} are caught, {equivalent} are proved to change nothing that is compared, {} are open ({:.2} %).",
+                all.open,
+                100.0 * all.share_open()
+            ),
+            faults,
+        )
+        .open(score.open.join(", ")))
+    },
+};

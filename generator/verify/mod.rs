@@ -1,0 +1,299 @@
+//! Everything that shows that a configuration does what it says, leg by leg, and a page about it.
+//!
+//! A [`Leg`] asks one question, with the tools that it names, and gives a [`Finding`]: the answer, over
+//! which domain it holds, and what it leaves open. The legs are independent of each other: none is told what
+//! another found. What they found is the same whenever it is found with the same tools; how long it
+//! took stands apart, in [`Timing`].
+
+mod inside;
+mod outside;
+pub mod page;
+
+#[cfg(test)]
+mod tests;
+
+use std::time::{Duration, Instant};
+
+use anyhow::Result;
+use serde::Serialize;
+
+use crate::cosim::external::Tool;
+use crate::flow::Unit;
+
+/// A configuration to be verified.
+pub struct Subject<'a> {
+    /// What the command line calls it.
+    pub path: &'a str,
+    /// The configuration and its design.
+    pub unit: &'a Unit,
+    /// How much is done.
+    pub effort: Effort,
+}
+
+/// How much a verification does.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Everything, however long it takes.
+    pub full: bool,
+    /// After which a run of an outside tool is given up.
+    pub time_limit: Duration,
+}
+
+/// What a leg says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Verdict {
+    /// It holds for everything in the domain.
+    Proved,
+    /// It held wherever it was tried.
+    Passed,
+    /// It does not hold.
+    Failed,
+    /// The leg says nothing of this configuration, or not with this effort; why is said.
+    NotCovered,
+    /// The leg could not be run: a tool is missing.
+    NotRun,
+}
+
+impl Verdict {
+    /// For people.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Proved => "proved",
+            Self::Passed => "passed",
+            Self::Failed => "FAILED",
+            Self::NotCovered => "not covered",
+            Self::NotRun => "not run",
+        }
+    }
+}
+
+/// What a leg found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Finding {
+    /// What it says.
+    pub verdict: Verdict,
+    /// For what: operands, clocks, faults.
+    pub domain: String,
+    /// The outcome in a sentence or two.
+    pub words: String,
+    /// What the leg leaves open; may be empty.
+    pub open: String,
+    /// What does not hold, each with its reproducer.
+    pub faults: Vec<String>,
+}
+
+impl Finding {
+    /// A verdict on a domain, or a failure if there are faults.
+    fn new(verdict: Verdict, domain: String, words: String, faults: Vec<String>) -> Self {
+        Self {
+            verdict: if faults.is_empty() {
+                verdict
+            } else {
+                Verdict::Failed
+            },
+            domain,
+            words,
+            open: String::new(),
+            faults,
+        }
+    }
+
+    /// Of a leg that says nothing here.
+    fn without(verdict: Verdict, why: String) -> Self {
+        Self {
+            verdict,
+            domain: String::new(),
+            words: why,
+            open: String::new(),
+            faults: Vec::new(),
+        }
+    }
+
+    fn open(self, open: impl Into<String>) -> Self {
+        Self {
+            open: open.into(),
+            ..self
+        }
+    }
+}
+
+/// One question about a configuration.
+pub struct Leg {
+    /// For scripts.
+    pub id: &'static str,
+    /// For people.
+    pub title: &'static str,
+    /// What it compares with what.
+    pub question: &'static str,
+    /// The tools outside Glint that it runs.
+    tools: &'static [&'static str],
+    /// How many steps its progress has.
+    steps: fn(&Subject<'_>) -> u64,
+    run: fn(&Subject<'_>, &[Tool], &(dyn Fn(u64) + Sync)) -> Result<Finding>,
+}
+
+/// All legs: first those that need nothing but Glint.
+pub const LEGS: [&Leg; 11] = [
+    &inside::DESIGN,
+    &inside::LOCKSTEP,
+    &inside::CLOCKS,
+    &inside::CONTRACT,
+    &inside::MUTATION,
+    &outside::LINT,
+    &outside::ICARUS,
+    &outside::VERILATOR,
+    &outside::COCOTB,
+    &outside::FORMAL,
+    &outside::SYNTHESIS,
+];
+
+impl Leg {
+    /// Whether it needs a tool outside Glint.
+    pub fn is_outside(&self) -> bool {
+        !self.tools.is_empty()
+    }
+
+    /// The steps that its progress will have.
+    pub fn steps(&self, subject: &Subject<'_>) -> u64 {
+        (self.steps)(subject)
+    }
+
+    /// Runs it. A tool that is missing, or that does not do its work, is a finding too.
+    pub fn run(&self, subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Answer {
+        let begin = Instant::now();
+        let (tools, finding) = self.find(subject, progress);
+        Answer {
+            leg: self.id,
+            title: self.title,
+            question: self.question,
+            tools,
+            finding,
+            timing: Timing {
+                leg: self.id,
+                seconds: begin.elapsed().as_secs_f64(),
+            },
+        }
+    }
+
+    fn find(
+        &self,
+        subject: &Subject<'_>,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> (Vec<String>, Finding) {
+        let tools: Result<Vec<Tool>> = self.tools.iter().map(|name| Tool::find(name)).collect();
+        let tools = match tools {
+            Ok(tools) => tools,
+            Err(missing) => {
+                let why = Finding::without(Verdict::NotRun, format!("{missing:#}"));
+                return (Vec::new(), why);
+            }
+        };
+        // A tool that does not tell its version will say more about it when it is run.
+        let versions = tools.iter().filter_map(|tool| tool.version().ok());
+        let versions = versions.collect();
+        let finding = (self.run)(subject, &tools, progress).unwrap_or_else(|error| {
+            let faults = vec![format!("{error:#}")];
+            Finding::new(Verdict::Failed, String::new(), String::new(), faults)
+        });
+        (versions, finding)
+    }
+}
+
+/// A leg and what it found.
+#[derive(Clone, Debug, Serialize)]
+pub struct Answer {
+    /// [`Leg::id`].
+    pub leg: &'static str,
+    /// [`Leg::title`].
+    pub title: &'static str,
+    /// [`Leg::question`].
+    pub question: &'static str,
+    /// Versions of the tools outside Glint.
+    pub tools: Vec<String>,
+    /// What was found.
+    #[serde(flatten)]
+    pub finding: Finding,
+    /// How long it took: not among what is the same every time.
+    #[serde(skip)]
+    pub timing: Timing,
+}
+
+/// How long a leg took.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Timing {
+    /// [`Leg::id`].
+    pub leg: &'static str,
+    /// Seconds on the clock on the wall.
+    pub seconds: f64,
+}
+
+/// What all legs say together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Conclusion {
+    /// Every leg that covers the configuration was run, and all of them hold.
+    Verified,
+    /// Nothing failed, but a leg could not be run.
+    Incomplete,
+    /// Something does not hold.
+    Failed,
+}
+
+impl Conclusion {
+    /// Of some answers.
+    pub fn of(answers: &[Answer]) -> Self {
+        let any = |verdict| answers.iter().any(|it| it.finding.verdict == verdict);
+        match (any(Verdict::Failed), any(Verdict::NotRun)) {
+            (true, _) => Self::Failed,
+            (false, true) => Self::Incomplete,
+            (false, false) => Self::Verified,
+        }
+    }
+
+    /// For people.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Verified => "verified",
+            Self::Incomplete => "incomplete",
+            Self::Failed => "FAILED",
+        }
+    }
+}
+
+/// What was found of one configuration; `<name>.json` is this.
+#[derive(Clone, Debug, Serialize)]
+pub struct Record {
+    /// The version of Glint.
+    pub glint: &'static str,
+    /// What the command line calls the configuration.
+    pub config: String,
+    /// The top module.
+    pub name: String,
+    /// The device.
+    pub device: &'static str,
+    /// SHA-256 of the configuration with all its keys.
+    pub configuration: String,
+    /// Whether everything was done, however long it takes.
+    pub full: bool,
+    /// What all legs say together.
+    pub conclusion: Conclusion,
+    /// In the order in which they were run.
+    pub legs: Vec<Answer>,
+}
+
+impl Record {
+    /// Of the answers of all legs.
+    pub fn new(subject: &Subject<'_>, legs: Vec<Answer>) -> Self {
+        Self {
+            glint: env!("CARGO_PKG_VERSION"),
+            config: subject.path.to_owned(),
+            name: subject.unit.config.name.clone(),
+            device: subject.unit.device.name,
+            configuration: subject.unit.digest(),
+            full: subject.effort.full,
+            conclusion: Conclusion::of(&legs),
+            legs,
+        }
+    }
+}

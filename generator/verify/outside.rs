@@ -1,0 +1,221 @@
+//! Legs that run tools outside Glint, on the emitted files.
+
+use std::fs;
+
+use anyhow::{Context, Result};
+use rayon::prelude::*;
+use tempfile::TempDir;
+
+use super::{Finding, Leg, Subject, Verdict};
+use crate::cosim::external::{Simulator, lint, prove, run_bench};
+use crate::cosim::synthesis::{FAMILIES, synthesise};
+use crate::emit;
+use crate::flow::{BENCH_POINTS, BENCH_SEED};
+use crate::words::grouped;
+
+/// Results of a bench, and with full effort.
+const POINTS: [u64; 2] = [200, 20_000];
+
+/// The emitted text.
+pub const LINT: Leg = Leg {
+    id: "lint",
+    title: "Lint",
+    question: "Have linters at their strictest nothing to say about the emitted Verilog?",
+    tools: &["iverilog", "verilator"],
+    steps: |_| 1,
+    run: |subject, tools, _| {
+        let place = tempfile::tempdir().context("cannot make a directory for the linters")?;
+        let mut sources = Vec::new();
+        for (name, contents) in subject.unit.verilog()? {
+            fs::write(place.path().join(&name), contents)
+                .with_context(|| format!("cannot write `{name}` for the linters"))?;
+            if name.ends_with(".v") {
+                sources.push(name);
+            }
+        }
+        let (name, limit) = (&subject.unit.config.name, subject.effort.time_limit);
+        let mut faults = Vec::new();
+        for tool in tools {
+            let remarks = lint(tool, place.path(), &sources, name, limit)?;
+            if !remarks.trim().is_empty() {
+                faults.push(format!("{tool}: {}", remarks.trim()));
+            }
+        }
+        Ok(Finding::new(
+            Verdict::Passed,
+            sources.join(", "),
+            "Neither has a remark.".to_owned(),
+            faults,
+        ))
+    },
+};
+
+/// The emitted Verilog in Icarus Verilog.
+pub const ICARUS: Leg = Leg {
+    id: "icarus",
+    title: "Emitted Verilog in Icarus Verilog",
+    question: "Does the emitted Verilog give, on every clock, the outputs on which golden model and simulation agree?",
+    tools: &["iverilog", "vvp"],
+    steps: |_| 1,
+    run: |subject, _, _| bench(subject, Simulator::Icarus),
+};
+
+/// The emitted Verilog in Verilator.
+pub const VERILATOR: Leg = Leg {
+    id: "verilator",
+    title: "Emitted Verilog in Verilator",
+    question: ICARUS.question,
+    tools: &["verilator"],
+    steps: |_| 1,
+    run: |subject, _, _| bench(subject, Simulator::Verilator),
+};
+
+fn bench(subject: &Subject<'_>, simulator: Simulator) -> Result<Finding> {
+    let (unit, effort) = (subject.unit, subject.effort);
+    let points = POINTS[usize::from(effort.full)];
+    let vectors = unit.vectors(points, BENCH_SEED)?;
+    let clocks = vectors.inputs.len() as u64;
+    let files = emit::sources(unit.files(subject.path, vectors)?);
+    let top = format!("{}_tb", unit.config.name);
+    let outcome = run_bench(simulator, &files, &top, effort.time_limit)?;
+    let faults = match outcome.passed {
+        true => Vec::new(),
+        false => vec![outcome.transcript.trim().to_owned()],
+    };
+    Ok(Finding::new(
+        Verdict::Passed,
+        format!(
+            "{} results in {} clocks (seed {BENCH_SEED})",
+            grouped(points),
+            grouped(clocks)
+        ),
+        "Every output is right on every clock.".to_owned(),
+        faults,
+    )
+    .open("Operands that were not drawn."))
+}
+
+/// What the device takes of FPGAs.
+pub const SYNTHESIS: Leg = Leg {
+    id: "synthesis",
+    title: "Synthesis",
+    question: "Is the emitted Verilog synthesised for each family of FPGAs, and what does it take?",
+    tools: &["yosys"],
+    steps: |_| FAMILIES.len() as u64,
+    run: |subject, tools, progress| {
+        let (name, limit) = (&subject.unit.config.name, subject.effort.time_limit);
+        let files = subject.unit.verilog()?;
+        let taken: Vec<String> = FAMILIES
+            .par_iter()
+            .map(|family| {
+                let usage = synthesise(&tools[0], &files, name, family, limit)?;
+                progress(1);
+                Ok(format!(
+                    "{} LUTs, {} DSP blocks and {} block RAMs of {}",
+                    usage.luts, usage.dsps, usage.block_rams, family.title
+                ))
+            })
+            .collect::<Result<_>>()?;
+        Ok(Finding::new(
+            Verdict::Passed,
+            "before placement".to_owned(),
+            format!("It takes {}.", taken.join("; ")),
+            Vec::new(),
+        ))
+    },
+};
+
+/// Properties of the emitted Verilog.
+pub const FORMAL: Leg = Leg {
+    id: "formal",
+    title: "Proof of the handshake",
+    question: "Do valid, busy and done come exactly when they should, for all inputs and from any state, and are operands stable meanwhile?",
+    tools: &["yosys", "yosys-smtbmc", "z3"],
+    steps: |_| 1,
+    run: |subject, _, _| {
+        let place = place(subject)?;
+        let (name, limit) = (&subject.unit.config.name, subject.effort.time_limit);
+        let flat = place.path().join("proof");
+        fs::create_dir(&flat).context("cannot make a directory for the proof")?;
+        for directory in ["rtl_out", "testbench"] {
+            let directory = place.path().join(directory).join(name);
+            for entry in directory
+                .read_dir()
+                .context("cannot read what was emitted")?
+            {
+                let entry = entry.context("cannot read what was emitted")?;
+                fs::copy(entry.path(), flat.join(entry.file_name()))
+                    .context("cannot copy what was emitted")?;
+            }
+        }
+        prove(&flat, name, limit)?;
+        Ok(Finding::new(
+            Verdict::Proved,
+            "all inputs, any state, any number of clocks".to_owned(),
+            format!("The properties of {name}_formal.sv are proved by k-induction."),
+            Vec::new(),
+        )
+        .open("Values: products and ROMs of the datapath are cut away."))
+    },
+};
+
+/// The emitted Verilog driven from Python.
+pub const COCOTB: Leg = Leg {
+    id: "cocotb",
+    title: "Emitted Verilog driven from Python",
+    question: "Does the core do what its manifest says, for a bench in Python that knows nothing else of it?",
+    tools: &["python3", "iverilog"],
+    steps: |_| 1,
+    run: |subject, tools, _| {
+        let limit = subject.effort.time_limit;
+        let (python, here) = (&tools[0], std::path::Path::new("."));
+        let version = python.run(
+            ["-c", "import cocotb; print(cocotb.__version__)"],
+            here,
+            limit,
+        )?;
+        if !version.status.success() {
+            let why = format!(
+                "{} has no cocotb; `bash tools/install` makes an environment that has, target/tools/venv: \
+                 put its bin/ first on PATH",
+                python.path().display()
+            );
+            return Ok(Finding::without(Verdict::NotRun, why));
+        }
+        let place = place(subject)?;
+        let name = &subject.unit.config.name;
+        let bench = format!("testbench/{name}/test_{name}.py");
+        let run = python.run([&bench], place.path(), limit)?;
+        let verdict = run
+            .output
+            .lines()
+            .rev()
+            .find(|line| line.contains(&format!("{name}: ")));
+        let faults = match (run.status.success(), verdict) {
+            (true, Some(_)) => Vec::new(),
+            _ => vec![run.output.trim().to_owned()],
+        };
+        Ok(Finding::new(
+            Verdict::Passed,
+            format!("{bench}, with cocotb {}", version.output.trim()),
+            verdict.unwrap_or_default().to_owned(),
+            faults,
+        )
+        .open("Operands that were not drawn."))
+    },
+};
+
+/// Everything that is emitted, in a directory of its own.
+fn place(subject: &Subject<'_>) -> Result<TempDir> {
+    let place = tempfile::tempdir().context("cannot make a directory for what is emitted")?;
+    let vectors = subject.unit.vectors(BENCH_POINTS, BENCH_SEED)?;
+    let files = subject.unit.files(subject.path, vectors)?;
+    for file in files.iter().chain([&emit::driver()]) {
+        let path = place.path().join(&file.path);
+        path.parent()
+            .map_or(Ok(()), fs::create_dir_all)
+            .and_then(|()| fs::write(&path, &file.contents))
+            .with_context(|| format!("cannot write `{}` for a tool", file.path))?;
+    }
+    Ok(place)
+}

@@ -1,0 +1,80 @@
+//! A verification as one HTML page that needs nothing but itself.
+
+use anyhow::Result;
+use askama::Template;
+
+use super::{Answer, Conclusion, Record, Timing, Verdict};
+
+/// What marks a page of ours: nothing else is overwritten.
+pub const MARKER: &str = "<meta name=\"generator\" content=\"glint verify\">";
+
+#[derive(Template)]
+#[template(path = "verification.html")]
+struct Page<'a> {
+    marker: &'static str,
+    record: &'a Record,
+    class: &'static str,
+    counts: Vec<(&'static str, &'static str, usize)>,
+    legs: Vec<View<'a>>,
+    timings: Vec<(&'static str, String)>,
+}
+
+struct View<'a> {
+    answer: &'a Answer,
+    class: &'static str,
+}
+
+/// The page; nothing before its last section depends on the timings.
+///
+/// # Errors
+/// A template that fails.
+pub fn page(record: &Record, timings: &[Timing]) -> Result<String> {
+    let count = |verdict: Verdict| {
+        let legs = record.legs.iter();
+        let count = legs.filter(|it| it.finding.verdict == verdict).count();
+        (class(verdict), verdict.words(), count)
+    };
+    let all = [
+        Verdict::Proved,
+        Verdict::Passed,
+        Verdict::Failed,
+        Verdict::NotCovered,
+        Verdict::NotRun,
+    ];
+    let legs = record.legs.iter();
+    let page = Page {
+        marker: MARKER,
+        record,
+        class: match record.conclusion {
+            Conclusion::Verified => "verified",
+            Conclusion::Incomplete => "incomplete",
+            Conclusion::Failed => "failed",
+        },
+        counts: all.map(count).into_iter().filter(|it| it.2 > 0).collect(),
+        legs: legs
+            .clone()
+            .map(|answer| View {
+                answer,
+                class: class(answer.finding.verdict),
+            })
+            .collect(),
+        timings: legs
+            .zip(timings)
+            .map(|(answer, timing)| (answer.title, format!("{:.1}", timing.seconds)))
+            .collect(),
+    };
+    let mut text = page.render()?;
+    text.push('\n');
+    Ok(text)
+}
+
+/// The class of a verdict in the style sheet.
+fn class(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Proved => "proved",
+        Verdict::Passed => "passed",
+        Verdict::Failed => "failed",
+        Verdict::NotCovered => "not-covered",
+        Verdict::NotRun => "not-run",
+    }
+}

@@ -1,0 +1,62 @@
+//! A fault is found by the leg that looks for it, and by no other.
+
+use std::time::Duration;
+
+use super::{Conclusion, Effort, Finding, LEGS, Record, Subject, Verdict};
+use crate::config::Config;
+use crate::flow::Unit;
+use crate::registry::Registry;
+
+fn unit() -> Unit {
+    let registry = Registry::catalogue();
+    let device = *registry.device("threshold").expect("a device");
+    let config = Config::defaults(&(device.schema)(), "core");
+    Unit::new(device, config).expect("a design")
+}
+
+/// What the legs that need nothing but Glint say.
+fn verified(unit: &Unit) -> Record {
+    let effort = Effort {
+        full: false,
+        time_limit: Duration::from_secs(1),
+    };
+    let subject = Subject {
+        path: "core.toml",
+        unit,
+        effort,
+    };
+    let legs = LEGS.iter().filter(|leg| !leg.is_outside());
+    let answers = legs.map(|leg| leg.run(&subject, &|_| ())).collect();
+    Record::new(&subject, answers)
+}
+
+fn finding<'a>(record: &'a Record, leg: &str) -> &'a Finding {
+    let answer = record.legs.iter().find(|answer| answer.leg == leg);
+    &answer.expect("a leg").finding
+}
+
+#[test]
+fn a_fault_in_the_design_fails_the_lockstep() {
+    let mut unit = unit();
+    assert_eq!(verified(&unit).conclusion, Conclusion::Verified);
+    // The words of a ROM of the datapath, from the last to the first.
+    let control = unit.design.control.rom.index();
+    let rom = unit.design.roms.iter_mut().enumerate();
+    let rom = rom.filter(|(at, _)| *at != control).map(|(_, rom)| rom);
+    rom.for_each(|rom| rom.words.reverse());
+    let record = verified(&unit);
+    assert_eq!(record.conclusion, Conclusion::Failed);
+    let lockstep = finding(&record, "lockstep");
+    assert_eq!(lockstep.verdict, Verdict::Failed);
+    // Its reproducer: seed, clock, word, signal, both values.
+    for part in [
+        "seed ",
+        "after clock ",
+        "word `",
+        "in the simulated hardware",
+        "in the golden model",
+    ] {
+        assert!(lockstep.faults[0].contains(part), "{:?}", lockstep.faults);
+    }
+    assert_eq!(finding(&record, "contract").verdict, Verdict::Proved);
+}
