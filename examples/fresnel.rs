@@ -354,6 +354,10 @@ impl Contract for FresnelContract {
         f0 + (1.0 - f0) * (t * t * t * t * t)
     }
 
+    fn expressions(&self) -> Vec<String> {
+        vec!["f0 + (1 - f0) * (1 - cos_half) ** 5".to_owned()]
+    }
+
     /// Let u be the last place of u0.F, r what a rounding is off by at most (u/2 or u), and t = 1 − c,
     /// which is exact, as is 1 − f0.
     ///

@@ -5,6 +5,8 @@
 //   $ yosys -q ${ name }$.ys
 //   $ yosys-smtbmc ${ solver }$ -t ${ depth }$ ${ name }$.smt2
 //   $ yosys-smtbmc ${ solver }$ -i -t ${ depth }$ ${ name }$.smt2
+// or, with SymbiYosys,
+//   $ sby -f ${ name }$.sby
 //
 // Generated files belong to their user, without conditions.
 
@@ -27,11 +29,18 @@ ${ line }$
 
     // The initial set comes first; the state before it is arbitrary.
     always @* if ($initstate) assume (!rst_n);
-<%- if let Some(exact) = exact %>
+<%- if let Some(age) = age %>
 
     // Clocks since start.
-    reg ${ age_range }$ ${ age }$;
-    always @(posedge clk) ${ age }$ <= busy ? ${ age }$ + ${ age_one }$ : ${ age_one }$;
+    reg ${ age.range }$ ${ age.name }$;
+    always @(posedge clk) ${ age.name }$ <= busy ? ${ age.name }$ + ${ age.one }$ : ${ age.one }$;
+<%- endif %>
+<%- if let Some(bounded) = bounded %>
+
+    // The word that is executed, and what counts the turns of loops.
+<%- for line in bounded.inside %>
+    ${ line }$
+<%- endfor %>
 <%- endif %>
 
     always @(posedge clk) if (!$initstate) begin
@@ -48,13 +57,35 @@ ${ line }$
 <%- endif %>
         end
         if (done) assert (busy);
+        if (valid) assert (busy);
+<%- if let Some(age) = age %>
 <%- if let Some(exact) = exact %>
         if ($past(rst_n)) begin
             // The clocks that the manifest promises.
-            assert (valid == (busy && ${ age }$ == ${ exact.valid }$));
-            assert (done == (busy && ${ age }$ == ${ exact.done }$));
-            if (busy) assert (${ age }$ <= ${ exact.last }$);
+            assert (valid == (busy && ${ age.name }$ == ${ exact.valid }$));
+            assert (done == (busy && ${ age.name }$ == ${ exact.done }$));
+            if (busy) assert (${ age.name }$ <= ${ exact.last }$);
         end
+<%- endif %>
+<%- if let Some(bounded) = bounded %>
+        if (busy) begin
+            // Every computation ends: with what is left in a word at most, it is not too late.
+            assert (${ age.name }$ <= ${ bounded.most }$);
+            case (${ bounded.word }$)
+<%- for word in bounded.words %>
+                ${ word.label }$: assert (${ word.end }$ <= ${ bounded.most }$);
+<%- endfor %>
+            endcase
+        end
+<%- if bounded.ends_with_result %>
+        // No computation ends without a result.
+        if (done) assert (valid);
+<%- endif %>
+<%- if let Some(first) = bounded.first %>
+        // From the clock that the manifest promises a result a clock, to the end.
+        assert (valid == (busy && ${ age.name }$ >= ${ first }$));
+<%- endif %>
+<%- endif %>
 <%- endif %>
     end
 endmodule

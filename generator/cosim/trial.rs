@@ -4,7 +4,7 @@
 use anyhow::{Context, Result, ensure};
 
 use super::Random;
-use crate::emit::{Computation, Quantity, Shown, Timing, WorkedExample};
+use crate::emit::{self, Computation, Quantity, Shown, Timing, WorkedExample};
 use crate::fixed::Format;
 use crate::golden::{Contract, Operand};
 use crate::netlist::{Design, NetId, Role};
@@ -56,18 +56,25 @@ pub fn timing(design: &Design, contract: &dyn Contract) -> Result<Timing> {
                     start_to_valid: same(before.start_to_valid, seen.start_to_valid),
                     valid_to_valid: None,
                     start_to_done: same(before.start_to_done, seen.start_to_done),
+                    start_to_done_at_most: None,
                     start_to_start: same(before.start_to_start, seen.start_to_start),
                 }
             }
         });
     }
     distances.dedup();
+    let common = common.unwrap_or_default();
+    let at_most = match common.start_to_done {
+        Some(_) => None,
+        None => emit::latest_done(design),
+    };
     Ok(Timing {
+        start_to_done_at_most: at_most,
         valid_to_valid: match distances[..] {
             [only] => Some(only),
             _ => None,
         },
-        ..common.unwrap_or_default()
+        ..common
     })
 }
 

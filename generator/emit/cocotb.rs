@@ -4,7 +4,7 @@ use anyhow::Result;
 use askama::Template;
 
 use super::seal::{Seal, sealed};
-use super::{OutputFile, Quantity, WorkedExample};
+use super::{Accuracy, OutputFile, Quantity, WorkedExample};
 use crate::netlist::Design;
 
 #[derive(Template)]
@@ -13,17 +13,23 @@ struct Bench<'a> {
     name: &'a str,
     operands: Vec<String>,
     outputs: Vec<String>,
+    has_formula: bool,
 }
 
 /// The bench of a design, as name and text.
 ///
 /// # Errors
 /// A template that fails.
-pub fn bench(design: &Design, example: &WorkedExample) -> Result<(String, String)> {
+pub fn bench(
+    design: &Design,
+    example: &WorkedExample,
+    accuracy: &Accuracy,
+) -> Result<(String, String)> {
     let bench = Bench {
         name: &design.name,
         operands: lines(&example.operands, |name, raw| format!("{name}={raw},")),
         outputs: lines(&example.outputs, |name, raw| format!("\"{name}\": {raw},")),
+        has_formula: !accuracy.f.is_empty(),
     };
     Ok((format!("test_{}.py", design.name), super::render(&bench)?))
 }

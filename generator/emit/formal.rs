@@ -7,11 +7,15 @@
 use anyhow::Result;
 use askama::Template;
 
-use super::Timing;
 use super::naming::Naming;
 use super::rows::{Row, separated};
+use super::termination::{self, Left};
 use super::text::{Names, literal, range};
-use crate::netlist::{Design, RegisterKind, Sequence, Unit};
+use super::{Computation, EmitInputs, Timing};
+use crate::netlist::{Design, NetId, RegId, RegisterKind, Sequence, Unit};
+
+/// Steps of an induction where the clocks depend on the data: more than a result takes through a pipeline.
+const UNROLLED: u32 = 8;
 
 #[derive(Template)]
 #[template(path = "formal.sv")]
@@ -22,9 +26,7 @@ struct Wrapper {
     /// The solver, as the command line of yosys-smtbmc has it.
     solver: &'static str,
     instance: String,
-    age: String,
-    age_range: String,
-    age_one: String,
+    age: Option<AgeView>,
     /// Ports with their commas.
     ports: Vec<String>,
     outputs: Vec<String>,
@@ -32,6 +34,26 @@ struct Wrapper {
     /// The program never waits for a second `start`: busy from start to done.
     straight: bool,
     exact: Option<Exact>,
+    bounded: Option<Bounded>,
+}
+
+/// The register that counts clocks since start.
+struct Age {
+    name: String,
+    width: u32,
+}
+
+impl Age {
+    fn literal(&self, clocks: u32) -> String {
+        literal(u64::from(clocks), self.width)
+    }
+}
+
+/// The same for the template.
+struct AgeView {
+    name: String,
+    range: String,
+    one: String,
 }
 
 /// When the events come, where that does not depend on the data.
@@ -41,13 +63,55 @@ struct Exact {
     last: String,
 }
 
+/// The latest end, where the clocks depend on the data.
+struct Bounded {
+    /// What the proof sees of the inside: declarations.
+    inside: Vec<String>,
+    word: String,
+    most: String,
+    words: Vec<Word>,
+    /// In the clock of `done` there is a result.
+    ends_with_result: bool,
+    /// The clock of the first result, where one follows another from then on to the end.
+    first: Option<String>,
+}
+
+/// A word of the microprogram.
+struct Word {
+    label: String,
+    /// The age at which the computation ends, if it takes as long as it can.
+    end: String,
+}
+
+/// Commands of Yosys that make the problem, alone or for SymbiYosys.
 #[derive(Template)]
 #[template(path = "formal.ys")]
-struct Script {
-    name: String,
-    instance: String,
-    datapath: String,
-    rtl: Vec<String>,
+struct Script<'a> {
+    name: &'a str,
+    instance: &'a str,
+    datapath: &'a str,
+    rtl: &'a [String],
+}
+
+#[derive(Template)]
+#[template(path = "formal.sby")]
+struct Task<'a> {
+    name: &'a str,
+    instance: &'a str,
+    datapath: &'a str,
+    depth: u32,
+    engine: &'static str,
+    rtl: &'a [String],
+    memories: &'a [String],
+}
+
+/// The files of the device that a proof reads.
+#[derive(Clone, Copy)]
+pub struct Sources<'a> {
+    /// Verilog.
+    pub rtl: &'a [String],
+    /// ROM contents.
+    pub memories: &'a [String],
 }
 
 /// The lines of a unit's section for formal tools.
@@ -111,9 +175,10 @@ fn datapath(design: &Design, was_busy: &str) -> Vec<String> {
 pub fn files(
     design: &Design,
     naming: &Naming,
-    timing: &Timing,
-    rtl: &[String],
+    inputs: &EmitInputs,
+    sources: Sources,
 ) -> Result<Vec<(String, String)>> {
+    let timing = &inputs.timing;
     let module = &design.name;
     let name = format!("{module}_formal");
     let mut names = Names::new(
@@ -125,11 +190,25 @@ pub fn files(
     names.fresh("clk");
     let instance = names.fresh("dut");
     let exact = exact(timing);
-    // An induction that is longer than a computation has seen its start.
-    let depth = exact.as_ref().map_or(4, |(_, start)| start + 2);
-    let age_width = exact
-        .as_ref()
-        .map_or(1, |(_, start)| u32::BITS - start.leading_zeros());
+    let bounded = match exact {
+        Some(_) => None,
+        None => termination::words(design).zip(termination::latest_done(design)),
+    };
+    let depth = match &exact {
+        // An induction that is longer than a computation has seen its start.
+        Some((_, start)) => start + 2,
+        None => UNROLLED,
+    };
+    let largest_age = match (&exact, &bounded) {
+        (Some((_, start)), _) => Some(*start),
+        // What is left is added to it.
+        (None, Some((_, most))) => Some(2 * most),
+        (None, None) => None,
+    };
+    let age = largest_age.map(|largest| Age {
+        name: names.fresh("age"),
+        width: u32::BITS - largest.leading_zeros(),
+    });
     let port_name = |net| design.net(net).name.clone();
     let mut ports = vec!["input  wire clk".to_owned()];
     for port in design.inputs() {
@@ -159,40 +238,131 @@ pub fn files(
         .words
         .iter()
         .any(|word| word.sequence == Sequence::WaitStart);
+    // A few steps with much state between them z3 solves at once when they are unrolled; many it
+    // solves faster when they are not.
+    let unroll = exact.is_none();
     let wrapper = Wrapper {
         name: name.clone(),
         module: module.clone(),
         depth,
-        // A few steps with much state between them z3 solves at once when they are unrolled; many it
-        // solves faster when they are not.
-        solver: match exact {
-            Some(_) => "-s z3",
-            None => "--unroll -s z3",
-        },
+        solver: if unroll { "--unroll -s z3" } else { "-s z3" },
         instance: instance.clone(),
-        age: names.fresh("age"),
-        age_range: range(age_width),
-        age_one: literal(1, age_width),
         ports: separated(ports),
         outputs: Row::declarations(&outputs),
         connections: separated(connections),
         straight: !waits,
-        exact: exact.map(|(clocks, start)| Exact {
-            valid: literal(u64::from(clocks[0]), age_width),
-            done: literal(u64::from(clocks[1]), age_width),
-            last: literal(u64::from(start) - 1, age_width),
+        exact: exact.zip(age.as_ref()).map(|((clocks, start), age)| Exact {
+            valid: age.literal(clocks[0]),
+            done: age.literal(clocks[1]),
+            last: age.literal(start - 1),
+        }),
+        bounded: bounded
+            .zip(age.as_ref())
+            .map(|((words, most), age)| Bounded {
+                // Results follow one another without a pause, once the first is there.
+                first: match timing.valid_to_valid {
+                    Some(1) => timing.start_to_valid.map(|first| age.literal(first)),
+                    _ => None,
+                },
+                ends_with_result: !inputs.computations.is_empty()
+                    && inputs
+                        .computations
+                        .iter()
+                        .all(Computation::ends_with_result),
+                ..bounded_view(design, naming, &instance, &mut names, (&words, most), age)
+            }),
+        age: age.as_ref().map(|age| AgeView {
+            range: range(age.width),
+            one: age.literal(1),
+            name: age.name.clone(),
         }),
     };
+    let datapath = naming.instance(Unit::Datapath);
     let script = Script {
-        name: name.clone(),
-        instance,
-        datapath: naming.instance(Unit::Datapath).to_owned(),
-        rtl: rtl.to_vec(),
+        name: &name,
+        instance: &instance,
+        datapath,
+        rtl: sources.rtl,
+    };
+    let task = Task {
+        name: &name,
+        instance: &instance,
+        datapath,
+        depth,
+        engine: if unroll {
+            "smtbmc --unroll z3"
+        } else {
+            "smtbmc z3"
+        },
+        rtl: sources.rtl,
+        memories: sources.memories,
     };
     Ok(vec![
         (format!("{name}.sv"), super::render(&wrapper)?),
         (format!("{name}.ys"), super::render(&script)?),
+        (format!("{name}.sby"), super::render(&task)?),
     ])
+}
+
+/// How the end of every computation is proved: in each word the age and what is left at most are no more
+/// than the whole.
+fn bounded_view(
+    design: &Design,
+    naming: &Naming,
+    instance: &str,
+    names: &mut Names,
+    (words, most): (&[Left], u32),
+    age: &Age,
+) -> Bounded {
+    // A net of the inside under a name of the wrapper; Yosys joins the two when it flattens.
+    let mut inside = Vec::new();
+    let mut seen = |unit: Unit, net: NetId, name: String| {
+        let range = range(design.width(net));
+        let path = format!(
+            "{instance}.{}.{}",
+            naming.instance(unit),
+            design.net(net).name
+        );
+        inside.push(format!("(* hierconn *) wire {range} \\{path} ;"));
+        inside.push(format!("wire {range} {name} = \\{path} ;"));
+    };
+    let address = design.register(design.control.address).q;
+    let word = names.fresh("word");
+    seen(Unit::Control, address, word.clone());
+    let mut counters: Vec<(RegId, String)> = Vec::new();
+    for counter in words.iter().filter_map(|left| left.counter) {
+        if counters.iter().all(|(other, _)| *other != counter) {
+            let q = design.register(counter).q;
+            let name = names.fresh(&design.net(q).name);
+            seen(Unit::Datapath, q, name.clone());
+            counters.push((counter, name));
+        }
+    }
+    let end = |left: &Left| {
+        let mut sum = age.name.clone();
+        for (counter, name) in &counters {
+            if left.counter == Some(*counter) {
+                sum = format!("{sum} + {name}");
+            }
+        }
+        match left.clocks {
+            0 => sum,
+            clocks => format!("{sum} + {}", age.literal(clocks as u32)),
+        }
+    };
+    let address_width = design.width(address);
+    let words = words.iter().enumerate().map(|(at, left)| Word {
+        label: literal(at as u64, address_width),
+        end: end(left),
+    });
+    Bounded {
+        words: words.collect(),
+        word,
+        most: age.literal(most),
+        first: None,
+        ends_with_result: false,
+        inside,
+    }
 }
 
 /// The clocks of `valid` and `done`, and that of the next start, where all are known, and the result is

@@ -25,6 +25,7 @@ mod plan;
 mod points;
 mod rows;
 mod seal;
+mod termination;
 mod text;
 mod top;
 mod view;
@@ -47,6 +48,7 @@ pub use instance::instance;
 pub use page::page;
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE, points_bench};
 pub use seal::{Seal, is_sealed, sealed, sealed_json};
+pub use termination::latest_done;
 pub use window::{WINDOW_FILE, window};
 
 /// A file to be written.
@@ -104,6 +106,10 @@ pub struct Timing {
     pub valid_to_valid: Option<u32>,
     /// The number of the clock in which `done` is high.
     pub start_to_done: Option<u32>,
+    /// Where that depends on the data, the number of the latest clock in which `done` can be high, if the
+    /// microprogram has a bound.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub start_to_done_at_most: Option<u32>,
     /// The number of the first clock in which the next `start` is taken.
     pub start_to_start: Option<u32>,
 }
@@ -172,6 +178,14 @@ pub struct Computation {
     pub results: Vec<Shown>,
     /// The clock in which `done` is high.
     pub done: u32,
+}
+
+impl Computation {
+    /// Whether the last result comes with `done`.
+    pub fn ends_with_result(&self) -> bool {
+        let last = self.results.last();
+        last.is_some_and(|result| result.clock == self.done)
+    }
 }
 
 /// A result.
@@ -246,10 +260,14 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
             format!("{name}_tb.core"),
             core::bench(name, &names[0], &names[1..])?,
         ));
-        let formal = formal::files(design, &naming, &inputs.timing, &names_of(&rtl))?;
+        let sources = formal::Sources {
+            rtl: &names_of(&rtl),
+            memories: &names_of(&memories),
+        };
+        let formal = formal::files(design, &naming, inputs, sources)?;
         testbench.splice(0..0, formal);
-        if let Some(example) = &inputs.example {
-            testbench.insert(0, cocotb::bench(design, example)?);
+        if let (Some(example), Some(accuracy)) = (&inputs.example, &inputs.accuracy) {
+            testbench.insert(0, cocotb::bench(design, example, accuracy)?);
         }
     }
 

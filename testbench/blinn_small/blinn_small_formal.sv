@@ -5,6 +5,8 @@
 //   $ yosys -q blinn_small_formal.ys
 //   $ yosys-smtbmc -s z3 -t 9 blinn_small_formal.smt2
 //   $ yosys-smtbmc -s z3 -i -t 9 blinn_small_formal.smt2
+// or, with SymbiYosys,
+//   $ sby -f blinn_small_formal.sby
 //
 // Generated files belong to their user, without conditions.
 
@@ -75,6 +77,7 @@ module blinn_small_formal (
             assert (busy == !$past(done));
         end
         if (done) assert (busy);
+        if (valid) assert (busy);
         if ($past(rst_n)) begin
             // The clocks that the manifest promises.
             assert (valid == (busy && age == 3'd6));

@@ -3,8 +3,10 @@
 // For formal tools alone: every input is free. To prove it, from a directory that holds the files
 // of both folders:
 //   $ yosys -q lyon_formal.ys
-//   $ yosys-smtbmc --unroll -s z3 -t 4 lyon_formal.smt2
-//   $ yosys-smtbmc --unroll -s z3 -i -t 4 lyon_formal.smt2
+//   $ yosys-smtbmc --unroll -s z3 -t 8 lyon_formal.smt2
+//   $ yosys-smtbmc --unroll -s z3 -i -t 8 lyon_formal.smt2
+// or, with SymbiYosys,
+//   $ sby -f lyon_formal.sby
 //
 // Generated files belong to their user, without conditions.
 
@@ -65,6 +67,16 @@ module lyon_formal (
     // The initial set comes first; the state before it is arbitrary.
     always @* if ($initstate) assume (!rst_n);
 
+    // Clocks since start.
+    reg [6:0] age;
+    always @(posedge clk) age <= busy ? age + 7'd1 : 7'd1;
+
+    // The word that is executed, and what counts the turns of loops.
+    (* hierconn *) wire [2:0] \dut.control.word_address ;
+    wire [2:0] word = \dut.control.word_address ;
+    (* hierconn *) wire [3:0] \dut.datapath.remaining ;
+    wire [3:0] remaining = \dut.datapath.remaining ;
+
     always @(posedge clk) if (!$initstate) begin
         if (!$past(rst_n)) begin
             // Idle after the initial set, whatever was before.
@@ -77,6 +89,19 @@ module lyon_formal (
             assert (busy == !$past(done));
         end
         if (done) assert (busy);
+        if (valid) assert (busy);
+        if (busy) begin
+            // Every computation ends: with what is left in a word at most, it is not too late.
+            assert (age <= 7'd36);
+            case (word)
+                3'd0: assert (age + 7'd35 <= 7'd36);
+                3'd1: assert (age + 7'd34 <= 7'd36);
+                3'd2: assert (age + remaining + 7'd18 <= 7'd36);
+                3'd3: assert (age + 7'd17 <= 7'd36);
+                3'd4: assert (age + remaining + 7'd1 <= 7'd36);
+                3'd5: assert (age <= 7'd36);
+            endcase
+        end
     end
 endmodule
 

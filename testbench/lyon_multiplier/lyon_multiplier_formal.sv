@@ -5,6 +5,8 @@
 //   $ yosys -q lyon_multiplier_formal.ys
 //   $ yosys-smtbmc -s z3 -t 11 lyon_multiplier_formal.smt2
 //   $ yosys-smtbmc -s z3 -i -t 11 lyon_multiplier_formal.smt2
+// or, with SymbiYosys,
+//   $ sby -f lyon_multiplier_formal.sby
 //
 // Generated files belong to their user, without conditions.
 
@@ -81,6 +83,7 @@ module lyon_multiplier_formal (
             assert (busy == !$past(done));
         end
         if (done) assert (busy);
+        if (valid) assert (busy);
         if ($past(rst_n)) begin
             // The clocks that the manifest promises.
             assert (valid == (busy && age == 4'd8));

@@ -3,8 +3,10 @@
 // For formal tools alone: every input is free. To prove it, from a directory that holds the files
 // of both folders:
 //   $ yosys -q quad_cosine_formal.ys
-//   $ yosys-smtbmc --unroll -s z3 -t 4 quad_cosine_formal.smt2
-//   $ yosys-smtbmc --unroll -s z3 -i -t 4 quad_cosine_formal.smt2
+//   $ yosys-smtbmc --unroll -s z3 -t 8 quad_cosine_formal.smt2
+//   $ yosys-smtbmc --unroll -s z3 -i -t 8 quad_cosine_formal.smt2
+// or, with SymbiYosys,
+//   $ sby -f quad_cosine_formal.sby
 //
 // Generated files belong to their user, without conditions.
 
@@ -59,6 +61,16 @@ module quad_cosine_formal (
     // The initial set comes first; the state before it is arbitrary.
     always @* if ($initstate) assume (!rst_n);
 
+    // Clocks since start.
+    reg [13:0] age;
+    always @(posedge clk) age <= busy ? age + 14'd1 : 14'd1;
+
+    // The word that is executed, and what counts the turns of loops.
+    (* hierconn *) wire [2:0] \dut.control.word_address ;
+    wire [2:0] word = \dut.control.word_address ;
+    (* hierconn *) wire [11:0] \dut.datapath.intervals ;
+    wire [11:0] intervals = \dut.datapath.intervals ;
+
     always @(posedge clk) if (!$initstate) begin
         if (!$past(rst_n)) begin
             // Idle after the initial set, whatever was before.
@@ -71,6 +83,20 @@ module quad_cosine_formal (
             assert (busy == !$past(done));
         end
         if (done) assert (busy);
+        if (valid) assert (busy);
+        if (busy) begin
+            // Every computation ends: with what is left in a word at most, it is not too late.
+            assert (age <= 14'h1004);
+            case (word)
+                3'd0: assert (age + 14'h1003 <= 14'h1004);
+                3'd1: assert (age + 14'h1002 <= 14'h1004);
+                3'd2: assert (age + intervals + 14'd2 <= 14'h1004);
+                3'd3: assert (age + 14'd1 <= 14'h1004);
+                3'd4: assert (age <= 14'h1004);
+            endcase
+        end
+        // From the clock that the manifest promises a result a clock, to the end.
+        assert (valid == (busy && age >= 14'd4));
     end
 endmodule
 

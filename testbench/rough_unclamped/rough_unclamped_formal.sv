@@ -5,6 +5,8 @@
 //   $ yosys -q rough_unclamped_formal.ys
 //   $ yosys-smtbmc -s z3 -t 13 rough_unclamped_formal.smt2
 //   $ yosys-smtbmc -s z3 -i -t 13 rough_unclamped_formal.smt2
+// or, with SymbiYosys,
+//   $ sby -f rough_unclamped_formal.sby
 //
 // Generated files belong to their user, without conditions.
 
@@ -81,6 +83,7 @@ module rough_unclamped_formal (
             assert (busy == !$past(done));
         end
         if (done) assert (busy);
+        if (valid) assert (busy);
         if ($past(rst_n)) begin
             // The clocks that the manifest promises.
             assert (valid == (busy && age == 4'd9));

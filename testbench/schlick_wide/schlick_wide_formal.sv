@@ -5,6 +5,8 @@
 //   $ yosys -q schlick_wide_formal.ys
 //   $ yosys-smtbmc -s z3 -t 20 schlick_wide_formal.smt2
 //   $ yosys-smtbmc -s z3 -i -t 20 schlick_wide_formal.smt2
+// or, with SymbiYosys,
+//   $ sby -f schlick_wide_formal.sby
 //
 // Generated files belong to their user, without conditions.
 
@@ -73,6 +75,7 @@ module schlick_wide_formal (
             assert (busy == !$past(done));
         end
         if (done) assert (busy);
+        if (valid) assert (busy);
         if ($past(rst_n)) begin
             // The clocks that the manifest promises.
             assert (valid == (busy && age == 5'd17));

@@ -5,6 +5,8 @@
 //   $ yosys -q threshold_levels_formal.ys
 //   $ yosys-smtbmc -s z3 -t 7 threshold_levels_formal.smt2
 //   $ yosys-smtbmc -s z3 -i -t 7 threshold_levels_formal.smt2
+// or, with SymbiYosys,
+//   $ sby -f threshold_levels_formal.sby
 //
 // Generated files belong to their user, without conditions.
 
@@ -73,6 +75,7 @@ module threshold_levels_formal (
             assert (busy == !$past(done));
         end
         if (done) assert (busy);
+        if (valid) assert (busy);
         if ($past(rst_n)) begin
             // The clocks that the manifest promises.
             assert (valid == (busy && age == 3'd4));

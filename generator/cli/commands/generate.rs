@@ -81,15 +81,12 @@ fn files(one: &Loaded) -> Result<Vec<OutputFile>> {
 
 /// Writes the files of a configuration, and the driver that its bench in Python shares with others.
 pub fn write(out: &Path, one: &Loaded, files: &[OutputFile], force: bool) -> Result<Written> {
+    let written = store::write(out, &one.unit.config.name, files, force)
+        .with_context(|| format!("`{}` was not generated", one.path))?;
     let driver = emit::driver();
-    store::write_sealed(
-        &out.join(&driver.path),
-        &driver.contents,
-        Seal::Python,
-        force,
-    )?;
-    store::write(out, &one.unit.config.name, files, force)
-        .with_context(|| format!("`{}` was not generated", one.path))
+    let path = out.join(&driver.path);
+    store::write_sealed(&path, &driver.contents, Seal::Python, force)?;
+    Ok(written)
 }
 
 /// `--check`: what is there is what would be written.
