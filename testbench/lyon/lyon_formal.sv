@@ -102,6 +102,8 @@ module lyon_formal (
                 3'd5: assert (age <= 7'd36);
             endcase
         end
+        // No computation ends without a result.
+        if (done) assert (valid);
     end
 endmodule
 

@@ -95,6 +95,8 @@ module quad_cosine_formal (
                 3'd4: assert (age <= 14'h1004);
             endcase
         end
+        // No computation ends without a result.
+        if (done) assert (valid);
         // From the clock that the manifest promises a result a clock, to the end.
         assert (valid == (busy && age >= 14'd4));
     end
