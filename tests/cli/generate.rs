@@ -79,10 +79,10 @@ fn another_directory_and_json() {
         (&one["config"], &one["name"], &one["written"]),
         (&"core.toml".into(), &"core".into(), &true.into())
     );
-    let listed: Vec<String> = one["files"]
-        .as_array()
-        .unwrap()
+    let files = |list: &serde_json::Value| list.as_array().unwrap().clone();
+    let listed: Vec<String> = files(&one["files"])
         .iter()
+        .chain(&files(&value["shared"]))
         .map(|file| format!("a/b/{}", file.as_str().unwrap()))
         .collect();
     let mut sorted = listed.clone();
@@ -93,6 +93,28 @@ fn another_directory_and_json() {
         .filter(|name| name != "core.toml")
         .collect();
     assert_eq!(found, sorted);
+}
+
+/// The driver of the benches in Python, which no manifest speaks of, is the user's once it is edited.
+#[test]
+fn an_edited_driver_stays() {
+    const DRIVER: &str = "testbench/glint_cocotb.py";
+    let place = Place::with("core.toml", COSINE_POWER);
+    place.done(["generate", "core.toml"]);
+    let driver = place.read(DRIVER);
+    let edited = driver.replacen("import json", "import json as json", 1);
+    place.write(DRIVER, &edited);
+    let run = place.glint(["generate", "core.toml"]);
+    assert_eq!(run.code, 1, "{run:?}");
+    assert!(
+        run.err.contains(DRIVER) && run.err.contains("--force"),
+        "{run:?}"
+    );
+    assert_eq!(place.read(DRIVER), edited);
+    let check = place.glint(["generate", "core.toml", "--check"]);
+    assert!(check.code == 1 && check.out.contains(DRIVER), "{check:?}");
+    place.done(["generate", "core.toml", "--force"]);
+    assert_eq!(place.read(DRIVER), driver);
 }
 
 #[test]

@@ -50,7 +50,8 @@ pub fn generate(
         }
     }
     if output.json {
-        tables::print_json(&json!({ "ok": true, "generated": report }));
+        let shared = [emit::driver().path];
+        tables::print_json(&json!({ "ok": true, "generated": report, "shared": shared }));
     }
     Ok(true)
 }
