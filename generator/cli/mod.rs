@@ -147,7 +147,7 @@ Examples:
         /// Plant this fault alone; where it is caught, write the waveform around it
         #[arg(long, value_name = "ID", conflicts_with = "out")]
         only: Option<String>,
-        /// Write the record of each configuration, <name>.json, into this directory
+        /// Write the record of each configuration, `<name>.json`, into this directory
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
     },
@@ -277,9 +277,9 @@ Examples:
     },
     /// Verify configurations by every means that Glint has, and write a page about each
     ///
-    /// Writes DIR/<name>.html, one page that needs no network, and DIR/<name>.json with the same for scripts: what was
+    /// Writes `DIR/<name>.html`, one page that needs no network, and `DIR/<name>.json` with the same for scripts: what was
     /// shown, by which leg, over which domain, with which tools, and what is left open. Both are the same whenever they are
-    /// made with the same tools, but for the page's last section: how long each leg took, which DIR/<name>.timings.json has too.
+    /// made with the same tools, but for the page's last section: how long each leg took, which `DIR/<name>.timings.json` has too.
     /// The exit code is 0 only if every leg that covers the configuration was run and holds: a tool that is missing
     /// leaves the verification incomplete.
     #[command(after_help = "\
