@@ -118,12 +118,12 @@ fn what_is_not_ours_stays() {
     ] {
         let place = Place::with(&format!("report/{name}"), text);
         let run = report(&place, &[]);
-        run.refused(1, &[name, "is not a report of Glint", "--out"]);
+        run.refused(1, &[name, "is not of Glint's making", "--out"]);
         assert_eq!(place.read(&format!("report/{name}")), text);
         assert_eq!(place.files().len(), 1);
     }
     let place = Place::with("report/report.html", [0xff, 0xfe, 0x00]);
-    report(&place, &[]).refused(1, &["is not a report of Glint"]);
+    report(&place, &[]).refused(1, &["is not of Glint's making"]);
 }
 
 #[test]
