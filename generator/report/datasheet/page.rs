@@ -13,6 +13,7 @@ use crate::emit::{self, Seal, Timing};
 use crate::netlist::Design;
 use crate::report::chart::Chart;
 use crate::report::comparison::{self, Multiplier};
+use crate::report::drawing::Drawing;
 use crate::report::figure::{Figure, figures, scientific};
 use crate::report::hardware::FamilyUsage;
 
@@ -29,7 +30,8 @@ struct Page<'a> {
     source: String,
     notes: Vec<String>,
     glance: Vec<(&'static str, String)>,
-    diagram: String,
+    diagram: &'a Drawing,
+    diagram_svg: String,
     numbering: &'static str,
     formats: String,
     ports: TableView,
@@ -95,6 +97,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
     };
     let charts: Vec<(&Chart, &str)> = measured.curves.charts.iter().map(|it| (it, "")).collect();
     let wavedrom = measured.waves.wavedrom()?;
+    let drawing = diagram::drawing(design);
     let highlight = &measured.highlight;
     let page = Page {
         version: env!("CARGO_PKG_VERSION"),
@@ -104,7 +107,8 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         source: html(&about.source),
         notes: about.notes.iter().map(|note| html(note)).collect(),
         glance: glance(subject, measured),
-        diagram: diagram::drawing(design).svg()?,
+        diagram_svg: drawing.svg()?,
+        diagram: &drawing,
         numbering: account::numbering(design),
         formats: html(account::FORMATS),
         ports: TableView::new("Ports", &account::ports(design)),
