@@ -20,6 +20,9 @@ use crate::report::hardware::FamilyUsage;
 /// The clock at which rates are told, in MHz: what a small FPGA reaches.
 const CLOCK: f64 = 25.0;
 
+/// What stands beside a drawing in the widest figure: margins of page and figure, and a scroll bar.
+const MARGINS: i32 = 130;
+
 #[derive(Template)]
 #[template(path = "datasheet.html")]
 struct Page<'a> {
@@ -30,6 +33,8 @@ struct Page<'a> {
     source: String,
     notes: Vec<String>,
     glance: Vec<(&'static str, String)>,
+    /// A page that is so wide shows the diagram without scrolling.
+    fits: i32,
     diagram: &'a Drawing,
     diagram_svg: String,
     numbering: &'static str,
@@ -108,6 +113,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         notes: about.notes.iter().map(|note| html(note)).collect(),
         glance: glance(subject, measured),
         diagram_svg: drawing.svg()?,
+        fits: drawing.width + MARGINS,
         diagram: &drawing,
         numbering: account::numbering(design),
         formats: html(account::FORMATS),
