@@ -68,8 +68,8 @@ impl Random {
             // Off by a random power of two: from the upper end, from the lower, from 0 where that is between
             // (an angle, the component of a vector).
             3..=13 if choice <= 8 || low < 0 && high > 0 => {
-                let reach = high.abs_diff(low).max(1);
-                let bits = self.below(u64::from(64 - reach.leading_zeros()) + 1);
+                let reach = high.abs_diff(low);
+                let bits = self.below(u64::from(64 - reach.max(1).leading_zeros()) + 1);
                 let off = self.below(1 << bits.min(62)).min(reach) as i64;
                 match choice {
                     3 | 4 => high.wrapping_sub(off),
@@ -388,6 +388,27 @@ mod tests {
         d.output("y_out", y.q());
         d.microprogram([step("idle", []), step("load", [y.load(), valid(), end()])]);
         d.finish().unwrap()
+    }
+
+    #[test]
+    fn what_is_drawn_of_a_domain_is_in_it() {
+        let mut random = Random::new(5);
+        for (low, high) in [
+            (0, 0),
+            (7, 7),
+            (0, 1),
+            (-3, -2),
+            (-4, 9),
+            (i64::MIN, i64::MAX),
+        ] {
+            let mut ends = [false; 2];
+            for _ in 0..500 {
+                let raw = random.of_domain((low, high));
+                assert!((low..=high).contains(&raw), "{raw} of {low}..={high}");
+                ends = [ends[0] || raw == low, ends[1] || raw == high];
+            }
+            assert_eq!(ends, [true; 2], "{low}..={high}");
+        }
     }
 
     /// What happened to computations of some length.
