@@ -16,6 +16,7 @@ use crate::report::comparison::{self, Multiplier};
 use crate::report::drawing::Drawing;
 use crate::report::figure::{Figure, figures, scientific};
 use crate::report::hardware::FamilyUsage;
+use crate::words;
 
 /// The clock at which rates are told, in MHz: what a small FPGA reaches.
 const CLOCK: f64 = 25.0;
@@ -256,15 +257,7 @@ fn described(measured: &Measured) -> String {
     )
 }
 
-/// With a narrow space between thousands.
+/// With a narrow space between thousands, which no line ends at.
 fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let mut text = String::new();
-    for (at, digit) in digits.chars().enumerate() {
-        if at > 0 && (digits.len() - at).is_multiple_of(3) {
-            text.push('\u{202f}');
-        }
-        text.push(digit);
-    }
-    text
+    words::grouped(number).replace(' ', "\u{202f}")
 }
