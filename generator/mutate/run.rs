@@ -7,6 +7,7 @@ use anyhow::{Context, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
+use super::aim::{self, Point};
 use super::coverage::{Coverage, Place};
 use super::fault::{Fault, Site};
 use super::plant;
@@ -30,7 +31,7 @@ const BEYOND_SEED: u64 = 2;
 pub enum Leg {
     /// The default test: golden model against built-in simulator.
     Cosim,
-    /// Streams of a longer test, chosen because they read the words at fault.
+    /// Operands, or streams of a longer test, that read the words at fault.
     Aimed,
 }
 
@@ -40,6 +41,8 @@ pub enum Leg {
 pub enum How {
     /// By induction over the words of the microprogram.
     Induction,
+    /// By every combination of the values around it.
+    Exhaustion,
 }
 
 impl fmt::Display for Leg {
@@ -55,15 +58,25 @@ impl fmt::Display for How {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.pad(match self {
             Self::Induction => "by induction over the microprogram",
+            Self::Exhaustion => "by every combination of the values around it",
         })
     }
+}
+
+/// What a leg showed.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Difference {
+    /// A signal, on a clock.
+    Clock(Mismatch),
+    /// A result.
+    Point(Point),
 }
 
 /// What became of a mutant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// A leg differs, and where.
-    Caught(Leg, Mismatch),
+    Caught(Leg, Difference),
     /// Proved to change nothing that is compared.
     Equivalent(How),
     /// Neither caught nor proved equivalent.
@@ -140,22 +153,29 @@ impl Bench<'_> {
             read.clone()
         };
         if let Some(mismatch) = self.differs_at(&mutant, looks)? {
-            return Ok(Verdict::Caught(Leg::Cosim, mismatch));
+            return Ok(Verdict::Caught(Leg::Cosim, Difference::Clock(mismatch)));
         }
-        let proves = |prover: &Prover<'_>| prover.proves(&fault.site);
-        if self.prover.as_ref().is_some_and(proves) {
-            return Ok(Verdict::Equivalent(How::Induction));
+        let prover = self.prover.as_ref();
+        if let Some(how) = prover.and_then(|prover| prover.proves(&fault.site)) {
+            return Ok(Verdict::Equivalent(how));
         }
         if words.is_empty() || !read.is_empty() {
             let lockstep = self.lockstep(&mutant, flow::TEST_SEED)?;
             if let Some(mismatch) = lockstep.run(flow::TEST_POINTS, &|_| ())?.mismatch {
-                return Ok(Verdict::Caught(Leg::Cosim, mismatch));
+                return Ok(Verdict::Caught(Leg::Cosim, Difference::Clock(mismatch)));
             }
         }
-        if !words.is_empty() {
+        if let Site::Words(rom, words) = &fault.site
+            && *rom != self.sound.control.rom
+        {
+            for &(word, _) in words {
+                if let Some(point) = aim::at_word(self.unit, &mutant, *rom, word)? {
+                    return Ok(Verdict::Caught(Leg::Aimed, Difference::Point(point)));
+                }
+            }
             let places = self.places(self.beyond()?, &fault.site);
             if let Some(mismatch) = self.differs_at(&mutant, places)? {
-                return Ok(Verdict::Caught(Leg::Aimed, mismatch));
+                return Ok(Verdict::Caught(Leg::Aimed, Difference::Clock(mismatch)));
             }
         }
         Ok(Verdict::Open)

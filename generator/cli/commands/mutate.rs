@@ -1,7 +1,9 @@
 //! `mutate`.
 
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 use serde_json::{Value, json};
@@ -12,7 +14,9 @@ use crate::cli::destination::Destination;
 use crate::cli::failure::Usage;
 use crate::cli::{Output, progress, tables};
 use crate::cosim::Lockstep;
-use crate::mutate::{self, Fault, Faults, Score, Tally, Verdict};
+use crate::mutate::{
+    self, Difference, Fault, Faults, Score, Tally, Text, TextFault, TextScore, Verdict,
+};
 use crate::registry::Registry;
 
 /// What `mutate` was asked for.
@@ -21,8 +25,24 @@ pub struct MutateRequest {
     pub list: bool,
     /// The fault of this id alone.
     pub only: Option<String>,
+    /// The faults of the emitted Verilog too.
+    pub full: bool,
     /// The directory of the records.
     pub out: Option<PathBuf>,
+    /// After which a run of an outside tool is given up.
+    pub time_limit: Duration,
+}
+
+/// What was found of one configuration.
+struct Scored {
+    netlist: Score,
+    verilog: Option<TextScore>,
+}
+
+impl Scored {
+    fn holds(&self) -> bool {
+        self.netlist.holds() && self.verilog.as_ref().is_none_or(TextScore::holds)
+    }
 }
 
 /// `glint mutate`.
@@ -50,27 +70,56 @@ pub fn mutate(
         list(output, &loaded, &faults);
         return Ok(true);
     }
-    let total: usize = faults.iter().map(Faults::len).sum();
+    let texts: Vec<Option<(Text, Vec<TextFault>)>> = loaded
+        .iter()
+        .map(|one| {
+            let text = || Text::of(&one.unit).with_context(|| format!("`{}`", one.path));
+            let with_faults = |text: Text| {
+                let faults = text.faults();
+                (text, faults)
+            };
+            request
+                .full
+                .then(text)
+                .transpose()
+                .map(|text| text.map(with_faults))
+        })
+        .collect::<Result<_>>()?;
+    let total = faults.iter().map(Faults::len).sum::<usize>()
+        + texts
+            .iter()
+            .flatten()
+            .map(|(_, faults)| faults.len())
+            .sum::<usize>();
     let bar = progress::bar(output, total as u64, "faults planted");
     let mut scores = Vec::new();
-    for (one, faults) in loaded.iter().zip(&faults) {
+    for ((one, faults), text) in loaded.iter().zip(&faults).zip(&texts) {
         let found = mutate::run(&one.unit, faults.iter(), &|| bar.inc(1));
-        let score = Score::of(&found.with_context(|| format!("`{}`", one.path))?);
+        let netlist = Score::of(&found.with_context(|| format!("`{}`", one.path))?);
+        let verilog = match text {
+            Some((text, faults)) => {
+                let verdicts = text.run(faults, request.time_limit, &|| bar.inc(1));
+                let verdicts = verdicts.with_context(|| format!("`{}`", one.path))?;
+                Some(TextScore::of(faults, &verdicts))
+            }
+            None => None,
+        };
+        let scored = Scored { netlist, verilog };
         if let Some(directory) = &request.out {
-            record(directory, one, &score)?;
+            record(directory, one, &scored)?;
         }
         if !output.json {
-            bar.suspend(|| print(one, &score));
+            bar.suspend(|| print(one, &scored));
         }
-        scores.push(score);
+        scores.push(scored);
     }
     bar.finish_and_clear();
-    let holds = scores.iter().all(Score::holds);
+    let holds = scores.iter().all(Scored::holds);
     if output.json {
         let list: Vec<Value> = loaded
             .iter()
             .zip(&scores)
-            .map(|(one, score)| as_json(one, score))
+            .map(|(one, scored)| as_json(one, scored))
             .collect();
         tables::print_json(&json!({ "ok": holds, "configurations": list }));
     }
@@ -110,7 +159,7 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
     let verdict = found.into_iter().next().map(|found| found.verdict);
     let verdict = verdict.context("a fault without a verdict")?;
     let mut waveform = None;
-    if let Verdict::Caught(_, mismatch) = &verdict {
+    if let Verdict::Caught(_, Difference::Clock(mismatch)) = &verdict {
         let mutant = fault.planted(&one.unit.design);
         let model = (one.unit.device.model)(&one.unit.config);
         let lockstep = Lockstep::new(&mutant, model, one.unit.contract.as_ref(), mismatch.seed)?;
@@ -124,10 +173,7 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
         return Ok(verdict != Verdict::Open);
     }
     let said = match &verdict {
-        Verdict::Caught(leg, mismatch) => format!(
-            "caught by {leg}: seed {}, after clock {}, {mismatch}",
-            mismatch.seed, mismatch.clock
-        ),
+        Verdict::Caught(leg, shown) => format!("caught by {leg}: {}", shown_by(shown)),
         Verdict::Equivalent(how) => format!("equivalent, {how}"),
         Verdict::Open => "OPEN: not caught, and not proved equivalent".to_owned(),
     };
@@ -144,13 +190,49 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
     Ok(verdict != Verdict::Open)
 }
 
+/// Where a mutant differs, and in what.
+fn shown_by(shown: &Difference) -> String {
+    match shown {
+        Difference::Clock(mismatch) => {
+            format!(
+                "seed {}, after clock {}, {mismatch}",
+                mismatch.seed, mismatch.clock
+            )
+        }
+        Difference::Point(point) => {
+            let operands: Vec<String> = point
+                .operands
+                .iter()
+                .map(|(name, raw)| format!("{name}=#{raw}"))
+                .collect();
+            format!(
+                "{}: `{}` is {} in the simulated hardware and {} in the golden model",
+                operands.join(" "),
+                point.output,
+                point.simulated,
+                point.golden
+            )
+        }
+    }
+}
+
 fn verdict_as_json(one: &Loaded, fault: &Fault, verdict: &Verdict) -> Value {
     let (caught, equivalent) = match verdict {
-        Verdict::Caught(leg, mismatch) => {
+        Verdict::Caught(leg, Difference::Clock(mismatch)) => {
             let mut caught = mismatch::as_json(mismatch);
             caught["by"] = json!(leg);
             (Some(caught), None)
         }
+        Verdict::Caught(leg, Difference::Point(point)) => (
+            Some(json!({
+                "by": leg,
+                "operands": point.operands.iter().cloned().collect::<BTreeMap<_, _>>(),
+                "signal": point.output,
+                "golden": point.golden,
+                "simulated": point.simulated,
+            })),
+            None,
+        ),
         Verdict::Equivalent(how) => (None, Some(how)),
         Verdict::Open => (None, None),
     };
@@ -164,28 +246,30 @@ fn verdict_as_json(one: &Loaded, fault: &Fault, verdict: &Verdict) -> Value {
     })
 }
 
-fn as_json(one: &Loaded, score: &Score) -> Value {
+fn as_json(one: &Loaded, scored: &Scored) -> Value {
     json!({
         "config": one.path,
         "device": one.unit.device.name,
-        "netlist": score,
+        "netlist": scored.netlist,
+        "verilog": scored.verilog,
     })
 }
 
 /// Writes the record of a configuration.
-fn record(directory: &Path, one: &Loaded, score: &Score) -> Result<()> {
+fn record(directory: &Path, one: &Loaded, scored: &Scored) -> Result<()> {
     std::fs::create_dir_all(directory)
         .with_context(|| format!("cannot make the directory `{}`", directory.display()))?;
     let path = directory.join(format!("{}.json", one.unit.config.name));
     let destination = Destination::open(&path)?;
-    let text = format!("{:#}\n", as_json(one, score));
+    let text = format!("{:#}\n", as_json(one, scored));
     let mut file = destination.file()?;
     file.write_all(text.as_bytes())
         .with_context(|| format!("cannot write `{}`", path.display()))?;
     destination.commit()
 }
 
-fn print(one: &Loaded, score: &Score) {
+fn print(one: &Loaded, scored: &Scored) {
+    let score = &scored.netlist;
     tables::print_line(&format!("{}:", one.path));
     let row = |name: String, tally: &Tally| {
         let caught = |leg| tally.caught.get(&leg).copied().unwrap_or(0).to_string();
@@ -215,6 +299,25 @@ fn print(one: &Loaded, score: &Score) {
         }
     ));
     for id in &score.open {
+        tables::print_line(&format!("  open: {id}"));
+    }
+    let Some(verilog) = &scored.verilog else {
+        return;
+    };
+    tables::print_line(&format!(
+        "  Verilog: {} faults, {} noticed by lint, {} by the bench, {} equivalent, {} open: {}",
+        verilog.planted,
+        verilog.lint,
+        verilog.bench,
+        verilog.equivalent.len(),
+        verilog.open.len(),
+        if verilog.holds() {
+            "holds"
+        } else {
+            "FAILS, at most 1 % may be"
+        }
+    ));
+    for id in &verilog.open {
         tables::print_line(&format!("  open: {id}"));
     }
 }

@@ -1,17 +1,23 @@
 //! Faults that change nothing that is compared, and the proof of it.
 //!
-//! The proof is an induction over clocks. In every word of the microprogram, sound design and mutant are
+//! One proof tries every combination of values around the fault ([`window`]). The other is an induction over clocks. In every word of the microprogram, sound design and mutant are
 //! evaluated side by side over known bits, with the bits noted in which they may differ. Where neither an
 //! output nor a register that the golden model predicts differs in any word, while registers inside of
 //! blocks may differ as far as the words before have left them so, they never do.
 
+mod cut;
+mod interval;
 mod known;
+mod lanes;
 mod sound;
+mod window;
 
 use known::Known;
 use sound::Sound;
+use window::Windows;
 
 use super::fault::{Bit, Site};
+use super::run::How;
 use crate::fixed::mask;
 use crate::netlist::{Design, Driver, NetId, Op, RegId, RegisterKind, RomId};
 
@@ -20,6 +26,7 @@ pub(super) struct Prover<'a> {
     sound: Sound<'a>,
     /// Of each net, the bits that are compared in every clock.
     compared: Vec<u64>,
+    windows: Windows<'a>,
 }
 
 /// Where sound design and mutant may differ, after power-up in no bit.
@@ -47,14 +54,25 @@ impl<'a> Prover<'a> {
         for net in outputs.chain(registers.map(|register| register.q)) {
             compared[net.index()] = mask(design.width(net));
         }
+        let sound = Sound::of(design)?;
+        let windows = Windows::of(design, &sound.order);
         Some(Self {
-            sound: Sound::of(design)?,
+            sound,
             compared,
+            windows,
         })
     }
 
-    /// Whether nothing that is compared ever differs with this fault.
-    pub(super) fn proves(&self, site: &Site) -> bool {
+    /// How it is proved, if it is, that nothing that is compared ever differs with this fault.
+    pub(super) fn proves(&self, site: &Site) -> Option<How> {
+        if self.by_induction(site) {
+            Some(How::Induction)
+        } else {
+            self.windows.proves(site).then_some(How::Exhaustion)
+        }
+    }
+
+    fn by_induction(&self, site: &Site) -> bool {
         let design = self.sound.design;
         let resets = |id: &RegId| design.register(*id).reset;
         match site {

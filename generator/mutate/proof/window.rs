@@ -1,0 +1,230 @@
+//! Faults whose neighbourhood is small: every combination of values around it is tried.
+//!
+//! The window reaches from the fault forward to multipliers, registers, ROMs and outputs, and backward to the
+//! fewest bits that determine it: a minimum cut. Each net of the cut takes every value of its interval.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::OnceLock;
+
+use super::cut::smallest_cut;
+use super::interval::{self, Interval};
+use super::known::Known;
+use super::lanes::{self, LANES, Lanes};
+use crate::mutate::fault::Site;
+use crate::netlist::{Design, Driver, NetId, Op, RomId};
+
+/// At most so many combinations are tried, as a power of two.
+const BITS: u32 = 22;
+
+/// Windows of one design.
+pub(super) struct Windows<'a> {
+    design: &'a Design,
+    order: Vec<NetId>,
+    intervals: Vec<Interval>,
+    /// The cells that read a net.
+    readers: Vec<Vec<NetId>>,
+    /// Whether something else reads it: a register, a ROM, a port.
+    sinks: Vec<bool>,
+    /// For each ROM the words that may be read, once asked for; none if they are too many to tell.
+    read: Vec<OnceLock<Option<BTreeSet<u64>>>>,
+}
+
+impl<'a> Windows<'a> {
+    pub(super) fn of(design: &'a Design, order: &[NetId]) -> Self {
+        let mut intervals = vec![(0, 0); design.nets.len()];
+        for &id in order {
+            let of = |net: NetId| intervals[net.index()];
+            intervals[id.index()] = interval::of(design, id, &of, &|_| Known::NOTHING);
+        }
+        let mut readers = vec![Vec::new(); design.nets.len()];
+        let mut sinks = vec![false; design.nets.len()];
+        for (id, net) in design.iter() {
+            if let Driver::Op(op) = &net.driver {
+                for operand in op.operands() {
+                    readers[operand.index()].push(id);
+                    // Not through multipliers: what they give is not tried.
+                    sinks[operand.index()] |= matches!(op, Op::Mul(..));
+                }
+            }
+        }
+        let registers = design.registers.iter();
+        let read = registers.flat_map(|register| [register.data, register.enable]);
+        let read = read
+            .flatten()
+            .chain(design.roms.iter().map(|rom| rom.address));
+        for net in read.chain(design.outputs().map(|port| port.net)) {
+            sinks[net.index()] = true;
+        }
+        Self {
+            design,
+            order: order.to_vec(),
+            intervals,
+            readers,
+            sinks,
+            read: design.roms.iter().map(|_| OnceLock::new()).collect(),
+        }
+    }
+
+    /// Whether the fault never leaves its window.
+    pub(super) fn proves(&self, site: &Site) -> bool {
+        match site {
+            Site::Words(rom, words) if *rom != self.design.control.rom => {
+                let read = self.read[rom.index()].get_or_init(|| self.words_read(*rom));
+                read.as_ref().is_some_and(|read| {
+                    words
+                        .iter()
+                        .all(|(word, _)| !read.contains(&(*word as u64)))
+                })
+            }
+            Site::Bit(net, ..) | Site::Driver(net, _) => {
+                let driver = &self.design.net(*net).driver;
+                // What a register takes and what an input brings is at fault elsewhere.
+                !matches!(driver, Driver::Register(_) | Driver::Input)
+                    && self.stays_inside(*net, site)
+            }
+            _ => false,
+        }
+    }
+
+    /// The words of a ROM that may be read.
+    fn words_read(&self, rom: RomId) -> Option<BTreeSet<u64>> {
+        let address = self.design.rom(rom).address;
+        let mut read = BTreeSet::new();
+        self.try_all(
+            &[address].into(),
+            &BTreeSet::new(),
+            None,
+            |values, _, count| {
+                read.extend(&values[&address][..count]);
+                true
+            },
+        )?;
+        Some(read)
+    }
+
+    fn stays_inside(&self, net: NetId, site: &Site) -> bool {
+        let mut affected = BTreeSet::new();
+        let mut todo = vec![net];
+        while let Some(net) = todo.pop() {
+            if affected.insert(net) {
+                let through = |reader: &&NetId| {
+                    !matches!(self.design.net(**reader).driver, Driver::Op(Op::Mul(..)))
+                };
+                todo.extend(self.readers[net.index()].iter().filter(through));
+            }
+        }
+        let leaving: Vec<NetId> = affected
+            .iter()
+            .copied()
+            .filter(|net| self.sinks[net.index()])
+            .collect();
+        let same = self.try_all(
+            &affected,
+            &affected,
+            Some((net, site)),
+            |sound, mutant, count| {
+                leaving
+                    .iter()
+                    .all(|net| sound[net][..count] == mutant[net][..count])
+            },
+        );
+        same == Some(true)
+    }
+
+    /// Evaluates `wanted` for every combination of the values that determine them, none of which are in
+    /// `affected`, and with the fault too. `None` if there are too many; whether `holds` always returned
+    /// true, given both and how many lanes count.
+    fn try_all(
+        &self,
+        wanted: &BTreeSet<NetId>,
+        affected: &BTreeSet<NetId>,
+        fault: Option<(NetId, &Site)>,
+        mut holds: impl FnMut(&BTreeMap<NetId, Lanes>, &BTreeMap<NetId, Lanes>, usize) -> bool,
+    ) -> Option<bool> {
+        let size = |net: NetId| {
+            let (low, high) = self.intervals[net.index()];
+            high - low + 1
+        };
+        let bits = |net: NetId| 128 - (size(net) - 1).leading_zeros();
+        let cut = smallest_cut(self.design, wanted, affected, &bits, BITS)?;
+        let total = cut
+            .iter()
+            .try_fold(1i128, |total, net| total.checked_mul(size(*net)))
+            .filter(|total| *total <= 1 << BITS)?;
+        let mut inside = BTreeSet::new();
+        let mut todo: Vec<NetId> = wanted.iter().copied().collect();
+        while let Some(net) = todo.pop() {
+            if !cut.contains(&net) && inside.insert(net) {
+                todo.extend(self.operands(net));
+            }
+        }
+        let steps: Vec<NetId> = self
+            .order
+            .iter()
+            .copied()
+            .filter(|net| inside.contains(net))
+            .collect();
+        let (mut sound, mut mutant) = (BTreeMap::new(), BTreeMap::new());
+        for from in (0..total).step_by(LANES) {
+            let count = (total - from).min(LANES as i128) as usize;
+            let mut place = 1;
+            for &net in &cut {
+                let (low, _) = self.intervals[net.index()];
+                let format = self.design.net(net).format;
+                let raw = |lane: usize| low + (from + lane as i128) / place % size(net);
+                sound.insert(net, std::array::from_fn(|lane| format.bits(raw(lane))));
+                place *= size(net);
+            }
+            for &net in &steps {
+                let value = self.evaluate(net, &self.design.net(net).driver, &sound, None);
+                sound.insert(net, value);
+                if let Some((at, site)) = fault
+                    && affected.contains(&net)
+                {
+                    let driver = match site {
+                        Site::Driver(_, driver) if at == net => driver,
+                        _ => &self.design.net(net).driver,
+                    };
+                    let mut value = self.evaluate(net, driver, &sound, Some(&mutant));
+                    if let Site::Bit(_, bit, how) = site
+                        && at == net
+                    {
+                        value = value.map(|bits| how.applied(bits, *bit));
+                    }
+                    mutant.insert(net, value);
+                }
+            }
+            if !holds(&sound, &mutant, count) {
+                return Some(false);
+            }
+        }
+        Some(true)
+    }
+
+    fn operands(&self, net: NetId) -> Vec<NetId> {
+        match &self.design.net(net).driver {
+            Driver::Op(op) => op.operands(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// A net in all lanes; what the mutant has of its own stands before what the sound design has.
+    fn evaluate(
+        &self,
+        net: NetId,
+        driver: &Driver,
+        sound: &BTreeMap<NetId, Lanes>,
+        mutant: Option<&BTreeMap<NetId, Lanes>>,
+    ) -> Lanes {
+        let of = |net: NetId| match mutant.and_then(|mutant| mutant.get(&net)) {
+            Some(lanes) => lanes,
+            None => &sound[&net],
+        };
+        match driver {
+            Driver::Constant(bits) => [*bits; LANES],
+            Driver::Op(op) => lanes::cell(self.design, op, self.design.width(net), &of),
+            // A source is in the cut, and has its values.
+            _ => *of(net),
+        }
+    }
+}
