@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use rayon::prelude::*;
+
 use super::proof::Prover;
 use super::{Faults, plant};
 use crate::config;
@@ -20,24 +22,29 @@ fn unit(path: &str) -> Unit {
 
 #[test]
 fn no_proof_of_what_shows() {
-    for path in ["configs/cosine_power.toml", "configs/schlick.toml"] {
-        let unit = unit(path);
+    let devices = Registry::catalogue();
+    let (mut proved, mut noticed) = (0, 0);
+    for device in devices.devices() {
+        let path = format!("configs/{}.toml", device.name.replace('-', "_"));
+        let unit = unit(&path);
         let prover = Prover::new(&unit.design).unwrap();
         let sound = plant::bare(&unit.design);
-        let (mut proved, mut noticed) = (0, 0);
-        for fault in Faults::of(&unit.design).iter() {
-            let is_proved = prover.proves(&fault.site).is_some();
-            let mutant = fault.planted(&sound);
-            let model = (unit.device.model)(&unit.config);
-            let lockstep = Lockstep::new(&mutant, model, unit.contract.as_ref(), 5).unwrap();
-            let shows = lockstep.run_alone(POINTS).unwrap().mismatch.is_some();
-            assert!(!(is_proved && shows), "{path}: {}", fault.id);
-            proved += u32::from(is_proved);
-            noticed += u32::from(shows);
-        }
-        assert!(
-            proved > 100 && noticed > 1000,
-            "{path}: {proved}, {noticed}"
-        );
+        let faults = Faults::of(&unit.design);
+        let faults: Vec<_> = faults.iter().collect();
+        let of_each: Vec<(bool, bool)> = faults
+            .par_iter()
+            .map(|fault| {
+                let is_proved = prover.proves(&fault.site).is_some();
+                let mutant = fault.planted(&sound);
+                let model = (unit.device.model)(&unit.config);
+                let lockstep = Lockstep::new(&mutant, model, unit.contract.as_ref(), 5).unwrap();
+                let shows = lockstep.run_alone(POINTS).unwrap().mismatch.is_some();
+                assert!(!(is_proved && shows), "{path}: {}", fault.id);
+                (is_proved, shows)
+            })
+            .collect();
+        proved += of_each.iter().filter(|(is_proved, _)| *is_proved).count();
+        noticed += of_each.iter().filter(|(_, shows)| *shows).count();
     }
+    assert!(proved > 2000 && noticed > 15_000, "{proved}, {noticed}");
 }

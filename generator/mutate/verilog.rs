@@ -253,7 +253,9 @@ impl Text {
         if !lint.status.success() || !lint.output.is_empty() {
             return Ok(TextVerdict::Lint);
         }
-        let Ok(bench) = BuiltBench::build(Simulator::Icarus, &files, &self.top, Waveform::None, limit) else {
+        let Ok(bench) =
+            BuiltBench::build(Simulator::Icarus, &files, &self.top, Waveform::None, limit)
+        else {
             return Ok(TextVerdict::Lint);
         };
         // A bench that does not end, or ends without a verdict, does not pass either.

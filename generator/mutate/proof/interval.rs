@@ -64,6 +64,7 @@ pub(super) fn of(
                 fits((a.0 - b.1, a.1 - b.0))
             }
             Op::Mul(a, b) => {
+                let is_square = known::square(design, *a, *b);
                 let (a, b) = (of(*a), of(*b));
                 let corners = [(a.0, b.0), (a.0, b.1), (a.1, b.0), (a.1, b.1)];
                 let products = corners.map(|(a, b)| a.checked_mul(b));
@@ -72,12 +73,18 @@ pub(super) fn of(
                     let products = products.into_iter().map(|product| (product, product));
                     products.reduce(hull).unwrap_or(all)
                 });
+                let products = products.map(|(low, high)| match is_square {
+                    true => (low.max(0), high),
+                    false => (low, high),
+                });
                 products.map_or(all, fits)
             }
-            Op::Mux { select, inputs } => known::choices(known(*select), inputs)
-                .map(of)
-                .reduce(hull)
-                .map_or(all, fits),
+            Op::Mux { select, inputs } => {
+                known::choices(known(*select), design.width(*select), inputs)
+                    .map(of)
+                    .reduce(hull)
+                    .map_or(all, fits)
+            }
             _ => all,
         },
         _ => all,

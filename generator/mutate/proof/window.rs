@@ -1,7 +1,8 @@
 //! Faults whose neighbourhood is small: every combination of values around it is tried.
 //!
-//! The window reaches from the fault forward to multipliers, registers, ROMs and outputs, and backward to the
-//! fewest bits that determine it: a minimum cut. Each net of the cut takes every value of its interval.
+//! A window reaches from the fault forward over some cells, at most to multipliers, registers, ROMs and
+//! outputs, and backward to the fewest bits that determine it: a minimum cut. Each net of the cut takes
+//! every value of its interval.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
@@ -102,33 +103,46 @@ impl<'a> Windows<'a> {
         Some(read)
     }
 
+    /// Whether what leaves some neighbourhood of the net is the same with the fault: all that it reaches within
+    /// some number of cells, fewer before more.
     fn stays_inside(&self, net: NetId, site: &Site) -> bool {
-        let mut affected = BTreeSet::new();
-        let mut todo = vec![net];
-        while let Some(net) = todo.pop() {
-            if affected.insert(net) {
-                let through = |reader: &&NetId| {
-                    !matches!(self.design.net(**reader).driver, Driver::Op(Op::Mul(..)))
-                };
-                todo.extend(self.readers[net.index()].iter().filter(through));
+        let mut affected = BTreeSet::from([net]);
+        loop {
+            let beyond: BTreeSet<NetId> = affected
+                .iter()
+                .flat_map(|net| self.cells_reading(*net))
+                .filter(|reader| !affected.contains(reader))
+                .collect();
+            let leaves = |net: &NetId| {
+                self.sinks[net.index()] || self.cells_reading(*net).any(|it| beyond.contains(&it))
+            };
+            let leaving: Vec<NetId> = affected.iter().copied().filter(leaves).collect();
+            let same = self.try_all(
+                &affected,
+                &affected,
+                Some((net, site)),
+                |sound, mutant, count| {
+                    leaving
+                        .iter()
+                        .all(|net| sound[net][..count] == mutant[net][..count])
+                },
+            );
+            if same == Some(true) {
+                return true;
             }
+            if beyond.is_empty() {
+                return false;
+            }
+            affected.extend(beyond);
         }
-        let leaving: Vec<NetId> = affected
-            .iter()
-            .copied()
-            .filter(|net| self.sinks[net.index()])
-            .collect();
-        let same = self.try_all(
-            &affected,
-            &affected,
-            Some((net, site)),
-            |sound, mutant, count| {
-                leaving
-                    .iter()
-                    .all(|net| sound[net][..count] == mutant[net][..count])
-            },
-        );
-        same == Some(true)
+    }
+
+    /// The cells that read a net, but multipliers.
+    fn cells_reading(&self, net: NetId) -> impl Iterator<Item = NetId> {
+        let multiplies =
+            |net: NetId| matches!(self.design.net(net).driver, Driver::Op(Op::Mul(..)));
+        let readers = self.readers[net.index()].iter().copied();
+        readers.filter(move |reader| !multiplies(*reader))
     }
 
     /// Evaluates `wanted` for every combination of the values that determine them, none of which are in
