@@ -17,9 +17,9 @@ const ALL_BITS: usize = 1024;
 
 /// Of larger ROMs, so many pairs of words and so many bits are drawn, and about so many neighbours
 /// swapped.
-const SAMPLE: usize = 300;
-const SAMPLED_BITS: usize = 100;
-const NEIGHBOURS: usize = 1024;
+const SAMPLE: usize = 200;
+const SAMPLED_BITS: usize = 200;
+const NEIGHBOURS: usize = 256;
 
 /// What goes wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

@@ -17,7 +17,6 @@ mod score;
 mod tests;
 mod verilog;
 
-pub use aim::Point;
 pub use fault::{Bit, Fault, Faults, Kind, Site};
 pub use run::{Difference, Found, How, Leg, Verdict, run};
 pub use score::{Score, TOLERATED, Tally, TextScore};

@@ -159,10 +159,11 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
     let verdict = found.into_iter().next().map(|found| found.verdict);
     let verdict = verdict.context("a fault without a verdict")?;
     let mut waveform = None;
-    if let Verdict::Caught(_, Difference::Clock(mismatch)) = &verdict {
+    if let Verdict::Caught(_, Difference { held, mismatch }) = &verdict {
         let mutant = fault.planted(&one.unit.design);
         let model = (one.unit.device.model)(&one.unit.config);
         let lockstep = Lockstep::new(&mutant, model, one.unit.contract.as_ref(), mismatch.seed)?;
+        let lockstep = lockstep.holding(held);
         let path = PathBuf::from(format!("{}_mutant.vcd", one.unit.config.name));
         let from = first_clock(mismatch.clock);
         traced(&lockstep, &path, u64::MAX, from)?;
@@ -191,48 +192,28 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
 }
 
 /// Where a mutant differs, and in what.
-fn shown_by(shown: &Difference) -> String {
-    match shown {
-        Difference::Clock(mismatch) => {
-            format!(
-                "seed {}, after clock {}, {mismatch}",
-                mismatch.seed, mismatch.clock
-            )
-        }
-        Difference::Point(point) => {
-            let operands: Vec<String> = point
-                .operands
-                .iter()
-                .map(|(name, raw)| format!("{name}=#{raw}"))
-                .collect();
-            format!(
-                "{}: `{}` is {} in the simulated hardware and {} in the golden model",
-                operands.join(" "),
-                point.output,
-                point.simulated,
-                point.golden
-            )
-        }
-    }
+fn shown_by(Difference { held, mismatch }: &Difference) -> String {
+    let operands: Vec<String> = held
+        .iter()
+        .map(|(name, raw)| format!(" {name}=#{raw}"))
+        .collect();
+    let holding = if operands.is_empty() { "" } else { ", with" };
+    format!(
+        "seed {}{holding}{}, after clock {}, {mismatch}",
+        mismatch.seed,
+        operands.concat(),
+        mismatch.clock
+    )
 }
 
 fn verdict_as_json(one: &Loaded, fault: &Fault, verdict: &Verdict) -> Value {
     let (caught, equivalent) = match verdict {
-        Verdict::Caught(leg, Difference::Clock(mismatch)) => {
+        Verdict::Caught(leg, Difference { held, mismatch }) => {
             let mut caught = mismatch::as_json(mismatch);
             caught["by"] = json!(leg);
+            caught["held"] = json!(held.iter().cloned().collect::<BTreeMap<_, _>>());
             (Some(caught), None)
         }
-        Verdict::Caught(leg, Difference::Point(point)) => (
-            Some(json!({
-                "by": leg,
-                "operands": point.operands.iter().cloned().collect::<BTreeMap<_, _>>(),
-                "signal": point.output,
-                "golden": point.golden,
-                "simulated": point.simulated,
-            })),
-            None,
-        ),
         Verdict::Equivalent(how) => (None, Some(how)),
         Verdict::Open => (None, None),
     };

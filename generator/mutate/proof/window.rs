@@ -26,6 +26,8 @@ pub(super) struct Windows<'a> {
     readers: Vec<Vec<NetId>>,
     /// Whether something else reads it: a register, a ROM, a port.
     sinks: Vec<bool>,
+    /// Whether a multiplier reads it.
+    multiplied: Vec<bool>,
     /// For each ROM the words that may be read, once asked for; none if they are too many to tell.
     read: Vec<OnceLock<Option<BTreeSet<u64>>>>,
 }
@@ -39,12 +41,12 @@ impl<'a> Windows<'a> {
         }
         let mut readers = vec![Vec::new(); design.nets.len()];
         let mut sinks = vec![false; design.nets.len()];
+        let mut multiplied = sinks.clone();
         for (id, net) in design.iter() {
             if let Driver::Op(op) = &net.driver {
                 for operand in op.operands() {
                     readers[operand.index()].push(id);
-                    // Not through multipliers: what they give is not tried.
-                    sinks[operand.index()] |= matches!(op, Op::Mul(..));
+                    multiplied[operand.index()] |= matches!(op, Op::Mul(..));
                 }
             }
         }
@@ -62,6 +64,7 @@ impl<'a> Windows<'a> {
             intervals,
             readers,
             sinks,
+            multiplied,
             read: design.roms.iter().map(|_| OnceLock::new()).collect(),
         }
     }
@@ -71,11 +74,11 @@ impl<'a> Windows<'a> {
         match site {
             Site::Words(rom, words) if *rom != self.design.control.rom => {
                 let read = self.read[rom.index()].get_or_init(|| self.words_read(*rom));
-                read.as_ref().is_some_and(|read| {
-                    words
-                        .iter()
-                        .all(|(word, _)| !read.contains(&(*word as u64)))
-                })
+                let is_read = |(word, _): &(usize, u64)| {
+                    read.as_ref()
+                        .is_none_or(|read| read.contains(&(*word as u64)))
+                };
+                !words.iter().any(is_read) || self.stays_inside(self.design.rom(*rom).data, site)
             }
             Site::Bit(net, ..) | Site::Driver(net, _) => {
                 let driver = &self.design.net(*net).driver;
@@ -103,30 +106,33 @@ impl<'a> Windows<'a> {
         Some(read)
     }
 
-    /// Whether what leaves some neighbourhood of the net is the same with the fault: all that it reaches within
-    /// some number of cells, fewer before more.
+    /// Whether what leaves some neighbourhood of the net is the same with the fault.
     fn stays_inside(&self, net: NetId, site: &Site) -> bool {
+        // Short of multipliers first: beyond them is more to try.
+        self.stays_within(net, site, false) || self.stays_within(net, site, true)
+    }
+
+    /// The same of all that the net reaches within some number of cells, fewer before more; with multipliers or
+    /// without.
+    fn stays_within(&self, net: NetId, site: &Site, through: bool) -> bool {
         let mut affected = BTreeSet::from([net]);
         loop {
             let beyond: BTreeSet<NetId> = affected
                 .iter()
-                .flat_map(|net| self.cells_reading(*net))
+                .flat_map(|net| self.cells_reading(*net, through))
                 .filter(|reader| !affected.contains(reader))
                 .collect();
             let leaves = |net: &NetId| {
-                self.sinks[net.index()] || self.cells_reading(*net).any(|it| beyond.contains(&it))
+                let stops = self.sinks[net.index()] || !through && self.multiplied[net.index()];
+                let mut readers = self.cells_reading(*net, through);
+                stops || readers.any(|reader| beyond.contains(&reader))
             };
             let leaving: Vec<NetId> = affected.iter().copied().filter(leaves).collect();
-            let same = self.try_all(
-                &affected,
-                &affected,
-                Some((net, site)),
-                |sound, mutant, count| {
-                    leaving
-                        .iter()
-                        .all(|net| sound[net][..count] == mutant[net][..count])
-                },
-            );
+            let fault = Some((net, site));
+            let same = self.try_all(&affected, &affected, fault, |sound, mutant, count| {
+                let is_same = |net: &NetId| sound[net][..count] == mutant[net][..count];
+                leaving.iter().all(is_same)
+            });
             if same == Some(true) {
                 return true;
             }
@@ -137,12 +143,12 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// The cells that read a net, but multipliers.
-    fn cells_reading(&self, net: NetId) -> impl Iterator<Item = NetId> {
+    /// The cells that read a net, with multipliers or without.
+    fn cells_reading(&self, net: NetId, through: bool) -> impl Iterator<Item = NetId> {
         let multiplies =
             |net: NetId| matches!(self.design.net(net).driver, Driver::Op(Op::Mul(..)));
         let readers = self.readers[net.index()].iter().copied();
-        readers.filter(move |reader| !multiplies(*reader))
+        readers.filter(move |reader| through || !multiplies(*reader))
     }
 
     /// Evaluates `wanted` for every combination of the values that determine them, none of which are in
@@ -155,12 +161,22 @@ impl<'a> Windows<'a> {
         fault: Option<(NetId, &Site)>,
         mut holds: impl FnMut(&BTreeMap<NetId, Lanes>, &BTreeMap<NetId, Lanes>, usize) -> bool,
     ) -> Option<bool> {
+        // The words at fault are all that the net brings that matters.
+        let words = match fault {
+            Some((net, Site::Words(rom, words))) => {
+                Some((net, &self.design.rom(*rom).words, words))
+            }
+            _ => None,
+        };
+        let at_fault = |net: NetId| words.filter(|(at, ..)| *at == net);
         let size = |net: NetId| {
             let (low, high) = self.intervals[net.index()];
-            high - low + 1
+            at_fault(net).map_or(high - low + 1, |(.., words)| words.len() as i128)
         };
         let bits = |net: NetId| 128 - (size(net) - 1).leading_zeros();
-        let cut = smallest_cut(self.design, wanted, affected, &bits, BITS)?;
+        let mut uncut = affected.clone();
+        uncut.retain(|net| at_fault(*net).is_none());
+        let cut = smallest_cut(self.design, wanted, &uncut, &bits, BITS)?;
         let total = cut
             .iter()
             .try_fold(1i128, |total, net| total.checked_mul(size(*net)))
@@ -185,8 +201,16 @@ impl<'a> Windows<'a> {
             for &net in &cut {
                 let (low, _) = self.intervals[net.index()];
                 let format = self.design.net(net).format;
-                let raw = |lane: usize| low + (from + lane as i128) / place % size(net);
-                sound.insert(net, std::array::from_fn(|lane| format.bits(raw(lane))));
+                let number = |lane: usize| (from + lane as i128) / place % size(net);
+                let values = match at_fault(net) {
+                    None => std::array::from_fn(|lane| format.bits(low + number(lane))),
+                    Some((_, before, words)) => {
+                        let word = |lane: usize| words[number(lane) as usize];
+                        mutant.insert(net, std::array::from_fn(|lane| word(lane).1));
+                        std::array::from_fn(|lane| before[word(lane).0])
+                    }
+                };
+                sound.insert(net, values);
                 place *= size(net);
             }
             for &net in &steps {
