@@ -11,7 +11,8 @@ use crate::cosim::external::Tool;
 pub(super) const MUTANT: &str = "glint_mutant.v";
 
 /// Whether every net of the module `name` that has a counterpart, registers and ports among them, carries the same
-/// in both for all inputs: temporal induction from a state in which they agree. The sound text is in
+/// in both for all inputs: temporal induction from a state in which they agree, cells with the same inputs, multipliers
+/// among them, taken together first. The sound text is in
 /// `directory` as `<name>.v`, the other as [`MUTANT`]. A proof that fails or takes more than `limit`
 /// proves nothing.
 ///
@@ -26,7 +27,8 @@ pub(super) fn proves(directory: &Path, name: &str, limit: Duration) -> Result<bo
     };
     let commands = format!(
         "{}{}design -copy-from gold -as gold gold; design -copy-from gate -as gate gate; \
-         equiv_make gold gate equiv; prep -top equiv; opt_clean; equiv_induct; equiv_status -assert",
+         equiv_make gold gate equiv; prep -top equiv; opt_clean; \
+         equiv_struct -icells; equiv_simple -short; equiv_induct; equiv_status -assert",
         read(&format!("{name}.v"), "gold"),
         read(MUTANT, "gate"),
     );

@@ -11,6 +11,9 @@ use crate::cosim::Lockstep;
 use crate::flow::Unit;
 use crate::registry::Registry;
 
+/// One in so many faults is planted: not a multiple of three, as for each bit there are three.
+const EVERY: usize = 4;
+
 /// Points in which most faults show.
 const POINTS: u64 = 200;
 
@@ -30,7 +33,7 @@ fn no_proof_of_what_shows() {
         let prover = Prover::new(&unit.design).unwrap();
         let sound = plant::bare(&unit.design);
         let faults = Faults::of(&unit.design);
-        let faults: Vec<_> = faults.iter().collect();
+        let faults: Vec<_> = faults.iter().step_by(EVERY).collect();
         let of_each: Vec<(bool, bool)> = faults
             .par_iter()
             .map(|fault| {
@@ -46,5 +49,5 @@ fn no_proof_of_what_shows() {
         proved += of_each.iter().filter(|(is_proved, _)| *is_proved).count();
         noticed += of_each.iter().filter(|(_, shows)| *shows).count();
     }
-    assert!(proved > 2000 && noticed > 15_000, "{proved}, {noticed}");
+    assert!(proved > 500 && noticed > 5_000, "{proved}, {noticed}");
 }

@@ -1,17 +1,17 @@
 //! `mutate`.
 
 use std::collections::BTreeMap;
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::mismatch::{self, first_clock, traced};
 use super::{Loaded, load};
-use crate::cli::destination::Destination;
 use crate::cli::failure::Usage;
+use crate::cli::own_file::OwnFile;
 use crate::cli::{Output, progress, tables};
 use crate::cosim::Lockstep;
 use crate::mutate::{
@@ -34,8 +34,15 @@ pub struct MutateRequest {
 }
 
 /// What was found of one configuration.
+#[derive(Serialize)]
 struct Scored {
+    /// The version; a record begins with it.
+    glint: &'static str,
+    config: String,
+    device: &'static str,
     netlist: Score,
+    /// Of the emitted text, where that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
     verilog: Option<TextScore>,
 }
 
@@ -85,6 +92,7 @@ pub fn mutate(
                 .map(|text| text.map(with_faults))
         })
         .collect::<Result<_>>()?;
+    let records = records(&loaded, request)?;
     let total = faults.iter().map(Faults::len).sum::<usize>()
         + texts
             .iter()
@@ -93,7 +101,7 @@ pub fn mutate(
             .sum::<usize>();
     let bar = progress::bar(output, total as u64, "faults planted");
     let mut scores = Vec::new();
-    for ((one, faults), text) in loaded.iter().zip(&faults).zip(&texts) {
+    for (((one, faults), text), record) in loaded.iter().zip(&faults).zip(&texts).zip(records) {
         let found = mutate::run(&one.unit, faults.iter(), &|| bar.inc(1));
         let netlist = Score::of(&found.with_context(|| format!("`{}`", one.path))?);
         let verilog = match text {
@@ -104,24 +112,25 @@ pub fn mutate(
             }
             None => None,
         };
-        let scored = Scored { netlist, verilog };
-        if let Some(directory) = &request.out {
-            record(directory, one, &scored)?;
+        let scored = Scored {
+            glint: env!("CARGO_PKG_VERSION"),
+            config: one.path.clone(),
+            device: one.unit.device.name,
+            netlist,
+            verilog,
+        };
+        if let Some(record) = record {
+            record.write_json(&scored)?;
         }
         if !output.json {
-            bar.suspend(|| print(one, &scored));
+            bar.suspend(|| print(&scored));
         }
         scores.push(scored);
     }
     bar.finish_and_clear();
     let holds = scores.iter().all(Scored::holds);
     if output.json {
-        let list: Vec<Value> = loaded
-            .iter()
-            .zip(&scores)
-            .map(|(one, scored)| as_json(one, scored))
-            .collect();
-        tables::print_json(&json!({ "ok": holds, "configurations": list }));
+        tables::print_json(&json!({ "ok": holds, "configurations": scores }));
     }
     Ok(holds)
 }
@@ -227,31 +236,24 @@ fn verdict_as_json(one: &Loaded, fault: &Fault, verdict: &Verdict) -> Value {
     })
 }
 
-fn as_json(one: &Loaded, scored: &Scored) -> Value {
-    json!({
-        "config": one.path,
-        "device": one.unit.device.name,
-        "netlist": scored.netlist,
-        "verilog": scored.verilog,
-    })
-}
-
-/// Writes the record of a configuration.
-fn record(directory: &Path, one: &Loaded, scored: &Scored) -> Result<()> {
+/// The record of each configuration, if records are asked for. A place that cannot be written is known before the
+/// work.
+fn records(loaded: &[Loaded], request: &MutateRequest) -> Result<Vec<Option<OwnFile>>> {
+    let Some(directory) = &request.out else {
+        return Ok(loaded.iter().map(|_| None).collect());
+    };
     std::fs::create_dir_all(directory)
         .with_context(|| format!("cannot make the directory `{}`", directory.display()))?;
-    let path = directory.join(format!("{}.json", one.unit.config.name));
-    let destination = Destination::open(&path)?;
-    let text = format!("{:#}\n", as_json(one, scored));
-    let mut file = destination.file()?;
-    file.write_all(text.as_bytes())
-        .with_context(|| format!("cannot write `{}`", path.display()))?;
-    destination.commit()
+    let record = |one: &Loaded| {
+        let name = format!("{}.json", one.unit.config.name);
+        OwnFile::new(directory, &name, OwnFile::JSON).map(Some)
+    };
+    loaded.iter().map(record).collect()
 }
 
-fn print(one: &Loaded, scored: &Scored) {
+fn print(scored: &Scored) {
     let score = &scored.netlist;
-    tables::print_line(&format!("{}:", one.path));
+    tables::print_line(&format!("{}:", scored.config));
     let row = |name: String, tally: &Tally| {
         let caught = |leg| tally.caught.get(&leg).copied().unwrap_or(0).to_string();
         vec![
@@ -273,15 +275,9 @@ fn print(one: &Loaded, scored: &Scored) {
     tables::print_line(&format!(
         "  {:.2} % open: {}",
         100.0 * score.all.share_open(),
-        if score.holds() {
-            "holds"
-        } else {
-            "FAILS, at most 1 % may be"
-        }
+        conclusion(score.holds())
     ));
-    for id in &score.open {
-        tables::print_line(&format!("  open: {id}"));
-    }
+    print_open(&score.open);
     let Some(verilog) = &scored.verilog else {
         return;
     };
@@ -292,13 +288,20 @@ fn print(one: &Loaded, scored: &Scored) {
         verilog.bench,
         verilog.equivalent.len(),
         verilog.open.len(),
-        if verilog.holds() {
-            "holds"
-        } else {
-            "FAILS, at most 1 % may be"
-        }
+        conclusion(verilog.holds())
     ));
-    for id in &verilog.open {
+    print_open(&verilog.open);
+}
+
+fn conclusion(holds: bool) -> &'static str {
+    match holds {
+        true => "holds",
+        false => "FAILS, at most 1 % may be",
+    }
+}
+
+fn print_open(ids: &[String]) {
+    for id in ids {
         tables::print_line(&format!("  open: {id}"));
     }
 }
