@@ -1,213 +1,161 @@
-//! Faults put into a design are noticed: two words of a ROM, two words of the microprogram or two
-//! inputs of a mux change places, and the lock-step comparison with the golden model must differ.
+//! Faults put into a design or into its Verilog are noticed, or proved to change nothing.
+//!
+//! The records in `mutation/` hold the score of every device's default configuration; here a part of the faults
+//! of the netlist is planted again, and of those of the Verilog.
 
 mod common;
 
 use std::collections::BTreeSet;
+use std::fs;
 
-use common::units::configurations;
-use glint::cosim::{Lockstep, Random};
-use glint::fixed::Format;
-use glint::flow::Unit;
-use glint::golden::{Bound, Contract, Operand};
-use glint::netlist::{Design, Driver, NetId, Op, RegisterKind, RomId};
-use rayon::prelude::*;
+use common::tools::LIMIT;
+use common::units::{configuration, configurations};
+use glint::cosim::Lockstep;
+use glint::flow::{TEST_POINTS, Unit};
+use glint::mutate::{self, Faults, Found, Leg, Text, TextVerdict, Verdict};
+use glint::registry::Registry;
+use serde_json::Value;
 
-/// Points after which a fault counts as unnoticed. Most are noticed within a few.
-const POINTS: u64 = 500_000;
+/// One in so many faults of a netlist is planted again. Not a multiple of three: for each bit there are three.
+const EVERY: usize = 4;
 
-/// Pairs of words drawn from a ROM that has too many for all of them.
-const SAMPLE: usize = 300;
+/// Faults of the Verilog that are planted of each device.
+const TEXT_FAULTS: usize = 24;
 
-/// A ROM of at most so many words is tried in all its pairs.
-const ALL_PAIRS: usize = 32;
+/// Of the faults that are proved equivalent, about so many a device are given another test.
+const PROVED: usize = 40;
 
-struct Mutant {
-    what: String,
-    design: Design,
-    /// The operand that addresses the ROM at fault, and the two words.
-    aim: Option<(String, i64, i64)>,
+/// The seed of that test.
+const SEED: u64 = 77;
+
+/// The default configuration of every device, with its path.
+fn defaults() -> Vec<(String, Unit)> {
+    let registry = Registry::catalogue();
+    let devices = registry.devices().iter();
+    let paths = devices.map(|device| format!("configs/{}.toml", device.name.replace('-', "_")));
+    paths
+        .map(|path| (path.clone(), configuration(&path)))
+        .collect()
 }
 
-/// The contract of a device with the domain of one operand narrowed, so that the stimulus meets it.
-struct Aimed<'a> {
-    contract: &'a dyn Contract,
-    operands: Vec<Operand>,
+fn record(unit: &Unit) -> Value {
+    let path = format!("mutation/{}.json", unit.config.name);
+    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
-impl<'a> Aimed<'a> {
-    fn new(contract: &'a dyn Contract, aim: Option<&(String, i64, i64)>) -> Self {
-        let mut operands = contract.operands().to_vec();
-        if let Some((name, low, high)) = aim {
-            let aimed = operands.iter_mut().find(|operand| operand.name == *name);
-            aimed.expect("an operand").domain = (*low, *high);
-        }
-        Self { contract, operands }
-    }
-}
-
-impl Contract for Aimed<'_> {
-    fn operands(&self) -> &[Operand] {
-        &self.operands
-    }
-    fn outputs(&self) -> &[String] {
-        self.contract.outputs()
-    }
-    fn f_format(&self) -> Format {
-        self.contract.f_format()
-    }
-    fn f(&self, control: &[i64]) -> i64 {
-        self.contract.f(control)
-    }
-    fn colour(&self, f: i64, colour: i64) -> i64 {
-        self.contract.colour(f, colour)
-    }
-    fn reference(&self, control: &[i64]) -> f64 {
-        self.contract.reference(control)
-    }
-    fn references(&self, control: &[i64]) -> [f64; 2] {
-        self.contract.references(control)
-    }
-    fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
-        self.contract.point(control, index)
-    }
-    fn length(&self) -> Option<&str> {
-        self.contract.length()
-    }
-    fn bound(&self) -> Bound {
-        self.contract.bound()
-    }
-}
-
-/// The operand whose register is the address of a ROM.
-fn addressing_operand(design: &Design, rom: RomId) -> Option<String> {
-    let net = design.net(design.rom(rom).address);
-    let is_operand = matches!(net.driver, Driver::Register(id)
-        if design.register(id).kind == RegisterKind::Operand);
-    is_operand.then(|| net.name.trim_end_matches("_reg").to_owned())
-}
-
-/// Every fault of every kind. The tables of a device that walks lines are left out: its points share an
-/// exponent and are neighbours, so that a run sees few of their words. `tests/lines.rs` has all of them.
-fn mutants(unit: &Unit) -> Vec<Mutant> {
-    let design = &unit.design;
-    let mut mutants = Vec::new();
-    for id in (0..design.roms.len()).map(|at| RomId(at as u32)) {
-        if id == design.control.rom || unit.contract.length().is_none() {
-            rom_words(design, id, &mut mutants);
-        }
-    }
-    for (id, net) in design.iter() {
-        if let Driver::Op(Op::Mux { inputs, .. }) = &net.driver {
-            mux_inputs(design, id, inputs.len(), &mut mutants);
-        }
-    }
-    mutants
-}
-
-/// Words that differ change places. With those of the control ROM the words of the microprogram do.
-fn rom_words(design: &Design, id: RomId, mutants: &mut Vec<Mutant>) {
-    let words = &design.rom(id).words;
-    let mut pairs = BTreeSet::new();
-    if words.len() <= ALL_PAIRS {
-        pairs.extend((0..words.len()).flat_map(|b| (0..b).map(move |a| (a, b))));
+/// What became of the fault of an id, by a record: those that the default test notices are not named.
+fn recorded(netlist: &Value, id: &str) -> Said {
+    let has = |list: &Value| {
+        list.as_array()
+            .is_some_and(|ids| ids.iter().any(|it| it == id))
+    };
+    let proofs = netlist["equivalent"].as_object();
+    let mut proofs = proofs.into_iter().flatten();
+    if has(&netlist["open"]) {
+        Said::Open
+    } else if has(&netlist["aimed"]) {
+        Said::Caught(Leg::Aimed)
+    } else if let Some((how, _)) = proofs.find(|(_, ids)| has(ids)) {
+        Said::Equivalent(how.clone())
     } else {
-        pairs.extend((1..words.len()).map(|b| (b - 1, b)));
-        let mut random = Random::new(1);
-        let mut draw = || random.below(words.len() as u64) as usize;
-        // Words that are all alike have no such pair.
-        let sample = std::iter::repeat_with(|| (draw(), draw())).take(100 * SAMPLE);
-        let differ = |&(a, b): &(usize, usize)| a < b && words[a] != words[b];
-        pairs.extend(sample.filter(differ).take(SAMPLE));
-    }
-    let operand = addressing_operand(design, id);
-    for (a, b) in pairs.into_iter().filter(|&(a, b)| words[a] != words[b]) {
-        let mut mutant = design.clone();
-        mutant.roms[id.index()].words.swap(a, b);
-        if id == design.control.rom {
-            mutant.control.words.swap(a, b);
-        }
-        mutants.push(Mutant {
-            what: format!("ROM {}: words {a} and {b}", design.rom(id).name),
-            design: mutant,
-            aim: operand
-                .clone()
-                .map(|operand| (operand, a.min(b) as i64, a.max(b) as i64)),
-        });
+        Said::Caught(Leg::Cosim)
     }
 }
 
-/// Inputs that are different nets change places.
-fn mux_inputs(design: &Design, id: NetId, inputs: usize, mutants: &mut Vec<Mutant>) {
-    for b in 0..inputs {
-        for a in 0..b {
-            let mut mutant = design.clone();
-            let Driver::Op(Op::Mux { inputs, .. }) = &mut mutant.nets[id.index()].driver else {
-                unreachable!("the net is driven by a mux");
-            };
-            if inputs[a] == inputs[b] {
-                continue;
+/// A verdict without what shows it.
+#[derive(Debug, PartialEq)]
+enum Said {
+    Caught(Leg),
+    Equivalent(String),
+    Open,
+}
+
+impl From<&Verdict> for Said {
+    fn from(verdict: &Verdict) -> Self {
+        match verdict {
+            Verdict::Caught(leg, _) => Self::Caught(*leg),
+            Verdict::Equivalent(how) => {
+                let how = serde_json::to_value(how).expect("JSON");
+                Self::Equivalent(how.as_str().expect("a name").to_owned())
             }
-            inputs.swap(a, b);
-            mutants.push(Mutant {
-                what: format!("mux {}: inputs {a} and {b}", design.net(id).name),
-                design: mutant,
-                aim: None,
-            });
+            Verdict::Open => Self::Open,
         }
     }
 }
 
-/// Whether golden model and mutant agree on every clock.
-fn survives(unit: &Unit, mutant: &Mutant) -> bool {
-    let model = (unit.device.model)(&unit.config);
-    let contract = Aimed::new(unit.contract.as_ref(), mutant.aim.as_ref());
-    let outcome = Lockstep::new(&mutant.design, model, &contract, 3)
-        .and_then(|lockstep| lockstep.run(POINTS, &|_| ()))
-        .unwrap_or_else(|error| panic!("{}: {error:?}", mutant.what));
-    outcome.mismatch.is_none()
-}
-
-fn assert_all_are_noticed(path: &str, unit: &Unit) {
-    let mutants = mutants(unit);
-    let of_roms = mutants
-        .iter()
-        .filter(|mutant| mutant.what.starts_with("ROM "))
-        .count();
-    assert!(
-        of_roms > 0 && of_roms < mutants.len(),
-        "{path}: a kind of fault is missing"
-    );
-    println!(
-        "{path}: {} faults, {of_roms} of them in ROMs",
-        mutants.len()
-    );
-    let unnoticed: Vec<&str> = mutants
-        .par_iter()
-        .filter(|mutant| survives(unit, mutant))
-        .map(|mutant| mutant.what.as_str())
-        .collect();
-    assert!(
-        unnoticed.is_empty(),
-        "{path}: nothing notices {unnoticed:#?}"
-    );
+/// Proofs are of the whole design; another test must not find what they exclude.
+fn assert_unnoticed(path: &str, unit: &Unit, found: &[Found]) {
+    let proved = |it: &&Found| matches!(it.verdict, Verdict::Equivalent(_));
+    let proved: Vec<&Found> = found.iter().filter(proved).collect();
+    let step = (proved.len() / PROVED).max(1);
+    for one in proved.into_iter().step_by(step) {
+        let mutant = one.fault.planted(&unit.design);
+        let model = (unit.device.model)(&unit.config);
+        let outcome = Lockstep::new(&mutant, model, unit.contract.as_ref(), SEED)
+            .and_then(|lockstep| lockstep.run(TEST_POINTS / 5, &|_| ()))
+            .unwrap_or_else(|error| panic!("{path}: {}: {error:?}", one.fault.id));
+        assert_eq!(outcome.mismatch, None, "{path}: {}", one.fault.id);
+    }
 }
 
 #[test]
-fn every_fault_is_noticed() {
+fn the_records_hold_today() {
+    for (path, unit) in defaults() {
+        let record = record(&unit);
+        let netlist = &record["netlist"];
+        let stale = format!("{path}: `glint mutate --out mutation {path}` makes another record");
+        let faults = Faults::of(&unit.design);
+        let all = &netlist["all"];
+        assert_eq!(all["planted"], faults.len(), "{stale}");
+        let open = netlist["open"].as_array().expect("open").len();
+        assert_eq!(all["open"], open, "{stale}");
+        assert!(open * 100 <= faults.len(), "{path}: {open} are open");
+        let found = mutate::run(&unit, faults.iter().step_by(EVERY), &|| ())
+            .unwrap_or_else(|error| panic!("{path}: {error:?}"));
+        for Found { fault, verdict } in &found {
+            let expected = recorded(netlist, &fault.id);
+            assert_eq!(Said::from(verdict), expected, "{}: {stale}", fault.id);
+        }
+        assert_unnoticed(&path, &unit, &found);
+    }
+}
+
+#[test]
+fn faults_have_names_of_their_own() {
     for (path, unit) in configurations() {
-        assert_all_are_noticed(&path, &unit);
+        let faults = Faults::of(&unit.design);
+        let ids: BTreeSet<&str> = faults.iter().map(|fault| fault.id.as_str()).collect();
+        assert_eq!(ids.len(), faults.len(), "{path}");
+        assert!(faults.len() > 500, "{path}: a kind of fault is missing");
     }
 }
 
 #[test]
 fn without_a_fault_nothing_is_noticed() {
     for (path, unit) in configurations() {
-        let mutant = Mutant {
-            what: "none".to_owned(),
-            design: unit.design.clone(),
-            aim: None,
-        };
-        assert!(survives(&unit, &mutant), "{path}");
+        let outcome = unit
+            .lockstep(3)
+            .and_then(|lockstep| lockstep.run(TEST_POINTS, &|_| ()))
+            .unwrap_or_else(|error| panic!("{path}: {error:?}"));
+        assert_eq!(outcome.mismatch, None, "{path}");
     }
+}
+
+#[test]
+fn faults_of_the_verilog_are_noticed() {
+    let (mut planted, mut open) = (0, Vec::new());
+    for (path, unit) in defaults() {
+        let text = Text::of(&unit).unwrap_or_else(|error| panic!("{path}: {error:?}"));
+        let faults = text.sample(TEXT_FAULTS);
+        assert!(faults.len() >= 20, "{path}: {} faults", faults.len());
+        let verdicts = text
+            .run(&faults, LIMIT, &|| ())
+            .unwrap_or_else(|error| panic!("{path}: {error:?}"));
+        planted += faults.len();
+        let missed = faults.iter().zip(verdicts);
+        let missed = missed.filter(|(_, verdict)| *verdict == TextVerdict::Open);
+        open.extend(missed.map(|(fault, _)| format!("{path}: {}", fault.id)));
+    }
+    assert!(open.len() * 100 <= planted, "open: {open:#?}");
 }

@@ -137,6 +137,7 @@ Examples:
   glint mutate my_core.toml                               the score, and what is open
   glint mutate my_core.toml --list                        the names of all faults
   glint mutate my_core.toml --only 'result[3]:inverted'   one of them: where it shows, and a waveform
+  glint mutate my_core.toml --full                        the emitted Verilog too
   glint mutate --out mutation                             a record of each configuration in configs/")]
     Mutate {
         #[command(flatten)]
@@ -147,9 +148,15 @@ Examples:
         /// Plant this fault alone; where it is caught, write the waveform around it
         #[arg(long, value_name = "ID", conflicts_with = "out")]
         only: Option<String>,
+        /// Plant faults in the emitted Verilog too; needs Icarus Verilog, Verilator and Yosys
+        #[arg(long, conflicts_with_all = ["list", "only"])]
+        full: bool,
         /// Write the record of each configuration, `<name>.json`, into this directory
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
+        /// Seconds after which a run of an outside tool is given up
+        #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+        time_limit: u64,
     },
     /// Compute one point: golden registers, outputs and the formula in f64
     #[command(after_help = "\
@@ -419,9 +426,17 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             configs,
             list,
             only,
+            full,
             out,
+            time_limit,
         }) => {
-            let request = commands::MutateRequest { list, only, out };
+            let request = commands::MutateRequest {
+                list,
+                only,
+                full,
+                out,
+                time_limit: std::time::Duration::from_secs(time_limit),
+            };
             commands::mutate(registry, output, &configs.configs, &request)
         }
         Some(Command::Eval { config, operands }) => {

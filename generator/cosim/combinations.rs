@@ -2,7 +2,8 @@
 //!
 //! A combination is the bits of all operands side by side. They come in an order in which one has little in
 //! common with the one before it, so that a register that should have been loaded and was not seldom holds
-//! what was wanted by chance: *place* p has the combination p·k mod 2^bits for an odd constant k.
+//! what was wanted by chance: *place* p has the combination p·k mod 2^bits for an odd constant k. Operands
+//! that are held are no part of it.
 
 use std::sync::Arc;
 
@@ -29,6 +30,8 @@ struct Port {
     data: usize,
     strobe: usize,
     width: u32,
+    /// Its bit pattern, where it is the same in all combinations.
+    held: Option<u64>,
 }
 
 impl Ports {
@@ -52,6 +55,7 @@ impl Ports {
                     data,
                     strobe: position(strobe),
                     width: design.net(port.net).format.width(),
+                    held: None,
                 }),
                 _ => {}
             }
@@ -59,15 +63,29 @@ impl Ports {
         ports
     }
 
-    /// The bits of all operands together.
+    /// Holds operands at raw values: all combinations are of the others alone.
+    pub(super) fn hold(&mut self, held: &[(String, i64)]) {
+        for (name, raw) in held {
+            let operands = self.operands.iter_mut();
+            for port in operands.filter(|port| port.name == *name) {
+                port.held = Some(*raw as u64 & mask(port.width));
+            }
+        }
+    }
+
+    /// The bits of all operands together that are not held.
     pub(super) fn bits(&self) -> u32 {
-        self.operands.iter().map(|port| port.width).sum()
+        let free = self.operands.iter().filter(|port| port.held.is_none());
+        free.map(|port| port.width).sum()
     }
 
     /// The bit patterns of the operands at a place, in the order of the ports.
     fn at(&self, place: u64) -> impl Iterator<Item = (&Port, u64)> {
         let mut bits = place.wrapping_mul(SCATTER);
         self.operands.iter().map(move |port| {
+            if let Some(pattern) = port.held {
+                return (port, pattern);
+            }
             let pattern = bits & mask(port.width);
             bits = bits.checked_shr(port.width).unwrap_or(0);
             (port, pattern)

@@ -139,6 +139,15 @@ impl<'a> Lockstep<'a> {
         Ok(Self { pairing, seed })
     }
 
+    /// The same with some operands held at raw values: the stimulus seldom draws others for them.
+    #[must_use]
+    pub fn holding(self, held: &[(String, i64)]) -> Self {
+        Self {
+            pairing: self.pairing.holding(held),
+            ..self
+        }
+    }
+
     /// Runs until `points` results were seen or something differs, on all threads of rayon's pool.
     ///
     /// `progress` is told now and then how many points there are more.

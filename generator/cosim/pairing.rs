@@ -9,7 +9,7 @@ use super::lockstep::{Mismatch, Worst};
 use super::stimulus::Stimulus;
 use super::stream::Stream;
 use crate::fixed::{Format, MAX_WIDTH, exp2};
-use crate::golden::{Contract, Model, nearer};
+use crate::golden::{Contract, Model, Operand, nearer};
 use crate::netlist::{Design, NetId, RegisterKind, Role};
 
 /// A design and its golden model, paired by the names of ports and registers.
@@ -31,6 +31,8 @@ pub(super) struct Pairing<'a> {
     pub(super) ports: Arc<Ports>,
     /// The operands of the contract, as positions in the stimulus.
     operands: Vec<usize>,
+    /// The same, with the domains that the stimulus draws from.
+    drawn: Vec<Operand>,
     /// Of each result: itself, and the unit of the colour operand that it is made of.
     results: Vec<(Quantity, f64)>,
 }
@@ -138,13 +140,27 @@ impl<'a> Pairing<'a> {
             ports: Arc::new(Ports::new(design)),
             address: design.register(design.control.address).q,
             operands,
+            drawn: contract.operands().to_vec(),
             results,
         })
     }
 
+    /// Holds operands at raw values: combinations are of the others alone, and the stimulus seldom draws
+    /// anything else.
+    pub(super) fn holding(mut self, held: &[(String, i64)]) -> Self {
+        for (name, raw) in held {
+            let drawn = self.drawn.iter_mut().filter(|it| it.name == *name);
+            drawn.for_each(|operand| operand.domain = (*raw, *raw));
+        }
+        let mut ports = Ports::new(self.design);
+        ports.hold(held);
+        self.ports = Arc::new(ports);
+        self
+    }
+
     /// The inputs of a seed.
     pub(super) fn stimulus(&self, seed: u64) -> Stimulus {
-        let stimulus = Stimulus::new(self.design, self.contract.operands(), seed);
+        let stimulus = Stimulus::new(self.design, &self.drawn, seed);
         match self.contract.length() {
             Some(length) => stimulus.with_length(length),
             None => stimulus,

@@ -4,32 +4,49 @@
 use anyhow::Result;
 
 use crate::cosim::Lockstep;
-use crate::netlist::{Design, NetId, RomId};
+use crate::netlist::{Design, NetId, RegisterKind, RomId};
 use crate::sim::Simulator;
 
 /// Places that are kept of each word.
 const PLACES: usize = 6;
 
-/// A place in a test: the seed of a stream, and the results in it up to there.
-pub(super) type Place = (u64, u64);
+/// Raw values of operands, by name.
+pub(super) type Operands = Vec<(String, i64)>;
+
+/// A place in a test.
+#[derive(Clone)]
+pub(super) struct Place {
+    /// Of the stream.
+    pub(super) seed: u64,
+    /// The results in it up to there.
+    pub(super) points: u64,
+    /// What the operand registers hold.
+    operands: Vec<u64>,
+}
 
 /// For each ROM and word, the first places at which it is read.
-pub(super) struct Coverage(Vec<Vec<Vec<Place>>>);
+pub(super) struct Coverage {
+    places: Vec<Vec<Vec<Place>>>,
+    /// The operand registers.
+    operands: Vec<NetId>,
+}
 
 /// The places of one stream.
-struct Watch {
+struct Watch<'a> {
     seed: u64,
     /// For each ROM its address, and the word of the latest clock.
     addresses: Vec<(NetId, u64)>,
+    operands: &'a [NetId],
     places: Vec<Vec<Vec<Place>>>,
 }
 
-impl Watch {
-    fn new(design: &Design, seed: u64) -> Self {
+impl<'a> Watch<'a> {
+    fn new(design: &Design, operands: &'a [NetId], seed: u64) -> Self {
         let roms = design.roms.iter();
         Self {
             seed,
             addresses: roms.clone().map(|rom| (rom.address, u64::MAX)).collect(),
+            operands,
             places: roms.map(|rom| vec![Vec::new(); rom.words.len()]).collect(),
         }
     }
@@ -42,9 +59,14 @@ impl Watch {
             }
             if let Some(places) = places.get_mut(word as usize)
                 && places.len() < PLACES
-                && places.last().is_none_or(|(_, latest)| *latest < points)
+                && places.last().is_none_or(|latest| latest.points < points)
             {
-                places.push((self.seed, points));
+                let operands = self.operands.iter();
+                places.push(Place {
+                    seed: self.seed,
+                    points,
+                    operands: operands.map(|&net| simulator.value(net)).collect(),
+                });
             }
         }
     }
@@ -56,7 +78,14 @@ impl Coverage {
     /// # Errors
     /// A design that cannot be simulated.
     pub(super) fn of(design: &Design, lockstep: &Lockstep<'_>, points: u64) -> Result<Self> {
-        let streams = lockstep.watch(points, |seed| Watch::new(design, seed), Watch::note)?;
+        let operands: Vec<NetId> = design
+            .registers
+            .iter()
+            .filter(|register| register.kind == RegisterKind::Operand)
+            .map(|register| register.q)
+            .collect();
+        let begin = |seed| Watch::new(design, &operands, seed);
+        let streams = lockstep.watch(points, begin, Watch::note)?;
         let roms = design.roms.iter();
         let mut all: Vec<Vec<Vec<Place>>> =
             roms.map(|rom| vec![Vec::new(); rom.words.len()]).collect();
@@ -70,11 +99,37 @@ impl Coverage {
                 all.extend(places.into_iter().take(room));
             }
         }
-        Ok(Self(all))
+        Ok(Self {
+            places: all,
+            operands,
+        })
     }
 
     /// Where a word is read.
     pub(super) fn places(&self, rom: RomId, word: usize) -> &[Place] {
-        &self.0[rom.index()][word]
+        &self.places[rom.index()][word]
     }
+
+    /// The operands of a computation that reads a word, at each place.
+    pub(super) fn operands(
+        &self,
+        design: &Design,
+        rom: RomId,
+        word: usize,
+    ) -> impl Iterator<Item = Operands> {
+        self.places(rom, word).iter().map(|place| {
+            let operands = self.operands.iter().zip(&place.operands);
+            let raw = operands.filter_map(|(&net, &bits)| {
+                let net = design.net(net);
+                let name = operand_of(&net.name)?;
+                Some((name.to_owned(), net.format.raw(bits) as i64))
+            });
+            raw.collect()
+        })
+    }
+}
+
+/// The operand that a register of that name holds.
+pub(super) fn operand_of(register: &str) -> Option<&str> {
+    register.strip_suffix("_reg")
 }

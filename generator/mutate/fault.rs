@@ -10,13 +10,16 @@ use crate::cosim::Random;
 use crate::fixed::mask;
 use crate::netlist::{Design, Driver, Net, NetId, Op, RegId, Role, RomId};
 
-/// A ROM of at most so many words has all pairs of its words swapped, and one of at most
-/// [`ALL_BITS`] bits each of them inverted; of larger ones that many are drawn.
+/// A ROM of at most so many words has all pairs of its words swapped, and one of at most so many bits
+/// each of them inverted.
 const ALL_WORDS: usize = 32;
 const ALL_BITS: usize = 1024;
 
-/// Words of a large ROM that change places with one another: neighbours all, and so many pairs drawn.
-const SAMPLE: usize = 300;
+/// Of larger ROMs, so many pairs of words and so many bits are drawn, and about so many neighbours
+/// swapped.
+const SAMPLE: usize = 200;
+const SAMPLED_BITS: usize = 200;
+const NEIGHBOURS: usize = 256;
 
 /// What goes wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -42,7 +45,7 @@ pub enum Kind {
     Operands,
     /// Another operator stands in a cell's place.
     Operator,
-    /// The bits beside those that are meant are taken, or a sign is not extended.
+    /// The bits beside those that are meant are taken.
     Wiring,
     /// A register takes its data always, or never.
     Enable,
@@ -154,13 +157,6 @@ pub struct Fault {
     pub kind: Kind,
     /// Where.
     pub site: Site,
-}
-
-impl Fault {
-    /// What goes wrong, for people: `bit stuck at 0`, …
-    pub fn what(&self) -> String {
-        format!("{}: {}", self.id, self.kind)
-    }
 }
 
 /// The faults of a design.
@@ -287,7 +283,7 @@ impl Faults {
             (0..total).collect()
         } else {
             std::iter::repeat_with(|| random.below(total as u64) as usize)
-                .take(ALL_BITS)
+                .take(SAMPLED_BITS)
                 .collect()
         };
         for at in bits {
@@ -322,7 +318,8 @@ fn pairs(words: &[u64], random: &mut Random) -> BTreeSet<(usize, usize)> {
     if words.len() <= ALL_WORDS {
         pairs.extend((0..words.len()).flat_map(|b| (0..b).map(move |a| (a, b))));
     } else {
-        pairs.extend((1..words.len()).map(|b| (b - 1, b)));
+        let step = words.len().div_ceil(NEIGHBOURS);
+        pairs.extend((1..words.len()).step_by(step).map(|b| (b - 1, b)));
         let mut draw = || random.below(words.len() as u64) as usize;
         // Words that are all alike have no such pair.
         let sample = std::iter::repeat_with(|| (draw(), draw())).take(100 * SAMPLE);

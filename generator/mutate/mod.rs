@@ -4,14 +4,20 @@
 //! configuration is tested with is run on each mutant. A mutant is *caught*, or *equivalent*, which is
 //! proved, or *open*. What the test does not notice is never called equivalent for that reason.
 
+mod aim;
 mod coverage;
 mod fault;
+mod formal;
 mod operators;
 mod plant;
 mod proof;
 mod run;
 mod score;
+#[cfg(test)]
+mod tests;
+mod verilog;
 
 pub use fault::{Bit, Fault, Faults, Kind, Site};
-pub use run::{Found, How, Leg, Verdict, run};
-pub use score::{Score, TOLERATED, Tally};
+pub use run::{Difference, Found, How, Leg, Verdict, run};
+pub use score::{Score, TOLERATED, Tally, TextScore};
+pub use verilog::{POINTS as BENCH_POINTS, Text, TextFault, TextVerdict};

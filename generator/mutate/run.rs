@@ -7,14 +7,15 @@ use anyhow::{Context, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::coverage::{Coverage, Place};
+use super::aim::{self, Tried};
+use super::coverage::{Coverage, Operands};
 use super::fault::{Fault, Site};
 use super::plant;
 use super::proof::Prover;
 use crate::cosim::{Lockstep, Mismatch};
 use crate::flow::{self, Unit};
 use crate::golden::Model;
-use crate::netlist::Design;
+use crate::netlist::{Design, RomId};
 
 /// Points of a first look. They are the first of the default test's first stream, so that what differs in
 /// them differs in the test.
@@ -30,7 +31,7 @@ const BEYOND_SEED: u64 = 2;
 pub enum Leg {
     /// The default test: golden model against built-in simulator.
     Cosim,
-    /// Streams of a longer test, chosen because they read the words at fault.
+    /// Operands held where the words at fault are read.
     Aimed,
 }
 
@@ -40,6 +41,10 @@ pub enum Leg {
 pub enum How {
     /// By induction over the words of the microprogram.
     Induction,
+    /// By every combination of the values around it.
+    Exhaustion,
+    /// By every combination of the operands that are used with the word at fault.
+    Operands,
 }
 
 impl fmt::Display for Leg {
@@ -55,15 +60,26 @@ impl fmt::Display for How {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.pad(match self {
             Self::Induction => "by induction over the microprogram",
+            Self::Exhaustion => "by every combination of the values around it",
+            Self::Operands => "by every combination of the operands that are used with the word",
         })
     }
+}
+
+/// What a leg showed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Difference {
+    /// Operands that the stimulus held, by name, at raw values ([`Lockstep::holding`]).
+    pub held: Vec<(String, i64)>,
+    /// The signal, on a clock.
+    pub mismatch: Mismatch,
 }
 
 /// What became of a mutant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// A leg differs, and where.
-    Caught(Leg, Mismatch),
+    Caught(Leg, Difference),
     /// Proved to change nothing that is compared.
     Equivalent(How),
     /// Neither caught nor proved equivalent.
@@ -127,48 +143,33 @@ struct Bench<'a> {
 impl Bench<'_> {
     fn verdict(&self, fault: &Fault) -> Result<Verdict> {
         let mutant = fault.planted(&self.sound);
-        let first = (flow::TEST_SEED, FIRST_POINTS);
-        let words = match &fault.site {
-            Site::Words(rom, words) if *rom != self.sound.control.rom => words,
-            _ => &Vec::new(),
-        };
-        let read = self.places(&self.tested, &fault.site);
-        // A word of a table shows where it is read, if anywhere.
-        let looks = if words.is_empty() {
-            vec![first]
-        } else {
-            read.clone()
-        };
-        if let Some(mismatch) = self.differs_at(&mutant, looks)? {
-            return Ok(Verdict::Caught(Leg::Cosim, mismatch));
+        if let Some(mismatch) = self.first_look(&mutant, &fault.site)? {
+            return Ok(caught(mismatch));
         }
-        let proves = |prover: &Prover<'_>| prover.proves(&fault.site);
-        if self.prover.as_ref().is_some_and(proves) {
-            return Ok(Verdict::Equivalent(How::Induction));
+        let prover = self.prover.as_ref();
+        if let Some(how) = prover.and_then(|prover| prover.proves(&fault.site)) {
+            return Ok(Verdict::Equivalent(how));
         }
-        if words.is_empty() || !read.is_empty() {
+        let word = self.words(&fault.site);
+        if word.is_none() || !self.places(&fault.site).is_empty() {
             let lockstep = self.lockstep(&mutant, flow::TEST_SEED)?;
             if let Some(mismatch) = lockstep.run(flow::TEST_POINTS, &|_| ())?.mismatch {
-                return Ok(Verdict::Caught(Leg::Cosim, mismatch));
+                return Ok(caught(mismatch));
             }
         }
-        if !words.is_empty() {
-            let places = self.places(self.beyond()?, &fault.site);
-            if let Some(mismatch) = self.differs_at(&mutant, places)? {
-                return Ok(Verdict::Caught(Leg::Aimed, mismatch));
-            }
+        match word {
+            Some((rom, words)) => self.aimed(&mutant, rom, words),
+            None => Ok(Verdict::Open),
         }
-        Ok(Verdict::Open)
     }
 
-    fn lockstep<'d>(&'d self, mutant: &'d Design, seed: u64) -> Result<Lockstep<'d>> {
-        let contract = self.unit.contract.as_ref();
-        Lockstep::new(mutant, self.model.boxed_clone(), contract, seed)
-    }
-
-    /// The difference in the first of the streams that shows one, each up to its place.
-    fn differs_at(&self, mutant: &Design, places: Vec<Place>) -> Result<Option<Mismatch>> {
-        for (seed, points) in places {
+    /// The beginning of the default test, or of its streams that read words at fault: there it shows, if anywhere.
+    fn first_look(&self, mutant: &Design, site: &Site) -> Result<Option<Mismatch>> {
+        let looks = match self.words(site) {
+            Some(_) => self.places(site),
+            None => vec![(flow::TEST_SEED, FIRST_POINTS)],
+        };
+        for (seed, points) in looks {
             let lockstep = self.lockstep(mutant, seed)?;
             if let Some(mismatch) = lockstep.run_alone(points)?.mismatch {
                 return Ok(Some(mismatch));
@@ -177,15 +178,74 @@ impl Bench<'_> {
         Ok(None)
     }
 
-    /// Where the words at fault are read: to the end of the computation after the one that reads.
-    fn places(&self, coverage: &Coverage, site: &Site) -> Vec<Place> {
-        let Site::Words(rom, words) = site else {
+    /// With operands held at the words at fault.
+    fn aimed(&self, mutant: &Design, rom: RomId, words: &[(usize, u64)]) -> Result<Verdict> {
+        let aimed = |difference| Verdict::Caught(Leg::Aimed, difference);
+        let mut all_tried = true;
+        for &(word, _) in words {
+            let addressing = aim::addressing(self.unit, rom, word);
+            for held in addressing.iter().cloned().chain(self.readings(rom, word)?) {
+                if let Some(difference) = aim::drawn(self.unit, mutant, held)? {
+                    return Ok(aimed(difference));
+                }
+            }
+            let tried = match addressing {
+                Some(held) => aim::all(self.unit, mutant, held)?,
+                None => Tried::Nothing,
+            };
+            match tried {
+                Tried::All => {}
+                Tried::Nothing => all_tried = false,
+                Tried::Differs(held) => {
+                    let shown = aim::drawn(self.unit, mutant, held)?;
+                    return Ok(shown.map_or(Verdict::Open, aimed));
+                }
+            }
+        }
+        Ok(match all_tried {
+            true => Verdict::Equivalent(How::Operands),
+            false => Verdict::Open,
+        })
+    }
+
+    /// Control operands of computations that read a word: of the default test, or else of a longer one.
+    fn readings(&self, rom: RomId, word: usize) -> Result<Vec<Operands>> {
+        let design = &self.sound;
+        let mut readings: Vec<Operands> = self.tested.operands(design, rom, word).collect();
+        if readings.is_empty() {
+            readings = self.beyond()?.operands(design, rom, word).collect();
+        }
+        let contract = self.unit.contract.operands();
+        let is_colour = |name: &str| contract.iter().any(|it| it.colour && it.name == name);
+        for reading in &mut readings {
+            reading.retain(|(name, _)| !is_colour(name));
+        }
+        Ok(readings)
+    }
+
+    fn lockstep<'d>(&'d self, mutant: &'d Design, seed: u64) -> Result<Lockstep<'d>> {
+        let contract = self.unit.contract.as_ref();
+        Lockstep::new(mutant, self.model.boxed_clone(), contract, seed)
+    }
+
+    /// The words at fault of a table.
+    fn words<'s>(&self, site: &'s Site) -> Option<(RomId, &'s [(usize, u64)])> {
+        match site {
+            Site::Words(rom, words) if *rom != self.sound.control.rom => Some((*rom, words)),
+            _ => None,
+        }
+    }
+
+    /// Where the default test reads the words at fault: a seed, and the results to the end of the computation
+    /// after the one that reads.
+    fn places(&self, site: &Site) -> Vec<(u64, u64)> {
+        let Some((rom, words)) = self.words(site) else {
             return Vec::new();
         };
         let places = words
             .iter()
-            .flat_map(|&(word, _)| coverage.places(*rom, word));
-        places.map(|&(seed, points)| (seed, points + 2)).collect()
+            .flat_map(|&(word, _)| self.tested.places(rom, word));
+        places.map(|place| (place.seed, place.points + 2)).collect()
     }
 
     fn beyond(&self) -> Result<&Coverage> {
@@ -196,4 +256,10 @@ impl Bench<'_> {
         let coverage = Coverage::of(&self.sound, &lockstep, BEYOND_POINTS)?;
         Ok(self.beyond.get_or_init(|| coverage))
     }
+}
+
+/// Noticed by the default test.
+fn caught(mismatch: Mismatch) -> Verdict {
+    let held = Vec::new();
+    Verdict::Caught(Leg::Cosim, Difference { held, mismatch })
 }

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::fault::Kind;
 use super::run::{Found, How, Leg, Verdict};
+use super::verilog::{TextFault, TextVerdict};
 
 /// At most so much of the faults may be open, as a share.
 pub const TOLERATED: f64 = 0.01;
@@ -94,5 +95,42 @@ impl Score {
     /// Whether no more than is tolerated is open.
     pub fn holds(&self) -> bool {
         self.all.share_open() <= TOLERATED
+    }
+}
+
+/// The faults of the Verilog of one configuration.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TextScore {
+    /// How many were planted.
+    pub planted: usize,
+    /// How many a compiler or lint refuses or warns of.
+    pub lint: usize,
+    /// How many the bench notices.
+    pub bench: usize,
+    /// The ids of those that are proved equivalent.
+    pub equivalent: Vec<String>,
+    /// The ids of the others.
+    pub open: Vec<String>,
+}
+
+impl TextScore {
+    /// Adds up the verdicts on faults, given in the same order.
+    pub fn of(faults: &[TextFault], verdicts: &[TextVerdict]) -> Self {
+        let mut score = Self::default();
+        for (fault, verdict) in faults.iter().zip(verdicts) {
+            score.planted += 1;
+            match verdict {
+                TextVerdict::Lint => score.lint += 1,
+                TextVerdict::Bench => score.bench += 1,
+                TextVerdict::Equivalent => score.equivalent.push(fault.id.clone()),
+                TextVerdict::Open => score.open.push(fault.id.clone()),
+            }
+        }
+        score
+    }
+
+    /// Whether no more than is tolerated is open.
+    pub fn holds(&self) -> bool {
+        self.open.len() as f64 <= TOLERATED * self.planted as f64
     }
 }

@@ -137,7 +137,7 @@ pub struct Leg {
 }
 
 /// All legs: first those that need nothing but Glint.
-pub const LEGS: [&Leg; 12] = [
+pub const LEGS: [&Leg; 13] = [
     &inside::DESIGN,
     &inside::LOCKSTEP,
     &inside::CLOCKS,
@@ -150,6 +150,7 @@ pub const LEGS: [&Leg; 12] = [
     &outside::FORMAL,
     &outside::SYNTHESIS,
     &outside::GATES,
+    &outside::TEXT_MUTATION,
 ];
 
 impl Leg {

@@ -10,6 +10,7 @@ mod datasheet;
 mod describe;
 mod fuzz;
 mod generate;
+mod mutate;
 mod output;
 mod place;
 mod questions;

@@ -1,18 +1,22 @@
 //! `mutate`.
 
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::mismatch::{self, first_clock, traced};
 use super::{Loaded, load};
-use crate::cli::destination::Destination;
 use crate::cli::failure::Usage;
+use crate::cli::own_file::OwnFile;
 use crate::cli::{Output, progress, tables};
 use crate::cosim::Lockstep;
-use crate::mutate::{self, Fault, Faults, Score, Tally, Verdict};
+use crate::mutate::{
+    self, Difference, Fault, Faults, Score, Tally, Text, TextFault, TextScore, Verdict,
+};
 use crate::registry::Registry;
 
 /// What `mutate` was asked for.
@@ -21,8 +25,31 @@ pub struct MutateRequest {
     pub list: bool,
     /// The fault of this id alone.
     pub only: Option<String>,
+    /// The faults of the emitted Verilog too.
+    pub full: bool,
     /// The directory of the records.
     pub out: Option<PathBuf>,
+    /// After which a run of an outside tool is given up.
+    pub time_limit: Duration,
+}
+
+/// What was found of one configuration.
+#[derive(Serialize)]
+struct Scored {
+    /// The version; a record begins with it.
+    glint: &'static str,
+    config: String,
+    device: &'static str,
+    netlist: Score,
+    /// Of the emitted text, where that was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    verilog: Option<TextScore>,
+}
+
+impl Scored {
+    fn holds(&self) -> bool {
+        self.netlist.holds() && self.verilog.as_ref().is_none_or(TextScore::holds)
+    }
 }
 
 /// `glint mutate`.
@@ -50,29 +77,60 @@ pub fn mutate(
         list(output, &loaded, &faults);
         return Ok(true);
     }
-    let total: usize = faults.iter().map(Faults::len).sum();
+    let texts: Vec<Option<(Text, Vec<TextFault>)>> = loaded
+        .iter()
+        .map(|one| {
+            let text = || Text::of(&one.unit).with_context(|| format!("`{}`", one.path));
+            let with_faults = |text: Text| {
+                let faults = text.faults();
+                (text, faults)
+            };
+            request
+                .full
+                .then(text)
+                .transpose()
+                .map(|text| text.map(with_faults))
+        })
+        .collect::<Result<_>>()?;
+    let records = records(&loaded, request)?;
+    let total = faults.iter().map(Faults::len).sum::<usize>()
+        + texts
+            .iter()
+            .flatten()
+            .map(|(_, faults)| faults.len())
+            .sum::<usize>();
     let bar = progress::bar(output, total as u64, "faults planted");
     let mut scores = Vec::new();
-    for (one, faults) in loaded.iter().zip(&faults) {
+    for (((one, faults), text), record) in loaded.iter().zip(&faults).zip(&texts).zip(records) {
         let found = mutate::run(&one.unit, faults.iter(), &|| bar.inc(1));
-        let score = Score::of(&found.with_context(|| format!("`{}`", one.path))?);
-        if let Some(directory) = &request.out {
-            record(directory, one, &score)?;
+        let netlist = Score::of(&found.with_context(|| format!("`{}`", one.path))?);
+        let verilog = match text {
+            Some((text, faults)) => {
+                let verdicts = text.run(faults, request.time_limit, &|| bar.inc(1));
+                let verdicts = verdicts.with_context(|| format!("`{}`", one.path))?;
+                Some(TextScore::of(faults, &verdicts))
+            }
+            None => None,
+        };
+        let scored = Scored {
+            glint: env!("CARGO_PKG_VERSION"),
+            config: one.path.clone(),
+            device: one.unit.device.name,
+            netlist,
+            verilog,
+        };
+        if let Some(record) = record {
+            record.write_json(&scored)?;
         }
         if !output.json {
-            bar.suspend(|| print(one, &score));
+            bar.suspend(|| print(&scored));
         }
-        scores.push(score);
+        scores.push(scored);
     }
     bar.finish_and_clear();
-    let holds = scores.iter().all(Score::holds);
+    let holds = scores.iter().all(Scored::holds);
     if output.json {
-        let list: Vec<Value> = loaded
-            .iter()
-            .zip(&scores)
-            .map(|(one, score)| as_json(one, score))
-            .collect();
-        tables::print_json(&json!({ "ok": holds, "configurations": list }));
+        tables::print_json(&json!({ "ok": holds, "configurations": scores }));
     }
     Ok(holds)
 }
@@ -110,10 +168,11 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
     let verdict = found.into_iter().next().map(|found| found.verdict);
     let verdict = verdict.context("a fault without a verdict")?;
     let mut waveform = None;
-    if let Verdict::Caught(_, mismatch) = &verdict {
+    if let Verdict::Caught(_, Difference { held, mismatch }) = &verdict {
         let mutant = fault.planted(&one.unit.design);
         let model = (one.unit.device.model)(&one.unit.config);
         let lockstep = Lockstep::new(&mutant, model, one.unit.contract.as_ref(), mismatch.seed)?;
+        let lockstep = lockstep.holding(held);
         let path = PathBuf::from(format!("{}_mutant.vcd", one.unit.config.name));
         let from = first_clock(mismatch.clock);
         traced(&lockstep, &path, u64::MAX, from)?;
@@ -124,10 +183,7 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
         return Ok(verdict != Verdict::Open);
     }
     let said = match &verdict {
-        Verdict::Caught(leg, mismatch) => format!(
-            "caught by {leg}: seed {}, after clock {}, {mismatch}",
-            mismatch.seed, mismatch.clock
-        ),
+        Verdict::Caught(leg, shown) => format!("caught by {leg}: {}", shown_by(shown)),
         Verdict::Equivalent(how) => format!("equivalent, {how}"),
         Verdict::Open => "OPEN: not caught, and not proved equivalent".to_owned(),
     };
@@ -144,11 +200,27 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
     Ok(verdict != Verdict::Open)
 }
 
+/// Where a mutant differs, and in what.
+fn shown_by(Difference { held, mismatch }: &Difference) -> String {
+    let operands: Vec<String> = held
+        .iter()
+        .map(|(name, raw)| format!(" {name}=#{raw}"))
+        .collect();
+    let holding = if operands.is_empty() { "" } else { ", with" };
+    format!(
+        "seed {}{holding}{}, after clock {}, {mismatch}",
+        mismatch.seed,
+        operands.concat(),
+        mismatch.clock
+    )
+}
+
 fn verdict_as_json(one: &Loaded, fault: &Fault, verdict: &Verdict) -> Value {
     let (caught, equivalent) = match verdict {
-        Verdict::Caught(leg, mismatch) => {
+        Verdict::Caught(leg, Difference { held, mismatch }) => {
             let mut caught = mismatch::as_json(mismatch);
             caught["by"] = json!(leg);
+            caught["held"] = json!(held.iter().cloned().collect::<BTreeMap<_, _>>());
             (Some(caught), None)
         }
         Verdict::Equivalent(how) => (None, Some(how)),
@@ -164,29 +236,24 @@ fn verdict_as_json(one: &Loaded, fault: &Fault, verdict: &Verdict) -> Value {
     })
 }
 
-fn as_json(one: &Loaded, score: &Score) -> Value {
-    json!({
-        "config": one.path,
-        "device": one.unit.device.name,
-        "netlist": score,
-    })
-}
-
-/// Writes the record of a configuration.
-fn record(directory: &Path, one: &Loaded, score: &Score) -> Result<()> {
+/// The record of each configuration, if records are asked for. A place that cannot be written is known before the
+/// work.
+fn records(loaded: &[Loaded], request: &MutateRequest) -> Result<Vec<Option<OwnFile>>> {
+    let Some(directory) = &request.out else {
+        return Ok(loaded.iter().map(|_| None).collect());
+    };
     std::fs::create_dir_all(directory)
         .with_context(|| format!("cannot make the directory `{}`", directory.display()))?;
-    let path = directory.join(format!("{}.json", one.unit.config.name));
-    let destination = Destination::open(&path)?;
-    let text = format!("{:#}\n", as_json(one, score));
-    let mut file = destination.file()?;
-    file.write_all(text.as_bytes())
-        .with_context(|| format!("cannot write `{}`", path.display()))?;
-    destination.commit()
+    let record = |one: &Loaded| {
+        let name = format!("{}.json", one.unit.config.name);
+        OwnFile::new(directory, &name, OwnFile::JSON).map(Some)
+    };
+    loaded.iter().map(record).collect()
 }
 
-fn print(one: &Loaded, score: &Score) {
-    tables::print_line(&format!("{}:", one.path));
+fn print(scored: &Scored) {
+    let score = &scored.netlist;
+    tables::print_line(&format!("{}:", scored.config));
     let row = |name: String, tally: &Tally| {
         let caught = |leg| tally.caught.get(&leg).copied().unwrap_or(0).to_string();
         vec![
@@ -208,13 +275,33 @@ fn print(one: &Loaded, score: &Score) {
     tables::print_line(&format!(
         "  {:.2} % open: {}",
         100.0 * score.all.share_open(),
-        if score.holds() {
-            "holds"
-        } else {
-            "FAILS, at most 1 % may be"
-        }
+        conclusion(score.holds())
     ));
-    for id in &score.open {
+    print_open(&score.open);
+    let Some(verilog) = &scored.verilog else {
+        return;
+    };
+    tables::print_line(&format!(
+        "  Verilog: {} faults, {} noticed by lint, {} by the bench, {} equivalent, {} open: {}",
+        verilog.planted,
+        verilog.lint,
+        verilog.bench,
+        verilog.equivalent.len(),
+        verilog.open.len(),
+        conclusion(verilog.holds())
+    ));
+    print_open(&verilog.open);
+}
+
+fn conclusion(holds: bool) -> &'static str {
+    match holds {
+        true => "holds",
+        false => "FAILS, at most 1 % may be",
+    }
+}
+
+fn print_open(ids: &[String]) {
+    for id in ids {
         tables::print_line(&format!("  open: {id}"));
     }
 }

@@ -89,6 +89,14 @@ impl<'a> Clocks<'a> {
         Ok(Self { pairing })
     }
 
+    /// The same with some operands held at raw values: the combinations are those of the others.
+    #[must_use]
+    pub fn holding(self, held: &[(String, i64)]) -> Self {
+        Self {
+            pairing: self.pairing.holding(held),
+        }
+    }
+
     /// The bits of all operands together.
     pub fn bits(&self) -> u32 {
         self.pairing.ports.bits()

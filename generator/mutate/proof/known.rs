@@ -1,7 +1,7 @@
 //! What is known of the bits of a net, and what a cell makes of it.
 
 use crate::fixed::mask;
-use crate::netlist::{Design, NetId, Op};
+use crate::netlist::{Design, Driver, NetId, Op};
 
 /// Some bits of a pattern; the others may be anything.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -93,7 +93,7 @@ impl Known {
         }
     }
 
-    fn not(self, width: u32) -> Self {
+    pub(super) fn not(self, width: u32) -> Self {
         Self {
             mask: self.mask,
             value: !self.value & self.mask & mask(width),
@@ -188,18 +188,18 @@ pub(super) fn cell(design: &Design, op: &Op, width: u32, value: &impl Fn(NetId) 
             })
         }
         Op::Mux { select, inputs } => {
-            let mut possible = choices(value(*select), inputs).map(value);
+            let mut possible = choices(value(*select), design.width(*select), inputs).map(value);
             let first = possible.next().unwrap_or_default();
             possible.fold(first, Known::join)
         }
     }
 }
 
-/// The inputs that a mux may take.
-pub(super) fn choices(select: Known, inputs: &[NetId]) -> impl Iterator<Item = NetId> {
+/// The inputs that a mux with so many select lines may take.
+pub(super) fn choices(select: Known, lines: u32, inputs: &[NetId]) -> impl Iterator<Item = NetId> {
     let last = inputs.len() - 1;
     // The largest number that the select lines may carry: beyond the last input stands the last.
-    let most = select.value | !select.mask;
+    let most = select.value | mask(lines) & !select.mask;
     inputs
         .iter()
         .enumerate()
@@ -256,7 +256,7 @@ fn sum(a: Known, b: Known, carry: Known, width: u32) -> Known {
     known
 }
 
-/// Leading and trailing zeros of an unsigned product.
+/// Leading and trailing zeros of an unsigned product, and of a square.
 fn product(
     design: &Design,
     a: NetId,
@@ -271,7 +271,11 @@ fn product(
         (!negative).then_some(most)
     };
     let trailing = |net: NetId| (value(net).zeros()).trailing_ones().min(design.width(net));
-    let low = mask((trailing(a) + trailing(b)).min(width));
+    let low = match square(design, a, b) {
+        // k² is 0 or 1 modulo 4, and (2^t·k)² has 2t more zeros below.
+        true => mask(2 * trailing(a)) | 2u64.checked_shl(2 * trailing(a)).unwrap_or(0),
+        false => mask(trailing(a) + trailing(b)),
+    } & mask(width);
     let high = match (most(a), most(b)) {
         (Some(a), Some(b)) => {
             let most = u128::from(a) * u128::from(b);
@@ -293,4 +297,42 @@ fn product(
             value: 0,
         },
     }
+}
+
+/// Whether both are the same net, under whatever names.
+pub(super) fn square(design: &Design, a: NetId, b: NetId) -> bool {
+    let named = |mut net: NetId| {
+        while let Driver::Op(Op::Relabel(of)) = design.net(net).driver {
+            net = of;
+        }
+        net
+    };
+    named(a) == named(b)
+}
+
+/// The bits in which a sum may differ from the sound one's, when its summands, given as what is known in both
+/// and where they may differ, do. A carry differs only where what makes it is not decided by bits that
+/// agree.
+pub(super) fn sum_differs(summands: [(Known, u64); 2], carry: (Known, u64), width: u32) -> u64 {
+    let mut all = 0;
+    let bit_of = |(known, differ): (Known, u64), bit: u32| {
+        let agreed = known.mask & !differ;
+        (
+            (agreed >> bit & 1 == 1).then_some(known.value >> bit & 1),
+            differ >> bit & 1 == 1,
+        )
+    };
+    let mut carry = bit_of(carry, 0);
+    for bit in 0..width {
+        let three = [bit_of(summands[0], bit), bit_of(summands[1], bit), carry];
+        let differs = three.iter().any(|(_, differs)| *differs);
+        all |= u64::from(differs) << bit;
+        let votes = |value: u64| three.iter().filter(|(it, _)| *it == Some(value)).count();
+        carry = match (votes(0) >= 2, votes(1) >= 2) {
+            (true, _) => (Some(0), false),
+            (_, true) => (Some(1), false),
+            _ => (None, differs),
+        };
+    }
+    all
 }

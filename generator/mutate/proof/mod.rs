@@ -1,17 +1,24 @@
 //! Faults that change nothing that is compared, and the proof of it.
 //!
-//! The proof is an induction over clocks. In every word of the microprogram, sound design and mutant are
+//! One proof is an induction over clocks. In every word of the microprogram, sound design and mutant are
 //! evaluated side by side over known bits, with the bits noted in which they may differ. Where neither an
 //! output nor a register that the golden model predicts differs in any word, while registers inside of
-//! blocks may differ as far as the words before have left them so, they never do.
+//! blocks may differ as far as the words before have left them so, they never do. The other tries every
+//! combination of values around the fault ([`window`]).
 
+mod cut;
+mod interval;
 mod known;
+mod lanes;
 mod sound;
+mod window;
 
 use known::Known;
 use sound::Sound;
+use window::Windows;
 
 use super::fault::{Bit, Site};
+use super::run::How;
 use crate::fixed::mask;
 use crate::netlist::{Design, Driver, NetId, Op, RegId, RegisterKind, RomId};
 
@@ -20,6 +27,7 @@ pub(super) struct Prover<'a> {
     sound: Sound<'a>,
     /// Of each net, the bits that are compared in every clock.
     compared: Vec<u64>,
+    windows: Windows<'a>,
 }
 
 /// Where sound design and mutant may differ, after power-up in no bit.
@@ -47,14 +55,25 @@ impl<'a> Prover<'a> {
         for net in outputs.chain(registers.map(|register| register.q)) {
             compared[net.index()] = mask(design.width(net));
         }
+        let sound = Sound::of(design)?;
+        let windows = Windows::of(design, &sound.order);
         Some(Self {
-            sound: Sound::of(design)?,
+            sound,
             compared,
+            windows,
         })
     }
 
-    /// Whether nothing that is compared ever differs with this fault.
-    pub(super) fn proves(&self, site: &Site) -> bool {
+    /// How it is proved, if it is, that nothing that is compared ever differs with this fault.
+    pub(super) fn proves(&self, site: &Site) -> Option<How> {
+        if self.by_induction(site) {
+            Some(How::Induction)
+        } else {
+            self.windows.proves(site).then_some(How::Exhaustion)
+        }
+    }
+
+    fn by_induction(&self, site: &Site) -> bool {
         let design = self.sound.design;
         let resets = |id: &RegId| design.register(*id).reset;
         match site {
@@ -125,7 +144,7 @@ impl<'a> Prover<'a> {
                     let value = |net: NetId| nets.known[net.index()];
                     (
                         known::cell(design, op, width, &value),
-                        self.cell(word, op, &nets),
+                        self.cell(word, op, width, &nets),
                     )
                 }
                 (Driver::Register(register), _) => {
@@ -167,8 +186,8 @@ impl<'a> Prover<'a> {
             Driver::Op(op) => known::cell(design, op, width, &value),
             _ => Known::NOTHING,
         };
-        let before = taken(&design.net(id).driver, &|net| sound[net.index()]);
-        let after = taken(driver, &value);
+        let before = taken(design, &design.net(id).driver, &|net| sound[net.index()]);
+        let after = taken(design, driver, &value);
         let differ = match before.zip(after) {
             Some((a, b)) if self.sound.same[a.index()] == self.sound.same[b.index()] => {
                 nets.differ[a.index()] | nets.differ[b.index()]
@@ -179,9 +198,10 @@ impl<'a> Prover<'a> {
     }
 
     /// The bits in which the result of a cell may differ.
-    fn cell(&self, word: usize, op: &Op, nets: &Nets) -> u64 {
+    fn cell(&self, word: usize, op: &Op, width: u32, nets: &Nets) -> u64 {
         let design = self.sound.design;
         let differ = |net: &NetId| nets.differ[net.index()];
+        let summand = |net: NetId| (nets.known[net.index()], nets.differ[net.index()]);
         match op {
             Op::Relabel(a) | Op::Not(a) => differ(a),
             Op::Extend(a) => {
@@ -195,18 +215,28 @@ impl<'a> Prover<'a> {
             }),
             Op::And(a, b) | Op::Or(a, b) | Op::Xor(a, b) => differ(a) | differ(b),
             Op::Add { a, b, carry } => {
-                above(differ(a) | differ(b) | carry.as_ref().map_or(0, differ))
+                let zero = (Known::all(0, 1), 0);
+                let carry = carry.map_or(zero, summand);
+                known::sum_differs([summand(*a), summand(*b)], carry, width)
             }
-            Op::Sub(a, b) | Op::Mul(a, b) => above(differ(a) | differ(b)),
+            Op::Sub(a, b) => {
+                let (known, differ) = summand(*b);
+                let inverted = (known.not(width), differ);
+                let one = (Known::all(1, 1), 0);
+                known::sum_differs([summand(*a), inverted], one, width)
+            }
+            Op::Mul(a, b) => above(differ(a) | differ(b)),
             Op::Equal(..) | Op::Less(..) | Op::Any(_) | Op::All(_) => 1,
             Op::Mux { select, inputs } => {
                 let after = nets.known[select.index()];
+                let lines = design.width(*select);
                 if differ(select) == 0 {
-                    return known::choices(after, inputs)
+                    return known::choices(after, lines, inputs)
                         .fold(0, |all, input| all | differ(&input));
                 }
                 let before = self.sound.words[word][select.index()];
-                let possible = known::choices(before, inputs).chain(known::choices(after, inputs));
+                let possible = known::choices(before, lines, inputs);
+                let possible = possible.chain(known::choices(after, lines, inputs));
                 let possible: Vec<NetId> = possible.collect();
                 let same = |net: &NetId| self.sound.same[net.index()];
                 match possible.iter().all(|net| same(net) == same(&possible[0])) {
@@ -321,11 +351,11 @@ impl<'a> Prover<'a> {
 }
 
 /// The net whose value a net takes, if it takes one.
-fn taken(driver: &Driver, value: &impl Fn(NetId) -> Known) -> Option<NetId> {
+fn taken(design: &Design, driver: &Driver, value: &impl Fn(NetId) -> Known) -> Option<NetId> {
     match driver {
         Driver::Op(Op::Relabel(a)) => Some(*a),
         Driver::Op(Op::Mux { select, inputs }) => {
-            let mut possible = known::choices(value(*select), inputs);
+            let mut possible = known::choices(value(*select), design.width(*select), inputs);
             let first = possible.next();
             possible.next().is_none().then_some(first).flatten()
         }

@@ -1,7 +1,8 @@
 //! What is known of the sound design in each word of its microprogram.
 
+use super::interval;
 use super::known::{self, Known};
-use crate::netlist::{Design, Driver, NetId, Op, Register, RegisterKind, Sequence};
+use crate::netlist::{Design, Driver, NetId, Op, Register, Sequence};
 
 /// What is known in each word, whatever the inputs are.
 pub(super) struct Sound<'a> {
@@ -64,6 +65,7 @@ impl<'a> Sound<'a> {
     fn settle(&self, word: usize, held: &[Known]) -> Vec<Known> {
         let design = self.design;
         let mut nets = vec![Known::NOTHING; design.nets.len()];
+        let mut intervals = vec![(0, 0); design.nets.len()];
         for &id in &self.order {
             let net = design.net(id);
             let width = design.width(id);
@@ -86,22 +88,12 @@ impl<'a> Sound<'a> {
                 Driver::Op(op) => known::cell(design, op, width, &|net| nets[net.index()]),
                 Driver::Input | Driver::Undriven => Known::NOTHING,
             };
-            nets[id.index()] = match net.driver {
-                // Of registers alone: the interval of a view of a shared multiplier, and of what is made of
-                // it, holds in some words only.
-                Driver::Register(register) if self.trusted(design.register(register)) => {
-                    known.and_also(Known::of_interval(net.range, width))
-                }
-                _ => known,
-            };
+            let of = |net: NetId| intervals[net.index()];
+            let interval = interval::of(design, id, &of, &|net| nets[net.index()]);
+            intervals[id.index()] = interval;
+            nets[id.index()] = known.and_also(Known::of_interval(interval, width));
         }
         nets
-    }
-
-    /// Whether the interval of a register holds in every clock from power-up on.
-    fn trusted(&self, register: &Register) -> bool {
-        let (low, high) = self.design.net(register.q).range;
-        register.kind != RegisterKind::Internal && low <= 0 && high >= 0
     }
 
     fn next(&self, register: &Register, nets: &[Known]) -> Known {

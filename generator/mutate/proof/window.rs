@@ -1,0 +1,268 @@
+//! Faults whose neighbourhood is small: every combination of values around it is tried.
+//!
+//! A window reaches from the fault forward over some cells, at most to multipliers, registers, ROMs and
+//! outputs, and backward to the fewest bits that determine it: a minimum cut. Each net of the cut takes
+//! every value of its interval.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::OnceLock;
+
+use super::cut::smallest_cut;
+use super::interval::{self, Interval};
+use super::known::Known;
+use super::lanes::{self, LANES, Lanes};
+use crate::mutate::fault::Site;
+use crate::netlist::{Design, Driver, NetId, Op, RomId};
+
+/// At most so many combinations are tried, as a power of two.
+const BITS: u32 = 22;
+
+/// Windows of one design.
+pub(super) struct Windows<'a> {
+    design: &'a Design,
+    order: Vec<NetId>,
+    intervals: Vec<Interval>,
+    /// The cells that read a net.
+    readers: Vec<Vec<NetId>>,
+    /// Whether something else reads it: a register, a ROM, a port.
+    sinks: Vec<bool>,
+    /// Whether a multiplier reads it.
+    multiplied: Vec<bool>,
+    /// For each ROM the words that may be read, once asked for; none if they are too many to tell.
+    read: Vec<OnceLock<Option<BTreeSet<u64>>>>,
+}
+
+impl<'a> Windows<'a> {
+    pub(super) fn of(design: &'a Design, order: &[NetId]) -> Self {
+        let mut intervals = vec![(0, 0); design.nets.len()];
+        for &id in order {
+            let of = |net: NetId| intervals[net.index()];
+            intervals[id.index()] = interval::of(design, id, &of, &|_| Known::NOTHING);
+        }
+        let mut readers = vec![Vec::new(); design.nets.len()];
+        let mut sinks = vec![false; design.nets.len()];
+        let mut multiplied = sinks.clone();
+        for (id, net) in design.iter() {
+            if let Driver::Op(op) = &net.driver {
+                for operand in op.operands() {
+                    readers[operand.index()].push(id);
+                    multiplied[operand.index()] |= matches!(op, Op::Mul(..));
+                }
+            }
+        }
+        let registers = design.registers.iter();
+        let read = registers.flat_map(|register| [register.data, register.enable]);
+        let read = read
+            .flatten()
+            .chain(design.roms.iter().map(|rom| rom.address));
+        for net in read.chain(design.outputs().map(|port| port.net)) {
+            sinks[net.index()] = true;
+        }
+        Self {
+            design,
+            order: order.to_vec(),
+            intervals,
+            readers,
+            sinks,
+            multiplied,
+            read: design.roms.iter().map(|_| OnceLock::new()).collect(),
+        }
+    }
+
+    /// Whether the fault never leaves its window.
+    pub(super) fn proves(&self, site: &Site) -> bool {
+        match site {
+            Site::Words(rom, words) if *rom != self.design.control.rom => {
+                let read = self.read[rom.index()].get_or_init(|| self.words_read(*rom));
+                let is_read = |(word, _): &(usize, u64)| {
+                    read.as_ref()
+                        .is_none_or(|read| read.contains(&(*word as u64)))
+                };
+                !words.iter().any(is_read) || self.stays_inside(self.design.rom(*rom).data, site)
+            }
+            Site::Bit(net, ..) | Site::Driver(net, _) => {
+                let driver = &self.design.net(*net).driver;
+                // What a register takes and what an input brings is at fault elsewhere.
+                !matches!(driver, Driver::Register(_) | Driver::Input)
+                    && self.stays_inside(*net, site)
+            }
+            _ => false,
+        }
+    }
+
+    /// The words of a ROM that may be read.
+    fn words_read(&self, rom: RomId) -> Option<BTreeSet<u64>> {
+        let address = self.design.rom(rom).address;
+        let mut read = BTreeSet::new();
+        self.try_all(
+            &[address].into(),
+            &BTreeSet::new(),
+            None,
+            |values, _, count| {
+                read.extend(&values[&address][..count]);
+                true
+            },
+        )?;
+        Some(read)
+    }
+
+    /// Whether what leaves some neighbourhood of the net is the same with the fault.
+    fn stays_inside(&self, net: NetId, site: &Site) -> bool {
+        // Short of multipliers first: beyond them is more to try.
+        self.stays_within(net, site, false) || self.stays_within(net, site, true)
+    }
+
+    /// The same of all that the net reaches within some number of cells, fewer before more; with multipliers or
+    /// without.
+    fn stays_within(&self, net: NetId, site: &Site, through: bool) -> bool {
+        let mut affected = BTreeSet::from([net]);
+        loop {
+            let beyond: BTreeSet<NetId> = affected
+                .iter()
+                .flat_map(|net| self.cells_reading(*net, through))
+                .filter(|reader| !affected.contains(reader))
+                .collect();
+            let leaves = |net: &NetId| {
+                let stops = self.sinks[net.index()] || !through && self.multiplied[net.index()];
+                let mut readers = self.cells_reading(*net, through);
+                stops || readers.any(|reader| beyond.contains(&reader))
+            };
+            let leaving: Vec<NetId> = affected.iter().copied().filter(leaves).collect();
+            let fault = Some((net, site));
+            let same = self.try_all(&affected, &affected, fault, |sound, mutant, count| {
+                let is_same = |net: &NetId| sound[net][..count] == mutant[net][..count];
+                leaving.iter().all(is_same)
+            });
+            if same == Some(true) {
+                return true;
+            }
+            if beyond.is_empty() {
+                return false;
+            }
+            affected.extend(beyond);
+        }
+    }
+
+    /// The cells that read a net, with multipliers or without.
+    fn cells_reading(&self, net: NetId, through: bool) -> impl Iterator<Item = NetId> {
+        let multiplies =
+            |net: NetId| matches!(self.design.net(net).driver, Driver::Op(Op::Mul(..)));
+        let readers = self.readers[net.index()].iter().copied();
+        readers.filter(move |reader| through || !multiplies(*reader))
+    }
+
+    /// Evaluates `wanted` for every combination of the values that determine them, none of which are in
+    /// `affected`, and with the fault too. `None` if there are too many; whether `holds` always returned
+    /// true, given both and how many lanes count.
+    fn try_all(
+        &self,
+        wanted: &BTreeSet<NetId>,
+        affected: &BTreeSet<NetId>,
+        fault: Option<(NetId, &Site)>,
+        mut holds: impl FnMut(&BTreeMap<NetId, Lanes>, &BTreeMap<NetId, Lanes>, usize) -> bool,
+    ) -> Option<bool> {
+        // The words at fault are all that the net brings that matters.
+        let words = match fault {
+            Some((net, Site::Words(rom, words))) => {
+                Some((net, &self.design.rom(*rom).words, words))
+            }
+            _ => None,
+        };
+        let at_fault = |net: NetId| words.filter(|(at, ..)| *at == net);
+        let size = |net: NetId| {
+            let (low, high) = self.intervals[net.index()];
+            at_fault(net).map_or(high - low + 1, |(.., words)| words.len() as i128)
+        };
+        let bits = |net: NetId| 128 - (size(net) - 1).leading_zeros();
+        let mut uncut = affected.clone();
+        uncut.retain(|net| at_fault(*net).is_none());
+        let cut = smallest_cut(self.design, wanted, &uncut, &bits, BITS)?;
+        let total = cut
+            .iter()
+            .try_fold(1i128, |total, net| total.checked_mul(size(*net)))
+            .filter(|total| *total <= 1 << BITS)?;
+        let mut inside = BTreeSet::new();
+        let mut todo: Vec<NetId> = wanted.iter().copied().collect();
+        while let Some(net) = todo.pop() {
+            if !cut.contains(&net) && inside.insert(net) {
+                todo.extend(self.operands(net));
+            }
+        }
+        let steps: Vec<NetId> = self
+            .order
+            .iter()
+            .copied()
+            .filter(|net| inside.contains(net))
+            .collect();
+        let (mut sound, mut mutant) = (BTreeMap::new(), BTreeMap::new());
+        for from in (0..total).step_by(LANES) {
+            let count = (total - from).min(LANES as i128) as usize;
+            let mut place = 1;
+            for &net in &cut {
+                let (low, _) = self.intervals[net.index()];
+                let format = self.design.net(net).format;
+                let number = |lane: usize| (from + lane as i128) / place % size(net);
+                let values = match at_fault(net) {
+                    None => std::array::from_fn(|lane| format.bits(low + number(lane))),
+                    Some((_, before, words)) => {
+                        let word = |lane: usize| words[number(lane) as usize];
+                        mutant.insert(net, std::array::from_fn(|lane| word(lane).1));
+                        std::array::from_fn(|lane| before[word(lane).0])
+                    }
+                };
+                sound.insert(net, values);
+                place *= size(net);
+            }
+            for &net in &steps {
+                let value = self.evaluate(net, &self.design.net(net).driver, &sound, None);
+                sound.insert(net, value);
+                if let Some((at, site)) = fault
+                    && affected.contains(&net)
+                {
+                    let driver = match site {
+                        Site::Driver(_, driver) if at == net => driver,
+                        _ => &self.design.net(net).driver,
+                    };
+                    let mut value = self.evaluate(net, driver, &sound, Some(&mutant));
+                    if let Site::Bit(_, bit, how) = site
+                        && at == net
+                    {
+                        value = value.map(|bits| how.applied(bits, *bit));
+                    }
+                    mutant.insert(net, value);
+                }
+            }
+            if !holds(&sound, &mutant, count) {
+                return Some(false);
+            }
+        }
+        Some(true)
+    }
+
+    fn operands(&self, net: NetId) -> Vec<NetId> {
+        match &self.design.net(net).driver {
+            Driver::Op(op) => op.operands(),
+            _ => Vec::new(),
+        }
+    }
+
+    /// A net in all lanes; what the mutant has of its own stands before what the sound design has.
+    fn evaluate(
+        &self,
+        net: NetId,
+        driver: &Driver,
+        sound: &BTreeMap<NetId, Lanes>,
+        mutant: Option<&BTreeMap<NetId, Lanes>>,
+    ) -> Lanes {
+        let of = |net: NetId| match mutant.and_then(|mutant| mutant.get(&net)) {
+            Some(lanes) => lanes,
+            None => &sound[&net],
+        };
+        match driver {
+            Driver::Constant(bits) => [*bits; LANES],
+            Driver::Op(op) => lanes::cell(self.design, op, self.design.width(net), &of),
+            // A source is in the cut, and has its values.
+            _ => *of(net),
+        }
+    }
+}

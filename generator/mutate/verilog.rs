@@ -1,0 +1,322 @@
+//! Faults of the emitted Verilog: what an emitter could write wrongly.
+//!
+//! They are planted in the text of the modules, one at a time. The bench that goes with the sound text, and the
+//! vectors on which golden model and built-in simulator agree, must notice.
+//!
+//! No register is put on the other edge of the clock: what it takes is stable by then, so that it carries the
+//! same at every edge that counts, and only timing analysis can tell.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::sync::LazyLock;
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+use rayon::prelude::*;
+use regex::Regex;
+use serde::{Deserialize, Serialize};
+
+use super::formal;
+use crate::cosim::external::{BuiltBench, Simulator, Tool, Waveform};
+use crate::flow::{TEST_SEED, Unit};
+
+/// Results in the vectors of the bench that must notice.
+pub const POINTS: u64 = 2000;
+
+/// What Yosys may take for the proof that a fault changes nothing: those that succeed take a second.
+const PROOF_LIMIT: Duration = Duration::from_secs(5);
+
+/// A fault of a text.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct TextFault {
+    /// The file, the number of the line, and what was done there.
+    pub id: String,
+    /// What was done, by the name of its kind.
+    pub kind: &'static str,
+    file: usize,
+    /// The line, from 0, and what it becomes.
+    line: usize,
+    text: String,
+}
+
+/// What became of a fault of a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TextVerdict {
+    /// Icarus Verilog or Verilator refuses the text or warns of it.
+    Lint,
+    /// The bench fails.
+    Bench,
+    /// Yosys proves that the module behaves as before.
+    Equivalent,
+    /// Nothing notices it, and nothing proves it equivalent.
+    Open,
+}
+
+/// What the faults are shown to.
+const TOOLS: [&str; 4] = ["iverilog", "vvp", "verilator", "yosys"];
+
+/// Files by name, with which ones are modules of the device.
+pub struct Text {
+    files: Vec<(String, String)>,
+    top: String,
+    modules: Vec<usize>,
+}
+
+/// What is replaced by what, and its name. A replacement may differ from what it replaces in nothing; then
+/// there is no fault.
+struct Operator {
+    kind: &'static str,
+    pattern: Regex,
+    with: fn(&regex::Captures<'_>) -> String,
+}
+
+/// The part of a line that is code and no declaration of a port or of a memory.
+static OPERATORS: LazyLock<Vec<Operator>> = LazyLock::new(|| {
+    let operator = |kind, pattern, with| Operator {
+        kind,
+        pattern: Regex::new(pattern).expect("a pattern of ours"),
+        with,
+    };
+    vec![
+        operator("sign dropped", r"\b(wire|reg) +signed\b", |it| {
+            it[1].to_owned()
+        }),
+        operator("sign dropped", r"\$signed\(", |_| "$unsigned(".to_owned()),
+        operator("comparison", r" (<=|>=|<|>|==|!=) (?P<right>\S)", |it| {
+            let other = match &it[1] {
+                "<=" => "<",
+                ">=" => ">",
+                "<" => "<=",
+                ">" => ">=",
+                "==" => "!=",
+                _ => "==",
+            };
+            format!(" {other} {}", &it["right"])
+        }),
+        operator("operator", r" ([-+&|^*]) ", |it| {
+            let other = match &it[1] {
+                "+" => "-",
+                "-" => "+",
+                "&" => "|",
+                "|" => "&",
+                "^" => "|",
+                _ => "+",
+            };
+            format!(" {other} ")
+        }),
+        operator(
+            "operands swapped",
+            r"([\w\[\]:]+) ([-<>]) ([\w\[\]:']+)",
+            |it| format!("{} {} {}", &it[3], &it[2], &it[1]),
+        ),
+        operator(
+            "choice swapped",
+            r"\? (\{[^{}]*\}|[\w\[\]:']+) : (\{[^{}]*\}|[\w\[\]:']+)",
+            |it| format!("? {} : {}", &it[2], &it[1]),
+        ),
+        operator("inversion dropped", r"[~!](\(|\w)", |it| it[1].to_owned()),
+        operator("condition inverted", r"if \((\w+)\)", |it| {
+            format!("if (!{})", &it[1])
+        }),
+        operator("part-select", r"(\w)\[(\d+)(?::(\d+))?\]", |it| {
+            let shift = |text: &str| (text.parse::<u64>().unwrap_or_default() + 1).to_string();
+            let low = it
+                .get(3)
+                .map_or(String::new(), |low| format!(":{}", shift(low.as_str())));
+            format!("{}[{}{low}]", &it[1], shift(&it[2]))
+        }),
+        operator("width", r"\b(wire|reg)( +signed)? +\[(\d+):0\]", |it| {
+            let high = it[3].parse::<u64>().unwrap_or_default().saturating_sub(1);
+            format!(
+                "{}{} [{high}:0]",
+                &it[1],
+                it.get(2).map_or("", |sign| sign.as_str())
+            )
+        }),
+        operator("constant", r"(\d+)'(d|h|b)([0-9a-f]+)", |it| {
+            let radix = match &it[2] {
+                "d" => 10,
+                "h" => 16,
+                _ => 2,
+            };
+            let value = u64::from_str_radix(&it[3], radix).unwrap_or_default() ^ 1;
+            match radix {
+                10 => format!("{}'d{value}", &it[1]),
+                16 => format!("{}'h{value:x}", &it[1]),
+                _ => format!("{}'b{value:b}", &it[1]),
+            }
+        }),
+        operator("reduction", r"\(\|", |_| "(&".to_owned()),
+    ]
+});
+
+impl Text {
+    /// The sound text of a configuration, with a bench of [`POINTS`] results.
+    ///
+    /// # Errors
+    /// A tool is missing; golden model and simulation differ; the design cannot be written.
+    pub fn of(unit: &Unit) -> Result<Self> {
+        TOOLS
+            .iter()
+            .try_for_each(|tool| Tool::find(tool).map(drop))?;
+        let name = &unit.config.name;
+        let files = unit.files(&format!("{name}.toml"), unit.vectors(POINTS, TEST_SEED)?)?;
+        let mut text = Self {
+            files: Vec::new(),
+            top: format!("{name}_tb"),
+            modules: Vec::new(),
+        };
+        for file in files {
+            let plain = file
+                .path
+                .rsplit('/')
+                .next()
+                .unwrap_or(&file.path)
+                .to_owned();
+            if !plain.ends_with(".v") && !plain.ends_with(".mem") {
+                continue;
+            }
+            if plain.ends_with(".v") && file.path.starts_with("rtl_out/") {
+                text.modules.push(text.files.len());
+            }
+            text.files.push((plain, file.contents));
+        }
+        Ok(text)
+    }
+
+    /// Every fault, in the order of the text.
+    pub fn faults(&self) -> Vec<TextFault> {
+        let mut faults = Vec::new();
+        for &file in &self.modules {
+            let (name, text) = &self.files[file];
+            let mut inside = false;
+            let mut formal = false;
+            for (line, whole) in text.lines().enumerate() {
+                let code = whole.split("//").next().unwrap_or(whole);
+                formal |= code.starts_with("`ifdef FORMAL");
+                let counts = inside && !formal && !code.contains("wire unused");
+                if counts {
+                    in_line(name, file, line, whole, code, &mut faults);
+                }
+                formal &= !code.starts_with("`endif");
+                inside = (inside || code.starts_with(");")) && !code.starts_with("endmodule");
+            }
+        }
+        faults
+    }
+
+    /// A part of the faults that is spread over the kinds and the text, `most` or fewer.
+    pub fn sample(&self, most: usize) -> Vec<TextFault> {
+        let mut kinds: BTreeMap<&str, Vec<TextFault>> = BTreeMap::new();
+        for fault in self.faults() {
+            kinds.entry(fault.kind).or_default().push(fault);
+        }
+        let share = most.div_ceil(kinds.len().max(1));
+        let mut sample: Vec<TextFault> = Vec::new();
+        for of_kind in kinds.into_values() {
+            let step = of_kind.len().div_ceil(share);
+            sample.extend(of_kind.into_iter().step_by(step.max(1)));
+        }
+        sample.truncate(most);
+        sample
+    }
+
+    /// What notices each of the faults.
+    ///
+    /// # Errors
+    /// A linter is missing, or does not end within `limit`.
+    pub fn run(
+        &self,
+        faults: &[TextFault],
+        limit: Duration,
+        progress: &(dyn Fn() + Sync),
+    ) -> Result<Vec<TextVerdict>> {
+        let verilator = Tool::find("verilator")?;
+        let run = |fault: &TextFault| {
+            let verdict = self.verdict(fault, &verilator, limit);
+            progress();
+            verdict.with_context(|| format!("the mutant `{}`", fault.id))
+        };
+        faults.par_iter().map(run).collect()
+    }
+
+    fn verdict(&self, fault: &TextFault, verilator: &Tool, limit: Duration) -> Result<TextVerdict> {
+        let mut files = self.files.clone();
+        let lines = files[fault.file].1.lines().enumerate();
+        let lines = lines.map(|(at, line)| if at == fault.line { &fault.text } else { line });
+        files[fault.file].1 = lines.fold(String::new(), |text, line| text + line + "\n");
+        let place = tempfile::tempdir().context("cannot make a temporary directory")?;
+        let mut arguments = vec!["--lint-only", "-Wall", "--top-module"];
+        arguments.push(self.top.trim_end_matches("_tb"));
+        for (name, contents) in &files {
+            fs::write(place.path().join(name), contents)
+                .with_context(|| format!("cannot write `{name}`"))?;
+        }
+        arguments.extend(self.modules.iter().map(|&at| files[at].0.as_str()));
+        let lint = verilator.run(arguments, place.path(), limit)?;
+        if !lint.status.success() || !lint.output.is_empty() {
+            return Ok(TextVerdict::Lint);
+        }
+        let Ok(bench) =
+            BuiltBench::build(Simulator::Icarus, &files, &self.top, Waveform::None, limit)
+        else {
+            return Ok(TextVerdict::Lint);
+        };
+        // A bench that does not end, or ends without a verdict, does not pass either.
+        if !bench.run(limit).is_ok_and(|outcome| outcome.passed) {
+            return Ok(TextVerdict::Bench);
+        }
+        let (file, sound) = &self.files[fault.file];
+        let place = bench.directory();
+        fs::write(place.join(formal::MUTANT), &files[fault.file].1)
+            .and_then(|()| fs::write(place.join(file), sound))
+            .with_context(|| format!("cannot write `{file}`"))?;
+        let module = file.trim_end_matches(".v");
+        Ok(
+            match formal::proves(place, module, limit.min(PROOF_LIMIT))? {
+                true => TextVerdict::Equivalent,
+                false => TextVerdict::Open,
+            },
+        )
+    }
+}
+
+/// The faults of one line.
+fn in_line(
+    name: &str,
+    file: usize,
+    line: usize,
+    whole: &str,
+    code: &str,
+    faults: &mut Vec<TextFault>,
+) {
+    let is_memory = code.contains("_rom [") || code.contains("$readmem");
+    // What is assigned on a clock is no comparison.
+    let assignment = code
+        .find(" <= ")
+        .filter(|_| !code.contains("wire") && !code.contains("assign"));
+    for operator in OPERATORS.iter().filter(|_| !is_memory) {
+        for (number, found) in operator.pattern.captures_iter(code).enumerate() {
+            let Some(all) = found.get(0) else { continue };
+            let by = (operator.with)(&found);
+            let taken = assignment == Some(all.start());
+            if by == all.as_str() || taken && operator.kind == "comparison" {
+                continue;
+            }
+            let text = format!("{}{by}{}", &whole[..all.start()], &whole[all.end()..]);
+            faults.push(TextFault {
+                id: format!(
+                    "{name}:{}:{}:{}",
+                    line + 1,
+                    operator.kind.replace(' ', "-"),
+                    number + 1
+                ),
+                kind: operator.kind,
+                file,
+                line,
+                text,
+            });
+        }
+    }
+}
