@@ -287,8 +287,8 @@ Examples:
     /// Writes `DIR/<name>.html`, one page that needs no network, and `DIR/<name>.json` with the same for scripts: what was
     /// shown, by which leg, over which domain, with which tools, and what is left open. Both are the same whenever they are
     /// made with the same tools, but for the page's last section: how long each leg took, which `DIR/<name>.timings.json` has too.
-    /// The exit code is 0 only if every leg that covers the configuration was run and holds: a tool that is missing
-    /// leaves the verification incomplete.
+    /// The exit code is 0 only if every leg that covers the configuration, and that --without-tools does not leave out,
+    /// was run and holds: a tool that is missing leaves the verification incomplete.
     #[command(after_help = "\
 Examples:
   glint verify my_core.toml                       every leg, in a minute or two

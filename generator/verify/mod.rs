@@ -168,6 +168,16 @@ impl Leg {
     pub fn run(&self, subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Answer {
         let begin = Instant::now();
         let (tools, finding) = self.find(subject, progress);
+        self.answer(tools, finding, begin.elapsed())
+    }
+
+    /// What is said of it where it is not run on purpose.
+    pub fn left_out(&self, why: &str) -> Answer {
+        let finding = Finding::without(Verdict::NotCovered, why.to_owned());
+        self.answer(Vec::new(), finding, Duration::ZERO)
+    }
+
+    fn answer(&self, tools: Vec<String>, finding: Finding, took: Duration) -> Answer {
         Answer {
             leg: self.id,
             title: self.title,
@@ -176,7 +186,7 @@ impl Leg {
             finding,
             timing: Timing {
                 leg: self.id,
-                seconds: begin.elapsed().as_secs_f64(),
+                seconds: took.as_secs_f64(),
             },
         }
     }

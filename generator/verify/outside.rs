@@ -50,7 +50,7 @@ pub const LINT: Leg = Leg {
         Ok(Finding::new(
             Verdict::Passed,
             sources.join(", "),
-            "Neither has a remark.".to_owned(),
+            "Neither Icarus Verilog nor Verilator has a remark.".to_owned(),
             faults,
         ))
     },

@@ -108,6 +108,7 @@ fn one_configuration(
     let mut answers: Vec<Answer> = Vec::new();
     for leg in LEGS {
         if leg.is_outside() && request.without_tools {
+            answers.push(leg.left_out("--without-tools leaves it out."));
             continue;
         }
         let bar = progress::bar(output, leg.steps(&subject), leg.title);
