@@ -10,11 +10,10 @@ use crate::cosim::external::Tool;
 /// The file in which the module with a fault stands beside the sound one.
 pub(super) const MUTANT: &str = "glint_mutant.v";
 
-/// Whether every net of the module `name` that has a counterpart, registers and ports among them, carries the same
-/// in both for all inputs: temporal induction from a state in which they agree, cells with the same inputs, multipliers
-/// among them, taken together first. The sound text is in
-/// `directory` as `<name>.v`, the other as [`MUTANT`]. A proof that fails or takes more than `limit`
-/// proves nothing.
+/// Whether every net of the module `name` that has a counterpart, registers and ports among them, carries
+/// the same in both for all inputs: temporal induction from a state in which they agree, cells with the same
+/// inputs, multipliers and ROMs among them, taken together first. The sound text is in `directory` as
+/// `<name>.v`, the other as [`MUTANT`]. A proof that fails or takes more than `limit` proves nothing.
 ///
 /// # Errors
 /// Yosys is missing.
@@ -22,7 +21,7 @@ pub(super) fn proves(directory: &Path, name: &str, limit: Duration) -> Result<bo
     let yosys = Tool::find("yosys")?;
     let read = |file: &str, by: &str| {
         format!(
-            "read_verilog {file}; prep -top {name}; memory_map; opt; rename {name} {by}; design -stash {by}; "
+            "read_verilog {file}; prep -top {name}; opt; rename {name} {by}; design -stash {by}; "
         )
     };
     let commands = format!(

@@ -12,7 +12,7 @@ use crate::flow::Unit;
 use crate::registry::Registry;
 
 /// One in so many faults is planted: not a multiple of three, as for each bit there are three.
-const EVERY: usize = 4;
+const EVERY: usize = 16;
 
 /// Points in which most faults show.
 const POINTS: u64 = 200;
@@ -49,5 +49,5 @@ fn no_proof_of_what_shows() {
         proved += of_each.iter().filter(|(is_proved, _)| *is_proved).count();
         noticed += of_each.iter().filter(|(_, shows)| *shows).count();
     }
-    assert!(proved > 500 && noticed > 5_000, "{proved}, {noticed}");
+    assert!(proved > 100 && noticed > 1000, "{proved}, {noticed}");
 }
