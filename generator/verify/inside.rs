@@ -214,7 +214,7 @@ pub const MUTATION: Leg = Leg {
 const NAMED: usize = 20;
 
 /// Some of the faults, and how many more there are.
-pub(super) fn named(ids: &[String]) -> String {
+fn named(ids: &[String]) -> String {
     let named = ids[..ids.len().min(NAMED)].join(", ");
     match ids.len() - ids.len().min(NAMED) {
         0 => named,

@@ -137,7 +137,7 @@ pub struct Leg {
 }
 
 /// All legs: first those that need nothing but Glint.
-pub const LEGS: [&Leg; 13] = [
+pub const LEGS: [&Leg; 12] = [
     &inside::DESIGN,
     &inside::LOCKSTEP,
     &inside::CLOCKS,
@@ -150,7 +150,6 @@ pub const LEGS: [&Leg; 13] = [
     &outside::FORMAL,
     &outside::SYNTHESIS,
     &outside::GATES,
-    &outside::TEXT_MUTATION,
 ];
 
 impl Leg {

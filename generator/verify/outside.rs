@@ -6,15 +6,13 @@ use anyhow::{Context, Result};
 use rayon::prelude::*;
 use tempfile::TempDir;
 
-use super::inside::named;
 use super::{Finding, Leg, Subject, Verdict};
 use crate::cosim::external::{Simulator, lint, prove, run_bench};
 use crate::cosim::gates;
 use crate::cosim::synthesis::{FAMILIES, Family, synthesise};
 use crate::emit;
 use crate::flow::{BENCH_POINTS, BENCH_SEED};
-use crate::mutate::{Text, TextScore};
-use crate::words::{counted, grouped};
+use crate::words::grouped;
 
 /// Results of a bench, and with full effort.
 const POINTS: [u64; 2] = [200, 20_000];
@@ -265,46 +263,6 @@ pub const GATES: Leg = Leg {
             faults.into_iter().flatten().collect(),
         )
         .open("Timing: the models of the cells have none. Families without models of all cells."))
-    },
-};
-
-/// Faults in the emitted text.
-pub const TEXT_MUTATION: Leg = Leg {
-    id: "text-mutation",
-    title: "Faults in the emitted Verilog",
-    question: "Do linters and the bench notice each of the faults that are planted in the emitted Verilog, one at a time?",
-    tools: &["iverilog", "vvp", "verilator", "yosys"],
-    steps: |subject| {
-        let text = subject.effort.full.then(|| Text::of(subject.unit).ok());
-        text.flatten().map_or(1, |text| text.faults().len() as u64)
-    },
-    run: |subject, _, progress| {
-        if !subject.effort.full {
-            let why = "Each fault takes about a second; --full plants them.".to_owned();
-            return Ok(Finding::without(Verdict::NotCovered, why));
-        }
-        let text = Text::of(subject.unit)?;
-        let faults = text.faults();
-        let verdicts = text.run(&faults, subject.effort.time_limit, &|| progress(1))?;
-        let score = TextScore::of(&faults, &verdicts);
-        let open = named(&score.open);
-        let faults = match score.holds() {
-            true => Vec::new(),
-            false => vec![format!("more than 1 % are open: {open}")],
-        };
-        Ok(Finding::new(
-            Verdict::Passed,
-            counted(score.planted, "fault"),
-            format!(
-                "Lint notices {}, the bench {}; {} are proved to change nothing, {} are open.",
-                score.lint,
-                score.bench,
-                score.equivalent.len(),
-                score.open.len()
-            ),
-            faults,
-        )
-        .open(open))
     },
 };
 
