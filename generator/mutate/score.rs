@@ -128,9 +128,4 @@ impl TextScore {
         }
         score
     }
-
-    /// Whether no more than is tolerated is open.
-    pub fn holds(&self) -> bool {
-        self.open.len() as f64 <= TOLERATED * self.planted as f64
-    }
 }

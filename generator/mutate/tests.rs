@@ -12,7 +12,7 @@ use crate::flow::Unit;
 use crate::registry::Registry;
 
 /// One in so many faults is planted: not a multiple of three, as for each bit there are three.
-const EVERY: usize = 16;
+const EVERY: usize = 29;
 
 /// Points in which most faults show.
 const POINTS: u64 = 200;

@@ -3,14 +3,16 @@
 use std::time::Duration;
 
 use super::{Conclusion, Effort, Finding, LEGS, Record, Subject, Verdict};
-use crate::config::Config;
+use crate::config;
 use crate::flow::Unit;
 use crate::registry::Registry;
 
+/// A narrow device, of which every leg says something.
 fn unit() -> Unit {
     let registry = Registry::catalogue();
-    let device = *registry.device("threshold").expect("a device");
-    let config = Config::defaults(&(device.schema)(), "core");
+    let text = include_str!("../../configs/reduced/rough.toml");
+    let config = config::parse("core.toml", text, &registry.schemas()).expect("a configuration");
+    let device = *registry.device(&config.device).expect("a device");
     Unit::new(device, config).expect("a design")
 }
 
