@@ -25,16 +25,13 @@ fn generate(registry: &Registry, path: &str, text: &str) -> Result<Vec<OutputFil
 
 fn both(registry: &Registry, texts: &[(&str, String)]) -> Result<Vec<Vec<OutputFile>>> {
     let all = texts.iter();
-    all.map(|(path, text)| generate(registry, path, text))
-        .collect()
+    all.map(|(path, text)| generate(registry, path, text)).collect()
 }
 
 /// The most memory that the process has had, where the system tells.
 fn peak_memory() -> Option<String> {
     let status = fs::read_to_string("/proc/self/status").ok()?;
-    let line = status
-        .lines()
-        .find_map(|line| line.strip_prefix("VmHWM:"))?;
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
     Some(line.trim().to_owned())
 }
 

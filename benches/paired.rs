@@ -107,26 +107,15 @@ fn median(mut values: Vec<f64>) -> f64 {
 fn processor_time(since: Instant) -> f64 {
     let told = fs::read_to_string("/proc/thread-self/schedstat").ok();
     let used = told.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
-    used.map_or_else(
-        || since.elapsed().as_secs_f64(),
-        |nanoseconds| nanoseconds / 1e9,
-    )
+    used.map_or_else(|| since.elapsed().as_secs_f64(), |nanoseconds| nanoseconds / 1e9)
 }
 
 /// As [`processor_time`], of programs that this one has run.
 fn children_time(since: Instant) -> f64 {
     let told = fs::read_to_string("/proc/self/stat").unwrap_or_default();
     // Behind the name, which may hold spaces: user and system time are numbers 13 and 14, in hundredths.
-    let fields = told
-        .rsplit(')')
-        .next()
-        .unwrap_or_default()
-        .split_whitespace();
-    let times: Vec<f64> = fields
-        .skip(13)
-        .take(2)
-        .filter_map(|field| field.parse().ok())
-        .collect();
+    let fields = told.rsplit(')').next().unwrap_or_default().split_whitespace();
+    let times: Vec<f64> = fields.skip(13).take(2).filter_map(|field| field.parse().ok()).collect();
     match times[..] {
         [user, system] => (user + system) / 100.0,
         _ => since.elapsed().as_secs_f64(),
@@ -211,10 +200,8 @@ impl Streams {
     fn vectors(&self, unit: &Unit) -> Result<Vectors> {
         let mut simulator: Simulator = Simulator::new(&unit.design)?;
         let outputs: Vec<NetId> = unit.design.outputs().map(|port| port.net).collect();
-        let mut vectors = Vectors {
-            known_from: unit.vectors(1, 1)?.known_from,
-            ..Vectors::default()
-        };
+        let mut vectors =
+            Vectors { known_from: unit.vectors(1, 1)?.known_from, ..Vectors::default() };
         for inputs in self.inputs.iter().flatten() {
             let outputs = outputs.iter().map(|&net| simulator.value(net));
             vectors.expected.push(outputs.collect());
@@ -233,10 +220,7 @@ fn golden(unit: &Unit) -> Result<f64> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let lockstep = unit.lockstep(1)?;
     let (seconds, outcome) = pool.install(|| timed(|| lockstep.run(GOLDEN_POINTS, &|_| ())))?;
-    ensure!(
-        outcome.mismatch.is_none(),
-        "golden model and simulation differ"
-    );
+    ensure!(outcome.mismatch.is_none(), "golden model and simulation differ");
     Ok(outcome.clocks as f64 / seconds)
 }
 
@@ -245,10 +229,7 @@ fn verdict(unit: &Unit) -> Result<f64> {
     let begin = Instant::now();
     let unit = Unit::new(unit.device, unit.config.clone())?;
     let outcome = unit.lockstep(1)?.run(VERDICT_POINTS, &|_| ())?;
-    ensure!(
-        outcome.mismatch.is_none(),
-        "golden model and simulation differ"
-    );
+    ensure!(outcome.mismatch.is_none(), "golden model and simulation differ");
     Ok(begin.elapsed().as_secs_f64())
 }
 
@@ -303,12 +284,8 @@ impl Verilator {
                 .filter(|argument| !argument.is_empty())
                 .collect();
         arguments.push(&unit.config.name);
-        arguments.extend(
-            sources
-                .iter()
-                .map(String::as_str)
-                .filter(|file| !file.ends_with("_tb.v")),
-        );
+        arguments
+            .extend(sources.iter().map(String::as_str).filter(|file| !file.ends_with("_tb.v")));
         arguments.push("paired.cpp");
         Tool::find("verilator")?.run_to_success(arguments, place.path(), LIMIT)?;
         Ok(Self {
@@ -323,9 +300,7 @@ impl Verilator {
     fn run(&self) -> Result<f64> {
         let passes = PASSES.to_string();
         let arguments = ["rows", &passes];
-        let said = self
-            .program
-            .run_to_success(arguments, self.place.path(), LIMIT)?;
+        let said = self.program.run_to_success(arguments, self.place.path(), LIMIT)?;
         let numbers: Vec<&str> = said.split_whitespace().collect();
         let [processor, _wall, sum] = numbers[..] else {
             anyhow::bail!("the verilated model said `{said}`");
@@ -352,11 +327,7 @@ impl Icarus {
         let mut arguments = ["-g2012", "-o", "bench.vvp"].map(str::to_owned).to_vec();
         arguments.extend(sources);
         Tool::find("iverilog")?.run_to_success(arguments, place.path(), LIMIT)?;
-        Ok(Self {
-            vvp: Tool::find("vvp")?,
-            place,
-            clocks: streams.clocks(),
-        })
+        Ok(Self { vvp: Tool::find("vvp")?, place, clocks: streams.clocks() })
     }
 
     /// Clocks per second. Starting vvp takes a few milliseconds of it.
@@ -364,9 +335,7 @@ impl Icarus {
         let since = Instant::now();
         let begin = children_time(since);
         let directory = self.place.path();
-        let said = self
-            .vvp
-            .run_to_success(["-n", "bench.vvp"], directory, LIMIT)?;
+        let said = self.vvp.run_to_success(["-n", "bench.vvp"], directory, LIMIT)?;
         ensure!(said.contains("PASS"), "the bench failed: {said}");
         Ok(self.clocks as f64 / (children_time(since) - begin))
     }

@@ -98,10 +98,8 @@ fn measure<const LANES: usize>(criterion: &mut Criterion, design: &Design) -> Re
 fn all(criterion: &mut Criterion) {
     for device in Registry::catalogue().devices() {
         let config = Config::defaults(&(device.schema)(), &device.name.replace('-', "_"));
-        let measured = device
-            .design(&config)
-            .map_err(|problems| anyhow!("{problems:?}"))
-            .and_then(|design| {
+        let measured =
+            device.design(&config).map_err(|problems| anyhow!("{problems:?}")).and_then(|design| {
                 measure::<1>(criterion, &design)?;
                 measure::<16>(criterion, &design)
             });

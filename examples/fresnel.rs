@@ -118,14 +118,10 @@ fn describe(d: &Designer, config: &Config) {
     let c = d
         .operand_clamped("cos_half", formats.cosine, 0.0, 1.0)
         .doc("cosine between the light and the half vector");
-    let f0 = d
-        .operand("f0", formats.reflectance)
-        .doc("reflectance at normal incidence");
+    let f0 = d.operand("f0", formats.reflectance).doc("reflectance at normal incidence");
     let colours = Colours::new(d, formats.colour.int, None);
 
-    let power = d
-        .register("power", formats.power)
-        .doc("(1 - c)^2, then ^4, then ^5");
+    let power = d.register("power", formats.power).doc("(1 - c)^2, then ^4, then ^5");
     let f = d.register("f", formats.power).doc("the Fresnel factor");
 
     // 1 − x, with as many fraction bits as the powers: the muxes want their points in one place.
@@ -153,10 +149,7 @@ fn describe(d: &Designer, config: &Config) {
     // A word is a clock. What a register loads in a word is there in the next.
     d.microprogram([
         step("idle", []),
-        step(
-            "square",
-            [first.pick(grazing), second.pick(grazing), power.load()],
-        ),
+        step("square", [first.pick(grazing), second.pick(grazing), power.load()]),
         step("fourth", [power.load()]),
         step("fifth", [second.pick(grazing), power.load()]),
         step("blend", [second.pick(absorbed), f.load()]),
@@ -316,11 +309,7 @@ impl FresnelContract {
             control(1, f0, f0.max_raw() as i64, "reflectance head-on"),
         ];
         operands.extend(colour_operands(formats.colour));
-        Self {
-            formats,
-            operands,
-            outputs: colour_outputs(),
-        }
+        Self { formats, operands, outputs: colour_outputs() }
     }
 }
 

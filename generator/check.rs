@@ -25,11 +25,7 @@ pub struct Diagnostic {
 
 impl Diagnostic {
     pub(crate) fn new(message: String, location: Place) -> Self {
-        Self {
-            message,
-            location,
-            notes: Vec::new(),
-        }
+        Self { message, location, notes: Vec::new() }
     }
 
     pub(crate) fn note(mut self, note: String, location: Place) -> Self {
@@ -68,11 +64,7 @@ impl std::error::Error for Diagnostics {}
 
 /// Every mistake of `design`; `views` are the products that a selection gives their meaning.
 pub(crate) fn check(design: &Design, views: &HashMap<NetId, View>) -> Vec<Diagnostic> {
-    let mut checker = Checker {
-        design,
-        views,
-        found: Vec::new(),
-    };
+    let mut checker = Checker { design, views, found: Vec::new() };
     checker.names();
     checker.drivers();
     checker.widths();
@@ -104,14 +96,8 @@ impl Checker<'_> {
     fn names(&mut self) {
         let design = self.design;
         let mut seen: HashMap<&str, Place> = HashMap::new();
-        let nets = design
-            .nets
-            .iter()
-            .map(|net| (net.name.as_str(), net.location));
-        let roms = design
-            .roms
-            .iter()
-            .map(|rom| (rom.name.as_str(), rom.location));
+        let nets = design.nets.iter().map(|net| (net.name.as_str(), net.location));
+        let roms = design.roms.iter().map(|rom| (rom.name.as_str(), rom.location));
         for (name, location) in nets.chain(roms) {
             if name == "clk" {
                 self.report(
@@ -119,26 +105,19 @@ impl Checker<'_> {
                     location,
                 );
             } else if let Err(why) = identifier::check(name) {
-                self.report(
-                    format!("`{name}` cannot be a Verilog name: {why}"),
-                    location,
-                );
+                self.report(format!("`{name}` cannot be a Verilog name: {why}"), location);
             }
             if let Some(first) = seen.insert(name, location) {
                 let diagnostic =
                     Diagnostic::new(format!("the name `{name}` is used twice"), location);
-                self.found
-                    .push(diagnostic.note("the first".to_owned(), first));
+                self.found.push(diagnostic.note("the first".to_owned(), first));
             }
         }
         if let Err(why) = identifier::check(&design.name) {
             let location = design.nets.first().map(|net| net.location);
             if let Some(location) = location {
                 self.report(
-                    format!(
-                        "`{}` cannot be the name of a Verilog module: {why}",
-                        design.name
-                    ),
+                    format!("`{}` cannot be the name of a Verilog module: {why}", design.name),
                     location,
                 );
             }
@@ -178,10 +157,7 @@ impl Checker<'_> {
             let width = net.format.width();
             if width > MAX_WIDTH {
                 self.report(
-                    format!(
-                        "`{}` is {width} bits wide; {MAX_WIDTH} is the most",
-                        net.name
-                    ),
+                    format!("`{}` is {width} bits wide; {MAX_WIDTH} is the most", net.name),
                     net.location,
                 );
             }
@@ -220,10 +196,7 @@ impl Checker<'_> {
         for register in &design.registers {
             let net = design.net(register.q);
             let width = |id: NetId| design.width(id);
-            if register
-                .data
-                .is_some_and(|data| width(data) != width(register.q))
-            {
+            if register.data.is_some_and(|data| width(data) != width(register.q)) {
                 self.report(
                     format!("register `{}` and its data differ in width", net.name),
                     net.location,
@@ -259,21 +232,12 @@ impl Checker<'_> {
                 ok(same(&[*a, *b]), EQUAL)
             }
             Op::Add { a, b, carry } => {
-                ok(
-                    carry.is_none_or(|carry| width(carry) == 1),
-                    "the carry is one bit",
-                )?;
+                ok(carry.is_none_or(|carry| width(carry) == 1), "the carry is one bit")?;
                 ok(same(&[*a, *b]), EQUAL)
             }
             Op::Mul(a, b) => {
-                ok(
-                    signed(*a) == signed(*b),
-                    "one operand is signed, the other is not",
-                )?;
-                ok(
-                    width(*a) + width(*b) == own,
-                    "the product is as wide as both together",
-                )
+                ok(signed(*a) == signed(*b), "one operand is signed, the other is not")?;
+                ok(width(*a) + width(*b) == own, "the product is as wide as both together")
             }
             Op::Equal(a, b) => {
                 ok(width(*a) == width(*b), EQUAL)?;
@@ -281,10 +245,7 @@ impl Checker<'_> {
             }
             Op::Less(a, b) => {
                 ok(width(*a) == width(*b), EQUAL)?;
-                ok(
-                    signed(*a) == signed(*b),
-                    "one operand is signed, the other is not",
-                )?;
+                ok(signed(*a) == signed(*b), "one operand is signed, the other is not")?;
                 ok(own == 1, BIT)
             }
             Op::Any(_) | Op::All(_) => ok(own == 1, BIT),
@@ -346,10 +307,7 @@ impl Checker<'_> {
         }
         for (word, reached) in words.iter().zip(reached) {
             if !reached {
-                self.report(
-                    format!("word `{}` cannot be reached", word.name),
-                    word.location,
-                );
+                self.report(format!("word `{}` cannot be reached", word.name), word.location);
             }
         }
         if let Some(idle) = words.first() {
@@ -410,15 +368,12 @@ impl Checker<'_> {
                 if let Some(view) = self.views.get(&id)
                     && let Some(wrong) =
                         earlier(design, now, view.delay).into_iter().find(|&word| {
-                            !view
-                                .values
-                                .contains(&words[word].values[view.field.index()])
+                            !view.values.contains(&words[word].values[view.field.index()])
                         })
                 {
                     let diagnostic = self.wrong_product(at, wrong, register.q, view);
                     let place = design.net(id).location;
-                    self.found
-                        .push(diagnostic.note("the product".to_owned(), place));
+                    self.found.push(diagnostic.note("the product".to_owned(), place));
                     break;
                 }
                 if let Driver::Op(Op::Mux { select, inputs }) = &design.net(id).driver
@@ -462,9 +417,9 @@ impl Checker<'_> {
     fn wrong_product(&self, at: usize, under: usize, register: NetId, view: &View) -> Diagnostic {
         let field = &self.design.control.fields[view.field.index()];
         let choice = |value: u64| match &field.kind {
-            FieldKind::Select(choices) => choices
-                .get(value as usize)
-                .map_or("nothing", String::as_str),
+            FieldKind::Select(choices) => {
+                choices.get(value as usize).map_or("nothing", String::as_str)
+            }
             _ => "nothing",
         };
         let wanted: Vec<&str> = view.values.iter().map(|&value| choice(value)).collect();
@@ -495,8 +450,6 @@ fn earlier(design: &Design, at: usize, clocks: u32) -> Vec<usize> {
         Sequence::End => to == 0,
     };
     (0..clocks).fold(vec![at], |after, _| {
-        (0..words.len())
-            .filter(|&from| after.iter().any(|&to| leads(from, to)))
-            .collect()
+        (0..words.len()).filter(|&from| after.iter().any(|&to| leads(from, to))).collect()
     })
 }

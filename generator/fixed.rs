@@ -31,20 +31,12 @@ pub struct Format {
 impl Format {
     /// The unsigned format `uI.F`.
     pub const fn unsigned(int: i32, frac: i32) -> Self {
-        Self {
-            signed: false,
-            int,
-            frac,
-        }
+        Self { signed: false, int, frac }
     }
 
     /// The signed format `sI.F`.
     pub const fn signed(int: i32, frac: i32) -> Self {
-        Self {
-            signed: true,
-            int,
-            frac,
-        }
+        Self { signed: true, int, frac }
     }
 
     /// One bit without a point: a flag, an enable, a select line.
@@ -57,11 +49,7 @@ impl Format {
         let bits = magnitude(low).max(magnitude(high));
         // A net has at least one bit, even when it is known to be zero.
         let bits = if signed { bits } else { bits.max(1) };
-        Self {
-            signed,
-            int: bits - frac,
-            frac,
-        }
+        Self { signed, int: bits - frac, frac }
     }
 
     /// Width in bits.
@@ -75,11 +63,7 @@ impl Format {
 
     /// The smallest raw value.
     pub fn min_raw(self) -> i128 {
-        if self.signed {
-            -(1i128 << (self.width() - 1))
-        } else {
-            0
-        }
+        if self.signed { -(1i128 << (self.width() - 1)) } else { 0 }
     }
 
     /// The largest raw value.
@@ -159,15 +143,11 @@ impl FromStr for Format {
             _ => return Err(wrong()),
         };
         let (int, frac) = rest.split_once('.').ok_or_else(wrong)?;
-        let (int, frac): (i32, i32) = (
-            int.parse().map_err(|_| wrong())?,
-            frac.parse().map_err(|_| wrong())?,
-        );
+        let (int, frac): (i32, i32) =
+            (int.parse().map_err(|_| wrong())?, frac.parse().map_err(|_| wrong())?);
         let width = i64::from(int) + i64::from(frac) + i64::from(signed);
         if !(1..=i64::from(MAX_WIDTH)).contains(&width) {
-            return Err(format!(
-                "`{text}` is {width} bits wide; 1 to {MAX_WIDTH} are possible"
-            ));
+            return Err(format!("`{text}` is {width} bits wide; 1 to {MAX_WIDTH} are possible"));
         }
         Ok(Self { signed, int, frac })
     }
@@ -204,11 +184,7 @@ pub enum Overflow {
 
 /// The mask of `width` low bits.
 pub const fn mask(width: u32) -> u64 {
-    if width >= 64 {
-        u64::MAX
-    } else {
-        (1 << width) - 1
-    }
+    if width >= 64 { u64::MAX } else { (1 << width) - 1 }
 }
 
 /// `2^exponent`, exact.
@@ -233,10 +209,7 @@ mod tests {
     #[test]
     fn smallest_format_holds_the_range() {
         assert_eq!(Format::holding(0, 1 << 20, 20), Format::unsigned(1, 20));
-        assert_eq!(
-            Format::holding(0, (1 << 20) - 1, 20),
-            Format::unsigned(0, 20)
-        );
+        assert_eq!(Format::holding(0, (1 << 20) - 1, 20), Format::unsigned(0, 20));
         assert_eq!(Format::holding(-(1 << 20), 5, 20), Format::signed(0, 20));
         assert_eq!(Format::holding(0, 0, 4).width(), 1);
         assert_eq!(Format::holding(-1, 0, 0).width(), 1);
@@ -248,21 +221,14 @@ mod tests {
         assert_eq!(to.narrow(-5, 4, Rounding::Truncate, Overflow::Wrap), -2);
         assert_eq!(to.narrow(-5, 4, Rounding::Nearest, Overflow::Wrap), -1);
         assert_eq!(to.narrow(100, 4, Rounding::Truncate, Overflow::Saturate), 3);
-        assert_eq!(
-            to.narrow(-100, 4, Rounding::Truncate, Overflow::Saturate),
-            -4
-        );
+        assert_eq!(to.narrow(-100, 4, Rounding::Truncate, Overflow::Saturate), -4);
         assert_eq!(to.narrow(20, 4, Rounding::Truncate, Overflow::Wrap), -3);
         assert_eq!(to.narrow(1, 0, Rounding::Truncate, Overflow::Wrap), -4);
     }
 
     #[test]
     fn bits_and_raw_are_inverse() {
-        for format in [
-            Format::signed(2, 3),
-            Format::unsigned(2, 3),
-            Format::signed(63, 0),
-        ] {
+        for format in [Format::signed(2, 3), Format::unsigned(2, 3), Format::signed(63, 0)] {
             for raw in [format.min_raw(), -1, 0, 1, format.max_raw()] {
                 if format.holds(raw) {
                     assert_eq!(format.raw(format.bits(raw)), raw);

@@ -61,12 +61,7 @@ impl Unit {
             .design(&config)
             .with_context(|| format!("the description of `{}` is wrong", device.name))?;
         let contract = (device.contract)(&config);
-        Ok(Self {
-            device,
-            config,
-            design,
-            contract,
-        })
+        Ok(Self { device, config, design, contract })
     }
 
     /// Tells this configuration, and version of Glint, from others: SHA-256 in hexadecimal.

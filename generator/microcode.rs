@@ -2,10 +2,7 @@
 
 /// A control word from the values of its fields, the first field in the top bits.
 pub fn pack(widths: &[u32], values: &[u64]) -> u64 {
-    widths
-        .iter()
-        .zip(values)
-        .fold(0, |word, (width, value)| word << width | value)
+    widths.iter().zip(values).fold(0, |word, (width, value)| word << width | value)
 }
 
 /// The values of the fields of a control word.

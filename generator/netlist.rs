@@ -175,10 +175,9 @@ impl Op {
             Self::Add { a, b, carry } => {
                 [Some(*a), Some(*b), *carry].into_iter().flatten().collect()
             }
-            Self::Mux { select, inputs } => [*select]
-                .into_iter()
-                .chain(inputs.iter().copied())
-                .collect(),
+            Self::Mux { select, inputs } => {
+                [*select].into_iter().chain(inputs.iter().copied()).collect()
+            }
         }
     }
 
@@ -199,10 +198,9 @@ impl Op {
             | Self::Mul(a, b)
             | Self::Equal(a, b)
             | Self::Less(a, b) => vec![a, b],
-            Self::Add { a, b, carry } => [Some(a), Some(b), carry.as_mut()]
-                .into_iter()
-                .flatten()
-                .collect(),
+            Self::Add { a, b, carry } => {
+                [Some(a), Some(b), carry.as_mut()].into_iter().flatten().collect()
+            }
             Self::Mux { select, inputs } => {
                 std::iter::once(select).chain(inputs.iter_mut()).collect()
             }
@@ -322,10 +320,7 @@ pub enum Role {
 impl Role {
     /// Whether the port is an input.
     pub fn is_input(self) -> bool {
-        matches!(
-            self,
-            Self::Reset | Self::Start | Self::Operand { .. } | Self::Strobe
-        )
+        matches!(self, Self::Reset | Self::Start | Self::Operand { .. } | Self::Strobe)
     }
 }
 
@@ -467,10 +462,7 @@ impl Design {
 
     /// Every net with its id.
     pub fn iter(&self) -> impl Iterator<Item = (NetId, &Net)> {
-        self.nets
-            .iter()
-            .enumerate()
-            .map(|(at, net)| (NetId(at as u32), net))
+        self.nets.iter().enumerate().map(|(at, net)| (NetId(at as u32), net))
     }
 
     /// Ports that are inputs, in order.
@@ -566,10 +558,7 @@ impl Design {
 
     /// The bits in all ROMs.
     pub fn rom_bits(&self) -> u64 {
-        self.roms
-            .iter()
-            .map(|rom| rom.words.len() as u64 * u64::from(self.width(rom.data)))
-            .sum()
+        self.roms.iter().map(|rom| rom.words.len() as u64 * u64::from(self.width(rom.data))).sum()
     }
 }
 
@@ -579,11 +568,7 @@ impl fmt::Display for Design {
         let name = |id: NetId| self.net(id).name.as_str();
         writeln!(f, "design {}", self.name)?;
         for port in &self.ports {
-            let direction = if port.role.is_input() {
-                "input"
-            } else {
-                "output"
-            };
+            let direction = if port.role.is_input() { "input" } else { "output" };
             writeln!(f, "{direction} {} {:?}", name(port.net), port.role)?;
         }
         for net in &self.nets {
@@ -633,11 +618,7 @@ impl fmt::Display for Design {
             f.write_char('\n')?;
         }
         for (at, word) in self.control.words.iter().enumerate() {
-            writeln!(
-                f,
-                "word {at} {:?} {:?} {:?}",
-                word.name, word.values, word.sequence
-            )?;
+            writeln!(f, "word {at} {:?} {:?} {:?}", word.name, word.values, word.sequence)?;
         }
         Ok(())
     }

@@ -32,11 +32,7 @@ fn random_point(contract: &dyn Contract, rng: &mut ChaCha8Rng) -> Vec<i64> {
         .filter(|operand| !operand.colour)
         .map(|operand| {
             let (low, high) = operand.domain;
-            let part = if unit() < 0.5 {
-                unit()
-            } else {
-                unit() * unit() * unit()
-            };
+            let part = if unit() < 0.5 { unit() } else { unit() * unit() * unit() };
             // Cosines crowd at their upper end, exponents at their lower, what has a sign at 0.
             let offset = (part * (high - low + 1) as f64) as i64;
             if low < 0 && high > 0 {
@@ -124,10 +120,7 @@ fn assert_places_within_bound(
             .map(|axis| axis.values.value(rng.next_u64() % axis.values.count()))
             .collect();
         let error = contract.sweep_error(&place);
-        assert!(
-            error <= bound.f + F64,
-            "{error} at {place:?} of {what}: {bound:#?}"
-        );
+        assert!(error <= bound.f + F64, "{error} at {place:?} of {what}: {bound:#?}");
     }
 }
 
@@ -156,36 +149,21 @@ fn blinn_is_as_close_as_it_promises() {
 fn bounds_of_unusual_configurations() {
     let segmented = rough::Params::default();
     let params = [
-        rough::Params {
-            clamp: false,
-            ..segmented.clone()
-        },
-        rough::Params {
-            deviation: 90.0,
-            ..segmented.clone()
-        },
+        rough::Params { clamp: false, ..segmented.clone() },
+        rough::Params { deviation: 90.0, ..segmented.clone() },
         rough::Params {
             product_rounding: Rounding::Nearest,
             intensity_rounding: Rounding::Nearest,
             ..segmented.clone()
         },
-        rough::Params {
-            output_rounding: Rounding::Truncate,
-            ..segmented.clone()
-        },
-        rough::Params {
-            cosine_signed: true,
-            ..segmented.clone()
-        },
+        rough::Params { output_rounding: Rounding::Truncate, ..segmented.clone() },
+        rough::Params { cosine_signed: true, ..segmented.clone() },
         rough::Params {
             sine_scheme: Scheme::Direct { address: 10 },
             exponents: (1, 4),
             ..segmented.clone()
         },
-        rough::Params {
-            arithmetic: rough::Kind::Patent,
-            ..segmented
-        },
+        rough::Params { arithmetic: rough::Kind::Patent, ..segmented },
     ];
     for params in params {
         let contract = RoughContract::from_params(&params).unwrap();

@@ -16,10 +16,7 @@ const COMPONENT_ONE: i64 = 1 << 16;
 fn red(unit: &Unit, operands: &[(&str, i64)]) -> (u64, u32) {
     let design = &unit.design;
     let mut simulator: Simulator = Simulator::new(design).expect("a simulator");
-    let names: Vec<&str> = design
-        .inputs()
-        .map(|port| design.net(port.net).name.as_str())
-        .collect();
+    let names: Vec<&str> = design.inputs().map(|port| design.net(port.net).name.as_str()).collect();
     let input = |name: &str| names.iter().position(|other| *other == name).expect(name);
     simulator.clock().expect("a reset");
     simulator.set(input("rst_n"), 1);
@@ -40,10 +37,7 @@ fn red(unit: &Unit, operands: &[(&str, i64)]) -> (u64, u32) {
         clocks += 1;
         assert!(clocks < 100, "never valid");
     }
-    (
-        simulator.value(design.find("red_out").expect("red")),
-        clocks,
-    )
+    (simulator.value(design.find("red_out").expect("red")), clocks)
 }
 
 fn of_cosine(unit: &Unit, cosine: i64, n: i64) -> u64 {
@@ -92,10 +86,7 @@ fn quadratic() {
 fn lyon_with_the_shift_register() {
     let unit = configuration("configs/lyon.toml");
     let at = |[dx, dy, dz]: [i64; 3], shift| {
-        let (red, clocks) = red(
-            &unit,
-            &[("dx", dx), ("dy", dy), ("dz", dz), ("shift", shift)],
-        );
+        let (red, clocks) = red(&unit, &[("dx", dx), ("dy", dy), ("dz", dz), ("shift", shift)]);
         assert_eq!(clocks, 8 + shift as u32);
         red
     };
@@ -118,15 +109,9 @@ fn lyon_with_the_multiplier() {
         assert_eq!(clocks, 8);
         red
     };
-    assert_eq!(
-        [at([0; 3], 1000), at([-2 * COMPONENT_ONE; 3], 0)],
-        [255, 255]
-    );
+    assert_eq!([at([0; 3], 1000), at([-2 * COMPONENT_ONE; 3], 0)], [255, 255]);
     assert_eq!(at([COMPONENT_ONE, 0, -COMPONENT_ONE], 1), 91);
     // D² = 1/16: the zero is at n = 512; at n = 100 it is (1 − 100/512)^16, 7.9 units.
     let quarter = COMPONENT_ONE / 4;
-    assert_eq!(
-        [100, 511, 512, 1023].map(|n| at([0, 0, quarter], n)),
-        [8, 0, 0, 0]
-    );
+    assert_eq!([100, 511, 512, 1023].map(|n| at([0, 0, quarter], n)), [8, 0, 0, 0]);
 }

@@ -39,49 +39,26 @@ fn expected(point: &Point) -> [u64; 3] {
     let (c, d) = (point.cos_gamma.min(ONE), point.cos_dgamma.min(ONE));
     let cos_cos = (c * d) as i64 >> COSINE;
     let sin_sin = (sine(d) * sine(c)) >> COSINE;
-    let cosine = if point.dgamma_negative {
-        cos_cos + sin_sin
-    } else {
-        cos_cos - sin_sin
-    };
+    let cosine = if point.dgamma_negative { cos_cos + sin_sin } else { cos_cos - sin_sin };
     let gate = |value: i64| {
         let limit = 1 << INTENSITY;
-        if c == 0 {
-            -limit
-        } else {
-            value.clamp(-limit, limit - 1)
-        }
+        if c == 0 { -limit } else { value.clamp(-limit, limit - 1) }
     };
     // n/2 has one fraction bit, so the product has 18.
     let line = gate(((cosine - ONE as i64) * point.exponent as i64) >> (COSINE + 1 - INTENSITY));
     let base = line + (1 << INTENSITY);
     let f = (gate((base * base) >> INTENSITY) & ((1 << INTENSITY) - 1)) as u64;
-    point
-        .colours
-        .map(|colour| (f * colour + (1 << (INTENSITY - 1))) >> INTENSITY)
+    point.colours.map(|colour| (f * colour + (1 << (INTENSITY - 1))) >> INTENSITY)
 }
 
 /// Numerical Recipes' 64-bit generator: the same points everywhere.
 fn random(state: &mut u64) -> u64 {
-    *state = state
-        .wrapping_mul(6364136223846793005)
-        .wrapping_add(1442695040888963407);
+    *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
     *state >> 33
 }
 
 fn points() -> Vec<Point> {
-    let corners = [
-        0,
-        1,
-        127,
-        128,
-        ONE / 2,
-        ONE - 129,
-        ONE - 1,
-        ONE,
-        ONE + 1,
-        2 * ONE - 1,
-    ];
+    let corners = [0, 1, 127, 128, ONE / 2, ONE - 129, ONE - 1, ONE, ONE + 1, 2 * ONE - 1];
     let mut state = 1;
     let mut points = Vec::new();
     for cos_gamma in corners {
@@ -112,21 +89,13 @@ fn points() -> Vec<Point> {
         let exponent = random(&mut state) % (1 << (1 + random(&mut state) % 10));
         let dgamma_negative = random(&mut state) & 1 == 1;
         let colours = [0; 3].map(|_| random(&mut state) % 256);
-        points.push(Point {
-            cos_gamma,
-            cos_dgamma,
-            exponent,
-            dgamma_negative,
-            colours,
-        });
+        points.push(Point { cos_gamma, cos_dgamma, exponent, dgamma_negative, colours });
     }
     points
 }
 
 fn baseline(name: &str) -> (String, String) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("benches/baseline")
-        .join(name);
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/baseline").join(name);
     let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path:?}: {error}"));
     (name.to_owned(), text)
 }
@@ -141,11 +110,7 @@ fn the_hand_written_core_computes_what_rough_does() {
         append(point.cos_dgamma, 18);
         append(point.exponent, 10);
         append(point.dgamma_negative.into(), 1);
-        point
-            .colours
-            .iter()
-            .chain(&expected(point))
-            .for_each(|colour| append(*colour, 8));
+        point.colours.iter().chain(&expected(point)).for_each(|colour| append(*colour, 8));
         writeln!(lines, "{word:024x}").expect("a string");
     }
     let (name, bench) = baseline("rough_hand_tb.v");
@@ -162,33 +127,19 @@ fn the_hand_written_core_computes_what_rough_does() {
         ];
         let outcome = tools::assert_bench_passes(Simulator::Icarus, &files, "rough_hand_tb");
         let verdict = format!("PASS: {POINTS} points");
-        assert!(
-            outcome.transcript.contains(&verdict),
-            "{}",
-            outcome.transcript
-        );
+        assert!(outcome.transcript.contains(&verdict), "{}", outcome.transcript);
     }
     // The comparison is worth something only if the points are neither all dark nor all bright.
-    let lit = points
-        .iter()
-        .filter(|point| (1..=254).contains(&expected(point)[0]))
-        .count();
-    assert!(
-        lit > POINTS / 10,
-        "{lit} of {POINTS} points are neither dark nor full"
-    );
+    let lit = points.iter().filter(|point| (1..=254).contains(&expected(point)[0])).count();
+    assert!(lit > POINTS / 10, "{lit} of {POINTS} points are neither dark nor full");
 }
 
 #[test]
 fn its_sine_table_is_the_sine() {
     let (_, text) = baseline("rough_hand_sine.mem");
     let lines = text.lines().filter(|line| !line.starts_with("//"));
-    let words: Vec<i64> = lines
-        .map(|line| i64::from_str_radix(line, 16).unwrap())
-        .collect();
-    let wanted: Vec<i64> = (0..1024)
-        .map(|at| sine_of_bucket(at).min(ONE as i64 - 1))
-        .collect();
+    let words: Vec<i64> = lines.map(|line| i64::from_str_radix(line, 16).unwrap()).collect();
+    let wanted: Vec<i64> = (0..1024).map(|at| sine_of_bucket(at).min(ONE as i64 - 1)).collect();
     assert_eq!(words, wanted);
 }
 

@@ -15,13 +15,7 @@ fn squarer() -> Design {
     let x = d.operand("x", Format::unsigned(0, 4));
     let square = d.mul("square", x.q(), x.q());
     let y = d.register("y", Format::unsigned(0, 4));
-    y.takes(d.narrow(
-        "y_rounded",
-        square,
-        y.format(),
-        Rounding::Truncate,
-        Overflow::Saturate,
-    ));
+    y.takes(d.narrow("y_rounded", square, y.format(), Rounding::Truncate, Overflow::Saturate));
     d.output("y_out", y.q());
     d.microprogram([
         step("idle 100%", []),
@@ -50,10 +44,7 @@ fn vectors() -> Vectors {
 }
 
 fn files(vectors: Vectors) -> Vec<(String, String)> {
-    let inputs = EmitInputs {
-        vectors: Some(vectors),
-        ..EmitInputs::default()
-    };
+    let inputs = EmitInputs { vectors: Some(vectors), ..EmitInputs::default() };
     sources(emit(&squarer(), &inputs).unwrap_or_else(|error| panic!("{error:?}")))
 }
 
@@ -71,20 +62,14 @@ fn the_clocks_before_a_difference_can_be_seen_in_both_simulators() {
         let transcript = run(simulator, wrong.clone()).transcript;
         let found = BenchDifference::first(&transcript).expect("a difference");
         assert_eq!((found.clock, found.word.as_str()), (5, "idle 100%"));
-        let values = (
-            found.signal.as_str(),
-            found.simulated.as_str(),
-            found.expected.as_str(),
-        );
+        let values = (found.signal.as_str(), found.simulated.as_str(), found.expected.as_str());
         assert_eq!(values, ("y_out", "9", "8"));
         let files = files(wrong.clone());
         let waveform = bench_waveform(simulator, &files, "squarer_tb", (3, 5), LIMIT)
             .unwrap_or_else(|error| panic!("{error:?}"));
         let text = String::from_utf8(waveform).expect("a VCD is text");
         assert!(text.contains(" y_out "), "{simulator}:\n{text}");
-        let times = text
-            .lines()
-            .filter_map(|line| line.strip_prefix('#')?.parse::<u64>().ok());
+        let times = text.lines().filter_map(|line| line.strip_prefix('#')?.parse::<u64>().ok());
         let times: Vec<u64> = times.collect();
         let inside = |time: &u64| (30 * unit..=60 * unit).contains(time);
         let all = times.len() > 2 && times.iter().all(inside);
@@ -104,27 +89,13 @@ fn true_vectors_pass_and_every_wrong_output_fails_in_both_simulators() {
         ];
         for (output, clock, word) in outputs {
             let mut wrong = vectors();
-            let at = ["valid", "busy", "done", "y_out"]
-                .iter()
-                .position(|name| *name == output);
+            let at = ["valid", "busy", "done", "y_out"].iter().position(|name| *name == output);
             wrong.expected[clock][at.unwrap_or_default()] ^= 1;
             let outcome = run(simulator, wrong);
-            assert!(
-                !outcome.passed,
-                "{simulator}, {output}:\n{}",
-                outcome.transcript
-            );
+            assert!(!outcome.passed, "{simulator}, {output}:\n{}", outcome.transcript);
             let place = format!("clock {clock}, word {word}: {output} is ");
-            assert!(
-                outcome.transcript.contains(&place),
-                "{place}\n{}",
-                outcome.transcript
-            );
-            assert!(
-                outcome
-                    .transcript
-                    .contains("FAIL squarer: 1 differences in 6 clocks")
-            );
+            assert!(outcome.transcript.contains(&place), "{place}\n{}", outcome.transcript);
+            assert!(outcome.transcript.contains("FAIL squarer: 1 differences in 6 clocks"));
         }
     }
 }
@@ -141,29 +112,15 @@ fn vectors_that_do_not_fit_are_refused() {
     let refused = |spoil: fn(&mut Vectors)| {
         let mut vectors = vectors();
         spoil(&mut vectors);
-        let inputs = EmitInputs {
-            vectors: Some(vectors),
-            ..EmitInputs::default()
-        };
-        emit(&squarer(), &inputs)
-            .expect_err("vectors that do not fit")
-            .to_string()
+        let inputs = EmitInputs { vectors: Some(vectors), ..EmitInputs::default() };
+        emit(&squarer(), &inputs).expect_err("vectors that do not fit").to_string()
     };
     let message = refused(|vectors| vectors.inputs[2][2] = 16);
-    assert_eq!(
-        message,
-        "clock 2 of the stimulus: 0x10 does not fit the 4 bits of `x`"
-    );
+    assert_eq!(message, "clock 2 of the stimulus: 0x10 does not fit the 4 bits of `x`");
     let message = refused(|vectors| vectors.expected[0].truncate(3));
-    assert_eq!(
-        message,
-        "clock 0 of the expected outputs has 3 values for 4 ports"
-    );
+    assert_eq!(message, "clock 0 of the expected outputs has 3 values for 4 ports");
     let message = refused(|vectors| vectors.expected.truncate(3));
     assert_eq!(message, "6 clocks of stimulus, 3 of expected outputs");
     let message = refused(|vectors| vectors.known_from = 7);
-    assert_eq!(
-        message,
-        "results are compared from clock 7 on, but there are 6 clocks"
-    );
+    assert_eq!(message, "results are compared from clock 7 on, but there are 6 clocks");
 }

@@ -39,13 +39,7 @@ fn every_bench_passes() {
 
 /// A fault: in which file of which configuration, what stands there, what stands there instead, and a test
 /// that notices.
-type Fault = (
-    &'static str,
-    &'static str,
-    &'static str,
-    &'static str,
-    &'static str,
-);
+type Fault = (&'static str, &'static str, &'static str, &'static str, &'static str);
 
 const FAULTS: [Fault; 14] = [
     // The handshake: late, early, forgotten.
@@ -56,109 +50,35 @@ const FAULTS: [Fault; 14] = [
         "reg late; always @(posedge clk) late <= valid_word; assign valid = late;",
         EXACT,
     ),
-    (
-        "rough",
-        "_control.v",
-        "done = run &",
-        "done = valid_word & run &",
-        EXACT,
-    ),
-    (
-        "rough",
-        "_control.v",
-        "assign busy = run;",
-        "assign busy = run & ~done;",
-        HELD,
-    ),
-    (
-        "rough",
-        "_control.v",
-        "run ? go_on : start",
-        "go_on | start",
-        IGNORED,
-    ),
+    ("rough", "_control.v", "done = run &", "done = valid_word & run &", EXACT),
+    ("rough", "_control.v", "assign busy = run;", "assign busy = run & ~done;", HELD),
+    ("rough", "_control.v", "run ? go_on : start", "go_on | start", IGNORED),
     ("rough", "_control.v", "run <= 1'b0;", "run <= run;", RESET),
-    (
-        "schlick",
-        "_control.v",
-        "word_address <= 2'd0;",
-        "word_address <= word_address;",
-        RESET,
-    ),
+    ("schlick", "_control.v", "word_address <= 2'd0;", "word_address <= word_address;", RESET),
     // Operands that are taken while busy.
-    (
-        "rough",
-        "_datapath.v",
-        "exponent_write & idle",
-        "exponent_write",
-        IGNORED,
-    ),
-    (
-        "quad_cosine",
-        "_datapath.v",
-        "length_write & idle",
-        "length_write",
-        IGNORED,
-    ),
+    ("rough", "_datapath.v", "exponent_write & idle", "exponent_write", IGNORED),
+    ("quad_cosine", "_datapath.v", "length_write & idle", "length_write", IGNORED),
     // Loops that end a turn early or late.
-    (
-        "lyon",
-        "_datapath.v",
-        "more_shifts = |remaining;",
-        "more_shifts = remaining > 4'd1;",
-        EXACT,
-    ),
-    (
-        "quad_cosine",
-        "_datapath.v",
-        "more = intervals > 12'd1;",
-        "more = |intervals;",
-        EXACT,
-    ),
-    (
-        "quad_cosine",
-        "_control.v",
-        "valid_in_1 <= angle_load;",
-        "valid_in_1 <= run;",
-        HELD,
-    ),
+    ("lyon", "_datapath.v", "more_shifts = |remaining;", "more_shifts = remaining > 4'd1;", EXACT),
+    ("quad_cosine", "_datapath.v", "more = intervals > 12'd1;", "more = |intervals;", EXACT),
+    ("quad_cosine", "_control.v", "valid_in_1 <= angle_load;", "valid_in_1 <= run;", HELD),
     // A manifest that says something else than the core does.
-    (
-        "rough",
-        ".json",
-        "\"start_to_done\": 10",
-        "\"start_to_done\": 11",
-        EXACT,
-    ),
-    (
-        "rough",
-        ".json",
-        "max(exponent / 2",
-        "max(exponent / 3",
-        FORMULA,
-    ),
-    (
-        "threshold",
-        ".json",
-        "levels[int(exponent)]",
-        "0.25 + levels[int(exponent)]",
-        FORMULA,
-    ),
+    ("rough", ".json", "\"start_to_done\": 10", "\"start_to_done\": 11", EXACT),
+    ("rough", ".json", "max(exponent / 2", "max(exponent / 3", FORMULA),
+    ("threshold", ".json", "levels[int(exponent)]", "0.25 + levels[int(exponent)]", FORMULA),
 ];
 
 #[test]
 fn every_test_notices_a_fault() {
-    FAULTS
-        .par_iter()
-        .for_each(|(name, file, right, wrong, test)| {
-            let unit = configuration(&format!("configs/{name}.toml"));
-            let place = place(&unit);
-            let path = place.path().join(format!("rtl_out/{name}/{name}{file}"));
-            let text = fs::read_to_string(&path).expect("a file");
-            assert!(text.contains(right), "`{right}` is not in {name}{file}");
-            fs::write(&path, text.replace(right, wrong)).expect("written");
-            assert_noticed(place.path(), name, test, &format!("`{wrong}` in {file}"));
-        });
+    FAULTS.par_iter().for_each(|(name, file, right, wrong, test)| {
+        let unit = configuration(&format!("configs/{name}.toml"));
+        let place = place(&unit);
+        let path = place.path().join(format!("rtl_out/{name}/{name}{file}"));
+        let text = fs::read_to_string(&path).expect("a file");
+        assert!(text.contains(right), "`{right}` is not in {name}{file}");
+        fs::write(&path, text.replace(right, wrong)).expect("written");
+        assert_noticed(place.path(), name, test, &format!("`{wrong}` in {file}"));
+    });
 }
 
 /// A bit of a word that is read often; a seldom read one is for the co-simulation to find.
@@ -214,9 +134,7 @@ fn run(place: &Path, name: &str) -> Run {
     let bench = format!("testbench/{name}/test_{name}.py");
     let text = fs::read_to_string(place.join(&bench)).expect("a bench");
     assert!(text.contains(&format!("    $ python {bench}\n")), "{text}");
-    tool("python")
-        .run([bench], place, LIMIT)
-        .unwrap_or_else(|error| panic!("{error:#}"))
+    tool("python").run([bench], place, LIMIT).unwrap_or_else(|error| panic!("{error:#}"))
 }
 
 fn assert_noticed(place: &Path, name: &str, test: &str, what: &str) {

@@ -25,13 +25,7 @@ const NARROW: &str = "configs/reduced/quadratic.toml";
 type Aim = &'static [(&'static str, u64)];
 
 /// All operands of `quadratic`: one combination, and one whose cosine no other is clamped to.
-const ONE: Aim = &[
-    ("exponent", 13),
-    ("cos_gamma", 200),
-    ("red", 2),
-    ("green", 1),
-    ("blue", 3),
-];
+const ONE: Aim = &[("exponent", 13), ("cos_gamma", 200), ("red", 2), ("green", 1), ("blue", 3)];
 
 /// 64 combinations: those of all colours.
 const SOME: Aim = &[("exponent", 13), ("cos_gamma", 200)];
@@ -54,10 +48,7 @@ impl Wrong {
             at.unwrap_or_else(|| panic!("no {name}"))
         };
         Self {
-            aim: aim
-                .iter()
-                .map(|(name, bits)| (at(&format!("{name}_reg")), *bits))
-                .collect(),
+            aim: aim.iter().map(|(name, bits)| (at(&format!("{name}_reg")), *bits)).collect(),
             valid: at("valid"),
             red: at("red_out"),
             values: inner.values().to_vec(),
@@ -134,9 +125,8 @@ fn every_combination_of_every_device() {
         let unit = configuration(&path);
         let job = unit.job().expect("they fit");
         let clocks = job.clocks.as_ref().expect("combinations");
-        let bits: u32 = (unit.contract.operands().iter())
-            .map(|operand| operand.format.width())
-            .sum();
+        let bits: u32 =
+            (unit.contract.operands().iter()).map(|operand| operand.format.width()).sum();
         assert!(bits <= MOST_BITS && clocks.bits() == bits, "{path}: {bits}");
         assert_eq!(clocks.count(), 1 << bits, "{path}");
         let state = whole(&job);
@@ -146,9 +136,8 @@ fn every_combination_of_every_device() {
         assert!(proof.faults.is_empty(), "{path}: {:?}", proof.faults);
         devices.insert(unit.device.name);
     }
-    let all: BTreeSet<&str> = (Registry::catalogue().devices().iter())
-        .map(|device| device.name)
-        .collect();
+    let all: BTreeSet<&str> =
+        (Registry::catalogue().devices().iter()).map(|device| device.name).collect();
     assert_eq!(devices, all);
 }
 
@@ -172,10 +161,7 @@ fn a_fault_that_one_combination_shows_is_found() {
     // No other combination differs.
     let block = place / (clocks.count() / clocks.blocks());
     let others = (0..clocks.blocks()).filter(|&other| other != block);
-    assert_eq!(
-        clocks.check(others.collect(), &|_| ()).expect("checked"),
-        None
-    );
+    assert_eq!(clocks.check(others.collect(), &|_| ()).expect("checked"), None);
     assert!(clocks.difference(place + 1).is_err());
 }
 
@@ -212,10 +198,7 @@ fn wrong_device() -> Device {
         let inner = (quadratic().model)(config);
         Box::new(Wrong::new(inner, &[("exponent", 13)]))
     }
-    Device {
-        model,
-        ..quadratic()
-    }
+    Device { model, ..quadratic() }
 }
 
 fn quadratic() -> Device {
@@ -231,10 +214,7 @@ fn program() {
     let arguments = arguments.split(' ').map(OsString::from);
     let registry = Registry::empty().with(wrong_device());
     let code = glint::cli::run_from(&registry, arguments);
-    assert_ne!(
-        format!("{code:?}"),
-        format!("{:?}", std::process::ExitCode::SUCCESS)
-    );
+    assert_ne!(format!("{code:?}"), format!("{:?}", std::process::ExitCode::SUCCESS));
 }
 
 /// What the wrong device's command line prints.
@@ -243,11 +223,8 @@ fn wrong(directory: &Path, arguments: &str) -> String {
     let mut command = Command::new(program);
     command.args(["--exact", "program", "--ignored", "--nocapture"]);
     command.env("GLINT_ARGUMENTS", arguments);
-    let Output {
-        status,
-        stdout,
-        stderr,
-    } = command.current_dir(directory).output().expect("it runs");
+    let Output { status, stdout, stderr } =
+        command.current_dir(directory).output().expect("it runs");
     let text = String::from_utf8(stdout).expect("UTF-8");
     let errors = String::from_utf8_lossy(&stderr);
     assert!(status.success(), "{arguments}: {text}{errors}");
@@ -267,20 +244,14 @@ fn a_difference_leaves_all_that_it_takes_to_have_it_again() {
     let narrow = fs::read(NARROW).expect("a configuration");
     fs::write(place.path().join("core.toml"), narrow).expect("written");
 
-    let run = json(&wrong(
-        place.path(),
-        "glint cosim core.toml --json --seed 3",
-    ));
+    let run = json(&wrong(place.path(), "glint cosim core.toml --json --seed 3"));
     let one = &run["configurations"][0]["mismatch"];
     let text = |value: &Value, key: &str| value[key].as_str().expect(key).to_owned();
     let bits = |value: &Value, key| {
         let text = text(value, key);
         u64::from_str_radix(text.strip_prefix("0x").expect("hexadecimal"), 16).expect("a number")
     };
-    assert_eq!(
-        (run["ok"].as_bool(), text(one, "signal").as_str()),
-        (Some(false), "red_out")
-    );
+    assert_eq!((run["ok"].as_bool(), text(one, "signal").as_str()), (Some(false), "red_out"));
     assert_eq!(bits(one, "golden") ^ bits(one, "simulated"), 1);
     assert!(text(one, "word").starts_with("intensity"), "{one}");
     let vcd = fs::read_to_string(place.path().join(text(one, "vcd"))).expect("a waveform");
@@ -297,35 +268,17 @@ fn a_difference_leaves_all_that_it_takes_to_have_it_again() {
     assert!(said.contains(&wanted), "{said}");
     assert!(place.path().join("all.vcd").exists());
 
-    let run = json(&wrong(
-        place.path(),
-        "glint cosim core.toml --json --exhaustive",
-    ));
+    let run = json(&wrong(place.path(), "glint cosim core.toml --json --exhaustive"));
     let found = &run["configurations"][0];
     let one = &found["clocks"]["mismatch"];
-    assert_eq!(
-        (&found["holds"], &one["seed"]),
-        (&Value::Bool(false), &Value::Null)
-    );
+    assert_eq!((&found["holds"], &one["seed"]), (&Value::Bool(false), &Value::Null));
     assert_eq!(one["operands"]["exponent"], "0xd");
     assert_eq!(
-        (
-            text(one, "signal").as_str(),
-            one["clock_of_computation"].as_u64()
-        ),
+        (text(one, "signal").as_str(), one["clock_of_computation"].as_u64()),
         ("red_out", Some(3))
     );
     assert_eq!(bits(one, "golden") ^ bits(one, "simulated"), 1);
     let said = wrong(place.path(), &text(one, "reproduce"));
-    assert!(
-        said.contains(&format!(
-            "combination {} (exponent=0xd ",
-            one["combination"]
-        )),
-        "{said}"
-    );
-    assert!(
-        said.contains("`quadratic_reduced_mismatch.vcd` shows clocks "),
-        "{said}"
-    );
+    assert!(said.contains(&format!("combination {} (exponent=0xd ", one["combination"])), "{said}");
+    assert!(said.contains("`quadratic_reduced_mismatch.vcd` shows clocks "), "{said}");
 }

@@ -12,10 +12,7 @@ use glint::config::{Config, Problems, Value, parse, read};
 fn lines(problems: &Problems) -> Vec<String> {
     let each = |problem: &glint::config::Problem| {
         let (line, column) = problems.position(problem).unwrap_or((0, 0));
-        format!(
-            "{line}:{column} {} | {} | {}",
-            problem.key, problem.message, problem.remedy
-        )
+        format!("{line}:{column} {} | {} | {}", problem.key, problem.message, problem.remedy)
     };
     problems.iter().map(each).collect()
 }
@@ -36,10 +33,8 @@ fn of_lamp(text: &str) -> Vec<String> {
 fn unknown_names_are_answered_with_the_nearest() {
     assert_eq!(
         of_lamp("cosine.fracton = 20\n"),
-        [
-            "2:8 cosine.fracton | device `lamp` has no key `cosine.fracton` \
-          | did you mean `cosine.fraction`?"
-        ]
+        ["2:8 cosine.fracton | device `lamp` has no key `cosine.fracton` \
+          | did you mean `cosine.fraction`?"]
     );
     assert_eq!(
         of_lamp("Arithmetic = \"exact\"\n"),
@@ -55,10 +50,8 @@ fn unknown_names_are_answered_with_the_nearest() {
     );
     assert_eq!(
         of_lamp("zzz = 20\n"),
-        [
-            "2:1 zzz | device `lamp` has no key `zzz` | keys outside tables: device, name, strict, \
-          arithmetic, power; tables: [cosine], [sine], [domain]"
-        ]
+        ["2:1 zzz | device `lamp` has no key `zzz` | keys outside tables: device, name, strict, \
+          arithmetic, power; tables: [cosine], [sine], [domain]"]
     );
     assert_eq!(
         of_lamp("[cosine]\nzzz = 20\n"),
@@ -68,10 +61,8 @@ fn unknown_names_are_answered_with_the_nearest() {
     );
     assert_eq!(
         of_lamp("\"cosine.fraction\" = 20\n"),
-        [
-            "2:1 \"cosine.fraction\" | device `lamp` has no key `\"cosine.fraction\"` \
-          | did you mean `cosine.fraction`?"
-        ]
+        ["2:1 \"cosine.fraction\" | device `lamp` has no key `\"cosine.fraction\"` \
+          | did you mean `cosine.fraction`?"]
     );
 }
 
@@ -107,10 +98,8 @@ fn devices() {
     );
     assert_eq!(
         of_file("a.toml", "strict = true\n"),
-        [
-            "0:0 device | the file does not say which device it configures \
-          | add `device = \"…\"`; devices: lamp, mirror"
-        ]
+        ["0:0 device | the file does not say which device it configures \
+          | add `device = \"…\"`; devices: lamp, mirror"]
     );
     assert_eq!(
         of_file("a.toml", "device = 7\n"),
@@ -187,12 +176,7 @@ fn values_out_of_range() {
             )]
         );
     }
-    for (value, shown) in [
-        ("0", "0.0"),
-        ("90.1", "90.1"),
-        ("nan", "NaN"),
-        ("-inf", "-inf"),
-    ] {
+    for (value, shown) in [("0", "0.0"), ("90.1", "90.1"), ("nan", "NaN"), ("-inf", "-inf")] {
         assert_eq!(
             of_lamp(&format!("domain.deviation = {value}\n")),
             [format!(
@@ -235,9 +219,7 @@ fn lists_are_checked_entry_by_entry() {
     );
     assert_eq!(
         of_lamp("sine.scheme = \"segmented\"\nsine.segments = []\n"),
-        [format!(
-            "3:17 sine.segments | `sine.segments` has 0 entries | {remedy}"
-        )]
+        [format!("3:17 sine.segments | `sine.segments` has 0 entries | {remedy}")]
     );
 }
 
@@ -245,30 +227,20 @@ fn lists_are_checked_entry_by_entry() {
 fn conditions_between_keys() {
     assert_eq!(
         of_lamp("[sine]\naddress = 12\nscheme = \"segmented\"\n"),
-        [
-            "3:11 sine.address | `sine.address` has no effect with sine.scheme = \"segmented\" \
-          | remove it, or set sine.scheme = \"direct\""
-        ]
+        ["3:11 sine.address | `sine.address` has no effect with sine.scheme = \"segmented\" \
+          | remove it, or set sine.scheme = \"direct\""]
     );
     assert_eq!(
         of_lamp("sine.segments = [6]\n"),
-        [
-            "2:17 sine.segments | `sine.segments` has no effect with sine.scheme = \"direct\" \
-          | remove it, or set sine.scheme = \"segmented\""
-        ]
+        ["2:17 sine.segments | `sine.segments` has no effect with sine.scheme = \"direct\" \
+          | remove it, or set sine.scheme = \"segmented\""]
     );
     // The device's own check, shown at the key that it names …
     let condition = "sine.address | the table has more address bits than the cosine \
                      | lower sine.address or raise cosine.fraction";
-    assert_eq!(
-        of_lamp("cosine.fraction = 8\nsine.address = 9\n"),
-        [format!("3:16 {condition}")]
-    );
+    assert_eq!(of_lamp("cosine.fraction = 8\nsine.address = 9\n"), [format!("3:16 {condition}")]);
     // … or with no place where the file leaves that key at its default.
-    assert_eq!(
-        of_lamp("cosine.fraction = 8\n"),
-        [format!("0:0 {condition}")]
-    );
+    assert_eq!(of_lamp("cosine.fraction = 8\n"), [format!("0:0 {condition}")]);
 }
 
 #[test]
@@ -302,61 +274,21 @@ fn a_wrong_value_raises_no_message_about_others() {
 fn module_names() {
     let cases = [
         ("", "the module name is empty", "glint_device"),
-        (
-            "../top",
-            "the module name \"../top\" looks like a path",
-            "top",
-        ),
-        (
-            "a\\\\b",
-            "the module name \"a\\\\b\" looks like a path",
-            "b",
-        ),
-        (
-            "..",
-            "the module name \"..\" looks like a path",
-            "glint_device",
-        ),
-        (
-            "8bit",
-            "the module name \"8bit\" starts with a digit",
-            "glint_8bit",
-        ),
-        (
-            "a-b",
-            "the module name \"a-b\" has the character `-`",
-            "a_b",
-        ),
-        (
-            "a b",
-            "the module name \"a b\" has the character ` `",
-            "a_b",
-        ),
-        (
-            "a$b",
-            "the module name \"a$b\" has the character `$`",
-            "a_b",
-        ),
-        (
-            "a\\nb",
-            "the module name \"a\\nb\" has the character `\\n`",
-            "a_b",
-        ),
-        (
-            "glühen",
-            "the module name \"glühen\" has a character outside ASCII, `ü`",
-            "gl_hen",
-        ),
+        ("../top", "the module name \"../top\" looks like a path", "top"),
+        ("a\\\\b", "the module name \"a\\\\b\" looks like a path", "b"),
+        ("..", "the module name \"..\" looks like a path", "glint_device"),
+        ("8bit", "the module name \"8bit\" starts with a digit", "glint_8bit"),
+        ("a-b", "the module name \"a-b\" has the character `-`", "a_b"),
+        ("a b", "the module name \"a b\" has the character ` `", "a_b"),
+        ("a$b", "the module name \"a$b\" has the character `$`", "a_b"),
+        ("a\\nb", "the module name \"a\\nb\" has the character `\\n`", "a_b"),
+        ("glühen", "the module name \"glühen\" has a character outside ASCII, `ü`", "gl_hen"),
         (
             "module",
             "the module name \"module\" is a keyword of Verilog or SystemVerilog",
             "glint_module",
         ),
-        (
-            "soft",
-            "the module name \"soft\" is a keyword of Verilog or SystemVerilog",
-            "glint_soft",
-        ),
+        ("soft", "the module name \"soft\" is a keyword of Verilog or SystemVerilog", "glint_soft"),
     ];
     for (name, message, instead) in cases {
         assert_eq!(
@@ -500,9 +432,7 @@ fn empty_files_and_other_line_ends() {
     );
     // Columns count characters, not bytes.
     assert_eq!(
-        of_lamp("cosine = { \"größe\" = 1, fraction = 1 }\n")
-            .last()
-            .map(|line| &line[..4]),
+        of_lamp("cosine = { \"größe\" = 1, fraction = 1 }\n").last().map(|line| &line[..4]),
         Some("2:36")
     );
 }
@@ -510,16 +440,10 @@ fn empty_files_and_other_line_ends() {
 #[test]
 fn nesting_has_an_end() {
     let deep = |open: &str, n: usize| format!("power = {}", open.repeat(n));
-    for text in [
-        deep("[", 100_000),
-        deep("{a=", 50_000),
-        format!("{} = 1", ["a"; 5000].join(".")),
-    ] {
+    for text in [deep("[", 100_000), deep("{a=", 50_000), format!("{} = 1", ["a"; 5000].join("."))]
+    {
         let found = of_lamp(&text);
-        assert!(
-            found.iter().any(|line| line.contains("nested too deeply")),
-            "{found:?}"
-        );
+        assert!(found.iter().any(|line| line.contains("nested too deeply")), "{found:?}");
     }
 }
 
@@ -574,10 +498,7 @@ fn files_that_cannot_be_read() {
             path("lamp-8.toml").display()
         )]
     );
-    assert_eq!(
-        of(directory.path()),
-        ["0:0  | this is a directory | give the path of a TOML file"]
-    );
+    assert_eq!(of(directory.path()), ["0:0  | this is a directory | give the path of a TOML file"]);
     fs::write(path("latin.toml"), b"device = \"lamp\"\n# gr\xfcn\n").expect("written");
     assert_eq!(
         of(&path("latin.toml")),
@@ -594,10 +515,7 @@ fn files_that_cannot_be_read() {
         ["0:0  | the file has more than 65536 bytes | give the path of a TOML file"]
     );
     let config = read(&path("lamp-8.toml"), &schemas()).expect("a good file");
-    assert_eq!(
-        (config.name.as_str(), config.device.as_str()),
-        ("lamp_8", "lamp")
-    );
+    assert_eq!((config.name.as_str(), config.device.as_str()), ("lamp_8", "lamp"));
 }
 
 #[test]

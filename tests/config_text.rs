@@ -72,10 +72,7 @@ fn tables_and_dotted_keys_are_the_same() {
     let dotted = "power = 4\ncosine.fraction = 16\nsine = { scheme = \"segmented\", segments = [7, 6] }\n\
                   domain.deviation = 4.5e1\ndevice = \"lamp\"\n";
     let config = parse("a-b.toml", tables, &schemas()).expect("valid");
-    assert_eq!(
-        config,
-        parse("a-b.toml", dotted, &schemas()).expect("valid")
-    );
+    assert_eq!(config, parse("a-b.toml", dotted, &schemas()).expect("valid"));
     assert_eq!((config.name.as_str(), config.strict), ("a_b", false));
     assert_eq!((config.choice("power"), config.integer("power")), ("4", 4));
     assert_eq!(config.integer("cosine.fraction"), 16);
@@ -98,20 +95,14 @@ fn samples_are_valid_and_read_back() {
 fn samples_cover_ends_and_both_sides_of_every_choice() {
     let configs: Vec<Config> = (0..500).map(|seed| sample(&lamp(), seed)).collect();
     let seen = |key: &str| -> BTreeSet<String> {
-        configs
-            .iter()
-            .map(|config| config.value(key).bare())
-            .collect()
+        configs.iter().map(|config| config.value(key).bare()).collect()
     };
     assert_eq!(seen("power").len(), 4);
     assert_eq!(seen("arithmetic").len(), 2);
     assert_eq!(seen("cosine.fraction").len(), 27);
     assert_eq!(seen("sine.address").len(), 16);
     let often = |key: &str, value: Value| {
-        configs
-            .iter()
-            .filter(|config| *config.value(key) == value)
-            .count()
+        configs.iter().filter(|config| *config.value(key) == value).count()
     };
     // A uniform draw would give each about 18 times.
     assert!(often("cosine.fraction", Value::Integer(4)) > 30);
@@ -159,9 +150,7 @@ fn mistakes_in_a_schema_are_found() {
             "`mixed` is a choice among integers and words",
         ]
     );
-    let refused = Schema {
-        check: |_, problems| problems.push("power", "too much", "less"),
-        ..lamp()
-    };
+    let refused =
+        Schema { check: |_, problems| problems.push("power", "too much", "less"), ..lamp() };
     assert_eq!(refused.faults(), ["defaults: too much"]);
 }

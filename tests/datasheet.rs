@@ -19,9 +19,7 @@ fn make(path: &str, unit: &Unit) -> Datasheet {
     let subject = Subject {
         unit,
         path,
-        proof: proof
-            .transpose()
-            .unwrap_or_else(|error| panic!("{path}: {error:?}")),
+        proof: proof.transpose().unwrap_or_else(|error| panic!("{path}: {error:?}")),
         synthesis: None,
     };
     datasheet(&subject, &|| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"))
@@ -29,10 +27,7 @@ fn make(path: &str, unit: &Unit) -> Datasheet {
 
 /// The pages are XML as well.
 fn parse(page: &str) -> Document<'_> {
-    let options = ParsingOptions {
-        allow_dtd: true,
-        ..ParsingOptions::default()
-    };
+    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
     Document::parse_with_options(page, options).unwrap_or_else(|error| panic!("{error}"))
 }
 
@@ -92,10 +87,7 @@ fn needs_nothing_else(path: &str, page: &str, document: &Document) {
 
 fn is_accessible(path: &str, document: &Document) {
     let mut ids = BTreeSet::new();
-    for id in document
-        .descendants()
-        .filter_map(|node| node.attribute("id"))
-    {
+    for id in document.descendants().filter_map(|node| node.attribute("id")) {
         assert!(ids.insert(id), "{path}: `{id}` twice");
     }
     for node in document.descendants() {
@@ -109,19 +101,13 @@ fn is_accessible(path: &str, document: &Document) {
         }
         if node.attribute("class") == Some("scroll") {
             let usable = node.attribute("tabindex").is_some() && node.attribute("role").is_some();
-            assert!(
-                usable && node.attribute("aria-label").is_some(),
-                "{path}: a scroller"
-            );
+            assert!(usable && node.attribute("aria-label").is_some(), "{path}: a scroller");
         }
     }
     for figure in elements(document, "figure") {
         let has = |name| figure.descendants().any(|node| node.has_tag_name(name));
         let named = |node: &Node| node.tag_name().name() == "figcaption";
-        assert!(
-            figure.descendants().any(|node| named(&node)),
-            "{path}: a figure without caption"
-        );
+        assert!(figure.descendants().any(|node| named(&node)), "{path}: a figure without caption");
         assert!(has("svg") || has("img"), "{path}: a figure without picture");
     }
     for picture in elements(document, "svg") {
@@ -131,11 +117,7 @@ fn is_accessible(path: &str, document: &Document) {
         assert!(hidden || named, "{path}: a picture without a name");
     }
     for heading in elements(document, "th") {
-        assert!(
-            heading.attribute("scope").is_some(),
-            "{path}: {}",
-            text(heading)
-        );
+        assert!(heading.attribute("scope").is_some(), "{path}: {}", text(heading));
     }
     // No level is left out.
     let mut level = 0;
@@ -170,9 +152,7 @@ fn corners(path: &str) -> Vec<Point> {
     while let Some(command) = rest.chars().next() {
         let end = rest[1..].find(|sign: char| sign.is_ascii_uppercase());
         let end = end.map_or(rest.len(), |end| end + 1);
-        let mut numbers = rest[1..end]
-            .split(' ')
-            .map(|it| it.parse().expect("a number"));
+        let mut numbers = rest[1..end].split(' ').map(|it| it.parse().expect("a number"));
         let mut number = || numbers.next().expect("a number");
         match command {
             'H' => x = number(),
@@ -228,29 +208,19 @@ fn wires_are_clear(path: &str, document: &Document) {
         }
     }
     for (at, &(net, from, to)) in pieces.iter().enumerate() {
-        assert!(
-            from.0 == to.0 || from.1 == to.1,
-            "{path}: {from:?} to {to:?} is slanted"
-        );
+        assert!(from.0 == to.0 || from.1 == to.1, "{path}: {from:?} to {to:?} is slanted");
         for &(other, start, end) in &pieces[..at] {
-            let shared = (
-                to.0.min(end.0) - from.0.max(start.0),
-                to.1.min(end.1) - from.1.max(start.1),
-            );
+            let shared =
+                (to.0.min(end.0) - from.0.max(start.0), to.1.min(end.1) - from.1.max(start.1));
             let upon = shared.0 >= 0 && shared.1 >= 0 && shared != (0, 0);
-            assert!(
-                net == other || !upon,
-                "{path}: {from:?} to {to:?} upon {start:?} to {end:?}"
-            );
+            assert!(net == other || !upon, "{path}: {from:?} to {to:?} upon {start:?} to {end:?}");
         }
     }
 }
 
 /// The numbers that stand in the diagram.
 fn drawn(document: &Document) -> BTreeSet<u16> {
-    let texts = diagram(document)
-        .descendants()
-        .filter(|node| node.tag_name().name() == "text");
+    let texts = diagram(document).descendants().filter(|node| node.tag_name().name() == "text");
     let numbers = texts.flat_map(|node| {
         let text = text(node);
         let class = node.attribute("class").unwrap_or_default();
@@ -271,11 +241,7 @@ fn has_the_blocks_of_the_netlist(path: &str, document: &Document, unit: &Unit) {
     let design = &unit.design;
     let nets = design.nets.iter().filter_map(|net| net.block);
     let roms = design.roms.iter().filter_map(|rom| rom.block);
-    let lines = design
-        .control
-        .fields
-        .iter()
-        .flat_map(|field| field.lines.iter().copied());
+    let lines = design.control.fields.iter().flat_map(|field| field.lines.iter().copied());
     let blocks: BTreeSet<u16> = nets.chain(roms).collect();
     let known: BTreeSet<u16> = blocks.iter().copied().chain(lines).collect();
     let drawn = drawn(document);
@@ -336,18 +302,12 @@ fn example(path: &str) -> Vec<(String, i64, f64)> {
     let tables = elements(&document, "div");
     let mut tables = tables.filter(|div| div.attribute("aria-label") == Some("A worked example"));
     let table = tables.next().expect("a worked example");
-    let rows = table
-        .descendants()
-        .filter(|node| node.tag_name().name() == "tr");
+    let rows = table.descendants().filter(|node| node.tag_name().name() == "tr");
     rows.skip(1)
         .map(|row| {
             let cells: Vec<String> = row.children().filter(Node::is_element).map(text).collect();
-            let integer = cells[1]
-                .parse()
-                .unwrap_or_else(|_| panic!("{path}: {cells:?}"));
-            let value = cells[2]
-                .parse()
-                .unwrap_or_else(|_| panic!("{path}: {cells:?}"));
+            let integer = cells[1].parse().unwrap_or_else(|_| panic!("{path}: {cells:?}"));
+            let value = cells[2].parse().unwrap_or_else(|_| panic!("{path}: {cells:?}"));
             (cells[0].clone(), integer, value)
         })
         .collect()
@@ -384,16 +344,10 @@ fn worked_examples_agree_with_the_formulas() {
         let (c, n) = (raw("cos_gamma") / ONE, raw("exponent"));
         c / (n - n * c + c)
     });
-    agrees("configs/blinn.toml", |raw| {
-        (raw("cos_gamma") / ONE).powf(raw("exponent"))
-    });
+    agrees("configs/blinn.toml", |raw| (raw("cos_gamma") / ONE).powf(raw("exponent")));
     agrees("configs/rough.toml", |raw| {
         let (gamma, deviation) = (raw("cos_gamma") / ONE, raw("cos_dgamma") / ONE);
-        let sign = if raw("dgamma_negative") == 1.0 {
-            -1.0
-        } else {
-            1.0
-        };
+        let sign = if raw("dgamma_negative") == 1.0 { -1.0 } else { 1.0 };
         let c = (gamma.acos() + sign * deviation.acos()).cos();
         (raw("exponent") / 2.0 * (c - 1.0) + 1.0).max(0.0).powi(2)
     });

@@ -13,11 +13,7 @@ fn mistakes(wrong: impl FnOnce(&Designer)) -> Vec<String> {
     y.takes(x.q());
     d.output("y_out", y.q());
     wrong(&d);
-    d.microprogram([
-        step("idle", []),
-        step("load", [y.load()]),
-        step("result", [valid(), end()]),
-    ]);
+    d.microprogram([step("idle", []), step("load", [y.load()]), step("result", [valid(), end()])]);
     finish(d)
 }
 
@@ -65,10 +61,7 @@ fn two_drivers() {
     });
     assert_eq!(
         found,
-        [
-            "`w` has two drivers: `a_reg` is the second",
-            "`r` has two drivers: `w` is the second"
-        ]
+        ["`w` has two drivers: `a_reg` is the second", "`r` has two drivers: `w` is the second"]
     );
 }
 
@@ -83,12 +76,7 @@ fn the_line_of_a_mistake_is_that_of_the_description() {
     d.microprogram([step("idle", []), step("end", [end()])]);
     let found = d.finish().unwrap_err();
     assert_eq!(found.0[0].location.line(), line);
-    assert!(
-        found
-            .to_string()
-            .contains(&format!("--> tests/diagnostics.rs:{line}:")),
-        "{found}"
-    );
+    assert!(found.to_string().contains(&format!("--> tests/diagnostics.rs:{line}:")), "{found}");
 }
 
 #[test]
@@ -100,10 +88,7 @@ fn missing_drivers() {
     });
     assert_eq!(
         found,
-        [
-            "nothing drives `floating`",
-            "nothing drives the data input of register `idle_register`"
-        ]
+        ["nothing drives `floating`", "nothing drives the data input of register `idle_register`"]
     );
 }
 
@@ -176,29 +161,15 @@ fn picks_of_what_a_mux_does_not_pass_on() {
         let a = d.operand("a", BYTE);
         let b = d.operand("b", BYTE);
         let m = d.mux("m", [a.q(), a.q()]);
-        vec![
-            step("idle", [m.pick(b.q())]),
-            step("x", [m.pick(a.q()), load]),
-            step("end", [end()]),
-        ]
+        vec![step("idle", [m.pick(b.q())]), step("x", [m.pick(a.q()), load]), step("end", [end()])]
     });
-    assert_eq!(
-        found,
-        [
-            "`b_reg` is no input of `m`",
-            "`a_reg` is more than one input of `m`"
-        ]
-    );
+    assert_eq!(found, ["`b_reg` is no input of `m`", "`a_reg` is more than one input of `m`"]);
 }
 
 #[test]
 fn words_out_of_order() {
     let found = program(|_, load| {
-        vec![
-            step("idle", []),
-            step("end", [load.clone(), end()]),
-            step("after", [load]),
-        ]
+        vec![step("idle", []), step("end", [load.clone(), end()]), step("after", [load])]
     });
     assert_eq!(found, ["word `after` cannot be reached"]);
 
@@ -206,20 +177,13 @@ fn words_out_of_order() {
     assert_eq!(found, ["the last word, `load`, does not end"]);
 
     let found = program(|_, load| vec![step("idle", [load.clone()]), step("load", [load, end()])]);
-    assert_eq!(
-        found,
-        ["word `idle` turns `y_load`, but the device also waits for start in it"]
-    );
+    assert_eq!(found, ["word `idle` turns `y_load`, but the device also waits for start in it"]);
 
     let found = program(|_, load| vec![step("idle", []), step("two ways", [load, next(), end()])]);
     assert_eq!(found, ["word `two ways` goes on in two ways"]);
 
     let found = program(|_, load| {
-        vec![
-            step("idle", []),
-            step("twice", [load.clone()]),
-            step("twice", [load, end()]),
-        ]
+        vec![step("idle", []), step("twice", [load.clone()]), step("twice", [load, end()])]
     });
     assert_eq!(found, ["two words are named `twice`"]);
 
@@ -227,10 +191,7 @@ fn words_out_of_order() {
     assert_eq!(found, ["no word turns `y_load`"]);
 
     let found = program(|_, load| vec![step("only", [load, end()])]);
-    assert_eq!(
-        found,
-        ["a microprogram has at least two words: where it waits, and where it ends"]
-    );
+    assert_eq!(found, ["a microprogram has at least two words: where it waits, and where it ends"]);
 
     let found = program(|d, load| {
         let bit = d.operand("more", Format::BIT);
@@ -240,10 +201,7 @@ fn words_out_of_order() {
             step("end", [end()]),
         ]
     });
-    assert_eq!(
-        found,
-        ["word `load` goes to `nowhere`, but no word has that name"]
-    );
+    assert_eq!(found, ["word `load` goes to `nowhere`, but no word has that name"]);
 }
 
 #[test]
@@ -268,23 +226,14 @@ fn products_taken_under_another_selection() {
     let product = d.shared_mul("product", &first, &second);
     let y = d.register("y", BYTE);
     let square = product.of(a.q(), a.q());
-    y.takes(d.narrow(
-        "square",
-        square,
-        BYTE,
-        Rounding::Truncate,
-        Overflow::Saturate,
-    ));
+    y.takes(d.narrow("square", square, BYTE, Rounding::Truncate, Overflow::Saturate));
     d.output("y_out", y.q());
     d.microprogram([
         step("idle", []),
         step("wrong", [first.pick(b.q()), y.load()]),
         step("end", [end()]),
     ]);
-    assert_eq!(
-        finish(d),
-        ["word `wrong` loads `y` with the product of (a), but selects (b)"]
-    );
+    assert_eq!(finish(d), ["word `wrong` loads `y` with the product of (a), but selects (b)"]);
 }
 
 #[test]
@@ -296,9 +245,7 @@ fn products_held_from_another_selection() {
         let select = d.select("operands", &["a", "b"]);
         let first = d.bus("first", select, [a.q(), b.q()]);
         let second = d.bus("second", select, [a.q(), b.q()]);
-        let product = d
-            .shared_mul("product", &first, &second)
-            .held("product_held");
+        let product = d.shared_mul("product", &first, &second).held("product_held");
         let y = d.register("y", Format::unsigned(0, 16));
         // The lines that choose between two products are themselves lines of a word.
         let squares = [product.of(a.q(), a.q()), product.of(b.q(), b.q())];
@@ -347,10 +294,7 @@ fn nets_that_are_too_wide() {
         let a = d.operand("a", Format::unsigned(0, 40));
         d.mul("square", a.q(), a.q());
     });
-    assert_eq!(
-        found,
-        ["`square` would be 80 bits wide (u0.80); a net has 1 to 64"]
-    );
+    assert_eq!(found, ["`square` would be 80 bits wide (u0.80); a net has 1 to 64"]);
 }
 
 #[test]
@@ -410,11 +354,7 @@ fn valid_that_follows_a_signal() {
         program(|d, load| {
             let x = d.operand("a", Format::BIT);
             d.valid_after(x.q(), clocks);
-            vec![
-                step("idle", []),
-                step("load", [load]),
-                step("result", last()),
-            ]
+            vec![step("idle", []), step("load", [load]), step("result", last())]
         })
     };
     assert_eq!(follows(0, || vec![end()]), Vec::<String>::new());
@@ -426,10 +366,7 @@ fn valid_that_follows_a_signal() {
     let found = mistakes(|d| {
         d.valid_after(d.operand("a", BYTE).q(), 1);
     });
-    assert_eq!(
-        found,
-        ["valid follows `a_reg`, which has more than one bit"]
-    );
+    assert_eq!(found, ["valid follows `a_reg`, which has more than one bit"]);
     let found = program(|d, load| {
         let (a, b) = (d.operand("a", Format::BIT), d.operand("b", Format::BIT));
         d.valid_after(a.q(), 1);
@@ -453,10 +390,7 @@ fn a_jump_around_words() {
         })
     };
     assert_eq!(jumps("result"), Vec::<String>::new());
-    assert_eq!(
-        jumps("nowhere"),
-        ["word `first` goes to `nowhere`, but no word has that name"]
-    );
+    assert_eq!(jumps("nowhere"), ["word `first` goes to `nowhere`, but no word has that name"]);
 }
 
 #[test]
@@ -478,13 +412,7 @@ fn formats_that_no_net_can_have() {
         let _ = a.bits(u32::MAX, Format::BIT);
         let _ = a.with_fraction(500);
         let _ = a.shift_left(i32::MIN);
-        d.narrow(
-            "none",
-            a,
-            Format::signed(0, -1),
-            Rounding::Truncate,
-            Overflow::Saturate,
-        );
+        d.narrow("none", a, Format::signed(0, -1), Rounding::Truncate, Overflow::Saturate);
     });
     let expected = [
         "`nothing` would be -2 bits wide (u-3.1); a net has 1 to 64",
@@ -494,12 +422,6 @@ fn formats_that_no_net_can_have() {
         "`a_reg_scaled` would be 500 bits wide (u0.500); a net has 1 to 64",
     ];
     assert_eq!(found[..expected.len()], expected);
-    assert!(
-        found[expected.len()].starts_with("`a_reg_shifted` would"),
-        "{found:?}"
-    );
-    assert!(
-        found[expected.len() + 1].starts_with("`none` would be 0 bits wide"),
-        "{found:?}"
-    );
+    assert!(found[expected.len()].starts_with("`a_reg_shifted` would"), "{found:?}");
+    assert!(found[expected.len() + 1].starts_with("`none` would be 0 bits wide"), "{found:?}");
 }

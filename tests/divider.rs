@@ -42,9 +42,7 @@ impl<'a> Bench<'a> {
     }
 
     fn net(&self, name: &str) -> NetId {
-        self.design
-            .find(name)
-            .unwrap_or_else(|| panic!("no {name}"))
+        self.design.find(name).unwrap_or_else(|| panic!("no {name}"))
     }
 
     fn value(&self, name: &str) -> u64 {
@@ -83,11 +81,7 @@ impl<'a> Bench<'a> {
     /// Quotient, remainder, and the clocks from `start` to `valid`.
     fn divide(&mut self, a: u64, b: u64) -> (u64, u64, u32) {
         let clocks = self.run(&[("a", a), ("b", b)]);
-        (
-            self.value("ratio_out"),
-            self.value("ratio_remainder"),
-            clocks,
-        )
+        (self.value("ratio_out"), self.value("ratio_remainder"), clocks)
     }
 }
 
@@ -103,11 +97,7 @@ fn every_quotient_of_five_bits_is_exact() {
                 // 1.0 is not representable: the largest fraction, which leaves the divisor.
                 let exact = ((a << bits) / b).min((1 << bits) - 1);
                 assert_eq!(quotient, exact, "{a} / {b} to {bits} bits");
-                assert_eq!(
-                    remainder,
-                    (a << bits) - exact * b,
-                    "{a} / {b} to {bits} bits"
-                );
+                assert_eq!(remainder, (a << bits) - exact * b, "{a} / {b} to {bits} bits");
                 // The words 0, load and result, and one clock a bit.
                 assert_eq!(clocks, bits + 3);
             }
@@ -163,9 +153,7 @@ fn edges_of_schlick() {
     let config = config::parse("edges.toml", text, &registry.schemas());
     let config = config.unwrap_or_else(|problems| panic!("{problems}"));
     let device = registry.device("schlick").expect("the device");
-    let design = device
-        .design(&config)
-        .unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let design = device.design(&config).unwrap_or_else(|mistakes| panic!("{mistakes}"));
     let mut bench = Bench::new(&design);
     let one = 1 << 20;
     let negative = |raw: u64| (1 << 22) - raw;
@@ -198,11 +186,7 @@ fn edges_of_schlick() {
     ] {
         let operands = [("cos_gamma", cosine), ("exponent", exponent), ("red", 255)];
         assert_eq!(bench.run(&operands), 13);
-        assert_eq!(
-            bench.value("quotient"),
-            quotient,
-            "{cosine} with n = {exponent}"
-        );
+        assert_eq!(bench.value("quotient"), quotient, "{cosine} with n = {exponent}");
         assert!(bench.value("quotient_divisor") > 0);
         // To the nearest, ties upward.
         assert_eq!(bench.value("red_out"), (255 * quotient + 512) / 1024);

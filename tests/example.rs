@@ -21,11 +21,7 @@ fn run(directory: &Path, arguments: &[&str]) -> Output {
     if !cfg!(debug_assertions) {
         cargo.arg("--release");
     }
-    let output = cargo
-        .arg("--")
-        .args(arguments)
-        .current_dir(directory)
-        .output();
+    let output = cargo.arg("--").args(arguments).current_dir(directory).output();
     output.expect("cargo runs")
 }
 
@@ -47,10 +43,7 @@ fn every_command_works() {
 
     let generate = ["generate", "f.toml", "--out", "out", "--quiet"];
     succeed(directory, &generate);
-    for file in [
-        "rtl_out/fresnel/fresnel.v",
-        "testbench/fresnel/fresnel_tb.v",
-    ] {
+    for file in ["rtl_out/fresnel/fresnel.v", "testbench/fresnel/fresnel_tb.v"] {
         assert!(directory.join("out").join(file).is_file(), "{file}");
     }
     succeed(directory, &[&generate[..], &["--check"]].concat());
@@ -63,10 +56,7 @@ fn every_command_works() {
     // 0.04 + 0.96·0.5⁵ = 0.07, where f0 = 10/256 is nearest to 0.04: 255·0.0691 = 17.6.
     // It has no exponent: there is nothing to hold against cosⁿγ.
     let compare = succeed(directory, &["compare", "--no-synthesis"]);
-    assert!(
-        compare.contains("fresnel: none of its operands stand for gamma and n"),
-        "{compare}"
-    );
+    assert!(compare.contains("fresnel: none of its operands stand for gamma and n"), "{compare}");
 
     let eval = ["eval", "f.toml", "cos_half=0.5", "f0=0.04", "red=255"];
     let text = succeed(directory, &eval);
@@ -77,11 +67,7 @@ fn every_command_works() {
     let refused = run(directory, &["render", "f.toml", "--out", "out.png"]);
     let errors = String::from_utf8_lossy(&refused.stderr);
     assert_eq!(refused.status.code(), Some(1), "{errors}");
-    for part in [
-        "cannot supply `cos_half`",
-        "`f0` (",
-        "it supplies cos_gamma, exponent",
-    ] {
+    for part in ["cannot supply `cos_half`", "`f0` (", "it supplies cos_gamma, exponent"] {
         assert!(errors.contains(part), "no `{part}` in {errors}");
     }
 }
@@ -150,12 +136,7 @@ fn the_bound_holds_everywhere() {
         }
         assert!(worst <= bound.f, "{}: {worst} > {}", config.name, bound.f);
         // A bound that nothing comes near proves little.
-        assert!(
-            worst > bound.f / 8.0,
-            "{}: {worst} ≪ {}",
-            config.name,
-            bound.f
-        );
+        assert!(worst > bound.f / 8.0, "{}: {worst} ≪ {}", config.name, bound.f);
     }
 }
 

@@ -54,11 +54,7 @@ const BOTH: [Simulator; 2] = [Simulator::Icarus, Simulator::Verilator];
 fn a_right_bench_passes() {
     for simulator in BOTH {
         let outcome = tools::assert_bench_passes(simulator, &bench("4'd5", ""), "tb");
-        assert!(
-            outcome.transcript.starts_with("PASS: 5 clocks\n"),
-            "{}",
-            outcome.transcript
-        );
+        assert!(outcome.transcript.starts_with("PASS: 5 clocks\n"), "{}", outcome.transcript);
     }
 }
 
@@ -67,11 +63,7 @@ fn a_wrong_bench_fails() {
     for simulator in BOTH {
         let outcome = run_bench(simulator, &bench("4'd6", ""), "tb", tools::LIMIT).unwrap();
         assert!(!outcome.passed);
-        assert!(
-            outcome.transcript.contains("FAIL: count is 5"),
-            "{}",
-            outcome.transcript
-        );
+        assert!(outcome.transcript.contains("FAIL: count is 5"), "{}", outcome.transcript);
     }
 }
 
@@ -80,10 +72,7 @@ fn an_endless_bench_is_killed() {
     let limit = Duration::from_secs(2);
     let endless = bench("4'd5", "forever @(negedge clk);");
     let error = run_bench(Simulator::Icarus, &endless, "tb", limit).unwrap_err();
-    assert!(
-        format!("{error:#}").contains("`vvp` did not end within"),
-        "{error:#}"
-    );
+    assert!(format!("{error:#}").contains("`vvp` did not end within"), "{error:#}");
 }
 
 #[test]
@@ -91,10 +80,7 @@ fn bad_verilog_is_quoted() {
     for simulator in BOTH {
         let error = run_bench(simulator, &bench("nothing", ""), "tb", tools::LIMIT).unwrap_err();
         let text = format!("{error:#}");
-        assert!(
-            text.contains("tb.v:11") && text.contains("nothing"),
-            "{text}"
-        );
+        assert!(text.contains("tb.v:11") && text.contains("nothing"), "{text}");
     }
 }
 
@@ -106,10 +92,7 @@ fn lint_tells_clean_from_dubious() {
     tools::assert_lint_clean(place.path(), "counter");
     write(&COUNTER.replace("4'd1", "5'd1"));
     let lint = || tools::assert_lint_clean(place.path(), "counter");
-    assert!(
-        std::panic::catch_unwind(lint).is_err(),
-        "a width mismatch went through"
-    );
+    assert!(std::panic::catch_unwind(lint).is_err(), "a width mismatch went through");
 }
 
 #[test]
@@ -117,41 +100,22 @@ fn yosys_synthesises_and_refuses_latches() {
     let place = tempfile::tempdir().unwrap();
     let write = |text: &str| fs::write(place.path().join("counter.v"), text).unwrap();
     write(COUNTER);
-    let protocol = tools::yosys(
-        place.path(),
-        "read_verilog counter.v; synth_ice40 -top counter",
-    );
+    let protocol = tools::yosys(place.path(), "read_verilog counter.v; synth_ice40 -top counter");
     assert!(protocol.contains("SB_DFF"), "{protocol}");
-    let latch = COUNTER
-        .replace("posedge clk", "*")
-        .replace("else        count <= count + 4'd1;", "");
+    let latch =
+        COUNTER.replace("posedge clk", "*").replace("else        count <= count + 4'd1;", "");
     write(&latch);
     let commands = "read_verilog counter.v; proc; select -assert-none t:$dlatch";
     let check = || tools::yosys(place.path(), commands);
     let panic = std::panic::catch_unwind(check).expect_err("a latch went through");
     let text = panic.downcast_ref::<String>().expect("a message");
-    assert!(
-        text.contains("t:$dlatch") && text.contains("count"),
-        "{text}"
-    );
+    assert!(text.contains("t:$dlatch") && text.contains("count"), "{text}");
 }
 
 #[test]
 fn every_tool_of_the_install_script_answers() {
-    for name in [
-        "iverilog",
-        "vvp",
-        "verilator",
-        "yosys",
-        "nextpnr-ice40",
-        "fusesoc",
-    ] {
-        let version = tools::tool(name)
-            .version()
-            .unwrap_or_else(|error| panic!("{error:#}"));
-        assert!(
-            version.contains(|c: char| c.is_ascii_digit()),
-            "{name}: {version}"
-        );
+    for name in ["iverilog", "vvp", "verilator", "yosys", "nextpnr-ice40", "fusesoc"] {
+        let version = tools::tool(name).version().unwrap_or_else(|error| panic!("{error:#}"));
+        assert!(version.contains(|c: char| c.is_ascii_digit()), "{name}: {version}");
     }
 }

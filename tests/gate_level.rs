@@ -37,9 +37,7 @@ fn a_bit_of_a_block_ram_is_noticed() {
     let netlist = netlist(&emitted, ecp5());
     let at = netlist.find(PARAMETER).expect(PARAMETER) + PARAMETER.len();
     let digits = netlist[at..].find(')').expect("the end of the number");
-    let wrong = with_digit(&netlist, at + digits - 1 - BIT / 4, |digit| {
-        digit ^ 1 << (BIT % 4)
-    });
+    let wrong = with_digit(&netlist, at + digits - 1 - BIT / 4, |digit| digit ^ 1 << (BIT % 4));
     netlist::bench(&emitted, wrong, ecp5()).assert_fails("a bit of a block RAM");
 }
 
@@ -65,9 +63,8 @@ fn bits_of_look_up_tables_are_noticed() {
             .into_par_iter()
             .map(|number| tables[number * step])
             .filter(|&at| {
-                let wrong = (at..at + 4).fold(netlist.clone(), |text, at| {
-                    with_digit(&text, at, |digit| !digit & 15)
-                });
+                let wrong = (at..at + 4)
+                    .fold(netlist.clone(), |text, at| with_digit(&text, at, |digit| !digit & 15));
                 let run = netlist::bench(&emitted, wrong, family).run();
                 run.status.success()
             })
@@ -99,10 +96,7 @@ fn an_unknown_mode_is_refused() {
 
 /// The text with another hexadecimal digit at a place.
 fn with_digit(text: &str, at: usize, change: impl Fn(u32) -> u32) -> String {
-    let digit = text[at..]
-        .chars()
-        .next()
-        .and_then(|digit| digit.to_digit(16));
+    let digit = text[at..].chars().next().and_then(|digit| digit.to_digit(16));
     let changed = char::from_digit(change(digit.expect("a digit")), 16).expect("a digit");
     format!("{}{changed}{}", &text[..at], &text[at + 1..])
 }

@@ -41,9 +41,7 @@ impl Bench {
 
     fn set(&mut self, name: &str, bits: u64) {
         let design = &self.unit.design;
-        let at = design
-            .inputs()
-            .position(|port| design.net(port.net).name == name);
+        let at = design.inputs().position(|port| design.net(port.net).name == name);
         self.simulator.set(at.expect("an input"), bits);
     }
 
@@ -121,14 +119,7 @@ fn quad_operands([delta, start, n, length, amplitude]: [i64; 5]) -> [(&'static s
 fn the_order_of_events_for_three_intervals() {
     for device in ["quad-cosine", "cosine-squared"] {
         let mut bench = Bench::new(device);
-        let names = [
-            "busy",
-            "valid",
-            "count",
-            "accumulate",
-            "write_angle",
-            "intervals",
-        ];
+        let names = ["busy", "valid", "count", "accumulate", "write_angle", "intervals"];
         let operands = [("delta_zeta", 5), ("zeta_start", -7), ("length", 3)];
         bench.start(&operands);
         let mut seen = Vec::new();
@@ -186,10 +177,7 @@ fn decoder_edges() {
     for (n, exact) in expected {
         for sign in [-1, 1] {
             let points = bench.line(&quad_operands([0, sign * RIGHT / 3, n, 0, 255]));
-            assert!(
-                (points[0] as f64 - exact).abs() < 1.0,
-                "n = {n}: {points:?}"
-            );
+            assert!((points[0] as f64 - exact).abs() < 1.0, "n = {n}: {points:?}");
         }
     }
     // The surface faces away: nothing, whatever n.
@@ -239,10 +227,7 @@ fn every_word_of_the_tables() {
         3..=6 => 4,
         _ => 16,
     };
-    for (device, tables) in [
-        ("quad-cosine", &[1, 2, 4, 16][..]),
-        ("cosine-squared", &[2]),
-    ] {
+    for (device, tables) in [("quad-cosine", &[1, 2, 4, 16][..]), ("cosine-squared", &[2])] {
         let unit = unit(device);
         let rom = |name: &str| unit.design.roms.iter().find(|rom| rom.name == name);
         if let Some(rom) = rom("root") {
@@ -250,10 +235,7 @@ fn every_word_of_the_tables() {
                 // (2r − 1)² ≤ 4·n·2²⁸/k < (2r + 1)².
                 let (k, square) = (powers(n), n << 30);
                 let below = (2 * word).saturating_sub(1).pow(2) * k;
-                assert!(
-                    below <= square && square < (2 * word + 1).pow(2) * k,
-                    "n = {n}"
-                );
+                assert!(below <= square && square < (2 * word + 1).pow(2) * k, "n = {n}");
             }
         }
         let words = &rom("cosine").expect("a table").words;
@@ -286,11 +268,7 @@ fn set_ups(count: usize) -> impl Iterator<Item = Line> {
         let (h1, h2) = (near(n1, 1.5), near(n2, 1.5));
         let arc = Arc::new(n1, h1, n2, h2).expect("a set-up");
         let exponent = (1.0 + 999.0 * (real() + 0.5)) as u32;
-        arc.line(
-            255.0 / arc.peak.powi(exponent as i32).max(1e-9),
-            exponent,
-            4095,
-        )
+        arc.line(255.0 / arc.peak.powi(exponent as i32).max(1e-9), exponent, 4095)
     })
     .filter(|line| (1.0..=255.0 + 1e-9).contains(&line.amplitude))
     .take(count)
@@ -330,22 +308,16 @@ fn the_longest_lines_stay_within_two_units_of_the_unquantised_set_up() {
         let n = i64::from(line.exponent);
         let it = line.quad_cosine(&quad.config).expect("operands");
         let control = [it.delta_zeta, it.zeta_start, n, it.length];
-        let error = drift(&quad, &line, &it, &control, |zeta| {
-            reference::quad_cosine(zeta, n)
-        });
+        let error = drift(&quad, &line, &it, &control, |zeta| reference::quad_cosine(zeta, n));
         worst[0] = worst[0].max(error);
         let it = line.cosine_squared(&squared.config).expect("operands");
         let control = [it.delta_zeta, it.zeta_start, it.length];
         let a = (n as f64 / 2.0).sqrt();
-        let error = drift(&squared, &line, &it, &control, |zeta| {
-            reference::cosine_squared(a * zeta)
-        });
+        let error =
+            drift(&squared, &line, &it, &control, |zeta| reference::cosine_squared(a * zeta));
         worst[1] = worst[1].max(error);
     }
-    println!(
-        "quad-cosine {}, cosine-squared {} units",
-        worst[0], worst[1]
-    );
+    println!("quad-cosine {}, cosine-squared {} units", worst[0], worst[1]);
     assert!(worst.iter().all(|&worst| worst <= 2.0), "{worst:?}");
     // A set-up that hardly shows anything would prove nothing.
     assert!(worst.iter().all(|&worst| worst > 0.7), "{worst:?}");
@@ -371,9 +343,7 @@ fn the_worst_rounding_of_the_longest_line_stays_within_two_units() {
         };
         let it = line.quad_cosine(&quad.config).expect("operands");
         let control = [it.delta_zeta, it.zeta_start, 1000, it.length];
-        let error = drift(&quad, &line, &it, &control, |zeta| {
-            reference::quad_cosine(zeta, 1000)
-        });
+        let error = drift(&quad, &line, &it, &control, |zeta| reference::quad_cosine(zeta, 1000));
         worst = worst.max(error);
     }
     println!("{worst} units");

@@ -30,9 +30,7 @@ fn defaults() -> Vec<(String, Unit)> {
     let registry = Registry::catalogue();
     let devices = registry.devices().iter();
     let paths = devices.map(|device| format!("configs/{}.toml", device.name.replace('-', "_")));
-    paths
-        .map(|path| (path.clone(), configuration(&path)))
-        .collect()
+    paths.map(|path| (path.clone(), configuration(&path))).collect()
 }
 
 fn record(unit: &Unit) -> Value {
@@ -43,10 +41,7 @@ fn record(unit: &Unit) -> Value {
 
 /// What became of the fault of an id, by a record: those that the default test notices are not named.
 fn recorded(netlist: &Value, id: &str) -> Said {
-    let has = |list: &Value| {
-        list.as_array()
-            .is_some_and(|ids| ids.iter().any(|it| it == id))
-    };
+    let has = |list: &Value| list.as_array().is_some_and(|ids| ids.iter().any(|it| it == id));
     let proofs = netlist["equivalent"].as_object();
     let mut proofs = proofs.into_iter().flatten();
     if has(&netlist["open"]) {
@@ -146,16 +141,13 @@ fn faults_of_the_verilog_are_noticed() {
     for (path, unit) in defaults() {
         let record = record(&unit);
         let named = |list: &str| record["verilog"][list].as_array().into_iter().flatten();
-        let unnoticed: BTreeSet<&str> = named("open")
-            .chain(named("equivalent"))
-            .filter_map(Value::as_str)
-            .collect();
+        let unnoticed: BTreeSet<&str> =
+            named("open").chain(named("equivalent")).filter_map(Value::as_str).collect();
         let text = Text::of(&unit).unwrap_or_else(|error| panic!("{path}: {error:?}"));
         let faults = text.sample(TEXT_FAULTS);
         assert!(faults.len() >= 20, "{path}: {} faults", faults.len());
-        let verdicts = text
-            .run(&faults, LIMIT, &|| ())
-            .unwrap_or_else(|error| panic!("{path}: {error:?}"));
+        let verdicts =
+            text.run(&faults, LIMIT, &|| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"));
         for (fault, verdict) in faults.iter().zip(verdicts) {
             let noticed = matches!(verdict, TextVerdict::Lint | TextVerdict::Bench);
             let expected = !unnoticed.contains(fault.id.as_str());

@@ -71,12 +71,7 @@ fn the_records_hold_today() {
         assert_eq!(places.error(place), largest, "{stale}");
         let stride = (places.count() / AGAIN).max(1);
         let peak = places.check(every(&places, stride), &|_| ());
-        assert!(
-            peak.error <= largest,
-            "{stale}: {} at {:?}",
-            peak.error,
-            places.place(peak.place)
-        );
+        assert!(peak.error <= largest, "{stale}: {} at {:?}", peak.error, places.place(peak.place));
 
         let colours = Places::of_colours(contract);
         let colour = colours.check(every(&colours, 1), &|_| ());

@@ -76,10 +76,7 @@ fn agrees_within_its_bound(toml: &str, unit: &Unit) {
     assert!(outcome.mismatch.is_none(), "{:?}\n{toml}", outcome.mismatch);
     assert_eq!(outcome.points, POINTS);
     if let Some(worst) = outcome.worst {
-        assert!(
-            worst.units <= bound.units,
-            "{worst:?} is beyond {bound:?}\n{toml}"
-        );
+        assert!(worst.units <= bound.units, "{worst:?} is beyond {bound:?}\n{toml}");
     }
 }
 

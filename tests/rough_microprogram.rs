@@ -32,9 +32,7 @@ fn configuration(toml: &str) -> Config {
 }
 
 fn design(config: &Config) -> Design {
-    rough()
-        .design(config)
-        .unwrap_or_else(|error| panic!("{error}"))
+    rough().design(config).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn assert_is_the_table(design: &Design, what: &str) {
@@ -44,31 +42,18 @@ fn assert_is_the_table(design: &Design, what: &str) {
     let table: Vec<u64> = TABLE.iter().map(value).collect();
     assert_eq!(rom.words, table, "{what}");
 
-    let lines: Vec<u16> = design
-        .control
-        .fields
-        .iter()
-        .flat_map(|field| field.lines.clone())
-        .collect();
+    let lines: Vec<u16> =
+        design.control.fields.iter().flat_map(|field| field.lines.clone()).collect();
     assert_eq!(lines, LINES, "{what}");
 
     let files =
         emit(design, &EmitInputs::default()).unwrap_or_else(|error| panic!("{error:#}\n{what}"));
     let name = format!("rtl_out/{0}/{0}_control.mem", design.name);
-    let memory = files
-        .iter()
-        .find(|file| file.path == name)
-        .expect("the control ROM");
+    let memory = files.iter().find(|file| file.path == name).expect("the control ROM");
     let words: Vec<String> = memory
         .contents
         .lines()
-        .map(|line| {
-            line.split("//")
-                .next()
-                .unwrap_or("")
-                .trim()
-                .replace('_', "")
-        })
+        .map(|line| line.split("//").next().unwrap_or("").trim().replace('_', ""))
         .filter(|word| !word.is_empty())
         .collect();
     let table = TABLE.map(|row| row.map(|bit| bit.to_string()).concat());
@@ -96,11 +81,8 @@ fn every_option_has_the_words_of_the_patent() {
             texts.iter().flat_map(with).collect()
         })
     };
-    let start = |arithmetic: &str| {
-        vec![format!(
-            "device = \"rough\"\narithmetic = \"{arithmetic}\"\n"
-        )]
-    };
+    let start =
+        |arithmetic: &str| vec![format!("device = \"rough\"\narithmetic = \"{arithmetic}\"\n")];
     let mut texts = product(&common, start("patent"));
     texts.extend(product(&exact, product(&common, start("exact"))));
     assert_eq!(texts.len(), 8 + 128);

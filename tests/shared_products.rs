@@ -49,10 +49,7 @@ fn run(design: &Design, operands: [u64; 4]) -> [i64; 2] {
     let reset = input(&simulator, "rst_n");
     simulator.set(reset, 1);
     for (name, bits) in ["a", "b", "c", "e"].into_iter().zip(operands) {
-        let (data, strobe) = (
-            input(&simulator, name),
-            input(&simulator, &format!("{name}_write")),
-        );
+        let (data, strobe) = (input(&simulator, name), input(&simulator, &format!("{name}_write")));
         simulator.set(data, bits);
         simulator.set(strobe, 1);
     }
@@ -66,11 +63,7 @@ fn run(design: &Design, operands: [u64; 4]) -> [i64; 2] {
         let net = design.find(name).unwrap();
         let (width, signed) = (design.width(net), design.net(net).format.signed);
         let bits = simulator.value(net) as i64;
-        if signed && bits >> (width - 1) == 1 {
-            bits - (1 << width)
-        } else {
-            bits
-        }
+        if signed && bits >> (width - 1) == 1 { bits - (1 << width) } else { bits }
     })
 }
 

@@ -30,8 +30,7 @@ fn run(unit: &Unit, design: &Design, points: u64, threads: usize) -> Outcome {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
     let pool = pool.build().expect("threads");
     let lockstep = lockstep(unit, design, 5);
-    pool.install(|| lockstep.run(points, &|_| ()))
-        .expect("it can be simulated")
+    pool.install(|| lockstep.run(points, &|_| ())).expect("it can be simulated")
 }
 
 /// A word of the sine that is seldom read is off by one.
@@ -79,9 +78,8 @@ fn what_differs_can_be_had_again_with_its_waveform() {
     let path = place.path().join("window.vcd");
     let file = File::create(&path).expect("a file");
     let from = found.clock.saturating_sub(10);
-    let again = lockstep(&unit, &wrong, found.seed)
-        .trace(u64::MAX, from, file)
-        .expect("it can be traced");
+    let again =
+        lockstep(&unit, &wrong, found.seed).trace(u64::MAX, from, file).expect("it can be traced");
     assert_eq!(again.mismatch.as_ref(), Some(&found));
     assert_eq!(again.clocks, found.clock);
 

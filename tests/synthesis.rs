@@ -43,10 +43,7 @@ fn every_configuration_is_synthesised_whole() {
             memories_are_whole(&unit.design, &cells, family, &what);
             let products = products(&unit.design);
             let blocks = cells.count_all(family.dsps);
-            assert!(
-                blocks >= products,
-                "{what}: {products} products in {blocks} DSP blocks"
-            );
+            assert!(blocks >= products, "{what}: {products} products in {blocks} DSP blocks");
             println!(
                 "{what}: {blocks} DSP blocks, {} block RAMs, {} cells",
                 cells.count_all(family.block_rams),
@@ -96,10 +93,7 @@ impl<'a> Cells<'a> {
         for cell in &cells.0 {
             let kind = Cells::kind(cell);
             assert!(!kind.starts_with('$'), "{top}: {kind} was left over");
-            assert!(
-                !kind.contains("LATCH") && !kind.starts_with("LD"),
-                "{top}: a latch, {kind}"
-            );
+            assert!(!kind.contains("LATCH") && !kind.starts_with("LD"), "{top}: a latch, {kind}");
         }
         cells
     }
@@ -109,17 +103,12 @@ impl<'a> Cells<'a> {
     }
 
     fn of<'b>(&'b self, kind: &'b str) -> impl Iterator<Item = &'a serde_json::Value> + 'b {
-        self.0
-            .iter()
-            .copied()
-            .filter(move |cell| Self::kind(cell) == kind)
+        self.0.iter().copied().filter(move |cell| Self::kind(cell) == kind)
     }
 
     /// How many there are of some kinds, each with its weight.
     fn count_all(&self, kinds: Kinds) -> u64 {
-        let weighed = kinds
-            .iter()
-            .map(|(kind, weight)| self.of(kind).count() as u64 * weight);
+        let weighed = kinds.iter().map(|(kind, weight)| self.of(kind).count() as u64 * weight);
         weighed.sum()
     }
 }
@@ -144,15 +133,8 @@ fn memories_are_whole(design: &Design, cells: &Cells, family: &Family, what: &st
         .filter(|rom| rom.words.iter().any(|word| *word != rom.words[0]))
         .filter(|rom| rom.synchronous && bits(rom) >= warrants_block_ram(family))
         .collect();
-    let rams: Vec<_> = family
-        .block_rams
-        .iter()
-        .flat_map(|(kind, _)| cells.of(kind))
-        .collect();
-    assert!(
-        rams.len() >= large.len(),
-        "{what}: ROMs are not in block RAM"
-    );
+    let rams: Vec<_> = family.block_rams.iter().flat_map(|(kind, _)| cells.of(kind)).collect();
+    assert!(rams.len() >= large.len(), "{what}: ROMs are not in block RAM");
     let ones: u64 = rams.iter().map(|cell| ones(cell, initial(family))).sum();
     let ones_of = |rom: &Rom| -> u64 {
         let ones = rom.words.iter().map(|word| u64::from(word.count_ones()));
@@ -175,11 +157,8 @@ fn memories_are_whole(design: &Design, cells: &Cells, family: &Family, what: &st
 fn ones(cell: &serde_json::Value, (prefixes, digits): (&[&str], usize)) -> u64 {
     let is_number =
         |rest: &str| rest.len() == digits && rest.chars().all(|c| c.is_ascii_hexdigit());
-    let is_contents = |name: &str| {
-        prefixes
-            .iter()
-            .any(|prefix| name.strip_prefix(prefix).is_some_and(is_number))
-    };
+    let is_contents =
+        |name: &str| prefixes.iter().any(|prefix| name.strip_prefix(prefix).is_some_and(is_number));
     let parameters = cell["parameters"].as_object().expect("parameters");
     let contents = parameters.iter().filter(|(name, _)| is_contents(name));
     let ones = contents.map(|(_, bits)| bits.as_str().expect("bits").matches('1').count() as u64);
@@ -189,9 +168,5 @@ fn ones(cell: &serde_json::Value, (prefixes, digits): (&[&str], usize)) -> u64 {
 /// Multiplications in a design.
 fn products(design: &Design) -> u64 {
     let is_product = |driver: &Driver| matches!(driver, Driver::Op(Op::Mul(..)));
-    design
-        .nets
-        .iter()
-        .filter(|net| is_product(&net.driver))
-        .count() as u64
+    design.nets.iter().filter(|net| is_product(&net.driver)).count() as u64
 }

@@ -36,11 +36,7 @@ fn every_configuration_is_clean_verilog() {
             assert!(file.contents.is_ascii(), "{place} is not ASCII");
             assert!(file.contents.ends_with('\n'), "{place} has no last newline");
             for (at, line) in file.contents.lines().enumerate() {
-                assert!(
-                    !line.ends_with(' ') && !line.contains('\t'),
-                    "{place}:{}: blanks",
-                    at + 1
-                );
+                assert!(!line.ends_with(' ') && !line.contains('\t'), "{place}:{}: blanks", at + 1);
                 assert!(
                     line.len() <= COLUMNS || file.path.ends_with(".json"),
                     "{place}:{} is longer than {COLUMNS} columns",
@@ -53,10 +49,7 @@ fn every_configuration_is_clean_verilog() {
                     text.contains("\n`default_nettype none\n"),
                     "{place} declares nets by mistake"
                 );
-                assert!(
-                    text.ends_with("\n`default_nettype wire\n"),
-                    "{place} does not restore it"
-                );
+                assert!(text.ends_with("\n`default_nettype wire\n"), "{place} does not restore it");
                 assert!(!text.contains("lint_off"), "{place} silences a linter");
             }
         }
@@ -130,10 +123,7 @@ fn notices_every_rom(unit: &Unit, emitted: &Emitted, bench: &Bench) {
             // Word 1 carries on with word 2; its lowest bit is what makes it do so, or end.
             (1, 0)
         } else {
-            (
-                telling_word(unit, RomId(at as u32)),
-                design.width(rom.data) - 1,
-            )
+            (telling_word(unit, RomId(at as u32)), design.width(rom.data) - 1)
         };
         bench.replace(&name, &with_flipped_bit(contents, word, bit));
         bench.assert_fails(&format!("a wrong bit in word {word} of {name}"));
@@ -163,10 +153,7 @@ fn telling_word(unit: &Unit, id: RomId) -> usize {
         wrong.roms[id.index()].words[*word] ^= 1 << (design.width(rom.data) - 1);
         outputs(&wrong, &vectors.inputs, |_| ()) != right
     };
-    words
-        .into_iter()
-        .find(is_seen)
-        .expect("a word that is seen")
+    words.into_iter().find(is_seen).expect("a word that is seen")
 }
 
 /// The outputs after every clock, of which `watch` is told.

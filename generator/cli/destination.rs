@@ -32,10 +32,7 @@ impl Destination {
         } else {
             Place::Beside(staged::beside(path)?)
         };
-        Ok(Self {
-            path: path.to_owned(),
-            place,
-        })
+        Ok(Self { path: path.to_owned(), place })
     }
 
     /// The file to write.

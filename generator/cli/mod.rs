@@ -369,9 +369,7 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
         Err(error)
             if error.use_stderr() && arguments.iter().any(|argument| argument == "--json") =>
         {
-            failure::print_problems(vec![failure::problem(
-                error.render().to_string().trim_end(),
-            )]);
+            failure::print_problems(vec![failure::problem(error.render().to_string().trim_end())]);
             return ExitCode::from(error.exit_code() as u8);
         }
         Err(error) => {
@@ -384,19 +382,10 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
     let output = cli.output;
     let done = match cli.command {
         None => commands::everything(registry, output),
-        Some(Command::Generate {
-            configs,
-            out,
-            check,
-            force,
-        }) => commands::generate(registry, output, &configs.configs, &out, check, force),
-        Some(Command::Cosim {
-            configs,
-            exhaustive: true,
-            resume,
-            shard,
-            ..
-        }) => {
+        Some(Command::Generate { configs, out, check, force }) => {
+            commands::generate(registry, output, &configs.configs, &out, check, force)
+        }
+        Some(Command::Cosim { configs, exhaustive: true, resume, shard, .. }) => {
             let request = commands::ExhaustiveRequest { resume, shard };
             commands::exhaustive(registry, output, &configs.configs, &request)
         }
@@ -422,14 +411,7 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             };
             commands::cosim(registry, output, &configs.configs, &request)
         }
-        Some(Command::Mutate {
-            configs,
-            list,
-            only,
-            full,
-            out,
-            time_limit,
-        }) => {
+        Some(Command::Mutate { configs, list, only, full, out, time_limit }) => {
             let request = commands::MutateRequest {
                 list,
                 only,
@@ -442,11 +424,9 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
         Some(Command::Eval { config, operands }) => {
             commands::eval(registry, output, &config, &operands)
         }
-        Some(Command::Describe {
-            configs,
-            out,
-            force,
-        }) => commands::describe(registry, output, &configs.configs, out.as_deref(), force),
+        Some(Command::Describe { configs, out, force }) => {
+            commands::describe(registry, output, &configs.configs, out.as_deref(), force)
+        }
         Some(Command::Datasheet(arguments)) => commands::datasheet(registry, output, &arguments),
         Some(Command::Compare {
             configs,
@@ -474,12 +454,7 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             commands::compare(registry, output, &configs, &request)
         }
         Some(Command::Render(arguments)) => commands::render(registry, output, &arguments),
-        Some(Command::Report {
-            out,
-            benchmark,
-            no_synthesis,
-            time_limit,
-        }) => {
+        Some(Command::Report { out, benchmark, no_synthesis, time_limit }) => {
             let request = commands::ReportRequest {
                 out,
                 benchmark,
@@ -488,13 +463,7 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             };
             commands::report(registry, output, &request)
         }
-        Some(Command::Verify {
-            configs,
-            full,
-            without_tools,
-            out,
-            time_limit,
-        }) => {
+        Some(Command::Verify { configs, full, without_tools, out, time_limit }) => {
             let request = commands::VerifyRequest {
                 full,
                 without_tools,

@@ -48,8 +48,7 @@ impl OwnFile {
     pub fn write(self, contents: &str) -> Result<String> {
         let name = self.path.display().to_string().replace('\\', "/");
         let mut file = self.destination.file()?;
-        file.write_all(contents.as_bytes())
-            .with_context(|| format!("cannot write `{name}`"))?;
+        file.write_all(contents.as_bytes()).with_context(|| format!("cannot write `{name}`"))?;
         self.destination.commit()?;
         Ok(name)
     }

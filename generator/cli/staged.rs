@@ -20,9 +20,7 @@ pub fn beside(path: &Path) -> Result<NamedTempFile> {
     // As any new file: the umask takes away from it.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder
-        .tempfile_in(directory)
-        .with_context(|| format!("cannot write `{}`", path.display()))
+    builder.tempfile_in(directory).with_context(|| format!("cannot write `{}`", path.display()))
 }
 
 /// Replaces the file `path` as a whole, or leaves it as it was.

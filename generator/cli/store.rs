@@ -36,10 +36,8 @@ pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Resul
     }
     let foreign = foreign_files(out, name)?;
     if !foreign.is_empty() && !force {
-        let list: Vec<String> = foreign
-            .iter()
-            .map(|path| format!("  {}", path.display()))
-            .collect();
+        let list: Vec<String> =
+            foreign.iter().map(|path| format!("  {}", path.display())).collect();
         bail!(
             "these files were not written by Glint, or were edited since; nothing was changed\n{}\n\
              move them away, choose another --out, or replace them with --force",
@@ -147,9 +145,7 @@ fn present(out: &Path, name: &str) -> Result<Vec<PathBuf>> {
         };
         for entry in entries {
             found.push(
-                entry
-                    .with_context(|| format!("cannot read `{}`", directory.display()))?
-                    .path(),
+                entry.with_context(|| format!("cannot read `{}`", directory.display()))?.path(),
             );
         }
     }
@@ -181,10 +177,7 @@ fn foreign_files(out: &Path, name: &str) -> Result<Vec<PathBuf>> {
 fn read_digests(manifest: &Path) -> Option<BTreeMap<String, String>> {
     let value: Value = serde_json::from_slice(&fs::read(manifest).ok()?).ok()?;
     let digests = value.get("sha256")?.as_object()?;
-    digests
-        .iter()
-        .map(|(path, digest)| Some((path.clone(), digest.as_str()?.to_owned())))
-        .collect()
+    digests.iter().map(|(path, digest)| Some((path.clone(), digest.as_str()?.to_owned()))).collect()
 }
 
 /// The path below `out`, with `/`, as [`OutputFile::path`] has it.
@@ -196,15 +189,9 @@ fn relative_name(out: &Path, path: &Path) -> String {
 
 /// A directory beside what is to be replaced; it goes when it is dropped.
 fn staging(out: &Path) -> Result<TempDir> {
-    tempfile::Builder::new()
-        .prefix(".glint-")
-        .tempdir_in(out)
-        .with_context(|| {
-            format!(
-                "cannot write to `{}`; choose another directory with --out",
-                out.display()
-            )
-        })
+    tempfile::Builder::new().prefix(".glint-").tempdir_in(out).with_context(|| {
+        format!("cannot write to `{}`; choose another directory with --out", out.display())
+    })
 }
 
 fn create_parent(path: &Path) -> Result<()> {
@@ -224,10 +211,7 @@ fn stage(staging: &Path, files: &[OutputFile]) -> Result<()> {
         let path = staging.join(&file.path);
         create_parent(&path)?;
         fs::write(&path, &file.contents).with_context(|| {
-            format!(
-                "cannot write `{}`; what was there before is unchanged",
-                file.path
-            )
+            format!("cannot write `{}`; what was there before is unchanged", file.path)
         })?;
     }
     Ok(())
@@ -242,10 +226,7 @@ fn swap(out: &Path, staging: TempDir, name: &str, foreign: &[PathBuf]) -> Result
     };
     if moves.undo().is_err() {
         let kept = staging.keep();
-        return Err(error).context(format!(
-            "what was there before is now in `{}`",
-            kept.display()
-        ));
+        return Err(error).context(format!("what was there before is now in `{}`", kept.display()));
     }
     Err(error)
 }
@@ -294,9 +275,6 @@ impl Moves {
 
     /// Takes back what was done, the last first.
     fn undo(self) -> io::Result<()> {
-        self.0
-            .into_iter()
-            .rev()
-            .try_for_each(|(from, to)| fs::rename(to, from))
+        self.0.into_iter().rev().try_for_each(|(from, to)| fs::rename(to, from))
     }
 }

@@ -30,22 +30,16 @@ fn complaint(name: &str) -> Option<String> {
         Some(format!("the module name {quoted} looks like a path"))
     } else if let Some(odd) = name.chars().find(|c| !c.is_ascii()) {
         let odd = odd.escape_debug();
-        Some(format!(
-            "the module name {quoted} has a character outside ASCII, `{odd}`"
-        ))
+        Some(format!("the module name {quoted} has a character outside ASCII, `{odd}`"))
     } else if let Some(odd) = name.chars().find(|c| !is_word(*c)) {
         let odd = odd.escape_debug();
-        Some(format!(
-            "the module name {quoted} has the character `{odd}`"
-        ))
+        Some(format!("the module name {quoted} has the character `{odd}`"))
     } else if name.starts_with(|c: char| c.is_ascii_digit()) {
         Some(format!("the module name {quoted} starts with a digit"))
     } else if length > LONGEST {
         Some(format!("the module name {quoted} has {length} characters"))
     } else if is_keyword(name) {
-        Some(format!(
-            "the module name {quoted} is a keyword of Verilog or SystemVerilog"
-        ))
+        Some(format!("the module name {quoted} is a keyword of Verilog or SystemVerilog"))
     } else {
         None
     }
@@ -53,10 +47,7 @@ fn complaint(name: &str) -> Option<String> {
 
 /// A legal name that resembles the given one.
 fn legalised(name: &str) -> String {
-    let file = name
-        .rsplit(['/', '\\'])
-        .find(|part| !part.is_empty())
-        .unwrap_or("");
+    let file = name.rsplit(['/', '\\']).find(|part| !part.is_empty()).unwrap_or("");
     let stem = file.split('.').find(|part| !part.is_empty()).unwrap_or("");
     let keep = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     let words: String = stem.chars().map(keep).collect();

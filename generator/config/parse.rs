@@ -222,11 +222,7 @@ impl Reader<'_> {
                 self.problems.locate(&name, span);
             } else if let Some(key) = schema.key(&name) {
                 self.value(key, value, span, draft);
-            } else if !schema
-                .keys
-                .iter()
-                .any(|key| key.name.starts_with(&as_table))
-            {
+            } else if !schema.keys.iter().any(|key| key.name.starts_with(&as_table)) {
                 self.unknown(&name, key.span(), value, schema, draft);
             } else if let DeValue::Table(inner) = value.get_ref() {
                 self.table(inner, &as_table, schema, draft);
@@ -281,11 +277,7 @@ impl Reader<'_> {
             .filter(|known| known.ends_with(&format!(".{leaf}")))
             .map(|known| format!("`{known}`"))
             .collect();
-        let remedy = if common_names()
-            .chain(names())
-            .chain(tables())
-            .any(|k| k == below)
-        {
+        let remedy = if common_names().chain(names()).chain(tables()).any(|k| k == below) {
             format!("`{below}` is outside [{heading}]: move it above the first [table] heading")
         } else if let Some(meant) = meant {
             // What the true value of the key that was meant is to be is not known.
@@ -297,14 +289,7 @@ impl Reader<'_> {
         } else if !is_table && !elsewhere.is_empty() {
             format!("there is {}", listed(&elsewhere))
         } else {
-            keys_of(
-                schema,
-                if tables().any(|known| known == table) {
-                    table
-                } else {
-                    ""
-                },
-            )
+            keys_of(schema, if tables().any(|known| known == table) { table } else { "" })
         };
         let name = shown(name);
         let message = format!("device `{}` has no {what} `{name}`", schema.device);
@@ -353,10 +338,7 @@ fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Fault>> {
                     (None, DeValue::Integer(_)) => out_of_range(&place, written(entry)),
                     (None, _) => format!("`{place}` must be an integer, not {}", described(entry)),
                 };
-                faults.push(Fault {
-                    entry: Some(index),
-                    ..key.fault(message)
-                });
+                faults.push(Fault { entry: Some(index), ..key.fault(message) });
             }
             if !faults.is_empty() {
                 return Err(faults);
@@ -382,10 +364,7 @@ fn integer(value: &Spanned<DeValue>) -> Option<i64> {
 fn written(value: &Spanned<DeValue>) -> String {
     match value.get_ref() {
         DeValue::Integer(integer) => integer.to_string(),
-        other => other
-            .as_float()
-            .map(ToString::to_string)
-            .unwrap_or_default(),
+        other => other.as_float().map(ToString::to_string).unwrap_or_default(),
     }
 }
 
@@ -411,10 +390,7 @@ fn is_common(name: &str) -> bool {
 }
 
 fn is_bare(key: &str) -> bool {
-    !key.is_empty()
-        && key
-            .chars()
-            .all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
+    !key.is_empty() && key.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '-')
 }
 
 fn start_from(schemas: &[Schema]) -> String {

@@ -40,11 +40,7 @@ pub struct Problem {
 impl Problems {
     /// No problems yet, of a file with this text.
     pub(super) fn of_file(file: &str, text: &str) -> Self {
-        Problems {
-            file: file.to_owned(),
-            text: text.to_owned(),
-            ..Problems::default()
-        }
+        Problems { file: file.to_owned(), text: text.to_owned(), ..Problems::default() }
     }
 
     /// Adds a problem of a key. It is shown where the file gives the key; if the file does not,
@@ -75,11 +71,7 @@ impl Problems {
 
     /// The same file and places, no problems: for a trial run of a check.
     pub(super) fn cleared(&self) -> Self {
-        Problems {
-            list: Vec::new(),
-            further: 0,
-            ..self.clone()
-        }
+        Problems { list: Vec::new(), further: 0, ..self.clone() }
     }
 
     /// Adds problems found elsewhere, as they are.
@@ -91,19 +83,12 @@ impl Problems {
 
     /// Keeps the list sorted by place, those without a place last, and free of repetitions.
     fn insert(&mut self, key: &str, message: String, remedy: String, span: Option<Range<usize>>) {
-        let problem = Problem {
-            key: key.to_owned(),
-            message,
-            remedy,
-            span,
-        };
+        let problem = Problem { key: key.to_owned(), message, remedy, span };
         if self.list.len() == LIMIT {
             self.further += 1;
         } else if !self.list.contains(&problem) {
             let rank = |problem: &Problem| problem.start().unwrap_or(usize::MAX);
-            let place = self
-                .list
-                .partition_point(|other| rank(other) <= rank(&problem));
+            let place = self.list.partition_point(|other| rank(other) <= rank(&problem));
             self.list.insert(place, problem);
         }
     }

@@ -33,10 +33,7 @@ pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
             let start = error.valid_up_to();
             let end = start + char::REPLACEMENT_CHARACTER.len_utf8();
             let mut problems = Problems::of_file(&file_name, &lossy);
-            let message = format!(
-                "the file is not UTF-8: byte {start} is {:#04x}",
-                bytes[start]
-            );
+            let message = format!("the file is not UTF-8: byte {start} is {:#04x}", bytes[start]);
             let remedy = match bytes.as_slice() {
                 [0xff, 0xfe, ..] | [0xfe, 0xff, ..] => "it looks like UTF-16; save it as UTF-8",
                 _ => "save it as UTF-8 text",

@@ -46,12 +46,7 @@ pub enum Kind {
     /// `true` or `false`.
     Flag,
     /// A list of integers; its entries and its length have limits.
-    Integers {
-        min: i64,
-        max: i64,
-        len_min: usize,
-        len_max: usize,
-    },
+    Integers { min: i64, max: i64, len_min: usize, len_max: usize },
 }
 
 /// The value of a key.
@@ -71,13 +66,7 @@ pub enum Value {
 
 impl Key {
     fn new(name: &'static str, kind: Kind, default: Value, doc: &'static str) -> Self {
-        Key {
-            name,
-            kind,
-            default,
-            doc,
-            only_when: None,
-        }
+        Key { name, kind, default, doc, only_when: None }
     }
 
     /// An integer in a range.
@@ -88,12 +77,7 @@ impl Key {
         doc: &'static str,
     ) -> Self {
         let (min, max) = range.into_inner();
-        Self::new(
-            name,
-            Kind::Integer { min, max },
-            Value::Integer(default),
-            doc,
-        )
+        Self::new(name, Kind::Integer { min, max }, Value::Integer(default), doc)
     }
 
     /// A number in a range.
@@ -134,12 +118,7 @@ impl Key {
     ) -> Self {
         let (min, max) = range.into_inner();
         let (len_min, len_max) = len.into_inner();
-        let kind = Kind::Integers {
-            min,
-            max,
-            len_min,
-            len_max,
-        };
+        let kind = Kind::Integers { min, max, len_min, len_max };
         Self::new(name, kind, Value::Integers(default.to_vec()), doc)
     }
 
@@ -247,11 +226,7 @@ impl Schema {
         if faults.is_empty() {
             let mut problems = Problems::default();
             (self.check)(&Config::defaults(self, self.device), &mut problems);
-            faults.extend(
-                problems
-                    .iter()
-                    .map(|problem| format!("defaults: {}", problem.message)),
-            );
+            faults.extend(problems.iter().map(|problem| format!("defaults: {}", problem.message)));
         }
         faults
     }
@@ -263,9 +238,9 @@ impl Key {
         match &self.kind {
             Kind::Choice(options) => options.contains(&bare),
             Kind::Flag => bare == "true" || bare == "false",
-            Kind::Integer { min, max } => bare
-                .parse()
-                .is_ok_and(|value: i64| (*min..=*max).contains(&value)),
+            Kind::Integer { min, max } => {
+                bare.parse().is_ok_and(|value: i64| (*min..=*max).contains(&value))
+            }
             // Conditions on fractions and lists would hang on how they are written.
             Kind::Number { .. } | Kind::Integers { .. } => false,
         }
@@ -274,13 +249,10 @@ impl Key {
 
 fn is_plain(part: &str) -> bool {
     part.starts_with(|c: char| c.is_ascii_lowercase())
-        && part
-            .chars()
-            .all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+        && part.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
 }
 
 /// Whether a word is an integer as it is displayed: `007` and `+7` are not.
 fn is_integer(word: &str) -> bool {
-    word.parse::<i64>()
-        .is_ok_and(|value| value.to_string() == word)
+    word.parse::<i64>().is_ok_and(|value| value.to_string() == word)
 }

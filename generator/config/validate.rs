@@ -26,30 +26,18 @@ impl Key {
             }
             (Kind::Number { min, max }, Value::Number(given)) => {
                 let given_text = value.bare();
-                self.unless((min..=max).contains(&given), || {
-                    out_of_range(name, given_text)
-                })
+                self.unless((min..=max).contains(&given), || out_of_range(name, given_text))
             }
             (Kind::Choice(options), Value::Text(given)) => self
-                .unless(options.contains(&given.as_str()), || {
-                    match self.kind.is_integer_choice() {
-                        true => format!("`{name}` cannot be {}", shown(given)),
-                        false => format!("`{name}` cannot be {}", quoted(given)),
-                    }
+                .unless(options.contains(&given.as_str()), || match self.kind.is_integer_choice() {
+                    true => format!("`{name}` cannot be {}", shown(given)),
+                    false => format!("`{name}` cannot be {}", quoted(given)),
                 })
                 .into_iter()
                 .map(|fault| self.with_suggestion(fault, given))
                 .collect(),
             (Kind::Flag, Value::Flag(_)) => Vec::new(),
-            (
-                Kind::Integers {
-                    min,
-                    max,
-                    len_min,
-                    len_max,
-                },
-                Value::Integers(given),
-            ) => {
+            (Kind::Integers { min, max, len_min, len_max }, Value::Integers(given)) => {
                 let mut faults = self.unless((len_min..=len_max).contains(&&given.len()), || {
                     let plural = if given.len() == 1 { "y" } else { "ies" };
                     format!("`{name}` has {} entr{plural}", given.len())
@@ -58,10 +46,9 @@ impl Key {
                     let inside = (min..=max).contains(&entry);
                     let place = format!("{name}[{index}]");
                     let found = self.unless(inside, || out_of_range(&place, entry));
-                    faults.extend(found.into_iter().map(|fault| Fault {
-                        entry: Some(index),
-                        ..fault
-                    }));
+                    faults.extend(
+                        found.into_iter().map(|fault| Fault { entry: Some(index), ..fault }),
+                    );
                 }
                 faults
             }
@@ -107,10 +94,9 @@ impl Key {
             nearest(given, options.iter().copied()).filter(|_| !self.kind.is_integer_choice());
         match near {
             None => fault,
-            Some(near) => Fault {
-                remedy: format!("did you mean \"{near}\"? {}", fault.remedy),
-                ..fault
-            },
+            Some(near) => {
+                Fault { remedy: format!("did you mean \"{near}\"? {}", fault.remedy), ..fault }
+            }
         }
     }
 
@@ -120,10 +106,8 @@ impl Key {
             Kind::Integer { min, max } => format!("an integer from {min} to {max}"),
             Kind::Number { min, max } => format!("a number from {min:?} to {max:?}"),
             Kind::Choice(options) => {
-                let options: Vec<String> = options
-                    .iter()
-                    .map(|option| Value::Text((*option).to_owned()).toml())
-                    .collect();
+                let options: Vec<String> =
+                    options.iter().map(|option| Value::Text((*option).to_owned()).toml()).collect();
                 match options.as_slice() {
                     [one] => one.clone(),
                     [start @ .., last] => format!("{} or {last}", start.join(", ")),
@@ -131,12 +115,7 @@ impl Key {
                 }
             }
             Kind::Flag => "true or false".to_owned(),
-            Kind::Integers {
-                min,
-                max,
-                len_min,
-                len_max,
-            } => match len_min == len_max {
+            Kind::Integers { min, max, len_min, len_max } => match len_min == len_max {
                 true => format!("{len_min} integers from {min} to {max}"),
                 false => format!("{len_min} to {len_max} integers from {min} to {max}"),
             },
@@ -148,20 +127,13 @@ impl Key {
         let ends: Vec<Value> = match &self.kind {
             Kind::Integer { min, max } => vec![Value::Integer(*min), Value::Integer(*max)],
             Kind::Number { min, max } => vec![Value::Number(*min), Value::Number(*max)],
-            Kind::Choice(options) => options
-                .iter()
-                .map(|option| Value::Text((*option).to_owned()))
-                .collect(),
+            Kind::Choice(options) => {
+                options.iter().map(|option| Value::Text((*option).to_owned())).collect()
+            }
             Kind::Flag => vec![Value::Flag(false), Value::Flag(true)],
-            Kind::Integers {
-                min,
-                max,
-                len_min,
-                len_max,
-            } => vec![
-                Value::Integers(vec![*min; *len_min]),
-                Value::Integers(vec![*max; *len_max]),
-            ],
+            Kind::Integers { min, max, len_min, len_max } => {
+                vec![Value::Integers(vec![*min; *len_min]), Value::Integers(vec![*max; *len_max])]
+            }
         };
         let mut values = vec![self.default.clone()];
         values.extend(ends);

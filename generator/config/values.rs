@@ -25,11 +25,7 @@ impl Config {
             name: name.to_owned(),
             device: schema.device.to_owned(),
             strict: false,
-            values: schema
-                .keys
-                .iter()
-                .map(|key| (key.name, key.default.clone()))
-                .collect(),
+            values: schema.keys.iter().map(|key| (key.name, key.default.clone())).collect(),
         }
     }
 
@@ -143,10 +139,6 @@ impl Config {
     }
 
     fn wrong_kind(&self, key: &str, asked: &str) -> ! {
-        panic!(
-            "key `{key}` of device `{}` is {:?}, not {asked}",
-            self.device,
-            self.value(key)
-        )
+        panic!("key `{key}` of device `{}` is {:?}, not {asked}", self.device, self.value(key))
     }
 }

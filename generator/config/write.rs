@@ -70,10 +70,7 @@ pub(super) fn plain(schema: &Schema, config: &Config) -> String {
 /// The keys that every device has, in the order of [`super::COMMON`], with their values as TOML.
 fn common(config: &Config) -> [(&'static str, String); 3] {
     [
-        (
-            "device",
-            toml::Value::from(config.device.as_str()).to_string(),
-        ),
+        ("device", toml::Value::from(config.device.as_str()).to_string()),
         ("name", toml::Value::from(config.name.as_str()).to_string()),
         ("strict", config.strict.to_string()),
     ]
@@ -113,10 +110,5 @@ fn sentence(text: &str) -> String {
     let text = text.trim_end_matches('.');
     let mut letters = text.chars();
     let first = letters.next().map(char::to_uppercase);
-    first
-        .into_iter()
-        .flatten()
-        .chain(letters)
-        .chain(['.'])
-        .collect()
+    first.into_iter().flatten().chain(letters).chain(['.']).collect()
 }

@@ -21,11 +21,7 @@ impl<'a> Alone<'a> {
     pub(super) fn new(pairing: &'a Pairing<'a>, course: Course) -> Result<Self> {
         let simulator: Simulator = Simulator::new(pairing.design)?;
         let busy = simulator.value(pairing.compared[pairing.busy]) == 1;
-        Ok(Self {
-            stream: Stream::new(pairing, course, busy),
-            simulator,
-            pairing,
-        })
+        Ok(Self { stream: Stream::new(pairing, course, busy), simulator, pairing })
     }
 
     /// Whether it has all its points, or something differs.

@@ -29,11 +29,7 @@ pub struct Points {
 impl Points {
     /// No point yet; each will have so many operands, those of a [`Contract`] in its order.
     pub fn new(operands: usize) -> Self {
-        Self {
-            operands,
-            values: Vec::new(),
-            results: vec![0],
-        }
+        Self { operands, values: Vec::new(), results: vec![0] }
     }
 
     /// Adds a computation with its raw operands, which shows so many results.
@@ -50,8 +46,7 @@ impl Points {
     pub fn append(&mut self, other: &Self) {
         let before = self.result_count();
         self.values.extend(&other.values);
-        self.results
-            .extend(other.results[1..].iter().map(|count| before + count));
+        self.results.extend(other.results[1..].iter().map(|count| before + count));
     }
 
     /// The number of computations.
@@ -97,10 +92,7 @@ impl Engine for Golden<'_> {
         let contract = self.0;
         let operands = contract.operands();
         let control = operands.iter().filter(|operand| !operand.colour).count();
-        ensure!(
-            operands.len() == points.operands,
-            "operands of another device"
-        );
+        ensure!(operands.len() == points.operands, "operands of another device");
         let pieces: Vec<Vec<i64>> = (0..points.len().div_ceil(PIECE))
             .into_par_iter()
             .map(|piece| {

@@ -39,12 +39,7 @@ impl Ports {
     pub(super) fn new(design: &Design) -> Self {
         let inputs: Vec<NetId> = design.inputs().map(|port| port.net).collect();
         let position = |net| inputs.iter().position(|&input| input == net).unwrap_or(0);
-        let mut ports = Self {
-            reset: 0,
-            start: 0,
-            inputs: inputs.len(),
-            operands: Vec::new(),
-        };
+        let mut ports = Self { reset: 0, start: 0, inputs: inputs.len(), operands: Vec::new() };
         for port in design.inputs() {
             let data = position(port.net);
             match port.role {
@@ -95,9 +90,7 @@ impl Ports {
     /// The bit patterns of the operands at a place, by name.
     pub(super) fn named(&self, place: u64) -> Vec<(String, u64)> {
         let operands = self.at(place);
-        operands
-            .map(|(port, pattern)| (port.name.clone(), pattern))
-            .collect()
+        operands.map(|(port, pattern)| (port.name.clone(), pattern)).collect()
     }
 }
 
@@ -129,10 +122,7 @@ impl Combinations {
     }
 
     pub(super) fn course(&self) -> Course {
-        Course::Combinations {
-            first: self.first,
-            count: self.count,
-        }
+        Course::Combinations { first: self.first, count: self.count }
     }
 
     /// Whether no computation is left to start.

@@ -70,10 +70,7 @@ impl Tool {
         env::split_paths(search)
             .map(|directory| directory.join(&file))
             .find(|path| is_executable(path))
-            .map(|path| Self {
-                name: name.to_owned(),
-                path,
-            })
+            .map(|path| Self { name: name.to_owned(), path })
             .ok_or_else(|| anyhow!("`{name}` is not on PATH; `bash tools/install` installs it"))
     }
 
@@ -99,8 +96,7 @@ impl Tool {
         };
         let output = self.run_to_success([flag], Path::new("."), VERSION_LIMIT)?;
         let line = output.lines().map(str::trim).find(|line| !line.is_empty());
-        line.map(str::to_owned)
-            .with_context(|| format!("`{} {flag}` printed nothing", self.name))
+        line.map(str::to_owned).with_context(|| format!("`{} {flag}` printed nothing", self.name))
     }
 
     /// Runs the tool in `directory` with nothing on its standard input, until it has ended and
@@ -129,9 +125,8 @@ impl Tool {
         #[cfg(unix)]
         std::os::unix::process::CommandExt::process_group(&mut command, 0);
         let deadline = Instant::now() + limit;
-        let mut child = command
-            .spawn()
-            .with_context(|| format!("cannot start `{}`", self.path.display()))?;
+        let mut child =
+            command.spawn().with_context(|| format!("cannot start `{}`", self.path.display()))?;
         // The command holds the writing ends: without this the reader would never see the end.
         drop(command);
 
@@ -145,25 +140,14 @@ impl Tool {
         });
 
         let closed = receiver.recv_timeout(limit).is_ok();
-        let status = if closed {
-            wait_until(&mut child, deadline)
-        } else {
-            None
-        };
+        let status = if closed { wait_until(&mut child, deadline) } else { None };
         if let Some(status) = status {
-            return Ok(Run {
-                status,
-                output: capture.text(),
-            });
+            return Ok(Run { status, output: capture.text() });
         }
         kill_group(&mut child);
         // Only a process that left the group can still hold the pipe; its reader is abandoned.
         let _ = receiver.recv_timeout(CLOSING_LIMIT);
-        bail!(
-            "`{}` did not end within {limit:?} and was killed{}",
-            self.name,
-            capture.quote()
-        );
+        bail!("`{}` did not end within {limit:?} and was killed{}", self.name, capture.quote());
     }
 
     /// Like [`Tool::run`], for a tool that is expected to succeed; returns its output.
@@ -178,12 +162,7 @@ impl Tool {
     ) -> Result<String> {
         let run = self.run(arguments, directory, limit)?;
         if !run.status.success() {
-            bail!(
-                "`{}` failed ({}){}",
-                self.name,
-                run.status,
-                capture::quote(&run.output)
-            );
+            bail!("`{}` failed ({}){}", self.name, run.status, capture::quote(&run.output));
         }
         Ok(run.output)
     }
@@ -225,8 +204,7 @@ fn is_executable(path: &Path) -> bool {
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
-        path.metadata()
-            .is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0)
+        path.metadata().is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0)
     }
     #[cfg(not(unix))]
     path.is_file()

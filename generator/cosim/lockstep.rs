@@ -142,10 +142,7 @@ impl<'a> Lockstep<'a> {
     /// The same with some operands held at raw values: the stimulus seldom draws others for them.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
-        Self {
-            pairing: self.pairing.holding(held),
-            ..self
-        }
+        Self { pairing: self.pairing.holding(held), ..self }
     }
 
     /// Runs until `points` results were seen or something differs, on all threads of rayon's pool.
@@ -289,10 +286,7 @@ impl<'a> Lockstep<'a> {
             }
         }
         let mismatch = &alone.seen().mismatch;
-        ensure!(
-            mismatch.is_none(),
-            "golden model and simulation differ: {mismatch:?}"
-        );
+        ensure!(mismatch.is_none(), "golden model and simulation differ: {mismatch:?}");
         Ok(vectors)
     }
 

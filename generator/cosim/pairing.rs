@@ -83,17 +83,10 @@ impl<'a> Pairing<'a> {
                 at.with_context(|| format!("the golden model takes `{name}` for an input"))
             })
             .collect::<Result<Vec<_>>>()?;
-        let compared = model
-            .signals()
-            .iter()
-            .map(|name| find(name))
-            .collect::<Result<Vec<_>>>()?;
+        let compared = model.signals().iter().map(|name| find(name)).collect::<Result<Vec<_>>>()?;
         for id in outputs.iter().chain(&registers(design)) {
             let name = &design.net(*id).name;
-            ensure!(
-                compared.contains(id),
-                "the golden model does not predict `{name}`"
-            );
+            ensure!(compared.contains(id), "the golden model does not predict `{name}`");
         }
         let order = (!order.iter().copied().eq(0..inputs.len())).then_some(order);
         let stimulus = Stimulus::new(design, contract.operands(), 0);
@@ -178,10 +171,7 @@ impl<'a> Pairing<'a> {
         let operands = self.contract.operands().iter();
         let operand = operands.filter(|operand| Some(operand.name.as_str()) == length);
         // A length of 0 is a result too.
-        operand
-            .map(|it| it.domain.1.unsigned_abs() + 1)
-            .max()
-            .unwrap_or(1)
+        operand.map(|it| it.domain.1.unsigned_abs() + 1).max().unwrap_or(1)
     }
 
     /// How many registers a golden model must predict.
@@ -218,9 +208,7 @@ impl<'a> Pairing<'a> {
         raw.clear();
         raw.extend(self.operands.iter().map(|&at| stimulus.accepted(at)));
         let operands = self.contract.operands().iter();
-        operands
-            .zip(raw)
-            .all(|(operand, raw)| (operand.domain.0..=operand.domain.1).contains(raw))
+        operands.zip(raw).all(|(operand, raw)| (operand.domain.0..=operand.domain.1).contains(raw))
     }
 
     /// The largest error of the results among these values, number `index` of the computation with these
@@ -233,9 +221,7 @@ impl<'a> Pairing<'a> {
         values: &[u64],
     ) -> Option<Worst> {
         let (control, colours) = operands.split_at(operands.len() - self.results.len());
-        let f = self
-            .contract
-            .references(&self.contract.point(control, index));
+        let f = self.contract.references(&self.contract.point(control, index));
         let mut largest = (units, None);
         for ((result, unit), &colour) in self.results.iter().zip(colours) {
             let colour = colour as f64 * unit;

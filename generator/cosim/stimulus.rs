@@ -46,11 +46,7 @@ impl Random {
     /// An integer from `low` to `high`.
     pub fn within(&mut self, low: i64, high: i64) -> i64 {
         let span = high.wrapping_sub(low).wrapping_add(1) as u64;
-        if span == 0 {
-            self.bits() as i64
-        } else {
-            low.wrapping_add(self.below(span) as i64)
-        }
+        if span == 0 { self.bits() as i64 } else { low.wrapping_add(self.below(span) as i64) }
     }
 
     /// A raw value from `low` to `high`: often one of its ends or close to one (or to 0, which is as good as an
@@ -134,10 +130,8 @@ impl Stimulus {
     ///
     /// Operands of the design that `operands` does not mention take any bit pattern.
     pub fn new(design: &Design, operands: &[Operand], seed: u64) -> Self {
-        let names: Vec<&str> = design
-            .inputs()
-            .map(|port| design.net(port.net).name.as_str())
-            .collect();
+        let names: Vec<&str> =
+            design.inputs().map(|port| design.net(port.net).name.as_str()).collect();
         let position = |net: NetId| {
             let name = &design.net(net).name;
             names.iter().position(|other| other == name).unwrap_or(0)
@@ -192,9 +186,7 @@ impl Stimulus {
 
     /// The position of an operand among those of the design, for [`Stimulus::accepted`].
     pub fn position(&self, name: &str) -> Option<usize> {
-        self.operands
-            .iter()
-            .position(|driven| driven.operand.name == name)
+        self.operands.iter().position(|driven| driven.operand.name == name)
     }
 
     /// The raw value that was last written to an operand while the device could take it.
@@ -218,11 +210,7 @@ impl Stimulus {
                 if !self.first {
                     self.noise(busy);
                 }
-                self.phase = if left > 0 {
-                    Phase::Reset(left - 1)
-                } else {
-                    self.next_point()
-                };
+                self.phase = if left > 0 { Phase::Reset(left - 1) } else { self.next_point() };
             }
             Phase::Writing(left) => self.write(left),
             Phase::Starting(idle) => {
@@ -393,14 +381,7 @@ mod tests {
     #[test]
     fn what_is_drawn_of_a_domain_is_in_it() {
         let mut random = Random::new(5);
-        for (low, high) in [
-            (0, 0),
-            (7, 7),
-            (0, 1),
-            (-3, -2),
-            (-4, 9),
-            (i64::MIN, i64::MAX),
-        ] {
+        for (low, high) in [(0, 0), (7, 7), (0, 1), (-3, -2), (-4, 9), (i64::MIN, i64::MAX)] {
             let mut ends = [false; 2];
             for _ in 0..500 {
                 let raw = random.of_domain((low, high));

@@ -28,11 +28,7 @@ pub(super) enum Course {
 
 /// What makes the inputs.
 enum Source {
-    Random {
-        stimulus: Stimulus,
-        seed: u64,
-        points: u64,
-    },
+    Random { stimulus: Stimulus, seed: u64, points: u64 },
     Combinations(Combinations),
 }
 
@@ -55,11 +51,9 @@ impl Stream {
     /// At power-up, when the device shows `busy`.
     pub(super) fn new(pairing: &Pairing, course: Course, busy: bool) -> Self {
         let source = match course {
-            Course::Random { seed, points } => Source::Random {
-                stimulus: pairing.stimulus(seed),
-                seed,
-                points,
-            },
+            Course::Random { seed, points } => {
+                Source::Random { stimulus: pairing.stimulus(seed), seed, points }
+            }
             Course::Combinations { first, count } => {
                 Source::Combinations(pairing.combinations(first, count))
             }

@@ -53,14 +53,7 @@ pub const FAMILIES: [Family; 3] = [
         title: "Xilinx 7",
         // Not -abc9: Yosys 0.23 crashes in it.
         command: "synth_xilinx -flatten",
-        luts: &[
-            ("LUT1", 1),
-            ("LUT2", 1),
-            ("LUT3", 1),
-            ("LUT4", 1),
-            ("LUT5", 1),
-            ("LUT6", 1),
-        ],
+        luts: &[("LUT1", 1), ("LUT2", 1), ("LUT3", 1), ("LUT4", 1), ("LUT5", 1), ("LUT6", 1)],
         dsps: &[("DSP48E1", 1)],
         block_rams: &[("RAMB18E1", 1), ("RAMB36E1", 2)],
     },
@@ -110,11 +103,8 @@ pub(super) fn run(
         fs::write(place.path().join(name), contents)
             .with_context(|| format!("cannot write `{name}` for synthesis"))?;
     }
-    let sources: Vec<&str> = files
-        .iter()
-        .map(|(name, _)| name.as_str())
-        .filter(|name| name.ends_with(".v"))
-        .collect();
+    let sources: Vec<&str> =
+        files.iter().map(|(name, _)| name.as_str()).filter(|name| name.ends_with(".v")).collect();
     let script = format!(
         "read_verilog {}; hierarchy -check -top {top}; {} -top {top}; {command}",
         sources.join(" "),

@@ -111,10 +111,7 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Comp
             point[at] = point[at].min(random.within(0, SHORT));
         }
     }
-    points
-        .into_iter()
-        .map(|operands| computation(design, contract, operands))
-        .collect()
+    points.into_iter().map(|operands| computation(design, contract, operands)).collect()
 }
 
 fn computation(
@@ -139,10 +136,7 @@ fn computation(
              {right:?} and {simulated:?}",
             design.name
         );
-        shown.push(Shown {
-            clock: *clock,
-            outputs: right,
-        });
+        shown.push(Shown { clock: *clock, outputs: right });
     }
     Ok(Computation {
         done: trial.timing.start_to_done.context("it is never done")?,
@@ -212,21 +206,13 @@ fn example_operands(contract: &dyn Contract) -> Vec<i64> {
                 high - high * (colour - 1) / 3
             } else if operand.format.frac > 0 {
                 // Close to 1.0 for a cosine, close to 0 for what has a sign.
-                if low < 0 {
-                    high / 64
-                } else {
-                    high - (high - low) / 64
-                }
+                if low < 0 { high / 64 } else { high - (high - low) / 64 }
             } else {
                 20.clamp(low, high) * i64::from(high > 1)
             }
         })
         .collect();
-    let control = contract
-        .operands()
-        .iter()
-        .filter(|operand| !operand.colour)
-        .count();
+    let control = contract.operands().iter().filter(|operand| !operand.colour).count();
     for at in (0..control).filter(|&at| contract.operands()[at].format.frac > 0) {
         let (low, high) = contract.operands()[at].domain;
         let typical = values[at];
@@ -248,11 +234,7 @@ fn example_operands(contract: &dyn Contract) -> Vec<i64> {
 }
 
 fn results(design: &Design, contract: &dyn Contract) -> Vec<NetId> {
-    contract
-        .outputs()
-        .iter()
-        .filter_map(|name| design.find(name))
-        .collect()
+    contract.outputs().iter().filter_map(|name| design.find(name)).collect()
 }
 
 /// What nets carry in each clock of the computation of [`example`], from clock 0, in which `start` is high, to the
@@ -263,16 +245,11 @@ fn results(design: &Design, contract: &dyn Contract) -> Vec<NetId> {
 /// Those of [`timing`].
 pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Result<Vec<Vec<u64>>> {
     let mut clocks = Vec::new();
-    run(
-        design,
-        contract,
-        &example_operands(contract),
-        &mut |simulator| {
-            simulator.settle()?;
-            clocks.push(nets.iter().map(|&net| simulator.value(net)).collect());
-            Ok(())
-        },
-    )?;
+    run(design, contract, &example_operands(contract), &mut |simulator| {
+        simulator.settle()?;
+        clocks.push(nets.iter().map(|&net| simulator.value(net)).collect());
+        Ok(())
+    })?;
     Ok(clocks)
 }
 
@@ -287,19 +264,13 @@ fn run(
     watch: Watch<'_>,
 ) -> Result<Trial> {
     let mut simulator: Simulator = Simulator::new(design)?;
-    let output = |wanted: fn(Role) -> bool| {
-        design
-            .port(wanted)
-            .map(|port| port.net)
-            .context("no handshake")
-    };
+    let output =
+        |wanted: fn(Role) -> bool| design.port(wanted).map(|port| port.net).context("no handshake");
     let valid = output(|role| role == Role::Valid)?;
     let done = output(|role| role == Role::Done)?;
     let busy = output(|role| role == Role::Busy)?;
     let input = |name: &str| {
-        let at = design
-            .inputs()
-            .position(|port| design.net(port.net).name == name);
+        let at = design.inputs().position(|port| design.net(port.net).name == name);
         at.with_context(|| format!("no input `{name}`"))
     };
     let (reset, start) = (input("rst_n")?, input("start")?);
@@ -316,10 +287,7 @@ fn run(
         simulator.set(input(&format!("{}_write", operand.name))?, 0);
     }
     simulator.set(start, 0);
-    let mut trial = Trial {
-        timing: Timing::default(),
-        results: Vec::new(),
-    };
+    let mut trial = Trial { timing: Timing::default(), results: Vec::new() };
     let nets = results(design, contract);
     // Clock 0 was the one that took `start`.
     for clock in 1..LIMIT {
@@ -334,11 +302,7 @@ fn run(
         }
         if simulator.value(busy) == 0 {
             trial.timing.start_to_start = Some(clock);
-            ensure!(
-                trial.timing.start_to_valid.is_some(),
-                "`{}` never raises valid",
-                design.name
-            );
+            ensure!(trial.timing.start_to_valid.is_some(), "`{}` never raises valid", design.name);
             return Ok(trial);
         }
         simulator.clock()?;

@@ -36,13 +36,8 @@ pub fn describe(d: &Designer, config: &Config) {
     let bits = config.integer("cosine.fraction") as u32;
     let fraction = cos_gamma.bits(0, Format::unsigned(0, bits as i32));
     let normalised = shift::normalise(d, "octave", fraction);
-    let octave = normalised
-        .zeros
-        .named("octave")
-        .doc("leading zeros of cos gamma");
-    let mantissa = normalised
-        .word
-        .bits(0, Format::unsigned(bits as i32 - 1, 0));
+    let octave = normalised.zeros.named("octave").doc("leading zeros of cos gamma");
+    let mantissa = normalised.word.bits(0, Format::unsigned(bits as i32 - 1, 0));
     let u = d
         .not("distance", mantissa)
         .doc("1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half");

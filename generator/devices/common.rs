@@ -18,21 +18,12 @@ pub fn cosine_fraction(default: i64) -> Key {
 
 /// `cosine.signed`.
 pub fn cosine_signed() -> Key {
-    Key::flag(
-        "cosine.signed",
-        false,
-        "The cosine port has a sign bit; a negative cosine gives 0.",
-    )
+    Key::flag("cosine.signed", false, "The cosine port has a sign bit; a negative cosine gives 0.")
 }
 
 /// `exponent.bits`.
 pub fn exponent_bits() -> Key {
-    Key::integer(
-        "exponent.bits",
-        10,
-        1..=12,
-        "Bits of the specular exponent n.",
-    )
+    Key::integer("exponent.bits", 10, 1..=12, "Bits of the specular exponent n.")
 }
 
 /// `power`.
@@ -52,12 +43,7 @@ pub fn squarings(config: &Config) -> u32 {
 
 /// `colour.bits`.
 pub fn colour_bits() -> Key {
-    Key::integer(
-        "colour.bits",
-        8,
-        1..=12,
-        "Bits of a colour operand, and of an output.",
-    )
+    Key::integer("colour.bits", 8, 1..=12, "Bits of a colour operand, and of an output.")
 }
 
 /// `intensity.fraction`.
@@ -142,10 +128,7 @@ pub fn exponent_max() -> Key {
 
 /// The domain of n is not empty and fits the operand.
 pub fn check_exponents(config: &Config, problems: &mut Problems) {
-    let (min, max) = (
-        config.integer("domain.exponent_min"),
-        config.integer("domain.exponent_max"),
-    );
+    let (min, max) = (config.integer("domain.exponent_min"), config.integer("domain.exponent_max"));
     let bits = config.integer("exponent.bits");
     if min > max {
         problems.push(
@@ -180,14 +163,8 @@ pub fn check_rom_size(key: &str, rom: &str, address: i64, width: i64, problems: 
 
 /// Seed 000's numbers of the accumulator that walks a line.
 pub const LINE_BLOCKS: LineBlocks = LineBlocks {
-    delta: OperandBlocks {
-        inputs: (17, 18),
-        register: 2,
-    },
-    start: OperandBlocks {
-        inputs: (19, 20),
-        register: 3,
-    },
+    delta: OperandBlocks { inputs: (17, 18), register: 2 },
+    start: OperandBlocks { inputs: (19, 20), register: 3 },
     length_inputs: (23, 24),
     counter: 5,
     adder: 6,

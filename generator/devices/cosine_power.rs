@@ -42,11 +42,8 @@ fn check(config: &Config, problems: &mut Problems) {
 pub fn describe(d: &Designer, config: &Config) {
     let integer = |key: &str| config.integer(key) as i32;
     let count = common::squarings(config);
-    let cosine = Format {
-        signed: config.flag("cosine.signed"),
-        int: 1,
-        frac: integer("cosine.fraction"),
-    };
+    let cosine =
+        Format { signed: config.flag("cosine.signed"), int: 1, frac: integer("cosine.fraction") };
     let f = Format::unsigned(0, integer("intensity.fraction"));
     d.about(about(config));
 
@@ -61,17 +58,13 @@ pub fn describe(d: &Designer, config: &Config) {
     let colours = Colours::new(d, integer("colour.bits"), None);
 
     let operand_select = d.select("operand_select", &["distance", "base", "power"]);
-    let accumulator = d
-        .register("accumulator", f)
-        .doc("n/m*(1 - cos gamma), then the powers of W's base");
+    let accumulator =
+        d.register("accumulator", f).doc("n/m*(1 - cos gamma), then the powers of W's base");
     let squarings = Squarings::new(d, count);
 
     let one = d.constant("one", 1.0, Format::unsigned(1, integer("cosine.fraction")));
     let complement = d.sub("complement", one, cos_gamma).doc("1.0 - cos gamma");
-    let zeta = exponent
-        .shift_right(count as i32)
-        .named("zeta")
-        .doc("n/m, by wiring");
+    let zeta = exponent.shift_right(count as i32).named("zeta").doc("n/m, by wiring");
     let base = base(d, cos_gamma, accumulator.q());
 
     let first = d
@@ -84,20 +77,11 @@ pub fn describe(d: &Designer, config: &Config) {
         .shared_mul("product", &first, &second)
         .doc("the shared product; its point depends on the operands");
     let rounding_f = rounding(config, "intensity.rounding");
-    let distance = d.narrow(
-        "distance",
-        product.of(complement, zeta),
-        f,
-        rounding_f,
-        Overflow::Saturate,
-    );
+    let distance =
+        d.narrow("distance", product.of(complement, zeta), f, rounding_f, Overflow::Saturate);
     let square = product.of_any(&[(base, base), (accumulator.q(), accumulator.q())]);
     let square = d.narrow("square", square, f, rounding_f, Overflow::Saturate);
-    let next = d.mux_on(
-        "accumulator_next",
-        operand_select,
-        [distance, square, square],
-    );
+    let next = d.mux_on("accumulator_next", operand_select, [distance, square, square]);
     accumulator.takes(next.out());
     colours.outputs(accumulator.q(), rounding(config, "output.rounding"));
 
@@ -120,15 +104,10 @@ pub fn describe(d: &Designer, config: &Config) {
 /// `1 − n/m·(1 − cos γ)` as the complement of the accumulator: an ulp too small, which is what keeps it
 /// a fraction. 0 when cos γ ≤ 0.
 fn base<'d>(d: &'d Designer, cos_gamma: Signal<'d>, accumulator: Signal<'d>) -> Signal<'d> {
-    let facing = d
-        .any("facing", cos_gamma)
-        .doc("the surface faces the half vector");
-    let inverse = d
-        .not("inverse", accumulator)
-        .doc("1.0 - accumulator, less an ulp");
+    let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
+    let inverse = d.not("inverse", accumulator).doc("1.0 - accumulator, less an ulp");
     let zero = d.raw_constant("zero", 0, accumulator.format());
-    d.choose("base", facing, [zero, inverse])
-        .doc("base of the power")
+    d.choose("base", facing, [zero, inverse]).doc("base of the power")
 }
 
 fn about(config: &Config) -> About {

@@ -71,13 +71,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let folded = angle::fold(d, line.angle(), table);
     let address = angle::address(d, "table_address", folded.magnitude, folded.within, table);
     let cosine = d
-        .rom(
-            "cosine",
-            address,
-            f,
-            &angle::cosine_power_table(2, table, f.frac),
-            true,
-        )
+        .rom("cosine", address, f, &angle::cosine_power_table(2, table, f.frac), true)
         .block(12)
         .doc(&format!("cos^2 in 2^{table} steps of a right angle"))
         .comments(angle::step_comments(2, table));

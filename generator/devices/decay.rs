@@ -99,12 +99,7 @@ pub fn keys(defaults: &Defaults) -> Vec<Key> {
             1..=3,
             "Leading bits that choose the slope of each of these tables.",
         ),
-        Key::integer(
-            "exponential.fraction",
-            19,
-            8..=24,
-            "Fraction bits of the tables of 2^-x.",
-        ),
+        Key::integer("exponential.fraction", 19, 8..=24, "Fraction bits of the tables of 2^-x."),
         Key::flag(
             "tables.synchronous",
             true,
@@ -126,10 +121,8 @@ pub fn check(config: &Config, operand_bits: i64, problems: &mut Problems) {
     common::check_exponents(config, problems);
     check_decay(config, operand_bits, problems);
     let integer = |key: &str| config.integer(key);
-    let (address, bits) = (
-        integer("exponential.address"),
-        config.integers("exponential.offset_bits"),
-    );
+    let (address, bits) =
+        (integer("exponential.address"), config.integers("exponential.offset_bits"));
     let addresses = config.integers("exponential.offset_address");
     if addresses.len() != bits.len() {
         problems.push(
@@ -222,35 +215,26 @@ pub fn describe<'d>(d: &'d Designer, config: &Config, cos_gamma: Signal<'d>, cur
         .q();
     let colours = Colours::new(d, integer("colour.bits"), None);
     let f = Format::unsigned(0, integer("intensity.fraction"));
-    let exponential = Exponential {
-        cut: cut(config),
-        fraction: integer("exponential.fraction"),
-        synchronous,
-    };
+    let exponential =
+        Exponential { cut: cut(config), fraction: integer("exponential.fraction"), synchronous };
     // An integer part that shifts every bit of f out, and no larger.
     let most = f.frac as u32 + 2;
     let halvings_format = Format::unsigned(most.ilog2() as i32 + 1, exponential.cut.bits() as i32);
 
     let operand_select = d.select("operand_select", &["segment", "power"]);
-    let decay = d
-        .register("decay", Format::unsigned(0, integer("decay.fraction")))
-        .doc(curve.doc);
-    let halvings = d
-        .register("halvings", halvings_format)
-        .doc("n*decay: how often f is half of 1.0");
+    let decay = d.register("decay", Format::unsigned(0, integer("decay.fraction"))).doc(curve.doc);
+    let halvings =
+        d.register("halvings", halvings_format).doc("n*decay: how often f is half of 1.0");
     let reflectance = d.register("reflectance", f).doc("f");
 
     let line = look_up(d, config, curve, decay.format());
     let (factor, small) = factor(d, config, curve, decay.q());
-    let first = d
-        .bus("first", operand_select, [line.slope, factor])
-        .doc("first operand of the multiplier");
+    let first =
+        d.bus("first", operand_select, [line.slope, factor]).doc("first operand of the multiplier");
     let second = d
         .bus("second", operand_select, [line.rest, exponent])
         .doc("second operand of the multiplier");
-    let product = d
-        .shared_mul("product", &first, &second)
-        .doc("its point depends on the operands");
+    let product = d.shared_mul("product", &first, &second).doc("its point depends on the operands");
     decay.takes(line.at(d, "curve", product.of(line.slope, line.rest)));
 
     let power = product.of(factor, exponent);
@@ -276,18 +260,13 @@ pub fn describe<'d>(d: &'d Designer, config: &Config, cos_gamma: Signal<'d>, cur
         rounding(config, "intensity.rounding"),
     );
     reflectance.takes(ends(d, cos_gamma, halvings.q(), rounded));
-    let _ = d
-        .output("f_out", reflectance.q())
-        .doc("the reflectance, for a user's own multipliers");
+    let _ = d.output("f_out", reflectance.q()).doc("the reflectance, for a user's own multipliers");
     colours.outputs(reflectance.q(), rounding(config, "output.rounding"));
 
     d.microprogram([
         step("segment of the decay addressed by cos gamma", []),
         step("decay <- base + slope * rest", [decay.load()]),
-        step(
-            "halvings <- n * decay",
-            [first.pick(factor), second.pick(exponent), halvings.load()],
-        ),
+        step("halvings <- n * decay", [first.pick(factor), second.pick(exponent), halvings.load()]),
         step("tables of 2^-x addressed by the fraction", []),
         step("reflectance <- 2^-halvings", [reflectance.load()]),
         step("result", [valid(), end()]),
@@ -303,10 +282,7 @@ fn cut(config: &Config) -> Cut {
         offsets: bits
             .iter()
             .zip(addresses)
-            .map(|(&bits, &address)| Offset {
-                bits: bits as u32,
-                address: address as u32,
-            })
+            .map(|(&bits, &address)| Offset { bits: bits as u32, address: address as u32 })
             .collect(),
     }
 }
@@ -319,11 +295,7 @@ fn look_up<'d>(
 ) -> segmented::Line<'d> {
     let cut = Segmentation {
         operand_bits: curve.operand_bits,
-        segments: config
-            .integers("decay.segments")
-            .iter()
-            .map(|&k| k as u32)
-            .collect(),
+        segments: config.integers("decay.segments").iter().map(|&k| k as u32).collect(),
         tail: Some(config.integer("decay.tail") as u32),
         packed: true,
     };
@@ -343,10 +315,7 @@ fn chord(segment: Segment, function: &dyn Fn(f64) -> f64, shape: Shape) -> Entry
     let value = Format::unsigned(0, shape.fraction);
     let (from, length) = (segment.from as f64, segment.length as f64);
     if segment.length == 1 {
-        return Entry {
-            base: value.quantise(function(from)),
-            slope: 0,
-        };
+        return Entry { base: value.quantise(function(from)), slope: 0 };
     }
     let scale = exp2(shape.slope_fraction);
     let slope = ((function(from + length) - function(from)) * scale + 0.5).floor();
@@ -365,10 +334,7 @@ fn chord(segment: Segment, function: &dyn Fn(f64) -> f64, shape: Shape) -> Entry
         }
     }
     let middle = ((low + high) / 2.0).floor();
-    let least = [low, middle, high]
-        .into_iter()
-        .map(residual)
-        .fold(f64::MAX, f64::min);
+    let least = [low, middle, high].into_iter().map(residual).fold(f64::MAX, f64::min);
     Entry {
         base: value.quantise((least + most) / 2.0 + exp2(-shape.fraction - 1)),
         slope: slope as i128,
@@ -397,18 +363,13 @@ fn factor<'d>(
             &[octave, coarse],
             integer(octave.format().width() + coarse_bits),
         );
-        let far = d
-            .any("octave_any", octave)
-            .doc("cos gamma is below one half");
+        let far = d.any("octave_any", octave).doc("cos gamma is below one half");
         large = d.or("decay_far", large, far);
     }
-    let small = d
-        .not("decay_small", large)
-        .doc("the decay is below 1/4, and all its bits count");
+    let small = d.not("decay_small", large).doc("the decay is below 1/4, and all its bits count");
     let fine = decay.bits(0, integer(width - 2));
-    let factor = d
-        .choose("factor", small, [coarse, fine])
-        .doc("the decay, its point by decay_small");
+    let factor =
+        d.choose("factor", small, [coarse, fine]).doc("the decay, its point by decay_small");
     (factor, small)
 }
 
@@ -421,14 +382,10 @@ fn ends<'d>(
     rounded: Signal<'d>,
 ) -> Signal<'d> {
     let format = rounded.format();
-    let facing = d
-        .any("facing", cos_gamma)
-        .doc("the surface faces the half vector");
+    let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
     let fades = d.any("fades", halvings);
-    let aligned = cos_gamma
-        .bit(cos_gamma.format().frac as u32)
-        .named("aligned")
-        .doc("cos gamma is 1.0");
+    let aligned =
+        cos_gamma.bit(cos_gamma.format().frac as u32).named("aligned").doc("cos gamma is 1.0");
     let level = d.not("level", fades);
     let peak = d.or("peak", aligned, level).doc("f is 1.0, less an ulp");
     let ones = d.raw_constant("ones", format.max_raw(), format);

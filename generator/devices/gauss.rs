@@ -35,9 +35,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let cos_gamma = decay::cosine(d, config);
     let bits = config.integer("cosine.fraction") as u32;
     let fraction = cos_gamma.bits(0, Format::unsigned(bits as i32, 0));
-    let u = d
-        .not("distance", fraction)
-        .doc("1.0 - cos gamma, less an ulp");
+    let u = d.not("distance", fraction).doc("1.0 - cos gamma, less an ulp");
     let table = move |u: f64| {
         let gamma = libm::acos(1.0 - (u + 1.0) * exp2(-(bits as i32)));
         gamma * gamma / (4.0 * LN_2)

@@ -57,10 +57,8 @@ pub fn schema() -> Schema {
 
 fn check(config: &Config, problems: &mut Problems) {
     common::check_exponents(config, problems);
-    let (distance, vector) = (
-        config.integer("distance.fraction"),
-        config.integer("vector.fraction"),
-    );
+    let (distance, vector) =
+        (config.integer("distance.fraction"), config.integer("vector.fraction"));
     if distance > 2 * vector {
         problems.push(
             "distance.fraction",
@@ -86,24 +84,16 @@ pub fn describe(d: &Designer, config: &Config) {
 
     let vector = Format::signed(1, config.integer("vector.fraction") as i32);
     let component = |name: &str, of: &str| {
-        d.operand(name, vector)
-            .doc(&format!("{of} of N - H, normal less half vector"))
-            .q()
+        d.operand(name, vector).doc(&format!("{of} of N - H, normal less half vector")).q()
     };
-    let components = [
-        component("dx", "x"),
-        component("dy", "y"),
-        component("dz", "z"),
-    ];
+    let components = [component("dx", "x"), component("dy", "y"), component("dz", "z")];
     let distance = distance(d, config, components);
     let scaled = match config.choice("scale") {
         "shift" => by_shift(d, config, distance),
         _ => by_multiplier(d, config, distance),
     };
     let colours = Colours::new(d, config.integer("colour.bits") as i32, None);
-    let accumulator = d
-        .register("accumulator", f)
-        .doc("the powers of the base, in the end f");
+    let accumulator = d.register("accumulator", f).doc("the powers of the base, in the end f");
 
     let value = d.narrow(
         "beta_distance",
@@ -113,17 +103,14 @@ pub fn describe(d: &Designer, config: &Config) {
         Overflow::Saturate,
     );
     let base = base(d, value.doc("beta*D^2, to the point of f"), f);
-    let operand = d
-        .mux("multiplier4_operand", [base, accumulator.q()])
-        .doc("what multiplier 4 squares");
+    let operand =
+        d.mux("multiplier4_operand", [base, accumulator.q()]).doc("what multiplier 4 squares");
     let multiplier4 = d.mul("multiplier4", operand.out(), operand.out()).block(4);
     accumulator.takes(d.narrow("square", multiplier4, f, rounding_f, Overflow::Saturate));
     colours.outputs(accumulator.q(), rounding(config, "output.rounding"));
 
     let mut steps = scaled.steps;
-    let first = [operand.pick(base)]
-        .into_iter()
-        .chain(scaled.squarings.load());
+    let first = [operand.pick(base)].into_iter().chain(scaled.squarings.load());
     let again = [operand.pick(accumulator.q())];
     steps.extend(scaled.squarings.steps(accumulator, first, again));
     steps.push(step("result", [valid(), end()]));
@@ -135,8 +122,7 @@ fn distance<'d>(d: &'d Designer, config: &Config, components: [Signal<'d>; 3]) -
     let mut number = 0;
     let squares = components.map(|component| {
         number += 1;
-        d.mul(&format!("multiplier{number}"), component, component)
-            .block(number)
+        d.mul(&format!("multiplier{number}"), component, component).block(number)
     });
     let adder1 = d.add("adder1", squares[0], squares[1]).block(1);
     let adder2 = d.add("adder2", adder1, squares[2]).block(2).doc("D^2");
@@ -162,10 +148,7 @@ fn by_shift<'d>(d: &'d Designer, config: &Config, distance: Signal<'d>) -> Scale
         .doc("log2 of the specular exponent n, rounded")
         .q();
     let register = d
-        .register(
-            "shift_register",
-            Format::unsigned(1, distance.format().frac + half_down),
-        )
+        .register("shift_register", Format::unsigned(1, distance.format().frac + half_down))
         .doc("beta*D^2, once it has shifted");
     let (squarings, counter, load_shift) = Squarings::sharing(d, count, shift);
     let counter = counter.doc("shifts, then squarings, to come");
@@ -180,27 +163,18 @@ fn by_shift<'d>(d: &'d Designer, config: &Config, distance: Signal<'d>) -> Scale
         crate::fixed::Rounding::Truncate,
         Overflow::Saturate,
     );
-    let input = d
-        .mux("shift_input", [small, doubled])
-        .doc("loads or shifts");
+    let input = d.mux("shift_input", [small, doubled]).doc("loads or shifts");
     register.takes(input.out());
     let more = d.any("more_shifts", counter.q()).doc("not the last shift");
     let word = "shift_register <- 2 * shift_register";
     let load = [input.pick(small), register.load()];
-    let shift_on: [Setting; 4] = [
-        input.pick(doubled),
-        register.load(),
-        counter.count(),
-        loop_while(more, word),
-    ];
+    let shift_on: [Setting; 4] =
+        [input.pick(doubled), register.load(), counter.count(), loop_while(more, word)];
     Scaled {
         value: register.q(),
         steps: vec![
             step("operands dx, dy, dz", []),
-            step(
-                "shift_register <- D^2 / (4*power)",
-                load.into_iter().chain(load_shift),
-            ),
+            step("shift_register <- D^2 / (4*power)", load.into_iter().chain(load_shift)),
             step(word, shift_on),
         ],
         squarings,
@@ -211,25 +185,16 @@ fn by_shift<'d>(d: &'d Designer, config: &Config, distance: Signal<'d>) -> Scale
 fn by_multiplier<'d>(d: &'d Designer, config: &Config, distance: Signal<'d>) -> Scaled<'d> {
     let count = common::squarings(config);
     let exponent = d
-        .operand(
-            "exponent",
-            Format::unsigned(config.integer("exponent.bits") as i32, 0),
-        )
+        .operand("exponent", Format::unsigned(config.integer("exponent.bits") as i32, 0))
         .doc("specular exponent n")
         .q();
     let register = d.register("distance", distance.format()).doc("D^2");
     register.takes(distance);
     let squarings = Squarings::new(d, count);
-    let beta = exponent
-        .shift_right(count as i32 + 1)
-        .named("beta")
-        .doc("n/(2*power), by wiring");
+    let beta = exponent.shift_right(count as i32 + 1).named("beta").doc("n/(2*power), by wiring");
     let multiplier5 = d.mul("multiplier5", register.q(), beta).block(5);
     let scaled = d
-        .register(
-            "scaled",
-            Format::unsigned(1, config.integer("intensity.fraction") as i32),
-        )
+        .register("scaled", Format::unsigned(1, config.integer("intensity.fraction") as i32))
         .doc("beta*D^2");
     scaled.takes(d.narrow(
         "multiplier5_rounded",
@@ -253,15 +218,10 @@ fn by_multiplier<'d>(d: &'d Designer, config: &Config, distance: Signal<'d>) -> 
 /// with 1.0 makes the mux pass 0 instead.
 fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
     let one = d.constant("one", 1.0, Format::unsigned(1, f.frac));
-    let comparator = d
-        .less("comparator", value, one)
-        .doc("beta*D^2 is below 1.0");
-    let inverse = d
-        .not("inverse", value.bits(0, f))
-        .doc("1.0 - beta*D^2, less an ulp");
+    let comparator = d.less("comparator", value, one).doc("beta*D^2 is below 1.0");
+    let inverse = d.not("inverse", value.bits(0, f)).doc("1.0 - beta*D^2, less an ulp");
     let zero = d.raw_constant("zero", 0, f);
-    d.choose("base", comparator, [zero, inverse])
-        .doc("base of the power, or 0")
+    d.choose("base", comparator, [zero, inverse]).doc("base of the power, or 0")
 }
 
 /// Holds every log2 of an exponent, rounded: 0 … `exponent.bits`.

@@ -17,12 +17,8 @@ use super::{common, rounding};
 const POWERS: [u32; 4] = [1, 2, 4, 16];
 
 /// The numbers of the amplitude's way through the figure.
-pub(super) const AMPLITUDE: ChannelBlocks = ChannelBlocks {
-    inputs: (15, 16),
-    register: 1,
-    multiplier: 13,
-    output: 27,
-};
+pub(super) const AMPLITUDE: ChannelBlocks =
+    ChannelBlocks { inputs: (15, 16), register: 1, multiplier: 13, output: 27 };
 
 /// The keys of the device.
 pub fn schema() -> Schema {
@@ -36,12 +32,7 @@ pub fn schema() -> Schema {
                 4..=24,
                 "Fraction bits of the angle that multiplier 11 takes: the leading ones.",
             ),
-            Key::integer(
-                "root.fraction",
-                14,
-                8..=20,
-                "Fraction bits of sqrt(n/k) in ROM 9.",
-            ),
+            Key::integer("root.fraction", 14, 8..=20, "Fraction bits of sqrt(n/k) in ROM 9."),
             common::table_address(11),
             common::length_bits(),
             common::exponent_bits(),
@@ -126,17 +117,11 @@ pub fn describe(d: &Designer, config: &Config) {
         .block(11)
         .doc("sqrt(n/k) * |angle|, in right angles");
     let step = angle::address(d, "table_step", scaled, folded.within, table);
-    let address = d
-        .concat("table_address", decoder(d, exponent), step)
-        .doc("which table, and where in it");
-    let words: Vec<i128> = POWERS
-        .iter()
-        .flat_map(|&power| angle::cosine_power_table(power, table, f.frac))
-        .collect();
-    let comments = POWERS
-        .iter()
-        .flat_map(|&power| angle::step_comments(power, table))
-        .collect();
+    let address =
+        d.concat("table_address", decoder(d, exponent), step).doc("which table, and where in it");
+    let words: Vec<i128> =
+        POWERS.iter().flat_map(|&power| angle::cosine_power_table(power, table, f.frac)).collect();
+    let comments = POWERS.iter().flat_map(|&power| angle::step_comments(power, table)).collect();
     let cosine = d
         .rom("cosine", address, f, &words, true)
         .block(12)
@@ -155,27 +140,17 @@ fn decoder<'d>(d: &'d Designer, exponent: Signal<'d>) -> Signal<'d> {
     let first = constant("first_exponent", 1);
     let second = constant("second_exponent", 2);
     let high = constant("high_exponents", 7);
-    let power_1 = d
-        .equal("power_1", exponent, first)
-        .doc("output 30 of decoder 10: n = 1");
-    let power_2 = d
-        .equal("power_2", exponent, second)
-        .doc("output 31 of decoder 10: n = 2");
+    let power_1 = d.equal("power_1", exponent, first).doc("output 30 of decoder 10: n = 1");
+    let power_2 = d.equal("power_2", exponent, second).doc("output 31 of decoder 10: n = 2");
     let above_2 = d.less("above_2", second, exponent);
     let below_7 = d.less("below_7", exponent, high);
-    let power_4 = d
-        .and("power_4", above_2, below_7)
-        .doc("output 32 of decoder 10: n = 3 to 6");
+    let power_4 = d.and("power_4", above_2, below_7).doc("output 32 of decoder 10: n = 3 to 6");
     let small = d.or("power_1_or_2", power_1, power_2);
     let small = d.or("power_below_16", small, power_4);
-    let power_16 = d
-        .not("power_16", small)
-        .doc("output 33 of decoder 10: n = 0, and n from 7 on");
+    let power_16 = d.not("power_16", small).doc("output 33 of decoder 10: n = 0, and n from 7 on");
     let high = d.or("power_4_or_16", power_4, power_16);
     let low = d.or("power_2_or_16", power_2, power_16);
-    d.concat("power_code", high, low)
-        .block(10)
-        .doc("the number of the decoder's output that is 1")
+    d.concat("power_code", high, low).block(10).doc("the number of the decoder's output that is 1")
 }
 
 /// Which of the powers serves the exponent n.

@@ -55,10 +55,8 @@ pub fn schema() -> Schema {
 
 fn check(config: &Config, problems: &mut Problems) {
     common::check_exponents(config, problems);
-    let (difference, cosine) = (
-        config.integer("difference.fraction"),
-        config.integer("cosine.fraction"),
-    );
+    let (difference, cosine) =
+        (config.integer("difference.fraction"), config.integer("cosine.fraction"));
     if difference > 2 * cosine {
         problems.push(
             "difference.fraction",
@@ -83,11 +81,8 @@ const fn channel(output: u16) -> ChannelBlocks {
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
     let integer = |key: &str| config.integer(key) as i32;
-    let cosine = Format {
-        signed: config.flag("cosine.signed"),
-        int: 1,
-        frac: integer("cosine.fraction"),
-    };
+    let cosine =
+        Format { signed: config.flag("cosine.signed"), int: 1, frac: integer("cosine.fraction") };
     d.about(about(config));
 
     let exponent = d
@@ -105,16 +100,10 @@ pub fn describe(d: &Designer, config: &Config) {
     let colours = Colours::new(d, integer("colour.bits"), Some(CHANNELS));
 
     let difference = d
-        .register(
-            "difference",
-            Format::signed(-2, integer("difference.fraction")),
-        )
+        .register("difference", Format::signed(-2, integer("difference.fraction")))
         .doc("c^2 - c, from -0.25 to 0");
     let intensity = d
-        .register(
-            "intensity",
-            Format::unsigned(0, integer("intensity.fraction")),
-        )
+        .register("intensity", Format::unsigned(0, integer("intensity.fraction")))
         .doc("the reflectance f");
 
     difference.takes(d.narrow(
@@ -127,10 +116,7 @@ pub fn describe(d: &Designer, config: &Config) {
     ));
     let coefficient = coefficient_rom(d, config, exponent).out();
     let multiplier1 = d.mul("multiplier1", difference.q(), coefficient).block(1);
-    let adder2 = d
-        .add("adder2", multiplier1, cos_gamma)
-        .block(2)
-        .doc("c + a(n)*(c^2 - c)");
+    let adder2 = d.add("adder2", multiplier1, cos_gamma).block(2).doc("c + a(n)*(c^2 - c)");
     intensity.takes(d.narrow(
         "clamped",
         adder2,
@@ -143,56 +129,33 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram([
         step("operands; ROM(n) addressed", []),
         step("difference <- c^2 - c", [difference.load()]),
-        step(
-            "intensity <- c + a(n) * difference, not below 0",
-            [intensity.load()],
-        ),
+        step("intensity <- c + a(n) * difference, not below 0", [intensity.load()]),
         step("result", [valid(), end()]),
     ]);
 }
 
 /// Adder 1: multiplier 5's c² plus the inverted c plus its carry-in.
 fn adder1<'d>(d: &'d Designer, cos_gamma: Signal<'d>) -> Signal<'d> {
-    let square = d
-        .mul("multiplier5", cos_gamma, cos_gamma)
-        .block(5)
-        .doc("c^2");
+    let square = d.mul("multiplier5", cos_gamma, cos_gamma).block(5).doc("c^2");
     let wide = cos_gamma.with_fraction(square.format().frac).as_signed();
-    let inverters = d
-        .not("inverters", wide)
-        .doc("-c, less an ulp of the square");
-    let carry = d
-        .raw_constant("carry", 1, Format::BIT)
-        .doc("carry-in of adder 1");
-    d.add_carry("adder1", square, inverters, carry)
-        .block(1)
-        .doc("c^2 - c")
+    let inverters = d.not("inverters", wide).doc("-c, less an ulp of the square");
+    let carry = d.raw_constant("carry", 1, Format::BIT).doc("carry-in of adder 1");
+    d.add_carry("adder1", square, inverters, carry).block(1).doc("c^2 - c")
 }
 
 fn coefficient_rom<'d>(d: &'d Designer, config: &Config, exponent: Signal<'d>) -> Rom<'d> {
     let minimax = config.choice("coefficient.scheme") == "minimax";
-    let frac = if minimax {
-        config.integer("coefficient.fraction") as i32
-    } else {
-        0
-    };
+    let frac = if minimax { config.integer("coefficient.fraction") as i32 } else { 0 };
     let widest = Format::unsigned(config.integer("exponent.bits") as i32, frac);
-    let values: Vec<f64> = (0..1u32 << config.integer("exponent.bits"))
-        .map(|n| value(config, n))
-        .collect();
+    let values: Vec<f64> =
+        (0..1u32 << config.integer("exponent.bits")).map(|n| value(config, n)).collect();
     let words: Vec<i128> = values.iter().map(|&a| widest.quantise(a)).collect();
     let comments = values.iter().map(|a| format!("{a:.6}")).collect();
     let most = words.iter().copied().max().unwrap_or(0);
     let kind = if minimax { "minimax" } else { "n - 1" };
-    d.rom(
-        "coefficient",
-        exponent,
-        Format::holding(0, most, frac),
-        &words,
-        true,
-    )
-    .doc(&format!("a(n), {kind}, for an exponent n (the address)"))
-    .comments(comments)
+    d.rom("coefficient", exponent, Format::holding(0, most, frac), &words, true)
+        .doc(&format!("a(n), {kind}, for an exponent n (the address)"))
+        .comments(comments)
 }
 
 /// a(n) before it is rounded.

@@ -19,24 +19,9 @@ use sine::sine_rom;
 
 /// The patent's numbers of the colour channels.
 const CHANNELS: [ChannelBlocks; 3] = [
-    ChannelBlocks {
-        inputs: (32, 33),
-        register: 5,
-        multiplier: 20,
-        output: 40,
-    },
-    ChannelBlocks {
-        inputs: (34, 35),
-        register: 6,
-        multiplier: 21,
-        output: 41,
-    },
-    ChannelBlocks {
-        inputs: (36, 37),
-        register: 7,
-        multiplier: 22,
-        output: 42,
-    },
+    ChannelBlocks { inputs: (32, 33), register: 5, multiplier: 20, output: 40 },
+    ChannelBlocks { inputs: (34, 35), register: 6, multiplier: 21, output: 41 },
+    ChannelBlocks { inputs: (36, 37), register: 7, multiplier: 22, output: 42 },
 ];
 
 /// The formats that a configuration chooses.
@@ -73,11 +58,7 @@ impl Formats {
         }
         let f = integer("intensity.fraction");
         Self {
-            cosine: Format {
-                signed: config.flag("cosine.signed"),
-                int: 1,
-                frac: cosine,
-            },
+            cosine: Format { signed: config.flag("cosine.signed"), int: 1, frac: cosine },
             sine: Format::unsigned(0, integer("sine.fraction")),
             cos_cos: Format::unsigned(1, integer("product.fraction")),
             sin_sin: Format::unsigned(0, integer("product.fraction")),
@@ -99,10 +80,7 @@ pub fn describe(d: &Designer, config: &Config) {
 
     let (cos_gamma, cos_dgamma) = operands(d, &formats);
     let r3 = d
-        .operand(
-            "exponent",
-            Format::unsigned(config.integer("exponent.bits") as i32, 0),
-        )
+        .operand("exponent", Format::unsigned(config.integer("exponent.bits") as i32, 0))
         .block(3)
         .inputs(59, 60)
         .doc("specular exponent n");
@@ -114,19 +92,14 @@ pub fn describe(d: &Designer, config: &Config) {
     let colours = Colours::new(d, config.integer("colour.bits") as i32, Some(CHANNELS));
 
     // V1 V2, then V3, then the load lines V4 to V7: in the order of the patent's table.
-    let operand_select = d
-        .select("operand_select", &["cosines", "sines", "half_n", "square"])
-        .lines(&[45, 46]);
+    let operand_select =
+        d.select("operand_select", &["cosines", "sines", "half_n", "square"]).lines(&[45, 46]);
     let sine_of = d
         .mux("mux17", [cos_gamma, cos_dgamma])
         .block(17)
         .line(47)
         .doc("the cosine whose sine is looked up");
-    let r19 = d
-        .register("reg19_sin_gamma", formats.sine)
-        .block(19)
-        .line(48)
-        .doc("sin gamma");
+    let r19 = d.register("reg19_sin_gamma", formats.sine).block(19).line(48).doc("sin gamma");
     let r11 = d
         .register("reg11_cos_cos", formats.cos_cos)
         .block(11)
@@ -157,39 +130,19 @@ pub fn describe(d: &Designer, config: &Config) {
         .block(8)
         .doc("first operand of multiplier 10");
     let mux9 = d
-        .bus(
-            "mux9",
-            operand_select,
-            [cos_dgamma, r19.q(), half_n, adder16],
-        )
+        .bus("mux9", operand_select, [cos_dgamma, r19.q(), half_n, adder16])
         .block(9)
         .doc("second operand of multiplier 10");
     let product = d
         .shared_mul("multiplier10", &mux8, &mux9)
         .block(10)
         .doc("the shared product; its point depends on the operands");
-    let overflow = if formats.patent {
-        Overflow::Wrap
-    } else {
-        Overflow::Saturate
-    };
+    let overflow = if formats.patent { Overflow::Wrap } else { Overflow::Saturate };
     let (rounding_products, rounding_result) = (formats.product_rounding, formats.result_rounding);
     let cos_cos = product.of(cos_gamma, cos_dgamma);
-    r11.takes(d.narrow(
-        "cos_cos",
-        cos_cos,
-        r11.format(),
-        rounding_products,
-        overflow,
-    ));
+    r11.takes(d.narrow("cos_cos", cos_cos, r11.format(), rounding_products, overflow));
     let sin_sin = product.of(sine, r19.q());
-    r12.takes(d.narrow(
-        "sin_sin",
-        sin_sin,
-        r12.format(),
-        rounding_products,
-        overflow,
-    ));
+    r12.takes(d.narrow("sin_sin", sin_sin, r12.format(), rounding_products, overflow));
     // Words 4 and 6 settle what words 5 and 7 load, so that register 13 may take the product of the word
     // before: the multiplier then shares a clock with none of the adders in front and behind.
     let settled = product.held("product_held");
@@ -206,76 +159,39 @@ pub fn describe(d: &Designer, config: &Config) {
         .choose("line_or_square", squares, either)
         .doc("n/2 * adder 15, or the square of adder 16");
     let result = d.narrow("result", either, r13.format(), rounding_result, overflow);
-    r13.takes(if formats.patent {
-        result
-    } else {
-        facing_only(d, cos_gamma, result)
-    });
+    r13.takes(if formats.patent { result } else { facing_only(d, cos_gamma, result) });
 
     let doc = "the reflectance, once register 13 holds the square";
     let f = if r13.format().int == 0 {
         r13.q().bits(0, formats.f).named("f").doc(doc)
     } else {
         // Without the clamp the square can be 1.0 or more, where f saturates.
-        d.narrow(
-            "f",
-            r13.q(),
-            formats.f,
-            Rounding::Truncate,
-            Overflow::Saturate,
-        )
-        .doc(doc)
+        d.narrow("f", r13.q(), formats.f, Rounding::Truncate, Overflow::Saturate).doc(doc)
     };
     colours.outputs(f, rounding(config, "output.rounding"));
 
     d.sequencer_lines(43, 44);
     d.microprogram([
-        step(
-            "operands cos gamma, cos dgamma; sine of gamma addressed",
-            [],
-        ),
-        step(
-            "19 <- sin gamma; 11 <- cos gamma * cos dgamma",
-            [hold(), r19.load(), r11.load()],
-        ),
+        step("operands cos gamma, cos dgamma; sine of gamma addressed", []),
+        step("19 <- sin gamma; 11 <- cos gamma * cos dgamma", [hold(), r19.load(), r11.load()]),
         step(
             "operands sin dgamma, sin gamma",
-            [
-                mux8.pick(sine),
-                mux9.pick(r19.q()),
-                sine_of.pick(cos_dgamma),
-            ],
+            [mux8.pick(sine), mux9.pick(r19.q()), sine_of.pick(cos_dgamma)],
         ),
         step("12 <- sin gamma * sin dgamma", [hold(), r12.load()]),
         step(
             "operands adder 15, n/2",
-            [
-                mux8.pick(adder15),
-                mux9.pick(half_n),
-                sine_of.pick(cos_dgamma),
-            ],
+            [mux8.pick(adder15), mux9.pick(half_n), sine_of.pick(cos_dgamma)],
         ),
-        step(
-            "13 <- n/2 * (cos(gamma +- dgamma) - 1)",
-            [hold(), r13.load()],
-        ),
+        step("13 <- n/2 * (cos(gamma +- dgamma) - 1)", [hold(), r13.load()]),
         step(
             "operands adder 16, adder 16",
-            [
-                mux8.pick(adder16),
-                mux9.pick(adder16),
-                sine_of.pick(cos_dgamma),
-            ],
+            [mux8.pick(adder16), mux9.pick(adder16), sine_of.pick(cos_dgamma)],
         ),
         step("13 <- (... + 1)^2", [hold(), r13.load()]),
         step(
             "valid: intensities on the outputs",
-            [
-                mux8.pick(adder15),
-                mux9.pick(half_n),
-                sine_of.pick(cos_dgamma),
-                valid(),
-            ],
+            [mux8.pick(adder15), mux9.pick(half_n), sine_of.pick(cos_dgamma), valid()],
         ),
         step("end: clears the triggers and counter 29", [end()]),
     ]);
@@ -291,10 +207,7 @@ fn operands<'d>(d: &'d Designer, formats: &Formats) -> (Signal<'d>, Signal<'d>) 
             d.operand_clamped(name, format, 0.0, 1.0)
         }
     };
-    let unsigned = Format {
-        signed: false,
-        ..formats.cosine
-    };
+    let unsigned = Format { signed: false, ..formats.cosine };
     let r1 = operand("cos_gamma", formats.cosine)
         .block(1)
         .inputs(55, 56)
@@ -317,16 +230,9 @@ fn exact_sums<'d>(
     [r11, r12, r13]: [Register<'d>; 3],
 ) -> (Signal<'d>, Signal<'d>, Signal<'d>) {
     let one = d.constant("one", 1.0, Format::unsigned(1, r12.format().frac));
-    let adder31 = d
-        .sub("adder31", r12.q(), one)
-        .block(31)
-        .doc("register 12 - 1.0");
-    let raised = d
-        .add("raised12", r12.q(), one)
-        .doc("register 12 + 1.0, by wiring");
-    let inverse = d
-        .not("inverse12", raised.as_signed())
-        .doc("-(register 12) - 1.0, less an ulp");
+    let adder31 = d.sub("adder31", r12.q(), one).block(31).doc("register 12 - 1.0");
+    let raised = d.add("raised12", r12.q(), one).doc("register 12 + 1.0, by wiring");
+    let inverse = d.not("inverse12", raised.as_signed()).doc("-(register 12) - 1.0, less an ulp");
     let mux14 = d
         .choose("mux14", negative, [inverse, adder31])
         .block(14)
@@ -337,10 +243,7 @@ fn exact_sums<'d>(
         .block(15)
         .doc("cos(gamma +- dgamma) - 1.0");
     let one = d.constant("one", 1.0, Format::unsigned(1, r13.format().frac));
-    let adder16 = d
-        .add("adder16", r13.q(), one)
-        .block(16)
-        .doc("register 13 + 1.0");
+    let adder16 = d.add("adder16", r13.q(), one).block(16).doc("register 13 + 1.0");
     (adder15, exponent.shift_right(1), adder16)
 }
 
@@ -358,10 +261,7 @@ fn patent_sums<'d>(
     let ones = d.raw_constant("ones", word.max_raw(), word);
     let zeros = d.raw_constant("zeros", 0, word);
     let carry = d.raw_constant("carry52", 1, Format::BIT).block(52);
-    let adder31 = d
-        .add_modulo("adder31", r12.q(), ones, None)
-        .block(31)
-        .doc("register 12 - 1 ulp");
+    let adder31 = d.add_modulo("adder31", r12.q(), ones, None).block(31).doc("register 12 - 1 ulp");
     let inverse = d.not("inverse12", r12.q()).doc("inverse of register 12");
     let mux14 = d
         .choose("mux14", negative, [inverse, adder31])
@@ -382,9 +282,7 @@ fn patent_sums<'d>(
 
 /// What register 13 takes: the product, or −1.0, which makes f = 0, when cos γ ≤ 0.
 fn facing_only<'d>(d: &'d Designer, cos_gamma: Signal<'d>, result: Signal<'d>) -> Signal<'d> {
-    let facing = d
-        .any("facing", cos_gamma)
-        .doc("the surface faces the half vector");
+    let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
     let dark = d.constant("minus_one", -1.0, Format::signed(0, result.format().frac));
     d.choose("facing_result", facing, [dark, result])
 }

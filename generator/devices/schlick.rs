@@ -42,11 +42,8 @@ fn check(config: &Config, problems: &mut Problems) {
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
     let integer = |key: &str| config.integer(key) as i32;
-    let cosine = Format {
-        signed: config.flag("cosine.signed"),
-        int: 1,
-        frac: integer("cosine.fraction"),
-    };
+    let cosine =
+        Format { signed: config.flag("cosine.signed"), int: 1, frac: integer("cosine.fraction") };
     d.about(about(config));
 
     let cos_gamma = d
@@ -60,21 +57,12 @@ pub fn describe(d: &Designer, config: &Config) {
     let colours = Colours::new(d, integer("colour.bits"), None);
 
     let divisor = divisor(d, cos_gamma, exponent);
-    let quotient = Divider::new(
-        d,
-        "quotient",
-        cos_gamma,
-        divisor,
-        integer("intensity.fraction"),
-    );
+    let quotient = Divider::new(d, "quotient", cos_gamma, divisor, integer("intensity.fraction"));
     colours.outputs(quotient.quotient(), rounding(config, "output.rounding"));
 
     d.microprogram([
         step("operands cos gamma, n", []),
-        step(
-            "cos gamma by n*(1 - cos gamma) + cos gamma",
-            quotient.load(),
-        ),
+        step("cos gamma by n*(1 - cos gamma) + cos gamma", quotient.load()),
         step(
             "next bit of the quotient",
             quotient
@@ -92,15 +80,9 @@ fn divisor<'d>(d: &'d Designer, cos_gamma: Signal<'d>, exponent: Signal<'d>) -> 
     let (c, n) = (cos_gamma.format(), exponent.format());
     let one = d.constant("one", 1.0, Format::unsigned(1, c.frac));
     let complement = d.sub("complement", one, cos_gamma).doc("1.0 - cos gamma");
-    let scaled = d
-        .mul("scaled", complement, exponent)
-        .doc("n*(1 - cos gamma)");
-    let facing = d
-        .any("facing", cos_gamma)
-        .doc("the surface faces the half vector");
-    let dark = d
-        .not("dark", facing)
-        .doc("an ulp for the divisor, which n = 0 would leave at 0");
+    let scaled = d.mul("scaled", complement, exponent).doc("n*(1 - cos gamma)");
+    let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
+    let dark = d.not("dark", facing).doc("an ulp for the divisor, which n = 0 would leave at 0");
     let sum = d.add_carry("denominator", scaled, cos_gamma, dark);
     // It lies between cos γ and n, or 1.0, and is n and an ulp at the most.
     let divisor = d.narrow(

@@ -42,11 +42,7 @@ pub fn schema() -> Schema {
 fn check(config: &Config, problems: &mut Problems) {
     common::check_exponents(config, problems);
     let most = 100 * ((1 << config.integer("colour.bits")) - 1);
-    if let Some(level) = config
-        .integers("visibility.levels")
-        .iter()
-        .find(|&&level| level >= most)
-    {
+    if let Some(level) = config.integers("visibility.levels").iter().find(|&&level| level >= most) {
         problems.push(
             "visibility.levels",
             format!(
@@ -72,11 +68,8 @@ const fn channel(number: u16) -> ChannelBlocks {
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
     let integer = |key: &str| config.integer(key) as i32;
-    let cosine = Format {
-        signed: config.flag("cosine.signed"),
-        int: 1,
-        frac: integer("cosine.fraction"),
-    };
+    let cosine =
+        Format { signed: config.flag("cosine.signed"), int: 1, frac: integer("cosine.fraction") };
     let f = Format::unsigned(0, integer("intensity.fraction"));
     let rounding_f = rounding(config, "intensity.rounding");
     d.about(about(config));
@@ -96,22 +89,13 @@ pub fn describe(d: &Designer, config: &Config) {
     let colours = Colours::new(d, integer("colour.bits"), Some(CHANNELS));
 
     // From -1.0, where the parabola has its zero: the saturation of the product is the clamp.
-    let scaled = d
-        .register("scaled", Format::signed(0, f.frac))
-        .doc("n/2*(cos gamma - 1), not below -1.0");
-    let intensity = d
-        .register("intensity", f)
-        .doc("the reflectance f: what the gates passed");
+    let scaled =
+        d.register("scaled", Format::signed(0, f.frac)).doc("n/2*(cos gamma - 1), not below -1.0");
+    let intensity = d.register("intensity", f).doc("the reflectance f: what the gates passed");
 
     let one = d.constant("one", 1.0, Format::unsigned(1, cosine.frac));
-    let adder1 = d
-        .sub("adder1", cos_gamma, one)
-        .block(1)
-        .doc("cos gamma - 1.0");
-    let half_n = exponent
-        .shift_right(1)
-        .named("half_exponent")
-        .doc("n/2, by wiring");
+    let adder1 = d.sub("adder1", cos_gamma, one).block(1).doc("cos gamma - 1.0");
+    let half_n = exponent.shift_right(1).named("half_exponent").doc("n/2, by wiring");
     let multiplier1 = d.mul("multiplier1", adder1, half_n).block(1);
     scaled.takes(d.narrow(
         "multiplier1_rounded",
@@ -121,10 +105,7 @@ pub fn describe(d: &Designer, config: &Config) {
         Overflow::Saturate,
     ));
     let one = d.constant("base_one", 1.0, Format::unsigned(1, f.frac));
-    let adder2 = d
-        .add("adder2", scaled.q(), one)
-        .block(2)
-        .doc("base of the square, 0 ... 1.0");
+    let adder2 = d.add("adder2", scaled.q(), one).block(2).doc("base of the square, 0 ... 1.0");
     let multiplier2 = d.mul("multiplier2", adder2, adder2).block(2);
     let square = d.narrow("square", multiplier2, f, rounding_f, Overflow::Saturate);
     intensity.takes(gates(d, config, cos_gamma, exponent, square));
@@ -133,10 +114,7 @@ pub fn describe(d: &Designer, config: &Config) {
     d.microprogram([
         step("operands; ROM(n) addressed", []),
         step("scaled <- n/2 * (cos gamma - 1)", [scaled.load()]),
-        step(
-            "intensity <- (scaled + 1)^2, or 0 below ROM(n)",
-            [intensity.load()],
-        ),
+        step("intensity <- (scaled + 1)^2, or 0 below ROM(n)", [intensity.load()]),
         step("result", [valid(), end()]),
     ]);
 }
@@ -150,17 +128,13 @@ fn gates<'d>(
     square: Signal<'d>,
 ) -> Signal<'d> {
     let level = level_rom(d, config, exponent).out();
-    let comparator = d
-        .less("comparator", square, level)
-        .doc("the square is below the level of visibility");
+    let comparator =
+        d.less("comparator", square, level).doc("the square is below the level of visibility");
     let visible = d.not("visible", comparator);
-    let facing = d
-        .any("facing", cos_gamma)
-        .doc("the surface faces the half vector");
+    let facing = d.any("facing", cos_gamma).doc("the surface faces the half vector");
     let pass = d.and("pass", facing, visible).doc("opens the gates");
     let zero = d.raw_constant("zero", 0, square.format());
-    d.choose("gates", pass, [zero, square])
-        .doc("block of keys: the square or 0")
+    d.choose("gates", pass, [zero, square]).doc("block of keys: the square or 0")
 }
 
 fn level_rom<'d>(d: &'d Designer, config: &Config, exponent: Signal<'d>) -> Rom<'d> {

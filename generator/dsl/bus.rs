@@ -34,16 +34,8 @@ impl Designer {
     ) -> Bus<'d> {
         let inputs: Vec<_> = inputs.into_iter().collect();
         select.check_inputs(name, inputs.len());
-        let low = inputs
-            .iter()
-            .map(|input| input.range().0)
-            .min()
-            .unwrap_or(0);
-        let high = inputs
-            .iter()
-            .map(|input| input.range().1)
-            .max()
-            .unwrap_or(0);
+        let low = inputs.iter().map(|input| input.range().0).min().unwrap_or(0);
+        let high = inputs.iter().map(|input| input.range().1).max().unwrap_or(0);
         let format = Format::holding(low, high, 0);
         let carried = inputs
             .iter()
@@ -51,26 +43,13 @@ impl Designer {
                 let have = input.format();
                 self.resized(
                     *input,
-                    Format {
-                        frac: have.frac,
-                        int: format.int - have.frac,
-                        signed: format.signed,
-                    },
+                    Format { frac: have.frac, int: format.int - have.frac, signed: format.signed },
                 )
             })
             .collect();
-        let op = Op::Mux {
-            select: self.field_net(select.field()).id(),
-            inputs: carried,
-        };
+        let op = Op::Mux { select: self.field_net(select.field()).id(), inputs: carried };
         let out = self.signal(self.add_net(name, format, (low, high), Driver::Op(op), true));
-        Bus {
-            designer: self,
-            name: name.to_owned(),
-            field: select.field(),
-            out,
-            inputs,
-        }
+        Bus { designer: self, name: name.to_owned(), field: select.field(), out, inputs }
     }
 
     /// The product of two buses under the same select lines.
@@ -102,12 +81,7 @@ impl Designer {
             excess,
             delay: 0,
             field: first.field,
-            pairs: first
-                .inputs
-                .iter()
-                .copied()
-                .zip(second.inputs.iter().copied())
-                .collect(),
+            pairs: first.inputs.iter().copied().zip(second.inputs.iter().copied()).collect(),
         }
     }
 
@@ -131,22 +105,11 @@ impl Designer {
             .max()
             .unwrap_or(0);
         let format = Format::holding(0, most.max(1), 0);
-        let inputs = vec![
-            self.raw_constant("zeros", 0, format).id(),
-            other.out.bits(0, format).id(),
-        ];
-        let op = Op::Mux {
-            select: signed.out.bit(low).id(),
-            inputs,
-        };
+        let inputs =
+            vec![self.raw_constant("zeros", 0, format).id(), other.out.bits(0, format).id()];
+        let op = Op::Mux { select: signed.out.bit(low).id(), inputs };
         let range = (0, format.max_raw());
-        let amount = self.add_net(
-            &format!("{name}_excess"),
-            format,
-            range,
-            Driver::Op(op),
-            true,
-        );
+        let amount = self.add_net(&format!("{name}_excess"), format, range, Driver::Op(op), true);
         let amount = self
             .signal(amount)
             .doc("what the product of a negative operand is too large by, above its sign");
@@ -212,10 +175,8 @@ impl<'d> SharedProduct<'d> {
         let mut points = Vec::new();
         let mut range: Option<(i128, i128)> = None;
         for (first, second) in pairs {
-            let found = self
-                .pairs
-                .iter()
-                .position(|(a, b)| a.id() == first.id() && b.id() == second.id());
+            let found =
+                self.pairs.iter().position(|(a, b)| a.id() == first.id() && b.id() == second.id());
             let Some(at) = found else {
                 d.error(format!(
                     "`{}` never multiplies `{}` by `{}`",
@@ -246,11 +207,7 @@ impl<'d> SharedProduct<'d> {
             }
             _ => resized(self.out, "view", format, range),
         };
-        let described = View {
-            field: self.field,
-            values,
-            delay: self.delay,
-        };
+        let described = View { field: self.field, values, delay: self.delay };
         d.with(|inner| inner.views.insert(view.id(), described));
         view
     }
@@ -281,9 +238,7 @@ impl<'d> SharedProduct<'d> {
     pub fn held(&self, name: &str) -> Self {
         let d = self.out.designer();
         Self {
-            out: d
-                .pipeline(name, self.out)
-                .doc("the product of the word before"),
+            out: d.pipeline(name, self.out).doc("the product of the word before"),
             excess: self.excess.map(|excess| Excess {
                 amount: d.pipeline(&format!("{name}_excess"), excess.amount),
                 ..excess

@@ -125,24 +125,16 @@ impl Designer {
             names: HashMap::new(),
             unit: Unit::Control,
         };
-        let mut designer = Self {
-            inner: RefCell::new(inner),
-            start: NetId(0),
-            idle: NetId(0),
-            run: NetId(0),
-        };
+        let mut designer =
+            Self { inner: RefCell::new(inner), start: NetId(0), idle: NetId(0), run: NetId(0) };
         let reset = designer.add_named("rst_n", Format::BIT, Driver::Input);
         designer.port(reset, Role::Reset);
         designer.set_doc(reset, "initial set, active low");
         designer.start = designer.add_named("start", Format::BIT, Driver::Input);
         designer.port(designer.start, Role::Start);
         designer.set_doc(designer.start, "begins a computation when not busy");
-        designer.run = designer.add_register(
-            "run",
-            Format::BIT,
-            Format::BIT.range(),
-            RegisterKind::Sequencer,
-        );
+        designer.run =
+            designer.add_register("run", Format::BIT, Format::BIT.range(), RegisterKind::Sequencer);
         designer.set_doc(designer.run, "a microprogram is running");
         designer.idle = designer.add_named("idle", Format::BIT, Driver::Undriven);
         designer.set_doc(designer.idle, "operands may be written");
@@ -161,9 +153,7 @@ impl Designer {
         let format = self.sound(name, format);
         let raw = format.quantise(value);
         if format.to_f64(raw) != value {
-            self.error(format!(
-                "constant `{name}`: {value} is not representable in {format}"
-            ));
+            self.error(format!("constant `{name}`: {value} is not representable in {format}"));
         }
         let id = self.add_wiring(name, format, (raw, raw), Driver::Constant(format.bits(raw)));
         self.signal(id)
@@ -192,11 +182,7 @@ impl Designer {
         let (format, net) = (wire.format(), self.net(wire.id()));
         if net.driver != Driver::Undriven {
             self.error_at(
-                format!(
-                    "`{}` has two drivers: `{}` is the second",
-                    net.name,
-                    source.name()
-                ),
+                format!("`{}` has two drivers: `{}` is the second", net.name, source.name()),
                 [("the first is here", net.location)],
             );
             return;
@@ -231,14 +217,8 @@ impl Designer {
                 address.format()
             ));
         }
-        if let Some((at, raw)) = words
-            .iter()
-            .enumerate()
-            .find(|(_, raw)| !format.holds(**raw))
-        {
-            self.error(format!(
-                "ROM `{name}`: word {at} is {raw}, which does not fit {format}"
-            ));
+        if let Some((at, raw)) = words.iter().enumerate().find(|(_, raw)| !format.holds(**raw)) {
+            self.error(format!("ROM `{name}`: word {at} is {raw}, which does not fit {format}"));
         }
         let range = words
             .iter()
@@ -247,19 +227,9 @@ impl Designer {
             })
             .unwrap_or((0, 0));
         // A synchronous read starts from the power-up value 0.
-        let range = if synchronous {
-            (range.0.min(0), range.1.max(0))
-        } else {
-            range
-        };
+        let range = if synchronous { (range.0.min(0), range.1.max(0)) } else { range };
         let id = RomId(self.inner.borrow().design.roms.len() as u32);
-        let data = self.add_net(
-            &format!("{name}_word"),
-            format,
-            range,
-            Driver::Rom(id),
-            true,
-        );
+        let data = self.add_net(&format!("{name}_word"), format, range, Driver::Rom(id), true);
         self.inner.borrow_mut().design.roms.push(NetRom {
             name: name.to_owned(),
             address: address.id(),
@@ -303,10 +273,7 @@ impl Designer {
     /// it, so that operands written together with `start` have settled.
     #[track_caller]
     pub fn microprogram(&self, steps: impl IntoIterator<Item = Step>) {
-        let program = Program {
-            steps: steps.into_iter().collect(),
-            location: Location::caller(),
-        };
+        let program = Program { steps: steps.into_iter().collect(), location: Location::caller() };
         if self.inner.borrow_mut().program.replace(program).is_some() {
             self.error("a second microprogram".to_owned());
         }
@@ -319,21 +286,9 @@ impl Designer {
     #[track_caller]
     pub fn valid_after(&self, signal: Signal<'_>, clocks: u32) {
         if signal.format().width() != 1 {
-            self.error(format!(
-                "valid follows `{}`, which has more than one bit",
-                signal.name()
-            ));
-        } else if self
-            .inner
-            .borrow_mut()
-            .valid
-            .replace((signal.id(), clocks))
-            .is_some()
-        {
-            self.error(format!(
-                "valid follows `{}` and another signal",
-                signal.name()
-            ));
+            self.error(format!("valid follows `{}`, which has more than one bit", signal.name()));
+        } else if self.inner.borrow_mut().valid.replace((signal.id(), clocks)).is_some() {
+            self.error(format!("valid follows `{}` and another signal", signal.name()));
         }
     }
 
@@ -354,25 +309,13 @@ impl Designer {
             self.placed(place, || program::assemble(&self, &program));
         } else {
             let place = self.net(self.start).location;
-            self.report(Diagnostic::new(
-                "the design has no microprogram".to_owned(),
-                place,
-            ));
+            self.report(Diagnostic::new("the design has no microprogram".to_owned(), place));
         }
-        let Inner {
-            design,
-            views,
-            mut diagnostics,
-            ..
-        } = self.inner.into_inner();
+        let Inner { design, views, mut diagnostics, .. } = self.inner.into_inner();
         if diagnostics.is_empty() {
             diagnostics = check::check(&design, &views);
         }
-        if diagnostics.is_empty() {
-            Ok(design)
-        } else {
-            Err(Diagnostics(diagnostics))
-        }
+        if diagnostics.is_empty() { Ok(design) } else { Err(Diagnostics(diagnostics)) }
     }
 }
 
@@ -594,24 +537,21 @@ impl<'d> Rom<'d> {
     /// The block number in the source's figure.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
-        self.designer
-            .with(|inner| inner.design.roms[self.id.index()].block = Some(number));
+        self.designer.with(|inner| inner.design.roms[self.id.index()].block = Some(number));
         self
     }
 
     /// What an entry means; a line of the ROM's comment.
     #[must_use]
     pub fn doc(self, line: &str) -> Self {
-        self.designer
-            .with(|inner| inner.design.roms[self.id.index()].doc.push(line.to_owned()));
+        self.designer.with(|inner| inner.design.roms[self.id.index()].doc.push(line.to_owned()));
         self
     }
 
     /// A comment for each word.
     #[must_use]
     pub fn comments(self, comments: Vec<String>) -> Self {
-        self.designer
-            .with(|inner| inner.design.roms[self.id.index()].comments = comments);
+        self.designer.with(|inner| inner.design.roms[self.id.index()].comments = comments);
         self
     }
 }

@@ -64,19 +64,12 @@ impl Designer {
         let have = a.format();
         let (low, high) = a.range();
         let floor = |raw: i128| Rounding::Truncate.shift(raw, places as i32);
-        let kept = Format {
-            signed: have.signed,
-            int: have.int,
-            frac,
-        };
+        let kept = Format { signed: have.signed, int: have.int, frac };
         let truncated = a.wiring(
             "kept",
             kept,
             (floor(low), floor(high)),
-            Op::Slice {
-                of: a.id(),
-                low: places,
-            },
+            Op::Slice { of: a.id(), low: places },
         );
         match rounding {
             Rounding::Truncate => truncated,
@@ -101,10 +94,7 @@ impl Designer {
     fn low_bits(&self, a: Signal<'_>, format: Format) -> Op {
         if a.format().width() <= format.width() {
             // Only the meaning of the top bit changes.
-            let same = Format {
-                signed: a.format().signed,
-                ..unsigned_as(format)
-            };
+            let same = Format { signed: a.format().signed, ..unsigned_as(format) };
             let same = if same.signed { signed_as(format) } else { same };
             let wide = a.wiring(
                 "wide",
@@ -138,34 +128,19 @@ impl Designer {
             )
         };
         let flag = |suffix: &str, op: Op| {
-            let id = self.add_wiring(
-                &format!("{name}_{suffix}"),
-                Format::BIT,
-                (0, 1),
-                Driver::Op(op),
-            );
+            let id =
+                self.add_wiring(&format!("{name}_{suffix}"), Format::BIT, (0, 1), Driver::Op(op));
             self.signal(id)
         };
         // The bits that carry the value inside `format`; shorter values are extended first.
         let wide = if width < kept {
-            self.resized(
-                v,
-                Format {
-                    int: have.int + (kept - width) as i32,
-                    ..have
-                },
-            )
+            self.resized(v, Format { int: have.int + (kept - width) as i32, ..have })
         } else {
             v.id()
         };
         let inside = self
             .signal(wide)
-            .wiring(
-                "inside",
-                format,
-                format.range(),
-                Op::Slice { of: wide, low: 0 },
-            )
+            .wiring("inside", format, format.range(), Op::Slice { of: wide, low: 0 })
             .id();
         let mux = |select: NetId, normal: NetId, limit: NetId| Op::Mux {
             select,
@@ -237,18 +212,10 @@ impl Designer {
 
 /// `format` without a sign bit, as wide.
 fn unsigned_as(format: Format) -> Format {
-    Format {
-        signed: false,
-        int: format.int + i32::from(format.signed),
-        frac: format.frac,
-    }
+    Format { signed: false, int: format.int + i32::from(format.signed), frac: format.frac }
 }
 
 /// `format` with a sign bit, as wide.
 fn signed_as(format: Format) -> Format {
-    Format {
-        signed: true,
-        int: format.int - i32::from(!format.signed),
-        frac: format.frac,
-    }
+    Format { signed: true, int: format.int - i32::from(!format.signed), frac: format.frac }
 }

@@ -46,19 +46,13 @@ impl Setting {
 
     #[track_caller]
     fn sequence(kind: Kind) -> Self {
-        Self {
-            kind,
-            location: Location::caller(),
-        }
+        Self { kind, location: Location::caller() }
     }
 
     /// A mux passes `input` on: found by what the mux's net selects from.
     #[track_caller]
     pub(crate) fn pick(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>) -> Self {
-        let inputs = match d
-            .with(|inner| inner.design.find(mux))
-            .map(|id| d.net(id).driver)
-        {
+        let inputs = match d.with(|inner| inner.design.find(mux)).map(|id| d.net(id).driver) {
             Some(Driver::Op(Op::Mux { inputs, .. })) => inputs,
             _ => Vec::new(),
         };
@@ -68,9 +62,7 @@ impl Setting {
                 || matches!(d.net(id).driver,
                     Driver::Op(Op::Extend(a) | Op::Relabel(a) | Op::Slice { of: a, low: 0 }) if a == input.id())
         };
-        let found: Vec<_> = (0..inputs.len())
-            .filter(|&at| stands_for(inputs[at]))
-            .collect();
+        let found: Vec<_> = (0..inputs.len()).filter(|&at| stands_for(inputs[at])).collect();
         Self::picked(d, field, mux, input, &found)
     }
 
@@ -82,20 +74,14 @@ impl Setting {
         input: Signal<'_>,
         inputs: &[Signal<'_>],
     ) -> Self {
-        let found: Vec<_> = (0..inputs.len())
-            .filter(|&at| inputs[at].id() == input.id())
-            .collect();
+        let found: Vec<_> = (0..inputs.len()).filter(|&at| inputs[at].id() == input.id()).collect();
         Self::picked(d, field, mux, input, &found)
     }
 
     #[track_caller]
     fn picked(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>, found: &[usize]) -> Self {
         let [at] = found else {
-            let how = if found.is_empty() {
-                "is no input"
-            } else {
-                "is more than one input"
-            };
+            let how = if found.is_empty() { "is no input" } else { "is more than one input" };
             d.error(format!("`{}` {how} of `{mux}`", input.name()));
             return Self::sequence(Kind::Wrong);
         };
@@ -131,10 +117,7 @@ pub fn wait_for_start() -> Setting {
 /// Back to the word named `to` while `condition`, one bit, is 1; then on to the next word.
 #[track_caller]
 pub fn loop_while(condition: Signal<'_>, to: &str) -> Setting {
-    Setting::sequence(Kind::LoopWhile {
-        condition: condition.id(),
-        to: to.to_owned(),
-    })
+    Setting::sequence(Kind::LoopWhile { condition: condition.id(), to: to.to_owned() })
 }
 
 /// On to the word named `to` when `condition`, one bit, is 1; else to the next word: a way around words
@@ -236,15 +219,7 @@ pub(crate) fn assemble(d: &Designer, program: &Program) {
     let line = lines.map(|[_, go_on]| go_on);
     describe(fields.go_on, "0 in the last word", line);
     let words = words(d, steps, &sequences, &fields, &conditions);
-    sequencer(
-        d,
-        program,
-        words,
-        &fields,
-        &conditions,
-        &targets,
-        address_width,
-    );
+    sequencer(d, program, words, &fields, &conditions, &targets, address_width);
 }
 
 fn distinct(loops: &[(NetId, usize)]) -> (Vec<NetId>, Vec<usize>) {
@@ -278,10 +253,7 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
                     ));
                 }
                 match steps.iter().position(|step| step.name == *to) {
-                    Some(to) => Sequence::LoopWhile {
-                        condition: *condition,
-                        to,
-                    },
+                    Some(to) => Sequence::LoopWhile { condition: *condition, to },
                     None => {
                         d.report(Diagnostic::new(
                             format!(
@@ -319,33 +291,20 @@ fn words(
     fields: &SequenceFields,
     conditions: &[NetId],
 ) -> Vec<Word> {
-    let kinds: Vec<FieldKind> = d.with(|inner| {
-        inner
-            .design
-            .control
-            .fields
-            .iter()
-            .map(|field| field.kind.clone())
-            .collect()
-    });
+    let kinds: Vec<FieldKind> = d
+        .with(|inner| inner.design.control.fields.iter().map(|field| field.kind.clone()).collect());
     let mut words: Vec<Word> = Vec::new();
     for (step, sequence) in steps.iter().zip(sequences) {
         if let Some(first) = steps.iter().find(|other| other.name == step.name)
             && !std::ptr::eq(first, step)
         {
             d.report(
-                Diagnostic::new(
-                    format!("two words are named `{}`", step.name),
-                    step.location,
-                )
-                .note("the first".to_owned(), first.location),
+                Diagnostic::new(format!("two words are named `{}`", step.name), step.location)
+                    .note("the first".to_owned(), first.location),
             );
         }
         let mut values = vec![0; kinds.len()];
-        if step
-            .settings
-            .iter()
-            .any(|setting| matches!(setting.kind, Kind::Hold))
+        if step.settings.iter().any(|setting| matches!(setting.kind, Kind::Hold))
             && let Some(before) = words.last()
         {
             for (at, kind) in kinds.iter().enumerate() {
@@ -438,65 +397,33 @@ fn sequencer(
     let zero = d.raw_constant("first_word", 0, wide);
     let one = d.raw_constant("one_word", 1, wide);
 
-    let address = d.add_register(
-        "word_address",
-        wide,
-        (0, last_word),
-        RegisterKind::Sequencer,
-    );
+    let address = d.add_register("word_address", wide, (0, last_word), RegisterKind::Sequencer);
     d.set_doc(address, "the word that is executed");
-    let following = op(
-        "following_word",
-        wide,
-        Op::Add {
-            a: address,
-            b: one.id(),
-            carry: None,
-        },
-    );
+    let following = op("following_word", wide, Op::Add { a: address, b: one.id(), carry: None });
     // Where control goes while the program goes on: around a loop, or to the following word.
     let mut onward = following;
     if let Some(again) = fields.again {
         let condition = match (fields.condition, conditions) {
             (Some(select), inputs) => bit(
                 "condition",
-                Op::Mux {
-                    select: d.field_net(select).id(),
-                    inputs: inputs.to_vec(),
-                },
+                Op::Mux { select: d.field_net(select).id(), inputs: inputs.to_vec() },
             ),
             (None, [only, ..]) => bit("condition", Op::Relabel(*only)),
             (None, []) => return,
         };
-        let again = bit(
-            "loop_back",
-            Op::And(d.field_net(again).id(), condition.id()),
-        );
+        let again = bit("loop_back", Op::And(d.field_net(again).id(), condition.id()));
         let target = match fields.target {
             Some(field) => d.field_net(field),
-            None => d.raw_constant(
-                "loop_start",
-                targets.first().map_or(0, |&to| to as i128),
-                wide,
-            ),
+            None => d.raw_constant("loop_start", targets.first().map_or(0, |&to| to as i128), wide),
         };
         onward = op(
             "onward_word",
             wide,
-            Op::Mux {
-                select: again.id(),
-                inputs: vec![following.id(), target.id()],
-            },
+            Op::Mux { select: again.id(), inputs: vec![following.id(), target.id()] },
         );
     }
-    let next = op(
-        "next_word",
-        wide,
-        Op::Mux {
-            select: go_on,
-            inputs: vec![zero.id(), onward.id()],
-        },
-    );
+    let next =
+        op("next_word", wide, Op::Mux { select: go_on, inputs: vec![zero.id(), onward.id()] });
     // The address moves while a program runs and does not wait.
     let (busy, advance) = match fields.wait {
         None => (bit("busy", Op::Relabel(run)), run),
@@ -510,13 +437,7 @@ fn sequencer(
     };
     d.set_doc(busy.id(), "high from the clock after start to the end");
     d.connect(address, next.id(), Some(advance));
-    let next_run = bit(
-        "next_run",
-        Op::Mux {
-            select: run,
-            inputs: vec![start, go_on],
-        },
-    );
+    let next_run = bit("next_run", Op::Mux { select: run, inputs: vec![start, go_on] });
     d.connect(run, next_run.id(), None);
     let not_busy = bit("not_busy", Op::Not(busy.id()));
     d.with(|inner| {
@@ -585,24 +506,16 @@ fn valid_line(d: &Designer) -> NetId {
 
 fn control_rom(d: &Designer, program: &Program, words: Vec<Word>, address: NetId) {
     let fields = d.with(|inner| inner.design.control.fields.clone());
-    let widths: Vec<u32> = fields
-        .iter()
-        .map(|field| d.net(field.net).format.width())
-        .collect();
-    let packed: Vec<u64> = words
-        .iter()
-        .map(|word| microcode::pack(&widths, &word.values))
-        .collect();
+    let widths: Vec<u32> = fields.iter().map(|field| d.net(field.net).format.width()).collect();
+    let packed: Vec<u64> =
+        words.iter().map(|word| microcode::pack(&widths, &word.values)).collect();
     let comments = words.iter().map(|word| word.name.clone()).collect();
     let width: u32 = widths.iter().sum();
     let format = Format::unsigned(width as i32, 0);
     let rom = d.with(|inner| RomId(inner.design.roms.len() as u32));
     let data = d.add_named("control_word", format, Driver::Rom(rom));
     let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
-    let doc = vec![format!(
-        "the microprogram, a word a line: {}",
-        names.join(", ")
-    )];
+    let doc = vec![format!("the microprogram, a word a line: {}", names.join(", "))];
     d.with(|inner| {
         inner.design.roms.push(NetRom {
             name: "control".to_owned(),
@@ -620,12 +533,6 @@ fn control_rom(d: &Designer, program: &Program, words: Vec<Word>, address: NetId
             _ => unreachable!("the sequencer's registers drive their nets"),
         };
         let (address, run) = (register(address), register(d.run));
-        inner.design.control = Control {
-            fields,
-            words,
-            rom,
-            address,
-            run,
-        };
+        inner.design.control = Control { fields, words, rom, address, run };
     });
 }

@@ -45,9 +45,7 @@ impl Designer {
                 let one_bit = most > 0 && range.0 >= 0 && most.count_ones() == 1 && to < 2 * most;
                 let over = if one_bit {
                     // At the limit it makes no difference which of the two is taken.
-                    value
-                        .bit(most.trailing_zeros())
-                        .named(&format!("{name}_over"))
+                    value.bit(most.trailing_zeros()).named(&format!("{name}_over"))
                 } else {
                     self.less(&format!("{name}_over"), limit("most", most), value)
                 };
@@ -69,10 +67,7 @@ impl Designer {
     ) -> Signal<'d> {
         let format = Format::holding(range.0, range.1, inputs[0].format().frac);
         let inputs = inputs.map(|input| self.resized(input, format)).to_vec();
-        let op = Op::Mux {
-            select: select.id(),
-            inputs,
-        };
+        let op = Op::Mux { select: select.id(), inputs };
         self.signal(self.add_net(name, format, range, Driver::Op(op), true))
     }
 
@@ -89,11 +84,7 @@ impl Designer {
         self.port(port, Role::Operand { strobe });
         self.port(strobe, Role::Strobe);
         let data = limited(self.signal(port));
-        let load = self.and(
-            &format!("{name}_load"),
-            self.signal(strobe),
-            self.signal(self.idle),
-        );
+        let load = self.and(&format!("{name}_load"), self.signal(strobe), self.signal(self.idle));
         let q = self.add_register(
             &format!("{name}_reg"),
             data.format(),
@@ -101,11 +92,7 @@ impl Designer {
             RegisterKind::Operand,
         );
         self.connect(q, data.id(), Some(load.id()));
-        Operand {
-            port: self.signal(port),
-            strobe: self.signal(strobe),
-            q: self.signal(q),
-        }
+        Operand { port: self.signal(port), strobe: self.signal(strobe), q: self.signal(q) }
     }
 
     /// A register of the datapath, loaded in the words that say so; its field is `<name>_load`.
@@ -122,10 +109,7 @@ impl Designer {
                 register.enable = Some(enable);
             }
         });
-        Register {
-            q: self.signal(q),
-            field,
-        }
+        Register { q: self.signal(q), field }
     }
 
     /// A register inside a block, loaded on every clock: it delays `source` by one.
@@ -146,10 +130,7 @@ impl Designer {
         let width = usize::BITS - choices.len().saturating_sub(1).leading_zeros();
         let choices = choices.iter().map(|&choice| choice.to_owned()).collect();
         let field = self.add_field(name, width.max(1), FieldKind::Select(choices));
-        Select {
-            designer: self,
-            field,
-        }
+        Select { designer: self, field }
     }
 
     /// An output of the device that words raise.
@@ -158,10 +139,7 @@ impl Designer {
         let field = self.add_field(&format!("{name}_flag"), 1, FieldKind::Flag);
         let net = self.field_net(field);
         self.status(name, net);
-        Flag {
-            designer: self,
-            field,
-        }
+        Flag { designer: self, field }
     }
 
     /// A counter that counts down, with fields `<name>_load` and `<name>_count`.
@@ -185,10 +163,7 @@ impl Designer {
             format,
             Driver::Op(Op::Sub(q.id(), one.id())),
         );
-        let next = Op::Mux {
-            select: load_net.id(),
-            inputs: vec![less_one, start.id()],
-        };
+        let next = Op::Mux { select: load_net.id(), inputs: vec![less_one, start.id()] };
         let next = self.add_named(&format!("{name}_next"), format, Driver::Op(next));
         let enable = self.or(&format!("{name}_enable"), load_net, count_net);
         self.connect(q.id(), next, Some(enable.id()));
@@ -197,11 +172,8 @@ impl Designer {
 
     pub(crate) fn connect(&self, q: NetId, data: NetId, enable: Option<NetId>) {
         self.with(|inner| {
-            if let Some(register) = inner
-                .design
-                .registers
-                .iter_mut()
-                .find(|register| register.q == q)
+            if let Some(register) =
+                inner.design.registers.iter_mut().find(|register| register.q == q)
             {
                 register.data = Some(data);
                 register.enable = enable;
@@ -277,19 +249,11 @@ impl<'d> Register<'d> {
         let d = self.q.designer();
         let net = d.net(self.q.id());
         let taken = d.with(|inner| {
-            inner
-                .design
-                .registers
-                .iter()
-                .any(|r| r.q == self.q.id() && r.data.is_some())
+            inner.design.registers.iter().any(|r| r.q == self.q.id() && r.data.is_some())
         });
         if taken {
             d.error_at(
-                format!(
-                    "`{}` has two drivers: `{}` is the second",
-                    net.name,
-                    data.name()
-                ),
+                format!("`{}` has two drivers: `{}` is the second", net.name, data.name()),
                 [("the register", net.location)],
             );
             return;
@@ -302,12 +266,7 @@ impl<'d> Register<'d> {
     /// The knob: the register takes its data at the end of the word.
     #[track_caller]
     pub fn load(self) -> Setting {
-        Setting::field(
-            self.field,
-            1,
-            format!("{}.load", self.q.name()),
-            Location::caller(),
-        )
+        Setting::field(self.field, 1, format!("{}.load", self.q.name()), Location::caller())
     }
 
     /// The block number in the source's figure.
@@ -424,23 +383,13 @@ impl<'d> Counter<'d> {
     /// The knob: takes the start value at the end of the word.
     #[track_caller]
     pub fn load(self) -> Setting {
-        Setting::field(
-            self.load,
-            1,
-            format!("{}.load", self.q.name()),
-            Location::caller(),
-        )
+        Setting::field(self.load, 1, format!("{}.load", self.q.name()), Location::caller())
     }
 
     /// The knob: one less at the end of the word.
     #[track_caller]
     pub fn count(self) -> Setting {
-        Setting::field(
-            self.count,
-            1,
-            format!("{}.count", self.q.name()),
-            Location::caller(),
-        )
+        Setting::field(self.count, 1, format!("{}.count", self.q.name()), Location::caller())
     }
 
     /// The block number in the source's figure.

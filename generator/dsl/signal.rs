@@ -42,8 +42,7 @@ impl<'d> Signal<'d> {
     /// The block number in the source's figure.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
-        self.designer
-            .with(|inner| inner.design.nets[self.id.index()].block = Some(number));
+        self.designer.with(|inner| inner.design.nets[self.id.index()].block = Some(number));
         self
     }
 
@@ -104,9 +103,7 @@ impl<'d> Signal<'d> {
         if sound != scaled {
             return self.designer.raw_constant("zeros", 0, sound);
         }
-        let zeros = self
-            .designer
-            .raw_constant("zeros", 0, Format::unsigned(places, 0));
+        let zeros = self.designer.raw_constant("zeros", 0, Format::unsigned(places, 0));
         let (low, high) = self.range();
         self.wiring(
             "scaled",
@@ -134,11 +131,7 @@ impl<'d> Signal<'d> {
         // All bits of a value that is never negative are still within its range.
         let (from, to) = self.range();
         let top = low + format.width() == have && !format.signed && from >= 0;
-        let range = if top {
-            (from >> low, to >> low)
-        } else {
-            format.range()
-        };
+        let range = if top { (from >> low, to >> low) } else { format.range() };
         self.wiring("bits", format, range, Op::Slice { of: self.id, low })
     }
 
@@ -177,10 +170,7 @@ impl<'d> Signal<'d> {
         if format.signed {
             return self;
         }
-        let signed = Format {
-            signed: true,
-            ..format
-        };
+        let signed = Format { signed: true, ..format };
         self.designer.signal(self.designer.resized(self, signed))
     }
 
@@ -201,9 +191,7 @@ impl<'d> Signal<'d> {
     #[track_caller]
     pub(crate) fn wiring(self, suffix: &str, format: Format, range: (i128, i128), op: Op) -> Self {
         let name = format!("{}_{suffix}", self.name());
-        let id = self
-            .designer
-            .add_wiring(&name, format, range, Driver::Op(op));
+        let id = self.designer.add_wiring(&name, format, range, Driver::Op(op));
         self.designer.signal(id)
     }
 }
@@ -268,11 +256,7 @@ impl Designer {
             ));
             return a;
         }
-        let op = Op::Add {
-            a: a.id(),
-            b: b.id(),
-            carry: carry.map(Signal::id),
-        };
+        let op = Op::Add { a: a.id(), b: b.id(), carry: carry.map(Signal::id) };
         self.signal(self.add_net(name, format, format.range(), Driver::Op(op), true))
     }
 
@@ -298,19 +282,9 @@ impl Designer {
         let (fa, fb) = (a.format(), b.format());
         let frac = fa.frac + fb.frac;
         let width = (fa.width() + fb.width()) as i32;
-        let format = Format {
-            signed: fa.signed,
-            int: width - frac - i32::from(fa.signed),
-            frac,
-        };
+        let format = Format { signed: fa.signed, int: width - frac - i32::from(fa.signed), frac };
         let range = product_range(a.range(), b.range());
-        self.signal(self.add_net(
-            name,
-            format,
-            range,
-            Driver::Op(Op::Mul(a.id(), b.id())),
-            true,
-        ))
+        self.signal(self.add_net(name, format, range, Driver::Op(Op::Mul(a.id(), b.id())), true))
     }
 
     /// Every bit inverted: `−a − ulp` for a signed signal, `largest − a` for an unsigned one.
@@ -319,13 +293,8 @@ impl Designer {
         let format = a.format();
         let (low, high) = a.range();
         let top = if format.signed { -1 } else { format.max_raw() };
-        let net = self.add_net(
-            name,
-            format,
-            (top - high, top - low),
-            Driver::Op(Op::Not(a.id())),
-            true,
-        );
+        let net =
+            self.add_net(name, format, (top - high, top - low), Driver::Op(Op::Not(a.id())), true);
         self.signal(net)
     }
 
@@ -354,16 +323,8 @@ impl Designer {
         if low_bits == format.width() {
             return low;
         }
-        let top = high.bits(
-            low_bits,
-            Format::unsigned((format.width() - low_bits) as i32, 0),
-        );
-        low.wiring(
-            "beside",
-            format,
-            (from, to),
-            Op::Concat(vec![top.id(), low.id()]),
-        )
+        let top = high.bits(low_bits, Format::unsigned((format.width() - low_bits) as i32, 0));
+        low.wiring("beside", format, (from, to), Op::Concat(vec![top.id(), low.id()]))
     }
 
     /// The bits of the parts side by side, the first in the top bits, read in `format`, which is as wide
@@ -470,10 +431,7 @@ impl Designer {
         let inputs: Vec<_> = inputs.into_iter().collect();
         select.check_inputs(name, inputs.len());
         let out = self.mux_of(name, self.field_net(select.field()).id(), &inputs);
-        Mux {
-            out,
-            field: select.field(),
-        }
+        Mux { out, field: select.field() }
     }
 
     #[track_caller]
@@ -493,21 +451,10 @@ impl Designer {
             ));
             return *first;
         }
-        let low = inputs
-            .iter()
-            .map(|input| input.range().0)
-            .min()
-            .unwrap_or(0);
-        let high = inputs
-            .iter()
-            .map(|input| input.range().1)
-            .max()
-            .unwrap_or(0);
+        let low = inputs.iter().map(|input| input.range().0).min().unwrap_or(0);
+        let high = inputs.iter().map(|input| input.range().1).max().unwrap_or(0);
         let format = Format::holding(low, high, frac);
-        let inputs = inputs
-            .iter()
-            .map(|input| self.resized(*input, format))
-            .collect();
+        let inputs = inputs.iter().map(|input| self.resized(*input, format)).collect();
         let op = Op::Mux { select, inputs };
         self.signal(self.add_net(name, format, (low, high), Driver::Op(op), true))
     }
@@ -515,11 +462,7 @@ impl Designer {
     #[track_caller]
     fn one_bit(&self, a: Signal<'_>) -> NetId {
         if a.format().width() != 1 {
-            self.error(format!(
-                "`{}` is {}: one bit is wanted here",
-                a.name(),
-                a.format()
-            ));
+            self.error(format!("`{}` is {}: one bit is wanted here", a.name(), a.format()));
         }
         a.id()
     }
@@ -569,9 +512,7 @@ pub(crate) fn product_range(a: (i128, i128), b: (i128, i128)) -> (i128, i128) {
     corners
         .into_iter()
         .map(|(a, b)| a.saturating_mul(b))
-        .fold((i128::MAX, i128::MIN), |(low, high), corner| {
-            (low.min(corner), high.max(corner))
-        })
+        .fold((i128::MAX, i128::MIN), |(low, high), corner| (low.min(corner), high.max(corner)))
 }
 
 /// A mux whose select lines the microprogram drives.

@@ -75,14 +75,8 @@ struct VectorFile {
 pub fn files(design: &Design, naming: &Naming, vectors: &Vectors) -> Result<Vec<(String, String)>> {
     let inputs: Vec<_> = design.inputs().collect();
     let outputs: Vec<_> = design.outputs().collect();
-    ensure!(
-        !inputs.is_empty() && !outputs.is_empty(),
-        "a bench needs inputs and outputs"
-    );
-    ensure!(
-        !vectors.inputs.is_empty(),
-        "a bench needs at least one clock of stimulus"
-    );
+    ensure!(!inputs.is_empty() && !outputs.is_empty(), "a bench needs inputs and outputs");
+    ensure!(!vectors.inputs.is_empty(), "a bench needs at least one clock of stimulus");
     ensure!(
         vectors.inputs.len() == vectors.expected.len(),
         "{} clocks of stimulus, {} of expected outputs",
@@ -108,12 +102,7 @@ pub fn files(design: &Design, naming: &Naming, vectors: &Vectors) -> Result<Vec<
 
 fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
     let port_name = |port: &Port| design.net(port.net).name.clone();
-    let mut names = Names::new(
-        design
-            .ports
-            .iter()
-            .map(|port| design.net(port.net).name.as_str()),
-    );
+    let mut names = Names::new(design.ports.iter().map(|port| design.net(port.net).name.as_str()));
     names.fresh("clk");
     let variables = Variables {
         stimulus: names.fresh("stimulus"),
@@ -137,10 +126,7 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
             1 => format!("{}[{low}]", variables.want),
             _ => format!("{}[{}:{low}]", variables.want, low + width - 1),
         };
-        let output = Output {
-            name: port_name(port),
-            select,
-        };
+        let output = Output { name: port_name(port), select };
         match port.role {
             Role::Valid | Role::Busy | Role::Done => handshake.push(output),
             _ => results.push(output),
@@ -157,10 +143,7 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
             label: literal(at as u64, address_width),
             address: at,
             // Within a string literal of Verilog.
-            name: ascii(&word.name)
-                .replace('\\', "/")
-                .replace('"', "'")
-                .replace('%', "%%"),
+            name: ascii(&word.name).replace('\\', "/").replace('"', "'").replace('%', "%%"),
         })
         .collect();
     let declarations: Vec<_> = design
@@ -169,14 +152,7 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
         .map(|port| {
             let format = design.net(port.net).format;
             let kind = if port.role.is_input() { "reg" } else { "wire" };
-            Row::port(
-                "",
-                kind,
-                format.width(),
-                format.signed,
-                &port_name(port),
-                "",
-            )
+            Row::port("", kind, format.width(), format.signed, &port_name(port), "")
         })
         .collect();
     let reset = design.port(|role| role == Role::Reset).map(port_name);
@@ -194,12 +170,7 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
         declarations: Row::declarations(&declarations),
         stimulus: statement(
             12,
-            &format!(
-                "{{{}}} = {}[{}];",
-                stimulus.join(", "),
-                variables.stimulus,
-                variables.clock
-            ),
+            &format!("{{{}}} = {}[{}];", stimulus.join(", "), variables.stimulus, variables.clock),
         ),
         connections: separated(
             std::iter::once("clk".to_owned())
@@ -248,17 +219,10 @@ fn vector_file(design: &Design, title: &str, ports: &[&Port], rows: &[Vec<u64>])
     });
     let columns = super::text::comment(
         0,
-        &format!(
-            "From the top bit, with widths: {}",
-            columns.collect::<Vec<_>>().join(", ")
-        ),
+        &format!("From the top bit, with widths: {}", columns.collect::<Vec<_>>().join(", ")),
     );
     let title = format!("{}: {title}, a word a clock", design.name);
-    super::render(&VectorFile {
-        title,
-        columns,
-        words,
-    })
+    super::render(&VectorFile { title, columns, words })
 }
 
 /// The values side by side, the first on top, in hexadecimal digits.
@@ -275,10 +239,7 @@ fn packed(row: &[u64], widths: &[u32]) -> String {
             bit += 1;
         }
     }
-    digits
-        .into_iter()
-        .filter_map(|digit| char::from_digit(u32::from(digit), 16))
-        .collect()
+    digits.into_iter().filter_map(|digit| char::from_digit(u32::from(digit), 16)).collect()
 }
 
 #[cfg(test)]

@@ -50,53 +50,28 @@ impl Piece {
     /// `width` bits from `low` up.
     fn slice(self, low: u32, width: u32) -> Self {
         match self {
-            Self::Net { net, low: from, .. } => Self::Net {
-                net,
-                low: from + low,
-                width,
-            },
-            Self::Constant { value, .. } => Self::Constant {
-                value: value >> low & mask(width),
-                width,
-            },
-            Self::Copies { net, bit, .. } if width == 1 => Self::Net {
-                net,
-                low: bit,
-                width: 1,
-            },
-            Self::Copies { net, bit, .. } => Self::Copies {
-                net,
-                bit,
-                count: width,
-            },
+            Self::Net { net, low: from, .. } => Self::Net { net, low: from + low, width },
+            Self::Constant { value, .. } => {
+                Self::Constant { value: value >> low & mask(width), width }
+            }
+            Self::Copies { net, bit, .. } if width == 1 => Self::Net { net, low: bit, width: 1 },
+            Self::Copies { net, bit, .. } => Self::Copies { net, bit, count: width },
         }
     }
 
     /// Both pieces as one, `self` above `below`, where they are neighbours of one origin.
     fn join(self, below: Self) -> Option<Self> {
         match (self, below) {
-            (
-                Self::Net { net, low, width },
-                Self::Net {
-                    net: other,
-                    low: from,
-                    width: count,
-                },
-            ) if net == other && low == from + count => Some(Self::Net {
-                net,
-                low: from,
-                width: width + count,
-            }),
-            (
-                Self::Constant { value, width },
-                Self::Constant {
-                    value: lower,
-                    width: count,
-                },
-            ) if width + count <= 64 => Some(Self::Constant {
-                value: value << count | lower,
-                width: width + count,
-            }),
+            (Self::Net { net, low, width }, Self::Net { net: other, low: from, width: count })
+                if net == other && low == from + count =>
+            {
+                Some(Self::Net { net, low: from, width: width + count })
+            }
+            (Self::Constant { value, width }, Self::Constant { value: lower, width: count })
+                if width + count <= 64 =>
+            {
+                Some(Self::Constant { value: value << count | lower, width: width + count })
+            }
             _ => None,
         }
     }
@@ -168,41 +143,19 @@ impl Bits {
             Some(Piece::Net { net, low, width }) if signed => {
                 let bit = low + width - 1;
                 match count {
-                    1 => Piece::Net {
-                        net: *net,
-                        low: bit,
-                        width: 1,
-                    },
-                    _ => Piece::Copies {
-                        net: *net,
-                        bit,
-                        count,
-                    },
+                    1 => Piece::Net { net: *net, low: bit, width: 1 },
+                    _ => Piece::Copies { net: *net, bit, count },
                 }
             }
-            Some(Piece::Copies {
-                net,
-                bit,
-                count: already,
-            }) if signed => {
+            Some(Piece::Copies { net, bit, count: already }) if signed => {
                 let mut extended = self.clone();
-                extended.0[0] = Piece::Copies {
-                    net: *net,
-                    bit: *bit,
-                    count: count + already,
-                };
+                extended.0[0] = Piece::Copies { net: *net, bit: *bit, count: count + already };
                 return extended;
             }
             Some(Piece::Constant { value, width }) if signed && value >> (width - 1) & 1 == 1 => {
-                Piece::Constant {
-                    value: mask(count),
-                    width: count,
-                }
+                Piece::Constant { value: mask(count), width: count }
             }
-            _ => Piece::Constant {
-                value: 0,
-                width: count,
-            },
+            _ => Piece::Constant { value: 0, width: count },
         };
         Self(vec![above]).followed_by(self)
     }
@@ -228,14 +181,7 @@ mod tests {
     #[test]
     fn slices_of_slices_are_one_slice() {
         let bits = Bits::net(A, 20).slice(4, 10).slice(2, 3);
-        assert_eq!(
-            bits.pieces(),
-            [Piece::Net {
-                net: A,
-                low: 6,
-                width: 3
-            }]
-        );
+        assert_eq!(bits.pieces(), [Piece::Net { net: A, low: 6, width: 3 }]);
     }
 
     #[test]
@@ -243,10 +189,7 @@ mod tests {
         let a = Bits::net(A, 8);
         assert_eq!(a.slice(4, 4).followed_by(&a.slice(0, 4)), a);
         assert_eq!(a.slice(0, 4).followed_by(&a.slice(4, 4)).pieces().len(), 2);
-        assert_eq!(
-            Bits::net(A, 4).followed_by(&Bits::net(B, 4)).pieces().len(),
-            2
-        );
+        assert_eq!(Bits::net(A, 4).followed_by(&Bits::net(B, 4)).pieces().len(), 2);
         let constant = Bits::constant(0b101, 3).followed_by(&Bits::constant(0b01, 2));
         assert_eq!(constant, Bits::constant(0b10101, 5));
     }
@@ -254,31 +197,11 @@ mod tests {
     #[test]
     fn extension_repeats_the_sign_bit() {
         let once = Bits::net(A, 8).extend(9, true);
-        assert_eq!(
-            once.pieces()[0],
-            Piece::Net {
-                net: A,
-                low: 7,
-                width: 1
-            }
-        );
+        assert_eq!(once.pieces()[0], Piece::Net { net: A, low: 7, width: 1 });
         let twice = Bits::net(A, 8).extend(10, true).extend(13, true);
-        assert_eq!(
-            twice.pieces()[0],
-            Piece::Copies {
-                net: A,
-                bit: 7,
-                count: 5
-            }
-        );
-        assert_eq!(
-            Bits::constant(0b10, 2).extend(4, true),
-            Bits::constant(0b1110, 4)
-        );
-        assert_eq!(
-            Bits::constant(0b10, 2).extend(4, false),
-            Bits::constant(0b0010, 4)
-        );
+        assert_eq!(twice.pieces()[0], Piece::Copies { net: A, bit: 7, count: 5 });
+        assert_eq!(Bits::constant(0b10, 2).extend(4, true), Bits::constant(0b1110, 4));
+        assert_eq!(Bits::constant(0b10, 2).extend(4, false), Bits::constant(0b0010, 4));
     }
 
     #[test]
@@ -287,18 +210,7 @@ mod tests {
         assert_eq!(bits.width(), 3);
         assert_eq!(
             bits.pieces(),
-            [
-                Piece::Copies {
-                    net: A,
-                    bit: 3,
-                    count: 2
-                },
-                Piece::Net {
-                    net: A,
-                    low: 3,
-                    width: 1
-                }
-            ]
+            [Piece::Copies { net: A, bit: 3, count: 2 }, Piece::Net { net: A, low: 3, width: 1 }]
         );
     }
 }

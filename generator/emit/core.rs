@@ -39,13 +39,7 @@ pub fn device(
 ) -> Result<String> {
     // A YAML string in single quotes; a quote in it is doubled.
     let description = ascii(title).replace('\'', "''");
-    super::render(&DeviceCore {
-        name,
-        description,
-        rtl,
-        memories,
-        testbench,
-    })
+    super::render(&DeviceCore { name, description, rtl, memories, testbench })
 }
 
 /// `<name>_tb.core`. File names are relative to it.
@@ -53,9 +47,5 @@ pub fn device(
 /// # Errors
 /// A template that fails to print.
 pub fn bench(name: &str, bench: &str, vectors: &[String]) -> Result<String> {
-    super::render(&BenchCore {
-        name,
-        bench,
-        vectors,
-    })
+    super::render(&BenchCore { name, bench, vectors })
 }

@@ -37,11 +37,7 @@ pub struct Expressions<'a> {
 impl<'a> Expressions<'a> {
     /// For a module in which nothing was written yet.
     pub fn new(plan: &'a Plan<'a>, names: Names) -> Self {
-        Self {
-            plan,
-            names,
-            constants: Vec::new(),
-        }
+        Self { plan, names, constants: Vec::new() }
     }
 
     /// The right-hand side that drives a net.
@@ -73,11 +69,7 @@ impl<'a> Expressions<'a> {
         match self.inline(id) {
             Some(cell) => {
                 let text = self.driver(cell);
-                if is_primary(&text) {
-                    text
-                } else {
-                    format!("({text})")
-                }
+                if is_primary(&text) { text } else { format!("({text})") }
             }
             None => self.bits(&self.plan.bits[id.index()]),
         }
@@ -86,11 +78,7 @@ impl<'a> Expressions<'a> {
     /// The operand of a unary operator, which may not begin with another one.
     fn primary(&mut self, id: NetId) -> String {
         let text = self.operand(id);
-        if text.starts_with('~') {
-            format!("({text})")
-        } else {
-            text
-        }
+        if text.starts_with('~') { format!("({text})") } else { text }
     }
 
     /// The localparam for a net that is a constant, possibly extended or relabelled, unless a literal
@@ -144,11 +132,8 @@ impl<'a> Expressions<'a> {
     pub fn address(&mut self, rom: &Rom) -> String {
         let width = super::plan::address_width(rom.words.len());
         let bits = &self.plan.bits[rom.address.index()];
-        let exact = if bits.width() > width {
-            bits.slice(0, width)
-        } else {
-            bits.extend(width, false)
-        };
+        let exact =
+            if bits.width() > width { bits.slice(0, width) } else { bits.extend(width, false) };
         self.bits(&exact)
     }
 
@@ -164,11 +149,7 @@ impl<'a> Expressions<'a> {
 
     /// Wiring.
     pub fn bits(&self, bits: &Bits) -> String {
-        let parts: Vec<_> = bits
-            .pieces()
-            .iter()
-            .map(|piece| self.piece(*piece))
-            .collect();
+        let parts: Vec<_> = bits.pieces().iter().map(|piece| self.piece(*piece)).collect();
         match &parts[..] {
             [only] => only.clone(),
             _ => format!("{{{}}}", parts.join(", ")),
@@ -204,11 +185,7 @@ impl<'a> Expressions<'a> {
             Op::Or(a, b) => self.binary(*a, "|", *b),
             Op::Xor(a, b) => self.binary(*a, "^", *b),
             Op::Add { a, b, carry: None } => self.binary(*a, "+", *b),
-            Op::Add {
-                a,
-                b,
-                carry: Some(carry),
-            } => {
+            Op::Add { a, b, carry: Some(carry) } => {
                 let sum = self.binary(*a, "+", *b);
                 let carry = self.extended_carry(*carry, self.plan.design.width(id));
                 format!("{sum} + {carry}")
@@ -252,11 +229,7 @@ impl<'a> Expressions<'a> {
 
     fn extended_carry(&mut self, carry: NetId, width: u32) -> String {
         let carry = self.operand(carry);
-        if width == 1 {
-            carry
-        } else {
-            format!("{{{}, {carry}}}", literal(0, width - 1))
-        }
+        if width == 1 { carry } else { format!("{{{}, {carry}}}", literal(0, width - 1)) }
     }
 
     /// An operand whose signedness in the Verilog is that of its format.

@@ -147,17 +147,10 @@ pub fn ports(design: &Design) -> Vec<Port<'_>> {
             Role::Operand { strobe } => Some(name(design, strobe)),
             _ => None,
         };
-        let number = matches!(
-            port.role,
-            Role::Operand { .. } | Role::Result | Role::Status
-        );
+        let number = matches!(port.role, Role::Operand { .. } | Role::Result | Role::Status);
         Port {
             name: &net.name,
-            direction: if port.role.is_input() {
-                "input"
-            } else {
-                "output"
-            },
+            direction: if port.role.is_input() { "input" } else { "output" },
             role: role(port.role),
             width: net.format.width(),
             format: number.then(|| net.format.to_string()),
@@ -168,9 +161,7 @@ pub fn ports(design: &Design) -> Vec<Port<'_>> {
             doc: &net.doc,
         }
     };
-    std::iter::once(clock)
-        .chain(design.ports.iter().map(of_port))
-        .collect()
+    std::iter::once(clock).chain(design.ports.iter().map(of_port)).collect()
 }
 
 fn name(design: &Design, net: NetId) -> &str {
@@ -237,14 +228,8 @@ pub fn words(design: &Design) -> Vec<Word<'_>> {
                 netlist::Sequence::LoopWhile { condition, to } => {
                     let condition = name(design, *condition);
                     match *to > address {
-                        true => Sequence::Jump {
-                            jump_to: *to,
-                            condition,
-                        },
-                        false => Sequence::Loop {
-                            loop_to: *to,
-                            condition,
-                        },
+                        true => Sequence::Jump { jump_to: *to, condition },
+                        false => Sequence::Loop { loop_to: *to, condition },
                     }
                 }
             },

@@ -121,10 +121,7 @@ pub fn invariants(design: &Design, naming: &Naming, unit: Unit) -> Vec<String> {
         Unit::Control => control(design),
         Unit::Datapath => datapath(design, &names.fresh("was_busy")),
     };
-    lines
-        .into_iter()
-        .map(|line| format!("    {line}"))
-        .collect()
+    lines.into_iter().map(|line| format!("    {line}")).collect()
 }
 
 /// From the first clock on, which has the initial set.
@@ -136,10 +133,7 @@ fn control(design: &Design) -> Vec<String> {
     vec![
         "always @* if (!$initstate) begin".to_owned(),
         format!("    assert ({address} <= {last});  // no other word is reached"),
-        format!(
-            "    if (!{run}) assert ({address} == {});",
-            literal(0, width)
-        ),
+        format!("    if (!{run}) assert ({address} == {});", literal(0, width)),
         "end".to_owned(),
     ]
 }
@@ -181,12 +175,7 @@ pub fn files(
     let timing = &inputs.timing;
     let module = &design.name;
     let name = format!("{module}_formal");
-    let mut names = Names::new(
-        design
-            .ports
-            .iter()
-            .map(|port| design.net(port.net).name.as_str()),
-    );
+    let mut names = Names::new(design.ports.iter().map(|port| design.net(port.net).name.as_str()));
     names.fresh("clk");
     let instance = names.fresh("dut");
     let exact = exact(timing);
@@ -218,26 +207,13 @@ pub fn files(
     }
     let outputs: Vec<_> = design
         .outputs()
-        .map(|port| {
-            Row::port(
-                "",
-                "wire",
-                design.width(port.net),
-                false,
-                &port_name(port.net),
-                "",
-            )
-        })
+        .map(|port| Row::port("", "wire", design.width(port.net), false, &port_name(port.net), ""))
         .collect();
     let connections = std::iter::once("clk".to_owned())
         .chain(design.ports.iter().map(|port| port_name(port.net)))
         .map(|name| format!(".{name}({name})"))
         .collect();
-    let waits = design
-        .control
-        .words
-        .iter()
-        .any(|word| word.sequence == Sequence::WaitStart);
+    let waits = design.control.words.iter().any(|word| word.sequence == Sequence::WaitStart);
     // A few steps with much state between them z3 solves at once when they are unrolled; many it
     // solves faster when they are not.
     let unroll = exact.is_none();
@@ -256,21 +232,16 @@ pub fn files(
             done: age.literal(clocks[1]),
             last: age.literal(start - 1),
         }),
-        bounded: bounded
-            .zip(age.as_ref())
-            .map(|((words, most), age)| Bounded {
-                // Results follow one another without a pause, once the first is there.
-                first: match timing.valid_to_valid {
-                    Some(1) => timing.start_to_valid.map(|first| age.literal(first)),
-                    _ => None,
-                },
-                ends_with_result: !inputs.computations.is_empty()
-                    && inputs
-                        .computations
-                        .iter()
-                        .all(Computation::ends_with_result),
-                ..bounded_view(design, naming, &instance, &mut names, (&words, most), age)
-            }),
+        bounded: bounded.zip(age.as_ref()).map(|((words, most), age)| Bounded {
+            // Results follow one another without a pause, once the first is there.
+            first: match timing.valid_to_valid {
+                Some(1) => timing.start_to_valid.map(|first| age.literal(first)),
+                _ => None,
+            },
+            ends_with_result: !inputs.computations.is_empty()
+                && inputs.computations.iter().all(Computation::ends_with_result),
+            ..bounded_view(design, naming, &instance, &mut names, (&words, most), age)
+        }),
         age: age.as_ref().map(|age| AgeView {
             range: range(age.width),
             one: age.literal(1),
@@ -278,22 +249,13 @@ pub fn files(
         }),
     };
     let datapath = naming.instance(Unit::Datapath);
-    let script = Script {
-        name: &name,
-        instance: &instance,
-        datapath,
-        rtl: sources.rtl,
-    };
+    let script = Script { name: &name, instance: &instance, datapath, rtl: sources.rtl };
     let task = Task {
         name: &name,
         instance: &instance,
         datapath,
         depth,
-        engine: if unroll {
-            "smtbmc --unroll z3"
-        } else {
-            "smtbmc z3"
-        },
+        engine: if unroll { "smtbmc --unroll z3" } else { "smtbmc z3" },
         rtl: sources.rtl,
         memories: sources.memories,
     };
@@ -318,11 +280,7 @@ fn bounded_view(
     let mut inside = Vec::new();
     let mut seen = |unit: Unit, net: NetId, name: String| {
         let range = range(design.width(net));
-        let path = format!(
-            "{instance}.{}.{}",
-            naming.instance(unit),
-            design.net(net).name
-        );
+        let path = format!("{instance}.{}.{}", naming.instance(unit), design.net(net).name);
         inside.push(format!("(* hierconn *) wire {range} \\{path} ;"));
         inside.push(format!("wire {range} {name} = \\{path} ;"));
     };
@@ -351,10 +309,10 @@ fn bounded_view(
         }
     };
     let address_width = design.width(address);
-    let words = words.iter().enumerate().map(|(at, left)| Word {
-        label: literal(at as u64, address_width),
-        end: end(left),
-    });
+    let words = words
+        .iter()
+        .enumerate()
+        .map(|(at, left)| Word { label: literal(at as u64, address_width), end: end(left) });
     Bounded {
         words: words.collect(),
         word,

@@ -39,10 +39,6 @@ pub fn instance(design: &Design) -> Result<String> {
     super::render(&Instance {
         name: &design.name,
         wires: Row::declarations(&wires),
-        connections: separated(
-            names()
-                .map(|name| format!(".{name:width$} ({name})"))
-                .collect(),
-        ),
+        connections: separated(names().map(|name| format!(".{name:width$} ({name})")).collect()),
     })
 }

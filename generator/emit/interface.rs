@@ -29,26 +29,19 @@ impl Interface {
             |net: &NetId| plan.forms[net.index()] == Form::Declared && !plan.is_input(*net);
         let nets_read = |by: Unit, of: Unit| {
             let ids = (0..design.nets.len() as u32).map(NetId);
-            ids.filter(declared)
-                .filter(move |net| plan.unit(*net) == of && reads(by, *net))
+            ids.filter(declared).filter(move |net| plan.unit(*net) == of && reads(by, *net))
         };
         // An input that nothing reads still has to end somewhere: in its own unit.
         let inputs = design
             .inputs()
             .map(|port| port.net)
             .filter(|net| reads(unit, *net) || (plan.unit(*net) == unit && !reads(other, *net)));
-        let outputs = design
-            .outputs()
-            .map(|port| port.net)
-            .filter(|net| plan.unit(*net) == unit);
+        let outputs = design.outputs().map(|port| port.net).filter(|net| plan.unit(*net) == unit);
         let roms: Vec<_> = (0..design.roms.len() as u32)
             .map(RomId)
             .filter(|rom| plan.unit(design.rom(*rom).data) == unit)
             .collect();
-        let registers = design
-            .registers
-            .iter()
-            .any(|register| plan.unit(register.q) == unit);
+        let registers = design.registers.iter().any(|register| plan.unit(register.q) == unit);
         Self {
             clocked: registers || roms.iter().any(|rom| design.rom(*rom).synchronous),
             inputs: inputs.chain(nets_read(unit, other)).collect(),

@@ -92,20 +92,15 @@ pub fn contents(
             entry
         }),
         accuracy: inputs.accuracy.as_ref().map(accuracy),
-        computations: inputs
-            .computations
-            .iter()
-            .map(computation)
-            .collect::<Result<_>>()?,
+        computations: inputs.computations.iter().map(computation).collect::<Result<_>>()?,
     };
     Ok(serde_json::to_string_pretty(&manifest)? + "\n")
 }
 
 fn accuracy(accuracy: &Accuracy) -> Value {
     let outputs = accuracy.outputs.iter();
-    let outputs: serde_json::Map<_, _> = outputs
-        .map(|(output, operand)| (output.clone(), json!(operand)))
-        .collect();
+    let outputs: serde_json::Map<_, _> =
+        outputs.map(|(output, operand)| (output.clone(), json!(operand))).collect();
     let domain = accuracy.domain.iter();
     let domain: serde_json::Map<_, _> = domain
         .map(|(operand, (low, high))| (operand.clone(), json!({ "low": low, "high": high })))

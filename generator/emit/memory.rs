@@ -32,12 +32,7 @@ pub fn contents(design: &Design, id: RomId) -> Result<String> {
     let control = is_control_rom(design, id);
     let mut header = comment(
         0,
-        &format!(
-            "{}, {}: {} words of {width} bits",
-            design.name,
-            rom_label(rom),
-            rom.words.len()
-        ),
+        &format!("{}, {}: {} words of {width} bits", design.name, rom_label(rom), rom.words.len()),
     );
     if control {
         header.extend(fields(design, width)?);
@@ -47,13 +42,7 @@ pub fn contents(design: &Design, id: RomId) -> Result<String> {
     let texts: Vec<_> = rom
         .words
         .iter()
-        .map(|word| {
-            if control {
-                in_fields(design, *word)
-            } else {
-                in_hex(*word, width)
-            }
-        })
+        .map(|word| if control { in_fields(design, *word) } else { in_hex(*word, width) })
         .collect();
     let words = texts
         .into_iter()
@@ -70,11 +59,7 @@ pub fn contents(design: &Design, id: RomId) -> Result<String> {
 fn note(design: &Design, id: RomId, address: usize) -> Option<String> {
     let given = design.rom(id).comments.get(address);
     let word = || {
-        let word = design
-            .control
-            .words
-            .get(address)
-            .filter(|_| is_control_rom(design, id))?;
+        let word = design.control.words.get(address).filter(|_| is_control_rom(design, id))?;
         Some(&word.name)
     };
     given.or_else(word).map(|text| ascii(text))
@@ -99,27 +84,15 @@ fn fields(design: &Design, width: u32) -> Result<Vec<String>> {
             }
         })
         .collect();
-    Ok(comment(
-        0,
-        &format!("Fields from the left: {}", names.join(", ")),
-    ))
+    Ok(comment(0, &format!("Fields from the left: {}", names.join(", "))))
 }
 
 fn in_fields(design: &Design, word: u64) -> String {
     let positions = design.field_positions();
-    let digits = design
-        .control
-        .fields
-        .iter()
-        .zip(positions)
-        .map(|(field, low)| {
-            let width = design.width(field.net);
-            format!(
-                "{:0width$b}",
-                word >> low & mask(width),
-                width = width as usize
-            )
-        });
+    let digits = design.control.fields.iter().zip(positions).map(|(field, low)| {
+        let width = design.width(field.net);
+        format!("{:0width$b}", word >> low & mask(width), width = width as usize)
+    });
     digits.collect::<Vec<_>>().join("_")
 }
 

@@ -153,9 +153,7 @@ impl Accuracy {
         let colours = operands.iter().filter(|operand| operand.colour);
         let domain = operands.iter();
         Self {
-            domain: domain
-                .map(|operand| (operand.name.clone(), operand.domain))
-                .collect(),
+            domain: domain.map(|operand| (operand.name.clone(), operand.domain)).collect(),
             outputs: contract
                 .outputs()
                 .iter()
@@ -229,10 +227,7 @@ pub struct Vectors {
 /// A design that `check` would have refused (a loop, an undriven net, a name twice or in the way of
 /// `clk`); vectors that do not fit the ports.
 pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
-    ensure!(
-        design.find("clk").is_none(),
-        "`clk` is the clock; no other net can have that name"
-    );
+    ensure!(design.find("clk").is_none(), "`clk` is the clock; no other net can have that name");
     let plan = Plan::new(design)?;
     let naming = Naming::new(design);
     let name = &design.name;
@@ -240,10 +235,7 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     let datapath = Interface::new(&plan, Unit::Datapath);
     let units = [(Unit::Control, &control), (Unit::Datapath, &datapath)];
 
-    let mut rtl = vec![(
-        format!("{name}.v"),
-        render(&top::module(&plan, &naming, units, inputs))?,
-    )];
+    let mut rtl = vec![(format!("{name}.v"), render(&top::module(&plan, &naming, units, inputs))?)];
     for (unit, interface) in units {
         let module = module::Builder::new(&plan, &naming, interface, unit).module(inputs);
         rtl.push((format!("{}.v", naming.module(unit)), render(&module)?));
@@ -256,14 +248,8 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     if let Some(vectors) = &inputs.vectors {
         testbench = bench::files(design, &naming, vectors)?;
         let names = names_of(&testbench);
-        testbench.push((
-            format!("{name}_tb.core"),
-            core::bench(name, &names[0], &names[1..])?,
-        ));
-        let sources = formal::Sources {
-            rtl: &names_of(&rtl),
-            memories: &names_of(&memories),
-        };
+        testbench.push((format!("{name}_tb.core"), core::bench(name, &names[0], &names[1..])?));
+        let sources = formal::Sources { rtl: &names_of(&rtl), memories: &names_of(&memories) };
         let formal = formal::files(design, &naming, inputs, sources)?;
         testbench.splice(0..0, formal);
         if let (Some(example), Some(accuracy)) = (&inputs.example, &inputs.accuracy) {
@@ -282,41 +268,28 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         testbench: &bench_names,
     };
     let has_bench = !testbench.is_empty();
-    let core = core::device(
-        name,
-        &design.about.title,
-        &rtl_names,
-        &memory_names,
-        has_bench,
-    )?;
+    let core = core::device(name, &design.about.title, &rtl_names, &memory_names, has_bench)?;
     let mut all: Vec<OutputFile> = rtl
         .into_iter()
         .chain(memories)
         .chain([(format!("{name}.core"), core)])
-        .map(|(file, contents)| OutputFile {
-            path: format!("rtl_out/{name}/{file}"),
-            contents,
-        })
+        .map(|(file, contents)| OutputFile { path: format!("rtl_out/{name}/{file}"), contents })
         .collect();
-    all.extend(testbench.into_iter().map(|(file, contents)| OutputFile {
-        path: format!("testbench/{name}/{file}"),
-        contents,
-    }));
+    all.extend(
+        testbench.into_iter().map(|(file, contents)| OutputFile {
+            path: format!("testbench/{name}/{file}"),
+            contents,
+        }),
+    );
     // The manifest vouches for every other file.
     let contents = manifest::contents(design, inputs, &naming, &files, &all)?;
-    all.push(OutputFile {
-        path: format!("rtl_out/{name}/{name}.json"),
-        contents,
-    });
+    all.push(OutputFile { path: format!("rtl_out/{name}/{name}.json"), contents });
     Ok(all)
 }
 
 /// The digest of a file, as the manifest holds it: SHA-256 in hexadecimal.
 pub fn digest(contents: &[u8]) -> String {
-    Sha256::digest(contents)
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect()
+    Sha256::digest(contents).iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 fn names_of(files: &[(String, String)]) -> Vec<String> {

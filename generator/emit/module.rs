@@ -73,16 +73,11 @@ impl<'a> Builder<'a> {
         if self.interface.clocked {
             rows.push(Row::port("input", "wire", 1, false, "clk", ""));
         }
-        for (nets, direction) in [
-            (&self.interface.inputs, "input"),
-            (&self.interface.outputs, "output"),
-        ] {
+        for (nets, direction) in
+            [(&self.interface.inputs, "input"), (&self.interface.outputs, "output")]
+        {
             for &net in nets {
-                let kind = if direction == "output" {
-                    self.kind(net)
-                } else {
-                    "wire"
-                };
+                let kind = if direction == "output" { self.kind(net) } else { "wire" };
                 rows.push(Row::net(self.plan, direction, kind, net));
             }
         }
@@ -103,11 +98,7 @@ impl<'a> Builder<'a> {
     fn state(&self) -> Vec<String> {
         let design = self.plan.design;
         let registers = design.registers.iter().map(|register| register.q);
-        let roms = design
-            .roms
-            .iter()
-            .filter(|rom| rom.synchronous)
-            .map(|rom| rom.data);
+        let roms = design.roms.iter().filter(|rom| rom.synchronous).map(|rom| rom.data);
         let rows: Vec<_> = registers
             .chain(roms)
             .filter(|net| {
@@ -122,12 +113,7 @@ impl<'a> Builder<'a> {
         let design = self.plan.design;
         let mut lines = Vec::new();
         for constant in &self.expressions.constants {
-            lines.extend(localparam(
-                &constant.name,
-                constant.bits,
-                constant.width,
-                &constant.note,
-            ));
+            lines.extend(localparam(&constant.name, constant.bits, constant.width, &constant.note));
         }
         for &(field, value) in &self.labels {
             let name = &self.naming.choices[field][value];
@@ -165,10 +151,7 @@ impl<'a> Builder<'a> {
         let mut spaced = Vec::new();
         for item in items {
             let line = matches!(&item, Item::Assign(lines) if lines.len() == 1);
-            spaced.push(Spaced {
-                gap: !(line && after_line),
-                item,
-            });
+            spaced.push(Spaced { gap: !(line && after_line), item });
             after_line = line;
         }
         spaced
@@ -192,11 +175,7 @@ impl<'a> Builder<'a> {
         }
         let sign = if net.format.signed { "signed" } else { "" };
         let words = ["wire", sign, &range(net.format.width()), &net.name];
-        words
-            .into_iter()
-            .filter(|word| !word.is_empty())
-            .collect::<Vec<_>>()
-            .join(" ")
+        words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
     }
 
     fn case(&mut self, id: NetId, select: NetId, inputs: &[NetId]) -> Item {
@@ -208,10 +187,7 @@ impl<'a> Builder<'a> {
             let value = self.expressions.whole(*input);
             arms.extend(statement(12, &format!("{label}: {name} = {value};")));
         }
-        let last = inputs
-            .last()
-            .map(|input| self.expressions.whole(*input))
-            .unwrap_or_default();
+        let last = inputs.last().map(|input| self.expressions.whole(*input)).unwrap_or_default();
         let declaration = if self.interface.outputs.contains(&id) {
             Vec::new()
         } else {
@@ -251,17 +227,11 @@ impl<'a> Builder<'a> {
     fn rom(&mut self, id: RomId) -> Item {
         let rom = self.plan.design.rom(id);
         let width = self.plan.design.width(rom.data);
-        let what = if rom.doc.is_empty() {
-            String::new()
-        } else {
-            format!(": {}", rom.doc.join(" "))
-        };
+        let what =
+            if rom.doc.is_empty() { String::new() } else { format!(": {}", rom.doc.join(" ")) };
         let control = is_control_rom(self.plan.design, id);
-        let word = format!(
-            "{}[{}]",
-            self.naming.memories[id.index()],
-            self.expressions.address(rom)
-        );
+        let word =
+            format!("{}[{}]", self.naming.memories[id.index()], self.expressions.address(rom));
         let read = match rom.synchronous {
             true => {
                 let data = &self.plan.design.net(rom.data).name;
@@ -306,20 +276,16 @@ impl<'a> Builder<'a> {
 
     fn group(&mut self, enable: Option<NetId>, members: &[RegId]) -> Vec<String> {
         let design = self.plan.design;
-        let reset = self.plan.reset.filter(|_| {
-            members
-                .iter()
-                .any(|member| design.register(*member).reset.is_some())
-        });
+        let reset = self
+            .plan
+            .reset
+            .filter(|_| members.iter().any(|member| design.register(*member).reset.is_some()));
         let enable = enable.map(|enable| self.expressions.whole(enable));
         let nested = reset.is_some() || enable.is_some();
         let mut takes = Vec::new();
         for &member in members {
             let register = design.register(member);
-            let data = register
-                .data
-                .map(|data| self.expressions.whole(data))
-                .unwrap_or_default();
+            let data = register.data.map(|data| self.expressions.whole(data)).unwrap_or_default();
             let text = format!("{} <= {data};", design.net(register.q).name);
             takes.extend(statement(if nested { 12 } else { 8 }, &text));
         }
@@ -329,10 +295,7 @@ impl<'a> Builder<'a> {
             for &member in members {
                 let register = design.register(member);
                 let value = literal(register.reset.unwrap_or(0), design.width(register.q));
-                lines.push(format!(
-                    "            {} <= {value};",
-                    design.net(register.q).name
-                ));
+                lines.push(format!("            {} <= {value};", design.net(register.q).name));
             }
         }
         match (reset, enable) {
@@ -360,21 +323,14 @@ impl<'a> Builder<'a> {
             let bits = self.plan.bits[net.index()].slice(low, count);
             parts.push(self.expressions.bits(&bits));
         }
-        statement(
-            4,
-            &format!("wire {} = &{{{}}};", self.naming.unused, parts.join(", ")),
-        )
+        statement(4, &format!("wire {} = &{{{}}};", self.naming.unused, parts.join(", ")))
     }
 }
 
 /// The file parameters of ROMs, with their commas.
 pub fn parameters(naming: &Naming, roms: &[RomId]) -> Vec<String> {
     let texts = roms.iter().map(|rom| {
-        format!(
-            "parameter {} = \"{}\"",
-            naming.parameters[rom.index()],
-            naming.files[rom.index()]
-        )
+        format!("parameter {} = \"{}\"", naming.parameters[rom.index()], naming.files[rom.index()])
     });
     separated(texts.collect())
 }
@@ -382,12 +338,5 @@ pub fn parameters(naming: &Naming, roms: &[RomId]) -> Vec<String> {
 fn localparam(name: &str, value: u64, width: u32, note: &str) -> Vec<String> {
     let range = range(width);
     let space = if range.is_empty() { "" } else { " " };
-    annotated(
-        &format!(
-            "localparam {range}{space}{name} = {};",
-            literal(value, width)
-        ),
-        4,
-        note,
-    )
+    annotated(&format!("localparam {range}{space}{name} = {};", literal(value, width)), 4, note)
 }

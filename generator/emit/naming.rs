@@ -110,10 +110,7 @@ pub fn remark(design: &Design, id: NetId) -> String {
             })
             .unwrap_or_default(),
     };
-    let what: Vec<_> = [label, format]
-        .into_iter()
-        .filter(|part| !part.is_empty())
-        .collect();
+    let what: Vec<_> = [label, format].into_iter().filter(|part| !part.is_empty()).collect();
     match (what.is_empty(), net.doc.is_empty()) {
         (_, true) => what.join(", "),
         (true, false) => net.doc.clone(),
@@ -130,11 +127,7 @@ pub fn rom_label(rom: &Rom) -> String {
 }
 
 fn field_label(control: &Control, field: usize) -> String {
-    let lines: Vec<_> = control.fields[field]
-        .lines
-        .iter()
-        .map(ToString::to_string)
-        .collect();
+    let lines: Vec<_> = control.fields[field].lines.iter().map(ToString::to_string).collect();
     match lines.len() {
         0 => String::new(),
         1 => format!("line {}", lines[0]),

@@ -61,11 +61,7 @@ impl<'a> Plan<'a> {
     pub fn new(design: &'a Design) -> Result<Self> {
         for net in &design.nets {
             if net.driver == Driver::Undriven {
-                bail!(
-                    "nothing drives `{}`, described at {}",
-                    net.name,
-                    net.location
-                );
+                bail!("nothing drives `{}`, described at {}", net.name, net.location);
             }
         }
         for register in &design.registers {
@@ -74,17 +70,10 @@ impl<'a> Plan<'a> {
             }
         }
         let order = design.levelise().map_err(|around| {
-            let names: Vec<_> = around
-                .iter()
-                .map(|net| design.net(*net).name.as_str())
-                .collect();
+            let names: Vec<_> = around.iter().map(|net| design.net(*net).name.as_str()).collect();
             anyhow::anyhow!("a combinational loop: {}", names.join(" -> "))
         })?;
-        let reset = if design
-            .registers
-            .iter()
-            .any(|register| register.reset.is_some())
-        {
+        let reset = if design.registers.iter().any(|register| register.reset.is_some()) {
             let port = design
                 .port(|role| role == Role::Reset)
                 .context("a register is reset, but no port is the reset")?;
@@ -192,20 +181,14 @@ impl<'a> Plan<'a> {
 
     /// Every reader that is written.
     pub fn readers(&self) -> Vec<Reader> {
-        let cells = self.live.iter().copied().filter(|net| {
-            matches!(
-                self.design.net(*net).driver,
-                Driver::Op(_) | Driver::Field(_)
-            )
-        });
+        let cells =
+            self.live.iter().copied().filter(|net| {
+                matches!(self.design.net(*net).driver, Driver::Op(_) | Driver::Field(_))
+            });
         let registers =
             (0..self.design.registers.len()).map(|at| Reader::Register(RegId(at as u32)));
         let roms = (0..self.design.roms.len()).map(|at| Reader::Rom(RomId(at as u32)));
-        cells
-            .map(Reader::Cell)
-            .chain(registers)
-            .chain(roms)
-            .collect()
+        cells.map(Reader::Cell).chain(registers).chain(roms).collect()
     }
 
     /// What a net is by wiring alone, if it is, with `known` in place of each operand.
@@ -279,18 +262,11 @@ impl<'a> Plan<'a> {
             }
         }
         for (id, net) in self.design.iter() {
-            if matches!(
-                net.driver,
-                Driver::Input | Driver::Register(_) | Driver::Rom(_)
-            ) {
+            if matches!(net.driver, Driver::Input | Driver::Register(_) | Driver::Rom(_)) {
                 live[id.index()] = true;
             }
         }
-        self.live = order
-            .iter()
-            .copied()
-            .filter(|net| live[net.index()])
-            .collect();
+        self.live = order.iter().copied().filter(|net| live[net.index()]).collect();
     }
 
     /// Finds the cells that read better inside the one expression that uses them.
@@ -300,10 +276,8 @@ impl<'a> Plan<'a> {
             for operand in self.operands(reader) {
                 let bits = self.operand_bits(reader, operand);
                 for piece in bits.pieces() {
-                    if let Piece::Net { net, width, .. }
-                    | Piece::Copies {
-                        net, count: width, ..
-                    } = *piece
+                    if let Piece::Net { net, width, .. } | Piece::Copies { net, count: width, .. } =
+                        *piece
                     {
                         let whole = bits.single().is_some() && width == self.design.width(net);
                         uses.entry(net).or_default().push((reader, whole));
@@ -324,11 +298,8 @@ impl<'a> Plan<'a> {
             let [(reader, true)] = uses.get(&id).map_or(&[][..], Vec::as_slice) else {
                 continue;
             };
-            let mentioned: usize = op
-                .operands()
-                .iter()
-                .map(|operand| self.mentioned(*operand, &size))
-                .sum();
+            let mentioned: usize =
+                op.operands().iter().map(|operand| self.mentioned(*operand, &size)).sum();
             if self.home(*reader) == self.unit(id) && self.reads_well(op, *reader, mentioned) {
                 self.forms[id.index()] = Form::Inline;
                 size[id.index()] = mentioned;
@@ -337,13 +308,10 @@ impl<'a> Plan<'a> {
     }
 
     fn mentioned(&self, operand: NetId, size: &[usize]) -> usize {
-        let nets = self.bits[operand.index()]
-            .pieces()
-            .iter()
-            .map(|piece| match piece {
-                Piece::Net { net, .. } => size[net.index()],
-                _ => 0,
-            });
+        let nets = self.bits[operand.index()].pieces().iter().map(|piece| match piece {
+            Piece::Net { net, .. } => size[net.index()],
+            _ => 0,
+        });
         nets.sum::<usize>().max(1)
     }
 

@@ -71,12 +71,7 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
         let port = design.port(|role| role == wanted).map(port_name);
         port.with_context(|| format!("`{}` has no port `{what}`", design.name))
     };
-    let mut names = Names::new(
-        design
-            .ports
-            .iter()
-            .map(|port| design.net(port.net).name.as_str()),
-    );
+    let mut names = Names::new(design.ports.iter().map(|port| design.net(port.net).name.as_str()));
     names.fresh("clk");
     let variables = Variables {
         points: names.fresh("points"),
@@ -105,11 +100,8 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
             strobes.push(design.net(strobe).name.clone());
         }
     }
-    let results: Vec<String> = design
-        .outputs()
-        .filter(|port| port.role == Role::Result)
-        .map(port_name)
-        .collect();
+    let results: Vec<String> =
+        design.outputs().filter(|port| port.role == Role::Result).map(port_name).collect();
     let line = |count: usize| vec!["%h"; count].join(" ");
     let name = format!("{}_points", design.name);
     let text = super::render(&View {
@@ -136,10 +128,5 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
         strobes,
         results: results.clone(),
     })?;
-    Ok(PointsBench {
-        name,
-        text,
-        operands,
-        results,
-    })
+    Ok(PointsBench { name, text, operands, results })
 }

@@ -28,14 +28,7 @@ impl Row {
         let net = plan.design.net(id);
         let format = net.format;
         let note = remark(plan.design, id);
-        Self::port(
-            direction,
-            kind,
-            format.width(),
-            format.signed,
-            &net.name,
-            &note,
-        )
+        Self::port(direction, kind, format.width(), format.signed, &net.name, &note)
     }
 
     /// A declaration.

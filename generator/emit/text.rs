@@ -105,9 +105,7 @@ pub fn statement(indent: usize, text: &str) -> Vec<String> {
 /// A comment of as many lines as it needs, or none for an empty text.
 pub fn comment(indent: usize, text: &str) -> Vec<String> {
     // Tools take a comment that begins with their name for an order.
-    let text = ascii(text)
-        .replace("verilator", "Verilator")
-        .replace("synopsys", "Synopsys");
+    let text = ascii(text).replace("verilator", "Verilator").replace("synopsys", "Synopsys");
     if text.trim().is_empty() {
         return Vec::new();
     }
@@ -179,10 +177,7 @@ mod tests {
 
     #[test]
     fn formulas_survive_in_ascii() {
-        assert_eq!(
-            ascii("(n/2·(cos(γ±dγ) − 1) + 1)²"),
-            "(n/2*(cos(gamma+/-dgamma) - 1) + 1)^2"
-        );
+        assert_eq!(ascii("(n/2·(cos(γ±dγ) − 1) + 1)²"), "(n/2*(cos(gamma+/-dgamma) - 1) + 1)^2");
         assert_eq!(ascii("2⁻¹⁶ x₁₀"), "2^-16 x10");
         assert_eq!(ascii("ї"), "?");
     }
@@ -206,10 +201,7 @@ mod tests {
         for line in statement(4, &words).iter().chain(&comment(4, &words)) {
             assert!(line.len() <= COLUMNS, "{line}");
         }
-        let read: Vec<_> = statement(4, &words)
-            .iter()
-            .map(|line| line.trim().to_owned())
-            .collect();
+        let read: Vec<_> = statement(4, &words).iter().map(|line| line.trim().to_owned()).collect();
         assert_eq!(read.join(" "), words.trim());
     }
 

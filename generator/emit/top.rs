@@ -20,11 +20,7 @@ pub fn module(
     let design = plan.design;
     let mut ports = vec![Row::port("input", "wire", 1, false, "clk", "")];
     for port in &design.ports {
-        let direction = if port.role.is_input() {
-            "input"
-        } else {
-            "output"
-        };
+        let direction = if port.role.is_input() { "input" } else { "output" };
         ports.push(Row::net(plan, direction, "wire", port.net));
     }
     let between: Vec<_> = units
@@ -40,10 +36,7 @@ pub fn module(
             lines: Row::declarations(&between),
         }],
     };
-    let roms: Vec<_> = units
-        .iter()
-        .flat_map(|(_, interface)| interface.roms.clone())
-        .collect();
+    let roms: Vec<_> = units.iter().flat_map(|(_, interface)| interface.roms.clone()).collect();
     Top {
         header: header::top(design, inputs),
         name: design.name.clone(),
@@ -60,19 +53,13 @@ pub fn module(
 fn instance(plan: &Plan, naming: &Naming, unit: Unit, interface: &Interface) -> Instance {
     let clock = interface.clocked.then_some("clk");
     let nets = interface.inputs.iter().chain(&interface.outputs);
-    let names = clock
-        .into_iter()
-        .chain(nets.map(|net| plan.design.net(*net).name.as_str()));
+    let names = clock.into_iter().chain(nets.map(|net| plan.design.net(*net).name.as_str()));
     let connect = |name: &str| format!(".{name}({name})");
     Instance {
         module: naming.module(unit),
         name: naming.instance(unit).to_owned(),
         parameters: separated(
-            interface
-                .roms
-                .iter()
-                .map(|rom| connect(&naming.parameters[rom.index()]))
-                .collect(),
+            interface.roms.iter().map(|rom| connect(&naming.parameters[rom.index()])).collect(),
         ),
         connections: separated(names.map(connect).collect()),
     }

@@ -29,14 +29,7 @@ struct View<'a> {
 pub fn window(name: &str, bench: &str, from: u64, to: u64) -> Result<String> {
     // Not at the very beginning: the bench has set its variables then.
     let begin = from * CLOCK + 1;
-    let view = View {
-        name,
-        bench,
-        file: WINDOW_FILE,
-        from,
-        to,
-        begin,
-        length: (to + 1) * CLOCK - begin,
-    };
+    let view =
+        View { name, bench, file: WINDOW_FILE, from, to, begin, length: (to + 1) * CLOCK - begin };
     view.render().context("the window of a bench")
 }

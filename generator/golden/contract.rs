@@ -60,11 +60,7 @@ pub fn bound(shares: &[Share], frac: u32, colour_bits: u32, output_rounding: Rou
     let largest = exp2(colour_bits as i32) - 1.0;
     let mut terms: Vec<Term> = shares
         .iter()
-        .map(|&(key, what, error)| Term {
-            key,
-            what,
-            units: error * cap * largest,
-        })
+        .map(|&(key, what, error)| Term { key, what, units: error * cap * largest })
         .collect();
     terms.push(Term {
         key: "output.rounding",
@@ -75,11 +71,7 @@ pub fn bound(shares: &[Share], frac: u32, colour_bits: u32, output_rounding: Rou
             Rounding::Nearest => 0.5,
         },
     });
-    Bound {
-        f: sum * cap,
-        units: terms.iter().map(|term| term.units).sum(),
-        terms,
-    }
+    Bound { f: sum * cap, units: terms.iter().map(|term| term.units).sum(), terms }
 }
 
 /// An expression of Python, 0 where it would be negative.
@@ -159,10 +151,7 @@ mod tests {
         assert_eq!(at(third, 35.0), Some(vec![35, 8, 1, 5]));
         assert_eq!(at(0.0, 2.0), Some(vec![2, 16, 1, 5]));
         // Beyond the domain, beyond the format, and between integers.
-        assert_eq!(
-            [1.0, 51.0, 64.0, 1e9, 2.5].map(|n| at(0.0, n)),
-            [const { None }; 5]
-        );
+        assert_eq!([1.0, 51.0, 64.0, 1e9, 2.5].map(|n| at(0.0, n)), [const { None }; 5]);
         assert_eq!(operands_at(&operands[1..], 0.0, 2.0, &[]), None);
     }
 
@@ -172,12 +161,7 @@ mod tests {
         let sum = bound(&shares, 8, 4, Rounding::Nearest);
         // 15 · 0.375 + 0.5.
         assert_eq!((sum.f, sum.units), (0.375, 6.125));
-        let capped = bound(
-            &[("a", "one", 3.0), ("b", "another", 1.0)],
-            8,
-            4,
-            Rounding::Truncate,
-        );
+        let capped = bound(&[("a", "one", 3.0), ("b", "another", 1.0)], 8, 4, Rounding::Truncate);
         let units: Vec<f64> = capped.terms.iter().map(|term| term.units).collect();
         assert_eq!(capped.f, 1.0);
         assert_eq!(units, [11.25, 3.75, 255.0 / 256.0]);

@@ -77,10 +77,7 @@ impl Params {
             v => Err(format!("{key} is {v}; 1 to {most} are possible")),
         };
         if !matches!(self.power, 2 | 4 | 8 | 16) {
-            return Err(format!(
-                "power is {}; 2, 4, 8 or 16 are possible",
-                self.power
-            ));
+            return Err(format!("power is {}; 2, 4, 8 or 16 are possible", self.power));
         }
         in_range("cosine.fraction", self.cosine_fraction, 30)?;
         in_range("exponent.bits", self.exponent_bits, 16)?;
@@ -93,11 +90,7 @@ impl Params {
     }
 
     fn cosine_format(&self) -> Format {
-        Format {
-            signed: self.cosine_signed,
-            int: 1,
-            frac: self.cosine_fraction as i32,
-        }
+        Format { signed: self.cosine_signed, int: 1, frac: self.cosine_fraction as i32 }
     }
 
     fn exponent_format(&self) -> Format {
@@ -147,11 +140,7 @@ impl Arithmetic {
     /// The inverse of the accumulator, `1.0 − ulp − accumulator`; 0 for a surface that faces away.
     #[inline]
     fn base(&self, cosine: i64, accumulator: i64) -> i64 {
-        if cosine == 0 {
-            0
-        } else {
-            self.largest - accumulator
-        }
+        if cosine == 0 { 0 } else { self.largest - accumulator }
     }
 
     #[inline]
@@ -186,9 +175,7 @@ mod tests {
     #[test]
     fn f_by_hand() {
         let f = |power, cosine, exponent| {
-            CosinePowerContract::from_params(&small(power))
-                .unwrap()
-                .f(&[cosine, exponent])
+            CosinePowerContract::from_params(&small(power)).unwrap().f(&[cosine, exponent])
         };
         // c = 15/16, n = 6, m = 4: t = 1/16·6/4 = 1.5/16 → 1/16; base 15 − 1 = 14; 14² = 196/256 →
         // 12/16; 144/256 → 9/16.
@@ -216,15 +203,8 @@ mod tests {
         let mut seen = Vec::new();
         for _ in 0..6 {
             seen.push(
-                [
-                    "run",
-                    "word_address",
-                    "accumulator",
-                    "remaining",
-                    "valid",
-                    "done",
-                ]
-                .map(|name| value(&model, name)),
+                ["run", "word_address", "accumulator", "remaining", "valid", "done"]
+                    .map(|name| value(&model, name)),
             );
             // Writes while busy change nothing.
             model.clock(&[1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0]);
@@ -250,9 +230,7 @@ mod tests {
 
     #[test]
     fn the_default_is_proven() {
-        let bound = CosinePowerContract::from_params(&Params::default())
-            .unwrap()
-            .bound();
+        let bound = CosinePowerContract::from_params(&Params::default()).unwrap().bound();
         // (16 + 15) ulps of 2⁻¹⁶ times 255, and half a unit.
         assert_eq!(bound.units, 31.0 * 255.0 / 65536.0 + 0.5);
     }
@@ -260,19 +238,9 @@ mod tests {
     #[test]
     fn parameters_out_of_range_are_named() {
         let refused = |params: Params| CosinePowerContract::from_params(&params).unwrap_err();
+        assert!(refused(Params { power: 3, ..small(4) }).contains("power"));
         assert!(
-            refused(Params {
-                power: 3,
-                ..small(4)
-            })
-            .contains("power")
-        );
-        assert!(
-            refused(Params {
-                intensity_fraction: 0,
-                ..small(4)
-            })
-            .contains("intensity.fraction")
+            refused(Params { intensity_fraction: 0, ..small(4) }).contains("intensity.fraction")
         );
     }
 }

@@ -71,12 +71,7 @@ impl Params {
         };
         in_range("angle.integer", self.angle_integer, 1, 16)?;
         in_range("angle.fraction", self.angle_fraction, 1, 30)?;
-        in_range(
-            "table.address",
-            self.table_address,
-            1,
-            self.angle_fraction.min(20),
-        )?;
+        in_range("table.address", self.table_address, 1, self.angle_fraction.min(20))?;
         in_range("length.bits", self.length_bits, 1, 16)?;
         in_range("colour.bits", self.colour_bits, 1, 16)?;
         in_range("intensity.fraction", self.intensity_fraction, 1, 30)
@@ -155,9 +150,7 @@ mod tests {
 
     #[test]
     fn the_default_is_within_the_contract() {
-        let bound = CosineSquaredContract::from_params(&Params::default())
-            .unwrap()
-            .bound();
+        let bound = CosineSquaredContract::from_params(&Params::default()).unwrap().bound();
         assert!(bound.units < 1.0, "{bound:?}");
     }
 }

@@ -27,10 +27,7 @@ impl Params {
     /// Names the configuration key.
     pub fn check(&self) -> Result<(), String> {
         if !(2..=28).contains(&self.fraction) {
-            return Err(format!(
-                "decay.fraction is {}; 2 to 28 are possible",
-                self.fraction
-            ));
+            return Err(format!("decay.fraction is {}; 2 to 28 are possible", self.fraction));
         }
         if self.slope_fraction > self.fraction {
             return Err(format!(
@@ -136,9 +133,7 @@ impl Curve {
     /// the line. The base halves the extremes, and makes up for half an ulp that the truncated rise
     /// loses; where a segment has one operand there is no rise.
     fn fit(&mut self, at: usize, function: &impl Fn(f64) -> f64) {
-        let Segment {
-            start, log_length, ..
-        } = self.segments[at];
+        let Segment { start, log_length, .. } = self.segments[at];
         let steps = 1u64 << log_length;
         let scale = exp2(self.params.fraction as i32);
         let value = |step: u64| function((start + step) as f64);

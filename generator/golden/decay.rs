@@ -103,12 +103,7 @@ impl Params {
             ("exponent.bits", self.exponent_bits, 1, 16),
             ("colour.bits", self.colour_bits, 1, 16),
             ("intensity.fraction", self.intensity_fraction, 1, 28),
-            (
-                "decay.coarse_fraction",
-                self.decay_coarse_fraction,
-                1,
-                self.decay_fraction,
-            ),
+            ("decay.coarse_fraction", self.decay_coarse_fraction, 1, self.decay_fraction),
         ];
         for (key, value, least, most) in limits {
             if !(least..=most).contains(&value) {
@@ -124,11 +119,7 @@ impl Params {
     }
 
     fn cosine_format(&self) -> Format {
-        Format {
-            signed: self.cosine_signed,
-            int: 1,
-            frac: self.cosine_fraction as i32,
-        }
+        Format { signed: self.cosine_signed, int: 1, frac: self.cosine_fraction as i32 }
     }
 
     fn exponent_format(&self) -> Format {

@@ -31,10 +31,7 @@ impl Params {
     /// Names the configuration key.
     pub fn check(&self) -> Result<(), String> {
         if !(1..=24).contains(&self.fraction) {
-            return Err(format!(
-                "exponential.fraction is {}; 1 to 24 are possible",
-                self.fraction
-            ));
+            return Err(format!("exponential.fraction is {}; 1 to 24 are possible", self.fraction));
         }
         if self.bits() > 20 {
             return Err(format!(
@@ -44,9 +41,7 @@ impl Params {
         }
         for &(bits, address) in &self.offsets {
             if bits < 2 {
-                return Err(format!(
-                    "exponential.offset_bits has {bits}; 2 is the least"
-                ));
+                return Err(format!("exponential.offset_bits has {bits}; 2 is the least"));
             }
             if address > self.address {
                 return Err(format!(
@@ -109,22 +104,15 @@ impl Halving {
             let intervals = 1u64 << leading;
             let mut words = Vec::new();
             for interval in 0..intervals {
-                let (from, to) = (
-                    interval as f64 / intervals as f64,
-                    (interval + 1) as f64 / intervals as f64,
-                );
+                let (from, to) =
+                    (interval as f64 / intervals as f64, (interval + 1) as f64 / intervals as f64);
                 let slope = (bend(to) - bend(from)) * intervals as f64;
                 for value in 0..1u64 << (field - 1) {
                     let distance = (2 * value + 1) as f64 / 2.0 * exp2(low as i32 - bits as i32);
                     words.push((slope * distance * ulps).floor() as i64);
                 }
             }
-            offsets.push(Offsets {
-                low,
-                bits: field,
-                leading: bits - leading,
-                words,
-            });
+            offsets.push(Offsets { low, bits: field, leading: bits - leading, words });
         }
 
         let count = 1u64 << params.address;
@@ -152,11 +140,7 @@ impl Halving {
                 format(kept_fraction),
                 Rounding::Truncate,
             ),
-            to_result: Narrow::new(
-                kept_fraction,
-                format(params.result_fraction),
-                params.rounding,
-            ),
+            to_result: Narrow::new(kept_fraction, format(params.result_fraction), params.rounding),
             result_fraction: params.result_fraction,
         })
     }
@@ -229,10 +213,7 @@ mod tests {
         let it = Halving::new(&params).unwrap();
         // The one slope is 0: words 0 and 0. First words: (0.00285 − 0.00980)/2·64 − 0.5 + 0.5 = −0.22 → −1, and
         // (−0.00085 − 0.00980)/2·64 = −0.34 → −1.
-        assert_eq!(
-            (it.first.clone(), it.offsets[0].words.clone()),
-            (vec![-1, -1], vec![0, 0])
-        );
+        assert_eq!((it.first.clone(), it.offsets[0].words.clone()), (vec![-1, -1], vec![0, 0]));
         // x = 0: field 0 is below its middle: −1 − 0; bend −2; chord 15/16 = 60/64: 62.
         assert_eq!(it.at(0), 62);
         // x = 2/8: field above: bend −1; chord 13/16 = 52/64: 53. Shifted by 3: 6.
@@ -240,11 +221,7 @@ mod tests {
         assert_eq!(it.at(3 << 3 | 2), 6);
         // x = 4/8: bend −2; chord 11/16 = 44/64: 46; shifted by 1 and to the nearest with one bit fewer.
         assert_eq!(it.at(1 << 3 | 4), 23);
-        let nearest = Params {
-            result_fraction: 5,
-            rounding: Rounding::Nearest,
-            ..params
-        };
+        let nearest = Params { result_fraction: 5, rounding: Rounding::Nearest, ..params };
         let nearest = Halving::new(&nearest).unwrap();
         assert_eq!(nearest.at(1 << 3 | 4), 12);
         // 62/64 rounds to 31/32; everything is shifted out beyond y = 6.

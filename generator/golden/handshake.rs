@@ -65,12 +65,7 @@ impl OperandRegister {
 
     /// A register that moves what it loads into `min ..= max`.
     pub fn clamped(format: Format, min: i64, max: i64) -> Self {
-        Self {
-            format,
-            min,
-            max,
-            value: 0,
-        }
+        Self { format, min, max, value: 0 }
     }
 
     /// What the register takes when `raw` is offered.

@@ -21,8 +21,5 @@ pub fn rounding(config: &Config, key: &str) -> Rounding {
 
 /// `domain.exponent_min` and `domain.exponent_max`.
 pub fn exponents(config: &Config) -> (i64, i64) {
-    (
-        config.integer("domain.exponent_min"),
-        config.integer("domain.exponent_max"),
-    )
+    (config.integer("domain.exponent_min"), config.integer("domain.exponent_max"))
 }

@@ -110,11 +110,7 @@ impl Walker {
             FIRST => {
                 self.angle = self.start.value;
                 self.intervals = self.length.value;
-                if self.length.value == 0 {
-                    After::To(DRAIN)
-                } else {
-                    After::Next
-                }
+                if self.length.value == 0 { After::To(DRAIN) } else { After::Next }
             }
             // Each of the others adds Δζ and counts, until the counter comes to 0.
             NEXT => {
@@ -156,12 +152,7 @@ fn length_format(length_bits: u32) -> Format {
 
 /// An angle as the accumulator holds it.
 fn wrapped(format: Format, raw: i64) -> i64 {
-    format.narrow(
-        i128::from(raw),
-        format.frac,
-        Rounding::Truncate,
-        Overflow::Wrap,
-    ) as i64
+    format.narrow(i128::from(raw), format.frac, Rounding::Truncate, Overflow::Wrap) as i64
 }
 
 /// The angle of point number `index` of a line, as the accumulator holds it.
@@ -187,10 +178,7 @@ pub fn angle_operands(format: Format) -> [Operand; 2] {
         doc: doc.to_string(),
     };
     [
-        operand(
-            "delta_zeta",
-            "angle from a point to the next, in right angles",
-        ),
+        operand("delta_zeta", "angle from a point to the next, in right angles"),
         operand("zeta_start", "angle of the first point, in right angles"),
     ]
 }
@@ -243,19 +231,10 @@ impl CosineTable {
             let cosine = libm::sin(back * std::f64::consts::FRAC_PI_2);
             libm::pow(cosine, f64::from(power))
         };
-        let mut table = Self {
-            words: Vec::new(),
-            step: 0.0,
-            total: 0.0,
-            slope: slope(power),
-        };
+        let mut table = Self { words: Vec::new(), step: 0.0, total: 0.0, slope: slope(power) };
         for step in 0..steps {
             let (high, low) = (value(step), value(step + 1));
-            let exact = if step + 1 == steps {
-                0.0
-            } else {
-                0.5 * (high + low)
-            };
+            let exact = if step + 1 == steps { 0.0 } else { 0.5 * (high + low) };
             let word = (exact * one + 0.5).floor().min(one - 1.0);
             let off = |from: f64| (high - from).abs().max((from - low).abs());
             table.step = table.step.max(off(exact));

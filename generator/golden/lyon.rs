@@ -97,17 +97,10 @@ impl Params {
             v => Err(format!("{key} is {v}; 1 to {most} are possible")),
         };
         if !matches!(self.power, 2 | 4 | 8 | 16) {
-            return Err(format!(
-                "power is {}; 2, 4, 8 or 16 are possible",
-                self.power
-            ));
+            return Err(format!("power is {}; 2, 4, 8 or 16 are possible", self.power));
         }
         in_range("vector.fraction", self.vector_fraction, 24)?;
-        in_range(
-            "distance.fraction",
-            self.distance_fraction,
-            30.min(2 * self.vector_fraction),
-        )?;
+        in_range("distance.fraction", self.distance_fraction, 30.min(2 * self.vector_fraction))?;
         in_range("exponent.bits", self.exponent_bits, 14)?;
         in_range("colour.bits", self.colour_bits, 16)?;
         in_range("intensity.fraction", self.intensity_fraction, 30)
@@ -191,11 +184,7 @@ impl Arithmetic {
                 Format::unsigned(4, distance as i32),
                 params.distance_rounding,
             ),
-            scaled: Narrow::new(
-                distance + beta_fraction,
-                Format::unsigned(1, f as i32),
-                rounding,
-            ),
+            scaled: Narrow::new(distance + beta_fraction, Format::unsigned(1, f as i32), rounding),
             square: Narrow::new(2 * f, Format::unsigned(0, f as i32), rounding),
             output: Narrow::new(f, params.colour_format(), params.output_rounding),
         }

@@ -146,9 +146,8 @@ pub trait Contract: Send + Sync {
     /// `cos_gamma`, if the device has one.
     fn cosine(&self, control: &[i64]) -> Option<f64> {
         let operands = self.operands().iter().zip(control);
-        let (operand, raw) = operands
-            .into_iter()
-            .find(|(operand, _)| operand.name == contract::COSINE)?;
+        let (operand, raw) =
+            operands.into_iter().find(|(operand, _)| operand.name == contract::COSINE)?;
         Some(operand.format.to_f64(i128::from(*raw)).clamp(0.0, 1.0))
     }
 

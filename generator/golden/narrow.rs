@@ -59,14 +59,8 @@ mod tests {
         // s1.3 to s0.1: 5/8 → 1/2, −5/8 → −1 (truncate) or −1/2 (nearest), 12/8 → the largest, 1/2.
         let truncate = Narrow::new(3, Format::signed(0, 1), Rounding::Truncate);
         let nearest = Narrow::new(3, Format::signed(0, 1), Rounding::Nearest);
-        assert_eq!(
-            [5, -5, 12, -12].map(|raw| truncate.apply(raw)),
-            [1, -2, 1, -2]
-        );
-        assert_eq!(
-            [5, -5, -6, 12].map(|raw| nearest.apply(raw)),
-            [1, -1, -1, 1]
-        );
+        assert_eq!([5, -5, 12, -12].map(|raw| truncate.apply(raw)), [1, -2, 1, -2]);
+        assert_eq!([5, -5, -6, 12].map(|raw| nearest.apply(raw)), [1, -1, -1, 1]);
         // One fraction bit to three: exact.
         let finer = Narrow::new(1, Format::unsigned(1, 3), Rounding::Nearest);
         assert_eq!(finer.apply(3), 12);

@@ -84,12 +84,7 @@ impl Params {
             v => Err(format!("{key} is {v}; {least} to {most} are possible")),
         };
         in_range("angle.fraction", self.angle_fraction, 1, 30)?;
-        in_range(
-            "angle.multiplied",
-            self.angle_multiplied,
-            1,
-            self.angle_fraction,
-        )?;
+        in_range("angle.multiplied", self.angle_multiplied, 1, self.angle_fraction)?;
         in_range("root.fraction", self.root_fraction, 1, 24)?;
         let product = self.angle_multiplied + self.root_fraction;
         in_range("table.address", self.table_address, 1, product.min(20))?;

@@ -72,9 +72,9 @@ impl Params {
     pub fn from_config(config: &Config) -> Self {
         Self {
             scheme: match config.choice("coefficient.scheme") {
-                "minimax" => Scheme::Minimax {
-                    fraction: keys::bits(config, "coefficient.fraction"),
-                },
+                "minimax" => {
+                    Scheme::Minimax { fraction: keys::bits(config, "coefficient.fraction") }
+                }
                 _ => Scheme::Taylor,
             },
             cosine_fraction: keys::bits(config, "cosine.fraction"),
@@ -124,11 +124,7 @@ impl Params {
     }
 
     fn cosine_format(&self) -> Format {
-        Format {
-            signed: self.cosine_signed,
-            int: 1,
-            frac: self.cosine_fraction as i32,
-        }
+        Format { signed: self.cosine_signed, int: 1, frac: self.cosine_fraction as i32 }
     }
 
     fn exponent_format(&self) -> Format {
@@ -175,17 +171,10 @@ impl Arithmetic {
                 params.difference_format(),
                 params.difference_rounding,
             ),
-            words: exact
-                .iter()
-                .map(|a| (a * scale + 0.5).floor() as i64)
-                .collect(),
+            words: exact.iter().map(|a| (a * scale + 0.5).floor() as i64).collect(),
             exact,
             pads: (point - cosine, point - product),
-            sum: Narrow::new(
-                point,
-                Format::unsigned(0, f as i32),
-                params.intensity_rounding,
-            ),
+            sum: Narrow::new(point, Format::unsigned(0, f as i32), params.intensity_rounding),
             output: Narrow::new(f, params.colour_format(), params.output_rounding),
         }
     }
@@ -193,16 +182,14 @@ impl Arithmetic {
     /// Word 1: `c² − c`.
     #[inline]
     fn difference(&self, cosine: i64) -> i64 {
-        self.difference
-            .apply(cosine * cosine - (cosine << self.cosine_fraction))
+        self.difference.apply(cosine * cosine - (cosine << self.cosine_fraction))
     }
 
     /// Word 2: `c + a(n)·(c² − c)`, limited to a fraction.
     #[inline]
     fn intensity(&self, cosine: i64, exponent: i64, difference: i64) -> i64 {
         let product = difference * self.words[exponent as usize];
-        self.sum
-            .apply((cosine << self.pads.0) + (product << self.pads.1))
+        self.sum.apply((cosine << self.pads.0) + (product << self.pads.1))
     }
 
     #[inline]

@@ -95,9 +95,7 @@ impl Params {
     /// What a configuration of the device `rough` says.
     pub fn from_config(config: &Config) -> Self {
         let sine_scheme = match config.choice("sine.scheme") {
-            "direct" => Scheme::Direct {
-                address: keys::bits(config, "sine.address"),
-            },
+            "direct" => Scheme::Direct { address: keys::bits(config, "sine.address") },
             _ => Scheme::Segmented {
                 // The schema allows no negative entries.
                 segments: config
@@ -148,10 +146,7 @@ impl Params {
             }
         }
         if !(0.0..=90.0).contains(&self.deviation) {
-            return Err(format!(
-                "domain.deviation is {}; 0 to 90 are possible",
-                self.deviation
-            ));
+            return Err(format!("domain.deviation is {}; 0 to 90 are possible", self.deviation));
         }
         self.sine().check()
     }
@@ -163,30 +158,19 @@ impl Params {
     fn sine(&self) -> sine::Params {
         sine::Params {
             operand_fraction: self.cosine_fraction,
-            fraction: if self.patent() {
-                self.cosine_fraction
-            } else {
-                self.sine_fraction
-            },
+            fraction: if self.patent() { self.cosine_fraction } else { self.sine_fraction },
             scheme: self.sine_scheme.clone(),
         }
     }
 
     /// Fraction bits of the word f.
     fn f_fraction(&self) -> u32 {
-        if self.patent() {
-            self.cosine_fraction
-        } else {
-            self.intensity_fraction
-        }
+        if self.patent() { self.cosine_fraction } else { self.intensity_fraction }
     }
 
     /// The format of cos γ, which may have a sign.
     fn cos_gamma_format(&self) -> Format {
-        Format {
-            signed: self.cosine_signed && !self.patent(),
-            ..self.cos_dgamma_format()
-        }
+        Format { signed: self.cosine_signed && !self.patent(), ..self.cos_dgamma_format() }
     }
 
     fn cos_dgamma_format(&self) -> Format {
@@ -255,11 +239,7 @@ impl Arithmetic {
             },
             Kind::Exact => {
                 let product = |from, int| {
-                    Narrow::new(
-                        from,
-                        Format::unsigned(int, p as i32),
-                        params.product_rounding,
-                    )
+                    Narrow::new(from, Format::unsigned(int, p as i32), params.product_rounding)
                 };
                 let result =
                     |from| Narrow::new(from, params.result_format(), params.intensity_rounding);
@@ -317,11 +297,7 @@ impl Arithmetic {
             Blocks::Exact { product_one, .. } => cos_cos + sin_sin - product_one,
             Blocks::Patent { mask, .. } => {
                 let adder_31 = (sin_sin - 1) & mask;
-                let mux_14 = if dgamma_negative == 0 {
-                    !sin_sin & mask
-                } else {
-                    adder_31
-                };
+                let mux_14 = if dgamma_negative == 0 { !sin_sin & mask } else { adder_31 };
                 (cos_cos + mux_14 + dgamma_negative) & mask
             }
         }
@@ -344,9 +320,7 @@ impl Arithmetic {
     fn squared(&self, result: i64, cos_gamma: i64) -> i64 {
         match &self.kind {
             Blocks::Exact { result_one, .. } if cos_gamma == 0 => -result_one,
-            Blocks::Exact {
-                result_one, square, ..
-            } => {
+            Blocks::Exact { result_one, square, .. } => {
                 let adder_16 = result + result_one;
                 square.apply(adder_16 * adder_16)
             }
@@ -365,16 +339,8 @@ impl Arithmetic {
     #[inline]
     fn f(&self, result: i64) -> i64 {
         match &self.kind {
-            Blocks::Exact {
-                result_one,
-                clamp: true,
-                ..
-            } => result & (result_one - 1),
-            Blocks::Exact {
-                result_one,
-                clamp: false,
-                ..
-            } => result.clamp(0, result_one - 1),
+            Blocks::Exact { result_one, clamp: true, .. } => result & (result_one - 1),
+            Blocks::Exact { result_one, clamp: false, .. } => result.clamp(0, result_one - 1),
             Blocks::Patent { .. } => result,
         }
     }

@@ -80,11 +80,7 @@ impl Params {
     }
 
     fn cosine_format(&self) -> Format {
-        Format {
-            signed: self.cosine_signed,
-            int: 1,
-            frac: self.cosine_fraction as i32,
-        }
+        Format { signed: self.cosine_signed, int: 1, frac: self.cosine_fraction as i32 }
     }
 
     fn exponent_format(&self) -> Format {
@@ -221,10 +217,7 @@ mod tests {
     #[test]
     fn the_default_is_proven() {
         let bound = |fraction| {
-            let params = Params {
-                intensity_fraction: fraction,
-                ..Params::default()
-            };
+            let params = Params { intensity_fraction: fraction, ..Params::default() };
             SchlickContract::from_params(&params).unwrap().bound()
         };
         assert_eq!(bound(10).units, 255.0 / 1024.0 + 0.5);
@@ -235,10 +228,7 @@ mod tests {
 
     #[test]
     fn parameters_out_of_range_are_named() {
-        let params = Params {
-            intensity_fraction: 1,
-            ..small()
-        };
+        let params = Params { intensity_fraction: 1, ..small() };
         let refused = SchlickContract::from_params(&params).unwrap_err();
         assert!(refused.contains("intensity.fraction"), "{refused}");
     }

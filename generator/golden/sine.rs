@@ -93,9 +93,7 @@ impl Params {
     pub fn check(&self) -> Result<(), String> {
         let (operand, fraction) = (self.operand_fraction, self.fraction);
         if !(1..=26).contains(&operand) {
-            return Err(format!(
-                "cosine.fraction is {operand}; a sine table takes 1 to 26"
-            ));
+            return Err(format!("cosine.fraction is {operand}; a sine table takes 1 to 26"));
         }
         if !(1..=30).contains(&fraction) {
             return Err(format!("sine.fraction is {fraction}; 1 to 30 are possible"));
@@ -105,10 +103,7 @@ impl Params {
                 "sine.address is {address}; 1 to cosine.fraction, {operand}, are possible"
             )),
             Scheme::Direct { .. } => Ok(()),
-            Scheme::Segmented {
-                segments,
-                slope_fraction,
-            } => {
+            Scheme::Segmented { segments, slope_fraction } => {
                 if segments.is_empty() {
                     return Err("sine.segments is empty; one range is the least".to_string());
                 }
@@ -150,42 +145,27 @@ impl Sine {
         let table = match &params.scheme {
             Scheme::Direct { address } => Table::Direct {
                 address: *address,
-                entries: (0..1 << address)
-                    .map(|a| direct_entry(a, *address, fraction))
-                    .collect(),
+                entries: (0..1 << address).map(|a| direct_entry(a, *address, fraction)).collect(),
             },
-            Scheme::Segmented {
-                segments,
-                slope_fraction,
-            } => {
+            Scheme::Segmented { segments, slope_fraction } => {
                 let range = |(j, &bits): (usize, &u32)| {
                     let width = operand - 2 * j as u32 - bits;
                     let first = 1i64 << (bits - 2);
                     let fit = |prefix| {
                         fit(operand, fraction, *slope_fraction, prefix << width, width).segment
                     };
-                    Range {
-                        width,
-                        first,
-                        segments: (first..1 << bits).map(fit).collect(),
-                    }
+                    Range { width, first, segments: (first..1 << bits).map(fit).collect() }
                 };
                 let block = 1i64 << (operand - 2 * segments.len() as u32);
                 Table::Segmented {
                     ranges: segments.iter().enumerate().map(range).collect(),
-                    rest: (0..block)
-                        .map(|u| to_raw(sine_of(operand, u), fraction))
-                        .collect(),
+                    rest: (0..block).map(|u| to_raw(sine_of(operand, u), fraction)).collect(),
                     remainder: remainder_bits(operand, segments),
                     slope_fraction: *slope_fraction,
                 }
             }
         };
-        Ok(Self {
-            operand_fraction: operand,
-            fraction,
-            table,
-        })
+        Ok(Self { operand_fraction: operand, fraction, table })
     }
 
     /// The raw sine of the raw operand `x`, 0 … 2^C.
@@ -199,12 +179,7 @@ impl Sine {
                 let fraction = x.min(one - 1);
                 entries[(fraction >> (self.operand_fraction - address)) as usize]
             }
-            Table::Segmented {
-                ranges,
-                rest,
-                remainder,
-                slope_fraction,
-            } => {
+            Table::Segmented { ranges, rest, remainder, slope_fraction } => {
                 let u = one - x;
                 if u == one {
                     return largest;
@@ -227,16 +202,10 @@ impl Sine {
         match &self.table {
             Table::Direct { entries, .. } => (entries.len() as u64, self.fraction),
             Table::Segmented { ranges, rest, .. } => {
-                let slopes = ranges
-                    .iter()
-                    .flat_map(|range| &range.segments)
-                    .map(|it| it.slope);
+                let slopes = ranges.iter().flat_map(|range| &range.segments).map(|it| it.slope);
                 let largest = slopes.max().unwrap_or(0).max(1);
                 let prefixes: i64 = ranges.iter().map(|range| 4 * range.first).sum();
-                (
-                    prefixes as u64 + rest.len() as u64,
-                    self.fraction + largest.ilog2() + 1,
-                )
+                (prefixes as u64 + rest.len() as u64, self.fraction + largest.ilog2() + 1)
             }
         }
     }
@@ -255,11 +224,7 @@ impl Sine {
                 let bucket = one >> address;
                 for (&entry, a) in entries.iter().zip(0i64..) {
                     let first = a * bucket;
-                    let last = if first + bucket == one {
-                        one
-                    } else {
-                        first + bucket - 1
-                    };
+                    let last = if first + bucket == one { one } else { first + bucket - 1 };
                     let error = |x| (entry as f64 * ulp - sine_of(operand, one - x)).abs();
                     let error = error(first).max(error(last));
                     visit(Piece {
@@ -269,18 +234,9 @@ impl Sine {
                     });
                 }
             }
-            Table::Segmented {
-                ranges,
-                rest,
-                slope_fraction,
-                ..
-            } => {
+            Table::Segmented { ranges, rest, slope_fraction, .. } => {
                 // x = 0 reads 1 − ulp.
-                visit(Piece {
-                    cosines: (0.0, 0.0),
-                    error: ulp,
-                    shape: 0.0,
-                });
+                visit(Piece { cosines: (0.0, 0.0), error: ulp, shape: 0.0 });
                 for range in ranges {
                     for prefix in range.first..4 * range.first {
                         let u = prefix << range.width;
@@ -373,19 +329,11 @@ mod tests {
     use super::*;
 
     fn sine(operand_fraction: u32, fraction: u32, scheme: Scheme) -> Sine {
-        Sine::new(&Params {
-            operand_fraction,
-            fraction,
-            scheme,
-        })
-        .unwrap()
+        Sine::new(&Params { operand_fraction, fraction, scheme }).unwrap()
     }
 
     fn segmented(segments: &[u32], slope_fraction: u32) -> Scheme {
-        Scheme::Segmented {
-            segments: segments.to_vec(),
-            slope_fraction,
-        }
+        Scheme::Segmented { segments: segments.to_vec(), slope_fraction }
     }
 
     #[test]
@@ -439,11 +387,7 @@ mod tests {
                 let error = (it.at(x) as f64 * exp2(-(it.fraction as i32)) - exact).abs();
                 let holds = |piece: &&Piece| piece.cosines.0 <= cosine && cosine <= piece.cosines.1;
                 let piece = pieces.iter().find(holds).expect("a piece");
-                assert!(
-                    error <= piece.error,
-                    "{x} of {it:?}: {error} > {}",
-                    piece.error
-                );
+                assert!(error <= piece.error, "{x} of {it:?}: {error} > {}", piece.error);
                 // Not idle either: no piece allows more than the table could need.
                 assert!(piece.error <= 0.25);
             }
@@ -453,11 +397,7 @@ mod tests {
     #[test]
     fn undefined_tables_are_refused_by_key() {
         let refusal = |operand_fraction, fraction, scheme| {
-            let params = Params {
-                operand_fraction,
-                fraction,
-                scheme,
-            };
+            let params = Params { operand_fraction, fraction, scheme };
             Sine::new(&params).unwrap_err()
         };
         assert!(refusal(8, 8, Scheme::Direct { address: 9 }).contains("sine.address"));

@@ -96,11 +96,7 @@ impl Params {
     }
 
     fn cosine_format(&self) -> Format {
-        Format {
-            signed: self.cosine_signed,
-            int: 1,
-            frac: self.cosine_fraction as i32,
-        }
+        Format { signed: self.cosine_signed, int: 1, frac: self.cosine_fraction as i32 }
     }
 
     fn exponent_format(&self) -> Format {
@@ -121,10 +117,7 @@ impl Params {
             wanted / unit + i64::from(wanted % unit != 0)
         };
         let largest = (1 << self.intensity_fraction) - 1;
-        self.levels
-            .iter()
-            .map(|&level| word(level).min(largest))
-            .collect()
+        self.levels.iter().map(|&level| word(level).min(largest)).collect()
     }
 }
 
@@ -148,11 +141,7 @@ impl Arithmetic {
             one: params.one(),
             base_one: 1 << f,
             // n/2 has one fraction bit.
-            scaled: Narrow::new(
-                params.cosine_fraction + 1,
-                Format::signed(0, f as i32),
-                rounding,
-            ),
+            scaled: Narrow::new(params.cosine_fraction + 1, Format::signed(0, f as i32), rounding),
             square: Narrow::new(2 * f, Format::unsigned(0, f as i32), rounding),
             output: Narrow::new(f, params.colour_format(), params.output_rounding),
             thresholds: params.thresholds(),
@@ -177,11 +166,7 @@ impl Arithmetic {
     fn gated(&self, cosine: i64, exponent: i64, scaled: i64) -> i64 {
         let base = scaled + self.base_one;
         let square = self.square.apply(base * base);
-        if cosine == 0 || square < self.threshold(exponent) {
-            0
-        } else {
-            square
-        }
+        if cosine == 0 || square < self.threshold(exponent) { 0 } else { square }
     }
 
     #[inline]

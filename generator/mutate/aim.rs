@@ -72,18 +72,16 @@ pub(super) fn all(unit: &Unit, mutant: &Design, mut held: Operands) -> Result<Tr
     if clocks.bits() > MOST_BITS {
         return Ok(Tried::Nothing);
     }
-    Ok(
-        match clocks.check((0..clocks.blocks()).collect(), &|_| ())? {
-            None => Tried::All,
-            Some(place) => {
-                let bits = clocks.difference(place)?.operands;
-                let raw = |(name, bits): (String, u64)| {
-                    let mut operands = contract.operands().iter();
-                    let operand = operands.find(|it| it.name == name)?;
-                    Some((name, operand.format.raw(bits) as i64))
-                };
-                Tried::Differs(bits.into_iter().filter_map(raw).collect())
-            }
-        },
-    )
+    Ok(match clocks.check((0..clocks.blocks()).collect(), &|_| ())? {
+        None => Tried::All,
+        Some(place) => {
+            let bits = clocks.difference(place)?.operands;
+            let raw = |(name, bits): (String, u64)| {
+                let mut operands = contract.operands().iter();
+                let operand = operands.find(|it| it.name == name)?;
+                Some((name, operand.format.raw(bits) as i64))
+            };
+            Tried::Differs(bits.into_iter().filter_map(raw).collect())
+        }
+    })
 }

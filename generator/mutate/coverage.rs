@@ -90,19 +90,13 @@ impl Coverage {
         let mut all: Vec<Vec<Vec<Place>>> =
             roms.map(|rom| vec![Vec::new(); rom.words.len()]).collect();
         for stream in streams {
-            let words = all
-                .iter_mut()
-                .flatten()
-                .zip(stream.places.into_iter().flatten());
+            let words = all.iter_mut().flatten().zip(stream.places.into_iter().flatten());
             for (all, places) in words {
                 let room = PLACES - all.len();
                 all.extend(places.into_iter().take(room));
             }
         }
-        Ok(Self {
-            places: all,
-            operands,
-        })
+        Ok(Self { places: all, operands })
     }
 
     /// Where a word is read.

@@ -215,10 +215,8 @@ impl Faults {
 
     /// Bits of everything but a constant, which is at fault as a whole, and another name of a net.
     fn bits(&mut self, id: NetId, net: &Net) {
-        if matches!(
-            net.driver,
-            Driver::Constant(_) | Driver::Undriven | Driver::Op(Op::Relabel(_))
-        ) {
+        if matches!(net.driver, Driver::Constant(_) | Driver::Undriven | Driver::Op(Op::Relabel(_)))
+        {
             return;
         }
         for bit in 0..net.format.width() {
@@ -237,10 +235,7 @@ impl Faults {
     fn constant(&mut self, id: NetId, net: &Net, bits: u64) {
         let width = net.format.width();
         let mut others = BTreeSet::new();
-        for (name, other) in [
-            ("plus-1", bits.wrapping_add(1)),
-            ("minus-1", bits.wrapping_sub(1)),
-        ] {
+        for (name, other) in [("plus-1", bits.wrapping_add(1)), ("minus-1", bits.wrapping_sub(1))] {
             let other = other & mask(width);
             if others.insert(other) {
                 let site = Site::Driver(id, Driver::Constant(other));
@@ -261,11 +256,7 @@ impl Faults {
         let name = &design.net(register.q).name;
         if register.enable.is_some() {
             for (how, always) in [("always-enabled", true), ("never-enabled", false)] {
-                self.add(
-                    format!("{name}:{how}"),
-                    Kind::Enable,
-                    Site::Enable(id, always),
-                );
+                self.add(format!("{name}:{how}"), Kind::Enable, Site::Enable(id, always));
             }
         }
         if register.reset.is_some() {
@@ -288,11 +279,7 @@ impl Faults {
         };
         for at in bits {
             let (word, bit) = (at / width as usize, at % width as usize);
-            let kind = if control {
-                Kind::ControlBit
-            } else {
-                Kind::RomBit
-            };
+            let kind = if control { Kind::ControlBit } else { Kind::RomBit };
             let site = Site::Words(id, vec![(word, words[word] ^ 1 << bit)]);
             let id_text = match control {
                 true => format!("{}@{word}.{}", rom.name, field_bit(design, bit as u32)),
@@ -301,11 +288,7 @@ impl Faults {
             self.add(id_text, kind, site);
         }
         for (a, b) in pairs(words, &mut random) {
-            let kind = if control {
-                Kind::ControlWords
-            } else {
-                Kind::RomWords
-            };
+            let kind = if control { Kind::ControlWords } else { Kind::RomWords };
             let site = Site::Words(id, vec![(a, words[b]), (b, words[a])]);
             self.add(format!("{}@{a},{b}", rom.name), kind, site);
         }

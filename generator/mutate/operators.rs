@@ -9,27 +9,13 @@ pub(super) fn of(design: &Design, id: NetId, op: &Op) -> Vec<(String, Kind, Op)>
     match op {
         Op::Mux { select, inputs } => mux(design, *select, inputs),
         Op::Add { a, b, carry } => add(design, *a, *b, *carry),
-        Op::Sub(a, b) => vec![
-            swapped(Op::Sub(*b, *a)),
-            operator(
-                "add",
-                Op::Add {
-                    a: *a,
-                    b: *b,
-                    carry: None,
-                },
-            ),
-        ],
-        Op::Less(a, b) => vec![
-            swapped(Op::Less(*b, *a)),
-            operator("equal", Op::Equal(*a, *b)),
-        ],
+        Op::Sub(a, b) => {
+            vec![swapped(Op::Sub(*b, *a)), operator("add", Op::Add { a: *a, b: *b, carry: None })]
+        }
+        Op::Less(a, b) => vec![swapped(Op::Less(*b, *a)), operator("equal", Op::Equal(*a, *b))],
         Op::Equal(a, b) => {
             let alike = design.net(*a).format.signed == design.net(*b).format.signed;
-            alike
-                .then(|| operator("less", Op::Less(*a, *b)))
-                .into_iter()
-                .collect()
+            alike.then(|| operator("less", Op::Less(*a, *b))).into_iter().collect()
         }
         Op::And(a, b) => vec![operator("or", Op::Or(*a, *b))],
         Op::Or(a, b) => vec![operator("and", Op::And(*a, *b))],

@@ -120,10 +120,7 @@ pub fn run<'f>(
             let verdict = bench.verdict(fault);
             let verdict = verdict.with_context(|| format!("the mutant `{}`", fault.id))?;
             progress();
-            Ok(Found {
-                fault: fault.clone(),
-                verdict,
-            })
+            Ok(Found { fault: fault.clone(), verdict })
         })
         .collect()
 }
@@ -242,9 +239,7 @@ impl Bench<'_> {
         let Some((rom, words)) = self.words(site) else {
             return Vec::new();
         };
-        let places = words
-            .iter()
-            .flat_map(|&(word, _)| self.tested.places(rom, word));
+        let places = words.iter().flat_map(|&(word, _)| self.tested.places(rom, word));
         places.map(|place| (place.seed, place.points + 2)).collect()
     }
 

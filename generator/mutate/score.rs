@@ -46,11 +46,7 @@ impl Tally {
 
     /// The share that is open.
     pub fn share_open(&self) -> f64 {
-        if self.planted == 0 {
-            0.0
-        } else {
-            self.open as f64 / self.planted as f64
-        }
+        if self.planted == 0 { 0.0 } else { self.open as f64 / self.planted as f64 }
     }
 }
 
@@ -81,11 +77,7 @@ impl Score {
                 Verdict::Caught(Leg::Aimed, _) => score.aimed.push(fault.id.clone()),
                 Verdict::Caught(..) => {}
                 Verdict::Equivalent(how) => {
-                    score
-                        .equivalent
-                        .entry(*how)
-                        .or_default()
-                        .push(fault.id.clone());
+                    score.equivalent.entry(*how).or_default().push(fault.id.clone());
                 }
             }
         }

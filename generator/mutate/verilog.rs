@@ -79,9 +79,7 @@ static OPERATORS: LazyLock<Vec<Operator>> = LazyLock::new(|| {
         with,
     };
     vec![
-        operator("sign dropped", r"\b(wire|reg) +signed\b", |it| {
-            it[1].to_owned()
-        }),
+        operator("sign dropped", r"\b(wire|reg) +signed\b", |it| it[1].to_owned()),
         operator("sign dropped", r"\$signed\(", |_| "$unsigned(".to_owned()),
         operator("comparison", r" (<=|>=|<|>|==|!=) (?P<right>\S)", |it| {
             let other = match &it[1] {
@@ -105,34 +103,24 @@ static OPERATORS: LazyLock<Vec<Operator>> = LazyLock::new(|| {
             };
             format!(" {other} ")
         }),
-        operator(
-            "operands swapped",
-            r"([\w\[\]:]+) ([-<>]) ([\w\[\]:']+)",
-            |it| format!("{} {} {}", &it[3], &it[2], &it[1]),
-        ),
+        operator("operands swapped", r"([\w\[\]:]+) ([-<>]) ([\w\[\]:']+)", |it| {
+            format!("{} {} {}", &it[3], &it[2], &it[1])
+        }),
         operator(
             "choice swapped",
             r"\? (\{[^{}]*\}|[\w\[\]:']+) : (\{[^{}]*\}|[\w\[\]:']+)",
             |it| format!("? {} : {}", &it[2], &it[1]),
         ),
         operator("inversion dropped", r"[~!](\(|\w)", |it| it[1].to_owned()),
-        operator("condition inverted", r"if \((\w+)\)", |it| {
-            format!("if (!{})", &it[1])
-        }),
+        operator("condition inverted", r"if \((\w+)\)", |it| format!("if (!{})", &it[1])),
         operator("part-select", r"(\w)\[(\d+)(?::(\d+))?\]", |it| {
             let shift = |text: &str| (text.parse::<u64>().unwrap_or_default() + 1).to_string();
-            let low = it
-                .get(3)
-                .map_or(String::new(), |low| format!(":{}", shift(low.as_str())));
+            let low = it.get(3).map_or(String::new(), |low| format!(":{}", shift(low.as_str())));
             format!("{}[{}{low}]", &it[1], shift(&it[2]))
         }),
         operator("width", r"\b(wire|reg)( +signed)? +\[(\d+):0\]", |it| {
             let high = it[3].parse::<u64>().unwrap_or_default().saturating_sub(1);
-            format!(
-                "{}{} [{high}:0]",
-                &it[1],
-                it.get(2).map_or("", |sign| sign.as_str())
-            )
+            format!("{}{} [{high}:0]", &it[1], it.get(2).map_or("", |sign| sign.as_str()))
         }),
         operator("constant", r"(\d+)'(d|h|b)([0-9a-f]+)", |it| {
             let radix = match &it[2] {
@@ -157,23 +145,12 @@ impl Text {
     /// # Errors
     /// A tool is missing; golden model and simulation differ; the design cannot be written.
     pub fn of(unit: &Unit) -> Result<Self> {
-        TOOLS
-            .iter()
-            .try_for_each(|tool| Tool::find(tool).map(drop))?;
+        TOOLS.iter().try_for_each(|tool| Tool::find(tool).map(drop))?;
         let name = &unit.config.name;
         let files = unit.files(&format!("{name}.toml"), unit.vectors(POINTS, TEST_SEED)?)?;
-        let mut text = Self {
-            files: Vec::new(),
-            top: format!("{name}_tb"),
-            modules: Vec::new(),
-        };
+        let mut text = Self { files: Vec::new(), top: format!("{name}_tb"), modules: Vec::new() };
         for file in files {
-            let plain = file
-                .path
-                .rsplit('/')
-                .next()
-                .unwrap_or(&file.path)
-                .to_owned();
+            let plain = file.path.rsplit('/').next().unwrap_or(&file.path).to_owned();
             if !plain.ends_with(".v") && !plain.ends_with(".mem") {
                 continue;
             }
@@ -273,12 +250,10 @@ impl Text {
             .and_then(|()| fs::write(place.join(file), sound))
             .with_context(|| format!("cannot write `{file}`"))?;
         let module = file.trim_end_matches(".v");
-        Ok(
-            match formal::proves(place, module, limit.min(PROOF_LIMIT))? {
-                true => TextVerdict::Equivalent,
-                false => TextVerdict::Open,
-            },
-        )
+        Ok(match formal::proves(place, module, limit.min(PROOF_LIMIT))? {
+            true => TextVerdict::Equivalent,
+            false => TextVerdict::Open,
+        })
     }
 }
 
@@ -293,9 +268,8 @@ fn in_line(
 ) {
     let is_memory = code.contains("_rom [") || code.contains("$readmem");
     // What is assigned on a clock is no comparison.
-    let assignment = code
-        .find(" <= ")
-        .filter(|_| !code.contains("wire") && !code.contains("assign"));
+    let assignment =
+        code.find(" <= ").filter(|_| !code.contains("wire") && !code.contains("assign"));
     for operator in OPERATORS.iter().filter(|_| !is_memory) {
         for (number, found) in operator.pattern.captures_iter(code).enumerate() {
             let Some(all) = found.get(0) else { continue };

@@ -154,11 +154,7 @@ pub fn gauss(c: f64, n: f64) -> f64 {
 #[inline]
 pub fn schlick(c: f64, n: f64) -> f64 {
     // n·(1 − c) keeps what n − n·c loses to cancellation where c is near 1.
-    if c <= 0.0 {
-        0.0
-    } else {
-        c / (n * (1.0 - c) + c)
-    }
+    if c <= 0.0 { 0.0 } else { c / (n * (1.0 - c) + c) }
 }
 
 /// Seed 000's approximation with any power: `cosᵏ(√(n/k)·δ)`, δ in radians; 0 where `√(n/k)·δ` is a right angle
@@ -240,10 +236,7 @@ mod tests {
         let third = std::f64::consts::FRAC_PI_3;
         // n = k stretches nothing; √(64/16)·30° = 60°; √(64/16)·45° is a right angle.
         assert!(close(stretched_cosine(-third, 3.0, 3), 0.125));
-        assert!(close(
-            stretched_cosine(third / 2.0, 64.0, 16),
-            libm::pow(0.5, 16.0)
-        ));
+        assert!(close(stretched_cosine(third / 2.0, 64.0, 16), libm::pow(0.5, 16.0)));
         assert_eq!(stretched_cosine(0.786, 64.0, 16), 0.0);
         assert_eq!([1, 2, 3, 6, 7, 1000].map(quad_power), [1, 2, 4, 4, 16, 16]);
     }

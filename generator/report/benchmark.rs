@@ -207,11 +207,8 @@ pub fn run() -> Benchmark {
 
 fn words(pairs: &[Pair]) -> String {
     let of = |m: u32| {
-        let ratios: Vec<f64> = pairs
-            .iter()
-            .filter(|pair| pair.m == m)
-            .map(|pair| pair.ratio[1])
-            .collect();
+        let ratios: Vec<f64> =
+            pairs.iter().filter(|pair| pair.m == m).map(|pair| pair.ratio[1]).collect();
         let low = ratios.iter().copied().fold(f64::INFINITY, f64::min);
         (low, ratios.iter().copied().fold(0.0, f64::max))
     };

@@ -26,19 +26,12 @@ pub struct Axis {
 impl Axis {
     /// An evenly divided axis.
     pub fn linear(label: &str, low: f64, high: f64) -> Self {
-        Self {
-            label: label.to_owned(),
-            scale: Scale::Linear,
-            range: (low, high),
-        }
+        Self { label: label.to_owned(), scale: Scale::Linear, range: (low, high) }
     }
 
     /// An axis of powers of ten.
     pub fn logarithmic(label: &str, low: f64, high: f64) -> Self {
-        Self {
-            scale: Scale::Logarithmic,
-            ..Self::linear(label, low, high)
-        }
+        Self { scale: Scale::Logarithmic, ..Self::linear(label, low, high) }
     }
 
     /// The place of a value: itself, or its power of ten; `None` where it has none.
@@ -95,9 +88,8 @@ impl Chart {
     /// About `rows` evenly spread indices into [`Chart::places`], the first and the last among them.
     pub fn rows(&self, rows: usize) -> Vec<usize> {
         let last = self.places.len().saturating_sub(1);
-        let mut chosen: Vec<usize> = (0..rows)
-            .map(|row| row * last / rows.saturating_sub(1).max(1))
-            .collect();
+        let mut chosen: Vec<usize> =
+            (0..rows).map(|row| row * last / rows.saturating_sub(1).max(1)).collect();
         chosen.dedup();
         chosen
     }
@@ -105,9 +97,7 @@ impl Chart {
 
 /// `steps + 1` evenly spread values, both ends among them.
 pub fn even(low: f64, high: f64, steps: u32) -> Vec<f64> {
-    (0..=steps)
-        .map(|step| low + (high - low) * f64::from(step) / f64::from(steps))
-        .collect()
+    (0..=steps).map(|step| low + (high - low) * f64::from(step) / f64::from(steps)).collect()
 }
 
 /// Integers from `low` to `high` that a logarithmic axis shows evenly, about `per_decade` to a power of ten;

@@ -103,13 +103,7 @@ fn key(region: Region) -> String {
 }
 
 fn error(worst: Worst, key: String, definition: String) -> Measured {
-    Measured {
-        key,
-        definition,
-        value: worst.error,
-        text: percent(worst.error),
-        n: Some(worst.n),
-    }
+    Measured { key, definition, value: worst.error, text: percent(worst.error), n: Some(worst.n) }
 }
 
 /// What becomes of "not more than `limit`": figures are compared to the limit's last digit, a tenth of a per cent.
@@ -191,10 +185,7 @@ fn to_inflection(
     let worst = measure::over(function, exponents, Region::Inflection)?;
     let definition = format!("{what}, to the inflection point, n = {range}");
     let found = error(worst, key.to_owned(), definition);
-    Some(Measured {
-        n: found.n.filter(|_| !alone),
-        ..found
-    })
+    Some(Measured { n: found.n.filter(|_| !alone), ..found })
 }
 
 #[cfg(test)]

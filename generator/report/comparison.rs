@@ -68,16 +68,10 @@ pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
     for step in 0..ANGLES {
         let gamma = (f64::from(step) / f64::from(ANGLES_PER_DEGREE)).to_radians();
         // cos 90° is not 0 in f64, which n = 0 would show.
-        let cosine = if step == ANGLES - 1 {
-            0.0
-        } else {
-            libm::cos(gamma)
-        };
+        let cosine = if step == ANGLES - 1 { 0.0 } else { libm::cos(gamma) };
         let control = contract.at(gamma, n)?;
         let exact = reference::blinn(cosine, n);
-        let denoted = contract
-            .cosine(&control)
-            .map_or(exact, |cosine| reference::blinn(cosine, n));
+        let denoted = contract.cosine(&control).map_or(exact, |cosine| reference::blinn(cosine, n));
         let f = format.to_f64(i128::from(contract.f(&control)));
         let formula = formula(contract, &control, f);
         accuracy.whole.take(f - exact);
@@ -129,10 +123,7 @@ pub fn multipliers(design: &Design) -> Vec<Multiplier> {
         .filter_map(|net| match net.driver {
             Driver::Op(Op::Mul(a, b)) => {
                 let (a, b) = (design.width(a), design.width(b));
-                Some(Multiplier {
-                    first: a.max(b),
-                    second: a.min(b),
-                })
+                Some(Multiplier { first: a.max(b), second: a.min(b) })
             }
             _ => None,
         })
@@ -227,13 +218,7 @@ mod tests {
     fn errors_are_told_apart() {
         // n = 1: c is rounded to halves, f is half of it and an eighth.
         let found = accuracy(&Line::new(), 1.0).expect("within the domain");
-        assert_eq!(
-            found.fixed_point,
-            Spread {
-                largest: 0.125,
-                mean: found.fixed_point.mean
-            }
-        );
+        assert_eq!(found.fixed_point, Spread { largest: 0.125, mean: found.fixed_point.mean });
         assert!((found.fixed_point.mean - 0.125).abs() < 1e-12);
         assert_eq!(found.formula.largest, 0.5);
         // cos γ near 1/4 and 3/4 is rounded furthest.
@@ -262,10 +247,7 @@ mod tests {
         d.microprogram([step("idle", []), step("result", [valid(), end()])]);
         let design = d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"));
         // A sign bit each.
-        let sizes: Vec<String> = multipliers(&design)
-            .iter()
-            .map(Multiplier::to_string)
-            .collect();
+        let sizes: Vec<String> = multipliers(&design).iter().map(Multiplier::to_string).collect();
         assert_eq!(sizes, ["9x5", "4x4"]);
     }
 }

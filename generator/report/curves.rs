@@ -11,9 +11,8 @@ use crate::reference;
 use crate::registry::Device;
 
 /// The exponents at which a device is measured.
-pub const EXPONENTS: [u32; 20] = [
-    1, 2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 91, 128, 181, 256, 362, 512, 724, 1000,
-];
+pub const EXPONENTS: [u32; 20] =
+    [1, 2, 3, 4, 6, 8, 11, 16, 23, 32, 45, 64, 91, 128, 181, 256, 362, 512, 724, 1000];
 
 /// Those with a curve over the angle.
 const SHOWN: [u32; 5] = [2, 8, 35, 128, 1000];
@@ -152,10 +151,7 @@ fn over_angle(contract: &dyn Contract, n: f64) -> Option<Vec<AtAngle>> {
         .into_iter()
         .map(|x| {
             if x > right * n.sqrt() {
-                return Some(AtAngle {
-                    formula: f64::NAN,
-                    fixed_point: f64::NAN,
-                });
+                return Some(AtAngle { formula: f64::NAN, fixed_point: f64::NAN });
             }
             let mut found = measure(x)?;
             for near in even(x - half, x + half, ANGLES) {
@@ -191,16 +187,9 @@ fn charts(
             column("formula", |at| at.formula),
             column("fixed point", |at| at.fixed_point),
         ],
-        marks: vec![Mark {
-            label: "one output unit".to_owned(),
-            at: unit,
-        }],
+        marks: vec![Mark { label: "one output unit".to_owned(), at: unit }],
     };
-    let shown = || {
-        lines
-            .iter()
-            .filter_map(|(n, line)| Some((n, line.as_ref()?)))
-    };
+    let shown = || lines.iter().filter_map(|(n, line)| Some((n, line.as_ref()?)));
     let lines = |value: fn(&AtAngle) -> f64| -> Vec<Series> {
         shown()
             .map(|(n, line)| Series {
@@ -268,10 +257,7 @@ mod tests {
 
     fn curves(name: &str) -> DeviceCurves {
         let registry = Registry::catalogue();
-        device(
-            registry.device(name).expect("it is in the catalogue"),
-            &|| (),
-        )
+        device(registry.device(name).expect("it is in the catalogue"), &|| ())
     }
 
     #[test]
@@ -280,23 +266,14 @@ mod tests {
         assert_eq!(found.largest_colour, 255.0);
         assert_eq!(found.exponents.len(), EXPONENTS.len());
         // For n = 16 = m the formula is c to the 16th: nothing but the fixed point is left.
-        let at = |n| {
-            found
-                .exponents
-                .iter()
-                .find(|at| at.n == n)
-                .expect("measured")
-        };
+        let at = |n| found.exponents.iter().find(|at| at.n == n).expect("measured");
         assert!(at(16).formula < 1e-12, "{:?}", at(16));
         // The square's share beyond the peak: e^(-2) - 0 is far below, W(1000) misses by about 0.01.
         assert!((0.005..0.02).contains(&at(1000).formula), "{:?}", at(1000));
         for at in &found.exponents {
             let units = 255.0 * at.fixed_point + 0.5;
             assert!(units <= found.bound_units, "{at:?}: {}", found.bound_units);
-            assert!(
-                at.fixed_point > 0.0 && at.fixed_point < at.formula.max(1e-3),
-                "{at:?}"
-            );
+            assert!(at.fixed_point > 0.0 && at.fixed_point < at.formula.max(1e-3), "{at:?}");
         }
     }
 

@@ -71,12 +71,7 @@ pub enum Item {
 impl Item {
     /// Text.
     pub fn text(class: &'static str, x: i32, y: i32, text: impl Into<String>) -> Self {
-        Self::Text {
-            class,
-            x,
-            y,
-            text: text.into(),
-        }
+        Self::Text { class, x, y, text: text.into() }
     }
 
     /// Lines.

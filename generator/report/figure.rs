@@ -28,17 +28,11 @@ pub struct Figure<'a> {
 /// # Errors
 /// A chart cannot be plotted.
 pub fn figures<'a>(charts: &[(&'a Chart, &'a str)]) -> Result<Vec<Figure<'a>>> {
-    charts
-        .par_iter()
-        .map(|(chart, source)| figure(chart, source))
-        .collect()
+    charts.par_iter().map(|(chart, source)| figure(chart, source)).collect()
 }
 
 fn figure<'a>(chart: &'a Chart, source: &'a str) -> Result<Figure<'a>> {
-    let marks = chart
-        .marks
-        .iter()
-        .map(|mark| ("mark".to_owned(), mark.label.as_str()));
+    let marks = chart.marks.iter().map(|mark| ("mark".to_owned(), mark.label.as_str()));
     let legend = chart
         .series
         .iter()
@@ -55,13 +49,7 @@ fn figure<'a>(chart: &'a Chart, source: &'a str) -> Result<Figure<'a>> {
             (number(chart.places[at]), values.collect())
         })
         .collect();
-    Ok(Figure {
-        chart,
-        source,
-        svg: plots::svg(chart)?,
-        legend,
-        rows,
-    })
+    Ok(Figure { chart, source, svg: plots::svg(chart)?, legend, rows })
 }
 
 /// A value in a table: errors on a logarithmic axis keep their magnitude.

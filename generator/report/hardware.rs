@@ -79,11 +79,10 @@ impl Hardware {
                 n: None,
             }
         };
-        let mut found = vec![pair(
-            "clocks".to_owned(),
-            "clocks a point, W for Schlick".to_owned(),
-            &|rival| rival.clocks_per_point,
-        )];
+        let mut found =
+            vec![pair("clocks".to_owned(), "clocks a point, W for Schlick".to_owned(), &|rival| {
+                rival.clocks_per_point
+            })];
         for (at, family) in FAMILIES.iter().enumerate() {
             found.push(pair(
                 format!("luts-{}", family.name),
@@ -104,10 +103,8 @@ pub fn synthesised(
     (yosys, limit): Synthesis,
     done: &(dyn Fn() + Sync),
 ) -> Result<Option<Hardware>> {
-    let Some(rivals) = RIVALS
-        .map(|name| registry.device(name))
-        .into_iter()
-        .collect::<Option<Vec<_>>>()
+    let Some(rivals) =
+        RIVALS.map(|name| registry.device(name)).into_iter().collect::<Option<Vec<_>>>()
     else {
         return Ok(None);
     };
@@ -145,12 +142,7 @@ pub fn synthesised(
         })
         .collect::<Result<_>>()?;
     let (simpler, words) = outcome(&devices[0], &devices[1]);
-    Ok(Some(Hardware {
-        tool: yosys.version()?,
-        devices,
-        simpler,
-        words,
-    }))
+    Ok(Some(Hardware { tool: yosys.version()?, devices, simpler, words }))
 }
 
 /// What the design `top` takes of a family.
@@ -231,12 +223,7 @@ mod tests {
             device: String::new(),
             clocks_per_point,
             multipliers: Vec::new(),
-            usage: vec![FamilyUsage {
-                family: "iCE40",
-                luts,
-                dsps: 4,
-                block_rams: 0,
-            }],
+            usage: vec![FamilyUsage { family: "iCE40", luts, dsps: 4, block_rams: 0 }],
         }
     }
 
@@ -245,9 +232,6 @@ mod tests {
         assert!(outcome(&rival(8.0, 100), &rival(14.0, 100)).0);
         assert!(!outcome(&rival(8.0, 100), &rival(7.0, 200)).0);
         let (simpler, words) = outcome(&rival(8.0, 101), &rival(14.0, 100));
-        assert!(
-            !simpler && words.contains("101 LUTs for 100 in iCE40"),
-            "{words}"
-        );
+        assert!(!simpler && words.contains("101 LUTs for 100 in iCE40"), "{words}");
     }
 }

@@ -57,11 +57,7 @@ pub fn relative(function: Function, gamma: f64, n: f64) -> f64 {
 
 /// The largest relative error from γ = 0 to `edge`.
 fn to_edge(function: Function, n: u32, edge: f64) -> Worst {
-    let mut worst = Worst {
-        error: 0.0,
-        n,
-        gamma: 0.0,
-    };
+    let mut worst = Worst { error: 0.0, n, gamma: 0.0 };
     for step in 1..=ANGLES {
         let gamma = edge * f64::from(step) / f64::from(ANGLES);
         let error = relative(function, gamma, f64::from(n));
@@ -83,13 +79,13 @@ pub fn over(
     exponents: impl IntoIterator<Item = u32>,
     region: Region,
 ) -> Option<Worst> {
-    exponents
-        .into_iter()
-        .filter_map(|n| at(function, n, region))
-        .reduce(|worst, other| match other.error > worst.error {
-            true => other,
-            false => worst,
-        })
+    exponents.into_iter().filter_map(|n| at(function, n, region)).reduce(|worst, other| match other
+        .error
+        > worst.error
+    {
+        true => other,
+        false => worst,
+    })
 }
 
 /// The level of `cosⁿγ` down to which the largest relative error over exponents is `error`, to four digits;

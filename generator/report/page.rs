@@ -64,11 +64,8 @@ struct BenchmarkView<'a> {
 /// # Errors
 /// A chart cannot be plotted.
 pub fn page(evidence: &Evidence, benchmark: Option<&Benchmark>) -> Result<String> {
-    let plots: Vec<(&Chart, &str)> = evidence
-        .plots
-        .iter()
-        .map(|plot| (&plot.chart, plot.figure))
-        .collect();
+    let plots: Vec<(&Chart, &str)> =
+        evidence.plots.iter().map(|plot| (&plot.chart, plot.figure)).collect();
     let page = Page {
         marker: MARKER,
         evidence,
@@ -101,31 +98,18 @@ fn class(verdict: Verdict) -> &'static str {
 
 /// How many claims have each verdict that occurs.
 fn counts(claims: &[Claim]) -> Vec<(&'static str, &'static str, usize)> {
-    [
-        Verdict::Holds,
-        Verdict::Depends,
-        Verdict::Nearly,
-        Verdict::Fails,
-        Verdict::Elsewhere,
-    ]
-    .into_iter()
-    .map(|verdict| {
-        let count = claims
-            .iter()
-            .filter(|claim| claim.verdict == verdict)
-            .count();
-        (class(verdict), verdict.words(), count)
-    })
-    .filter(|(_, _, count)| *count > 0)
-    .collect()
+    [Verdict::Holds, Verdict::Depends, Verdict::Nearly, Verdict::Fails, Verdict::Elsewhere]
+        .into_iter()
+        .map(|verdict| {
+            let count = claims.iter().filter(|claim| claim.verdict == verdict).count();
+            (class(verdict), verdict.words(), count)
+        })
+        .filter(|(_, _, count)| *count > 0)
+        .collect()
 }
 
 fn claim(claim: &Claim) -> ClaimView<'_> {
-    ClaimView {
-        claim,
-        class: class(claim.verdict),
-        verdict: claim.verdict.words(),
-    }
+    ClaimView { claim, class: class(claim.verdict), verdict: claim.verdict.words() }
 }
 
 fn powers(accuracy: &Accuracy) -> PowerRow {
@@ -145,10 +129,7 @@ fn powers(accuracy: &Accuracy) -> PowerRow {
 fn rom_row(words: &[Rom9Word]) -> RomRow {
     RomRow {
         first: words.first().map_or(0, |word| word.n),
-        words: words
-            .iter()
-            .map(|word| format!("{:.4}", word.root))
-            .collect(),
+        words: words.iter().map(|word| format!("{:.4}", word.root)).collect(),
     }
 }
 
@@ -189,10 +170,7 @@ fn timings(benchmark: &Benchmark) -> BenchmarkView<'_> {
                 },
                 format!("{:.2}", pair.w_ns),
                 format!("{:.2}", pair.schlick_ns),
-                format!(
-                    "{:.2} ({:.2} to {:.2})",
-                    pair.ratio[1], pair.ratio[0], pair.ratio[2]
-                ),
+                format!("{:.2} ({:.2} to {:.2})", pair.ratio[1], pair.ratio[0], pair.ratio[2]),
             ]
         })
         .collect();

@@ -55,10 +55,7 @@ impl Places {
         };
         Ok(Self {
             range: end(axis.range.0)?..end(axis.range.1)?,
-            ticks: ticks(axis)
-                .into_iter()
-                .filter_map(|tick| axis.place(tick))
-                .collect(),
+            ticks: ticks(axis).into_iter().filter_map(|tick| axis.place(tick)).collect(),
         })
     }
 }
@@ -181,9 +178,7 @@ fn ticks(axis: &Axis) -> Vec<f64> {
                 .find(|step| *step >= rough * 0.999)
                 .unwrap_or(rough);
             let (first, last) = (libm::ceil(low / step), libm::floor(high / step + 1e-9));
-            (0..=(last - first) as u32)
-                .map(|at| (first + f64::from(at)) * step)
-                .collect()
+            (0..=(last - first) as u32).map(|at| (first + f64::from(at)) * step).collect()
         }
         Scale::Logarithmic => {
             let (first, last) = (libm::log10(low), libm::log10(high));
@@ -226,10 +221,8 @@ fn themed(text: &str, chart: &Chart) -> String {
     let mut themed = text.to_owned();
     for (colour, class) in roles {
         for property in ["fill", "stroke"] {
-            themed = themed.replace(
-                &format!("{property}=\"{colour}\""),
-                &format!("class=\"{class}\""),
-            );
+            themed =
+                themed.replace(&format!("{property}=\"{colour}\""), &format!("class=\"{class}\""));
         }
     }
     let body = themed.split_once('>').map_or("", |(_, body)| body);
@@ -256,10 +249,7 @@ mod tests {
                 name: "x squared".to_owned(),
                 values: vec![0.0, 1.0, f64::NAN, 3.0, 5.0],
             }],
-            marks: vec![Mark {
-                label: "two".to_owned(),
-                at: 2.0,
-            }],
+            marks: vec![Mark { label: "two".to_owned(), at: 2.0 }],
         }
     }
 
@@ -267,10 +257,7 @@ mod tests {
     fn colours_are_classes() {
         let svg = svg(&chart()).expect("it plots");
         for class in ["ink", "grid", "mark", "s1"] {
-            assert!(
-                svg.contains(&format!("class=\"{class}\"")),
-                "{class}: {svg}"
-            );
+            assert!(svg.contains(&format!("class=\"{class}\"")), "{class}: {svg}");
         }
         assert!(!svg.contains("=\"#"), "{svg}");
         assert!(!svg.contains("http"), "{svg}");
@@ -282,15 +269,9 @@ mod tests {
         let chart = chart();
         let found = runs(&chart, &chart.series[0].values);
         // 5 is outside: the line from 3 at 3 leaves at 4, half way.
-        assert_eq!(
-            found,
-            [vec![(0.0, 0.0), (1.0, 1.0)], vec![(3.0, 3.0), (3.5, 4.0)]]
-        );
+        assert_eq!(found, [vec![(0.0, 0.0), (1.0, 1.0)], vec![(3.0, 3.0), (3.5, 4.0)]]);
         let found = runs(&chart, &[6.0, 2.0, 2.0, 6.0, 6.0]);
-        assert_eq!(
-            found,
-            [vec![(0.5, 4.0), (1.0, 2.0), (2.0, 2.0), (2.5, 4.0)]]
-        );
+        assert_eq!(found, [vec![(0.5, 4.0), (1.0, 2.0), (2.0, 2.0), (2.5, 4.0)]]);
     }
 
     #[test]
@@ -302,10 +283,7 @@ mod tests {
         let logarithmic = ticks(&Axis::logarithmic("", 0.05, 1000.0));
         let labels: Vec<String> = logarithmic.into_iter().map(number).collect();
         assert_eq!(labels, ["0.1", "1", "10", "100", "1000"]);
-        assert_eq!(
-            ticks(&Axis::logarithmic("", 2.0, 60.0)),
-            [2.0, 5.0, 10.0, 20.0, 50.0]
-        );
+        assert_eq!(ticks(&Axis::logarithmic("", 2.0, 60.0)), [2.0, 5.0, 10.0, 20.0, 50.0]);
         assert_eq!([-0.5, 1e-5].map(number), ["\u{2212}0.5", "1e\u{2212}5"]);
     }
 }

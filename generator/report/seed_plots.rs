@@ -76,10 +76,7 @@ fn over_angle(
         .iter()
         .map(|(name, function)| Series {
             name: (*name).to_owned(),
-            values: places
-                .iter()
-                .map(|degrees| function(degrees.to_radians(), n))
-                .collect(),
+            values: places.iter().map(|degrees| function(degrees.to_radians(), n)).collect(),
         })
         .collect();
     Chart {
@@ -143,11 +140,7 @@ fn largest(series: &[Series], places: &[u32]) -> String {
     let of = |series: &Series| {
         let pairs = series.values.iter().zip(places);
         let (value, n) = pairs.max_by(|a, b| a.0.total_cmp(b.0))?;
-        Some(format!(
-            "{}: {} at n = {n}",
-            series.name,
-            percent(value / 100.0)
-        ))
+        Some(format!("{}: {} at n = {n}", series.name, percent(value / 100.0)))
     };
     let all: Vec<String> = series.iter().filter_map(of).collect();
     format!("The largest: {}.", all.join("; "))
@@ -174,10 +167,7 @@ fn patent() -> Vec<SeedPlot> {
     zones.marks.push(inflection_mark(35.0));
     let (squared, sixteen) = (stretched(2), stretched(16));
     vec![
-        SeedPlot {
-            figure: "seed 000, Fig. 7",
-            chart: zones,
-        },
+        SeedPlot { figure: "seed 000, Fig. 7", chart: zones },
         SeedPlot {
             figure: "seed 000, Fig. 5",
             chart: over_exponents(
@@ -187,11 +177,7 @@ fn patent() -> Vec<SeedPlot> {
                 (exponents(), Axis::linear(ERROR, 0.0, 15.0)),
                 &[
                     ("to the inflection point", &squared, Region::Inflection),
-                    (
-                        "where cos\u{207f}\u{3b4} \u{2265} 0.46",
-                        &squared,
-                        Region::Level(0.46),
-                    ),
+                    ("where cos\u{207f}\u{3b4} \u{2265} 0.46", &squared, Region::Level(0.46)),
                 ],
             ),
         },
@@ -206,11 +192,7 @@ fn patent() -> Vec<SeedPlot> {
                 &[
                     ("k = 2, 4, 16 by n", &quad, Region::Inflection),
                     ("k = 16 throughout", &sixteen, Region::Inflection),
-                    (
-                        "k = 2 throughout (the prototype)",
-                        &squared,
-                        Region::Inflection,
-                    ),
+                    ("k = 2 throughout (the prototype)", &squared, Region::Inflection),
                 ],
             ),
         },
@@ -233,11 +215,7 @@ fn paper() -> Vec<SeedPlot> {
                 ),
                 100.0,
                 30.0,
-                &[
-                    ("cos\u{207f}\u{3b3}", &blinn),
-                    ("W, m = 2", &w2),
-                    ("Schlick", &schlick),
-                ],
+                &[("cos\u{207f}\u{3b3}", &blinn), ("W, m = 2", &w2), ("Schlick", &schlick)],
             ),
         },
         SeedPlot {
@@ -247,10 +225,7 @@ fn paper() -> Vec<SeedPlot> {
                 "The epicentre: W with m = 2, and Schlick's function",
                 "Largest relative error to the inflection point against n.",
                 (exponents(), Axis::linear(ERROR, 0.0, 12.0)),
-                &[
-                    ("W, m = 2", &w2, Region::Inflection),
-                    ("Schlick", &schlick, Region::Inflection),
-                ],
+                &[("W, m = 2", &w2, Region::Inflection), ("Schlick", &schlick, Region::Inflection)],
             ),
         },
     ];
@@ -286,10 +261,7 @@ fn paper() -> Vec<SeedPlot> {
         ],
     );
     differences.y = Axis::linear("difference", -0.08, 0.02);
-    plots.push(SeedPlot {
-        figure: "seed 002, Figs. 5 to 7",
-        chart: differences,
-    });
+    plots.push(SeedPlot { figure: "seed 002, Figs. 5 to 7", chart: differences });
     let families = |region| {
         [
             ("W, m = 4", &w4 as Function, region),
@@ -338,10 +310,7 @@ fn paper() -> Vec<SeedPlot> {
 pub fn power_table() -> Vec<Accuracy> {
     [0.005, 0.006, 0.01, 0.02, 0.03, 0.05]
         .into_iter()
-        .map(|error| Accuracy {
-            error,
-            powers: power_runs(error),
-        })
+        .map(|error| Accuracy { error, powers: power_runs(error) })
         .collect()
 }
 
@@ -349,11 +318,7 @@ fn power_runs(limit: f64) -> Vec<PowerRun> {
     let suffices = |n: u32, k: u32| {
         measure::at(&stretched(k), n, Region::Inflection).is_some_and(|worst| worst.error <= limit)
     };
-    let mut runs: Vec<PowerRun> = vec![PowerRun {
-        first: 1,
-        last: 1,
-        power: 1,
-    }];
+    let mut runs: Vec<PowerRun> = vec![PowerRun { first: 1, last: 1, power: 1 }];
     for n in 2..=LARGEST {
         // k = n is exact, and the powers that suffice do not fall as n grows.
         let least = runs.last().map_or(1, |run| run.power);
@@ -362,11 +327,7 @@ fn power_runs(limit: f64) -> Vec<PowerRun> {
         };
         match runs.last_mut() {
             Some(run) if run.power == power => run.last = n,
-            _ => runs.push(PowerRun {
-                first: n,
-                last: n,
-                power,
-            }),
+            _ => runs.push(PowerRun { first: n, last: n, power }),
         }
     }
     runs
@@ -377,11 +338,7 @@ pub fn rom_9() -> Vec<Rom9Word> {
     (1..=LARGEST)
         .map(|n| {
             let k = reference::quad_power(i64::from(n));
-            Rom9Word {
-                n,
-                k,
-                root: (f64::from(n) / f64::from(k)).sqrt(),
-            }
+            Rom9Word { n, k, root: (f64::from(n) / f64::from(k)).sqrt() }
         })
         .collect()
 }
@@ -398,10 +355,7 @@ mod tests {
             let run = runs.iter().find(|run| (run.first..=run.last).contains(&n));
             run.map(|run| run.power)
         };
-        assert_eq!(
-            [1, 2, 3, 4, 5, 6, 1000].map(power),
-            [1, 2, 3, 3, 4, 4, 9].map(Some)
-        );
+        assert_eq!([1, 2, 3, 4, 5, 6, 1000].map(power), [1, 2, 3, 3, 4, 4, 9].map(Some));
         let covered: u32 = runs.iter().map(|run| run.last - run.first + 1).sum();
         assert_eq!(covered, LARGEST);
     }
@@ -410,10 +364,7 @@ mod tests {
     fn words_of_rom_9() {
         let map = rom_9();
         let root = |n: usize| map[n - 1].root;
-        assert_eq!(
-            [1, 2, 4, 16, 64, 400].map(root),
-            [1.0, 1.0, 1.0, 1.0, 2.0, 5.0]
-        );
+        assert_eq!([1, 2, 4, 16, 64, 400].map(root), [1.0, 1.0, 1.0, 1.0, 2.0, 5.0]);
         assert_eq!(map.len(), 1000);
         assert_eq!((map[2].k, map[6].k), (4, 16));
     }
@@ -421,18 +372,10 @@ mod tests {
     #[test]
     fn plots_have_what_they_need() {
         for SeedPlot { chart, .. } in plots() {
-            assert!(
-                chart.series.len() <= crate::report::plots::STYLES,
-                "{}",
-                chart.id
-            );
+            assert!(chart.series.len() <= crate::report::plots::STYLES, "{}", chart.id);
             for series in &chart.series {
                 assert_eq!(series.values.len(), chart.places.len());
-                assert!(
-                    series.values.iter().all(|value| value.is_finite()),
-                    "{}",
-                    chart.id
-                );
+                assert!(series.values.iter().all(|value| value.is_finite()), "{}", chart.id);
             }
         }
     }

@@ -52,11 +52,9 @@ impl fmt::Display for Error {
         match self {
             Self::NoDirection(name) => write!(f, "{name} has no direction"),
             Self::OppositeHalves => f.write_str("the half vectors are opposite"),
-            Self::Beyond {
-                operand,
-                value,
-                key,
-            } => write!(f, "{operand} is {value}, which {key} has no room for"),
+            Self::Beyond { operand, value, key } => {
+                write!(f, "{operand} is {value}, which {key} has no room for")
+            }
         }
     }
 }
@@ -109,11 +107,7 @@ impl Arc {
         let gamma = angle(half_1, turned_half);
         let (cosine_1, cosine_2) = (dot(normal_1, half_1), dot(normal_1, turned_half));
         let sine = libm::sin(gamma);
-        let rise = if sine == 0.0 {
-            0.0
-        } else {
-            (cosine_2 - cosine_1 * libm::cos(gamma)) / sine
-        };
+        let rise = if sine == 0.0 { 0.0 } else { (cosine_2 - cosine_1 * libm::cos(gamma)) / sine };
         // cos δ = cos θ₁·cos x + rise·sin x at x from H₁, that is A·cos(x − λ).
         let (peak, lambda) = if sine == 0.0 {
             (cosine_1.max(0.0), 0.0)
@@ -145,11 +139,7 @@ impl Arc {
     /// ζ at H₁: −λ, or a turn less where that brings the part of the way that has light near ζ = 0.
     /// The whole way lies within three right angles of 0 then.
     pub fn zeta_start(&self) -> f64 {
-        if self.gamma - self.lambda > 1.5 * PI {
-            -self.lambda - TAU
-        } else {
-            -self.lambda
-        }
+        if self.gamma - self.lambda > 1.5 * PI { -self.lambda - TAU } else { -self.lambda }
     }
 
     /// The line of `length` intervals with the light `intensity` (I·k_s, in output units) and the exponent n.

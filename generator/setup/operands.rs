@@ -93,11 +93,7 @@ impl Line {
             return Ok(());
         }
         let value = f64::from(value);
-        Err(Error::Beyond {
-            operand,
-            value,
-            key,
-        })
+        Err(Error::Beyond { operand, value, key })
     }
 }
 

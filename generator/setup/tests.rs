@@ -118,10 +118,7 @@ fn a_half_vector_that_stands_still() {
     assert!(close(arc.cosine(0.7), 20f64.to_radians().cos()));
     let line = arc.line(100.0, 2, 10);
     assert_eq!((line.delta_zeta, line.zeta_start), (0.0, 0.0));
-    assert!(close(
-        line.amplitude,
-        100.0 * 20f64.to_radians().cos().powi(2)
-    ));
+    assert!(close(line.amplitude, 100.0 * 20f64.to_radians().cos().powi(2)));
     // Facing away.
     let arc = Arc::new(Z, tilted(120.0), Z, tilted(120.0)).unwrap();
     assert_eq!((arc.peak, arc.line(100.0, 2, 10).amplitude), (0.0, 0.0));
@@ -129,9 +126,7 @@ fn a_half_vector_that_stands_still() {
 
 #[test]
 fn a_line_of_one_point() {
-    let line = Arc::new(Z, tilted(-30.0), Z, tilted(60.0))
-        .unwrap()
-        .line(100.0, 4, 0);
+    let line = Arc::new(Z, tilted(-30.0), Z, tilted(60.0)).unwrap().line(100.0, 4, 0);
     assert_eq!(line.delta_zeta, 0.0);
     assert!(close(line.zeta(0), -FRAC_PI_6));
 }
@@ -156,14 +151,8 @@ fn opposite_normals_and_half_vectors() {
     let arc = Arc::new(Z, X, [0.0, 0.0, -1.0], tilted(150.0)).unwrap();
     assert!(close(arc.theta_2, FRAC_PI_6));
     assert!(close(dot(arc.turned_half, tilted(-30.0)), 1.0));
-    assert_eq!(
-        Arc::new(Z, X, Z, [-1.0, 0.0, 0.0]),
-        Err(Error::OppositeHalves)
-    );
-    assert_eq!(
-        Arc::new(Z, X, [0.0; 3], X),
-        Err(Error::NoDirection("the second normal"))
-    );
+    assert_eq!(Arc::new(Z, X, Z, [-1.0, 0.0, 0.0]), Err(Error::OppositeHalves));
+    assert_eq!(Arc::new(Z, X, [0.0; 3], X), Err(Error::NoDirection("the second normal")));
     assert!(Arc::new(Z, [f64::NAN, 0.0, 1.0], Z, X).is_err());
 }
 
@@ -175,27 +164,15 @@ fn what_a_configuration_has_no_room_for() {
     };
     let arc = Arc::new(Z, tilted(-30.0), Z, tilted(60.0)).unwrap();
     let quad = Config::defaults(&devices::quad_cosine::schema(), "line");
-    assert_eq!(
-        key(arc.line(1.0, 1024, 5).quad_cosine(&quad).unwrap_err()),
-        "exponent.bits"
-    );
-    assert_eq!(
-        key(arc.line(1.0, 5, 4096).quad_cosine(&quad).unwrap_err()),
-        "length.bits"
-    );
+    assert_eq!(key(arc.line(1.0, 1024, 5).quad_cosine(&quad).unwrap_err()), "exponent.bits");
+    assert_eq!(key(arc.line(1.0, 5, 4096).quad_cosine(&quad).unwrap_err()), "length.bits");
     // Brighter than the operand holds: it saturates.
-    assert_eq!(
-        arc.line(300.0, 5, 5).quad_cosine(&quad).unwrap().amplitude,
-        255
-    );
+    assert_eq!(arc.line(300.0, 5, 5).quad_cosine(&quad).unwrap().amplitude, 255);
     let squared = Config::defaults(&devices::cosine_squared::schema(), "line");
     assert!(arc.line(1.0, 1000, 5).cosine_squared(&squared).is_ok());
     let text = "device = \"cosine-squared\"\nangle.integer = 3";
     let schemas = [devices::cosine_squared::schema()];
     let squared = config::parse("line.toml", text, &schemas).unwrap();
     // 60° times √500 is 14.9 right angles.
-    assert_eq!(
-        key(arc.line(1.0, 1000, 5).cosine_squared(&squared).unwrap_err()),
-        "angle.integer"
-    );
+    assert_eq!(key(arc.line(1.0, 1000, 5).cosine_squared(&squared).unwrap_err()), "angle.integer");
 }

@@ -22,9 +22,8 @@ pub(super) fn divide(
     let reads_of = reads.iter().map(|edge| (edge.to, edge.address));
     let pairs = reads_of.chain(registers.iter().map(|edge| (edge.q, edge.data)));
     let pairs: Vec<(Slot, Slot)> = pairs.collect();
-    while let Some((to, _)) = pairs
-        .iter()
-        .find(|(to, from)| is_wide[*from as usize] && !is_wide[*to as usize])
+    while let Some((to, _)) =
+        pairs.iter().find(|(to, from)| is_wide[*from as usize] && !is_wide[*to as usize])
     {
         is_wide[*to as usize] = true;
     }
@@ -67,9 +66,9 @@ fn widths(compiler: &Compiler) -> Vec<u32> {
         }
         // What has no net of its own is part of a concatenation, or is held over the edge.
         widths[to] = match step.instruction {
-            Instruction::Place {
-                base, drop, shift, ..
-            } => widths[base as usize].max(u64::BITS - u32::from(drop) + u32::from(shift)),
+            Instruction::Place { base, drop, shift, .. } => {
+                widths[base as usize].max(u64::BITS - u32::from(drop) + u32::from(shift))
+            }
             Instruction::Copy { a, .. } => widths[a as usize],
             _ => u64::BITS,
         };
@@ -93,11 +92,7 @@ struct Divider<'a> {
 impl Divider<'_> {
     /// A new slot, where it is wanted.
     fn fresh(&mut self, wide: bool, initial: u64) -> Slot {
-        let bank = if wide {
-            &mut self.wide
-        } else {
-            &mut self.narrow
-        };
+        let bank = if wide { &mut self.wide } else { &mut self.narrow };
         bank.initial.push(initial);
         (bank.initial.len() - 1) as Slot
     }
@@ -107,11 +102,7 @@ impl Divider<'_> {
         let wide = self.is_wide[slot as usize];
         let [initial] = self.compiler.initial[slot as usize];
         let home = self.fresh(wide, initial);
-        let of = if wide {
-            &mut self.wide_of
-        } else {
-            &mut self.narrow_of
-        };
+        let of = if wide { &mut self.wide_of } else { &mut self.narrow_of };
         of[slot as usize] = Some(home);
         home
     }
@@ -178,106 +169,45 @@ impl Divider<'_> {
                 self.narrow_of[to as usize] = Some(cut);
             }
             // These cut their operand themselves; done beforehand, the rest is narrow.
-            I::Field {
-                a,
-                low,
-                drop,
-                source,
-                ..
-            } if is_wide(a) => {
+            I::Field { a, low, drop, source, .. } if is_wide(a) => {
                 let a = self.cut(a, low, drop, sources);
                 let to = self.home(step.to);
-                let field = I::Field {
-                    to,
-                    a,
-                    low: 0,
-                    drop,
-                    source,
-                };
+                let field = I::Field { to, a, low: 0, drop, source };
                 self.steps.push((sources, Step::Narrow(field)));
             }
-            I::ChooseAny {
-                of,
-                low,
-                drop,
-                a,
-                b,
-                ..
-            } if is_wide(of) && !is_wide(step.to) && fits(drop) => {
+            I::ChooseAny { of, low, drop, a, b, .. }
+                if is_wide(of) && !is_wide(step.to) && fits(drop) =>
+            {
                 let of = self.cut(of, low, drop, sources);
                 let [a, b] = [a, b].map(|slot| self.operand(slot, false, sources));
                 let to = self.home(step.to);
-                let choose = I::ChooseAny {
-                    to,
-                    of,
-                    low: 0,
-                    drop,
-                    a,
-                    b,
-                };
+                let choose = I::ChooseAny { to, of, low: 0, drop, a, b };
                 self.steps.push((sources, Step::Narrow(choose)));
             }
             I::Any { a, low, drop, .. } if is_wide(a) && fits(drop) => {
                 let a = self.cut(a, low, drop, sources);
                 let to = self.home(step.to);
-                let any = I::Any {
-                    to,
-                    a,
-                    low: 0,
-                    drop,
-                };
+                let any = I::Any { to, a, low: 0, drop };
                 self.steps.push((sources, Step::Narrow(any)));
             }
-            I::Place {
-                to,
-                base,
-                a,
-                low,
-                drop,
-                shift,
-            } if is_wide(a) && !is_wide(to) => {
+            I::Place { to, base, a, low, drop, shift } if is_wide(a) && !is_wide(to) => {
                 let a = self.cut(a, low, drop, sources);
                 let base = self.operand(base, false, sources);
                 let to = self.home(step.to);
-                let place = I::Place {
-                    to,
-                    base,
-                    a,
-                    low: 0,
-                    drop,
-                    shift,
-                };
+                let place = I::Place { to, base, a, low: 0, drop, shift };
                 self.steps.push((sources, Step::Narrow(place)));
             }
             I::MulUnsigned { to, a, b } if is_wide(to) && !is_wide(a) && !is_wide(b) => {
-                let (a, b) = (
-                    self.operand(a, false, sources),
-                    self.operand(b, false, sources),
-                );
+                let (a, b) = (self.operand(a, false, sources), self.operand(b, false, sources));
                 let to = self.home(to);
                 self.steps.push((sources, Step::Product { to, a, b }));
             }
-            I::MulSigned {
-                to,
-                a,
-                b,
-                drop_a,
-                drop_b,
-                drop,
-            } if is_wide(to) && fits(drop_a) && fits(drop_b) => {
-                let (a, b) = (
-                    self.operand(a, false, sources),
-                    self.operand(b, false, sources),
-                );
+            I::MulSigned { to, a, b, drop_a, drop_b, drop }
+                if is_wide(to) && fits(drop_a) && fits(drop_b) =>
+            {
+                let (a, b) = (self.operand(a, false, sources), self.operand(b, false, sources));
                 let to = self.home(to);
-                let product = Step::SignedProduct {
-                    to,
-                    a,
-                    b,
-                    drop_a,
-                    drop_b,
-                    drop,
-                };
+                let product = Step::SignedProduct { to, a, b, drop_a, drop_b, drop };
                 self.steps.push((sources, product));
             }
             instruction => self.within_a_bank(step, instruction),
@@ -288,11 +218,7 @@ impl Divider<'_> {
     fn within_a_bank(&mut self, step: &Ordered, mut instruction: Instruction) {
         let sources = step.sources;
         let result_wide = self.is_wide[step.to as usize];
-        let wide = result_wide
-            || step
-                .operands
-                .iter()
-                .any(|&slot| self.is_wide[slot as usize]);
+        let wide = result_wide || step.operands.iter().any(|&slot| self.is_wide[slot as usize]);
         if let Instruction::Mux { first, last, .. } = &mut instruction {
             let inputs = *first as usize..=*last as usize;
             *first = self.choices.len() as u32;
@@ -308,11 +234,7 @@ impl Divider<'_> {
             *slot = self.operand(*slot, wide, sources);
         }
         // Numbered last: the result stands behind its operands.
-        let result = if wide == result_wide {
-            self.home(step.to)
-        } else {
-            self.fresh(wide, 0)
-        };
+        let result = if wide == result_wide { self.home(step.to) } else { self.fresh(wide, 0) };
         if let Some(to) = to {
             *to = result;
         }
@@ -334,11 +256,7 @@ impl Divider<'_> {
                 let sources = self.compiler.sources[slot as usize];
                 self.operand(slot, wide, sources)
             };
-            let edge = ReadEdge {
-                to: slot(edge.to),
-                address: slot(edge.address),
-                ..*edge
-            };
+            let edge = ReadEdge { to: slot(edge.to), address: slot(edge.address), ..*edge };
             self.bank(wide).reads.push(edge);
         }
         for edge in registers {
@@ -359,11 +277,7 @@ impl Divider<'_> {
     }
 
     fn bank(&mut self, wide: bool) -> &mut Bank {
-        if wide {
-            &mut self.wide
-        } else {
-            &mut self.narrow
-        }
+        if wide { &mut self.wide } else { &mut self.narrow }
     }
 
     fn program(mut self) -> Program {
@@ -377,10 +291,7 @@ impl Divider<'_> {
         let segments = self
             .steps
             .chunk_by(|(a, _), (b, _)| a == b)
-            .map(|chunk| Segment {
-                sources: chunk[0].0,
-                len: chunk.len() as u32,
-            })
+            .map(|chunk| Segment { sources: chunk[0].0, len: chunk.len() as u32 })
             .collect();
         Program {
             steps: self.steps.into_iter().map(|(_, step)| step).collect(),

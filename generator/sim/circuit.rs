@@ -176,11 +176,7 @@ impl Microprogram {
             .zip(registers.get(control.run.index()))
             .filter(|_| !control.words.is_empty())
             .map(|(address, run)| (address.q, run.q));
-        Self {
-            names,
-            state,
-            id: get_signal_id(),
-        }
+        Self { names, state, id: get_signal_id() }
     }
 }
 

@@ -19,10 +19,7 @@ pub(super) fn compile(design: &Design) -> Result<Program> {
     references::check(design)?;
     let mut compiler = Compiler::new(design)?;
     let order = design.levelise().map_err(|nets| {
-        let names: Vec<_> = nets
-            .iter()
-            .map(|net| design.net(*net).name.as_str())
-            .collect();
+        let names: Vec<_> = nets.iter().map(|net| design.net(*net).name.as_str()).collect();
         anyhow!("combinational loop through `{}`", names.join("`, `"))
     })?;
     for net in order {
@@ -118,18 +115,13 @@ impl<'a> Compiler<'a> {
             let start = u32::try_from(compiler.words.len()).context("the ROMs are too large")?;
             let len = u32::try_from(rom.words.len()).context("the ROMs are too large")?;
             compiler.roms.push(Span { start, len });
-            compiler
-                .words
-                .extend(rom.words.iter().map(|word| word & mask));
+            compiler.words.extend(rom.words.iter().map(|word| word & mask));
         }
         if !design.control.fields.is_empty() {
             let fields = &design.control.fields;
             let wide: u32 = fields.iter().map(|field| design.width(field.net)).sum();
             let word = design.width(design.rom(design.control.rom).data);
-            ensure!(
-                wide <= word,
-                "the fields take {wide} bits of a control word of {word}"
-            );
+            ensure!(wide <= word, "the fields take {wide} bits of a control word of {word}");
             compiler.fields = design.field_positions();
         }
         Ok(compiler)
@@ -158,13 +150,7 @@ impl<'a> Compiler<'a> {
         let (low, drop, source) = (low as u8, drop_of(width), self.next_field as u8);
         self.next_field += 1;
         let to = self.fresh(1 << source);
-        let instruction = Instruction::Field {
-            to,
-            a,
-            low,
-            drop,
-            source,
-        };
+        let instruction = Instruction::Field { to, a, low, drop, source };
         self.push(to, &[a], instruction);
         Ok(to)
     }
@@ -239,14 +225,9 @@ impl<'a> Compiler<'a> {
     /// one on `zero`.
     pub(super) fn placed(&self, slot: Slot, zero: Slot) -> Option<(Slot, Slot, u8, u8, u8)> {
         match *self.made_by.get(&slot)? {
-            Instruction::Place {
-                base,
-                a,
-                low,
-                drop,
-                shift,
-                ..
-            } => Some((base, a, low, drop, shift)),
+            Instruction::Place { base, a, low, drop, shift, .. } => {
+                Some((base, a, low, drop, shift))
+            }
             Instruction::Slice { a, low, drop, .. } => Some((zero, a, low, drop, 0)),
             _ => None,
         }
@@ -265,10 +246,7 @@ impl<'a> Compiler<'a> {
             }
             Driver::Constant(bits) => Ok(self.constant(bits & mask(width))),
             Driver::Register(register) => {
-                ensure!(
-                    design.register(*register).q == id,
-                    "its register drives another net"
-                );
+                ensure!(design.register(*register).q == id, "its register drives another net");
                 Ok(self.source())
             }
             Driver::Rom(rom) => {
@@ -318,10 +296,7 @@ impl<'a> Compiler<'a> {
             let net = design.net(register.q);
             let what = || format!("register `{}` ({})", net.name, net.location);
             let q = self.of_net[register.q.index()];
-            let data = register
-                .data
-                .context("it takes nothing")
-                .with_context(what)?;
+            let data = register.data.context("it takes nothing").with_context(what)?;
             ensure!(
                 design.width(data) == design.width(register.q),
                 "{} takes data of another width",
@@ -358,11 +333,10 @@ impl<'a> Compiler<'a> {
     fn drop_unneeded(&mut self, reads: &[ReadEdge], registers: &[RegisterEdge]) {
         let design = self.design;
         let mut needed = vec![false; self.sources.len()];
-        let of_edge = reads.iter().map(|edge| edge.address).chain(
-            registers
-                .iter()
-                .flat_map(|edge| [edge.data, edge.enable, edge.keep]),
-        );
+        let of_edge = reads
+            .iter()
+            .map(|edge| edge.address)
+            .chain(registers.iter().flat_map(|edge| [edge.data, edge.enable, edge.keep]));
         let of_nets = design
             .iter()
             .filter(|(_, net)| net.named)
@@ -393,10 +367,6 @@ impl<'a> Compiler<'a> {
     /// A slot that holds the value of `a` until the edge is over, although the edge has written the
     /// slots `written` before: the edge happens everywhere at once.
     fn stable(&mut self, a: Slot, written: &[Slot]) -> Slot {
-        if written.contains(&a) {
-            self.emit(&[a], |to| Instruction::Copy { to, a })
-        } else {
-            a
-        }
+        if written.contains(&a) { self.emit(&[a], |to| Instruction::Copy { to, a }) } else { a }
     }
 }

@@ -103,14 +103,7 @@ impl Compiler<'_> {
                 let (a, b) = (slot(*a), slot(*b));
                 self.emit(&[a, b], |to| match signed {
                     false => Instruction::MulUnsigned { to, a, b },
-                    true => Instruction::MulSigned {
-                        to,
-                        a,
-                        b,
-                        drop_a,
-                        drop_b,
-                        drop,
-                    },
+                    true => Instruction::MulSigned { to, a, b, drop_a, drop_b, drop },
                 })
             }
             Op::Equal(a, b) | Op::Less(a, b) => {
@@ -177,9 +170,7 @@ impl Compiler<'_> {
     /// The width of what a slot holds: that of the narrowest net in it, of which the others are extensions.
     fn held(&self, slot: Slot) -> u32 {
         let nets = self.of_net.iter().zip(&self.design.nets);
-        let widths = nets
-            .filter(|(own, _)| **own == slot)
-            .map(|(_, net)| net.format.width());
+        let widths = nets.filter(|(own, _)| **own == slot).map(|(_, net)| net.format.width());
         widths.min().unwrap_or(MAX_WIDTH)
     }
 
@@ -202,14 +193,7 @@ impl Compiler<'_> {
             all = if shift == 0 && known == 0 && self.known_value(base).is_some() {
                 slot
             } else {
-                self.emit(&[base, a], |to| Instruction::Place {
-                    to,
-                    base,
-                    a,
-                    low,
-                    drop,
-                    shift,
-                })
+                self.emit(&[base, a], |to| Instruction::Place { to, base, a, low, drop, shift })
             };
         }
         all
@@ -237,12 +221,7 @@ impl Compiler<'_> {
     /// which range a value is.
     fn choose(&mut self, select: Slot, a: Slot, b: Slot) -> Slot {
         let Some((of, low, drop)) = self.any(select) else {
-            return self.emit(&[select, a, b], |to| Instruction::Choose {
-                to,
-                select,
-                a,
-                b,
-            });
+            return self.emit(&[select, a, b], |to| Instruction::Choose { to, select, a, b });
         };
         let zero = self.constant(0);
         match self.placed(b, zero) {
@@ -259,14 +238,7 @@ impl Compiler<'_> {
                     shift,
                 })
             }
-            _ => self.emit(&[of, a, b], |to| Instruction::ChooseAny {
-                to,
-                of,
-                low,
-                drop,
-                a,
-                b,
-            }),
+            _ => self.emit(&[of, a, b], |to| Instruction::ChooseAny { to, of, low, drop, a, b }),
         }
     }
 
@@ -289,12 +261,7 @@ impl Compiler<'_> {
         let first = u32::try_from(self.choices.len()).context("too many muxes")?;
         let last = first + (inputs.len() - 1) as u32;
         self.choices.extend(inputs);
-        Ok(self.emit(&operands, |to| Instruction::Mux {
-            to,
-            select,
-            first,
-            last,
-        }))
+        Ok(self.emit(&operands, |to| Instruction::Mux { to, select, first, last }))
     }
 }
 

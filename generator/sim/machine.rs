@@ -63,12 +63,7 @@ impl<const LANES: usize> Machine<LANES> {
 
     #[inline(always)]
     fn update_here(&mut self, edge: bool, inputs: Option<&[[u64; LANES]]>) -> bool {
-        let Program {
-            narrow,
-            wide,
-            words,
-            ..
-        } = &*self.program;
+        let Program { narrow, wide, words, .. } = &*self.program;
         if edge {
             self.changed |= clock(narrow, words, &mut self.narrow);
             self.changed |= clock(wide, words, &mut self.wide);
@@ -86,13 +81,7 @@ impl<const LANES: usize> Machine<LANES> {
 
     #[inline(always)]
     fn settle(&mut self) {
-        let Program {
-            steps,
-            segments,
-            choices,
-            words,
-            ..
-        } = &*self.program;
+        let Program { steps, segments, choices, words, .. } = &*self.program;
         let (narrow, wide) = (self.narrow.as_mut_slice(), self.wide.as_mut_slice());
         let mut changed = mem::take(&mut self.changed);
         let mut rest = steps.as_slice();
@@ -122,14 +111,7 @@ impl<const LANES: usize> Machine<LANES> {
                         let product = |a, b| u64::from(a) * u64::from(b);
                         map2(&mut wide[to as usize], a, b, product);
                     }
-                    Step::SignedProduct {
-                        to,
-                        a,
-                        b,
-                        drop_a,
-                        drop_b,
-                        drop,
-                    } => {
+                    Step::SignedProduct { to, a, b, drop_a, drop_b, drop } => {
                         let [a, b] = [a, b].map(|slot| &narrow[slot as usize]);
                         let signed = |bits: u32, drop| i64::from(sign_extended(bits, drop) as i32);
                         let product = |a, b| {
@@ -272,9 +254,7 @@ fn take_inputs<W: Word, const LANES: usize>(
     let mut news = 0;
     for port in &bank.inputs {
         let mut bits = [W::ZERO; LANES];
-        map(&mut bits, &inputs[port.at as usize], |bits| {
-            W::low(bits & port.mask)
-        });
+        map(&mut bits, &inputs[port.at as usize], |bits| W::low(bits & port.mask));
         news |= store(&mut slots[port.slot as usize], &bits, port.source);
     }
     news
@@ -336,28 +316,15 @@ pub(super) fn execute<W: Word, const LANES: usize>(
     let mask = |drop: u8| W::low(u64::MAX >> drop);
     match instruction {
         I::Copy { to, a } => unary(slots, to, a, |a| a),
-        I::Field {
-            to,
-            a,
-            low,
-            drop,
-            source,
-        } => {
+        I::Field { to, a, low, drop, source } => {
             let mut field = [W::ZERO; LANES];
             map(&mut field, &slots[a as usize], |a| a >> low & mask(drop));
             return store(&mut slots[to as usize], &field, 1 << source);
         }
         I::Slice { to, a, low, drop } => unary(slots, to, a, |a| a >> low & mask(drop)),
-        I::Place {
-            to,
-            base,
-            a,
-            low,
-            drop,
-            shift,
-        } => binary(slots, to, base, a, |base, a| {
-            base | (a >> low & mask(drop)) << shift
-        }),
+        I::Place { to, base, a, low, drop, shift } => {
+            binary(slots, to, base, a, |base, a| base | (a >> low & mask(drop)) << shift)
+        }
         I::SignExtend { to, a, from, drop } => {
             unary(slots, to, a, |a| sign_extended(a, from) & mask(drop));
         }
@@ -367,40 +334,22 @@ pub(super) fn execute<W: Word, const LANES: usize>(
         I::Add { to, a, b, drop } => {
             binary(slots, to, a, b, |a, b| a.wrapping_add(b) & mask(drop));
         }
-        I::AddSlices {
-            to,
-            a,
-            b,
-            low_a,
-            drop_a,
-            low_b,
-            drop_b,
-            drop,
-        } => binary(slots, to, a, b, |a, b| {
-            let (a, b) = (a >> low_a & mask(drop_a), b >> low_b & mask(drop_b));
-            a.wrapping_add(b) & mask(drop)
-        }),
-        I::AddCarry {
-            to,
-            a,
-            b,
-            carry,
-            drop,
-        } => ternary(slots, to, [a, b, carry], |a, b, carry| {
-            a.wrapping_add(b).wrapping_add(carry) & mask(drop)
-        }),
+        I::AddSlices { to, a, b, low_a, drop_a, low_b, drop_b, drop } => {
+            binary(slots, to, a, b, |a, b| {
+                let (a, b) = (a >> low_a & mask(drop_a), b >> low_b & mask(drop_b));
+                a.wrapping_add(b) & mask(drop)
+            })
+        }
+        I::AddCarry { to, a, b, carry, drop } => {
+            ternary(slots, to, [a, b, carry], |a, b, carry| {
+                a.wrapping_add(b).wrapping_add(carry) & mask(drop)
+            })
+        }
         I::Sub { to, a, b, drop } => {
             binary(slots, to, a, b, |a, b| a.wrapping_sub(b) & mask(drop));
         }
         I::MulUnsigned { to, a, b } => binary(slots, to, a, b, W::wrapping_mul),
-        I::MulSigned {
-            to,
-            a,
-            b,
-            drop_a,
-            drop_b,
-            drop,
-        } => binary(slots, to, a, b, |a, b| {
+        I::MulSigned { to, a, b, drop_a, drop_b, drop } => binary(slots, to, a, b, |a, b| {
             sign_extended(a, drop_a).wrapping_mul(sign_extended(b, drop_b)) & mask(drop)
         }),
         I::Equal { to, a, b } => binary(slots, to, a, b, |a, b| W::from(a == b)),
@@ -409,52 +358,28 @@ pub(super) fn execute<W: Word, const LANES: usize>(
         }
         I::LessUnsigned { to, a, b } => binary(slots, to, a, b, |a, b| W::from(a < b)),
         // With the sign bits inverted, the order is that of unsigned numbers.
-        I::LessSigned { to, a, b, drop } => binary(slots, to, a, b, |a, b| {
-            W::from(a ^ sign::<W>(drop) < b ^ sign::<W>(drop))
-        }),
+        I::LessSigned { to, a, b, drop } => {
+            binary(slots, to, a, b, |a, b| W::from(a ^ sign::<W>(drop) < b ^ sign::<W>(drop)))
+        }
         I::Choose { to, select, a, b } => ternary(slots, to, [select, a, b], |select, a, b| {
             select_unpredictable(select == W::ZERO, a, b)
         }),
-        I::ChooseAny {
-            to,
-            of,
-            low,
-            drop,
-            a,
-            b,
-        } => ternary(slots, to, [of, a, b], |of, a, b| {
+        I::ChooseAny { to, of, low, drop, a, b } => ternary(slots, to, [of, a, b], |of, a, b| {
             select_unpredictable(of >> low & mask(drop) == W::ZERO, a, b)
         }),
-        I::ChoosePlace {
-            to,
-            of,
-            low,
-            drop,
-            a,
-            base,
-            place_low,
-            place_drop,
-            shift,
-        } => ternary(slots, to, [of, a, base], |of, a, base| {
-            let placed = base | (of >> place_low & mask(place_drop)) << shift;
-            select_unpredictable(of >> low & mask(drop) == W::ZERO, a, placed)
-        }),
-        I::Mux {
-            to,
-            select,
-            first,
-            last,
-        } => {
+        I::ChoosePlace { to, of, low, drop, a, base, place_low, place_drop, shift } => {
+            ternary(slots, to, [of, a, base], |of, a, base| {
+                let placed = base | (of >> place_low & mask(place_drop)) << shift;
+                select_unpredictable(of >> low & mask(drop) == W::ZERO, a, placed)
+            })
+        }
+        I::Mux { to, select, first, last } => {
             let choices = &choices[first as usize..=last as usize];
             mux(slots, to, select, choices);
         }
-        I::Read {
-            to,
-            address,
-            words: span,
-        } => unary(slots, to, address, |address| {
-            W::low(read(words, span, address.into()))
-        }),
+        I::Read { to, address, words: span } => {
+            unary(slots, to, address, |address| W::low(read(words, span, address.into())))
+        }
     }
     0
 }
@@ -474,11 +399,7 @@ fn sign_extended<W: Word>(bits: W, drop: u8) -> W {
 /// A word of a ROM; 0 beyond its contents.
 #[inline(always)]
 fn read(words: &[u64], span: Span, address: u64) -> u64 {
-    if address < u64::from(span.len) {
-        words[span.start as usize + address as usize]
-    } else {
-        0
-    }
+    if address < u64::from(span.len) { words[span.start as usize + address as usize] } else { 0 }
 }
 
 /// The last of the choices where `select` is beyond them.

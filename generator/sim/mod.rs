@@ -150,11 +150,7 @@ impl<const LANES: usize> Simulator<LANES> {
     #[inline]
     fn half(&mut self, level: bool) -> Result<()> {
         self.circuit.clock.next = level.into();
-        ensure!(
-            simulate(&mut self.circuit, UPDATES),
-            "`{}` does not settle",
-            self.name
-        );
+        ensure!(simulate(&mut self.circuit, UPDATES), "`{}` does not settle", self.name);
         match &mut self.trace {
             None => Ok(()),
             Some(trace) => {

@@ -36,36 +36,13 @@ pub(super) enum Instruction {
     /// `a`, as it was before the coming edge.
     Copy { to: Slot, a: Slot },
     /// The bits of `a` from `low` up; when they are news, `source` has changed.
-    Field {
-        to: Slot,
-        a: Slot,
-        low: u8,
-        drop: u8,
-        source: u8,
-    },
+    Field { to: Slot, a: Slot, low: u8, drop: u8, source: u8 },
     /// The bits of `a` from `low` up.
-    Slice {
-        to: Slot,
-        a: Slot,
-        low: u8,
-        drop: u8,
-    },
+    Slice { to: Slot, a: Slot, low: u8, drop: u8 },
     /// The bits of `a` from `low` up, shifted up, together with the bits of `base`.
-    Place {
-        to: Slot,
-        base: Slot,
-        a: Slot,
-        low: u8,
-        drop: u8,
-        shift: u8,
-    },
+    Place { to: Slot, base: Slot, a: Slot, low: u8, drop: u8, shift: u8 },
     /// `a`, whose width is given by `from`, with copies of its sign bit above it.
-    SignExtend {
-        to: Slot,
-        a: Slot,
-        from: u8,
-        drop: u8,
-    },
+    SignExtend { to: Slot, a: Slot, from: u8, drop: u8 },
     /// Bitwise and.
     And { to: Slot, a: Slot, b: Slot },
     /// Bitwise or.
@@ -73,83 +50,29 @@ pub(super) enum Instruction {
     /// Bitwise exclusive or; with a mask, not.
     Xor { to: Slot, a: Slot, b: Slot },
     /// Sum.
-    Add {
-        to: Slot,
-        a: Slot,
-        b: Slot,
-        drop: u8,
-    },
+    Add { to: Slot, a: Slot, b: Slot, drop: u8 },
     /// Sum of bits of `a` and bits of `b`: a value and what it is rounded up by, say.
-    AddSlices {
-        to: Slot,
-        a: Slot,
-        b: Slot,
-        low_a: u8,
-        drop_a: u8,
-        low_b: u8,
-        drop_b: u8,
-        drop: u8,
-    },
+    AddSlices { to: Slot, a: Slot, b: Slot, low_a: u8, drop_a: u8, low_b: u8, drop_b: u8, drop: u8 },
     /// Sum and carry.
-    AddCarry {
-        to: Slot,
-        a: Slot,
-        b: Slot,
-        carry: Slot,
-        drop: u8,
-    },
+    AddCarry { to: Slot, a: Slot, b: Slot, carry: Slot, drop: u8 },
     /// Difference.
-    Sub {
-        to: Slot,
-        a: Slot,
-        b: Slot,
-        drop: u8,
-    },
+    Sub { to: Slot, a: Slot, b: Slot, drop: u8 },
     /// Product of unsigned factors; it always fits.
     MulUnsigned { to: Slot, a: Slot, b: Slot },
     /// Product of signed factors, whose widths are given by `drop_a` and `drop_b`.
-    MulSigned {
-        to: Slot,
-        a: Slot,
-        b: Slot,
-        drop_a: u8,
-        drop_b: u8,
-        drop: u8,
-    },
+    MulSigned { to: Slot, a: Slot, b: Slot, drop_a: u8, drop_b: u8, drop: u8 },
     /// 1 when `a == b`; with a mask, when all bits are 1.
     Equal { to: Slot, a: Slot, b: Slot },
     /// 1 when the bits of `a` from `low` up are not all 0.
-    Any {
-        to: Slot,
-        a: Slot,
-        low: u8,
-        drop: u8,
-    },
+    Any { to: Slot, a: Slot, low: u8, drop: u8 },
     /// 1 when `a < b`, unsigned.
     LessUnsigned { to: Slot, a: Slot, b: Slot },
     /// 1 when `a < b`, signed.
-    LessSigned {
-        to: Slot,
-        a: Slot,
-        b: Slot,
-        drop: u8,
-    },
+    LessSigned { to: Slot, a: Slot, b: Slot, drop: u8 },
     /// `a` when `select` is 0, else `b`.
-    Choose {
-        to: Slot,
-        select: Slot,
-        a: Slot,
-        b: Slot,
-    },
+    Choose { to: Slot, select: Slot, a: Slot, b: Slot },
     /// `a` when the bits of `of` from `low` up are all 0, else `b`.
-    ChooseAny {
-        to: Slot,
-        of: Slot,
-        low: u8,
-        drop: u8,
-        a: Slot,
-        b: Slot,
-    },
+    ChooseAny { to: Slot, of: Slot, low: u8, drop: u8, a: Slot, b: Slot },
     /// `a` when the bits of `of` from `low` up are all 0, else other bits of it, placed as by `Place`.
     ChoosePlace {
         to: Slot,
@@ -163,18 +86,9 @@ pub(super) enum Instruction {
         shift: u8,
     },
     /// The slot that entry `first + select`, at most `last`, of the table of choices names.
-    Mux {
-        to: Slot,
-        select: Slot,
-        first: u32,
-        last: u32,
-    },
+    Mux { to: Slot, select: Slot, first: u32, last: u32 },
     /// Word `address` of a ROM.
-    Read {
-        to: Slot,
-        address: Slot,
-        words: Span,
-    },
+    Read { to: Slot, address: Slot, words: Span },
 }
 
 impl Instruction {
@@ -188,9 +102,7 @@ impl Instruction {
             | Self::Any { to, a, .. }
             | Self::Mux { to, select: a, .. }
             | Self::Read { to, address: a, .. } => vec![to, a],
-            Self::Place {
-                to, base: a, a: b, ..
-            }
+            Self::Place { to, base: a, a: b, .. }
             | Self::And { to, a, b }
             | Self::Or { to, a, b }
             | Self::Xor { to, a, b }
@@ -202,29 +114,10 @@ impl Instruction {
             | Self::Equal { to, a, b }
             | Self::LessUnsigned { to, a, b }
             | Self::LessSigned { to, a, b, .. } => vec![to, a, b],
-            Self::AddCarry {
-                to, a, b, carry: c, ..
-            }
-            | Self::Choose {
-                to,
-                select: a,
-                a: b,
-                b: c,
-            }
-            | Self::ChooseAny {
-                to,
-                of: a,
-                a: b,
-                b: c,
-                ..
-            }
-            | Self::ChoosePlace {
-                to,
-                of: a,
-                a: b,
-                base: c,
-                ..
-            } => vec![to, a, b, c],
+            Self::AddCarry { to, a, b, carry: c, .. }
+            | Self::Choose { to, select: a, a: b, b: c }
+            | Self::ChooseAny { to, of: a, a: b, b: c, .. }
+            | Self::ChoosePlace { to, of: a, a: b, base: c, .. } => vec![to, a, b, c],
         }
     }
 }
@@ -239,23 +132,11 @@ pub(super) enum Step {
     /// A narrow slot as a wide one.
     Widen { to: Slot, a: Slot },
     /// The bits of a wide slot from `low` up, as a narrow one.
-    Cut {
-        to: Slot,
-        a: Slot,
-        low: u8,
-        drop: u8,
-    },
+    Cut { to: Slot, a: Slot, low: u8, drop: u8 },
     /// The wide product of narrow unsigned factors.
     Product { to: Slot, a: Slot, b: Slot },
     /// The wide product of narrow signed factors, whose widths are given by `drop_a` and `drop_b`.
-    SignedProduct {
-        to: Slot,
-        a: Slot,
-        b: Slot,
-        drop_a: u8,
-        drop_b: u8,
-        drop: u8,
-    },
+    SignedProduct { to: Slot, a: Slot, b: Slot, drop_a: u8, drop_b: u8, drop: u8 },
 }
 
 /// Where a value is.

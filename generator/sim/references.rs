@@ -53,9 +53,6 @@ pub(super) fn check(design: &Design) -> Result<()> {
 }
 
 fn ensure_index(index: usize, len: usize, what: &str) -> Result<()> {
-    ensure!(
-        index < len,
-        "{what} {index} is referred to, but there are {len}"
-    );
+    ensure!(index < len, "{what} {index} is referred to, but there are {len}");
     Ok(())
 }

@@ -30,11 +30,7 @@ impl<W: Write> VcdWriter<W> {
         let page = Page::default();
         let mut probe = write_vcd_header(page.clone(), &Named { name, circuit });
         probe.timestamp(time)?;
-        let mut writer = Self {
-            probe: Some(write_vcd_dump(probe, circuit)),
-            page,
-            file,
-        };
+        let mut writer = Self { probe: Some(write_vcd_dump(probe, circuit)), page, file };
         writer.turn()?;
         Ok(writer)
     }

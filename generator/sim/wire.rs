@@ -92,9 +92,7 @@ pub(super) struct WordName<'a> {
 
 impl WordName<'_> {
     fn text(&self) -> String {
-        let name = usize::try_from(self.address)
-            .ok()
-            .and_then(|address| self.names.get(address));
+        let name = usize::try_from(self.address).ok().and_then(|address| self.names.get(address));
         match (self.run, name) {
             (false, _) => "idle".to_owned(),
             (true, Some(name)) => vcd_text(name),

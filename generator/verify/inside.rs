@@ -62,10 +62,7 @@ fn points(subject: &Subject<'_>) -> u64 {
 }
 
 fn lockstep(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
-    let outcome = subject
-        .unit
-        .lockstep(TEST_SEED)?
-        .run(points(subject), progress)?;
+    let outcome = subject.unit.lockstep(TEST_SEED)?.run(points(subject), progress)?;
     let bound = subject.unit.contract.bound();
     let worst = outcome.worst.as_ref().map_or_else(String::new, |worst| {
         format!(
@@ -166,11 +163,7 @@ pub const CLOCKS: Leg = Leg {
         };
         Ok(Finding::new(
             Verdict::Proved,
-            format!(
-                "{} combinations of {} operand bits",
-                grouped(clocks.count()),
-                clocks.bits()
-            ),
+            format!("{} combinations of {} operand bits", grouped(clocks.count()), clocks.bits()),
             "Every register and output equals the golden model on every clock.".to_owned(),
             faults,
         )

@@ -87,11 +87,7 @@ impl Finding {
     /// A verdict on a domain, or a failure if there are faults.
     fn new(verdict: Verdict, domain: String, words: String, faults: Vec<String>) -> Self {
         Self {
-            verdict: if faults.is_empty() {
-                verdict
-            } else {
-                Verdict::Failed
-            },
+            verdict: if faults.is_empty() { verdict } else { Verdict::Failed },
             domain,
             words,
             open: String::new(),
@@ -101,20 +97,11 @@ impl Finding {
 
     /// Of a leg that says nothing here.
     fn without(verdict: Verdict, why: String) -> Self {
-        Self {
-            verdict,
-            domain: String::new(),
-            words: why,
-            open: String::new(),
-            faults: Vec::new(),
-        }
+        Self { verdict, domain: String::new(), words: why, open: String::new(), faults: Vec::new() }
     }
 
     fn open(self, open: impl Into<String>) -> Self {
-        Self {
-            open: open.into(),
-            ..self
-        }
+        Self { open: open.into(), ..self }
     }
 }
 
@@ -183,10 +170,7 @@ impl Leg {
             question: self.question,
             tools,
             finding,
-            timing: Timing {
-                leg: self.id,
-                seconds: took.as_secs_f64(),
-            },
+            timing: Timing { leg: self.id, seconds: took.as_secs_f64() },
         }
     }
 

@@ -88,11 +88,7 @@ fn bench(subject: &Subject<'_>, simulator: Simulator) -> Result<Finding> {
     };
     Ok(Finding::new(
         Verdict::Passed,
-        format!(
-            "{} results in {} clocks (seed {BENCH_SEED})",
-            grouped(points),
-            grouped(clocks)
-        ),
+        format!("{} results in {} clocks (seed {BENCH_SEED})", grouped(points), grouped(clocks)),
         "Every output is right on every clock.".to_owned(),
         faults,
     )
@@ -143,10 +139,7 @@ pub const FORMAL: Leg = Leg {
         fs::create_dir(&flat).context("cannot make a directory for the proof")?;
         for directory in ["rtl_out", "testbench"] {
             let directory = place.path().join(directory).join(name);
-            for entry in directory
-                .read_dir()
-                .context("cannot read what was emitted")?
-            {
+            for entry in directory.read_dir().context("cannot read what was emitted")? {
                 let entry = entry.context("cannot read what was emitted")?;
                 fs::copy(entry.path(), flat.join(entry.file_name()))
                     .context("cannot copy what was emitted")?;
@@ -173,11 +166,8 @@ pub const COCOTB: Leg = Leg {
     run: |subject, tools, _| {
         let limit = subject.effort.time_limit;
         let (python, here) = (&tools[0], std::path::Path::new("."));
-        let version = python.run(
-            ["-c", "import cocotb; print(cocotb.__version__)"],
-            here,
-            limit,
-        )?;
+        let version =
+            python.run(["-c", "import cocotb; print(cocotb.__version__)"], here, limit)?;
         if !version.status.success() {
             let why = format!(
                 "{} has no cocotb; `bash tools/install` makes an environment that has, target/tools/venv: \
@@ -190,11 +180,7 @@ pub const COCOTB: Leg = Leg {
         let name = &subject.unit.config.name;
         let bench = format!("testbench/{name}/test_{name}.py");
         let run = python.run([&bench], place.path(), limit)?;
-        let verdict = run
-            .output
-            .lines()
-            .rev()
-            .find(|line| line.contains(&format!("{name}: ")));
+        let verdict = run.output.lines().rev().find(|line| line.contains(&format!("{name}: ")));
         let faults = match (run.status.success(), verdict) {
             (true, Some(_)) => Vec::new(),
             _ => vec![run.output.trim().to_owned()],

@@ -34,13 +34,8 @@ pub fn page(record: &Record, timings: &[Timing]) -> Result<String> {
         let count = legs.filter(|it| it.finding.verdict == verdict).count();
         (class(verdict), verdict.words(), count)
     };
-    let all = [
-        Verdict::Proved,
-        Verdict::Passed,
-        Verdict::Failed,
-        Verdict::NotCovered,
-        Verdict::NotRun,
-    ];
+    let all =
+        [Verdict::Proved, Verdict::Passed, Verdict::Failed, Verdict::NotCovered, Verdict::NotRun];
     let legs = record.legs.iter();
     let page = Page {
         marker: MARKER,
@@ -53,10 +48,7 @@ pub fn page(record: &Record, timings: &[Timing]) -> Result<String> {
         counts: all.map(count).into_iter().filter(|it| it.2 > 0).collect(),
         legs: legs
             .clone()
-            .map(|answer| View {
-                answer,
-                class: class(answer.finding.verdict),
-            })
+            .map(|answer| View { answer, class: class(answer.finding.verdict) })
             .collect(),
         timings: legs
             .zip(timings)

@@ -18,15 +18,8 @@ fn unit() -> Unit {
 
 /// What the legs that need nothing but Glint say.
 fn verified(unit: &Unit) -> Record {
-    let effort = Effort {
-        full: false,
-        time_limit: Duration::from_secs(1),
-    };
-    let subject = Subject {
-        path: "core.toml",
-        unit,
-        effort,
-    };
+    let effort = Effort { full: false, time_limit: Duration::from_secs(1) };
+    let subject = Subject { path: "core.toml", unit, effort };
     let legs = LEGS.iter().filter(|leg| !leg.is_outside());
     let answers = legs.map(|leg| leg.run(&subject, &|_| ())).collect();
     Record::new(&subject, answers)
@@ -51,13 +44,9 @@ fn a_fault_in_the_design_fails_the_lockstep() {
     let lockstep = finding(&record, "lockstep");
     assert_eq!(lockstep.verdict, Verdict::Failed);
     // Its reproducer: seed, clock, word, signal, both values.
-    for part in [
-        "seed ",
-        "after clock ",
-        "word `",
-        "in the simulated hardware",
-        "in the golden model",
-    ] {
+    for part in
+        ["seed ", "after clock ", "word `", "in the simulated hardware", "in the golden model"]
+    {
         assert!(lockstep.faults[0].contains(part), "{:?}", lockstep.faults);
     }
     assert_eq!(finding(&record, "contract").verdict, Verdict::Proved);

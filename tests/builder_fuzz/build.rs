@@ -28,12 +28,7 @@ pub fn calls(wild: bool) -> impl Strategy<Value = Vec<Call>> {
         false => Just(false).boxed(),
     };
     let call = (any::<u8>(), any::<[u16; 3]>(), number, odd);
-    let call = call.prop_map(|(what, of, number, wild)| Call {
-        what,
-        of,
-        number,
-        wild,
-    });
+    let call = call.prop_map(|(what, of, number, wild)| Call { what, of, number, wild });
     vec(call, 1..24)
 }
 
@@ -115,17 +110,9 @@ impl<'d> Builder<'d> {
             true => Format {
                 signed,
                 int,
-                frac: if call.of[1].is_multiple_of(7) {
-                    call.number
-                } else {
-                    frac
-                },
+                frac: if call.of[1].is_multiple_of(7) { call.number } else { frac },
             },
-            false => Format {
-                signed,
-                int: call.number.rem_euclid(14) + 1 - frac,
-                frac,
-            },
+            false => Format { signed, int: call.number.rem_euclid(14) + 1 - frac, frac },
         }
     }
 
@@ -142,13 +129,7 @@ impl<'d> Builder<'d> {
         }
         self.count += 1;
         let name = format!("fitted{}", self.count);
-        self.d.narrow(
-            &name,
-            signal,
-            format,
-            Rounding::Truncate,
-            Overflow::Saturate,
-        )
+        self.d.narrow(&name, signal, format, Rounding::Truncate, Overflow::Saturate)
     }
 
     fn call(&mut self, call: &Call) {
@@ -190,60 +171,23 @@ impl<'d> Builder<'d> {
                 let a = self.fitted(call, 0, small);
                 d.add_carry(&name, a, self.fitted(call, 1, format), carry)
             }
-            8 => d.add_modulo(
-                &name,
-                self.fitted(call, 0, small),
-                self.fitted(call, 1, small),
-                None,
-            ),
-            9 => d.sub(
-                &name,
-                self.fitted(call, 0, small),
-                self.fitted(call, 1, number),
-            ),
-            10 => d.mul(
-                &name,
-                self.fitted(call, 0, small),
-                self.fitted(call, 1, number),
-            ),
+            8 => {
+                d.add_modulo(&name, self.fitted(call, 0, small), self.fitted(call, 1, small), None)
+            }
+            9 => d.sub(&name, self.fitted(call, 0, small), self.fitted(call, 1, number)),
+            10 => d.mul(&name, self.fitted(call, 0, small), self.fitted(call, 1, number)),
             11 => d.not(&name, self.any(call, 0)),
-            12 => d.concat(
-                &name,
-                self.fitted(call, 0, number),
-                self.fitted(call, 1, number),
-            ),
+            12 => d.concat(&name, self.fitted(call, 0, number), self.fitted(call, 1, number)),
             13 => {
                 let parts = [self.fitted(call, 0, small), self.fitted(call, 1, number)];
-                d.join(
-                    &name,
-                    &parts,
-                    if call.wild {
-                        format
-                    } else {
-                        Format::signed(12, 0)
-                    },
-                )
+                d.join(&name, &parts, if call.wild { format } else { Format::signed(12, 0) })
             }
-            14 => d.and(
-                &name,
-                self.fitted(call, 0, Format::BIT),
-                self.fitted(call, 1, Format::BIT),
-            ),
-            15 => d.or(
-                &name,
-                self.fitted(call, 0, Format::BIT),
-                self.fitted(call, 1, Format::BIT),
-            ),
-            16 => d.less(
-                &name,
-                self.fitted(call, 0, small),
-                self.fitted(call, 1, small),
-            ),
-            17 => d.equal(
-                &name,
-                self.fitted(call, 0, small),
-                self.fitted(call, 1, number),
-            ),
+            14 => {
+                d.and(&name, self.fitted(call, 0, Format::BIT), self.fitted(call, 1, Format::BIT))
+            }
+            15 => d.or(&name, self.fitted(call, 0, Format::BIT), self.fitted(call, 1, Format::BIT)),
+            16 => d.less(&name, self.fitted(call, 0, small), self.fitted(call, 1, small)),
+            17 => d.equal(&name, self.fitted(call, 0, small), self.fitted(call, 1, number)),
             18 => d.any(&name, self.any(call, 0)),
             19 => d.all(&name, self.any(call, 0)),
             20 => {
@@ -268,13 +212,8 @@ impl<'d> Builder<'d> {
             22 => {
                 let words: Vec<i128> = (0..32).collect();
                 let address = self.fitted(call, 0, number);
-                let held = if call.wild {
-                    format
-                } else {
-                    Format::unsigned(5, 0)
-                };
-                d.rom(&name, address, held, &words, call.of[1].is_multiple_of(2))
-                    .out()
+                let held = if call.wild { format } else { Format::unsigned(5, 0) };
+                d.rom(&name, address, held, &words, call.of[1].is_multiple_of(2)).out()
             }
             23 => d.narrow(
                 &name,
@@ -284,11 +223,7 @@ impl<'d> Builder<'d> {
                 [Overflow::Saturate, Overflow::Wrap][usize::from(call.of[2] % 2)],
             ),
             24 => {
-                let places = if call.wild {
-                    call.number
-                } else {
-                    call.number.rem_euclid(4)
-                };
+                let places = if call.wild { call.number } else { call.number.rem_euclid(4) };
                 match call.of[1] % 2 {
                     0 => self.any(call, 0).shift_right(places),
                     _ => self.any(call, 0).shift_left(places),
@@ -328,12 +263,7 @@ impl<'d> Builder<'d> {
     /// What is still open is connected, and there is a program.
     fn finish(mut self, wrong: bool) {
         let d = self.d;
-        let last = Call {
-            what: 0,
-            of: [u16::MAX; 3],
-            number: 0,
-            wild: false,
-        };
+        let last = Call { what: 0, of: [u16::MAX; 3], number: 0, wild: false };
         for register in std::mem::take(&mut self.registers) {
             let from = self.fitted(&last, 0, register.format());
             register.takes(from);
@@ -342,20 +272,10 @@ impl<'d> Builder<'d> {
         let first = self.signals[0];
         for wire in std::mem::take(&mut self.wires) {
             let name = format!("{}_source", wire.name());
-            let source = if wrong {
-                self.signals[self.signals.len() - 1]
-            } else {
-                first
-            };
+            let source = if wrong { self.signals[self.signals.len() - 1] } else { first };
             d.drive(
                 wire,
-                d.narrow(
-                    &name,
-                    source,
-                    wire.format(),
-                    Rounding::Truncate,
-                    Overflow::Saturate,
-                ),
+                d.narrow(&name, source, wire.format(), Rounding::Truncate, Overflow::Saturate),
             );
         }
         d.output("out", self.signals[self.signals.len() - 1]);

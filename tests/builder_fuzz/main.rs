@@ -89,9 +89,6 @@ fn what_is_accepted_the_tools_accept() {
         let place = tempfile::tempdir().expect("a directory");
         write(place.path(), &files);
         assert_lint_clean(place.path(), &design.name);
-        yosys(
-            place.path(),
-            "read_verilog *.v; hierarchy -top fuzz -check; proc; check -assert",
-        );
+        yosys(place.path(), "read_verilog *.v; hierarchy -top fuzz -check; proc; check -assert");
     }
 }

@@ -43,10 +43,7 @@ fn spread(errors: impl Iterator<Item = f64>) -> (f64, f64) {
 fn assert_spread(told: &Value, (largest, mean): (f64, f64)) {
     for (name, wanted) in [("largest", largest), ("mean", mean)] {
         let told = told[name].as_f64().expect("a number");
-        assert!(
-            (told - wanted).abs() < 1e-12,
-            "{name}: {told}, not {wanted}"
-        );
+        assert!((told - wanted).abs() < 1e-12, "{name}: {told}, not {wanted}");
     }
 }
 
@@ -82,10 +79,7 @@ fn all_of_schlick_at_20() {
     // Words 0, 1 and 3, ten bits, and the clock of `start`; four words of control ROM, nine bits each.
     assert_eq!(schlick["clocks_per_point"], 14.0);
     assert_eq!(schlick["rom_bits"], 36);
-    assert_eq!(
-        schlick["multipliers"],
-        json!([[21, 10], [10, 8], [10, 8], [10, 8]])
-    );
+    assert_eq!(schlick["multipliers"], json!([[21, 10], [10, 8], [10, 8], [10, 8]]));
     assert_eq!(schlick.get("synthesis"), None);
 }
 
@@ -109,38 +103,18 @@ fn every_device_is_there_and_configurations_as_they_are() {
     names.push("core.toml");
     assert_eq!(told, names);
     // The width is of the devices; the configuration has its own.
-    let toml = |name| {
-        entry(&value, name)["toml"]
-            .as_str()
-            .expect("TOML")
-            .to_owned()
-    };
-    assert!(
-        toml("cosine-power").contains("bits = 10\n"),
-        "{}",
-        toml("cosine-power")
-    );
-    assert!(
-        toml("core.toml").contains("[colour]\nbits = 8\n"),
-        "{}",
-        toml("core.toml")
-    );
+    let toml = |name| entry(&value, name)["toml"].as_str().expect("TOML").to_owned();
+    assert!(toml("cosine-power").contains("bits = 10\n"), "{}", toml("cosine-power"));
+    assert!(toml("core.toml").contains("[colour]\nbits = 8\n"), "{}", toml("core.toml"));
     let bits = |name| entry(&value, name)["multipliers"][1].clone();
-    assert_eq!(
-        (bits("cosine-power"), bits("core.toml")),
-        (json!([16, 10]), json!([16, 8]))
-    );
+    assert_eq!((bits("cosine-power"), bits("core.toml")), (json!([16, 10]), json!([16, 8])));
 }
 
 #[test]
 fn widths_that_a_device_refuses_are_noted() {
     let value = compared(&["--bits", "50", "--intensity-fraction", "12"]);
-    let notes: Vec<&str> = value["notes"]
-        .as_array()
-        .expect("notes")
-        .iter()
-        .filter_map(Value::as_str)
-        .collect();
+    let notes: Vec<&str> =
+        value["notes"].as_array().expect("notes").iter().filter_map(Value::as_str).collect();
     let note = notes.iter().find(|note| note.starts_with("schlick: "));
     let note = note.expect("a note");
     assert!(
@@ -179,18 +153,12 @@ fn comma_separated() {
     assert!(lines[0].starts_with("name,device,exponent,error_largest,error_mean,formula_largest,"));
     assert!(lines[0].ends_with(",bound_units,clocks_per_point,rom_bits,multipliers"));
     let row = lines.last().expect("a row");
-    assert!(
-        row.starts_with("\"a, \"\"b\"\".toml\",cosine-power,35,0."),
-        "{row}"
-    );
+    assert!(row.starts_with("\"a, \"\"b\"\".toml\",cosine-power,35,0."), "{row}");
     assert!(row.ends_with(",8,40,\"21x16, 3 of 16x8\""), "{row}");
     // What is to be told beside the rows does not disturb them.
     let noted = compare(&["--csv", "--exponent", "1001"]);
     assert!(!noted.out.contains("domain"), "{noted:?}");
-    assert!(
-        noted.err.contains("warning: schlick: n = 1001"),
-        "{noted:?}"
-    );
+    assert!(noted.err.contains("warning: schlick: n = 1001"), "{noted:?}");
 }
 
 #[test]
@@ -200,10 +168,7 @@ fn wrong_usage() {
         (&["--exponent", "-1"], "unexpected argument '-1'"),
         (&["--bits", "0"], "0 is not in 1..=64"),
         (&["--time-limit", "0"], "0 is not in 1..=1000000"),
-        (
-            &["--cosine-fractio", "9"],
-            "a similar argument exists: '--cosine-fraction'",
-        ),
+        (&["--cosine-fractio", "9"], "a similar argument exists: '--cosine-fraction'"),
     ] {
         compare(arguments).refused(2, &[message]);
     }
@@ -251,22 +216,11 @@ fn what_a_device_takes() {
         })
     );
     let text = with_yosys(Some(COUNTS), &[]).out;
-    let rows: Vec<&str> = text
-        .lines()
-        .filter(|line| line.starts_with("| schlick "))
-        .collect();
+    let rows: Vec<&str> = text.lines().filter(|line| line.starts_with("| schlick ")).collect();
     let cells: Vec<&str> = rows[1].split('|').map(str::trim).collect();
-    assert_eq!(
-        cells[5..14],
-        ["11", "3", "2", "28", "5", "1", "61", "6", "3"]
-    );
+    assert_eq!(cells[5..14], ["11", "3", "2", "28", "5", "1", "61", "6", "3"]);
     let csv = with_yosys(Some(COUNTS), &["--csv"]).out;
-    assert!(
-        csv.lines()
-            .next()
-            .is_some_and(|line| line.ends_with(",xilinx7_block_rams")),
-        "{csv}"
-    );
+    assert!(csv.lines().next().is_some_and(|line| line.ends_with(",xilinx7_block_rams")), "{csv}");
     assert!(csv.contains(",11,3,2,28,5,1,61,6,3\n"), "{csv}");
 }
 
@@ -275,10 +229,7 @@ fn what_a_device_takes() {
 fn yosys_is_missing() {
     let run = with_yosys(None, &[]);
     assert_eq!((run.code, run.err.as_str()), (0, ""), "{run:?}");
-    assert!(
-        run.out
-            .contains("Note: `yosys` is not on PATH; `bash tools/install` installs it")
-    );
+    assert!(run.out.contains("Note: `yosys` is not on PATH; `bash tools/install` installs it"));
     assert!(!run.out.contains("LUT |"), "{}", run.out);
     let value = with_yosys(None, &["--json"]).json();
     assert_eq!(entry(&value, "schlick").get("synthesis"), None);
@@ -291,11 +242,9 @@ fn yosys_fails() {
     let fails = "echo 'ERROR: out of luck'; exit 3";
     let run = with_yosys(Some(fails), &[]);
     assert_eq!(run.code, 1, "{run:?}");
-    for part in [
-        "FAILS: schlick, ECP5: `yosys` failed (exit status: 3)",
-        "out of luck",
-        "| schlick ",
-    ] {
+    for part in
+        ["FAILS: schlick, ECP5: `yosys` failed (exit status: 3)", "out of luck", "| schlick "]
+    {
         assert!(run.out.contains(part), "no `{part}` in {}", run.out);
     }
     let value = with_yosys(Some(fails), &["--json"]).json();
@@ -306,10 +255,7 @@ fn yosys_fails() {
 
     let silent = with_yosys(Some("exit 0"), &[]);
     assert_eq!(silent.code, 1, "{silent:?}");
-    assert!(
-        silent.out.contains("`yosys` wrote no statistics"),
-        "{silent:?}"
-    );
+    assert!(silent.out.contains("`yosys` wrote no statistics"), "{silent:?}");
     let garbled = with_yosys(Some("echo nothing >statistics.json"), &[]);
     assert_eq!(garbled.code, 1, "{garbled:?}");
     assert!(garbled.out.contains("are no JSON"), "{garbled:?}");
@@ -322,9 +268,5 @@ fn yosys_hangs() {
     let hangs = format!("case $3 in *synth_ecp5*) exec /bin/sleep 100;; esac\n{COUNTS}");
     let run = with_yosys(Some(&hangs), &["--time-limit", "1"]);
     assert_eq!(run.code, 1, "{run:?}");
-    assert!(
-        run.out
-            .contains("FAILS: schlick, ECP5: `yosys` did not end within"),
-        "{run:?}"
-    );
+    assert!(run.out.contains("FAILS: schlick, ECP5: `yosys` did not end within"), "{run:?}");
 }

@@ -24,34 +24,17 @@ fn rough(text: &str, parts: &[&str]) {
 fn files_that_cannot_be_read() {
     let place = Place::with("core.toml", COSINE_POWER);
     let missing = place.glint(["generate", "cores.toml"]);
-    missing.refused(
-        1,
-        &[
-            "there is no such file",
-            "--> cores.toml",
-            "did you mean `core.toml`?",
-        ],
-    );
+    missing.refused(1, &["there is no such file", "--> cores.toml", "did you mean `core.toml`?"]);
     fs::create_dir(place.at("directory.toml")).unwrap();
     let directory = place.glint(["cosim", "directory.toml"]);
     directory.refused(1, &["this is a directory", "--> directory.toml"]);
     place.write("latin.toml", b"device = \"rough\"\n# gl\xe4nzend\n");
     let latin = place.glint(["eval", "latin.toml"]);
-    latin.refused(
-        1,
-        &[
-            "the file is not UTF-8: byte 21 is 0xe4",
-            "--> latin.toml:2:5",
-        ],
-    );
+    latin.refused(1, &["the file is not UTF-8: byte 21 is 0xe4", "--> latin.toml:2:5"]);
     place.write("empty.toml", "");
-    place.glint(["generate", "empty.toml"]).refused(
-        1,
-        &[
-            "the file is empty",
-            "devices: quad-cosine, cosine-squared, lyon, rough",
-        ],
-    );
+    place
+        .glint(["generate", "empty.toml"])
+        .refused(1, &["the file is empty", "devices: quad-cosine, cosine-squared, lyon, rough"]);
 }
 
 #[cfg(unix)]
@@ -63,70 +46,35 @@ fn a_file_without_permission() {
     let run = crate::refusals::unprivileged(&place, &["generate", "core.toml"]);
     run.refused(
         1,
-        &[
-            "the file cannot be read: Permission denied",
-            "check the path and its permissions",
-        ],
+        &["the file cannot be read: Permission denied", "check the path and its permissions"],
     );
 }
 
 #[test]
 fn malformed_toml() {
     rough("[sine\n", &["not valid TOML", "--> core.toml:2:"]);
-    rough(
-        "clamp = true\nclamp = false",
-        &["`clamp` is given twice", "--> core.toml:3:1"],
-    );
+    rough("clamp = true\nclamp = false", &["`clamp` is given twice", "--> core.toml:3:1"]);
 }
 
 #[test]
 fn unknown_words_are_answered_with_the_nearest() {
     refused(
         "device = \"ruogh\"\n",
-        &[
-            "there is no device \"ruogh\"",
-            "did you mean \"rough\"?",
-            "core.toml:1:10",
-        ],
+        &["there is no device \"ruogh\"", "did you mean \"rough\"?", "core.toml:1:10"],
     );
     rough(
         "[cosine]\nfracton = 20",
-        &[
-            "has no key `cosine.fracton`",
-            "did you mean `cosine.fraction`?",
-            "core.toml:3:1",
-        ],
+        &["has no key `cosine.fracton`", "did you mean `cosine.fraction`?", "core.toml:3:1"],
     );
-    rough(
-        "arithmetic = \"exakt\"",
-        &["did you mean \"exact\"?", "core.toml:2:14"],
-    );
+    rough("arithmetic = \"exakt\"", &["did you mean \"exact\"?", "core.toml:2:14"]);
 }
 
 #[test]
 fn wrong_types_and_values() {
-    rough(
-        "clamp = 1",
-        &[
-            "`clamp` must be true or false, not the integer 1",
-            "core.toml:2:9",
-        ],
-    );
-    rough(
-        "[colour]\nbits = \"8\"",
-        &["`colour.bits` must be an integer, not the string \"8\""],
-    );
-    for width in [
-        "0",
-        "-8",
-        "13",
-        "9223372036854775807",
-        "99999999999999999999",
-    ] {
-        rough(
-            &format!("[colour]\nbits = {width}"),
-            &["core.toml:3:8", width],
-        );
+    rough("clamp = 1", &["`clamp` must be true or false, not the integer 1", "core.toml:2:9"]);
+    rough("[colour]\nbits = \"8\"", &["`colour.bits` must be an integer, not the string \"8\""]);
+    for width in ["0", "-8", "13", "9223372036854775807", "99999999999999999999"] {
+        rough(&format!("[colour]\nbits = {width}"), &["core.toml:3:8", width]);
     }
 }
 
@@ -134,10 +82,7 @@ fn wrong_types_and_values() {
 fn a_format_too_narrow_for_its_values() {
     rough(
         "[exponent]\nbits = 4",
-        &[
-            "1000 does not fit the 4 bits of the exponent",
-            "at most 15, or a larger exponent.bits",
-        ],
+        &["1000 does not fit the 4 bits of the exponent", "at most 15, or a larger exponent.bits"],
     );
 }
 
@@ -176,14 +121,8 @@ fn a_rom_beyond_a_sane_size_is_told_its_size() {
 
 /// Three files: two wrong in two places each, one that is missing, and a good one.
 fn wrong() -> Place {
-    let place = Place::with(
-        "a.toml",
-        "device = \"rough\"\nclamp = 1\n[colour]\nbits = 0\n",
-    );
-    place.write(
-        "b.toml",
-        "device = \"cosine-power\"\npower = 3\nname = \"wire\"\n",
-    );
+    let place = Place::with("a.toml", "device = \"rough\"\nclamp = 1\n[colour]\nbits = 0\n");
+    place.write("b.toml", "device = \"cosine-power\"\npower = 3\nname = \"wire\"\n");
     place.write("good.toml", COSINE_POWER);
     place
 }
@@ -196,13 +135,7 @@ fn all_problems_of_all_files_are_reported() {
         let run = wrong().glint([command].iter().chain(&WRONG));
         run.refused(
             1,
-            &[
-                "a.toml:2:9",
-                "a.toml:4:8",
-                "b.toml:2:9",
-                "b.toml:3:8",
-                "--> missing.toml",
-            ],
+            &["a.toml:2:9", "a.toml:4:8", "b.toml:2:9", "b.toml:3:8", "--> missing.toml"],
         );
         assert_eq!(run.out, "");
     }
@@ -220,12 +153,7 @@ fn all_problems_are_json_for_scripts() {
             .expect("a list")
             .iter()
             .map(|problem| {
-                json!([
-                    problem["file"],
-                    problem["line"],
-                    problem["column"],
-                    problem["key"]
-                ])
+                json!([problem["file"], problem["line"], problem["column"], problem["key"]])
             })
             .collect();
         assert_eq!(
@@ -250,13 +178,7 @@ fn two_configurations_of_one_name() {
     let run = place.glint(["generate", "a.toml", "b.toml", "--json"]);
     assert_eq!(run.code, 1);
     let message = &run.json()["problems"][0]["message"];
-    assert!(
-        message
-            .as_str()
-            .unwrap()
-            .contains("both name their module `same`"),
-        "{message}"
-    );
+    assert!(message.as_str().unwrap().contains("both name their module `same`"), "{message}");
 }
 
 #[test]
@@ -266,25 +188,16 @@ fn outside_the_accuracy_contract() {
     let place = Place::with("core.toml", format!("{COSINE_POWER}{coarse}"));
     let run = place.glint(["generate", "core.toml"]);
     assert_eq!(run.code, 0, "{run:?}");
-    let parts = [
-        "warning: core.toml: outside the accuracy contract",
-        "not below 1; `intensity.fraction`",
-    ];
+    let parts =
+        ["warning: core.toml: outside the accuracy contract", "not below 1; `intensity.fraction`"];
     for part in parts {
         assert!(run.err.contains(part), "{}", run.err);
     }
-    let place = Place::with(
-        "core.toml",
-        format!("{COSINE_POWER}strict = true\n{coarse}"),
-    );
+    let place = Place::with("core.toml", format!("{COSINE_POWER}strict = true\n{coarse}"));
     let run = place.glint(["generate", "core.toml"]);
     run.refused(
         1,
-        &[
-            "outside the accuracy contract",
-            "`intensity.fraction`",
-            "`strict = true` refuses that",
-        ],
+        &["outside the accuracy contract", "`intensity.fraction`", "`strict = true` refuses that"],
     );
     assert!(!place.at("rtl_out").exists());
 }
@@ -292,11 +205,7 @@ fn outside_the_accuracy_contract() {
 #[test]
 fn no_configuration_at_all() {
     let place = Place::new();
-    place
-        .glint([] as [&str; 0])
-        .refused(1, &["cannot read `configs/`", "glint new DEVICE"]);
+    place.glint([] as [&str; 0]).refused(1, &["cannot read `configs/`", "glint new DEVICE"]);
     fs::create_dir(place.at("configs")).unwrap();
-    place
-        .glint(["generate"])
-        .refused(1, &["there is no configuration in `configs/`"]);
+    place.glint(["generate"]).refused(1, &["there is no configuration in `configs/`"]);
 }

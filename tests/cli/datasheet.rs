@@ -68,10 +68,7 @@ fn what_was_edited_stays() {
         for mine in [&ours.replace("core", "mine"), "my notes\n"] {
             place.write(file, mine);
             let run = datasheet(&place, &arguments);
-            run.refused(
-                1,
-                &[file, "was edited since; nothing was changed", "--force"],
-            );
+            run.refused(1, &[file, "was edited since; nothing was changed", "--force"]);
             assert_eq!(place.read(file), mine);
         }
         datasheet(&place, &["--out", "core.html", "--wavedrom", "--force"]);
@@ -95,9 +92,7 @@ fn wrong_requests() {
     place.write("other.toml", "device = \"schlick\"\n");
     place.write("taken", "a file");
     let both = ["datasheet", "core.toml", "other.toml", "--out", "both.html"];
-    place
-        .glint(both)
-        .refused(2, &["both.html", "give a directory"]);
+    place.glint(both).refused(2, &["both.html", "give a directory"]);
     let missing = place.glint(["datasheet", "missing.toml"]);
     missing.refused(1, &["missing.toml"]);
     datasheet(&place, &["--out", "taken"]).refused(1, &["taken"]);

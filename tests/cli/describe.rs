@@ -20,16 +20,10 @@ fn a_page_is_printed() {
         "## A worked example",
         "## Configuration",
     ] {
-        assert!(
-            page.lines().any(|line| line.starts_with(heading)),
-            "{heading}\n{page}"
-        );
+        assert!(page.lines().any(|line| line.starts_with(heading)), "{heading}\n{page}");
     }
     // n/m of m = 16 by wiring: u10.0 becomes u6.4.
-    let zeta = page
-        .lines()
-        .find(|line| line.starts_with("| `zeta`"))
-        .expect("a block");
+    let zeta = page.lines().find(|line| line.starts_with("| `zeta`")).expect("a block");
     assert!(zeta.contains("u6.4"), "{zeta}");
     assert!(page.contains("`glint describe core.toml`"), "{page}");
 }
@@ -65,14 +59,7 @@ fn an_edited_or_foreign_page_is_not_overwritten() {
     for mine in ["my notes\n", &page.replace("## Clocks", "## Times")] {
         place.write("core.md", mine);
         let run = place.glint(["describe", "core.toml", "--out", "."]);
-        run.refused(
-            1,
-            &[
-                "core.md",
-                "was edited since; nothing was changed",
-                "--force",
-            ],
-        );
+        run.refused(1, &["core.md", "was edited since; nothing was changed", "--force"]);
         assert_eq!(place.read("core.md"), mine);
         place.done(["describe", "core.toml", "--out", ".", "--force"]);
         assert_eq!(place.read("core.md"), page);
@@ -95,7 +82,5 @@ fn a_directory_that_cannot_be_is_said() {
     place.write("taken", "a file");
     let run = place.glint(["describe", "core.toml", "--out", "taken"]);
     run.refused(1, &["`core.toml` was not described", "taken"]);
-    place
-        .glint(["describe", "core.toml", "--force"])
-        .refused(2, &["--out"]);
+    place.glint(["describe", "core.toml", "--force"]).refused(2, &["--out"]);
 }

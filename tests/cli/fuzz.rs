@@ -139,10 +139,7 @@ fn place() -> Place {
     let place = Place::new();
     let inner = |name: &str| format!("{INNER}/{name}");
     place.write(&inner("core.toml"), NARROW);
-    place.write(
-        &inner("bad.toml"),
-        "device = \"rough\"\ncosine.fraction = 99\n[[",
-    );
+    place.write(&inner("bad.toml"), "device = \"rough\"\ncosine.fraction = 99\n[[");
     let evil = NARROW.replace("cosine_squared_reduced", "../../evil");
     assert_ne!(evil, NARROW);
     place.write(&inner("evil.toml"), evil);

@@ -20,30 +20,15 @@ fn files_are_written_once_and_checked() {
     let place = Place::with("core.toml", COSINE_POWER);
     let absent = place.glint(["generate", "--check", "core.toml"]);
     assert_eq!(absent.code, 1, "{absent:?}");
-    assert!(
-        absent.out.contains("differs: rtl_out/core/core.v\n"),
-        "{}",
-        absent.out
-    );
+    assert!(absent.out.contains("differs: rtl_out/core/core.v\n"), "{}", absent.out);
     assert_eq!(place.files().len(), 1, "--check wrote something");
 
-    assert!(
-        place
-            .done(["generate", "core.toml"])
-            .ends_with("files written\n")
-    );
+    assert!(place.done(["generate", "core.toml"]).ends_with("files written\n"));
     let files = place.files();
-    for name in FILES
-        .iter()
-        .chain(&["rtl_out/core/core.json", "rtl_out/core/core.core"])
-    {
+    for name in FILES.iter().chain(&["rtl_out/core/core.json", "rtl_out/core/core.core"]) {
         assert!(files.contains_key(*name), "no {name}");
     }
-    assert!(
-        place
-            .done(["generate", "core.toml"])
-            .ends_with("files up to date\n")
-    );
+    assert!(place.done(["generate", "core.toml"]).ends_with("files up to date\n"));
     place.done(["generate", "--check", "core.toml"]);
     assert_eq!(place.files(), files);
     place.assert_no_staging();
@@ -52,19 +37,10 @@ fn files_are_written_once_and_checked() {
     let stale = place.glint(["generate", "--check", "--json", "core.toml"]);
     assert_eq!(stale.code, 1, "{stale:?}");
     let different = stale.json()["different"].clone();
-    assert!(
-        different
-            .as_array()
-            .unwrap()
-            .contains(&"rtl_out/core/core.v".into()),
-        "{different}"
-    );
+    assert!(different.as_array().unwrap().contains(&"rtl_out/core/core.v".into()), "{different}");
     assert_eq!(place.files().len(), files.len());
     place.done(["generate", "core.toml"]);
-    assert_ne!(
-        place.files()["rtl_out/core/core.v"],
-        files["rtl_out/core/core.v"]
-    );
+    assert_ne!(place.files()["rtl_out/core/core.v"], files["rtl_out/core/core.v"]);
 }
 
 #[test]
@@ -87,11 +63,7 @@ fn another_directory_and_json() {
         .collect();
     let mut sorted = listed.clone();
     sorted.sort();
-    let found: Vec<String> = place
-        .files()
-        .into_keys()
-        .filter(|name| name != "core.toml")
-        .collect();
+    let found: Vec<String> = place.files().into_keys().filter(|name| name != "core.toml").collect();
     assert_eq!(found, sorted);
 }
 
@@ -106,10 +78,7 @@ fn an_edited_driver_stays() {
     place.write(DRIVER, &edited);
     let run = place.glint(["generate", "core.toml"]);
     assert_eq!(run.code, 1, "{run:?}");
-    assert!(
-        run.err.contains(DRIVER) && run.err.contains("--force"),
-        "{run:?}"
-    );
+    assert!(run.err.contains(DRIVER) && run.err.contains("--force"), "{run:?}");
     assert_eq!(place.read(DRIVER), edited);
     let check = place.glint(["generate", "core.toml", "--check"]);
     assert!(check.code == 1 && check.out.contains(DRIVER), "{check:?}");
@@ -124,10 +93,7 @@ fn the_main_job_generates_and_checks_everything() {
     place.write("configs/notes.txt", "no configuration");
     let table = place.done([] as [&str; 0]);
     for config in ["configs/one.toml", "configs/two.toml"] {
-        let row = table
-            .lines()
-            .find(|line| line.contains(config))
-            .expect("a row");
+        let row = table.lines().find(|line| line.contains(config)).expect("a row");
         assert!(row.contains("100 000") && row.contains("holds"), "{row}");
     }
     assert!(place.at("rtl_out/one/one.v").exists() && place.at("testbench/two/two_tb.v").exists());
@@ -148,10 +114,7 @@ fn an_edited_file_is_not_overwritten() {
         reconfigure(&place);
         let before = place.files();
         let run = place.glint(["generate", "core.toml"]);
-        run.refused(
-            1,
-            &["were edited since; nothing was changed", name, "--force"],
-        );
+        run.refused(1, &["were edited since; nothing was changed", name, "--force"]);
         assert_eq!(place.files(), before);
         place.done(["generate", "core.toml", "--force"]);
         place.done(["generate", "core.toml", "--check"]);
@@ -168,23 +131,14 @@ fn foreign_files_are_kept() {
     reconfigure(&place);
     let before = place.files();
     let run = place.glint(["generate", "core.toml"]);
-    run.refused(
-        1,
-        &[
-            "rtl_out/core/notes.txt",
-            "rtl_out/core/deep",
-            "testbench/core/wave.gtkw",
-        ],
-    );
+    run.refused(1, &["rtl_out/core/notes.txt", "rtl_out/core/deep", "testbench/core/wave.gtkw"]);
     assert_eq!(place.files(), before);
 
     place.done(["generate", "core.toml", "--force"]);
     let after = place.files();
-    for name in [
-        "rtl_out/core/notes.txt",
-        "rtl_out/core/deep/er/notes.txt",
-        "testbench/core/wave.gtkw",
-    ] {
+    for name in
+        ["rtl_out/core/notes.txt", "rtl_out/core/deep/er/notes.txt", "testbench/core/wave.gtkw"]
+    {
         assert_eq!(after.get(name), before.get(name), "{name}");
     }
     assert_ne!(after["rtl_out/core/core.v"], before["rtl_out/core/core.v"]);
@@ -203,14 +157,9 @@ fn a_directory_that_glint_never_wrote() {
     assert_eq!(place.files(), before);
     // A manifest that is none of Glint's vouches for nothing.
     place.write("rtl_out/core/core.json", "{\"sha256\": {}}");
-    place
-        .glint(["generate", "core.toml"])
-        .refused(1, &["rtl_out/core/core.v"]);
+    place.glint(["generate", "core.toml"]).refused(1, &["rtl_out/core/core.v"]);
     place.done(["generate", "core.toml", "--force"]);
     let after = place.files();
-    assert_eq!(
-        after["rtl_out/other/other.v"],
-        before["rtl_out/other/other.v"]
-    );
+    assert_eq!(after["rtl_out/other/other.v"], before["rtl_out/other/other.v"]);
     assert_ne!(after["rtl_out/core/core.v"], before["rtl_out/core/core.v"]);
 }

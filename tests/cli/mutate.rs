@@ -29,16 +29,11 @@ fn faults_are_named_and_none_is_planted() {
 fn a_fault_alone_shows_where_it_is_caught() {
     let place = place();
     let out = place.done(["mutate", "core.toml", "--only", SHOWS]);
-    assert!(
-        out.contains("caught by co-simulation: seed 1, after clock"),
-        "{out}"
-    );
+    assert!(out.contains("caught by co-simulation: seed 1, after clock"), "{out}");
     assert!(out.contains("`accumulator` is "), "{out}");
     let waveform = place.read("core_mutant.vcd");
     assert!(waveform.contains("$enddefinitions"), "{waveform}");
-    let json = place
-        .glint(["mutate", "core.toml", "--only", SHOWS, "--json"])
-        .json();
+    let json = place.glint(["mutate", "core.toml", "--only", SHOWS, "--json"]).json();
     assert_eq!(json["ok"], true);
     assert_eq!(json["caught"]["by"], "cosim");
     assert_eq!(json["caught"]["signal"], "accumulator");

@@ -21,13 +21,7 @@ fn a_file_where_the_directory_should_be() {
     place.write("taken", "a file");
     let before = place.files();
     let run = place.glint(["generate", "core.toml", "--out", "taken"]);
-    run.refused(
-        1,
-        &[
-            "`core.toml` was not generated",
-            "cannot create the directory `taken`",
-        ],
-    );
+    run.refused(1, &["`core.toml` was not generated", "cannot create the directory `taken`"]);
     assert_eq!(place.files(), before);
     place.write("rtl_out", "a file");
     let before = place.files();
@@ -60,10 +54,7 @@ fn a_read_only_directory() {
     fs::set_permissions(place.path(), PermissionsExt::from_mode(0o755)).unwrap();
     run.refused(
         1,
-        &[
-            "cannot write to `.`; choose another directory with --out",
-            "Permission denied",
-        ],
+        &["cannot write to `.`; choose another directory with --out", "Permission denied"],
     );
     assert_eq!(place.files(), before);
 }
@@ -73,12 +64,7 @@ fn a_read_only_directory() {
 fn limited(place: &Place, blocks: u32, arguments: &str) -> Run {
     let program = env!("CARGO_BIN_EXE_glint");
     let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec '{program}' {arguments}");
-    Run::of(
-        Command::new("sh")
-            .args(["-c", &script])
-            .current_dir(place.path())
-            .output(),
-    )
+    Run::of(Command::new("sh").args(["-c", &script]).current_dir(place.path()).output())
 }
 
 #[test]
@@ -87,14 +73,7 @@ fn a_full_disk_costs_nothing() {
     let before = place.files();
     // The sine ROM alone is larger than that.
     let run = limited(&place, 8, "generate core.toml");
-    run.refused(
-        1,
-        &[
-            "cannot write `",
-            "what was there before is unchanged",
-            "File too large",
-        ],
-    );
+    run.refused(1, &["cannot write `", "what was there before is unchanged", "File too large"]);
     assert_eq!(place.files(), before);
     place.assert_no_staging();
     place.done(["generate", "core.toml"]);
@@ -109,14 +88,7 @@ fn a_waveform_that_does_not_fit() {
     run.refused(1, &["cannot write the waveform `wave.vcd`"]);
     assert_eq!(place.read("wave.vcd"), "the last one");
     place.assert_no_staging();
-    let run = place.glint([
-        "cosim",
-        "core.toml",
-        "--points",
-        "5",
-        "--vcd",
-        "absent/wave.vcd",
-    ]);
+    let run = place.glint(["cosim", "core.toml", "--points", "5", "--vcd", "absent/wave.vcd"]);
     run.refused(1, &["cannot write `absent/wave.vcd`"]);
     let run = place.glint(["cosim", "core.toml", "--points", "5", "--vcd", "."]);
     run.refused(1, &["cannot write `.`"]);
@@ -132,27 +104,16 @@ fn a_device_is_written_not_replaced() {
 #[test]
 fn a_reader_that_went_away_is_nobodys_error() {
     let place = Place::with("core.toml", COSINE_POWER);
-    for arguments in [
-        &["list"][..],
-        &["new", "rough"],
-        &["eval", "core.toml", "--json"],
-        &["--help"],
-    ] {
+    for arguments in
+        [&["list"][..], &["new", "rough"], &["eval", "core.toml", "--json"], &["--help"]]
+    {
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
         let run = Run::of(place.command().args(arguments).stdout(writer).output());
-        assert_eq!(
-            (run.code, run.err.as_str()),
-            (0, ""),
-            "{arguments:?}: {run:?}"
-        );
+        assert_eq!((run.code, run.err.as_str()), (0, ""), "{arguments:?}: {run:?}");
     }
     // Nor is it a panic, whose exit code is 101, when there is nobody to read the error.
-    for arguments in [
-        &["generate", "absent.toml"][..],
-        &["new", "absent"],
-        &["--absent"],
-    ] {
+    for arguments in [&["generate", "absent.toml"][..], &["new", "absent"], &["--absent"]] {
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);
         let run = Run::of(place.command().args(arguments).stderr(writer).output());
@@ -163,19 +124,7 @@ fn a_reader_that_went_away_is_nobodys_error() {
 #[cfg(target_os = "linux")]
 #[test]
 fn standard_output_on_a_full_disk_is_an_error() {
-    let full = fs::OpenOptions::new()
-        .write(true)
-        .open("/dev/full")
-        .unwrap();
-    let run = Run::of(
-        Place::new()
-            .command()
-            .args(["new", "rough"])
-            .stdout(full)
-            .output(),
-    );
-    run.refused(
-        1,
-        &["cannot write standard output: No space left on device"],
-    );
+    let full = fs::OpenOptions::new().write(true).open("/dev/full").unwrap();
+    let run = Run::of(Place::new().command().args(["new", "rough"]).stdout(full).output());
+    run.refused(1, &["cannot write standard output: No space left on device"]);
 }

@@ -57,11 +57,7 @@ impl Place {
     #[cfg(unix)]
     pub fn script(&self, name: &str, text: &str) {
         let text = format!("#!/bin/sh\n{text}\n");
-        shell(
-            "printf %s \"$2\" >\"$1\" && chmod 755 \"$1\"",
-            &self.at(name),
-            text.as_ref(),
-        );
+        shell("printf %s \"$2\" >\"$1\" && chmod 755 \"$1\"", &self.at(name), text.as_ref());
     }
 
     pub fn read(&self, name: &str) -> String {
@@ -129,10 +125,7 @@ echo '{\"modules\":{\"\\\\\\\\'$top'\":{\"num_cells_by_type\":{\"SB_LUT4\":'$lut
     pub fn assert_no_staging(&self) {
         for entry in fs::read_dir(self.path()).expect("a directory") {
             let name = entry.expect("an entry").file_name();
-            assert!(
-                !name.to_string_lossy().starts_with(".glint-"),
-                "{name:?} is left"
-            );
+            assert!(!name.to_string_lossy().starts_with(".glint-"), "{name:?} is left");
         }
     }
 }

@@ -15,9 +15,7 @@ fn eval(operands: &[&str]) -> Run {
 
 fn named<'a>(list: &'a Value, name: &str) -> &'a Value {
     let list = list.as_array().expect("a list");
-    list.iter()
-        .find(|entry| entry["name"] == name)
-        .unwrap_or_else(|| panic!("no {name}"))
+    list.iter().find(|entry| entry["name"] == name).unwrap_or_else(|| panic!("no {name}"))
 }
 
 #[test]
@@ -25,31 +23,16 @@ fn a_point_is_evaluated() {
     // n = 2, cos γ = 1/2: (−1/2 + 1)² = 1/4 of 200.
     let run = eval(&["cos_gamma=0.5", "exponent=2", "red=200"]);
     assert_eq!((run.code, run.err.as_str()), (0, ""), "{run:?}");
-    assert!(
-        run.out
-            .contains("formula in f64: f = 0.25\n  red_out = 50.000000\n"),
-        "{}",
-        run.out
-    );
-    let row = run
-        .out
-        .lines()
-        .find(|line| line.contains("red_out"))
-        .expect("a row");
+    assert!(run.out.contains("formula in f64: f = 0.25\n  red_out = 50.000000\n"), "{}", run.out);
+    let row = run.out.lines().find(|line| line.contains("red_out")).expect("a row");
     let cells: Vec<&str> = row.split('|').map(str::trim).collect();
     assert_eq!(cells[1..4], ["red_out", "u8.0", "50"], "{row}");
 }
 
 #[test]
 fn a_point_is_evaluated_for_scripts() {
-    let run = eval(&[
-        "cos_gamma=#524288",
-        "exponent=#2",
-        "red=200",
-        "green=100",
-        "blue=0",
-        "--json",
-    ]);
+    let run =
+        eval(&["cos_gamma=#524288", "exponent=#2", "red=200", "green=100", "blue=0", "--json"]);
     assert_eq!((run.code, run.err.as_str()), (0, ""), "{run:?}");
     let value = run.json();
     let cosine = named(&value["operands"], "cos_gamma");
@@ -58,16 +41,8 @@ fn a_point_is_evaluated_for_scripts() {
         json!({ "name": "cos_gamma", "raw": 524_288, "value": 0.5, "format": "u1.20" })
     );
     assert_eq!(value["inside_the_domain"], true);
-    assert_eq!(
-        value["formula"],
-        json!({ "f": 0.25, "outputs": [50.0, 25.0, 0.0] })
-    );
-    for (name, raw) in [
-        ("red_out", 50),
-        ("green_out", 25),
-        ("blue_out", 0),
-        ("valid", 1),
-    ] {
+    assert_eq!(value["formula"], json!({ "f": 0.25, "outputs": [50.0, 25.0, 0.0] }));
+    for (name, raw) in [("red_out", 50), ("green_out", 25), ("blue_out", 0), ("valid", 1)] {
         assert_eq!(named(&value["signals"], name)["raw"], raw, "{name}");
     }
 }
@@ -86,29 +61,14 @@ fn operands_that_are_wrong_usage() {
             &["cos_gama=1"][..],
             "there is no operand `cos_gama`; did you mean `cos_gamma`? The operands are: cos_gamma, exponent, red",
         ),
-        (
-            &["zzz=1"],
-            "there is no operand `zzz`. The operands are: cos_gamma",
-        ),
-        (
-            &["red=1", "green=2", "red=1"],
-            "operand `red` is given twice",
-        ),
+        (&["zzz=1"], "there is no operand `zzz`. The operands are: cos_gamma"),
+        (&["red=1", "green=2", "red=1"], "operand `red` is given twice"),
         (&["red=256"], "operand `red`: 256 is beyond u8.0: 0 to 255"),
         (&["red=-1"], "operand `red`: -1 is beyond u8.0"),
-        (
-            &["red=#256"],
-            "operand `red`: raw integer 256 is beyond u8.0: 0 to 255",
-        ),
+        (&["red=#256"], "operand `red`: raw integer 256 is beyond u8.0: 0 to 255"),
         (&["red=#-1"], "raw integer -1 is beyond"),
-        (
-            &["red=#99999999999999999999"],
-            "raw integer 99999999999999999999 is beyond",
-        ),
-        (
-            &["red=#1.5"],
-            "operand `red`: `#1.5` is not a raw integer, as in #1038090",
-        ),
+        (&["red=#99999999999999999999"], "raw integer 99999999999999999999 is beyond"),
+        (&["red=#1.5"], "operand `red`: `#1.5` is not a raw integer, as in #1038090"),
         (&["red=bright"], "operand `red`: `bright` is not a number"),
         (&["red=nan"], "`nan` is not a finite number"),
         (&["red=1e999"], "`1e999` is not a finite number"),
@@ -118,10 +78,7 @@ fn operands_that_are_wrong_usage() {
         eval(operands).refused(2, &[message]);
         let run = eval(&[operands, &["--json"]].concat());
         assert_eq!((run.code, run.err.as_str()), (2, ""), "{run:?}");
-        let told = run.json()["problems"][0]["message"]
-            .as_str()
-            .unwrap()
-            .to_owned();
+        let told = run.json()["problems"][0]["message"].as_str().unwrap().to_owned();
         assert!(told.contains(message), "{told}");
     }
 }
@@ -135,50 +92,29 @@ fn devices_and_configurations_are_listed() {
     }
     let value = place.glint(["list", "--json"]).json();
     assert_eq!(value["configs"], json!(["configs/mine.toml"]));
-    let names: Vec<&Value> = value["devices"]
-        .as_array()
-        .unwrap()
-        .iter()
-        .map(|device| &device["name"])
-        .collect();
+    let names: Vec<&Value> =
+        value["devices"].as_array().unwrap().iter().map(|device| &device["name"]).collect();
     let registry = Registry::catalogue();
-    let catalogue: Vec<&str> = registry
-        .devices()
-        .iter()
-        .map(|device| device.name)
-        .collect();
+    let catalogue: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
     assert_eq!(names, catalogue);
-    assert_eq!(
-        Place::new().glint(["list", "--json"]).json()["configs"],
-        json!([])
-    );
+    assert_eq!(Place::new().glint(["list", "--json"]).json()["configs"], json!([]));
 }
 
 #[test]
 fn a_new_configuration_is_accepted() {
-    for (device, name) in [
-        ("rough", "rough"),
-        ("cosine-power", "cosine_power"),
-        ("schlick", "schlick"),
-    ] {
+    for (device, name) in
+        [("rough", "rough"), ("cosine-power", "cosine_power"), ("schlick", "schlick")]
+    {
         let place = Place::new();
         let text = place.done(["new", device]);
         place.write("file.toml", &text);
         let run = place.glint(["generate", "file.toml"]);
         // Defaults are inside the contract: there is no warning of it.
         assert_eq!(run.code, 0, "{run:?}");
-        assert!(
-            !run.err.contains("outside the accuracy contract"),
-            "{run:?}"
-        );
+        assert!(!run.err.contains("outside the accuracy contract"), "{run:?}");
         assert!(place.at(&format!("rtl_out/{name}/{name}.v")).exists());
-        let value = place
-            .glint(["new", device, "--json", "--name", "mine"])
-            .json();
-        assert_eq!(
-            (&value["device"], &value["name"]),
-            (&device.into(), &"mine".into())
-        );
+        let value = place.glint(["new", device, "--json", "--name", "mine"]).json();
+        assert_eq!((&value["device"], &value["name"]), (&device.into(), &"mine".into()));
         let renamed = text.replace(&format!("name = \"{name}\""), "name = \"mine\"");
         assert_eq!(value["text"], renamed);
     }
@@ -212,14 +148,8 @@ fn help_teaches_by_example() {
         assert!(examples.contains(&format!("  glint {command} ")), "{text}");
     }
     let text = place.done(["--help"]);
-    assert!(
-        text.contains("Examples:\n  glint ") && text.contains("Exit codes: 0"),
-        "{text}"
-    );
+    assert!(text.contains("Examples:\n  glint ") && text.contains("Exit codes: 0"), "{text}");
     for flag in ["-V", "--version"] {
-        assert_eq!(
-            place.done([flag]),
-            format!("glint {}\n", env!("CARGO_PKG_VERSION"))
-        );
+        assert_eq!(place.done([flag]), format!("glint {}\n", env!("CARGO_PKG_VERSION")));
     }
 }

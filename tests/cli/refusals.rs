@@ -26,10 +26,7 @@ pub fn unprivileged(place: &Place, arguments: &[&str]) -> crate::place::Run {
         for (path, mode) in [(elsewhere.path(), 0o755), (&program, 0o755)] {
             fs::set_permissions(path, PermissionsExt::from_mode(mode)).expect("permissions");
         }
-        let mode = fs::metadata(place.path())
-            .expect("a place")
-            .permissions()
-            .mode();
+        let mode = fs::metadata(place.path()).expect("a place").permissions().mode();
         let open = PermissionsExt::from_mode(mode | 0o055);
         fs::set_permissions(place.path(), open).expect("permissions");
         command.uid(65534).gid(65534);
@@ -41,25 +38,13 @@ pub fn unprivileged(place: &Place, arguments: &[&str]) -> crate::place::Run {
 fn wrong_usage() {
     let place = Place::with("core.toml", COSINE_POWER);
     for (arguments, message) in [
-        (
-            &["generat"][..],
-            "similar subcommands exist: 'render', 'generate'",
-        ),
-        (
-            &["cosim", "--point", "3"],
-            "a similar argument exists: '--points'",
-        ),
+        (&["generat"][..], "similar subcommands exist: 'render', 'generate'"),
+        (&["cosim", "--point", "3"], "a similar argument exists: '--points'"),
         (&["cosim", "--points", "0"], "0 is not in 1.."),
         (&["cosim", "--points", "-1"], "unexpected argument '-1'"),
         (&["cosim", "--points", "many"], "invalid digit"),
-        (
-            &["cosim", "--simulator", "icaru"],
-            "a similar value exists: 'icarus'",
-        ),
-        (
-            &["cosim", "--time-limit", "18446744073709551615"],
-            "is not in 1..=1000000",
-        ),
+        (&["cosim", "--simulator", "icaru"], "a similar value exists: 'icarus'"),
+        (&["cosim", "--time-limit", "18446744073709551615"], "is not in 1..=1000000"),
         (&["eval"], "required arguments were not provided"),
         (&["new"], "required arguments were not provided"),
     ] {
@@ -70,13 +55,7 @@ fn wrong_usage() {
         assert_eq!((run.code, run.err.as_str()), (2, ""), "{run:?}");
         let value = run.json();
         assert_eq!(value["ok"], false);
-        assert!(
-            value["problems"][0]["message"]
-                .as_str()
-                .unwrap()
-                .contains(message),
-            "{value}"
-        );
+        assert!(value["problems"][0]["message"].as_str().unwrap().contains(message), "{value}");
     }
     let run = place.glint([
         "cosim",
@@ -94,10 +73,7 @@ fn nothing_panics() {
     let place = Place::with("core.toml", COSINE_POWER);
     place.write("null.toml", [0; 64]);
     place.write("deep.toml", format!("a = {}", "[".repeat(100_000)));
-    place.write(
-        "long.toml",
-        format!("{COSINE_POWER}{} = 1\n", "k".repeat(100_000)),
-    );
+    place.write("long.toml", format!("{COSINE_POWER}{} = 1\n", "k".repeat(100_000)));
     let mut odd: Vec<OsString> = [
         "",
         "-",
@@ -115,9 +91,7 @@ fn nothing_panics() {
     .map(OsString::from)
     .to_vec();
     #[cfg(unix)]
-    odd.push(std::os::unix::ffi::OsStringExt::from_vec(vec![
-        0xff, 0xfe, b'=', 0x80,
-    ]));
+    odd.push(std::os::unix::ffi::OsStringExt::from_vec(vec![0xff, 0xfe, b'=', 0x80]));
     for command in ["generate", "cosim", "eval", "render", "new", "list", ""] {
         for argument in &odd {
             for second in ["cos_gamma=1e-400", "--json"] {

@@ -49,9 +49,7 @@ fn png(colour: ColorType, bits: BitDepth, width: u32, bytes: &[u8]) -> Vec<u8> {
 
 /// A map with bumps, 16 × 16.
 fn bumps() -> Vec<u8> {
-    let heights: Vec<u8> = (0..256)
-        .map(|at| (at % 16 * 37 + at / 16 * 91) as u8)
-        .collect();
+    let heights: Vec<u8> = (0..256).map(|at| (at % 16 * 37 + at / 16 * 91) as u8).collect();
     png(ColorType::Grayscale, BitDepth::Eight, 16, &heights)
 }
 
@@ -129,10 +127,8 @@ fn the_same_bytes_with_any_number_of_threads() {
 #[test]
 fn the_pictures_of_the_documentation() {
     let text = fs::read_to_string(PICTURES).expect("a list of pictures");
-    let commands: Vec<&str> = text
-        .lines()
-        .filter_map(|line| line.strip_prefix("    glint "))
-        .collect();
+    let commands: Vec<&str> =
+        text.lines().filter_map(|line| line.strip_prefix("    glint ")).collect();
     assert!(!commands.is_empty(), "no command in {PICTURES}");
     let place = Place::new();
     for command in commands {
@@ -160,11 +156,8 @@ fn a_highlight_is_where_it_should_be() {
     let plain = ["--diffuse", "0", "--ambient", "0", "--specular", "1"];
     let more = ["power.toml", "--samples", "1", "--background", "0,0,1"];
     let arguments = [&eye[..], &plain, &more].concat();
-    let done = place.done(
-        ["render", "--size", "41x41", "--out", "out.png"]
-            .into_iter()
-            .chain(arguments),
-    );
+    let done =
+        place.done(["render", "--size", "41x41", "--out", "out.png"].into_iter().chain(arguments));
     assert!(done.contains("41x41 pixels, n = 80"), "{done}");
     let (width, height, pixels) = pixels(&fs::read(place.at("out.png")).expect("a picture"));
     assert_eq!((width, height), (41, 41));
@@ -183,10 +176,7 @@ fn a_highlight_is_where_it_should_be() {
 #[test]
 fn lines_along_triangles() {
     let place = Place::with("quad.toml", "device = \"quad-cosine\"\n");
-    place.write(
-        "squared.toml",
-        "device = \"cosine-squared\"\nlength.bits = 4\n",
-    );
+    place.write("squared.toml", "device = \"cosine-squared\"\nlength.bits = 4\n");
     place.write("bumps.png", bumps());
     // One large triangle whose normals turn from side to side: spans of up to 80 samples.
     place.write(
@@ -207,10 +197,7 @@ fn lines_along_triangles() {
         assert!(units <= number("bound_in_units"), "{told}");
     }
     let run = place.glint(render(&["quad.toml", "--height", "bumps.png"]));
-    run.refused(
-        1,
-        &["walks lines of points, which a height map cannot perturb"],
-    );
+    run.refused(1, &["walks lines of points, which a height map cannot perturb"]);
 }
 
 #[test]
@@ -229,19 +216,13 @@ fn comparison_in_numbers() {
         for channel in 0..3 {
             let difference = column(0, at)[channel].abs_diff(column(1, at)[channel]);
             largest = largest.max(difference);
-            assert_eq!(
-                u64::from(column(2, at)[channel]),
-                u64::from(difference) * gain
-            );
+            assert_eq!(u64::from(column(2, at)[channel]), u64::from(difference) * gain);
         }
     }
     assert_eq!(told["compare"]["largest_difference"], largest);
     // W(80, γ) with m = 16 is up to 0.018 from cos⁸⁰γ: 3 levels at k_s = 0.7, of two lights.
     assert!((1..=7).contains(&largest), "{told}");
-    assert!(
-        told["compare"]["psnr"].as_f64().expect("decibels") > 40.0,
-        "{told}"
-    );
+    assert!(told["compare"]["psnr"].as_f64().expect("decibels") > 40.0, "{told}");
     let units = told["compare"]["largest_error_of_the_formula_in_units"].as_f64();
     let bound = told["compare"]["bound_in_units"].as_f64();
     assert!(units.expect("units") <= bound.expect("a bound"), "{told}");
@@ -259,11 +240,7 @@ fn a_mesh_is_seen_from_both_sides() {
     let front = fs::read(place.at("out.png")).expect("a picture");
     let run = place.glint(render(&["--mesh", "back.obj"]));
     assert_eq!(run.code, 0, "{run:?}");
-    assert!(
-        run.err
-            .contains("2 triangles are without area and were left out"),
-        "{run:?}"
-    );
+    assert!(run.err.contains("2 triangles are without area and were left out"), "{run:?}");
     assert!(front == fs::read(place.at("out.png")).expect("a picture"));
     let run = place.glint(render(&["--mesh", "back.obj", "--json"]));
     assert_eq!(run.json()["degenerate_triangles"], 2);
@@ -285,13 +262,7 @@ fn a_million_triangles() {
     for row in 0..rows - 1 {
         for column in 1..columns {
             let at = row * columns + column;
-            let _ = writeln!(
-                text,
-                "f {at} {} {} {}",
-                at + 1,
-                at + columns + 1,
-                at + columns
-            );
+            let _ = writeln!(text, "f {at} {} {} {}", at + 1, at + columns + 1, at + columns);
         }
     }
     let place = Place::with("sheet.obj", text);
@@ -309,10 +280,7 @@ fn meshes_that_cannot_be_used() {
     place.write("normal.obj", format!("vn 0 nan 1\n{SQUARE}"));
     place.write("index.obj", format!("{SQUARE}f 1 2 9\n"));
     place.write("face.obj", format!("{SQUARE}f 1 2\n"));
-    place.write(
-        "huge.obj",
-        "v 1e200 0 0\nv -1e200 0 0\nv 0 1e200 0\nf 1 2 3\n",
-    );
+    place.write("huge.obj", "v 1e200 0 0\nv -1e200 0 0\nv 0 1e200 0\nf 1 2 3\n");
     let before = place.files();
     for (file, message) in [
         ("missing.obj", "No such file"),
@@ -320,18 +288,9 @@ fn meshes_that_cannot_be_used() {
         ("binary.obj", "it is not text"),
         ("empty.obj", "there is no triangle"),
         ("flat.obj", "all 1 triangles are without area"),
-        (
-            "vertex.obj",
-            "line 2: not a vertex: `NaN` is not a finite number",
-        ),
-        (
-            "normal.obj",
-            "line 1: not a normal: `nan` is not a finite number",
-        ),
-        (
-            "index.obj",
-            "line 10: `9` is not a corner of a face: there is no vertex 9",
-        ),
+        ("vertex.obj", "line 2: not a vertex: `NaN` is not a finite number"),
+        ("normal.obj", "line 1: not a normal: `nan` is not a finite number"),
+        ("index.obj", "line 10: `9` is not a corner of a face: there is no vertex 9"),
         ("face.obj", "line 10: a face has 2 corners"),
         ("huge.obj", "vertex 1 is farther away than 1e30"),
     ] {
@@ -348,17 +307,11 @@ fn height_maps_that_cannot_be_used() {
     let place = Place::with("text.png", "P2 1 1 255 0");
     let colour = png(ColorType::Rgb, BitDepth::Eight, 2, &[9; 12]);
     place.write("rgb.png", &colour);
-    place.write(
-        "alpha.png",
-        png(ColorType::GrayscaleAlpha, BitDepth::Eight, 2, &[9; 8]),
-    );
+    place.write("alpha.png", png(ColorType::GrayscaleAlpha, BitDepth::Eight, 2, &[9; 8]));
     let whole = png(ColorType::Grayscale, BitDepth::Sixteen, 4, &[9; 32]);
     place.write("deep.png", &whole);
     place.write("cut.png", &whole[..whole.len() - 20]);
-    place.write(
-        "wide.png",
-        png(ColorType::Grayscale, BitDepth::Eight, 8193, &[0; 8193]),
-    );
+    place.write("wide.png", png(ColorType::Grayscale, BitDepth::Eight, 8193, &[0; 8193]));
     place.write("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     place.write("rough.toml", "device = \"rough\"\n");
     let before = place.files();
@@ -379,38 +332,19 @@ fn height_maps_that_cannot_be_used() {
     place.done(render(&["rough.toml", "--height", "deep.png"]));
     // Steeper than 30°, the domain's largest dγ.
     place.write("bumps.png", bumps());
-    let run = place.glint(render(&[
-        "rough.toml",
-        "--height",
-        "bumps.png",
-        "--height-depth",
-        "40",
-    ]));
+    let run = place.glint(render(&["rough.toml", "--height", "bumps.png", "--height-depth", "40"]));
     assert_eq!(run.code, 0, "{run:?}");
-    assert!(
-        run.err
-            .contains("the deviation exceeds the device's domain"),
-        "{run:?}"
-    );
+    assert!(run.err.contains("the deviation exceeds the device's domain"), "{run:?}");
 }
 
 #[test]
 fn wrong_settings() {
-    let place = Place::with(
-        "narrow.toml",
-        "device = \"rough\"\ndomain.exponent_max = 128\n",
-    );
+    let place = Place::with("narrow.toml", "device = \"rough\"\ndomain.exponent_max = 128\n");
     let before = place.files();
     for (arguments, message) in [
-        (
-            &["--size", "100000x10"][..],
-            "1x1 to 8192x8192 are possible",
-        ),
+        (&["--size", "100000x10"][..], "1x1 to 8192x8192 are possible"),
         (&["--size", "0x10"], "1x1 to 8192x8192 are possible"),
-        (
-            &["--size", "8192x8192", "--samples", "8"],
-            "at most 268435456 are possible",
-        ),
+        (&["--size", "8192x8192", "--samples", "8"], "at most 268435456 are possible"),
         (&["--size", "640"], "a size is WxH in pixels"),
         (&["--size", "-1x4"], "unexpected argument '-1'"),
         (&["--samples", "9"], "1 to 8 are possible"),
@@ -424,19 +358,10 @@ fn wrong_settings() {
         (&["--specular", "1.5"], "a share is a number from 0 to 1"),
         (&["--exponent", "0"], "takes 1 to 1000"),
         (&["--exponent", "1001"], "takes 1 to 1000"),
-        (
-            &["narrow.toml", "--exponent", "129"],
-            "`narrow` takes 1 to 128",
-        ),
-        (
-            &["--mesh", "a.obj", "--shape", "torus"],
-            "cannot be used with",
-        ),
+        (&["narrow.toml", "--exponent", "129"], "`narrow` takes 1 to 128"),
+        (&["--mesh", "a.obj", "--shape", "torus"], "cannot be used with"),
         (&["--height-depth", "3"], "--height <FILE>"),
-        (
-            &["--height", "x.png", "--height-repeat", "inf"],
-            "not beyond a million",
-        ),
+        (&["--height", "x.png", "--height-repeat", "inf"], "not beyond a million"),
         (&["--through", "icarus"], "possible values"),
     ] {
         // The last of several wins nowhere: the default size is given only where it is not set.
@@ -446,9 +371,7 @@ fn wrong_settings() {
         place.glint(all).refused(2, &[message]);
     }
     let many: Vec<&str> = (0..17).flat_map(|_| ["--light", "1,1,1"]).collect();
-    place
-        .glint(render(&many))
-        .refused(2, &["17 lights; 1 to 16 are possible"]);
+    place.glint(render(&many)).refused(2, &["17 lights; 1 to 16 are possible"]);
     place.glint(["render"]).refused(2, &["--out <FILE>"]);
     let run = place.glint(["render", "--out", "sphere.jpg"]);
     run.refused(2, &["the picture is a PNG file"]);

@@ -29,9 +29,7 @@ fn twice_the_same_and_self_contained() {
     assert_eq!(again.code, 0, "{again:?}");
     assert_eq!(place.files().len(), 4);
 
-    for reference in [
-        "http", "src=", "url(", "@import", "<link", "<script", "file:",
-    ] {
+    for reference in ["http", "src=", "url(", "@import", "<link", "<script", "file:"] {
         assert!(!page.contains(reference), "`{reference}` in the page");
     }
     let path = place.path().display().to_string();
@@ -55,10 +53,7 @@ fn twice_the_same_and_self_contained() {
 /// Values of an attribute, in order.
 fn attributes<'a>(page: &'a str, name: &str) -> Vec<&'a str> {
     let opening = format!(" {name}=\"");
-    page.split(&opening)
-        .skip(1)
-        .filter_map(|rest| rest.split('"').next())
-        .collect()
+    page.split(&opening).skip(1).filter_map(|rest| rest.split('"').next()).collect()
 }
 
 fn links_lead_somewhere(page: &str) {
@@ -92,10 +87,7 @@ fn timings_stand_apart() {
     let plain = report(&place, &["--out", "plain"]);
     let timed = report(&place, &["--out", "timed", "--benchmark", "--json"]);
     assert_eq!((plain.code, timed.code), (0, 0), "{timed:?}");
-    assert_eq!(
-        place.read("plain/report.json"),
-        place.read("timed/report.json")
-    );
+    assert_eq!(place.read("plain/report.json"), place.read("timed/report.json"));
     let timings: Value = serde_json::from_str(&place.read("timed/benchmark.json")).expect("JSON");
     assert_eq!(timings["claimed"], 2.3);
     // m = 2, 4, 8, 16; two precisions; one by one and many at once.
@@ -112,10 +104,7 @@ fn timings_stand_apart() {
 
 #[test]
 fn what_is_not_ours_stays() {
-    for (name, text) in [
-        ("report.html", "<p>Sales, third quarter.</p>"),
-        ("report.json", "{}"),
-    ] {
+    for (name, text) in [("report.html", "<p>Sales, third quarter.</p>"), ("report.json", "{}")] {
         let place = Place::with(&format!("report/{name}"), text);
         let run = report(&place, &[]);
         run.refused(1, &[name, "is not of Glint's making", "--out"]);

@@ -36,10 +36,7 @@ fn page_and_record_are_the_same_every_time_but_for_the_timings() {
     assert!(run.out.contains("core.toml: verified"), "{}", run.out);
     let again = place.glint(WITHOUT_TOOLS.iter().chain(&["--out", "second", "--json"]));
     assert_eq!((again.code, again.err.as_str()), (0, ""), "{again:?}");
-    assert_eq!(
-        place.read("first/core.json"),
-        place.read("second/core.json")
-    );
+    assert_eq!(place.read("first/core.json"), place.read("second/core.json"));
     let lasting = |name: &str| {
         let page = place.read(name);
         let (before, after) = page.split_once("id=\"timings\"").expect("timings");
@@ -67,17 +64,11 @@ fn page_and_record_are_the_same_every_time_but_for_the_timings() {
     ] {
         assert!(verdicts.contains(&expected), "{verdicts:?}");
     }
-    assert!(
-        verdicts.contains(&("icarus", "not-covered")),
-        "{verdicts:?}"
-    );
+    assert!(verdicts.contains(&("icarus", "not-covered")), "{verdicts:?}");
     assert!(page.contains("--without-tools leaves it out."));
     assert_eq!(again.json()["configurations"][0]["record"], found);
     let timings = record(&place, "second/core.timings.json");
-    assert_eq!(
-        timings["seconds"].as_array().map(Vec::len),
-        Some(verdicts.len())
-    );
+    assert_eq!(timings["seconds"].as_array().map(Vec::len), Some(verdicts.len()));
     // Written over what is there.
     place.done(WITHOUT_TOOLS.iter().chain(&["--out", "first"]));
     assert_eq!(place.files().len(), 7);
@@ -86,18 +77,12 @@ fn page_and_record_are_the_same_every_time_but_for_the_timings() {
 #[test]
 fn a_missing_tool_leaves_it_incomplete() {
     let place = place();
-    let run = Run::of(
-        place
-            .command()
-            .args(["verify", "core.toml"])
-            .env("PATH", place.path())
-            .output(),
-    );
+    let run =
+        Run::of(place.command().args(["verify", "core.toml"]).env("PATH", place.path()).output());
     assert_eq!(run.code, 1, "{run:?}");
     assert!(run.out.contains("core.toml: incomplete"), "{}", run.out);
     assert!(
-        run.out
-            .contains("`iverilog` is not on PATH; `bash tools/install` installs it"),
+        run.out.contains("`iverilog` is not on PATH; `bash tools/install` installs it"),
         "{}",
         run.out
     );
@@ -113,15 +98,7 @@ fn a_missing_tool_leaves_it_incomplete() {
 fn a_tool_that_does_not_do_its_work_is_a_failure() {
     let place = place();
     std::fs::create_dir(place.at("bin")).expect("a directory");
-    for tool in [
-        "iverilog",
-        "vvp",
-        "verilator",
-        "yosys",
-        "yosys-smtbmc",
-        "z3",
-        "python3",
-    ] {
+    for tool in ["iverilog", "vvp", "verilator", "yosys", "yosys-smtbmc", "z3", "python3"] {
         place.script(&format!("bin/{tool}"), "echo no such licence; exit 3");
     }
     let run = Run::of(

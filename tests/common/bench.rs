@@ -41,10 +41,8 @@ impl Bench {
     fn build_with(simulator: Simulator, files: &Files, top: &str) -> (Self, String) {
         let place = tempfile::tempdir().expect("a directory");
         write(place.path(), files);
-        let sources = files
-            .iter()
-            .map(|(name, _)| name.as_str())
-            .filter(|name| name.ends_with(".v"));
+        let sources =
+            files.iter().map(|(name, _)| name.as_str()).filter(|name| name.ends_with(".v"));
         let (compiler, arguments): (_, &[&str]) = match simulator {
             Simulator::Icarus => ("iverilog", &["-g2012", "-Wall", "-o", "bench.vvp", "-s"]),
             // It takes a warning for an error. The bench runs for an instant: optimising it takes longer.
@@ -97,12 +95,7 @@ impl Bench {
     pub fn assert_passes(&self) {
         let run = self.run();
         let says = run.output.lines().any(|line| line.starts_with("PASS"));
-        assert!(
-            says && run.status.success(),
-            "{}:\n{}",
-            self.simulator,
-            run.output
-        );
+        assert!(says && run.status.success(), "{}:\n{}", self.simulator, run.output);
     }
 
     /// # Panics
@@ -136,11 +129,9 @@ pub fn with_flipped_bit(memory: &str, word: usize, bit: u32) -> String {
     digits[at] = char::from_digit(digit, 16).expect("a digit");
     let flipped: String = digits.into_iter().collect();
     let mut words = 0..;
-    let lines = memory
-        .lines()
-        .map(|line| match is_word(&line) && words.next() == Some(word) {
-            true => flipped.as_str(),
-            false => line,
-        });
+    let lines = memory.lines().map(|line| match is_word(&line) && words.next() == Some(word) {
+        true => flipped.as_str(),
+        false => line,
+    });
     lines.map(|line| format!("{line}\n")).collect()
 }

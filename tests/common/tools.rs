@@ -38,11 +38,7 @@ pub fn assert_bench_passes(
 ) -> BenchOutcome {
     let outcome =
         run_bench(simulator, files, top, LIMIT).unwrap_or_else(|error| panic!("{error:#}"));
-    assert!(
-        outcome.passed,
-        "{top} under {simulator}:\n{}",
-        outcome.transcript
-    );
+    assert!(outcome.passed, "{top} under {simulator}:\n{}", outcome.transcript);
     if simulator == Simulator::Icarus {
         assert_eq!(outcome.build, "", "{top}: warnings of iverilog -Wall");
     }
@@ -73,11 +69,7 @@ const YOSYS_ON_ITSELF: &str = r"Resizing cell port .*\.DO(P?)[AB]DO(P?) from";
 /// Yosys fails or warns.
 pub fn yosys(directory: &Path, commands: &str) -> String {
     tool("yosys")
-        .run_to_success(
-            ["-w", YOSYS_ON_ITSELF, "-e", ".*", "-p", commands],
-            directory,
-            LIMIT,
-        )
+        .run_to_success(["-w", YOSYS_ON_ITSELF, "-e", ".*", "-p", commands], directory, LIMIT)
         .unwrap_or_else(|error| panic!("{}: {error:#}", directory.display()))
 }
 
@@ -86,9 +78,8 @@ pub fn yosys(directory: &Path, commands: &str) -> String {
 /// # Panics
 /// It cannot be read, or there are none.
 pub fn verilog_files(directory: &Path) -> Vec<String> {
-    let entries = directory
-        .read_dir()
-        .unwrap_or_else(|error| panic!("{}: {error}", directory.display()));
+    let entries =
+        directory.read_dir().unwrap_or_else(|error| panic!("{}: {error}", directory.display()));
     let paths = entries.map(|entry| entry.expect("a directory entry").path());
     let is_verilog = |path: &PathBuf| path.extension().is_some_and(|extension| extension == "v");
     let mut names: Vec<String> = paths

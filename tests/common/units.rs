@@ -22,10 +22,7 @@ pub fn configurations() -> Vec<(String, Unit)> {
     let entries = fs::read_dir("configs").expect("configs/");
     let paths = entries.map(|entry| entry.expect("a directory entry").path());
     let mut paths: Vec<String> = paths
-        .filter(|path| {
-            path.extension()
-                .is_some_and(|extension| extension == "toml")
-        })
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
         .map(|path| path.display().to_string())
         .collect();
     paths.sort();

@@ -15,47 +15,16 @@ pub fn lamp() -> Schema {
     Schema {
         device: "lamp",
         keys: vec![
-            Key::choice(
-                "arithmetic",
-                "exact",
-                &["exact", "patent"],
-                "How numbers are kept.",
-            ),
-            Key::choice(
-                "power",
-                "16",
-                &["2", "4", "8", "16"],
-                "The power of the cosine.",
-            ),
-            Key::integer(
-                "cosine.fraction",
-                20,
-                4..=30,
-                "Fraction bits of the cosines.",
-            ),
+            Key::choice("arithmetic", "exact", &["exact", "patent"], "How numbers are kept."),
+            Key::choice("power", "16", &["2", "4", "8", "16"], "The power of the cosine."),
+            Key::integer("cosine.fraction", 20, 4..=30, "Fraction bits of the cosines."),
             Key::flag("cosine.signed", false, "whether cosines may be negative"),
-            Key::choice(
-                "sine.scheme",
-                "direct",
-                &["direct", "segmented"],
-                "How the sine is had.",
-            ),
+            Key::choice("sine.scheme", "direct", &["direct", "segmented"], "How the sine is had."),
             Key::integer("sine.address", 12, 1..=16, "Address bits of the table.")
                 .only_when("sine.scheme", "direct"),
-            Key::integers(
-                "sine.segments",
-                &[6, 5],
-                2..=14,
-                1..=8,
-                "Log2 of the segments.",
-            )
-            .only_when("sine.scheme", "segmented"),
-            Key::number(
-                "domain.deviation",
-                30.0,
-                0.5..=90.0,
-                "Largest deviation in degrees.",
-            ),
+            Key::integers("sine.segments", &[6, 5], 2..=14, 1..=8, "Log2 of the segments.")
+                .only_when("sine.scheme", "segmented"),
+            Key::number("domain.deviation", 30.0, 0.5..=90.0, "Largest deviation in degrees."),
         ],
         check,
     }
@@ -72,10 +41,6 @@ fn check(config: &Config, problems: &mut Problems) {
     }
     let segments = config.integers("sine.segments").len() as i64;
     if config.choice("sine.scheme") == "segmented" && 2 * segments > fraction {
-        problems.push(
-            "sine.segments",
-            "more segments than the cosine has",
-            "give fewer",
-        );
+        problems.push("sine.segments", "more segments than the cosine has", "give fewer");
     }
 }

@@ -48,11 +48,8 @@ const WORDS: usize = 6;
 
 /// The design of a seed.
 pub fn design(seed: u64) -> Design {
-    let mut build = Build {
-        random: Random::new(seed),
-        design: skeleton(seed),
-        unit: Unit::Control,
-    };
+    let mut build =
+        Build { random: Random::new(seed), design: skeleton(seed), unit: Unit::Control };
     build.control();
     build.unit = Unit::Datapath;
     build.datapath();
@@ -168,27 +165,16 @@ impl Build {
         let zero = self.net(wide, Driver::Constant(0), false);
         let one = self.net(wide, Driver::Constant(1), false);
         let at_last = self.net(Format::BIT, Driver::Op(Op::Equal(q, last)), false);
-        let sum = Op::Add {
-            a: q,
-            b: one,
-            carry: None,
-        };
+        let sum = Op::Add { a: q, b: one, carry: None };
         let following = self.net(wide, Driver::Op(sum), false);
-        let around = Op::Mux {
-            select: at_last,
-            inputs: vec![following, zero],
-        };
+        let around = Op::Mux { select: at_last, inputs: vec![following, zero] };
         let next = self.net(wide, Driver::Op(around), true);
         self.design.registers[address.index()].data = Some(next);
         self.design.registers[run.index()].data = Some(running);
 
         let choices = || FieldKind::Select(["a", "b", "c·c", "d"].map(str::to_owned).to_vec());
-        let kinds = [
-            (2, choices()),
-            (1, FieldKind::Enable),
-            (2, choices()),
-            (1, FieldKind::Enable),
-        ];
+        let kinds =
+            [(2, choices()), (1, FieldKind::Enable), (2, choices()), (1, FieldKind::Enable)];
         let width = kinds.iter().map(|(width, _)| width).sum::<i32>();
         for (at, (width, kind)) in kinds.into_iter().enumerate() {
             let id = FieldId(at as u32);
@@ -230,11 +216,7 @@ impl Build {
             })
             .collect();
         for at in 0..40 {
-            self.unit = if self.random.chance(90) {
-                Unit::Datapath
-            } else {
-                Unit::Control
-            };
+            self.unit = if self.random.chance(90) { Unit::Datapath } else { Unit::Control };
             match at {
                 10 | 20 => self.memory(at == 20),
                 15 | 25 | 35 => {
@@ -277,11 +259,7 @@ impl Build {
         loop {
             // Late nets are chosen more often, so that expressions nest.
             let count = self.design.nets.len();
-            let from = if self.random.chance(60) {
-                count.saturating_sub(12)
-            } else {
-                0
-            };
+            let from = if self.random.chance(60) { count.saturating_sub(12) } else { 0 };
             let id = NetId((from + self.random.below(count - from)) as u32);
             if !self.is_constant(id) {
                 return id;
@@ -292,10 +270,7 @@ impl Build {
     fn is_constant(&self, id: NetId) -> bool {
         match &self.design.net(id).driver {
             Driver::Constant(_) => true,
-            Driver::Op(op) => op
-                .operands()
-                .iter()
-                .all(|operand| self.is_constant(*operand)),
+            Driver::Op(op) => op.operands().iter().all(|operand| self.is_constant(*operand)),
             _ => false,
         }
     }
@@ -308,10 +283,9 @@ impl Build {
             Driver::Op(Op::Extend(of)) => {
                 !self.design.net(*of).format.signed || self.is_partly_constant(*of)
             }
-            Driver::Op(op @ (Op::Relabel(_) | Op::Slice { .. } | Op::Concat(_))) => op
-                .operands()
-                .iter()
-                .any(|operand| self.is_partly_constant(*operand)),
+            Driver::Op(op @ (Op::Relabel(_) | Op::Slice { .. } | Op::Concat(_))) => {
+                op.operands().iter().any(|operand| self.is_partly_constant(*operand))
+            }
             _ => false,
         }
     }
@@ -349,10 +323,7 @@ impl Build {
             std::cmp::Ordering::Equal => source,
             std::cmp::Ordering::Greater => {
                 let low = self.random.below((from.width() - width) as usize + 1) as u32;
-                self.add(
-                    Format::unsigned(width as i32, 0),
-                    Op::Slice { of: source, low },
-                )
+                self.add(Format::unsigned(width as i32, 0), Op::Slice { of: source, low })
             }
         };
         if self.design.net(resized).format.signed == signed {
@@ -381,10 +352,7 @@ impl Build {
             }
             4 | 5 => {
                 let (a, b) = pair(self, None);
-                let carry = self
-                    .random
-                    .chance(40)
-                    .then(|| self.of_width(1, Some(false)));
+                let carry = self.random.chance(40).then(|| self.of_width(1, Some(false)));
                 self.add(format, Op::Add { a, b, carry });
             }
             6 => {
@@ -397,11 +365,8 @@ impl Build {
                 let a = self.of_width(width, Some(signed));
                 let b = self.of_width(other, Some(signed));
                 let total = (width + other) as i32;
-                let product = if signed {
-                    Format::signed(total - 1, 0)
-                } else {
-                    Format::unsigned(total, 0)
-                };
+                let product =
+                    if signed { Format::signed(total - 1, 0) } else { Format::unsigned(total, 0) };
                 self.add(product, Op::Mul(a, b));
             }
             9 => {
@@ -415,21 +380,14 @@ impl Build {
             }
             11 => {
                 let a = self.any();
-                let op = if self.random.chance(50) {
-                    Op::Any(a)
-                } else {
-                    Op::All(a)
-                };
+                let op = if self.random.chance(50) { Op::Any(a) } else { Op::All(a) };
                 self.add(bit, op);
             }
             12 => {
                 let first = 1 + self.random.below(10) as u32;
                 let second = 1 + self.random.below(10) as u32;
                 let parts = vec![self.of_width(first, None), self.of_width(second, None)];
-                self.add(
-                    Format::unsigned((first + second) as i32, 0),
-                    Op::Concat(parts),
-                );
+                self.add(Format::unsigned((first + second) as i32, 0), Op::Concat(parts));
             }
             _ => {
                 let count = 2 + self.random.below(3);
@@ -448,9 +406,7 @@ impl Build {
         let bits = 1 + self.random.below(6) as u32;
         let address = self.of_width(bits, Some(false));
         let format = self.format(40);
-        let words = (0..1usize << bits)
-            .map(|_| self.random.bits(format.width()))
-            .collect();
+        let words = (0..1usize << bits).map(|_| self.random.bits(format.width())).collect();
         let name = if synchronous { "blocks" } else { "logic" };
         self.rom(name, address, format, words, synchronous);
     }

@@ -38,19 +38,12 @@ impl<'a> Machine<'a> {
             };
             self.bits[id.index()] = value & mask(self.design.width(id));
         }
-        self.design
-            .outputs()
-            .map(|port| self.of(port.net))
-            .collect()
+        self.design.outputs().map(|port| self.of(port.net)).collect()
     }
 
     /// The rising edge.
     pub fn edge(&mut self) {
-        let reset = self
-            .design
-            .port(|role| role == Role::Reset)
-            .expect("a reset")
-            .net;
+        let reset = self.design.port(|role| role == Role::Reset).expect("a reset").net;
         let reset = self.of(reset) == 0;
         let mut next = Vec::new();
         for register in &self.design.registers {
@@ -91,9 +84,10 @@ impl<'a> Machine<'a> {
             Op::Relabel(a) => self.of(*a),
             Op::Extend(a) => self.raw(*a) as u64,
             Op::Slice { of, low } => self.of(*of) >> low,
-            Op::Concat(parts) => parts.iter().fold(0u128, |all, part| {
-                all << width(part) | u128::from(self.of(*part))
-            }) as u64,
+            Op::Concat(parts) => parts
+                .iter()
+                .fold(0u128, |all, part| all << width(part) | u128::from(self.of(*part)))
+                as u64,
             Op::Not(a) => !self.of(*a),
             Op::And(a, b) => self.of(*a) & self.of(*b),
             Op::Or(a, b) => self.of(*a) | self.of(*b),

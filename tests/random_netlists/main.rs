@@ -54,10 +54,7 @@ fn check_text(name: &str, text: &str) {
     }
     assert!(text.is_ascii(), "{name} is not ASCII");
     for line in text.lines() {
-        assert!(
-            line.len() <= 100 || name.contains("stimulus"),
-            "{name}: {line}"
-        );
+        assert!(line.len() <= 100 || name.contains("stimulus"), "{name}: {line}");
         assert_eq!(line, line.trim_end(), "{name}");
     }
 }
@@ -65,10 +62,7 @@ fn check_text(name: &str, text: &str) {
 fn vectors(design: &Design, seed: u64) -> Vectors {
     let mut random = generate::Random::new(!seed);
     let mut machine = interpret::Machine::new(design);
-    let mut vectors = Vectors {
-        known_from: KNOWN_FROM,
-        ..Vectors::default()
-    };
+    let mut vectors = Vectors { known_from: KNOWN_FROM, ..Vectors::default() };
     for clock in 0..CLOCKS {
         let row: Vec<u64> = design
             .inputs()

@@ -14,11 +14,7 @@ use crate::registry::Registry;
 /// `glint list`.
 pub fn list(registry: &Registry, output: Output) -> Result<bool> {
     let configs: Vec<String> = if Path::new(CONFIGS).is_dir() {
-        paths(&[])
-            .unwrap_or_default()
-            .iter()
-            .map(|path| path.display().to_string())
-            .collect()
+        paths(&[]).unwrap_or_default().iter().map(|path| path.display().to_string()).collect()
     } else {
         Vec::new()
     };
@@ -45,15 +41,9 @@ pub fn list(registry: &Registry, output: Output) -> Result<bool> {
 /// `glint new`.
 pub fn new(registry: &Registry, output: Output, device: &str, name: Option<&str>) -> Result<bool> {
     let Some(found) = registry.device(device) else {
-        let names: Vec<&str> = registry
-            .devices()
-            .iter()
-            .map(|device| device.name)
-            .collect();
-        let near = config::nearest(device, names.iter().copied()).map_or_else(
-            || ".".to_owned(),
-            |near| format!("; did you mean `{near}`?"),
-        );
+        let names: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
+        let near = config::nearest(device, names.iter().copied())
+            .map_or_else(|| ".".to_owned(), |near| format!("; did you mean `{near}`?"));
         bail!(Usage(format!(
             "there is no device `{device}`{near} The devices are: {}",
             names.join(", ")

@@ -35,10 +35,8 @@ pub fn everything(registry: &Registry, output: Output) -> Result<bool> {
         generate::write(Path::new("."), one, &files, false)?;
     }
     let bar = progress::bar(output, TEST_POINTS * loaded.len() as u64, "points checked");
-    let findings: Vec<Finding> = loaded
-        .par_iter()
-        .map(|one| finding(one, &bar))
-        .collect::<Result<_>>()?;
+    let findings: Vec<Finding> =
+        loaded.par_iter().map(|one| finding(one, &bar)).collect::<Result<_>>()?;
     bar.finish_and_clear();
     let holds = findings.iter().all(|finding| finding.faults.is_empty());
     if output.json {
@@ -59,12 +57,7 @@ fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<Finding> {
     let outcome = lockstep.run(TEST_POINTS, &|points| bar.inc(points))?;
     let bound = one.unit.contract.bound();
     let faults = outcome.faults(&bound);
-    Ok(Finding {
-        timing: one.unit.timing()?,
-        bound,
-        outcome,
-        faults,
-    })
+    Ok(Finding { timing: one.unit.timing()?, bound, outcome, faults })
 }
 
 fn print(loaded: &[Loaded], findings: &[Finding]) -> Result<()> {
@@ -98,12 +91,7 @@ fn print(loaded: &[Loaded], findings: &[Finding]) -> Result<()> {
                 .worst
                 .as_ref()
                 .map_or_else(|| "-".to_owned(), |worst| format!("{:.3}", worst.units)),
-            if finding.faults.is_empty() {
-                "holds"
-            } else {
-                "FAILS"
-            }
-            .to_owned(),
+            if finding.faults.is_empty() { "holds" } else { "FAILS" }.to_owned(),
         ]
     });
     let numbers = [

@@ -59,9 +59,7 @@ pub fn compare(
     request: &CompareRequest,
 ) -> Result<bool> {
     if request.csv && output.json {
-        bail!(WrongUsage(
-            "--csv and --json are two ways to print the same: give one".to_owned()
-        ));
+        bail!(WrongUsage("--csv and --json are two ways to print the same: give one".to_owned()));
     }
     let mut notes = Vec::new();
     let mut units = Vec::new();
@@ -82,11 +80,7 @@ pub fn compare(
         }
     };
     let families = if yosys.is_some() { FAMILIES.len() } else { 0 };
-    let bar = progress::bar(
-        output,
-        (units.len() * (1 + families)) as u64,
-        "devices weighed",
-    );
+    let bar = progress::bar(output, (units.len() * (1 + families)) as u64, "devices weighed");
     let n = f64::from(request.exponent);
     let figures: Vec<Figures> = units
         .par_iter()
@@ -105,12 +99,7 @@ pub fn compare(
         .into_iter()
         .zip(figures)
         .zip(usage.drain(..))
-        .map(|(((label, unit), figures), usage)| Entry {
-            label,
-            unit,
-            figures,
-            usage,
-        })
+        .map(|(((label, unit), figures), usage)| Entry { label, unit, figures, usage })
         .collect();
     for entry in &entries {
         if entry.figures.accuracy.is_none() {
@@ -194,9 +183,7 @@ fn synthesise(
 /// Why a configuration has no errors to show.
 fn outside(entry: &Entry, n: u32) -> String {
     let operands = entry.unit.contract.operands();
-    let exponent = operands
-        .iter()
-        .find(|operand| operand.name == contract::EXPONENT);
+    let exponent = operands.iter().find(|operand| operand.name == contract::EXPONENT);
     let label = &entry.label;
     match exponent {
         None => format!("{label}: none of its operands stand for gamma and n = {n}"),

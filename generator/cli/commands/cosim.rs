@@ -44,10 +44,7 @@ pub fn cosim(
 ) -> Result<bool> {
     let loaded = load(registry, configs)?;
     if request.vcd.is_some() && loaded.len() != 1 {
-        bail!(Usage(format!(
-            "--vcd is for one configuration; here are {}",
-            loaded.len()
-        )));
+        bail!(Usage(format!("--vcd is for one configuration; here are {}", loaded.len())));
     }
     let which = match request.simulator {
         Simulator::RustHdl => return built_in(output, &loaded, request),
@@ -59,11 +56,7 @@ pub fn cosim(
 
 fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result<bool> {
     let points = request.points.unwrap_or(TEST_POINTS);
-    let bar = progress::bar(
-        output,
-        points.saturating_mul(loaded.len() as u64),
-        "points checked",
-    );
+    let bar = progress::bar(output, points.saturating_mul(loaded.len() as u64), "points checked");
     let outcomes: Vec<Outcome> = loaded
         .par_iter()
         .map(|one| {
@@ -134,10 +127,7 @@ pub fn place(one: &Loaded, worst: &Worst) -> String {
         .iter()
         .filter_map(|(name, raw)| {
             let operand = operands.iter().find(|operand| operand.name == *name)?;
-            Some(format!(
-                "{name}={}",
-                operand.format.to_f64(i128::from(*raw))
-            ))
+            Some(format!("{name}={}", operand.format.to_f64(i128::from(*raw))))
         })
         .collect();
     format!("{} for {}", worst.output, values.join(" "))

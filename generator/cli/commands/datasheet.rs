@@ -51,10 +51,7 @@ pub fn datasheet(
     request: &DatasheetArguments,
 ) -> Result<bool> {
     let loaded = load(registry, &request.configs.configs)?;
-    let single = request
-        .out
-        .extension()
-        .is_some_and(|it| it.eq_ignore_ascii_case("html"));
+    let single = request.out.extension().is_some_and(|it| it.eq_ignore_ascii_case("html"));
     if single && loaded.len() != 1 {
         bail!(Usage(format!(
             "--out {}: a file takes one configuration, and there are {}; give a directory",

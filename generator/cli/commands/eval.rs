@@ -80,20 +80,12 @@ pub fn eval(
             operand.format.to_f64(i128::from(raw)).to_string(),
         ]
     });
-    tables::print(
-        &["operand", "format", "raw", "value"],
-        &["raw", "value"],
-        rows,
-    );
+    tables::print(&["operand", "format", "raw", "value"], &["raw", "value"], rows);
     let rows = signals.iter().map(|(name, bits)| {
         let (raw, value, format) = value_of(name, *bits);
         vec![name.clone(), format, raw.to_string(), value.to_string()]
     });
-    tables::print(
-        &["golden, when valid", "format", "raw", "value"],
-        &["raw", "value"],
-        rows,
-    );
+    tables::print(&["golden, when valid", "format", "raw", "value"], &["raw", "value"], rows);
     tables::print_line(&format!("formula in f64: f = {f}"));
     for (name, exact) in contract.outputs().iter().zip(exact) {
         tables::print_line(&format!("  {name} = {exact:.6}"));
@@ -112,14 +104,9 @@ fn operand_values(operands: &[Operand], settings: &[String]) -> Result<Vec<i64>,
             .split_once('=')
             .ok_or_else(|| format!("`{setting}` is not operand=value, as in cos_gamma=0.99"))?;
         let Some(at) = operands.iter().position(|operand| operand.name == name) else {
-            let names: Vec<&str> = operands
-                .iter()
-                .map(|operand| operand.name.as_str())
-                .collect();
-            let near = config::nearest(name, names.iter().copied()).map_or_else(
-                || ".".to_owned(),
-                |near| format!("; did you mean `{near}`?"),
-            );
+            let names: Vec<&str> = operands.iter().map(|operand| operand.name.as_str()).collect();
+            let near = config::nearest(name, names.iter().copied())
+                .map_or_else(|| ".".to_owned(), |near| format!("; did you mean `{near}`?"));
             return Err(format!(
                 "there is no operand `{name}`{near} The operands are: {}",
                 names.join(", ")
@@ -136,11 +123,7 @@ fn operand_values(operands: &[Operand], settings: &[String]) -> Result<Vec<i64>,
         .zip(raw)
         .map(|(operand, raw)| {
             let (low, high) = operand.domain;
-            raw.unwrap_or(if operand.colour {
-                high
-            } else {
-                low.midpoint(high)
-            })
+            raw.unwrap_or(if operand.colour { high } else { low.midpoint(high) })
         })
         .collect())
 }
@@ -160,19 +143,14 @@ fn operand_value(operand: &Operand, text: &str) -> Result<i64, String> {
         }
         raw
     } else {
-        let value: f64 = text
-            .parse()
-            .map_err(|_| format!("`{text}` is not a number"))?;
+        let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
         if !value.is_finite() {
             return Err(format!("`{text}` is not a finite number"));
         }
         // It saturates: what is further off than a rounding does not fit.
         let raw = format.quantise(value);
         if (format.to_f64(raw) - value).abs() >= format.to_f64(1) {
-            let (least, most) = (
-                format.to_f64(format.min_raw()),
-                format.to_f64(format.max_raw()),
-            );
+            let (least, most) = (format.to_f64(format.min_raw()), format.to_f64(format.max_raw()));
             return Err(format!("{value} is beyond {format}: {least} to {most}"));
         }
         raw
@@ -192,11 +170,7 @@ fn point(model: &mut dyn Model, operands: &[Operand], raw: &[i64]) -> Result<Vec
     model.clock(&inputs);
     set(&mut inputs, "rst_n", 1);
     for (operand, &raw) in operands.iter().zip(raw) {
-        set(
-            &mut inputs,
-            &operand.name,
-            operand.format.bits(i128::from(raw)),
-        );
+        set(&mut inputs, &operand.name, operand.format.bits(i128::from(raw)));
         set(&mut inputs, &format!("{}_write", operand.name), 1);
     }
     set(&mut inputs, "start", 1);

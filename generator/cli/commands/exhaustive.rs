@@ -39,10 +39,7 @@ pub fn exhaustive(
 ) -> Result<bool> {
     let loaded = load(registry, configs)?;
     if request.resume.is_some() && loaded.len() != 1 {
-        bail!(Usage(format!(
-            "--resume is for one configuration; here are {}",
-            loaded.len()
-        )));
+        bail!(Usage(format!("--resume is for one configuration; here are {}", loaded.len())));
     }
     let mut list = Vec::new();
     let mut holds = true;
@@ -82,10 +79,7 @@ pub fn merge(
     let loaded = load(registry, &[config.to_path_buf()])?;
     let one = &loaded[0];
     let job = one.unit.job()?;
-    let names: Vec<String> = files
-        .iter()
-        .map(|path| path.display().to_string())
-        .collect();
+    let names: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
     let states = files
         .iter()
         .map(|path| read(path)?.with_context(|| format!("there is no `{}`", path.display())))
@@ -116,13 +110,9 @@ fn read(path: &Path) -> Result<Option<State>> {
             return Err(error).with_context(|| format!("cannot read `{}`", path.display()));
         }
     };
-    let state = serde_json::from_str(&text)
-        .map_err(|error| anyhow!("{error}"))
-        .with_context(|| {
-            format!(
-                "`{}` does not hold the state of a proof; name another file",
-                path.display()
-            )
+    let state =
+        serde_json::from_str(&text).map_err(|error| anyhow!("{error}")).with_context(|| {
+            format!("`{}` does not hold the state of a proof; name another file", path.display())
         })?;
     Ok(Some(state))
 }

@@ -75,9 +75,7 @@ pub fn all_files(output: Output, loaded: &[Loaded]) -> Result<Vec<Vec<OutputFile
 fn files(one: &Loaded) -> Result<Vec<OutputFile>> {
     let vectors = one.unit.vectors(BENCH_POINTS, BENCH_SEED);
     let vectors = vectors.with_context(|| format!("`{}`", one.path))?;
-    one.unit
-        .files(&one.path, vectors)
-        .with_context(|| format!("`{}`", one.path))
+    one.unit.files(&one.path, vectors).with_context(|| format!("`{}`", one.path))
 }
 
 /// Writes the files of a configuration, and the driver that its bench in Python shares with others.

@@ -57,11 +57,7 @@ impl Reproducer {
     ) -> Result<Self> {
         let (vcd, from) = window(one, &difference.mismatch);
         write(&vcd, |file| clocks.trace(difference.place, from, file))?;
-        Ok(Self {
-            vcd,
-            from,
-            command: format!("glint cosim {} --exhaustive", one.path),
-        })
+        Ok(Self { vcd, from, command: format!("glint cosim {} --exhaustive", one.path) })
     }
 
     /// For people.

@@ -58,13 +58,8 @@ fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
     })?;
     let mut paths = Vec::new();
     for entry in entries {
-        let path = entry
-            .with_context(|| format!("cannot read `{CONFIGS}/`"))?
-            .path();
-        if path
-            .extension()
-            .is_some_and(|extension| extension == "toml")
-        {
+        let path = entry.with_context(|| format!("cannot read `{CONFIGS}/`"))?.path();
+        if path.extension().is_some_and(|extension| extension == "toml") {
             paths.push(path);
         }
     }
@@ -89,9 +84,8 @@ fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
         }
     }
     for (at, one) in loaded.iter().enumerate() {
-        if let Some(other) = loaded[..at]
-            .iter()
-            .find(|other| other.unit.config.name == one.unit.config.name)
+        if let Some(other) =
+            loaded[..at].iter().find(|other| other.unit.config.name == one.unit.config.name)
         {
             failed.push(anyhow!(
                 "`{}` and `{}` both name their module `{}`; set another `name` in one of them",
@@ -101,11 +95,7 @@ fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
             ));
         }
     }
-    if failed.is_empty() {
-        Ok(loaded)
-    } else {
-        Err(Several(failed).into())
-    }
+    if failed.is_empty() { Ok(loaded) } else { Err(Several(failed).into()) }
 }
 
 fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Result<Loaded> {
@@ -126,10 +116,7 @@ impl Loaded {
             let key = bound
                 .limiting()
                 .map(|term| {
-                    format!(
-                        "; `{}` ({}) limits it: {:.3} units",
-                        term.key, term.what, term.units
-                    )
+                    format!("; `{}` ({}) limits it: {:.3} units", term.key, term.what, term.units)
                 })
                 .unwrap_or_default();
             let message = format!(

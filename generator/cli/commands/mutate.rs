@@ -70,16 +70,12 @@ pub fn mutate(
     if let Some(id) = &request.only {
         return match &loaded[..] {
             [one] => only(output, one, id),
-            _ => bail!(Usage(format!(
-                "--only is for one configuration; here are {}",
-                loaded.len()
-            ))),
+            _ => {
+                bail!(Usage(format!("--only is for one configuration; here are {}", loaded.len())))
+            }
         };
     }
-    let faults: Vec<Faults> = loaded
-        .iter()
-        .map(|one| Faults::of(&one.unit.design))
-        .collect();
+    let faults: Vec<Faults> = loaded.iter().map(|one| Faults::of(&one.unit.design)).collect();
     if request.list {
         list(output, &loaded, &faults);
         return Ok(true);
@@ -92,20 +88,12 @@ pub fn mutate(
                 let faults = text.faults();
                 (text, faults)
             };
-            request
-                .full
-                .then(text)
-                .transpose()
-                .map(|text| text.map(with_faults))
+            request.full.then(text).transpose().map(|text| text.map(with_faults))
         })
         .collect::<Result<_>>()?;
     let records = records(&loaded, request)?;
     let total = faults.iter().map(Faults::len).sum::<usize>()
-        + texts
-            .iter()
-            .flatten()
-            .map(|(_, faults)| faults.len())
-            .sum::<usize>();
+        + texts.iter().flatten().map(|(_, faults)| faults.len()).sum::<usize>();
     let bar = progress::bar(output, total as u64, "faults planted");
     let mut scores = Vec::new();
     for (((one, faults), text), record) in loaded.iter().zip(&faults).zip(&texts).zip(records) {
@@ -194,25 +182,16 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
         Verdict::Equivalent(how) => format!("equivalent, {how}"),
         Verdict::Open => "OPEN: not caught, and not proved equivalent".to_owned(),
     };
-    tables::print_line(&format!(
-        "{}: {} ({}): {said}",
-        one.path, fault.id, fault.kind
-    ));
+    tables::print_line(&format!("{}: {} ({}): {said}", one.path, fault.id, fault.kind));
     if let Some((path, from, to)) = waveform {
-        tables::print_line(&format!(
-            "  `{}` shows clocks {from} to {to}",
-            path.display()
-        ));
+        tables::print_line(&format!("  `{}` shows clocks {from} to {to}", path.display()));
     }
     Ok(verdict != Verdict::Open)
 }
 
 /// Where a mutant differs, and in what.
 fn shown_by(Difference { held, mismatch }: &Difference) -> String {
-    let operands: Vec<String> = held
-        .iter()
-        .map(|(name, raw)| format!(" {name}=#{raw}"))
-        .collect();
+    let operands: Vec<String> = held.iter().map(|(name, raw)| format!(" {name}=#{raw}")).collect();
     let holding = if operands.is_empty() { "" } else { ", with" };
     format!(
         "seed {}{holding}{}, after clock {}, {mismatch}",
@@ -272,10 +251,7 @@ fn print(scored: &Scored) {
             tally.open.to_string(),
         ]
     };
-    let kinds = score
-        .kinds
-        .iter()
-        .map(|(kind, tally)| row(kind.to_string(), tally));
+    let kinds = score.kinds.iter().map(|(kind, tally)| row(kind.to_string(), tally));
     let all = row("all".to_owned(), &score.all);
     let headings = ["fault", "planted", "caught", "aimed", "equivalent", "open"];
     tables::print(&headings, &headings[1..], kinds.chain([all]));

@@ -157,20 +157,16 @@ pub fn render(registry: &Registry, output: Output, arguments: &RenderArguments) 
     bar.finish_and_clear();
     let picture = match &rendered.comparison {
         None => rendered.picture.png()?,
-        Some(comparison) => Picture::beside(&[
-            &rendered.picture,
-            &comparison.blinn,
-            &comparison.difference.picture,
-        ])
-        .png()?,
+        Some(comparison) => {
+            Picture::beside(&[&rendered.picture, &comparison.blinn, &comparison.difference.picture])
+                .png()?
+        }
     };
     let cannot = || format!("cannot write `{}`", arguments.out.display());
     let mut file = destination.file()?;
     file.write_all(&picture).with_context(cannot)?;
     destination.commit()?;
-    tell(
-        output, arguments, &name, &unit, &scene, &settings, &rendered,
-    );
+    tell(output, arguments, &name, &unit, &scene, &settings, &rendered);
     Ok(true)
 }
 
@@ -190,9 +186,8 @@ fn unit(registry: &Registry, config: Option<&Path>) -> Result<(String, Unit)> {
 
 fn settings(unit: &Unit, arguments: &RenderArguments) -> Result<Settings> {
     let (least, most) = render::exponents(unit.contract.as_ref()).unwrap_or((0, i64::MAX));
-    let exponent = arguments
-        .exponent
-        .unwrap_or_else(|| render::usual_exponent(unit.contract.as_ref()));
+    let exponent =
+        arguments.exponent.unwrap_or_else(|| render::usual_exponent(unit.contract.as_ref()));
     if !(least..=most).contains(&i64::from(exponent)) {
         bail!(Usage(format!(
             "--exponent {exponent}: `{}` takes {least} to {most}",
@@ -202,11 +197,7 @@ fn settings(unit: &Unit, arguments: &RenderArguments) -> Result<Settings> {
     Ok(Settings {
         size: arguments.size,
         samples: arguments.samples,
-        view: View {
-            eye: arguments.camera,
-            target: arguments.target,
-            field: arguments.fov,
-        },
+        view: View { eye: arguments.camera, target: arguments.target, field: arguments.fov },
         material: Material {
             ambient: arguments.ambient,
             diffuse: arguments.diffuse,
@@ -275,9 +266,7 @@ fn read(path: &Path) -> Result<Vec<u8>> {
         bail!("it is a directory");
     }
     let mut bytes = Vec::new();
-    File::open(path)?
-        .take(LARGEST_FILE + 1)
-        .read_to_end(&mut bytes)?;
+    File::open(path)?.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > LARGEST_FILE {
         bail!("it has more than {LARGEST_FILE} bytes");
     }
@@ -311,12 +300,7 @@ fn tell(
     let (width, height) = settings.size;
     if output.json {
         let comparison = rendered.comparison.as_ref().map(|comparison| {
-            let Difference {
-                largest,
-                psnr,
-                gain,
-                ..
-            } = comparison.difference;
+            let Difference { largest, psnr, gain, .. } = comparison.difference;
             json!({
                 "largest_difference": largest,
                 "psnr": psnr,
@@ -349,9 +333,7 @@ fn tell(
         words::grouped(rendered.points)
     ));
     if degenerate > 0 {
-        failure::warn(&format!(
-            "{degenerate} triangles are without area and were left out"
-        ));
+        failure::warn(&format!("{degenerate} triangles are without area and were left out"));
     }
     if rendered.beyond > 0 {
         failure::warn(&format!(
@@ -423,10 +405,7 @@ fn light(text: &str) -> Result<Light, String> {
         return Err("a colour is three numbers from 0 to 1".to_owned());
     }
     let direction = direction.unit();
-    Ok(Light {
-        direction: direction.ok_or("0,0,0 is no direction")?,
-        colour: Vector(colour),
-    })
+    Ok(Light { direction: direction.ok_or("0,0,0 is no direction")?, colour: Vector(colour) })
 }
 
 fn share(text: &str) -> Result<f64, String> {

@@ -56,10 +56,8 @@ pub fn report(registry: &Registry, output: Output, request: &ReportRequest) -> R
     let evidence = evidence::gather(registry, synthesis, &|| bar.inc(1))?;
     bar.finish_and_clear();
     notes.extend(evidence.notes.iter().cloned());
-    let mut written = vec![
-        figures.write_json(&evidence)?,
-        html.write(&page::page(&evidence, timed.as_ref())?)?,
-    ];
+    let mut written =
+        vec![figures.write_json(&evidence)?, html.write(&page::page(&evidence, timed.as_ref())?)?];
     if let (Some(target), Some(timed)) = (timings, &timed) {
         written.push(target.write_json(timed)?);
     }

@@ -63,9 +63,7 @@ pub fn verify(
     // Before the work: a directory that cannot be written is known now.
     std::fs::create_dir_all(&request.out)
         .with_context(|| format!("cannot make the directory `{}`", request.out.display()))?;
-    let files = loaded
-        .iter()
-        .map(|one| Files::new(&request.out, &one.unit.config.name));
+    let files = loaded.iter().map(|one| Files::new(&request.out, &one.unit.config.name));
     let files = files.collect::<Result<Vec<_>>>()?;
     let mut list = Vec::new();
     let mut verified = true;
@@ -96,15 +94,8 @@ fn one_configuration(
     request: &VerifyRequest,
 ) -> Result<(Record, Vec<Timing>)> {
     one.contract()?;
-    let effort = Effort {
-        full: request.full,
-        time_limit: request.time_limit,
-    };
-    let subject = Subject {
-        path: &one.path,
-        unit: &one.unit,
-        effort,
-    };
+    let effort = Effort { full: request.full, time_limit: request.time_limit };
+    let subject = Subject { path: &one.path, unit: &one.unit, effort };
     let mut answers: Vec<Answer> = Vec::new();
     for leg in LEGS {
         if leg.is_outside() && request.without_tools {

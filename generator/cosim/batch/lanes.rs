@@ -101,14 +101,7 @@ impl Team {
         let (valid, busy) = (output(Role::Valid)?, output(Role::Busy)?);
         simulator.clock()?;
         simulator.set_lanes(reset, [1; LANES]);
-        Ok(Self {
-            simulator,
-            start,
-            operands,
-            results,
-            valid,
-            busy,
-        })
+        Ok(Self { simulator, start, operands, results, valid, busy })
     }
 
     /// Every instance takes the next point as soon as it is free.
@@ -133,10 +126,7 @@ impl Team {
                 let Some(task) = slot else { continue };
                 let results = points.results(task.point);
                 if valid[lane] == 1 {
-                    ensure!(
-                        task.shown < results,
-                        "there are more than {results} results"
-                    );
+                    ensure!(task.shown < results, "there are more than {results} results");
                     let to = (points.results[task.point] - base + task.shown) * width;
                     for (out, &(net, format)) in out[to..].iter_mut().zip(&self.results) {
                         *out = format.raw(self.simulator.lanes(net)[lane]) as i64;
@@ -164,10 +154,7 @@ impl Team {
         let mut starting = [0; LANES];
         let free = tasks.iter_mut().zip(&mut starting);
         for ((task, start), point) in free.filter(|(task, _)| task.is_none()).zip(waiting) {
-            *task = Some(Task {
-                point,
-                ..Task::default()
-            });
+            *task = Some(Task { point, ..Task::default() });
             *start = 1;
         }
         if starting == [0; LANES] {
@@ -176,9 +163,7 @@ impl Team {
         for (at, &(data, strobe, format)) in self.operands.iter().enumerate() {
             // The data of those that do not start do not matter: their strobe is low.
             let bits = tasks.map(|task| {
-                task.map_or(0, |task| {
-                    format.bits(i128::from(points.operands(task.point)[at]))
-                })
+                task.map_or(0, |task| format.bits(i128::from(points.operands(task.point)[at])))
             });
             self.simulator.set_lanes(data, bits);
             self.simulator.set_lanes(strobe, starting);

@@ -107,11 +107,7 @@ impl Engine for Verilog {
                 out.push(format.raw(bits) as i64);
             }
         }
-        ensure!(
-            at == points.len(),
-            "results of {at} points, not {}",
-            points.len()
-        );
+        ensure!(at == points.len(), "results of {at} points, not {}", points.len());
         Ok(out)
     }
 }

@@ -56,9 +56,8 @@ pub struct Difference {
 impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let operands = self.operands.iter();
-        let operands: Vec<String> = operands
-            .map(|(name, bits)| format!("{name}={bits:#x}"))
-            .collect();
+        let operands: Vec<String> =
+            operands.map(|(name, bits)| format!("{name}={bits:#x}")).collect();
         write!(
             f,
             "combination {} ({}), clock {} of its computation, {}",
@@ -92,9 +91,7 @@ impl<'a> Clocks<'a> {
     /// The same with some operands held at raw values: the combinations are those of the others.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
-        Self {
-            pairing: self.pairing.holding(held),
-        }
+        Self { pairing: self.pairing.holding(held) }
     }
 
     /// The bits of all operands together.
@@ -159,10 +156,8 @@ impl<'a> Clocks<'a> {
     /// Lanes at power-up, with a run of combinations each.
     fn together(&self, places: Range<u64>) -> Result<Together<'_, LANES>> {
         let runs = places.clone().step_by(RUN as usize);
-        let courses = runs.map(|first| Course::Combinations {
-            first,
-            count: RUN.min(places.end - first),
-        });
+        let courses =
+            runs.map(|first| Course::Combinations { first, count: RUN.min(places.end - first) });
         Together::new(&self.pairing, courses)
     }
 
@@ -229,10 +224,7 @@ impl<'a> Clocks<'a> {
         let count = places.end as u32;
         let runs = places
             .step_by(RUN as usize / 8)
-            .map(|first| Course::Combinations {
-                first,
-                count: RUN / 8,
-            });
+            .map(|first| Course::Combinations { first, count: RUN / 8 });
         let mut lanes = Together::<LANES>::new(&self.pairing, runs)?;
         let begin = Instant::now();
         while !lanes.ended() {

@@ -96,10 +96,7 @@ pub struct State {
 impl State {
     /// Nothing done.
     pub fn new(digest: &str, shard: Shard) -> Self {
-        let nothing = Progress {
-            done: 0,
-            peak: Peak::NONE,
-        };
+        let nothing = Progress { done: 0, peak: Peak::NONE };
         Self {
             digest: digest.to_owned(),
             shard,
@@ -123,11 +120,7 @@ pub struct Job<'a> {
 impl<'a> Job<'a> {
     /// The proof of a contract.
     pub fn new(contract: &'a dyn Contract) -> Self {
-        Self {
-            f: Places::of_f(contract),
-            colours: Places::of_colours(contract),
-            clocks: None,
-        }
+        Self { f: Places::of_f(contract), colours: Places::of_colours(contract), clocks: None }
     }
 
     /// The same, and every combination of operands clock by clock, if they are not too many.
@@ -262,11 +255,7 @@ impl<'a> Job<'a> {
             *place = Some(name);
             merged.f.peak = merged.f.peak.join(state.f.peak);
             merged.colours.peak = merged.colours.peak.join(state.colours.peak);
-            let differ = merged
-                .clocks
-                .differs
-                .into_iter()
-                .chain(state.clocks.differs);
+            let differ = merged.clocks.differs.into_iter().chain(state.clocks.differs);
             merged.clocks.differs = differ.min();
         }
         let missing: Vec<String> = (1u64..)

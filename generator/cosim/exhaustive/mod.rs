@@ -40,12 +40,7 @@ impl Proof {
         let colour = contract.operands().iter().find(|operand| operand.colour);
         let largest = colour.map_or(1.0, |operand| operand.domain.1 as f64);
         let bound = contract.bound();
-        let mut proof = Self {
-            f,
-            f_units: f.error * largest,
-            colours,
-            faults: Vec::new(),
-        };
+        let mut proof = Self { f, f_units: f.error * largest, colours, faults: Vec::new() };
         if f.error > bound.f + F64 / largest {
             proof.faults.push(format!(
                 "f is off by {:e}, beyond the stated bound of {:e}",

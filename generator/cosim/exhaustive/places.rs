@@ -25,20 +25,13 @@ pub struct Peak {
 
 impl Peak {
     /// Of no places.
-    pub const NONE: Self = Self {
-        error: 0.0,
-        place: u64::MAX,
-    };
+    pub const NONE: Self = Self { error: 0.0, place: u64::MAX };
 
     /// Of two sets of places together.
     #[must_use]
     pub fn join(self, other: Self) -> Self {
         let later = self.place > other.place;
-        if other.error > self.error || (other.error == self.error && later) {
-            other
-        } else {
-            self
-        }
+        if other.error > self.error || (other.error == self.error && later) { other } else { self }
     }
 }
 
@@ -61,11 +54,7 @@ pub struct Places<'a> {
 impl<'a> Places<'a> {
     /// The contract's sweep of `f`.
     pub fn of_f(contract: &'a dyn Contract) -> Self {
-        Self {
-            contract,
-            measure: Measure::F,
-            sweep: contract.sweep(),
-        }
+        Self { contract, measure: Measure::F, sweep: contract.sweep() }
     }
 
     /// Every word `f` with every value of a colour operand (they are all alike).
@@ -84,14 +73,7 @@ impl<'a> Places<'a> {
             // Without colours there is no product, and no place.
             axes[0].values = Values::List(Vec::new());
         }
-        Self {
-            contract,
-            measure: Measure::Colour,
-            sweep: Sweep {
-                axes,
-                omits: String::new(),
-            },
-        }
+        Self { contract, measure: Measure::Colour, sweep: Sweep { axes, omits: String::new() } }
     }
 
     /// Axes, and what they leave out.
@@ -101,11 +83,7 @@ impl<'a> Places<'a> {
 
     /// How many places there are.
     pub fn count(&self) -> u64 {
-        self.sweep
-            .axes
-            .iter()
-            .map(|axis| axis.values.count())
-            .product()
+        self.sweep.axes.iter().map(|axis| axis.values.count()).product()
     }
 
     /// How many blocks they are cut into.
@@ -189,10 +167,7 @@ impl<'a> Places<'a> {
                 place[last] = inner.values.value(at + step);
                 let error = self.error_at(&place);
                 if error > peak.error || peak == Peak::NONE {
-                    peak = Peak {
-                        error,
-                        place: number + step,
-                    };
+                    peak = Peak { error, place: number + step };
                 }
             }
             number += steps;

@@ -29,17 +29,10 @@ impl Contract for Counting {
         0.0
     }
     fn bound(&self) -> Bound {
-        Bound {
-            f: 1.0,
-            units: 1.0,
-            terms: Vec::new(),
-        }
+        Bound { f: 1.0, units: 1.0, terms: Vec::new() }
     }
     fn sweep(&self) -> Sweep {
-        let axis = |values| Axis {
-            name: String::new(),
-            values,
-        };
+        let axis = |values| Axis { name: String::new(), values };
         Sweep {
             axes: vec![
                 axis(Values::List(vec![7, 3])),
@@ -75,10 +68,7 @@ fn the_peak_is_the_first_of_the_largest_however_the_work_is_divided() {
         .map(|block| places.check(block..block + 1, &|_| ()))
         .reduce(Peak::join);
     assert_eq!(parts, Some(whole));
-    assert_eq!(
-        places.check(0..2, &|_| ()).error,
-        f64::from(2 * (1 << 17) - 1)
-    );
+    assert_eq!(places.check(0..2, &|_| ()).error, f64::from(2 * (1 << 17) - 1));
 }
 
 #[test]
@@ -125,10 +115,7 @@ fn shards_join_to_the_whole() {
 
     let refused = |states: &[State]| job.merge(states, &names).unwrap_err().to_string();
     assert_eq!(refused(&states[..2]), "missing: shard 2/3");
-    assert_eq!(
-        refused(&[states[0].clone(), states[0].clone()]),
-        "`c` and `a` are both shard 3/3"
-    );
+    assert_eq!(refused(&[states[0].clone(), states[0].clone()]), "`c` and `a` are both shard 3/3");
     assert!(refused(&[states[0].clone(), whole()]).contains("not of one division"));
     let mut other = states[1].clone();
     other.digest = "another".to_owned();

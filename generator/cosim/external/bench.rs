@@ -121,10 +121,9 @@ impl BuiltBench {
     ) -> Result<Self> {
         // Missing tools are reported before anything is written.
         let (compiler, runner) = match simulator {
-            Simulator::Icarus => (
-                Tool::find_in("iverilog", search)?,
-                Some(Tool::find_in("vvp", search)?),
-            ),
+            Simulator::Icarus => {
+                (Tool::find_in("iverilog", search)?, Some(Tool::find_in("vvp", search)?))
+            }
             Simulator::Verilator => (Tool::find_in("verilator", search)?, None),
         };
         let place = tempfile::Builder::new()
@@ -167,13 +166,7 @@ impl BuiltBench {
                 (Tool::find_in("bench", built.as_os_str())?, &[])
             }
         };
-        Ok(Self {
-            simulator,
-            top: top.to_owned(),
-            program,
-            build,
-            place,
-        })
+        Ok(Self { simulator, top: top.to_owned(), program, build, place })
     }
 
     /// Where it runs: beside its files, and those that it writes.
@@ -208,11 +201,7 @@ impl BuiltBench {
                 capture::quote(&transcript)
             ),
         };
-        Ok(BenchOutcome {
-            passed,
-            build: self.build.clone(),
-            transcript,
-        })
+        Ok(BenchOutcome { passed, build: self.build.clone(), transcript })
     }
 }
 
@@ -226,10 +215,7 @@ fn write_files<'a, N: AsRef<str>, C: AsRef<[u8]>>(
         let name = name.as_ref();
         let plain = Path::new(name).file_name() == Some(OsStr::new(name));
         // A leading dash would be an option to the compiler.
-        ensure!(
-            plain && !name.starts_with('-'),
-            "`{name}` is not a plain file name"
-        );
+        ensure!(plain && !name.starts_with('-'), "`{name}` is not a plain file name");
         let path = directory.join(name);
         ensure!(!path.exists(), "there are two files named `{name}`");
         fs::write(&path, contents).with_context(|| format!("cannot write {}", path.display()))?;
@@ -237,10 +223,7 @@ fn write_files<'a, N: AsRef<str>, C: AsRef<[u8]>>(
             sources.push(name);
         }
     }
-    ensure!(
-        !sources.is_empty(),
-        "there is no Verilog file among those given"
-    );
+    ensure!(!sources.is_empty(), "there is no Verilog file among those given");
     Ok(sources)
 }
 

@@ -66,10 +66,7 @@ impl Kept {
 /// The last lines of `output` as the end of an error message, indented and without control
 /// characters.
 pub(super) fn quote(output: &str) -> String {
-    let lines: Vec<&str> = output
-        .lines()
-        .filter(|line| !line.trim().is_empty())
-        .collect();
+    let lines: Vec<&str> = output.lines().filter(|line| !line.trim().is_empty()).collect();
     if lines.is_empty() {
         return "; it printed nothing".to_owned();
     }
@@ -78,11 +75,7 @@ pub(super) fn quote(output: &str) -> String {
     for line in &lines[from..] {
         text.push_str("\n    ");
         let printable = |c: char| {
-            if c.is_control() && c != '\t' {
-                '\u{fffd}'
-            } else {
-                c
-            }
+            if c.is_control() && c != '\t' { '\u{fffd}' } else { c }
         };
         text.extend(line.chars().take(QUOTED_CHARACTERS).map(printable));
         if line.chars().nth(QUOTED_CHARACTERS).is_some() {

@@ -37,9 +37,7 @@ impl BenchDifference {
         let (word, rest) = rest.rsplit_once(": ")?;
         let (signal, rest) = rest.split_once(" is ")?;
         let (simulated, expected) = rest.split_once(", expected ")?;
-        let name = word
-            .split_once('(')
-            .and_then(|(_, name)| name.strip_suffix(')'));
+        let name = word.split_once('(').and_then(|(_, name)| name.strip_suffix(')'));
         Some(Self {
             clock: clock.parse().ok()?,
             word: name.unwrap_or_default().to_owned(),

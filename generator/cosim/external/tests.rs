@@ -59,15 +59,8 @@ fn a_missing_tool_is_named_with_its_remedy() {
     std::fs::write(fakes.file("iverilog"), "not executable").unwrap();
     for simulator in [Simulator::Icarus, Simulator::Verilator] {
         let text = message(fakes.bench(simulator));
-        let name = if simulator == Simulator::Icarus {
-            "`iverilog`"
-        } else {
-            "`verilator`"
-        };
-        assert!(
-            text.contains(name) && text.contains("bash tools/install"),
-            "{text}"
-        );
+        let name = if simulator == Simulator::Icarus { "`iverilog`" } else { "`verilator`" };
+        assert!(text.contains(name) && text.contains("bash tools/install"), "{text}");
     }
 }
 
@@ -76,10 +69,7 @@ fn a_file_that_is_no_program_does_not_start() {
     let fakes = Fakes::new(&[("tool", "")]);
     std::fs::write(fakes.file("tool"), [0x7f, b'E', b'L', b'F', 0, 0]).unwrap();
     let text = message(fakes.run("tool", LIMIT));
-    assert!(
-        text.contains("cannot start") && text.contains("tool"),
-        "{text}"
-    );
+    assert!(text.contains("cannot start") && text.contains("tool"), "{text}");
 }
 
 #[test]
@@ -91,10 +81,7 @@ fn a_failing_tool_is_quoted_to_its_last_line() {
     let tool = Tool::find_in("tool", fakes.0.path().as_os_str()).unwrap();
     let text = message(tool.run_to_success([] as [&str; 0], fakes.0.path(), LIMIT));
     assert!(text.contains("`tool` failed (exit status: 3)"), "{text}");
-    assert!(
-        text.contains("\n    99\n    100\n    to standard error"),
-        "{text}"
-    );
+    assert!(text.contains("\n    99\n    100\n    to standard error"), "{text}");
     assert!(!text.contains("    50\n"), "only the last lines: {text}");
 }
 
@@ -104,11 +91,7 @@ fn a_hanging_tool_is_killed_with_its_children() {
     let fakes = Fakes::new(&[("tool", script)]);
     let before = Instant::now();
     let text = message(fakes.run("tool", Duration::from_secs(1)));
-    assert!(
-        before.elapsed() < Duration::from_secs(5),
-        "{:?}",
-        before.elapsed()
-    );
+    assert!(before.elapsed() < Duration::from_secs(5), "{:?}", before.elapsed());
     assert!(text.contains("`tool` did not end within 1s"), "{text}");
     assert!(text.contains("\n    started"), "{text}");
     let child = std::fs::read_to_string(fakes.file("child")).unwrap();
@@ -150,11 +133,7 @@ fn of_enormous_output_both_ends_are_kept() {
     assert!(run.output.ends_with("\nthe end\n"));
     assert!(run.output.len() < 1_200_000, "{}", run.output.len());
     // Everything is either kept or counted: 10 + 50 000 000 + 1 + 8 bytes.
-    let note = run
-        .output
-        .lines()
-        .find(|line| line.contains("left out"))
-        .unwrap();
+    let note = run.output.lines().find(|line| line.contains("left out")).unwrap();
     let left_out: usize = note.split(' ').nth(1).unwrap().parse().unwrap();
     assert_eq!(run.output.len() - note.len() - 2 + left_out, 50_000_019);
 }
@@ -164,18 +143,9 @@ fn garbage_is_kept_readable() {
     let script = "printf '\\377\\376\\033[31m\\000 garbage \\007\\n'\nexit 1";
     let fakes = Fakes::new(&[("iverilog", script), ("vvp", "")]);
     let text = message(fakes.bench(Simulator::Icarus));
-    assert!(
-        text.contains("Icarus Verilog cannot build the bench `tb`"),
-        "{text}"
-    );
-    assert!(
-        text.contains(" garbage ") && text.contains('\u{fffd}'),
-        "{text}"
-    );
-    assert!(
-        text.chars().all(|c| c == '\n' || !c.is_control()),
-        "{text:?}"
-    );
+    assert!(text.contains("Icarus Verilog cannot build the bench `tb`"), "{text}");
+    assert!(text.contains(" garbage ") && text.contains('\u{fffd}'), "{text}");
+    assert!(text.chars().all(|c| c == '\n' || !c.is_control()), "{text:?}");
 }
 
 #[test]
@@ -191,11 +161,7 @@ fn the_verdict_is_a_line_and_the_exit_status_counts() {
     ] {
         let outcome = verdict(script).unwrap();
         assert_eq!(outcome.passed, passed, "{script}");
-        assert!(
-            outcome
-                .transcript
-                .contains(if passed { "PASS" } else { "FAIL" })
-        );
+        assert!(outcome.transcript.contains(if passed { "PASS" } else { "FAIL" }));
         assert!(outcome.build.is_empty());
     }
     for (script, expected) in [
@@ -217,11 +183,7 @@ fn verilator_s_program_is_run_and_its_verdict_read() {
     let fakes = Fakes::new(&[("verilator", &format!("{build}\necho \"$@\""))]);
     let outcome = fakes.bench(Simulator::Verilator).unwrap();
     assert!(outcome.passed);
-    assert!(
-        outcome.build.ends_with(" tb.v\n"),
-        "only sources are compiled: {}",
-        outcome.build
-    );
+    assert!(outcome.build.ends_with(" tb.v\n"), "only sources are compiled: {}", outcome.build);
     let text = message(Fakes::new(&[("verilator", "")]).bench(Simulator::Verilator));
     assert!(text.contains("bench"), "{text}");
 }
@@ -231,27 +193,11 @@ fn only_plain_distinct_names_are_written() {
     let fakes = Fakes::new(&[("iverilog", ""), ("vvp", "echo PASS")]);
     let run = |names: &[&str]| {
         let files: Vec<_> = names.iter().map(|name| (name, "")).collect();
-        run_bench_in(
-            fakes.0.path().as_os_str(),
-            Simulator::Icarus,
-            &files,
-            "tb",
-            LIMIT,
-        )
+        run_bench_in(fakes.0.path().as_os_str(), Simulator::Icarus, &files, "tb", LIMIT)
     };
     assert!(run(&["a.v", "b.mem"]).is_ok());
-    for names in [
-        &["../a.v"][..],
-        &["/tmp/a.v"],
-        &["-o.v"],
-        &[""],
-        &[".."],
-        &["a/b.v"],
-    ] {
-        assert!(
-            message(run(names)).contains("not a plain file name"),
-            "{names:?}"
-        );
+    for names in [&["../a.v"][..], &["/tmp/a.v"], &["-o.v"], &[""], &[".."], &["a/b.v"]] {
+        assert!(message(run(names)).contains("not a plain file name"), "{names:?}");
     }
     assert!(message(run(&["a.v", "a.v"])).contains("two files"));
     assert!(message(run(&["a.mem"])).contains("no Verilog file"));
@@ -260,21 +206,11 @@ fn only_plain_distinct_names_are_written() {
 #[test]
 fn the_version_is_the_first_line() {
     let fakes = Fakes::new(&[
-        (
-            "yosys",
-            "[ \"$1\" = --version ] && printf '\\nYosys 0.23\\nmore\\n'",
-        ),
-        (
-            "iverilog",
-            "[ \"$1\" = -V ] && echo 'Icarus Verilog version 11.0'",
-        ),
+        ("yosys", "[ \"$1\" = --version ] && printf '\\nYosys 0.23\\nmore\\n'"),
+        ("iverilog", "[ \"$1\" = -V ] && echo 'Icarus Verilog version 11.0'"),
         ("silent", ""),
     ]);
-    let version = |name| {
-        Tool::find_in(name, fakes.0.path().as_os_str())
-            .unwrap()
-            .version()
-    };
+    let version = |name| Tool::find_in(name, fakes.0.path().as_os_str()).unwrap().version();
     assert_eq!(version("yosys").unwrap(), "Yosys 0.23");
     assert_eq!(version("iverilog").unwrap(), "Icarus Verilog version 11.0");
     assert!(message(version("silent")).contains("printed nothing"));
@@ -286,26 +222,14 @@ fn the_first_difference_is_read() {
     let transcript =
         format!("VCD info\n{line}\nclock 13, no word: busy is 0, expected 1\nFAIL x\n");
     let found = BenchDifference::first(&transcript).unwrap();
+    assert_eq!((found.clock, found.word.as_str()), (12, "say: 100% (result)"));
     assert_eq!(
-        (found.clock, found.word.as_str()),
-        (12, "say: 100% (result)")
-    );
-    assert_eq!(
-        (
-            found.signal.as_str(),
-            found.simulated.as_str(),
-            found.expected.as_str()
-        ),
+        (found.signal.as_str(), found.simulated.as_str(), found.expected.as_str()),
         ("red_out", "1x", "20")
     );
     let lost = BenchDifference::first("clock 13, no word: busy is 0, expected 1").unwrap();
     assert_eq!((lost.word.as_str(), lost.signal.as_str()), ("", "busy"));
-    for text in [
-        "",
-        "PASS x: 3 clocks, no difference",
-        "clock , word",
-        "clock 1, a: b",
-    ] {
+    for text in ["", "PASS x: 3 clocks, no difference", "clock , word", "clock 1, a: b"] {
         assert_eq!(BenchDifference::first(text), None, "{text}");
     }
 }

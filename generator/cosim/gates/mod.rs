@@ -79,16 +79,10 @@ fn models(yosys: &Tool, family: &Family) -> Result<Vec<(String, String)>> {
 fn shipped(yosys: &Tool, family: &Family) -> Result<String> {
     let tool = yosys.path().canonicalize();
     let tool = tool.with_context(|| format!("cannot find `{}`", yosys.path().display()))?;
-    let installation = tool
-        .parent()
-        .and_then(Path::parent)
-        .unwrap_or(Path::new("/"));
+    let installation = tool.parent().and_then(Path::parent).unwrap_or(Path::new("/"));
     let models = installation.join(format!("share/yosys/{}/cells_sim.v", family.name));
     fs::read_to_string(&models).with_context(|| {
-        format!(
-            "cannot read `{}`, the models of cells that belong to `{yosys}`",
-            models.display()
-        )
+        format!("cannot read `{}`, the models of cells that belong to `{yosys}`", models.display())
     })
 }
 

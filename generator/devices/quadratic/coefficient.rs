@@ -42,11 +42,7 @@ fn touching(n: f64, x: f64) -> f64 {
 /// The error at the zero of the parabola: the largest below cⁿ, and for [`taylor`] and [`minimax`] the
 /// largest of all. 0 for n ≤ 2 and for a ≤ 1, whose zero is not within 0 < c < 1.
 pub fn error(a: f64, n: u32) -> f64 {
-    if n <= 2 || a <= 1.0 {
-        0.0
-    } else {
-        libm::exp(f64::from(n) * libm::log1p(-1.0 / a))
-    }
+    if n <= 2 || a <= 1.0 { 0.0 } else { libm::exp(f64::from(n) * libm::log1p(-1.0 / a)) }
 }
 
 #[cfg(test)]

@@ -48,10 +48,7 @@ fn check(config: &Config, problems: &mut Problems) {
         );
     }
     let (fraction, product) = if config.choice("arithmetic") == "exact" {
-        (
-            config.integer("sine.fraction"),
-            config.integer("product.fraction"),
-        )
+        (config.integer("sine.fraction"), config.integer("product.fraction"))
     } else {
         (cosine, cosine)
     };

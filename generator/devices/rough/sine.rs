@@ -23,11 +23,7 @@ pub(super) fn sine_rom<'d>(
     let u = complement.shift_left(fraction as i32);
     let cut = Segmentation {
         operand_bits: fraction,
-        segments: config
-            .integers("sine.segments")
-            .iter()
-            .map(|&k| k as u32)
-            .collect(),
+        segments: config.integers("sine.segments").iter().map(|&k| k as u32).collect(),
         tail: None,
         packed: false,
     };
@@ -63,18 +59,9 @@ fn direct_sine<'d>(
         })
         .collect();
     let rom = d
-        .rom(
-            "sine",
-            address,
-            formats.sine,
-            &words,
-            config.flag("sine.synchronous"),
-        )
+        .rom("sine", address, formats.sine, &words, config.flag("sine.synchronous"))
         .block(18)
-        .doc(&format!(
-            "sine ({}) at the middle of a bucket of the cosine",
-            formats.sine
-        ));
+        .doc(&format!("sine ({}) at the middle of a bucket of the cosine", formats.sine));
     rom.out().doc("sine of the addressed cosine")
 }
 
@@ -89,10 +76,7 @@ fn sine_entry(segment: Segment, fraction: u32, shape: Shape) -> Entry {
     let value = Format::unsigned(0, shape.fraction);
     let (from, length) = (segment.from as f64, segment.length as f64);
     if segment.length == 1 {
-        return Entry {
-            base: value.quantise(sine(from)),
-            slope: 0,
-        };
+        return Entry { base: value.quantise(sine(from)), slope: 0 };
     }
     let scale = f64::from(1u32 << shape.slope_fraction);
     let slope = ((sine(from + length) - sine(from)) * scale + 0.5).floor();
@@ -102,10 +86,7 @@ fn sine_entry(segment: Segment, fraction: u32, shape: Shape) -> Entry {
     let least = residual(0.0).min(residual(last));
     let (mut low, mut high) = (0.0, last);
     while high - low > 2.0 {
-        let (a, b) = (
-            (low + (high - low) / 3.0).floor(),
-            (high - (high - low) / 3.0).ceil(),
-        );
+        let (a, b) = ((low + (high - low) / 3.0).floor(), (high - (high - low) / 3.0).ceil());
         if residual(a) < residual(b) {
             low = a;
         } else {
@@ -113,12 +94,6 @@ fn sine_entry(segment: Segment, fraction: u32, shape: Shape) -> Entry {
         }
     }
     let middle = ((low + high) / 2.0).floor();
-    let most = [low, middle, high]
-        .into_iter()
-        .map(residual)
-        .fold(f64::MIN, f64::max);
-    Entry {
-        base: value.quantise((least + most) / 2.0),
-        slope: slope as i128,
-    }
+    let most = [low, middle, high].into_iter().map(residual).fold(f64::MIN, f64::max);
+    Entry { base: value.quantise((least + most) / 2.0), slope: slope as i128 }
 }

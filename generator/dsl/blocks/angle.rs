@@ -23,16 +23,11 @@ pub struct Folded<'d> {
 pub fn fold<'d>(d: &'d Designer, angle: Signal<'d>, fraction: i32) -> Folded<'d> {
     let Format { int, frac, .. } = angle.format();
     let name = angle.name();
-    let sign = angle
-        .bit((int + frac) as u32)
-        .named(&format!("{name}_negative"));
-    let upper = angle
-        .bits(frac as u32, Format::unsigned(int + 1, 0))
-        .named(&format!("{name}_upper"));
-    let positive = d.not(
-        &format!("{name}_small_positive"),
-        d.any(&format!("{name}_upper_any"), upper),
-    );
+    let sign = angle.bit((int + frac) as u32).named(&format!("{name}_negative"));
+    let upper =
+        angle.bits(frac as u32, Format::unsigned(int + 1, 0)).named(&format!("{name}_upper"));
+    let positive =
+        d.not(&format!("{name}_small_positive"), d.any(&format!("{name}_upper_any"), upper));
     let negative = d.all(&format!("{name}_small_negative"), upper);
     let within = d
         .or(&format!("{name}_within"), positive, negative)
@@ -41,9 +36,8 @@ pub fn fold<'d>(d: &'d Designer, angle: Signal<'d>, fraction: i32) -> Folded<'d>
         .bits((frac - fraction) as u32, Format::unsigned(0, fraction))
         .named(&format!("{name}_leading"));
     let complement = d.not(&format!("{name}_complement"), leading);
-    let magnitude = d
-        .choose(&format!("{name}_magnitude"), sign, [leading, complement])
-        .doc("cos is even");
+    let magnitude =
+        d.choose(&format!("{name}_magnitude"), sign, [leading, complement]).doc("cos is even");
     Folded { magnitude, within }
 }
 

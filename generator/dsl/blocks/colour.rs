@@ -39,25 +39,14 @@ impl<'d> Colours<'d> {
         let mut channels = Vec::new();
         for (at, name) in names.into_iter().enumerate() {
             let blocks = blocks.map(|blocks| blocks[at]);
-            let mut operand = designer
-                .operand(name, format)
-                .doc("intensity of the light times k_s");
+            let mut operand =
+                designer.operand(name, format).doc("intensity of the light times k_s");
             if let Some(blocks) = blocks {
-                operand = operand
-                    .block(blocks.register)
-                    .inputs(blocks.inputs.0, blocks.inputs.1);
+                operand = operand.block(blocks.register).inputs(blocks.inputs.0, blocks.inputs.1);
             }
-            channels.push(Channel {
-                name,
-                operand,
-                blocks,
-            });
+            channels.push(Channel { name, operand, blocks });
         }
-        Self {
-            designer,
-            format,
-            channels,
-        }
+        Self { designer, format, channels }
     }
 
     /// One operand, `amplitude`, of `bits` bits, for the output `intensity_out`: a device that is there
@@ -69,19 +58,9 @@ impl<'d> Colours<'d> {
             .operand("amplitude", format)
             .doc("intensity of the light times k_s, at the highest point of the highlight");
         if let Some(blocks) = blocks {
-            operand = operand
-                .block(blocks.register)
-                .inputs(blocks.inputs.0, blocks.inputs.1);
+            operand = operand.block(blocks.register).inputs(blocks.inputs.0, blocks.inputs.1);
         }
-        Self {
-            designer,
-            format,
-            channels: vec![Channel {
-                name: "intensity",
-                operand,
-                blocks,
-            }],
-        }
+        Self { designer, format, channels: vec![Channel { name: "intensity", operand, blocks }] }
     }
 
     /// The outputs, `<colour>_out` or `intensity_out`, each f times its operand, rounded to integers.
@@ -89,11 +68,7 @@ impl<'d> Colours<'d> {
     pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) {
         let d = self.designer;
         for channel in &self.channels {
-            let Channel {
-                name,
-                operand,
-                blocks,
-            } = channel;
+            let Channel { name, operand, blocks } = channel;
             let mut product = d
                 .mul(&format!("{name}_product"), f, operand.q())
                 .doc("an output before it is rounded");
@@ -102,9 +77,7 @@ impl<'d> Colours<'d> {
                 colour => format!("{colour}_intensity"),
             };
             let narrowed = d.narrow(&rounded, product, self.format, rounding, Overflow::Saturate);
-            let mut out = d
-                .output(&format!("{name}_out"), narrowed)
-                .doc("intensity on the output");
+            let mut out = d.output(&format!("{name}_out"), narrowed).doc("intensity on the output");
             if let Some(blocks) = blocks {
                 product = product.block(blocks.multiplier);
                 out = out.block(blocks.output);

@@ -84,18 +84,14 @@ impl<'d> Divider<'d> {
             .doc("the quotient, which bits enter at the bottom");
         let last = Format::holding(0, i128::from(bits) - 1, 0);
         let last = d.raw_constant(&part("last"), i128::from(bits) - 1, last);
-        let remaining = d
-            .down_counter(&part("remaining"), last)
-            .doc("bits to come after the next");
+        let remaining = d.down_counter(&part("remaining"), last).doc("bits to come after the next");
 
         let doubled = remainder.q().shift_left(1).with_fraction(frac);
-        let trial = d
-            .sub(&part("trial"), doubled, held.q())
-            .doc("negative where the divisor does not fit");
+        let trial =
+            d.sub(&part("trial"), doubled, held.q()).doc("negative where the divisor does not fit");
         let negative = trial.bit(trial.format().width() - 1);
-        let bit = d
-            .not(&part("bit"), negative)
-            .doc("the divisor fits: the next bit of the quotient");
+        let bit =
+            d.not(&part("bit"), negative).doc("the divisor fits: the next bit of the quotient");
         let left = d.choose(&part("left"), bit, [doubled, trial]);
         let stepped = cut(&part("stepped"), left);
         let source = d.mux(&part("source"), [dividend, stepped]);
@@ -110,9 +106,7 @@ impl<'d> Divider<'d> {
             source,
             dividend,
             stepped,
-            more: d
-                .any(&part("more"), remaining.q())
-                .doc("the next bit is not the last"),
+            more: d.any(&part("more"), remaining.q()).doc("the next bit is not the last"),
         }
     }
 

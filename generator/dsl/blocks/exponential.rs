@@ -44,21 +44,12 @@ pub fn halvings<'d>(
         shape.synchronous,
         ("1 - x/2 - 2^-x", |x| bend(x, bits)),
     );
-    let x = if shape.synchronous {
-        d.pipeline(&format!("{name}_x"), x)
-    } else {
-        x
-    };
+    let x = if shape.synchronous { d.pipeline(&format!("{name}_x"), x) } else { x };
     let half = d.raw_constant("half", 1, Format::BIT);
     let inverse = d.not(&format!("{name}_inverse"), x);
-    let line = d.join(
-        &format!("{name}_line"),
-        &[half, inverse],
-        Format::unsigned(0, bits as i32 + 1),
-    );
-    let mantissa = d
-        .sub(&format!("{name}_mantissa"), line, bend)
-        .doc("2^-x of the fraction x");
+    let line =
+        d.join(&format!("{name}_line"), &[half, inverse], Format::unsigned(0, bits as i32 + 1));
+    let mantissa = d.sub(&format!("{name}_mantissa"), line, bend).doc("2^-x of the fraction x");
     // Bits that a shift by 0 would drop are never seen; one more than the result has decides the rounding.
     let kept = match rounding {
         Rounding::Truncate => frac,

@@ -62,27 +62,19 @@ impl<'d> Line<'d> {
         length_bits: i32,
         blocks: Option<LineBlocks>,
     ) -> Self {
-        let delta = d
-            .operand("delta_zeta", format)
-            .doc("angle from a point to the next, in right angles");
-        let mut start = d
-            .operand("zeta_start", format)
-            .doc("angle of the first point, in right angles");
+        let delta =
+            d.operand("delta_zeta", format).doc("angle from a point to the next, in right angles");
+        let mut start =
+            d.operand("zeta_start", format).doc("angle of the first point, in right angles");
         let mut length = d
             .operand("length", Format::unsigned(length_bits, 0))
             .doc("intervals of the line: one less than its points");
-        let mut angle = d
-            .register("angle", format)
-            .doc("angle of the point, in right angles; wraps around");
-        let mut sum = d
-            .add_modulo("next_angle", angle.q(), delta.q(), None)
-            .doc("angle of the next point");
-        let mut next = d
-            .mux("angle_source", [start.q(), sum])
-            .doc("first point, or next");
-        let mut intervals = d
-            .down_counter("intervals", length.q())
-            .doc("intervals still to go");
+        let mut angle =
+            d.register("angle", format).doc("angle of the point, in right angles; wraps around");
+        let mut sum =
+            d.add_modulo("next_angle", angle.q(), delta.q(), None).doc("angle of the next point");
+        let mut next = d.mux("angle_source", [start.q(), sum]).doc("first point, or next");
+        let mut intervals = d.down_counter("intervals", length.q()).doc("intervals still to go");
         if let Some(blocks) = blocks {
             let OperandBlocks { inputs, register } = blocks.delta;
             let _ = delta.block(register).inputs(inputs.0, inputs.1);
@@ -96,13 +88,9 @@ impl<'d> Line<'d> {
         }
         angle.takes(next.out());
         let none = d.raw_constant("no_interval", 0, length.q().format());
-        let empty = d
-            .equal("empty", length.q(), none)
-            .doc("a line of one point");
+        let empty = d.equal("empty", length.q(), none).doc("a line of one point");
         let last = d.raw_constant("last_interval", 1, length.q().format());
-        let more = d
-            .less("more", last, intervals.q())
-            .doc("not the last interval");
+        let more = d.less("more", last, intervals.q()).doc("not the last interval");
         let shown = [
             ("count", intervals.counting(), "counts an interval"),
             ("accumulate", next.select(), "the next point, not the first"),
@@ -115,16 +103,7 @@ impl<'d> Line<'d> {
                 let _ = output.block(numbers[at]);
             }
         }
-        Self {
-            designer: d,
-            start: start.q(),
-            sum,
-            next,
-            angle,
-            intervals,
-            empty,
-            more,
-        }
+        Self { designer: d, start: start.q(), sum, next, angle, intervals, empty, more }
     }
 
     /// The angle of the point.

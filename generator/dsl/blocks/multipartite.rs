@@ -103,13 +103,7 @@ pub fn evaluate<'d>(
     };
     let leading = x.bits(bits - cut.address, integer(cut.address));
     let mut sum = d
-        .rom(
-            &format!("{name}_value"),
-            leading,
-            holding(&values),
-            &values,
-            synchronous,
-        )
+        .rom(&format!("{name}_value"), leading, holding(&values), &values, synchronous)
         .doc(&format!(
             "{doc} at the middle of each of {} intervals of x, in units of 2^-{fraction}",
             values.len()
@@ -142,11 +136,7 @@ pub fn evaluate<'d>(
                 below + offset.bits - 1
             ))
             .out();
-        let upper = if synchronous {
-            d.pipeline(&format!("{part}_upper"), upper)
-        } else {
-            upper
-        };
+        let upper = if synchronous { d.pipeline(&format!("{part}_upper"), upper) } else { upper };
         // As a signed number, of which the inverse is the opposite, less an ulp.
         let word = word.as_signed();
         let opposite = d.not(&format!("{part}_opposite"), word);

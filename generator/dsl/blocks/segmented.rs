@@ -72,16 +72,8 @@ impl Segmentation {
         let rest = self.operand_bits - 2 * ranges;
         let mut blocks: Vec<Block> = (0u32..)
             .zip(&self.segments)
-            .map(|(range, &prefix)| Block {
-                bits: self.operand_bits - 2 * range,
-                prefix,
-                base: 0,
-            })
-            .chain([Block {
-                bits: rest,
-                prefix: self.tail.unwrap_or(rest),
-                base: 0,
-            }])
+            .map(|(range, &prefix)| Block { bits: self.operand_bits - 2 * range, prefix, base: 0 })
+            .chain([Block { bits: rest, prefix: self.tail.unwrap_or(rest), base: 0 }])
             .collect();
         let mut order: Vec<usize> = (0..blocks.len()).collect();
         order.sort_by_key(|&at| std::cmp::Reverse(blocks[at].prefix));
@@ -116,12 +108,7 @@ impl Segmentation {
 
     /// Bits of the remainder that the slope multiplies; one, a zero, when every entry is exact.
     fn rest_bits(&self) -> u32 {
-        self.blocks()
-            .iter()
-            .map(|block| block.bits - block.prefix)
-            .max()
-            .unwrap_or(0)
-            .max(1)
+        self.blocks().iter().map(|block| block.bits - block.prefix).max().unwrap_or(0).max(1)
     }
 
     /// Words of the table.
@@ -141,24 +128,15 @@ impl Segmentation {
         for (at, block) in blocks.iter().enumerate() {
             let is_rest = at + 1 == blocks.len();
             let length = 1u64 << (block.bits - block.prefix);
-            let first = if is_rest {
-                0
-            } else {
-                1u64 << (block.prefix - 2)
-            };
+            let first = if is_rest { 0 } else { 1u64 << (block.prefix - 2) };
             for prefix in first..1 << block.prefix {
-                words[block.base as usize + prefix as usize] = Some(Segment {
-                    from: prefix * length,
-                    length,
-                });
+                words[block.base as usize + prefix as usize] =
+                    Some(Segment { from: prefix * length, length });
             }
         }
         if !self.packed {
             let top = blocks.first().map_or(0, |block| block.base as usize);
-            words[top] = Some(Segment {
-                from: 1 << self.operand_bits,
-                length: 1,
-            });
+            words[top] = Some(Segment { from: 1 << self.operand_bits, length: 1 });
         }
         words
     }
@@ -208,13 +186,7 @@ impl<'d> Line<'d> {
             Overflow::Saturate,
         );
         let sum = d.add(&format!("{name}_sum"), self.base, rise);
-        d.narrow(
-            &format!("{name}_value"),
-            sum,
-            value,
-            Rounding::Truncate,
-            Overflow::Saturate,
-        )
+        d.narrow(&format!("{name}_value"), sum, value, Rounding::Truncate, Overflow::Saturate)
     }
 }
 
@@ -232,22 +204,13 @@ pub fn look_up<'d>(
     block: Option<u16>,
 ) -> Line<'d> {
     let words = cut.segment_of_words();
-    let entries: Vec<Entry> = words
-        .iter()
-        .map(|segment| segment.map_or_else(Entry::default, &entry))
-        .collect();
-    let slope_most = entries
-        .iter()
-        .map(|entry| entry.slope)
-        .max()
-        .unwrap_or(0)
-        .max(1);
+    let entries: Vec<Entry> =
+        words.iter().map(|segment| segment.map_or_else(Entry::default, &entry)).collect();
+    let slope_most = entries.iter().map(|entry| entry.slope).max().unwrap_or(0).max(1);
     let slope_bits = 128 - slope_most.leading_zeros();
     let value = Format::unsigned(0, shape.fraction);
-    let packed: Vec<i128> = entries
-        .iter()
-        .map(|entry| entry.base << slope_bits | entry.slope)
-        .collect();
+    let packed: Vec<i128> =
+        entries.iter().map(|entry| entry.base << slope_bits | entry.slope).collect();
 
     let (address, rest) = address_and_rest(d, name, u, cut);
     let word = Format::unsigned(shape.fraction + slope_bits as i32, 0);
@@ -271,24 +234,12 @@ pub fn look_up<'d>(
         Some(number) => rom.block(number),
         None => rom,
     };
-    let rest = if shape.synchronous {
-        d.pipeline(&format!("{name}_rest_held"), rest)
-    } else {
-        rest
-    };
-    let base = rom
-        .out()
-        .bits(slope_bits, value)
-        .named(&format!("{name}_base"));
+    let rest =
+        if shape.synchronous { d.pipeline(&format!("{name}_rest_held"), rest) } else { rest };
+    let base = rom.out().bits(slope_bits, value).named(&format!("{name}_base"));
     let slope = rom
         .out()
-        .bits(
-            0,
-            Format::unsigned(
-                slope_bits as i32 - shape.slope_fraction,
-                shape.slope_fraction,
-            ),
-        )
+        .bits(0, Format::unsigned(slope_bits as i32 - shape.slope_fraction, shape.slope_fraction))
         .named(&format!("{name}_slope"));
     Line { base, slope, rest }
 }
@@ -308,11 +259,7 @@ fn address_and_rest<'d>(
     let rest = Format::unsigned(0, rest_bits as i32);
     // One arm a block: {constant, prefix} and {remainder, zeros}.
     let arm = |block: &Block| {
-        let base = d.raw_constant(
-            &format!("{name}_base_word"),
-            i128::from(block.base),
-            address,
-        );
+        let base = d.raw_constant(&format!("{name}_base_word"), i128::from(block.base), address);
         let left = block.bits - block.prefix;
         // What remains below the last range may be the one value 0.
         let word = if block.prefix == 0 {
@@ -324,8 +271,7 @@ fn address_and_rest<'d>(
         let remainder = if left == 0 {
             d.raw_constant(&format!("{name}_no_rest"), 0, rest)
         } else {
-            u.bits(0, Format::unsigned(0, left as i32))
-                .with_fraction(rest_bits as i32)
+            u.bits(0, Format::unsigned(0, left as i32)).with_fraction(rest_bits as i32)
         };
         (word, remainder)
     };
@@ -333,18 +279,10 @@ fn address_and_rest<'d>(
     let in_range = |at: usize| {
         let low = blocks[at].bits - 2;
         let top = u.format().width() - low;
-        d.any(
-            &format!("{name}_in_range{at}"),
-            u.bits(low, Format::unsigned(top as i32, 0)),
-        )
-        .doc(&format!("u is in range {at} or in one above"))
+        d.any(&format!("{name}_in_range{at}"), u.bits(low, Format::unsigned(top as i32, 0)))
+            .doc(&format!("u is in range {at} or in one above"))
     };
-    let picker = Picker {
-        d,
-        name,
-        arms: &arms,
-        in_range: &in_range,
-    };
+    let picker = Picker { d, name, arms: &arms, in_range: &in_range };
     picker.pick(0, arms.len())
 }
 

@@ -46,25 +46,16 @@ pub fn normalise<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'
         if step >= width {
             continue;
         }
-        let used = d.any(
-            &format!("{name}_top{step}"),
-            word.bits(width - step, integer(step)),
-        );
-        let shifted = word
-            .bits(0, integer(width - step))
-            .with_fraction(step as i32)
-            .shift_left(step as i32);
+        let used = d.any(&format!("{name}_top{step}"), word.bits(width - step, integer(step)));
+        let shifted =
+            word.bits(0, integer(width - step)).with_fraction(step as i32).shift_left(step as i32);
         word = d.choose(&format!("{name}_by{step}"), used, [shifted, word]);
         count.push(d.not(&format!("{name}_free{step}"), used));
     }
     let zeros = if count.is_empty() {
         d.raw_constant("zeros", 0, Format::BIT)
     } else {
-        d.join(
-            &format!("{name}_zeros"),
-            &count,
-            integer(count.len() as u32),
-        )
+        d.join(&format!("{name}_zeros"), &count, integer(count.len() as u32))
     };
     Normalised { word, zeros }
 }

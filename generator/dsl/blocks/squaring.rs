@@ -19,15 +19,9 @@ impl<'d> Squarings<'d> {
     #[track_caller]
     pub fn new(designer: &'d Designer, count: u32) -> Self {
         let counter = (count > 1).then(|| {
-            designer
-                .down_counter("remaining", start(designer, count))
-                .doc("squarings to come")
+            designer.down_counter("remaining", start(designer, count)).doc("squarings to come")
         });
-        Self {
-            designer,
-            counter,
-            start: None,
-        }
+        Self { designer, counter, start: None }
     }
 
     /// `count` squarings under a counter that counts something else too, before them: it is returned
@@ -40,23 +34,14 @@ impl<'d> Squarings<'d> {
     ) -> (Self, Counter<'d>, Vec<Setting>) {
         let mux = (count > 1).then(|| {
             let squarings = start(designer, count);
-            let mux = designer
-                .mux("remaining_start", [squarings, other])
-                .doc("what is counted");
+            let mux = designer.mux("remaining_start", [squarings, other]).doc("what is counted");
             (mux, squarings)
         });
         let from = mux.map_or(other, |(mux, _)| mux.out());
         let counter = designer.down_counter("remaining", from);
-        let load_other = mux
-            .map(|(mux, _)| mux.pick(other))
-            .into_iter()
-            .chain([counter.load()])
-            .collect();
-        let squarings = Self {
-            designer,
-            counter: mux.map(|_| counter),
-            start: mux,
-        };
+        let load_other =
+            mux.map(|(mux, _)| mux.pick(other)).into_iter().chain([counter.load()]).collect();
+        let squarings = Self { designer, counter: mux.map(|_| counter), start: mux };
         (squarings, counter, load_other)
     }
 
@@ -83,13 +68,8 @@ impl<'d> Squarings<'d> {
         let first = first.into_iter().chain([register.load()]);
         let mut steps = vec![step(&format!("{name} <- base^2"), first)];
         if let Some(remaining) = self.counter {
-            let one = self
-                .designer
-                .raw_constant("one_left", 1, remaining.q().format());
-            let more = self
-                .designer
-                .less("more", one, remaining.q())
-                .doc("not the last squaring");
+            let one = self.designer.raw_constant("one_left", 1, remaining.q().format());
+            let more = self.designer.less("more", one, remaining.q()).doc("not the last squaring");
             let word = format!("{name} <- {name}^2");
             let settings = again.into_iter().chain([
                 register.load(),

@@ -144,11 +144,7 @@ impl<'a> Blocks<'a> {
                     && !ports.contains(&id)
             })
             .collect();
-        Self {
-            design,
-            shown,
-            ports,
-        }
+        Self { design, shown, ports }
     }
 
     /// What a figure shows: logic of single bits and wiring stay out of it unless the source numbers them.
@@ -187,19 +183,16 @@ impl<'a> Blocks<'a> {
             })
             .collect();
         let roms = design.roms.iter();
-        blocks.extend(
-            roms.filter(|rom| !is_control(design, rom))
-                .map(|rom| Block {
-                    number: rom.block,
-                    name: &rom.name,
-                    kind: Kind::Rom,
-                    format: format!("{} bits", design.width(rom.data)),
-                    output: rom.data,
-                    inputs: self.sources([rom.address]),
-                    selected_by: Vec::new(),
-                    doc: format!("{} words, see below", rom.words.len()),
-                }),
-        );
+        blocks.extend(roms.filter(|rom| !is_control(design, rom)).map(|rom| Block {
+            number: rom.block,
+            name: &rom.name,
+            kind: Kind::Rom,
+            format: format!("{} bits", design.width(rom.data)),
+            output: rom.data,
+            inputs: self.sources([rom.address]),
+            selected_by: Vec::new(),
+            doc: format!("{} words, see below", rom.words.len()),
+        }));
         blocks.sort_by_key(|block| block.number.map_or(u32::MAX, u32::from));
         blocks
     }

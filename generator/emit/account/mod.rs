@@ -225,21 +225,14 @@ pub fn words(design: &Design) -> Table {
         })
         .collect();
     let mut columns = vec![("word", Align::Right)];
-    columns.extend(
-        headings
-            .iter()
-            .map(|heading| (heading.as_str(), Align::Left)),
-    );
+    columns.extend(headings.iter().map(|heading| (heading.as_str(), Align::Left)));
     columns.extend([("what it does", Align::Left), ("then", Align::Left)]);
     let mut table = Table::new(&columns);
     for word in facts::words(design) {
         let mut cells = vec![word.address.to_string()];
         for (field, (_, value)) in fields.iter().zip(&word.fields) {
             let width = field.width as usize;
-            let bits: Vec<String> = format!("{value:0width$b}")
-                .chars()
-                .map(String::from)
-                .collect();
+            let bits: Vec<String> = format!("{value:0width$b}").chars().map(String::from).collect();
             cells.push(bits.join(" "));
         }
         cells.push(word.name.to_owned());
@@ -267,10 +260,8 @@ pub fn clocks(timing: &Timing) -> Table {
         ("the next `start` is taken", timing.start_to_start),
     ];
     for (event, clock) in events {
-        let clock = clock.map_or_else(
-            || "depends on the operands".to_owned(),
-            |clock| clock.to_string(),
-        );
+        let clock =
+            clock.map_or_else(|| "depends on the operands".to_owned(), |clock| clock.to_string());
         table.row([event.to_owned(), clock]);
     }
     table
@@ -284,11 +275,7 @@ pub fn terms(bound: &Bound) -> Table {
         ("what rounds or approximates", Align::Left),
     ]);
     for term in &bound.terms {
-        table.row([
-            code(term.key),
-            format!("{:.3}", term.units),
-            term.what.to_owned(),
-        ]);
+        table.row([code(term.key), format!("{:.3}", term.units), term.what.to_owned()]);
     }
     table
 }
@@ -324,12 +311,7 @@ pub fn example(contract: &dyn Contract, example: &WorkedExample) -> Table {
         ("formula in f64", Align::Right),
     ]);
     let mut row = |quantity: &Quantity, formula: String| {
-        table.row([
-            code(&quantity.name),
-            quantity.raw.to_string(),
-            short(quantity.value),
-            formula,
-        ]);
+        table.row([code(&quantity.name), quantity.raw.to_string(), short(quantity.value), formula]);
     };
     let (mut control, mut colours) = (Vec::new(), Vec::new());
     for (operand, quantity) in contract.operands().iter().zip(&example.operands) {
@@ -368,12 +350,7 @@ pub fn keys(schema: &Schema, config: &Config) -> Table {
             };
             format!(" Only with {}.", code(&format!("{other} = {value}")))
         });
-        table.row([
-            code(key.name),
-            value,
-            key.accepts(),
-            format!("{}{only}", key.doc),
-        ]);
+        table.row([code(key.name), value, key.accepts(), format!("{}{only}", key.doc)]);
     }
     table
 }

@@ -33,10 +33,7 @@ impl Table {
         Self {
             columns: columns
                 .iter()
-                .map(|&(heading, align)| Column {
-                    heading: heading.to_owned(),
-                    align,
-                })
+                .map(|&(heading, align)| Column { heading: heading.to_owned(), align })
                 .collect(),
             rows: Vec::new(),
         }
@@ -50,10 +47,7 @@ impl Table {
     /// Leaves out a column in which no row says anything.
     #[must_use]
     pub fn without_empty(mut self, heading: &str) -> Self {
-        let at = self
-            .columns
-            .iter()
-            .position(|column| column.heading == heading);
+        let at = self.columns.iter().position(|column| column.heading == heading);
         if let Some(at) = at
             && self.rows.iter().all(|row| row[at].is_empty())
         {

@@ -5,24 +5,15 @@ use crate::emit::account::{Align, Table};
 /// The lines of a table, without the last newline. Its columns are padded, so that it reads well as text too; the last
 /// one is not.
 pub fn table(table: &Table) -> String {
-    let headings: Vec<String> = table
-        .columns
-        .iter()
-        .map(|column| prose(&column.heading))
-        .collect();
-    let rows: Vec<Vec<String>> = table
-        .rows
-        .iter()
-        .map(|row| row.iter().map(|cell| prose(cell)).collect())
-        .collect();
+    let headings: Vec<String> = table.columns.iter().map(|column| prose(&column.heading)).collect();
+    let rows: Vec<Vec<String>> =
+        table.rows.iter().map(|row| row.iter().map(|cell| prose(cell)).collect()).collect();
     let width = |at: usize| {
         let cells = rows.iter().map(|row| row[at].chars().count());
         cells.fold(headings[at].chars().count().max(3), usize::max)
     };
     let last = table.columns.len() - 1;
-    let widths: Vec<usize> = (0..=last)
-        .map(|at| if at == last { 3 } else { width(at) })
-        .collect();
+    let widths: Vec<usize> = (0..=last).map(|at| if at == last { 3 } else { width(at) }).collect();
     let line = |cells: &[String]| {
         let cells: Vec<String> = cells
             .iter()
@@ -80,11 +71,8 @@ mod tests {
 
     #[test]
     fn a_table_is_padded_and_aligned() {
-        let mut table = Table::new(&[
-            ("name", Align::Left),
-            ("bits", Align::Right),
-            ("what", Align::Left),
-        ]);
+        let mut table =
+            Table::new(&[("name", Align::Left), ("bits", Align::Right), ("what", Align::Left)]);
         table.row(["`a`", "10", "short"].map(str::to_owned));
         table.row(["`bcdef`", "7", "this is longer"].map(str::to_owned));
         let expected = "\
@@ -97,10 +85,7 @@ mod tests {
 
     #[test]
     fn markdown_leaves_formulas_alone() {
-        assert_eq!(
-            prose("a*b <- c|d `_x|*` k_s _a <b>"),
-            "a\\*b <- c\\|d `_x\\|*` k_s \\_a \\<b>"
-        );
+        assert_eq!(prose("a*b <- c|d `_x|*` k_s _a <b>"), "a\\*b <- c\\|d `_x\\|*` k_s \\_a \\<b>");
         assert_eq!(prose("`a|b`"), "`a\\|b`");
     }
 }

@@ -81,10 +81,7 @@ impl CosinePowerModel {
             accumulator: 0,
             remaining: 0,
             inputs: INPUTS.map(String::from).to_vec(),
-            signals: SIGNALS[..signals]
-                .iter()
-                .map(|&name| name.to_string())
-                .collect(),
+            signals: SIGNALS[..signals].iter().map(|&name| name.to_string()).collect(),
             values: [0; SIGNALS.len()],
         })
     }
@@ -165,8 +162,7 @@ impl Model for CosinePowerModel {
         for (register, pair) in self.colours.iter_mut().zip(inputs[6..].chunks_exact(2)) {
             register.clock(run, pair[1], pair[0]);
         }
-        self.handshake
-            .clock(inputs[0] & 1 == 1, inputs[1] & 1 == 1, after);
+        self.handshake.clock(inputs[0] & 1 == 1, inputs[1] & 1 == 1, after);
         self.refresh();
     }
 

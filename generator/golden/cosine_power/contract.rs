@@ -126,16 +126,8 @@ impl Contract for CosinePowerContract {
         };
         let squares = rounding_error(2 * f, f, params.intensity_rounding);
         let shares = [
-            (
-                "intensity.fraction",
-                "the base, with the inverse for 1.0 − t",
-                base * power,
-            ),
-            (
-                "intensity.rounding",
-                "rounding of the squares",
-                squares * (power - 1.0),
-            ),
+            ("intensity.fraction", "the base, with the inverse for 1.0 − t", base * power),
+            ("intensity.rounding", "rounding of the squares", squares * (power - 1.0)),
         ];
         shared::bound(&shares, f, params.colour_bits, params.output_rounding)
     }
@@ -154,9 +146,8 @@ impl Contract for CosinePowerContract {
                 (error < own).then_some((n, own, other, error))
             })
             .collect();
-        let Some(&(n, own, other, error)) = worse
-            .iter()
-            .max_by(|a, b| (a.1 - a.3).total_cmp(&(b.1 - b.3)))
+        let Some(&(n, own, other, error)) =
+            worse.iter().max_by(|a, b| (a.1 - a.3).total_cmp(&(b.1 - b.3)))
         else {
             return Vec::new();
         };

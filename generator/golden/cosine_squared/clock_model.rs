@@ -69,10 +69,8 @@ impl Model for CosineSquaredModel {
     fn clock(&mut self, inputs: &[u64]) {
         let it = &self.arithmetic;
         self.cosine = it.cosine(self.walker.angle());
-        self.amplitude
-            .clock(self.walker.busy(), inputs[9], inputs[8]);
-        self.walker
-            .clock(inputs[0] & 1 == 1, inputs[1] & 1 == 1, &inputs[2..8]);
+        self.amplitude.clock(self.walker.busy(), inputs[9], inputs[8]);
+        self.walker.clock(inputs[0] & 1 == 1, inputs[1] & 1 == 1, &inputs[2..8]);
         let walker = self.walker.values();
         let (shared, own) = self.values.split_at_mut(walker.len());
         shared.copy_from_slice(&walker);

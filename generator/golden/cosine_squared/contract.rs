@@ -127,11 +127,7 @@ impl Contract for CosineSquaredContract {
         let table = &self.arithmetic.table;
         let shares = [
             ("table.address", "the steps of ROM 12", table.step),
-            (
-                "intensity.fraction",
-                "rounding of ROM 12",
-                table.total - table.step,
-            ),
+            ("intensity.fraction", "rounding of ROM 12", table.total - table.step),
         ];
         shared::bound(
             &shares,

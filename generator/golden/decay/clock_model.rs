@@ -141,8 +141,7 @@ impl Model for DecayModel {
         for (register, pair) in self.colours.iter_mut().zip(inputs[6..].chunks_exact(2)) {
             register.clock(run, pair[1], pair[0]);
         }
-        self.handshake
-            .clock(inputs[0] & 1 == 1, inputs[1] & 1 == 1, after);
+        self.handshake.clock(inputs[0] & 1 == 1, inputs[1] & 1 == 1, after);
         self.refresh();
     }
 

@@ -72,11 +72,7 @@ impl DecayContract {
         let error: f64 = parts.iter().sum();
         let least = octave + params.table(piece.start as f64) * scale - error;
         let (from, to) = (params.exponents.0 as f64, params.exponents.1 as f64);
-        let n = if least > 0.0 {
-            (1.0 / (least * LN_2)).clamp(from, to)
-        } else {
-            to
-        };
+        let n = if least > 0.0 { (1.0 / (least * LN_2)).clamp(from, to) } else { to };
         let weight = LN_2 * n * libm::exp2(-n * least.max(0.0));
         parts.map(|part| part * weight)
     }
@@ -150,27 +146,15 @@ impl Contract for DecayContract {
             .max_by(|a, b| a.iter().sum::<f64>().total_cmp(&b.iter().sum()))
             .unwrap_or_default();
         let shares: [Share; 5] = [
-            (
-                "decay.segments",
-                "straight segments for the decay, times n",
-                shape,
-            ),
+            ("decay.segments", "straight segments for the decay, times n", shape),
             ("decay.fraction", "rounding of the decay, times n", words),
             (
                 "decay.coarse_fraction",
                 "bits of the decay that the product by n does not see",
                 coarse,
             ),
-            (
-                "exponential.address",
-                "the tables of 2^-x",
-                self.arithmetic.halving.error(),
-            ),
-            (
-                "intensity.fraction",
-                "rounding of f",
-                self.arithmetic.halving.rounding_error(),
-            ),
+            ("exponential.address", "the tables of 2^-x", self.arithmetic.halving.error()),
+            ("intensity.fraction", "rounding of f", self.arithmetic.halving.rounding_error()),
         ];
         shared::bound(
             &shares,

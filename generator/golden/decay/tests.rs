@@ -82,15 +82,7 @@ fn a_point_clock_by_clock() {
     };
     // c = 14/16, n = 3, red 15, written together with start.
     model.clock(&[1, 1, 14, 1, 3, 1, 15, 1, 0, 0, 0, 0]);
-    let names = [
-        "run",
-        "word_address",
-        "decay",
-        "halvings",
-        "reflectance",
-        "valid",
-        "done",
-    ];
+    let names = ["run", "word_address", "decay", "halvings", "reflectance", "valid", "done"];
     let expected = [
         [1, 0, 0, 0, 0, 0, 0],
         [1, 1, 0, 0, 0, 0, 0],
@@ -115,14 +107,8 @@ fn a_point_clock_by_clock() {
 #[test]
 fn parameters_out_of_range_are_named() {
     let refused = |params: Params| DecayContract::from_params(&params).unwrap_err();
-    let coarse = Params {
-        decay_coarse_fraction: 7,
-        ..small(Function::Logarithm)
-    };
+    let coarse = Params { decay_coarse_fraction: 7, ..small(Function::Logarithm) };
     assert!(refused(coarse).contains("decay.coarse_fraction"));
-    let ranges = Params {
-        decay_segments: vec![2, 2],
-        ..small(Function::Logarithm)
-    };
+    let ranges = Params { decay_segments: vec![2, 2], ..small(Function::Logarithm) };
     assert!(refused(ranges).contains("decay.segments[1]"));
 }

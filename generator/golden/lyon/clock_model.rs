@@ -142,11 +142,7 @@ impl LyonModel {
                 After::Next
             }
             Word::Base => {
-                let scaled = if shift {
-                    it.scaled(self.distance)
-                } else {
-                    self.scaled
-                };
+                let scaled = if shift { it.scaled(self.distance) } else { self.scaled };
                 self.accumulator = it.square(it.base(scaled));
                 if it.squarings > 1 {
                     self.remaining = i64::from(it.squarings) - 1;
@@ -198,16 +194,11 @@ impl Model for LyonModel {
     fn clock(&mut self, inputs: &[u64]) {
         let run = self.handshake.run;
         let after = self.execute();
-        let registers = self
-            .vector
-            .iter_mut()
-            .chain([&mut self.scale])
-            .chain(&mut self.colours);
+        let registers = self.vector.iter_mut().chain([&mut self.scale]).chain(&mut self.colours);
         for (register, pair) in registers.zip(inputs[2..].chunks_exact(2)) {
             register.clock(run, pair[1], pair[0]);
         }
-        self.handshake
-            .clock(inputs[0] & 1 == 1, inputs[1] & 1 == 1, after);
+        self.handshake.clock(inputs[0] & 1 == 1, inputs[1] & 1 == 1, after);
         self.refresh();
     }
 

@@ -101,10 +101,7 @@ impl Contract for LyonContract {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
         let it = &self.arithmetic;
-        it.f(
-            it.distance([control[0], control[1], control[2]]),
-            control[3],
-        )
+        it.f(it.distance([control[0], control[1], control[2]]), control[3])
     }
 
     #[inline]
@@ -218,22 +215,10 @@ impl Contract for LyonContract {
             Rounding::Nearest => ulp + rounding_error(scaled_fraction, f, Rounding::Nearest),
         };
         let squares = rounding_error(2 * f, f, params.intensity_rounding);
-        let above = [(
-            "distance.fraction",
-            "rounding of D², times n/2",
-            distance * largest / 2.0,
-        )];
+        let above = [("distance.fraction", "rounding of D², times n/2", distance * largest / 2.0)];
         let below = [
-            (
-                "intensity.fraction",
-                "the base, with the inverse for 1.0 − β·D²",
-                base * power,
-            ),
-            (
-                "intensity.rounding",
-                "rounding of the squares",
-                squares * (power - 1.0),
-            ),
+            ("intensity.fraction", "the base, with the inverse for 1.0 − β·D²", base * power),
+            ("intensity.rounding", "rounding of the squares", squares * (power - 1.0)),
         ];
         let apart =
             [params.distance_rounding, params.intensity_rounding] == [Rounding::Truncate; 2];

@@ -21,9 +21,7 @@ fn small(power: u32, scale: Scale) -> Params {
 #[test]
 fn points_by_hand() {
     let f = |power, scale, control: [i64; 4]| {
-        LyonContract::from_params(&small(power, scale))
-            .unwrap()
-            .f(&control)
+        LyonContract::from_params(&small(power, scale)).unwrap().f(&control)
     };
     // D² = (9 + 4 + 1)/256 → 3/64. n = 12, m = 2: 36/256 → 2/16; base 13/16; 169/256 → 10.
     assert_eq!(f(2, Scale::Multiplier, [3, -2, 1, 12]), 10);
@@ -59,10 +57,7 @@ fn operands_of_an_angle() {
     assert_eq!(control, [-14, 0, 8, 3]);
     // D² = (196 + 64)/256.
     assert_eq!(contract.cosine(&control), Some(1.0 - 260.0 / 512.0));
-    assert_eq!(
-        [0.0, 2.5, 16.0].map(|n| contract.at(third, n)),
-        [const { None }; 3]
-    );
+    assert_eq!([0.0, 2.5, 16.0].map(|n| contract.at(third, n)), [const { None }; 3]);
 }
 
 /// The sweep's error is the worst over what rounds to a word.
@@ -84,15 +79,8 @@ fn a_point_clock_by_clock() {
     };
     // D = (3, −2, 1)/16, shift 2, red 15, written together with start.
     model.clock(&[1, 1, 3, 1, 62, 1, 1, 1, 2, 1, 15, 1, 0, 0, 0, 0]);
-    let names = [
-        "run",
-        "word_address",
-        "shift_register",
-        "remaining",
-        "accumulator",
-        "valid",
-        "done",
-    ];
+    let names =
+        ["run", "word_address", "shift_register", "remaining", "accumulator", "valid", "done"];
     let mut seen = Vec::new();
     for _ in 0..9 {
         seen.push(names.map(|name| value(&model, name)));
@@ -118,21 +106,13 @@ fn a_point_clock_by_clock() {
 
 #[test]
 fn the_default_is_proven() {
-    let bound = LyonContract::from_params(&Params::default())
-        .unwrap()
-        .bound();
+    let bound = LyonContract::from_params(&Params::default()).unwrap().bound();
     // 2⁹ ulps of 2⁻²⁰ upward, times 255, and half a unit; downward 16 + 15 of 2⁻¹⁶ are less.
     assert_eq!(bound.units, 512.0 / 1048576.0 * 255.0 + 0.5);
-    let coarse = Params {
-        intensity_fraction: 15,
-        ..Params::default()
-    };
+    let coarse = Params { intensity_fraction: 15, ..Params::default() };
     let bound = LyonContract::from_params(&coarse).unwrap().bound();
     assert_eq!(bound.units, 31.0 / 32768.0 * 255.0 + 0.5);
-    let nearest = Params {
-        distance_rounding: Rounding::Nearest,
-        ..Params::default()
-    };
+    let nearest = Params { distance_rounding: Rounding::Nearest, ..Params::default() };
     let bound = LyonContract::from_params(&nearest).unwrap().bound();
     let expected = (256.0 / 1048576.0 + 31.0 / 65536.0) * 255.0 + 0.5;
     assert!((bound.units - expected).abs() < 1e-12, "{bound:?}");
@@ -140,10 +120,7 @@ fn the_default_is_proven() {
 
 #[test]
 fn parameters_out_of_range_are_named() {
-    let params = Params {
-        distance_fraction: 9,
-        ..small(4, Scale::Shift)
-    };
+    let params = Params { distance_fraction: 9, ..small(4, Scale::Shift) };
     let refused = LyonContract::from_params(&params).unwrap_err();
     assert!(refused.contains("distance.fraction"), "{refused}");
 }

@@ -43,9 +43,7 @@ impl QuadCosineModel {
     /// As [`Params::check`].
     pub fn from_params(params: &Params) -> Result<Self, String> {
         params.check()?;
-        let operands = Walker::OPERANDS
-            .into_iter()
-            .chain(["amplitude", "exponent"]);
+        let operands = Walker::OPERANDS.into_iter().chain(["amplitude", "exponent"]);
         let inputs = ["rst_n", "start"].into_iter().map(String::from);
         let signals = Walker::SIGNALS.into_iter().chain(SIGNALS);
         Ok(Self {
@@ -82,8 +80,7 @@ impl Model for QuadCosineModel {
         let busy = self.walker.busy();
         self.amplitude.clock(busy, inputs[9], inputs[8]);
         self.exponent.clock(busy, inputs[11], inputs[10]);
-        self.walker
-            .clock(inputs[0] & 1 == 1, inputs[1] & 1 == 1, &inputs[2..8]);
+        self.walker.clock(inputs[0] & 1 == 1, inputs[1] & 1 == 1, &inputs[2..8]);
         let walker = self.walker.values();
         let (shared, own) = self.values.split_at_mut(walker.len());
         shared.copy_from_slice(&walker);

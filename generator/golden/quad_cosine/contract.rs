@@ -111,9 +111,7 @@ impl Contract for QuadCosineContract {
         let angle = line::angle_expression(self.params.angle_format());
         let power = "{1: 1, 2: 2, 3: 4, 4: 4, 5: 4, 6: 4}.get(exponent, 16)";
         let stretched = format!("sqrt(exponent / {power}) * abs({angle})");
-        vec![format!(
-            "cos(pi / 2 * min({stretched}, 1)) ** {power} if -1 <= {angle} < 1 else 0"
-        )]
+        vec![format!("cos(pi / 2 * min({stretched}, 1)) ** {power} if -1 <= {angle} < 1 else 0")]
     }
 
     fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
@@ -125,12 +123,7 @@ impl Contract for QuadCosineContract {
     /// A line of one point.
     fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
         let angle = line::raw_angle(&self.operands[1], gamma);
-        Some(vec![
-            0,
-            angle,
-            shared::exponent_at(&self.operands[2], n)?,
-            0,
-        ])
+        Some(vec![0, angle, shared::exponent_at(&self.operands[2], n)?, 0])
     }
 
     fn cosine(&self, control: &[i64]) -> Option<f64> {
@@ -149,10 +142,7 @@ impl Contract for QuadCosineContract {
         let (low, high) = self.params.exponents;
         Sweep {
             axes: vec![
-                Axis {
-                    name: "exponent".to_string(),
-                    values: Values::Range(low, high),
-                },
+                Axis { name: "exponent".to_string(), values: Values::Range(low, high) },
                 Axis {
                     name: "magnitude of the angle".to_string(),
                     values: Values::Range(0, magnitudes - 1),
@@ -184,12 +174,7 @@ impl Contract for QuadCosineContract {
             .map(|n| {
                 let table = &self.arithmetic.tables[range_of(n)];
                 let (cut, root) = self.stretching(n);
-                [
-                    table.step,
-                    table.total - table.step,
-                    table.slope * cut,
-                    table.slope * root,
-                ]
+                [table.step, table.total - table.step, table.slope * cut, table.slope * root]
             })
             .max_by(|a, b| a.iter().sum::<f64>().total_cmp(&b.iter().sum()))
             .unwrap_or_default();
@@ -197,11 +182,7 @@ impl Contract for QuadCosineContract {
         let shares = [
             ("table.address", "the steps of ROM 12", step),
             ("intensity.fraction", "rounding of ROM 12", rounding),
-            (
-                "angle.multiplied",
-                "the angle that multiplier 11 takes",
-                cut,
-            ),
+            ("angle.multiplied", "the angle that multiplier 11 takes", cut),
             ("root.fraction", "rounding of ROM 9", root),
         ];
         shared::bound(

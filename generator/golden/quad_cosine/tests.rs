@@ -66,8 +66,6 @@ fn points_follow_the_line() {
 
 #[test]
 fn the_default_is_within_the_contract() {
-    let bound = QuadCosineContract::from_params(&Params::default())
-        .unwrap()
-        .bound();
+    let bound = QuadCosineContract::from_params(&Params::default()).unwrap().bound();
     assert!(bound.units < 1.0, "{bound:?}");
 }

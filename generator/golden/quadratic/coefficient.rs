@@ -39,10 +39,8 @@ fn summit(n: f64, a: f64) -> f64 {
     let mut x = 0.0;
     for _ in 0..60 {
         let power = n * libm::exp((n - 2.0) * libm::log1p(-x));
-        let (slope, bend) = (
-            power * (1.0 - x) - (1.0 + a) + 2.0 * a * x,
-            2.0 * a - power * (n - 1.0),
-        );
+        let (slope, bend) =
+            (power * (1.0 - x) - (1.0 + a) + 2.0 * a * x, 2.0 * a - power * (n - 1.0));
         let step = slope / bend;
         x -= step;
         if step.abs() <= 1e-16 * x {

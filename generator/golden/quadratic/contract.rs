@@ -119,10 +119,7 @@ impl Contract for QuadraticContract {
         let (first, last) = params.exponents;
         let table = (first..=last).map(|n| {
             let n = n as usize;
-            (
-                self.arithmetic.exact[n],
-                self.arithmetic.words[n] as f64 * scale,
-            )
+            (self.arithmetic.exact[n], self.arithmetic.words[n] as f64 * scale)
         });
         let (mut rounded, mut largest) = (0.0f64, 0.0f64);
         for (exact, word) in table {
@@ -137,16 +134,8 @@ impl Contract for QuadraticContract {
         );
         let shares = [
             ("coefficient.fraction", "rounding of a(n)", rounded),
-            (
-                "difference.fraction",
-                "rounding of c² − c, times a(n)",
-                difference * largest,
-            ),
-            (
-                "intensity.fraction",
-                "rounding of f, and 1.0 as the largest word",
-                exp2(-(f as i32)),
-            ),
+            ("difference.fraction", "rounding of c² − c, times a(n)", difference * largest),
+            ("intensity.fraction", "rounding of f, and 1.0 as the largest word", exp2(-(f as i32))),
         ];
         shared::bound(&shares, f, params.colour_bits, params.output_rounding)
     }

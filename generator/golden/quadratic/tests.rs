@@ -59,10 +59,7 @@ fn the_table_is_minimax() {
                 .fold(0.0, f64::max)
         };
         let own = error(a);
-        assert!(
-            error(a * 1.0005) > own && error(a * 0.9995) > own,
-            "n = {n}, a = {a}"
-        );
+        assert!(error(a * 1.0005) > own && error(a * 0.9995) > own, "n = {n}, a = {a}");
     }
 }
 
@@ -75,14 +72,7 @@ fn a_point_clock_by_clock() {
     };
     // c = 14/16, n = 5, red 15, written together with start.
     model.clock(&[1, 1, 14, 1, 5, 1, 15, 1, 0, 0, 0, 0]);
-    let names = [
-        "run",
-        "word_address",
-        "difference",
-        "intensity",
-        "valid",
-        "done",
-    ];
+    let names = ["run", "word_address", "difference", "intensity", "valid", "done"];
     let mut seen = Vec::new();
     for _ in 0..4 {
         seen.push(names.map(|name| value(&model, name)));
@@ -104,10 +94,7 @@ fn a_point_clock_by_clock() {
 #[test]
 fn the_defaults_are_proven() {
     let bound = |scheme| {
-        let params = Params {
-            scheme,
-            ..Params::default()
-        };
+        let params = Params { scheme, ..Params::default() };
         QuadraticContract::from_params(&params).unwrap().bound()
     };
     // 999 ulps of 2⁻¹⁹ and one of 2⁻¹⁶, times 255, and half a unit.
@@ -118,10 +105,7 @@ fn the_defaults_are_proven() {
 
 #[test]
 fn parameters_out_of_range_are_named() {
-    let params = Params {
-        difference_fraction: 9,
-        ..small(Scheme::Taylor)
-    };
+    let params = Params { difference_fraction: 9, ..small(Scheme::Taylor) };
     let refused = QuadraticContract::from_params(&params).unwrap_err();
     assert!(refused.contains("difference.fraction"), "{refused}");
 }

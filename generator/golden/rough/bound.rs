@@ -38,19 +38,12 @@ const SLACK: f64 = 1e-9;
 /// The bound of a configuration, whose ROM 18 is `sine`.
 pub fn bound(params: &Params, sine: &Sine) -> Bound {
     let shares = match params.arithmetic {
-        Kind::Patent => vec![(
-            "arithmetic",
-            "words modulo 1.0 wrap where the base is negative",
-            1.0,
-        )],
+        Kind::Patent => {
+            vec![("arithmetic", "words modulo 1.0 wrap where the base is negative", 1.0)]
+        }
         Kind::Exact => exact(params, sine),
     };
-    contract::bound(
-        &shares,
-        params.f_fraction(),
-        params.colour_bits,
-        params.output_rounding,
-    )
+    contract::bound(&shares, params.f_fraction(), params.colour_bits, params.output_rounding)
 }
 
 /// The table's error by angle.
@@ -74,9 +67,7 @@ impl Errors {
                 }
             }
         });
-        let sines = (1..=BINS)
-            .map(|edge| libm::sin(edge as f64 * BIN))
-            .collect();
+        let sines = (1..=BINS).map(|edge| libm::sin(edge as f64 * BIN)).collect();
         Self { errors, sines }
     }
 
@@ -112,10 +103,7 @@ impl Weight {
         let reach = if params.clamp { 1.0 } else { 2.0 };
         let limit = most.min(2.0 * (reach + anywhere) / q);
         if limit < least {
-            return Self {
-                linear: 0.0,
-                exponent: 0.0,
-            };
+            return Self { linear: 0.0, exponent: 0.0 };
         }
         let linear = if params.clamp {
             let best = (1.0 / q).clamp(least, most);
@@ -123,10 +111,7 @@ impl Weight {
         } else {
             limit
         };
-        Self {
-            linear,
-            exponent: limit,
-        }
+        Self { linear, exponent: limit }
     }
 }
 
@@ -141,11 +126,7 @@ fn bin(angle: f64) -> usize {
 fn exact(params: &Params, sine: &Sine) -> Vec<Share> {
     let errors = Errors::new(sine);
     let deviation = bin(params.deviation.to_radians() + SLACK);
-    let (p, f, s) = (
-        params.product_fraction,
-        params.intensity_fraction,
-        params.sine_fraction,
-    );
+    let (p, f, s) = (params.product_fraction, params.intensity_fraction, params.sine_fraction);
 
     let cos_cos = rounding_error(2 * params.cosine_fraction, p, params.product_rounding);
     let mut sin_sin = rounding_error(2 * s, p, params.product_rounding);
@@ -158,14 +139,11 @@ fn exact(params: &Params, sine: &Sine) -> Vec<Share> {
     let base = rounding_error(p + 1, f, params.intensity_rounding);
 
     let pairs = || (0..BINS).flat_map(move |i| (0..=deviation).map(move |j| (i, j)));
-    let largest = pairs()
-        .map(|(i, j)| errors.product(i, j))
-        .fold(0.0, f64::max);
+    let largest = pairs().map(|(i, j)| errors.product(i, j)).fold(0.0, f64::max);
     let (_, most) = exponents(params);
     let anywhere = most / 2.0 * (largest + products) + base;
-    let weights: Vec<Weight> = (0..BINS)
-        .map(|distance| Weight::new(params, distance, anywhere))
-        .collect();
+    let weights: Vec<Weight> =
+        (0..BINS).map(|distance| Weight::new(params, distance, anywhere)).collect();
 
     let (mut worst, mut at, mut square) = (0.0, (0, 0), 0.0f64);
     for (i, j) in pairs() {
@@ -188,21 +166,9 @@ fn exact(params: &Params, sine: &Sine) -> Vec<Share> {
         })
         .collect();
     shares.extend([
-        (
-            "product.fraction",
-            "rounding of registers 11 and 12, times n",
-            most * products,
-        ),
-        (
-            "intensity.fraction",
-            "rounding of register 13, twice",
-            2.0 * base + ulp,
-        ),
-        (
-            "domain.exponent_max",
-            "square of the base's error",
-            (square + base) * (square + base),
-        ),
+        ("product.fraction", "rounding of registers 11 and 12, times n", most * products),
+        ("intensity.fraction", "rounding of register 13, twice", 2.0 * base + ulp),
+        ("domain.exponent_max", "square of the base's error", (square + base) * (square + base)),
     ]);
     shares
 }

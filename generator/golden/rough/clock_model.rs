@@ -124,8 +124,7 @@ impl RoughModel {
     fn sine(&self, operand: i64) -> i64 {
         if self.synchronous {
             // All zeros at power-up.
-            self.looked_up
-                .map_or(0, |earlier| self.arithmetic.sine.at(earlier))
+            self.looked_up.map_or(0, |earlier| self.arithmetic.sine.at(earlier))
         } else {
             self.arithmetic.sine.at(operand)
         }
@@ -136,11 +135,8 @@ impl RoughModel {
     fn execute(&mut self) {
         let [cos_gamma, cos_dgamma, exponent, dgamma_negative, ..] = self.operand_values();
         // Mux 17 addresses ROM 18 with register 2 from word 2 to the result, and else with register 1.
-        let addressed = if (2..=VALID).contains(&self.handshake.word) {
-            cos_dgamma
-        } else {
-            cos_gamma
-        };
+        let addressed =
+            if (2..=VALID).contains(&self.handshake.word) { cos_dgamma } else { cos_gamma };
         match self.handshake.word {
             // Register 19 takes sin γ, register 11 cos γ·cos dγ.
             1 => {
@@ -149,9 +145,8 @@ impl RoughModel {
             }
             // Register 12 takes sin dγ·sin γ.
             3 => {
-                self.reg12_sin_sin = self
-                    .arithmetic
-                    .sin_sin(self.sine(addressed), self.reg19_sin_gamma)
+                self.reg12_sin_sin =
+                    self.arithmetic.sin_sin(self.sine(addressed), self.reg19_sin_gamma)
             }
             // Register 13 takes n/2·(cos(γ ± dγ) − 1).
             5 => {
@@ -171,15 +166,8 @@ impl RoughModel {
 
     fn refresh(&mut self) {
         let Handshake { run, word } = self.handshake;
-        let [
-            cos_gamma,
-            cos_dgamma,
-            exponent,
-            dgamma_negative,
-            red,
-            green,
-            blue,
-        ] = self.operand_values();
+        let [cos_gamma, cos_dgamma, exponent, dgamma_negative, red, green, blue] =
+            self.operand_values();
         let f = self.arithmetic.f(self.reg13_result);
         let out = |colour| self.arithmetic.colour(f, colour) as u64;
         self.values = [
@@ -221,13 +209,8 @@ impl Model for RoughModel {
         for (register, pair) in self.operands.iter_mut().zip(inputs[2..].chunks_exact(2)) {
             register.clock(run, pair[1], pair[0]);
         }
-        let after = if self.handshake.word == END {
-            After::End
-        } else {
-            After::Next
-        };
-        self.handshake
-            .clock(inputs[0] & 1 == 1, inputs[1] & 1 == 1, after);
+        let after = if self.handshake.word == END { After::End } else { After::Next };
+        self.handshake.clock(inputs[0] & 1 == 1, inputs[1] & 1 == 1, after);
         self.refresh();
     }
 

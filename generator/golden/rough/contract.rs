@@ -63,12 +63,7 @@ impl RoughContract {
                 (steepest.min(largest), largest),
                 "cosine of the deviation of the microfacet",
             ),
-            operand(
-                "exponent",
-                params.exponent_format(),
-                params.exponents,
-                "specular exponent n",
-            ),
+            operand("exponent", params.exponent_format(), params.exponents, "specular exponent n"),
             operand(
                 "dgamma_negative",
                 Format::BIT,
@@ -144,12 +139,10 @@ impl Contract for RoughContract {
         let sines = "sqrt((1 - cos_gamma ** 2) * (1 - cos_dgamma ** 2))";
         let turned = format!("cos_gamma * cos_dgamma + (2 * dgamma_negative - 1) * {sines}");
         let base = format!("exponent / 2 * ({turned} - 1) + 1");
-        vec![contract::where_it_faces(
-            &match (self.params.arithmetic, self.params.clamp) {
-                (Kind::Exact, false) => format!("min(({base}) ** 2, 1)"),
-                _ => format!("{} ** 2", contract::clamped_at_0(&base)),
-            },
-        )]
+        vec![contract::where_it_faces(&match (self.params.arithmetic, self.params.clamp) {
+            (Kind::Exact, false) => format!("min(({base}) ** 2, 1)"),
+            _ => format!("{} ** 2", contract::clamped_at_0(&base)),
+        })]
     }
 
     /// With dγ = 0.

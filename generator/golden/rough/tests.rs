@@ -11,10 +11,7 @@ fn small() -> Params {
         colour_bits: 4,
         product_fraction: 6,
         intensity_fraction: 4,
-        sine_scheme: Scheme::Segmented {
-            segments: vec![2],
-            slope_fraction: 5,
-        },
+        sine_scheme: Scheme::Segmented { segments: vec![2], slope_fraction: 5 },
         sine_fraction: 6,
         exponents: (1, 15),
         ..Params::default()
@@ -55,10 +52,7 @@ fn ends_of_the_operands() {
 
 #[test]
 fn without_the_clamp_the_parabola_rises_again() {
-    let params = Params {
-        clamp: false,
-        ..small()
-    };
+    let params = Params { clamp: false, ..small() };
     // n = 4: −168/128 → −21/16; (−5/16)² = 25/256 → 1/16.
     assert_eq!(f(&params, [12, 14, 4, 0]), 1);
     // n = 15: −630/128 saturates to −2.0; (−1.0)² is 1.0, of which f has an ulp less.
@@ -70,11 +64,8 @@ fn without_the_clamp_the_parabola_rises_again() {
 
 #[test]
 fn patent_arithmetic() {
-    let params = Params {
-        arithmetic: Kind::Patent,
-        sine_scheme: Scheme::Direct { address: 4 },
-        ..small()
-    };
+    let params =
+        Params { arithmetic: Kind::Patent, sine_scheme: Scheme::Direct { address: 4 }, ..small() };
     // Sines at 12.5/16 and 14.5/16: 0.6242 and 0.4227, or 10/16 and 7/16. Register 11: 168/256 →
     // 10/16; register 12: 70/256 → 4/16.
     // dγ positive, n = 4: 10 + ¬4 = 10 + 11 = 21 → 5; 5·2 = 10; 10 + 1 = 11; 121/256 → 7/16.
@@ -106,10 +97,7 @@ fn clock(model: &mut RoughModel, rst_n: u64, start: u64, operands: &[u64; 14]) {
 #[test]
 fn a_point_clock_by_clock() {
     for sine_synchronous in [false, true] {
-        let params = Params {
-            sine_synchronous,
-            ..small()
-        };
+        let params = Params { sine_synchronous, ..small() };
         let mut model = RoughModel::from_params(&params).unwrap();
         let names = [
             "run",
@@ -143,9 +131,7 @@ fn a_point_clock_by_clock() {
                 &mut model,
                 1,
                 0,
-                &[
-                    1, late, 1, late, 1, late, 0, late, 1, late, 1, late, 1, late,
-                ],
+                &[1, late, 1, late, 1, late, 0, late, 1, late, 1, late, 1, late],
             );
         }
         // 14/16 · 15 = 13.125.
@@ -169,20 +155,11 @@ fn a_reset_stops_the_words_alone() {
 #[test]
 fn parameters_out_of_range_are_named() {
     let refused = |params: Params| RoughContract::from_params(&params).unwrap_err();
-    let product_fraction = Params {
-        product_fraction: 41,
-        ..small()
-    };
+    let product_fraction = Params { product_fraction: 41, ..small() };
     assert!(refused(product_fraction).contains("product.fraction"));
-    let deviation = Params {
-        deviation: 91.0,
-        ..small()
-    };
+    let deviation = Params { deviation: 91.0, ..small() };
     assert!(refused(deviation).contains("domain.deviation"));
-    let table = Params {
-        sine_scheme: Scheme::Direct { address: 5 },
-        ..small()
-    };
+    let table = Params { sine_scheme: Scheme::Direct { address: 5 }, ..small() };
     assert!(refused(table).contains("sine.address"));
 }
 

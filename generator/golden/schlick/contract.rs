@@ -96,20 +96,14 @@ impl Contract for SchlickContract {
     }
 
     fn expressions(&self) -> Vec<String> {
-        vec![shared::where_it_faces(
-            "cos_gamma / (exponent * (1 - cos_gamma) + cos_gamma)",
-        )]
+        vec![shared::where_it_faces("cos_gamma / (exponent * (1 - cos_gamma) + cos_gamma)")]
     }
 
     /// Dividend and divisor are exact, so that nothing but the quotient's own last bit is lost: it is
     /// truncated, and 1.0 becomes the largest fraction. Both are at most an ulp below the formula.
     fn bound(&self) -> Bound {
         let fraction = self.params.intensity_fraction;
-        let share = (
-            "intensity.fraction",
-            "truncation of the quotient",
-            exp2(-(fraction as i32)),
-        );
+        let share = ("intensity.fraction", "truncation of the quotient", exp2(-(fraction as i32)));
         let (colour, rounding) = (self.params.colour_bits, self.params.output_rounding);
         shared::bound(&[share], fraction, colour, rounding)
     }

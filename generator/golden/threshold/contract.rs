@@ -122,10 +122,7 @@ impl Contract for ThresholdContract {
 
     /// With ROM(n) as it stands.
     fn expressions(&self) -> Vec<String> {
-        let square = format!(
-            "{} ** 2",
-            shared::clamped_at_0("exponent / 2 * (cos_gamma - 1) + 1")
-        );
+        let square = format!("{} ** 2", shared::clamped_at_0("exponent / 2 * (cos_gamma - 1) + 1"));
         let margin = self.margin;
         ["-", "+"]
             .map(|side| {

@@ -69,14 +69,7 @@ fn a_point_clock_by_clock() {
     };
     // c = 14/16, n = 4, red 15, written together with start.
     model.clock(&[1, 1, 14, 1, 4, 1, 15, 1, 0, 0, 0, 0]);
-    let names = [
-        "run",
-        "word_address",
-        "scaled",
-        "intensity",
-        "valid",
-        "done",
-    ];
+    let names = ["run", "word_address", "scaled", "intensity", "valid", "done"];
     let mut seen = Vec::new();
     for _ in 0..5 {
         seen.push(names.map(|name| value(&model, name)));
@@ -98,9 +91,7 @@ fn a_point_clock_by_clock() {
 
 #[test]
 fn the_default_is_proven() {
-    let bound = ThresholdContract::from_params(&Params::default())
-        .unwrap()
-        .bound();
+    let bound = ThresholdContract::from_params(&Params::default()).unwrap().bound();
     // Three ulps of 2⁻¹⁶ times 255, and half a unit.
     assert_eq!(bound.units, 3.0 * 255.0 / 65536.0 + 0.5);
 }
@@ -109,18 +100,12 @@ fn the_default_is_proven() {
 #[test]
 fn levels_that_are_seen_are_remarked_on() {
     let remarks = |levels: &[i64]| {
-        let params = Params {
-            levels: levels.to_vec(),
-            ..Params::default()
-        };
+        let params = Params { levels: levels.to_vec(), ..Params::default() };
         ThresholdContract::from_params(&params).unwrap().remarks()
     };
     assert!(remarks(&[50]).is_empty());
     let seen = remarks(&[50, 50, 320]);
-    assert!(
-        seen.len() == 1 && seen[0].contains("n = 4 outputs up to 3"),
-        "{seen:?}"
-    );
+    assert!(seen.len() == 1 && seen[0].contains("n = 4 outputs up to 3"), "{seen:?}");
 }
 
 #[test]

@@ -48,9 +48,7 @@ pub(super) fn smallest_cut(
             let used = |from, to| flow.get(&(from, to)).copied().unwrap_or(0);
             let (near, far) = ((net, false), (net, true));
             if through {
-                operands(net)
-                    .into_iter()
-                    .for_each(|operand| visit((operand, false), true));
+                operands(net).into_iter().for_each(|operand| visit((operand, false), true));
                 visit(near, used(near, far) > 0);
             } else {
                 let free = affected.contains(&net);

@@ -33,11 +33,7 @@ pub(super) fn of(
         Driver::Constant(bits) => (net.format.raw(*bits), net.format.raw(*bits)),
         Driver::Register(register) if trusted(design, design.register(*register)) => net.range,
         Driver::Rom(rom) => {
-            let raw = design
-                .rom(*rom)
-                .words
-                .iter()
-                .map(|&word| net.format.raw(word));
+            let raw = design.rom(*rom).words.iter().map(|&word| net.format.raw(word));
             let raw = raw.map(|raw| (raw, raw));
             raw.fold((0, 0), hull)
         }

@@ -19,10 +19,7 @@ impl Known {
     /// All bits of a net so wide.
     pub(super) fn all(value: u64, width: u32) -> Self {
         let mask = mask(width);
-        Self {
-            mask,
-            value: value & mask,
-        }
+        Self { mask, value: value & mask }
     }
 
     /// What every value from `low` to `high` has in common, as a pattern so wide.
@@ -30,16 +27,9 @@ impl Known {
         let (low, high) = (low as u64 & mask(width), high as u64 & mask(width));
         let differ = low ^ high;
         // From the highest bit that differs down; where the interval goes through 0 that is the sign.
-        let unknown = if differ == 0 {
-            0
-        } else {
-            u64::MAX >> differ.leading_zeros()
-        };
+        let unknown = if differ == 0 { 0 } else { u64::MAX >> differ.leading_zeros() };
         let mask = mask(width) & !unknown;
-        Self {
-            mask,
-            value: low & mask,
-        }
+        Self { mask, value: low & mask }
     }
 
     /// The whole pattern, if it is known.
@@ -50,26 +40,17 @@ impl Known {
     /// What both have in common.
     pub(super) fn join(self, other: Self) -> Self {
         let mask = self.mask & other.mask & !(self.value ^ other.value);
-        Self {
-            mask,
-            value: self.value & mask,
-        }
+        Self { mask, value: self.value & mask }
     }
 
     /// What either knows of the same pattern.
     pub(super) fn and_also(self, other: Self) -> Self {
-        Self {
-            mask: self.mask | other.mask,
-            value: self.value | other.value,
-        }
+        Self { mask: self.mask | other.mask, value: self.value | other.value }
     }
 
     /// Without these bits.
     pub(super) fn without(self, bits: u64) -> Self {
-        Self {
-            mask: self.mask & !bits,
-            value: self.value & !bits,
-        }
+        Self { mask: self.mask & !bits, value: self.value & !bits }
     }
 
     /// The bits on which both are known and agree.
@@ -87,17 +68,11 @@ impl Known {
     }
 
     fn of(zeros: u64, ones: u64) -> Self {
-        Self {
-            mask: zeros | ones,
-            value: ones,
-        }
+        Self { mask: zeros | ones, value: ones }
     }
 
     pub(super) fn not(self, width: u32) -> Self {
-        Self {
-            mask: self.mask,
-            value: !self.value & self.mask & mask(width),
-        }
+        Self { mask: self.mask, value: !self.value & self.mask & mask(width) }
     }
 
     fn bit(known: Option<bool>) -> Self {
@@ -110,26 +85,15 @@ pub(super) fn cell(design: &Design, op: &Op, width: u32, value: &impl Fn(NetId) 
     let all = mask(width);
     match op {
         Op::Relabel(a) => value(*a),
-        Op::Extend(a) => extend(
-            value(*a),
-            design.width(*a),
-            width,
-            design.net(*a).format.signed,
-        ),
+        Op::Extend(a) => extend(value(*a), design.width(*a), width, design.net(*a).format.signed),
         Op::Slice { of, low } => {
             let of = value(*of);
-            Known {
-                mask: of.mask >> low & all,
-                value: of.value >> low & all,
-            }
+            Known { mask: of.mask >> low & all, value: of.value >> low & all }
         }
         Op::Concat(parts) => parts.iter().fold(Known::NOTHING, |sum, part| {
             let (part, width) = (value(*part), design.width(*part));
             let up = |bits: u64| bits.checked_shl(width).unwrap_or(0);
-            Known {
-                mask: up(sum.mask) | part.mask,
-                value: up(sum.value) | part.value,
-            }
+            Known { mask: up(sum.mask) | part.mask, value: up(sum.value) | part.value }
         }),
         Op::Not(a) => value(*a).not(width),
         Op::And(a, b) => {
@@ -143,10 +107,7 @@ pub(super) fn cell(design: &Design, op: &Op, width: u32, value: &impl Fn(NetId) 
         Op::Xor(a, b) => {
             let (a, b) = (value(*a), value(*b));
             let mask = a.mask & b.mask;
-            Known {
-                mask,
-                value: (a.value ^ b.value) & mask,
-            }
+            Known { mask, value: (a.value ^ b.value) & mask }
         }
         Op::Add { a, b, carry } => {
             let carry = carry.map_or(Known::all(0, 1), value);
@@ -159,11 +120,7 @@ pub(super) fn cell(design: &Design, op: &Op, width: u32, value: &impl Fn(NetId) 
             let width = design.width(*a);
             let differ = x.mask & y.mask & (x.value ^ y.value) != 0;
             let both = x.whole(width).zip(y.whole(width));
-            Known::bit(if differ {
-                Some(false)
-            } else {
-                both.map(|(x, y)| x == y)
-            })
+            Known::bit(if differ { Some(false) } else { both.map(|(x, y)| x == y) })
         }
         Op::Less(a, b) => {
             let format = design.net(*a).format;
@@ -173,19 +130,11 @@ pub(super) fn cell(design: &Design, op: &Op, width: u32, value: &impl Fn(NetId) 
         }
         Op::Any(a) => {
             let (a, width) = (value(*a), design.width(*a));
-            Known::bit(if a.value != 0 {
-                Some(true)
-            } else {
-                a.whole(width).map(|_| false)
-            })
+            Known::bit(if a.value != 0 { Some(true) } else { a.whole(width).map(|_| false) })
         }
         Op::All(a) => {
             let (a, width) = (value(*a), design.width(*a));
-            Known::bit(if a.zeros() != 0 {
-                Some(false)
-            } else {
-                a.whole(width).map(|_| true)
-            })
+            Known::bit(if a.zeros() != 0 { Some(false) } else { a.whole(width).map(|_| true) })
         }
         Op::Mux { select, inputs } => {
             let mut possible = choices(value(*select), design.width(*select), inputs).map(value);
@@ -214,22 +163,13 @@ fn extend(a: Known, from: u32, to: u32, signed: bool) -> Known {
     let above = mask(to) & !mask(from);
     let sign = 1 << (from - 1);
     if !signed {
-        Known {
-            mask: a.mask | above,
-            ..a
-        }
+        Known { mask: a.mask | above, ..a }
     } else if a.mask & sign == 0 {
         a
     } else if a.value & sign == 0 {
-        Known {
-            mask: a.mask | above,
-            ..a
-        }
+        Known { mask: a.mask | above, ..a }
     } else {
-        Known {
-            mask: a.mask | above,
-            value: a.value | above,
-        }
+        Known { mask: a.mask | above, value: a.value | above }
     }
 }
 
@@ -284,18 +224,12 @@ fn product(
         }
         _ => 0,
     };
-    match value(a)
-        .whole(design.width(a))
-        .zip(value(b).whole(design.width(b)))
-    {
+    match value(a).whole(design.width(a)).zip(value(b).whole(design.width(b))) {
         Some((x, y)) => {
             let raw = |net: NetId, bits| design.net(net).format.raw(bits);
             Known::all((raw(a, x).wrapping_mul(raw(b, y))) as u64, width)
         }
-        None => Known {
-            mask: low | high,
-            value: 0,
-        },
+        None => Known { mask: low | high, value: 0 },
     }
 }
 
@@ -317,10 +251,7 @@ pub(super) fn sum_differs(summands: [(Known, u64); 2], carry: (Known, u64), widt
     let mut all = 0;
     let bit_of = |(known, differ): (Known, u64), bit: u32| {
         let agreed = known.mask & !differ;
-        (
-            (agreed >> bit & 1 == 1).then_some(known.value >> bit & 1),
-            differ >> bit & 1 == 1,
-        )
+        ((agreed >> bit & 1 == 1).then_some(known.value >> bit & 1), differ >> bit & 1 == 1)
     };
     let mut carry = bit_of(carry, 0);
     for bit in 0..width {

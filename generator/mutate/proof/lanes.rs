@@ -42,9 +42,7 @@ pub(super) fn cell<'a>(
         Op::Slice { of: a, low } => one(of(*a), |a| a >> low & all),
         Op::Concat(parts) => parts.iter().fold([0; LANES], |sum, part| {
             let width = design.width(*part);
-            two(&sum, of(*part), |sum, part| {
-                sum.checked_shl(width).unwrap_or(0) | part
-            })
+            two(&sum, of(*part), |sum, part| sum.checked_shl(width).unwrap_or(0) | part)
         }),
         Op::Not(a) => one(of(*a), |a| !a & all),
         Op::And(a, b) => two(of(*a), of(*b), |a, b| a & b),
@@ -76,16 +74,16 @@ pub(super) fn cell<'a>(
             let last = inputs.len() - 1;
             let mut out = *of(inputs[last]);
             for (at, input) in inputs[..last].iter().enumerate() {
-                let taken = two(of(*select), of(*input), |select, input| {
-                    if select == at as u64 { input } else { 0 }
-                });
-                let kept = two(
-                    of(*select),
-                    &out,
-                    |select, out| {
-                        if select == at as u64 { 0 } else { out }
-                    },
-                );
+                let taken =
+                    two(
+                        of(*select),
+                        of(*input),
+                        |select, input| {
+                            if select == at as u64 { input } else { 0 }
+                        },
+                    );
+                let kept =
+                    two(of(*select), &out, |select, out| if select == at as u64 { 0 } else { out });
                 out = two(&taken, &kept, |a, b| a | b);
             }
             out

@@ -57,11 +57,7 @@ impl<'a> Prover<'a> {
         }
         let sound = Sound::of(design)?;
         let windows = Windows::of(design, &sound.order);
-        Some(Self {
-            sound,
-            compared,
-            windows,
-        })
+        Some(Self { sound, compared, windows })
     }
 
     /// How it is proved, if it is, that nothing that is compared ever differs with this fault.
@@ -89,10 +85,8 @@ impl<'a> Prover<'a> {
             _ => {}
         }
         let words = design.control.words.len();
-        let nothing = State {
-            registers: vec![0; design.registers.len()],
-            roms: vec![0; design.roms.len()],
-        };
+        let nothing =
+            State { registers: vec![0; design.registers.len()], roms: vec![0; design.roms.len()] };
         let mut states = vec![nothing; words];
         let mut todo: Vec<usize> = (0..words).collect();
         while let Some(word) = todo.pop() {
@@ -111,11 +105,7 @@ impl<'a> Prover<'a> {
                 let mut joined = states[to].clone();
                 let pairs = joined.registers.iter_mut().zip(&next.registers);
                 pairs.for_each(|(all, more)| *all |= more);
-                joined
-                    .roms
-                    .iter_mut()
-                    .zip(&next.roms)
-                    .for_each(|(all, more)| *all |= more);
+                joined.roms.iter_mut().zip(&next.roms).for_each(|(all, more)| *all |= more);
                 if joined != states[to] {
                     states[to] = joined;
                     todo.push(to);
@@ -128,10 +118,7 @@ impl<'a> Prover<'a> {
     fn settle(&self, word: usize, state: &State, site: &Site) -> Nets {
         let design = self.sound.design;
         let sound = &self.sound.words[word];
-        let mut nets = Nets {
-            known: sound.clone(),
-            differ: vec![0; design.nets.len()],
-        };
+        let mut nets = Nets { known: sound.clone(), differ: vec![0; design.nets.len()] };
         for &id in &self.sound.order {
             let width = design.width(id);
             let (mut known, mut differ) = match (&design.net(id).driver, site) {
@@ -142,10 +129,7 @@ impl<'a> Prover<'a> {
                     if op.operands().iter().any(|it| nets.differ[it.index()] != 0) =>
                 {
                     let value = |net: NetId| nets.known[net.index()];
-                    (
-                        known::cell(design, op, width, &value),
-                        self.cell(word, op, width, &nets),
-                    )
+                    (known::cell(design, op, width, &value), self.cell(word, op, width, &nets))
                 }
                 (Driver::Register(register), _) => {
                     let differ = state.registers[register.index()];
@@ -286,9 +270,7 @@ impl<'a> Prover<'a> {
         let design = self.sound.design;
         let registers = (0..design.registers.len() as u32).map(RegId);
         State {
-            registers: registers
-                .map(|id| self.taken(word, id, nets, site))
-                .collect(),
+            registers: registers.map(|id| self.taken(word, id, nets, site)).collect(),
             roms: (0..design.roms.len() as u32)
                 .map(|id| self.read(RomId(id), site, nets))
                 .collect(),
@@ -311,10 +293,7 @@ impl<'a> Prover<'a> {
             differ &= !offered.agree(sound[data]);
         }
         let one = Known::all(1, 1);
-        let before = register
-            .enable
-            .map_or(one, |net| sound[net.index()])
-            .whole(1);
+        let before = register.enable.map_or(one, |net| sound[net.index()]).whole(1);
         let (after, same) = match site {
             Site::Enable(at_fault, always) if *at_fault == id => {
                 let after = Some(u64::from(*always));
@@ -322,12 +301,7 @@ impl<'a> Prover<'a> {
             }
             _ => {
                 let after = register.enable.map_or(one, |net| nets.known[net.index()]);
-                (
-                    after.whole(1),
-                    register
-                        .enable
-                        .is_none_or(|net| nets.differ[net.index()] == 0),
-                )
+                (after.whole(1), register.enable.is_none_or(|net| nets.differ[net.index()] == 0))
             }
         };
         match (before, after) {
@@ -367,25 +341,16 @@ fn taken(design: &Design, driver: &Driver, value: &impl Fn(NetId) -> Known) -> O
 fn stuck(known: Known, differ: u64, bit: u32, how: Bit) -> (Known, u64) {
     let one = 1 << bit;
     match how {
-        Bit::Stuck0 | Bit::Stuck1 => (
-            Known {
-                mask: known.mask | one,
-                value: how.applied(known.value, bit),
-            },
-            differ | one,
-        ),
-        Bit::Inverted => (
-            Known {
-                mask: known.mask,
-                value: (known.value ^ one) & known.mask,
-            },
-            differ | one,
-        ),
+        Bit::Stuck0 | Bit::Stuck1 => {
+            (Known { mask: known.mask | one, value: how.applied(known.value, bit) }, differ | one)
+        }
+        Bit::Inverted => {
+            (Known { mask: known.mask, value: (known.value ^ one) & known.mask }, differ | one)
+        }
     }
 }
 
 /// From the lowest of these bits up.
 fn above(bits: u64) -> u64 {
-    bits.checked_ilog2()
-        .map_or(0, |_| u64::MAX << bits.trailing_zeros())
+    bits.checked_ilog2().map_or(0, |_| u64::MAX << bits.trailing_zeros())
 }

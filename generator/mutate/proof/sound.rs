@@ -38,11 +38,8 @@ impl<'a> Sound<'a> {
                 continue;
             };
             let nets = sound.settle(word, &before);
-            let after: Vec<Known> = design
-                .registers
-                .iter()
-                .map(|register| sound.next(register, &nets))
-                .collect();
+            let after: Vec<Known> =
+                design.registers.iter().map(|register| sound.next(register, &nets)).collect();
             for &to in &sound.following[word] {
                 let joined = match &held[to] {
                     None => after.clone(),
@@ -102,9 +99,7 @@ impl<'a> Sound<'a> {
             return held;
         };
         let taken = nets[data.index()];
-        let enable = register
-            .enable
-            .map_or(Known::all(1, 1), |net| nets[net.index()]);
+        let enable = register.enable.map_or(Known::all(1, 1), |net| nets[net.index()]);
         let next = match enable.whole(1) {
             Some(1) => taken,
             Some(_) => held,
@@ -149,10 +144,7 @@ fn same(design: &Design, order: &[NetId]) -> Vec<NetId> {
             }
             Driver::Op(op) => {
                 // Whether an operand is signed counts where it is extended, compared or multiplied.
-                signed = op
-                    .operands()
-                    .iter()
-                    .any(|net| design.net(*net).format.signed);
+                signed = op.operands().iter().any(|net| design.net(*net).format.signed);
                 for operand in op.operands_mut() {
                     *operand = same[operand.index()];
                 }

@@ -52,9 +52,7 @@ impl<'a> Windows<'a> {
         }
         let registers = design.registers.iter();
         let read = registers.flat_map(|register| [register.data, register.enable]);
-        let read = read
-            .flatten()
-            .chain(design.roms.iter().map(|rom| rom.address));
+        let read = read.flatten().chain(design.roms.iter().map(|rom| rom.address));
         for net in read.chain(design.outputs().map(|port| port.net)) {
             sinks[net.index()] = true;
         }
@@ -75,8 +73,7 @@ impl<'a> Windows<'a> {
             Site::Words(rom, words) if *rom != self.design.control.rom => {
                 let read = self.read[rom.index()].get_or_init(|| self.words_read(*rom));
                 let is_read = |(word, _): &(usize, u64)| {
-                    read.as_ref()
-                        .is_none_or(|read| read.contains(&(*word as u64)))
+                    read.as_ref().is_none_or(|read| read.contains(&(*word as u64)))
                 };
                 !words.iter().any(is_read) || self.stays_inside(self.design.rom(*rom).data, site)
             }
@@ -94,15 +91,10 @@ impl<'a> Windows<'a> {
     fn words_read(&self, rom: RomId) -> Option<BTreeSet<u64>> {
         let address = self.design.rom(rom).address;
         let mut read = BTreeSet::new();
-        self.try_all(
-            &[address].into(),
-            &BTreeSet::new(),
-            None,
-            |values, _, count| {
-                read.extend(&values[&address][..count]);
-                true
-            },
-        )?;
+        self.try_all(&[address].into(), &BTreeSet::new(), None, |values, _, count| {
+            read.extend(&values[&address][..count]);
+            true
+        })?;
         Some(read)
     }
 
@@ -188,12 +180,8 @@ impl<'a> Windows<'a> {
                 todo.extend(self.operands(net));
             }
         }
-        let steps: Vec<NetId> = self
-            .order
-            .iter()
-            .copied()
-            .filter(|net| inside.contains(net))
-            .collect();
+        let steps: Vec<NetId> =
+            self.order.iter().copied().filter(|net| inside.contains(net)).collect();
         let (mut sound, mut mutant) = (BTreeMap::new(), BTreeMap::new());
         for from in (0..total).step_by(LANES) {
             let count = (total - from).min(LANES as i128) as usize;

@@ -60,13 +60,7 @@ fn papers(function: Function, region: Region) -> Option<Measured> {
 
 /// A figure that is not an error.
 fn plain(key: &str, definition: &str, value: f64, text: String) -> Measured {
-    Measured {
-        key: key.to_owned(),
-        definition: definition.to_owned(),
-        value,
-        text,
-        n: None,
-    }
+    Measured { key: key.to_owned(), definition: definition.to_owned(), value, text, n: None }
 }
 
 /// W and the paper's error before the inflection point.
@@ -220,10 +214,7 @@ fn ratio(id: &'static str, claim: &str, seed: &str, least: f64, regions: [Region
         claim: claim.to_owned(),
         seed: seed.to_owned(),
         verdict,
-        words: format!(
-            "It is {} with one definition for both.{why}",
-            figures.join(" or ")
-        ),
+        words: format!("It is {} with one definition for both.{why}", figures.join(" or ")),
         ours,
     }
 }

@@ -12,9 +12,7 @@ fn find(id: &str) -> &'static Claim {
 /// Figures in per cent as the device catalogue states them, each with the digits that it gives.
 fn states(id: &str, key: &str, percent: f64, digits: i32) {
     let claim = find(id);
-    let figure = claim
-        .figure(key)
-        .unwrap_or_else(|| panic!("`{id}` has no `{key}`: {claim:?}"));
+    let figure = claim.figure(key).unwrap_or_else(|| panic!("`{id}` has no `{key}`: {claim:?}"));
     let scale = libm::pow(10.0, f64::from(digits));
     let rounded = libm::round(100.0 * figure * scale) / scale;
     assert_eq!(rounded, percent, "{id}, {key}: {figure}");
@@ -66,10 +64,7 @@ fn w_is_not_twenty_times_as_accurate() {
 fn w_fails_for_small_exponents() {
     let claim = find("w16-one-per-cent");
     assert_eq!(claim.verdict, Verdict::Fails);
-    assert!(
-        claim.words.starts_with("It fails for n = 2…7,"),
-        "{claim:?}"
-    );
+    assert!(claim.words.starts_with("It fails for n = 2…7,"), "{claim:?}");
 }
 
 #[test]
@@ -97,14 +92,8 @@ fn ids_are_unique_and_words_are_plain() {
     for (at, claim) in claims.iter().enumerate() {
         assert!(claims[..at].iter().all(|other| other.id != claim.id));
         assert!(!claim.ours.is_empty(), "{claim:?}");
-        assert!(
-            claim.ours.iter().all(|one| one.value.is_finite()),
-            "{claim:?}"
-        );
-        assert!(
-            !claim.words.contains("NaN") && claim.words.ends_with('.'),
-            "{claim:?}"
-        );
+        assert!(claim.ours.iter().all(|one| one.value.is_finite()), "{claim:?}");
+        assert!(!claim.words.contains("NaN") && claim.words.ends_with('.'), "{claim:?}");
     }
 }
 
@@ -117,12 +106,8 @@ fn verdicts_of_an_upper_limit() {
         text: String::new(),
         n: None,
     };
-    let of = |values: &[f64]| {
-        upper(
-            &values.iter().map(|value| one(*value)).collect::<Vec<_>>(),
-            0.08,
-        )
-    };
+    let of =
+        |values: &[f64]| upper(&values.iter().map(|value| one(*value)).collect::<Vec<_>>(), 0.08);
     assert_eq!(of(&[0.03, 0.0804]), Verdict::Holds);
     assert_eq!(of(&[0.03, 0.0806]), Verdict::Depends);
     assert_eq!(of(&[0.0806]), Verdict::Nearly);

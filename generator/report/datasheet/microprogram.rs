@@ -47,19 +47,13 @@ impl Microprogram {
                 name: field.name.clone(),
                 lines: match (&field.lines[..], numbered) {
                     ([], true) => vec!["–".to_owned(); width as usize],
-                    ([], false) => (low..low + width)
-                        .rev()
-                        .map(|bit| bit.to_string())
-                        .collect(),
+                    ([], false) => (low..low + width).rev().map(|bit| bit.to_string()).collect(),
                     (lines, _) => lines.iter().map(u16::to_string).collect(),
                 },
             }
         });
         // The column "then" of the page's table of words is the last.
-        let then = account::words(design)
-            .rows
-            .into_iter()
-            .map(|mut row| row.pop());
+        let then = account::words(design).rows.into_iter().map(|mut row| row.pop());
         let words = control.words.iter().zip(then).enumerate();
         Self {
             numbered,

@@ -93,10 +93,7 @@ pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datashee
     let pictures = || -> Result<_> {
         let highlight = highlight(unit)?;
         done();
-        Ok((
-            highlight,
-            curves::configuration(&unit.device, contract, done),
-        ))
+        Ok((highlight, curves::configuration(&unit.device, contract, done)))
     };
     let (synthesis, pictures) = rayon::join(synthesis, pictures);
     let (highlight, curves) = pictures?;
@@ -108,10 +105,7 @@ pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datashee
         highlight,
         synthesis: synthesis?,
     };
-    Ok(Datasheet {
-        page: page::page(subject, &measured)?,
-        wavedrom: measured.waves.wavedrom()?,
-    })
+    Ok(Datasheet { page: page::page(subject, &measured)?, wavedrom: measured.waves.wavedrom()? })
 }
 
 /// A ball in the light that pictures have by default.
@@ -121,11 +115,7 @@ fn highlight(unit: &Unit) -> Result<Highlight> {
     let settings = Settings {
         size: (SIDE, SIDE),
         samples: SAMPLES,
-        view: View {
-            eye: None,
-            target: None,
-            field: 30.0,
-        },
+        view: View { eye: None, target: None, field: 30.0 },
         material: Material::usual(exponent),
         background: BACKGROUND,
         compare: true,
@@ -136,11 +126,8 @@ fn highlight(unit: &Unit) -> Result<Highlight> {
         relief: None,
     };
     let mut engine = unit.engine(Through::Golden)?;
-    let Rendered {
-        picture,
-        comparison,
-        ..
-    } = render::render(unit, engine.as_mut(), &scene, &settings, &mut |_| ())?;
+    let Rendered { picture, comparison, .. } =
+        render::render(unit, engine.as_mut(), &scene, &settings, &mut |_| ())?;
     let mut beside = vec![&picture];
     if let Some(comparison) = &comparison {
         beside.extend([&comparison.blinn, &comparison.difference.picture]);

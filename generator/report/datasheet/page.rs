@@ -120,10 +120,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         formats: html(account::FORMATS),
         ports: TableView::new("Ports", &account::ports(design)),
         domain: TableView::new("Domain of the operands", &account::domain(contract)),
-        example: TableView::new(
-            "A worked example",
-            &account::example(contract, &measured.example),
-        ),
+        example: TableView::new("A worked example", &account::example(contract, &measured.example)),
         blocks: TableView::new("Blocks", &blocks::table(design)),
         roms: TableView::new("ROMs", &account::roms(design)),
         fields: TableView::new("Fields of the control word", &account::fields(design)),
@@ -131,10 +128,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         clocks: TableView::new("Clocks", &account::clocks(&measured.timing)),
         throughput: throughput(&measured.timing),
         timing: timing::drawing(&measured.waves, described(measured)).svg()?,
-        wavedrom_link: format!(
-            "data:application/json;base64,{}",
-            STANDARD.encode(&wavedrom)
-        ),
+        wavedrom_link: format!("data:application/json;base64,{}", STANDARD.encode(&wavedrom)),
         wavedrom,
         accuracy: html(&account::accuracy(&bound)),
         terms: TableView::new("Terms of the bound", &account::terms(&bound)),
@@ -164,10 +158,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         },
         synthesis: measured.synthesis.as_ref(),
         instance: emit::instance(design)?,
-        keys: TableView::new(
-            "Keys of the configuration",
-            &account::keys(&schema, &unit.config),
-        ),
+        keys: TableView::new("Keys of the configuration", &account::keys(&schema, &unit.config)),
         toml: unit.config.to_toml(&schema),
     };
     let mut text = page.render()?;
@@ -185,10 +176,7 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
     let registers = design.registers.iter();
     let flip_flops: u32 = registers.map(|register| design.width(register.q)).sum();
     let mut glance = vec![
-        (
-            "Largest error of an output",
-            format!("{:.3} units, proven", contract.bound().units),
-        ),
+        ("Largest error of an output", format!("{:.3} units, proven", contract.bound().units)),
         ("Word f", contract.f_format().to_string()),
         ("Outputs", outputs.to_string()),
         ("Clocks, start to valid", clocks(timing.start_to_valid)),
@@ -203,10 +191,7 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
     {
         glance.push((
             "LUTs, DSPs, block RAMs",
-            format!(
-                "{}, {}, {} ({})",
-                usage.luts, usage.dsps, usage.block_rams, usage.family
-            ),
+            format!("{}, {}, {} ({})", usage.luts, usage.dsps, usage.block_rams, usage.family),
         ));
     }
     glance

@@ -19,11 +19,7 @@ impl TableView {
             Align::Left => "",
             Align::Right => "number",
         };
-        let classes: Vec<_> = table
-            .columns
-            .iter()
-            .map(|column| class(column.align))
-            .collect();
+        let classes: Vec<_> = table.columns.iter().map(|column| class(column.align)).collect();
         Self {
             label,
             columns: table
@@ -72,10 +68,7 @@ mod tests {
 
     #[test]
     fn names_are_code_and_signs_are_signs() {
-        assert_eq!(
-            html("`a<b` & c > `d`"),
-            "<code>a&lt;b</code> &amp; c &gt; <code>d</code>"
-        );
+        assert_eq!(html("`a<b` & c > `d`"), "<code>a&lt;b</code> &amp; c &gt; <code>d</code>");
         assert_eq!(html("one ` alone"), "one ` alone");
     }
 }

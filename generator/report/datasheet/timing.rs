@@ -30,10 +30,7 @@ pub fn drawing(waves: &Waves, description: String) -> Drawing {
         Some(number) => format!("{} ({number})", lane.name),
         None => lane.name.clone(),
     };
-    let widest = waves
-        .lanes
-        .iter()
-        .map(|lane| text_width(&label(lane), SIZE));
+    let widest = waves.lanes.iter().map(|lane| text_width(&label(lane), SIZE));
     let left = widest.max().unwrap_or(0) + 16;
     let grid = Grid::new(waves, left);
     let height = HEAD + PITCH * waves.lanes.len() as i32 + 4;
@@ -41,12 +38,7 @@ pub fn drawing(waves: &Waves, description: String) -> Drawing {
     for (at, clock) in waves.clocks.iter().enumerate() {
         let (x, end) = (grid.x(at), grid.x(at + 1));
         items.push(Item::path("grid", format!("M{x} {HEAD}V{height}")));
-        items.push(Item::text(
-            "tick",
-            (x + end) / 2,
-            HEAD - 9,
-            clock.to_string(),
-        ));
+        items.push(Item::text("tick", (x + end) / 2, HEAD - 9, clock.to_string()));
     }
     let end = grid.x(waves.clocks.len());
     items.push(Item::path("grid", format!("M{end} {HEAD}V{height}")));
@@ -86,11 +78,7 @@ struct Grid<'a> {
 impl<'a> Grid<'a> {
     /// Wide enough for what the values say, within reason.
     fn new(waves: &'a Waves, left: i32) -> Self {
-        let mut grid = Self {
-            waves,
-            left,
-            clock: 0,
-        };
+        let mut grid = Self { waves, left, clock: 0 };
         let wanted = waves
             .lanes
             .iter()
@@ -115,9 +103,7 @@ impl<'a> Grid<'a> {
     /// The places before which clocks are left out.
     fn gaps(&self) -> impl Iterator<Item = usize> + '_ {
         let pairs = self.waves.clocks.windows(2).enumerate();
-        pairs
-            .filter(|(_, pair)| pair[1] != pair[0] + 1)
-            .map(|(at, _)| at + 1)
+        pairs.filter(|(_, pair)| pair[1] != pair[0] + 1).map(|(at, _)| at + 1)
     }
 
     /// The stretches in which a value stays, as half-open ranges of places.
@@ -172,18 +158,11 @@ impl<'a> Grid<'a> {
                 items.push(Item::path("unknown", frame));
                 continue;
             };
-            items.push(Item::Open {
-                class: "value",
-                title: format!("{}: {text}", lane.name),
-            });
+            items.push(Item::Open { class: "value", title: format!("{}: {text}", lane.name) });
             items.push(Item::path("bus", frame));
             let room = (f64::from(end - x - 2 * SLANT) / (SIZE * 0.6)) as usize;
             let shown = match text.chars().count() > room {
-                true => text
-                    .chars()
-                    .take(room.saturating_sub(1))
-                    .chain(['…'])
-                    .collect(),
+                true => text.chars().take(room.saturating_sub(1)).chain(['…']).collect(),
                 false => text.clone(),
             };
             items.push(Item::text("tick", (x + end) / 2, low - 4, shown));

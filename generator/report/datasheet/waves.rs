@@ -109,20 +109,13 @@ impl Waves {
         for lane in &mut lanes {
             lane.values = shown.iter().map(|&at| lane.values[at].take()).collect();
         }
-        Ok(Self {
-            name: design.name.clone(),
-            clocks: shown,
-            lanes,
-        })
+        Ok(Self { name: design.name.clone(), clocks: shown, lanes })
     }
 
     /// The first clock in which a signal is 1.
     pub fn first(&self, name: &str) -> Option<u32> {
         let lane = self.lanes.iter().find(|lane| lane.name == name)?;
-        let at = lane
-            .values
-            .iter()
-            .position(|value| value.as_deref() == Some("1"))?;
+        let at = lane.values.iter().position(|value| value.as_deref() == Some("1"))?;
         u32::try_from(self.clocks[at]).ok()
     }
 

@@ -113,44 +113,25 @@ impl Camera {
 mod tests {
     use super::*;
 
-    const VIEW: View = View {
-        eye: None,
-        target: None,
-        field: 90.0,
-    };
+    const VIEW: View = View { eye: None, target: None, field: 90.0 };
 
     #[test]
     fn coordinates_of_the_camera() {
-        let view = View {
-            eye: Some(Vector::new(5.0, 0.0, 0.0)),
-            target: Some(Vector::default()),
-            ..VIEW
-        };
+        let view =
+            View { eye: Some(Vector::new(5.0, 0.0, 0.0)), target: Some(Vector::default()), ..VIEW };
         let none = || std::iter::empty();
         let camera = Camera::new(&view, 2.0, Vector::default(), none()).unwrap();
         // From +x, +z is to the left.
-        assert_eq!(
-            camera.place(Vector::new(0.0, 2.0, 1.0)),
-            Vector::new(-1.0, 2.0, -5.0)
-        );
-        assert_eq!(
-            camera.outward(Vector::new(-1.0, 2.0, -5.0)),
-            Vector::new(-5.0, 2.0, 1.0)
-        );
+        assert_eq!(camera.place(Vector::new(0.0, 2.0, 1.0)), Vector::new(-1.0, 2.0, -5.0));
+        assert_eq!(camera.outward(Vector::new(-1.0, 2.0, -5.0)), Vector::new(-5.0, 2.0, 1.0));
         assert!((camera.half().1 - 1.0).abs() < 1e-15);
-        let inside = View {
-            eye: Some(Vector::default()),
-            ..view
-        };
+        let inside = View { eye: Some(Vector::default()), ..view };
         assert!(Camera::new(&inside, 1.0, Vector::default(), none()).is_err());
     }
 
     #[test]
     fn everything_is_seen() {
-        let things = [
-            (Vector::new(3.0, 0.0, 1.0), 0.0),
-            (Vector::new(-1.0, 2.0, -4.0), 1.5),
-        ];
+        let things = [(Vector::new(3.0, 0.0, 1.0), 0.0), (Vector::new(-1.0, 2.0, -4.0), 1.5)];
         for aspect in [0.25, 1.0, 3.0] {
             let camera = Camera::new(&VIEW, aspect, Vector::default(), things.into_iter()).unwrap();
             let mut fullest: f64 = 0.0;

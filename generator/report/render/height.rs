@@ -47,13 +47,9 @@ impl Relief {
         if !kind.is_empty() {
             bail!("it is {kind}; a height map is grey alone, with 1 to 16 bits");
         }
-        let size = reader
-            .output_buffer_size()
-            .context("it is too large for this machine")?;
+        let size = reader.output_buffer_size().context("it is too large for this machine")?;
         let mut bytes = vec![0; size];
-        reader
-            .next_frame(&mut bytes)
-            .context("it is not a whole PNG file")?;
+        reader.next_frame(&mut bytes).context("it is not a whole PNG file")?;
         let heights: Vec<f32> = match bits {
             BitDepth::Sixteen => bytes
                 .chunks_exact(2)
@@ -62,17 +58,8 @@ impl Relief {
             _ => bytes.iter().map(|&byte| f32::from(byte) / 255.0).collect(),
         };
         let (width, height) = (width as usize, height as usize);
-        ensure!(
-            heights.len() == width * height,
-            "it is not a whole PNG file"
-        );
-        Ok(Self {
-            slopes: slopes(&heights, width, height),
-            width,
-            height,
-            depth,
-            repeat,
-        })
+        ensure!(heights.len() == width * height, "it is not a whole PNG file");
+        Ok(Self { slopes: slopes(&heights, width, height), width, height, depth, repeat })
     }
 
     /// How much the surface rises per unit of u and v, where it has the given texture coordinates.

@@ -68,10 +68,7 @@ impl Mesh {
         if let Some(at) = positions.iter().position(far) {
             bail!("vertex {} is farther away than {FARTHEST:e}", at + 1);
         }
-        if let Some(at) = textures
-            .iter()
-            .position(|at| !at.iter().all(|x| x.is_finite()))
-        {
+        if let Some(at) = textures.iter().position(|at| !at.iter().all(|x| x.is_finite())) {
             bail!("texture coordinate {} is not finite", at + 1);
         }
         ensure!(
@@ -84,15 +81,10 @@ impl Mesh {
             let [a, b, c] = corners.map(|corner| positions[corner.position as usize]);
             (b - a).cross(c - a)
         };
-        let triangles: Vec<[RawCorner; 3]> = triangles
-            .into_iter()
-            .filter(|corners| area(corners).unit().is_some())
-            .collect();
+        let triangles: Vec<[RawCorner; 3]> =
+            triangles.into_iter().filter(|corners| area(corners).unit().is_some()).collect();
         ensure!(all > 0, "there is no triangle");
-        ensure!(
-            !triangles.is_empty(),
-            "all {all} triangles are without area"
-        );
+        ensure!(!triangles.is_empty(), "all {all} triangles are without area");
         let given: Vec<Option<Vector>> = normals.iter().map(|normal| normal.unit()).collect();
         let smooth = smooth_normals(&positions, &triangles, area);
         let first_smooth = normals.len() as u32;
@@ -110,10 +102,7 @@ impl Mesh {
         };
         Ok(Self {
             degenerate: all - triangles.len(),
-            triangles: triangles
-                .iter()
-                .map(|corners| corners.map(corner))
-                .collect(),
+            triangles: triangles.iter().map(|corners| corners.map(corner)).collect(),
             positions,
             normals,
             textures,
@@ -173,9 +162,7 @@ fn smooth_normals(
     }
     // Where areas cancel, as on both sides of a sheet, any direction is as good as another.
     let anywhere = Vector::new(0.0, 0.0, 1.0);
-    same.iter()
-        .map(|&at| sums[at as usize].unit().unwrap_or(anywhere))
-        .collect()
+    same.iter().map(|&at| sums[at as usize].unit().unwrap_or(anywhere)).collect()
 }
 
 #[cfg(test)]
@@ -183,11 +170,7 @@ mod tests {
     use super::*;
 
     fn corners(positions: [u32; 3]) -> [RawCorner; 3] {
-        positions.map(|position| RawCorner {
-            position,
-            normal: None,
-            texture: None,
-        })
+        positions.map(|position| RawCorner { position, normal: None, texture: None })
     }
 
     #[test]
@@ -209,14 +192,8 @@ mod tests {
         let normal = mesh.normals[mesh.triangles[0][0].normal as usize];
         let half = std::f64::consts::FRAC_1_SQRT_2;
         // +z and −x.
-        assert!(
-            (normal - v(-half, 0.0, half)).length() < 1e-15,
-            "{normal:?}"
-        );
+        assert!((normal - v(-half, 0.0, half)).length() < 1e-15, "{normal:?}");
         assert_eq!(normal, mesh.normals[mesh.triangles[1][0].normal as usize]);
-        assert_eq!(
-            mesh.normals[mesh.triangles[0][1].normal as usize],
-            v(0.0, 0.0, 1.0)
-        );
+        assert_eq!(mesh.normals[mesh.triangles[0][1].normal as usize], v(0.0, 0.0, 1.0));
     }
 }

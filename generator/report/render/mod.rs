@@ -166,12 +166,7 @@ pub fn render(
         net.map(|net| unit.design.net(net).format)
     };
     let contract = unit.contract.as_ref();
-    let feed = Feed::new(
-        unit.device.name,
-        contract,
-        settings.material.exponent,
-        format,
-    )?;
+    let feed = Feed::new(unit.device.name, contract, settings.material.exponent, format)?;
     ensure!(
         feed.longest().is_none() || scene.relief.is_none(),
         "the device `{}` walks lines of points, which a height map cannot perturb",
@@ -365,11 +360,6 @@ impl Portions<'_> {
             blinn: self.blinn,
             units: self.units,
         });
-        Rendered {
-            picture: self.picture,
-            points: self.points,
-            beyond: self.beyond,
-            comparison,
-        }
+        Rendered { picture: self.picture, points: self.points, beyond: self.beyond, comparison }
     }
 }

@@ -17,8 +17,7 @@ use super::vector::Vector;
 pub fn parse(text: &str) -> Result<Mesh> {
     let mut read = Reader::default();
     for (number, line) in text.lines().enumerate() {
-        read.line(line)
-            .with_context(|| format!("line {}", number + 1))?;
+        read.line(line).with_context(|| format!("line {}", number + 1))?;
     }
     Mesh::new(read.positions, read.normals, read.textures, read.triangles)
 }
@@ -58,18 +57,12 @@ impl Reader {
     fn face<'a>(&mut self, words: impl Iterator<Item = &'a str>) -> Result<()> {
         let corners: Vec<RawCorner> = words
             .map(|word| {
-                self.corner(word)
-                    .with_context(|| format!("`{word}` is not a corner of a face"))
+                self.corner(word).with_context(|| format!("`{word}` is not a corner of a face"))
             })
             .collect::<Result<_>>()?;
-        ensure!(
-            corners.len() >= 3,
-            "a face has {} corners; it takes three",
-            corners.len()
-        );
+        ensure!(corners.len() >= 3, "a face has {} corners; it takes three", corners.len());
         let fan = corners[1..].windows(2);
-        self.triangles
-            .extend(fan.map(|pair| [corners[0], pair[0], pair[1]]));
+        self.triangles.extend(fan.map(|pair| [corners[0], pair[0], pair[1]]));
         Ok(())
     }
 
@@ -107,18 +100,14 @@ fn numbers<'a, const N: usize>(
 }
 
 fn number(word: &str) -> Result<f64> {
-    let value: f64 = word
-        .parse()
-        .map_err(|_| anyhow!("`{word}` is not a number"))?;
+    let value: f64 = word.parse().map_err(|_| anyhow!("`{word}` is not a number"))?;
     ensure!(value.is_finite(), "`{word}` is not a finite number");
     Ok(value)
 }
 
 /// An index into the `count` entries so far: from 1, or from −1 backward.
 fn index(part: &str, what: &str, count: usize) -> Result<u32> {
-    let given: i64 = part
-        .parse()
-        .map_err(|_| anyhow!("`{part}` is not an integer"))?;
+    let given: i64 = part.parse().map_err(|_| anyhow!("`{part}` is not an integer"))?;
     let index = match given {
         0 => bail!("there is no {what} 0: they count from 1"),
         1.. => given - 1,
@@ -143,10 +132,9 @@ mod tests {
 
     #[test]
     fn faces_of_all_kinds() {
-        let mesh = parse(&format!(
-            "{SQUARE}o one\nusemtl none\nf 1 2/1 3//1 -1/2/1\r\nl 1 2 3 4\n"
-        ))
-        .unwrap();
+        let mesh =
+            parse(&format!("{SQUARE}o one\nusemtl none\nf 1 2/1 3//1 -1/2/1\r\nl 1 2 3 4\n"))
+                .unwrap();
         assert_eq!(mesh.triangles.len(), 2);
         let [a, b, c] = mesh.triangles[0];
         assert_eq!([a.position, b.position, c.position], [0, 1, 2]);
@@ -164,23 +152,14 @@ mod tests {
         for (text, expected) in [
             ("v 0 0\n", "line 1: a vertex takes 3 numbers"),
             ("\nv 0 0 x\n", "line 2: not a vertex: `x` is not a number"),
-            (
-                "v 0 0 nan\n",
-                "line 1: not a vertex: `nan` is not a finite number",
-            ),
-            (
-                "vn 0 inf 0\n",
-                "line 1: not a normal: `inf` is not a finite number",
-            ),
+            ("v 0 0 nan\n", "line 1: not a vertex: `nan` is not a finite number"),
+            ("vn 0 inf 0\n", "line 1: not a normal: `inf` is not a finite number"),
         ] {
             assert_eq!(message(text), expected);
         }
         for (face, expected) in [
             ("f 1 2", "a face has 2 corners; it takes three"),
-            (
-                "f 1 2 5",
-                "`5` is not a corner of a face: there is no vertex 5: there are 4 so far",
-            ),
+            ("f 1 2 5", "`5` is not a corner of a face: there is no vertex 5: there are 4 so far"),
             ("f 1 2 -5", "there is no vertex -5"),
             ("f 0 1 2", "there is no vertex 0: they count from 1"),
             ("f 1 2 3//2", "there is no normal 2: there are 1 so far"),
@@ -193,9 +172,6 @@ mod tests {
             assert!(found.contains(expected), "{found}");
         }
         assert_eq!(message(""), "there is no triangle");
-        assert_eq!(
-            message(&format!("{SQUARE}f 1 1 2\n")),
-            "all 1 triangles are without area"
-        );
+        assert_eq!(message(&format!("{SQUARE}f 1 1 2\n")), "all 1 triangles are without area");
     }
 }

@@ -130,13 +130,8 @@ impl Feed {
                 known.join(", ")
             );
         }
-        let mut feed = Self {
-            operands,
-            exponent,
-            channels: [0; 3],
-            scales: [0.0; 3],
-            longest: None,
-        };
+        let mut feed =
+            Self { operands, exponent, channels: [0; 3], scales: [0.0; 3], longest: None };
         if walks_lines(contract) {
             for (name, quantity) in OF_LINES {
                 ensure!(
@@ -158,9 +153,8 @@ impl Feed {
             let at = places.position(|(quantity, ..)| *quantity == wanted);
             // Each output is of the colour operand of the same position.
             let output = at.and_then(|at| at.checked_sub(control));
-            let format = output
-                .and_then(|at| contract.outputs().get(at))
-                .and_then(|name| format(name));
+            let format =
+                output.and_then(|at| contract.outputs().get(at)).and_then(|name| format(name));
             let (Some(at), Some(output), Some(format)) = (at, output, format) else {
                 bail!("the device `{device}` has no colour operand `{name}` with an output");
             };
@@ -235,9 +229,7 @@ impl Feed {
     /// An angle that such a device has no room for.
     pub fn line(&self, arc: &Arc, light: f64, length: usize) -> Result<Vec<i64>> {
         let full = self.find(Quantity::Amplitude);
-        let full = full.map_or(0.0, |(_, format, (_, most))| {
-            format.to_f64(i128::from(most))
-        });
+        let full = full.map_or(0.0, |(_, format, (_, most))| format.to_f64(i128::from(most)));
         let line = arc.line(full * light, self.exponent, length as u32);
         let stretch = match self.takes(Quantity::Exponent) {
             true => 1.0,
@@ -247,18 +239,11 @@ impl Feed {
             let angle = |radians: f64| {
                 // In right angles; modulo a turn, which is what an angle without room for more means.
                 let scaled = (radians * stretch / FRAC_PI_2 * exp2(format.frac) + 0.5).floor();
-                format.narrow(
-                    scaled as i128,
-                    format.frac,
-                    Rounding::Truncate,
-                    Overflow::Wrap,
-                ) as i64
+                format.narrow(scaled as i128, format.frac, Rounding::Truncate, Overflow::Wrap)
+                    as i64
             };
-            let number = |value: f64| {
-                format
-                    .quantise(value)
-                    .clamp(i128::from(low), i128::from(high)) as i64
-            };
+            let number =
+                |value: f64| format.quantise(value).clamp(i128::from(low), i128::from(high)) as i64;
             match quantity {
                 Quantity::ZetaStart => angle(line.zeta_start),
                 Quantity::DeltaZeta => angle(line.delta_zeta),

@@ -17,10 +17,7 @@ pub struct Picture {
 impl Picture {
     /// A picture without rows.
     pub fn new(width: u32) -> Self {
-        Self {
-            width,
-            pixels: Vec::new(),
-        }
+        Self { width, pixels: Vec::new() }
     }
 
     /// The number of rows.
@@ -34,8 +31,7 @@ impl Picture {
         for row in 0..pictures.first().map_or(0, |picture| picture.height()) as usize {
             for picture in pictures {
                 let width = picture.width as usize;
-                all.pixels
-                    .extend(&picture.pixels[row * width..(row + 1) * width]);
+                all.pixels.extend(&picture.pixels[row * width..(row + 1) * width]);
             }
         }
         all
@@ -53,9 +49,7 @@ impl Picture {
         encoder.set_compression(Compression::Balanced);
         encoder.set_filter(Filter::Adaptive);
         let mut writer = encoder.write_header().context("cannot encode PNG")?;
-        writer
-            .write_image_data(self.pixels.as_flattened())
-            .context("cannot encode PNG")?;
+        writer.write_image_data(self.pixels.as_flattened()).context("cannot encode PNG")?;
         writer.finish().context("cannot encode PNG")?;
         Ok(bytes)
     }
@@ -84,9 +78,8 @@ impl Difference {
     /// Between two pictures of one size; `shown` says of each pixel whether it shows a thing.
     pub fn new(a: &Picture, b: &Picture, shown: &[bool]) -> Self {
         let pairs = a.pixels.iter().zip(&b.pixels);
-        let differences: Vec<[u8; 3]> = pairs
-            .map(|(a, b)| [0, 1, 2].map(|channel| a[channel].abs_diff(b[channel])))
-            .collect();
+        let differences: Vec<[u8; 3]> =
+            pairs.map(|(a, b)| [0, 1, 2].map(|channel| a[channel].abs_diff(b[channel]))).collect();
         let channels = differences.as_flattened();
         let largest = channels.iter().copied().max().unwrap_or(0);
         let squares: u64 = channels.iter().map(|&d| u64::from(d) * u64::from(d)).sum();
@@ -114,10 +107,7 @@ mod tests {
     use super::*;
 
     fn picture(pixels: [[u8; 3]; 2]) -> Picture {
-        Picture {
-            width: 1,
-            pixels: pixels.to_vec(),
-        }
+        Picture { width: 1, pixels: pixels.to_vec() }
     }
 
     #[test]

@@ -100,10 +100,7 @@ impl Scene {
         };
         let ring = || shapes::torus(0.72, 0.28, steps([384, 160]));
         let vase = || shapes::vase(steps([384, 480]));
-        let of = |shape, own| Object {
-            shape,
-            colour: colour.unwrap_or(own),
-        };
+        let of = |shape, own| Object { shape, colour: colour.unwrap_or(own) };
         let moved =
             |mesh: Mesh, size: f64, tilt: f64, to: Vector| Shape::Mesh(place(mesh, size, tilt, to));
         let origin = Vector::default();

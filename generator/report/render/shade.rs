@@ -31,12 +31,7 @@ pub struct Material {
 impl Material {
     /// How things reflect by default.
     pub const fn usual(exponent: u32) -> Self {
-        Self {
-            ambient: 0.12,
-            diffuse: 0.75,
-            specular: 0.7,
-            exponent,
-        }
+        Self { ambient: 0.12, diffuse: 0.75, specular: 0.7, exponent }
     }
 }
 
@@ -205,12 +200,7 @@ impl Shader<'_> {
         let place = self.camera.eye() + along * hit.depth;
         let toward_eye = (-along).unit().unwrap_or_default();
         let (smooth, perturbed) = self.normals(object, hit, place, toward_eye);
-        Surface {
-            colour: object.colour,
-            smooth,
-            perturbed,
-            toward_eye,
-        }
+        Surface { colour: object.colour, smooth, perturbed, toward_eye }
     }
 
     /// The normals of the smooth and of the perturbed surface, both toward the eye.
@@ -237,11 +227,7 @@ impl Shader<'_> {
                 (mixed.unit().unwrap_or(side), side)
             }
         };
-        let side = if side.dot(toward_eye) < 0.0 {
-            -side
-        } else {
-            side
-        };
+        let side = if side.dot(toward_eye) < 0.0 { -side } else { side };
         let sign = if normal.dot(side) < 0.0 { -1.0 } else { 1.0 };
         let perturbed = match &self.scene.relief {
             None => normal,
@@ -292,13 +278,7 @@ fn texture(object: &Object, hit: &Hit, normal: Vector) -> ([f64; 2], [Vector; 2]
             let v = 1.0 - libm::acos(y.clamp(-1.0, 1.0)) / PI;
             let east = Vector::new(z, 0.0, -x) * (1.0 / sine);
             let north = (Vector::new(0.0, 1.0, 0.0) - normal * y) * (1.0 / sine);
-            (
-                [u, v],
-                [
-                    east * (2.0 / (TAU * radius * sine)),
-                    north * (1.0 / (PI * radius)),
-                ],
-            )
+            ([u, v], [east * (2.0 / (TAU * radius * sine)), north * (1.0 / (PI * radius))])
         }
         Shape::Mesh(mesh) => {
             let corners = mesh.triangles[hit.triangle as usize];
@@ -317,11 +297,7 @@ fn texture(object: &Object, hit: &Hit, normal: Vector) -> ([f64; 2], [Vector; 2]
                 let (to_b, to_c) = (b[axis] - a[axis], c[axis] - a[axis]);
                 let at = a[axis] + to_b * second + to_c * third;
                 let gradient = (across[0] * to_b + across[1] * to_c) * scale;
-                let finite = if gradient.finite() {
-                    gradient
-                } else {
-                    Vector::default()
-                };
+                let finite = if gradient.finite() { gradient } else { Vector::default() };
                 (at, finite)
             };
             let (u, v) = (along(0), along(1));
@@ -356,11 +332,8 @@ mod tests {
     fn texture_gradients_of_a_triangle() {
         // In the plane z = 0: u = x/2, v = x/4 + y/3.
         let v = Vector::new;
-        let corners = [0, 1, 2].map(|at| RawCorner {
-            position: at,
-            normal: None,
-            texture: Some(at),
-        });
+        let corners =
+            [0, 1, 2].map(|at| RawCorner { position: at, normal: None, texture: Some(at) });
         let mesh = Mesh::new(
             vec![v(0.0, 0.0, 0.0), v(2.0, 0.0, 0.0), v(0.0, 3.0, 0.0)],
             Vec::new(),
@@ -368,22 +341,11 @@ mod tests {
             vec![corners],
         )
         .unwrap();
-        let object = Object {
-            shape: Shape::Mesh(mesh),
-            colour: Vector::default(),
-        };
-        let hit = Hit {
-            depth: 1.0,
-            object: 0,
-            triangle: 0,
-            weights: [0.5, 0.25],
-        };
+        let object = Object { shape: Shape::Mesh(mesh), colour: Vector::default() };
+        let hit = Hit { depth: 1.0, object: 0, triangle: 0, weights: [0.5, 0.25] };
         let (at, [along_u, along_v]) = texture(&object, &hit, v(0.0, 0.0, 1.0));
         assert_eq!(at, [0.5, 0.5]);
         assert!((along_u - v(0.5, 0.0, 0.0)).length() < 1e-15, "{along_u:?}");
-        assert!(
-            (along_v - v(0.25, 1.0 / 3.0, 0.0)).length() < 1e-15,
-            "{along_v:?}"
-        );
+        assert!((along_v - v(0.25, 1.0 / 3.0, 0.0)).length() < 1e-15, "{along_v:?}");
     }
 }

@@ -32,11 +32,7 @@ pub fn ball(middle: Vector, radius: f64, steps: [u32; 2]) -> Result<Mesh> {
     grid(steps, [true, false], |u, v| {
         let (around, down) = (u * TAU, v * PI);
         // Exactly 0 at both poles.
-        let from_axis = if v == 0.0 || v == 1.0 {
-            0.0
-        } else {
-            radius * libm::sin(down)
-        };
+        let from_axis = if v == 0.0 || v == 1.0 { 0.0 } else { radius * libm::sin(down) };
         let offset = Vector::new(
             from_axis * libm::sin(around),
             radius * libm::cos(down),
@@ -58,18 +54,10 @@ pub fn vase(steps: [u32; 2]) -> Result<Mesh> {
             ..0.6 => (v / 0.6, 0.0),
             _ => ((1.0 - v) / 0.4, wall),
         };
-        let height = if inward > 0.0 {
-            height * (1.0 - wall) + wall
-        } else {
-            height
-        };
+        let height = if inward > 0.0 { height * (1.0 - wall) + wall } else { height };
         let radius = (vase_radius(height) - inward).max(0.0);
         let around = u * TAU;
-        Vector::new(
-            radius * libm::sin(around),
-            2.0 * height - 1.0,
-            radius * libm::cos(around),
-        )
+        Vector::new(radius * libm::sin(around), 2.0 * height - 1.0, radius * libm::cos(around))
     })
 }
 
@@ -94,14 +82,10 @@ fn grid(steps: [u32; 2], closed: [bool; 2], at: impl Fn(f64, f64) -> Vector) -> 
             let fraction = |at: u32, steps: u32, closed: bool| {
                 f64::from(if closed { at % steps } else { at }) / f64::from(steps)
             };
-            positions.push(at(
-                fraction(column, columns, closed[0]),
-                fraction(row, rows, closed[1]),
-            ));
-            textures.push([
-                f64::from(column) / f64::from(columns),
-                f64::from(row) / f64::from(rows),
-            ]);
+            positions
+                .push(at(fraction(column, columns, closed[0]), fraction(row, rows, closed[1])));
+            textures
+                .push([f64::from(column) / f64::from(columns), f64::from(row) / f64::from(rows)]);
         }
     }
     let mut triangles = Vec::new();
@@ -109,11 +93,7 @@ fn grid(steps: [u32; 2], closed: [bool; 2], at: impl Fn(f64, f64) -> Vector) -> 
         for column in 0..columns {
             let corner = |right: u32, above: u32| {
                 let at = (row + above) * (columns + 1) + column + right;
-                RawCorner {
-                    position: at,
-                    normal: None,
-                    texture: Some(at),
-                }
+                RawCorner { position: at, normal: None, texture: Some(at) }
             };
             let [a, b, c, d] = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
             // Where a row is a single point, there is one triangle instead of two.

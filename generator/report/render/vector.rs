@@ -106,10 +106,7 @@ mod tests {
         let (x, y) = (Vector::new(1.0, 0.0, 0.0), Vector::new(0.0, 1.0, 0.0));
         assert_eq!(x.cross(y), Vector::new(0.0, 0.0, 1.0));
         assert_eq!(x.cross(y), -y.cross(x));
-        assert_eq!(
-            Vector::new(1.0, 2.0, 3.0).dot(Vector::new(4.0, 5.0, 6.0)),
-            32.0
-        );
+        assert_eq!(Vector::new(1.0, 2.0, 3.0).dot(Vector::new(4.0, 5.0, 6.0)), 32.0);
     }
 
     #[test]

@@ -27,12 +27,7 @@ pub struct Hit {
     pub weights: [f64; 2],
 }
 
-const NOTHING: Hit = Hit {
-    depth: f64::INFINITY,
-    object: u32::MAX,
-    triangle: 0,
-    weights: [0.0; 2],
-};
+const NOTHING: Hit = Hit { depth: f64::INFINITY, object: u32::MAX, triangle: 0, weights: [0.0; 2] };
 
 impl Hit {
     /// Whether there is anything.
@@ -55,11 +50,7 @@ pub struct Raster {
 impl Raster {
     /// Of so many samples.
     pub fn new(columns: usize, rows: usize, camera: &Camera) -> Self {
-        Self {
-            columns,
-            rows,
-            half: camera.half(),
-        }
+        Self { columns, rows, half: camera.half() }
     }
 
     /// The ray through the middle of a sample, in the camera's coordinates.
@@ -117,9 +108,7 @@ impl<'a> Visibility<'a> {
             let mut corners = Vec::new();
             match &thing.shape {
                 Shape::Ball { middle, radius } => {
-                    visibility
-                        .balls
-                        .push((object, camera.place(*middle), *radius));
+                    visibility.balls.push((object, camera.place(*middle), *radius));
                 }
                 Shape::Mesh(mesh) => {
                     let points = mesh.positions.par_iter();
@@ -164,11 +153,7 @@ impl<'a> Visibility<'a> {
         if distances.iter().all(|&distance| distance <= self.near) {
             return None;
         }
-        let Raster {
-            columns: width,
-            rows: height,
-            half,
-        } = self.raster;
+        let Raster { columns: width, rows: height, half } = self.raster;
         let (columns, rows) = if distances.iter().all(|&distance| distance > self.near) {
             let slopes = corners.map(|corner| {
                 let [x, y, z] = corner.0;
@@ -178,10 +163,7 @@ impl<'a> Visibility<'a> {
                 slopes.map(pick).into_iter().fold(f64::INFINITY, f64::min)
             };
             let most = |pick: fn((f64, f64)) -> f64| {
-                slopes
-                    .map(pick)
-                    .into_iter()
-                    .fold(f64::NEG_INFINITY, f64::max)
+                slopes.map(pick).into_iter().fold(f64::NEG_INFINITY, f64::max)
             };
             let (x, y) = (|slope: (f64, f64)| slope.0, |slope: (f64, f64)| slope.1);
             (
@@ -213,9 +195,7 @@ impl<'a> Visibility<'a> {
             parts.push((row, part));
             (rest, row) = (after, until);
         }
-        parts
-            .into_par_iter()
-            .for_each(|(row, part)| self.band(row, part));
+        parts.into_par_iter().for_each(|(row, part)| self.band(row, part));
         hits
     }
 
@@ -255,11 +235,7 @@ impl<'a> Visibility<'a> {
                     && depth > self.near
                     && depth < hit.depth
                 {
-                    *hit = Hit {
-                        depth,
-                        object,
-                        ..NOTHING
-                    };
+                    *hit = Hit { depth, object, ..NOTHING };
                 }
             }
         }
@@ -325,17 +301,9 @@ mod tests {
 
     #[test]
     fn a_ball_is_met_in_front() {
-        let depth = meet_ball(
-            Vector::new(0.0, 0.0, -1.0),
-            Vector::new(0.0, 0.0, -5.0),
-            2.0,
-        );
+        let depth = meet_ball(Vector::new(0.0, 0.0, -1.0), Vector::new(0.0, 0.0, -5.0), 2.0);
         assert_eq!(depth, Some(3.0));
-        let beside = meet_ball(
-            Vector::new(1.0, 0.0, -1.0),
-            Vector::new(0.0, 0.0, -5.0),
-            2.0,
-        );
+        let beside = meet_ball(Vector::new(1.0, 0.0, -1.0), Vector::new(0.0, 0.0, -5.0), 2.0);
         assert_eq!(beside, None);
     }
 }

@@ -62,14 +62,7 @@ fn widths_and_signs() {
     assert_says(message, &["`a`", "65 bits"]);
     let message = refusal(|b, _| {
         let select = b.rst_n;
-        b.op(
-            "empty",
-            BYTE,
-            Op::Mux {
-                select,
-                inputs: vec![],
-            },
-        );
+        b.op("empty", BYTE, Op::Mux { select, inputs: vec![] });
     });
     assert_says(message, &["`empty`", "no inputs"]);
     let message = refusal(|b, a| {

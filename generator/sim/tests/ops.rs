@@ -35,10 +35,8 @@ fn check(
     let mut simulator: Simulator = Simulator::new(&from_ports.design).unwrap();
 
     for _ in 0..24 {
-        let patterns: Vec<_> = operands
-            .iter()
-            .map(|format| random.pattern(format.width()))
-            .collect();
+        let patterns: Vec<_> =
+            operands.iter().map(|format| random.pattern(format.width())).collect();
         let raws: Vec<_> = operands
             .iter()
             .zip(&patterns)
@@ -162,13 +160,7 @@ fn sums() {
         };
         check(random, &of[..2], to, add(false), |v| v[0] + v[1]);
         check(random, &of, to, add(true), |v| v[0] + v[1] + v[2]);
-        check(
-            random,
-            &of[..2],
-            to,
-            |n| Op::Sub(n[0], n[1]),
-            |v| v[0] - v[1],
-        );
+        check(random, &of[..2], to, |n| Op::Sub(n[0], n[1]), |v| v[0] - v[1]);
     });
 }
 
@@ -183,10 +175,7 @@ fn products() {
         let mul = |n: &[NetId]| Op::Mul(n[0], n[1]);
         let of = [unsigned(first), unsigned(second)];
         check(random, &of, unsigned(width), mul, |v| v[0] * v[1]);
-        let of = [
-            Format::signed(first as i32 - 1, 0),
-            Format::signed(second as i32 - 1, 0),
-        ];
+        let of = [Format::signed(first as i32 - 1, 0), Format::signed(second as i32 - 1, 0)];
         let to = random.format(width);
         check(random, &of, to, mul, |v| v[0] * v[1]);
     });
@@ -200,13 +189,7 @@ fn comparisons() {
         check(random, &same, Format::BIT, |n| Op::Less(n[0], n[1]), less);
         let mixed = [random.format(width), random.format(width)];
         let equal = |v: &[i128]| i128::from(wire(v[0], width) == wire(v[1], width));
-        check(
-            random,
-            &mixed,
-            Format::BIT,
-            |n| Op::Equal(n[0], n[1]),
-            equal,
-        );
+        check(random, &mixed, Format::BIT, |n| Op::Equal(n[0], n[1]), equal);
     });
 }
 
@@ -218,10 +201,7 @@ fn choices() {
         let mut of = vec![unsigned(select)];
         of.extend((0..inputs).map(|_| random.format(width)));
         let to = random.format(width);
-        let mux = |n: &[NetId]| Op::Mux {
-            select: n[0],
-            inputs: n[1..].to_vec(),
-        };
+        let mux = |n: &[NetId]| Op::Mux { select: n[0], inputs: n[1..].to_vec() };
         let last = inputs as usize;
         check(random, &of, to, mux, |v| v[last.min(v[0] as usize + 1)]);
     });

@@ -45,9 +45,9 @@ impl Reference<'_> {
             Op::Relabel(a) => bits(*a),
             Op::Extend(a) => raw(*a),
             Op::Slice { of, low } => bits(*of) >> low,
-            Op::Concat(parts) => parts
-                .iter()
-                .fold(0, |all, part| all << self.design.width(*part) | bits(*part)),
+            Op::Concat(parts) => {
+                parts.iter().fold(0, |all, part| all << self.design.width(*part) | bits(*part))
+            }
             Op::Not(a) => !bits(*a),
             Op::And(a, b) => bits(*a) & bits(*b),
             Op::Or(a, b) => bits(*a) | bits(*b),
@@ -155,10 +155,9 @@ fn sized(b: &mut Build, random: &mut Random, at: usize, like: NetId) -> NetId {
     let op = match width.cmp(&format.width()) {
         std::cmp::Ordering::Less => Op::Extend(of),
         std::cmp::Ordering::Equal => Op::Relabel(of),
-        std::cmp::Ordering::Greater => Op::Slice {
-            of,
-            low: random.within(0, width - format.width()),
-        },
+        std::cmp::Ordering::Greater => {
+            Op::Slice { of, low: random.within(0, width - format.width()) }
+        }
     };
     b.op(&name, format, op)
 }
@@ -206,9 +205,7 @@ fn cell(b: &mut Build, random: &mut Random, name: &str) {
             let of_select = b.register(&format!("{name}_select"), Format::unsigned(3, 0));
             let select = sized(b, random, at, of_select);
             b.of(of_select).data = Some(select);
-            let inputs = (0..inputs)
-                .map(|_| sized(b, random, at, a))
-                .collect::<Vec<_>>();
+            let inputs = (0..inputs).map(|_| sized(b, random, at, a)).collect::<Vec<_>>();
             (same, Op::Mux { select, inputs })
         }
     };
@@ -221,10 +218,7 @@ fn random_netlists_behave_as_documented() {
         let mut random = Random(seed);
         let design = design(&mut random, seed % 4 == 3);
         let mut simulator: Simulator = Simulator::new(&design).unwrap();
-        let mut reference = Reference {
-            design: &design,
-            held: vec![0; design.nets.len()],
-        };
+        let mut reference = Reference { design: &design, held: vec![0; design.nets.len()] };
         for clock in 0..12 {
             for (at, port) in design.inputs().enumerate() {
                 if random.below(3) > 0 {
@@ -258,10 +252,7 @@ fn lanes_are_independent() {
             for (at, port) in design.inputs().enumerate() {
                 let lanes = [(); 5].map(|()| random.pattern(design.width(port.net)));
                 together.set_lanes(at, lanes);
-                alone
-                    .iter_mut()
-                    .zip(lanes)
-                    .for_each(|(s, bits)| s.set(at, bits));
+                alone.iter_mut().zip(lanes).for_each(|(s, bits)| s.set(at, bits));
             }
             together.clock().unwrap();
             alone.iter_mut().for_each(|s| s.clock().unwrap());

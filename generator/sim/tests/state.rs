@@ -59,10 +59,7 @@ fn the_edge_happens_everywhere_at_once() {
     let data = b.input("data", BYTE);
     let load = b.input("load", Format::BIT);
     let [p, q] = ["p", "q"].map(|name| b.register(name, BYTE));
-    let mux = |a, b| Op::Mux {
-        select: load,
-        inputs: vec![a, b],
-    };
+    let mux = |a, b| Op::Mux { select: load, inputs: vec![a, b] };
     let p_next = b.op("p_next", BYTE, mux(q, data));
     b.of(p).data = Some(p_next);
     b.of(q).data = Some(p);
@@ -119,20 +116,8 @@ fn roms_read_at_once_or_at_the_edge_and_zero_beyond_their_contents() {
 fn fields_are_parts_of_the_control_word_most_significant_first() {
     let mut b = Build::new();
     let address = b.register("word_address", Format::unsigned(2, 0));
-    let step = b.net(
-        "step",
-        Format::unsigned(2, 0),
-        crate::netlist::Driver::Constant(1),
-    );
-    let next = b.op(
-        "next",
-        Format::unsigned(2, 0),
-        Op::Add {
-            a: address,
-            b: step,
-            carry: None,
-        },
-    );
+    let step = b.net("step", Format::unsigned(2, 0), crate::netlist::Driver::Constant(1));
+    let next = b.op("next", Format::unsigned(2, 0), Op::Add { a: address, b: step, carry: None });
     b.of(address).data = Some(next);
     b.of(address).reset = Some(0);
     let words = [0b10_1101, 0b00_0010, 0b11_1111, 0b01_0001];

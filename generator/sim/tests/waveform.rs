@@ -62,13 +62,7 @@ fn design() -> Design {
     let one = b.net("one", bit, Driver::Constant(1));
     b.of(run).data = Some(one);
     b.of(run).reset = Some(0);
-    b.rom(
-        "word_bits",
-        Format::unsigned(3, 0),
-        address,
-        false,
-        &[0b011, 0b101],
-    );
+    b.rom("word_bits", Format::unsigned(3, 0), address, false, &[0b011, 0b101]);
     let select = b.field("select", 2);
     let valid = b.field("valid", 1);
     b.output(valid);
@@ -124,10 +118,8 @@ fn names_widths_and_values() {
     let mut parser = Parser::new(text.as_slice());
     let header = parser.parse_header().unwrap();
     let variables = variables("", &header.items);
-    let widths: Vec<_> = variables
-        .iter()
-        .map(|(name, (width, _))| (name.as_str(), *width))
-        .collect();
+    let widths: Vec<_> =
+        variables.iter().map(|(name, (width, _))| (name.as_str(), *width)).collect();
     assert_eq!(
         widths,
         [
@@ -157,10 +149,7 @@ fn names_widths_and_values() {
                 now.insert(names[&id].as_str(), value.to_string());
             }
             Command::ChangeVector(id, value) => {
-                now.insert(
-                    names[&id].as_str(),
-                    value.iter().map(|bit| bit.to_string()).collect(),
-                );
+                now.insert(names[&id].as_str(), value.iter().map(|bit| bit.to_string()).collect());
             }
             Command::ChangeString(id, value) => {
                 now.insert(names[&id].as_str(), value);

@@ -141,11 +141,7 @@ fn print_hardware(entries: &[Entry]) {
 
 /// Whole clocks as an integer.
 fn clocks(clocks: f64) -> String {
-    if clocks.fract() == 0.0 {
-        format!("{clocks}")
-    } else {
-        format!("{clocks:.3}")
-    }
+    if clocks.fract() == 0.0 { format!("{clocks}") } else { format!("{clocks:.3}") }
 }
 
 /// `21x10, 3 of 10x8`.
@@ -162,11 +158,7 @@ fn sizes(multipliers: &[Multiplier]) -> String {
 
 /// What a design takes, with names.
 fn numbers(usage: &Usage) -> [(&'static str, u64); 3] {
-    [
-        ("luts", usage.luts),
-        ("dsps", usage.dsps),
-        ("block_rams", usage.block_rams),
-    ]
+    [("luts", usage.luts), ("dsps", usage.dsps), ("block_rams", usage.block_rams)]
 }
 
 /// The heading, then a row for each entry. What is not known is empty.
@@ -213,9 +205,7 @@ fn as_csv(request: &CompareRequest, entries: &[Entry]) -> Vec<Vec<String>> {
         }
         row
     };
-    std::iter::once(heading)
-        .chain(entries.iter().map(row))
-        .collect()
+    std::iter::once(heading).chain(entries.iter().map(row)).collect()
 }
 
 /// A field as RFC 4180 has it.

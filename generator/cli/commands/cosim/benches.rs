@@ -66,11 +66,8 @@ pub fn benches(
     bar.finish_and_clear();
     let holds = runs.iter().all(|run| run.outcome.passed);
     if output.json {
-        let list: Vec<Value> = loaded
-            .iter()
-            .zip(&runs)
-            .map(|(one, run)| as_json(one, run, points, request))
-            .collect();
+        let list: Vec<Value> =
+            loaded.iter().zip(&runs).map(|(one, run)| as_json(one, run, points, request)).collect();
         tables::print_json(&json!({ "ok": holds, "configurations": list }));
         return Ok(holds);
     }
@@ -110,11 +107,7 @@ fn bench(one: &Loaded, which: Simulator, points: u64, request: &CosimRequest) ->
             ),
         }
     });
-    Ok(Run {
-        clocks,
-        outcome,
-        mismatch,
-    })
+    Ok(Run { clocks, outcome, mismatch })
 }
 
 /// The simulator as the command line names it.
@@ -125,23 +118,14 @@ fn name(request: &CosimRequest) -> String {
 fn print(one: &Loaded, run: &Run, points: u64, seed: u64, which: Simulator) {
     let passed = run.outcome.passed;
     let verdict = if passed { "holds" } else { "FAILS" };
-    tables::print_line(&format!(
-        "{}: {points} points, {} clocks: {verdict}",
-        one.path, run.clocks
-    ));
+    tables::print_line(&format!("{}: {points} points, {} clocks: {verdict}", one.path, run.clocks));
     if !passed {
         tables::print_line(&run.outcome.transcript);
     }
     let Some(mismatch) = &run.mismatch else {
         return;
     };
-    let BenchDifference {
-        clock,
-        word,
-        signal,
-        simulated,
-        expected,
-    } = &mismatch.difference;
+    let BenchDifference { clock, word, signal, simulated, expected } = &mismatch.difference;
     tables::print_line(&format!(
         "  FAILS: seed {seed}, clock {clock}, word `{word}`: `{signal}` is {simulated} in {which} and {expected} in the golden model"
     ));

@@ -58,10 +58,7 @@ impl Graph {
         let mut builder = Builder {
             design,
             blocks: Blocks::new(design).figure(),
-            graph: Self {
-                boxes: Vec::new(),
-                wires: Vec::new(),
-            },
+            graph: Self { boxes: Vec::new(), wires: Vec::new() },
             driver: HashMap::new(),
         };
         builder.inputs();
@@ -194,11 +191,7 @@ impl<'a> Builder<'a> {
                 name: block.name.to_owned(),
                 caption: format!("{kind} · {}", block.format),
                 control: self.turned_by(&block),
-                title: titled(
-                    &format!("{} ({kind})", block.name),
-                    &block.format,
-                    &block.doc,
-                ),
+                title: titled(&format!("{} ({kind})", block.name), &block.format, &block.doc),
             });
             self.driver.insert(block.output, at);
             added.push((at, block));

@@ -38,16 +38,12 @@ pub fn drawing(design: &Design) -> Drawing {
     let graph = Graph::new(design);
     let back = place::back(&graph);
     let lanes = route::lanes(&graph, &back);
-    let sizes: Vec<Sizes> = (0..graph.boxes.len())
-        .map(|at| Sizes::new(&graph, at, lanes[at].len()))
-        .collect();
+    let sizes: Vec<Sizes> =
+        (0..graph.boxes.len()).map(|at| Sizes::new(&graph, at, lanes[at].len())).collect();
     let heights: Vec<f64> = sizes.iter().map(Sizes::all).collect();
     let placement = Placement::new(&graph, &heights, back);
-    let bodies: Vec<Body> = sizes
-        .iter()
-        .zip(&placement.middle)
-        .map(|(sizes, middle)| sizes.body(*middle))
-        .collect();
+    let bodies: Vec<Body> =
+        sizes.iter().zip(&placement.middle).map(|(sizes, middle)| sizes.body(*middle)).collect();
     let routes = route::routes(&graph, &placement, &bodies, &lanes);
     let mut items = Vec::new();
     for (at, net) in routes.nets.iter().enumerate() {
@@ -112,12 +108,7 @@ impl Sizes {
     fn body(&self, middle: f64) -> Body {
         let top = (middle - self.all() / 2.0).round();
         let upper = top + self.lanes + self.stub;
-        Body {
-            top,
-            upper,
-            lower: upper + self.height,
-            width: self.width,
-        }
+        Body { top, upper, lower: upper + self.height, width: self.width }
     }
 }
 
@@ -149,17 +140,11 @@ fn draw_net(net: &Net, driver: &Node, items: &mut Vec<Item>) {
     if net.pieces.is_empty() {
         return;
     }
-    items.push(Item::Open {
-        class: "net",
-        title: driver.title.clone(),
-    });
+    items.push(Item::Open { class: "net", title: driver.title.clone() });
     let pieces = net.pieces.iter();
     let lines = pieces.map(|piece| format!("M{}L{}", point(piece.from), point(piece.to)));
     items.push(Item::path("wire", lines.collect::<String>()));
-    let arrows = net
-        .pins
-        .iter()
-        .map(|&pin| format!("M{}l-6 -3v6Z", point(pin)));
+    let arrows = net.pins.iter().map(|&pin| format!("M{}l-6 -3v6Z", point(pin)));
     items.push(Item::path("arrow", arrows.collect::<String>()));
     if !net.junctions.is_empty() {
         let dots = net.junctions.iter();
@@ -171,18 +156,9 @@ fn draw_net(net: &Net, driver: &Node, items: &mut Vec<Item>) {
 
 fn draw_box(one: &Node, left: f64, body: &Body, items: &mut Vec<Item>) {
     let (x, y) = (coordinate(left), coordinate(body.upper));
-    let (width, height) = (
-        body.width.round() as i32,
-        (body.lower - body.upper).round() as i32,
-    );
-    items.push(Item::Open {
-        class: "block",
-        title: one.title.clone(),
-    });
-    items.push(Item::path(
-        class(one.form),
-        outline(one.form, x, y, width, height),
-    ));
+    let (width, height) = (body.width.round() as i32, (body.lower - body.upper).round() as i32);
+    items.push(Item::Open { class: "block", title: one.title.clone() });
+    items.push(Item::path(class(one.form), outline(one.form, x, y, width, height)));
     if matches!(one.form, Form::Block(Kind::Register | Kind::Operand)) {
         // The mark of the clock.
         let edge = y + height;
@@ -197,20 +173,12 @@ fn draw_box(one: &Node, left: f64, body: &Body, items: &mut Vec<Item>) {
         }
         _ => {
             items.push(Item::text("tick name", middle, centre - 3, head(one)));
-            items.push(Item::text(
-                "tick small",
-                middle,
-                centre + 12,
-                one.caption.clone(),
-            ));
+            items.push(Item::text("tick small", middle, centre + 12, one.caption.clone()));
         }
     }
     if !one.control.is_empty() {
         let x = x + 8;
-        items.push(Item::path(
-            "wire",
-            format!("M{x} {}v{STUB}", y - STUB as i32),
-        ));
+        items.push(Item::path("wire", format!("M{x} {}v{STUB}", y - STUB as i32)));
         items.push(Item::path("arrow", format!("M{x} {y}l-3 -6h6Z")));
         items.push(Item::text("small", x + 6, y - 7, one.control.clone()));
     }

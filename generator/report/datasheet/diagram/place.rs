@@ -38,24 +38,15 @@ pub struct Placement {
 impl Placement {
     /// Places boxes that take so much height, with wires that lead back as [`back`] says.
     pub fn new(graph: &Graph, heights: &[f64], back: Vec<bool>) -> Self {
-        let mut layered: Layered<NodeLabel, EdgeLabel> = Layered::with_options(GraphOptions {
-            multigraph: true,
-            ..GraphOptions::default()
-        });
-        let node = |height| NodeLabel {
-            width: 1.0,
-            height,
-            ..NodeLabel::default()
-        };
+        let mut layered: Layered<NodeLabel, EdgeLabel> =
+            Layered::with_options(GraphOptions { multigraph: true, ..GraphOptions::default() });
+        let node = |height| NodeLabel { width: 1.0, height, ..NodeLabel::default() };
         for end in ENDS {
             layered.set_node(end, Some(node(1.0)));
         }
         for (at, &height) in heights.iter().enumerate() {
             layered.set_node(at.to_string(), Some(node(height)));
-            let edge = EdgeLabel {
-                weight: END,
-                ..EdgeLabel::default()
-            };
+            let edge = EdgeLabel { weight: END, ..EdgeLabel::default() };
             let (from, to) = match graph.boxes[at].form {
                 Form::Input => (ENDS[0].to_owned(), at.to_string()),
                 Form::Output => (at.to_string(), ENDS[1].to_owned()),
@@ -76,11 +67,7 @@ impl Placement {
             }
             let (from, to, name) = ends(at);
             let edge = EdgeLabel {
-                weight: if is_port(wire.from) || is_port(wire.to) {
-                    PORT
-                } else {
-                    1
-                },
+                weight: if is_port(wire.from) || is_port(wire.to) { PORT } else { 1 },
                 ..EdgeLabel::default()
             };
             layered.set_edge(from, to, Some(edge), Some(&name));
@@ -95,9 +82,7 @@ impl Placement {
 
         let at = |node: usize| {
             let found = layered.node(&node.to_string());
-            found
-                .and_then(|found| Some((found.x?, found.y?)))
-                .unwrap_or_default()
+            found.and_then(|found| Some((found.x?, found.y?))).unwrap_or_default()
         };
         let places: Vec<(f64, f64)> = (0..heights.len()).map(at).collect();
         let mut xs: Vec<f64> = places.iter().map(|place| place.0.round()).collect();
@@ -109,23 +94,16 @@ impl Placement {
             let edge = layered.edge(&from, &to, Some(&name));
             let points = edge.map_or(&[][..], |edge| &edge.points);
             // The first and the last are on the borders of the boxes.
-            let between = points
-                .get(1..points.len().saturating_sub(1))
-                .unwrap_or_default();
-            let mut passes: Vec<(usize, f64)> = between
-                .iter()
-                .filter_map(|point| Some((column(point.x)?, point.y)))
-                .collect();
+            let between = points.get(1..points.len().saturating_sub(1)).unwrap_or_default();
+            let mut passes: Vec<(usize, f64)> =
+                between.iter().filter_map(|point| Some((column(point.x)?, point.y))).collect();
             if back[wire] {
                 passes.reverse();
             }
             passes
         });
         Self {
-            column: places
-                .iter()
-                .map(|place| column(place.0).unwrap_or(0))
-                .collect(),
+            column: places.iter().map(|place| column(place.0).unwrap_or(0)).collect(),
             middle: places.iter().map(|place| place.1).collect(),
             columns: xs.len(),
             passes: passes.collect(),

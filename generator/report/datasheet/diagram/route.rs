@@ -168,10 +168,7 @@ impl Router<'_> {
     fn wire(&mut self, at: usize, pin: f64) {
         let wire = self.graph.wires[at];
         let net = wire.from;
-        let (from, to) = (
-            self.placement.column[wire.from],
-            self.placement.column[wire.to],
-        );
+        let (from, to) = (self.placement.column[wire.from], self.placement.column[wire.to]);
         let between = self.between(at);
         let mut y = self.out(net);
         if !self.placement.back[at] {
@@ -204,18 +201,11 @@ impl Router<'_> {
     /// A net that enters a gap goes to all its exits along one trunk.
     fn hop(&mut self, net: usize, gap: usize, entry: (f64, Side), exit: (f64, Side)) {
         let trunks = &mut self.gaps[gap];
-        let found = trunks
-            .iter_mut()
-            .find(|it| it.net == net && it.entry == entry);
+        let found = trunks.iter_mut().find(|it| it.net == net && it.entry == entry);
         match found {
             Some(trunk) if trunk.exits.contains(&exit) => {}
             Some(trunk) => trunk.exits.push(exit),
-            None => trunks.push(Trunk {
-                net,
-                entry,
-                exits: vec![exit],
-                track: 0,
-            }),
+            None => trunks.push(Trunk { net, entry, exits: vec![exit], track: 0 }),
         }
     }
 
@@ -264,11 +254,7 @@ impl Router<'_> {
             net.piece((borders[self.placement.column[to]].1, pin), (left[to], pin));
             net.pins.push((left[to], pin));
         }
-        Routes {
-            left,
-            nets,
-            width: x,
-        }
+        Routes { left, nets, width: x }
     }
 }
 

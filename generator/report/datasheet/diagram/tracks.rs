@@ -36,10 +36,7 @@ impl Trunk {
 
     /// The upper and the lower end.
     pub fn reach(&self) -> (f64, f64) {
-        self.taps()
-            .fold((f64::MAX, f64::MIN), |(low, high), (y, _)| {
-                (low.min(y), high.max(y))
-            })
+        self.taps().fold((f64::MAX, f64::MIN), |(low, high), (y, _)| (low.min(y), high.max(y)))
     }
 
     /// Whether it goes straight from side to side.
@@ -108,12 +105,7 @@ mod tests {
     use super::*;
 
     fn trunk(net: usize, from: f64, to: f64) -> Trunk {
-        Trunk {
-            net,
-            entry: (from, Side::Left),
-            exits: vec![(to, Side::Right)],
-            track: 0,
-        }
+        Trunk { net, entry: (from, Side::Left), exits: vec![(to, Side::Right)], track: 0 }
     }
 
     fn tracks(trunks: &[Trunk]) -> Vec<(usize, usize)> {
@@ -124,11 +116,7 @@ mod tests {
 
     #[test]
     fn wires_that_do_not_meet_share_a_track() {
-        let mut trunks = [
-            trunk(0, 0.0, 20.0),
-            trunk(1, 50.0, 80.0),
-            trunk(2, 90.0, 90.0),
-        ];
+        let mut trunks = [trunk(0, 0.0, 20.0), trunk(1, 50.0, 80.0), trunk(2, 90.0, 90.0)];
         assert_eq!(assign(&mut trunks), 1);
         assert_eq!(tracks(&trunks), [(0, 0), (1, 0), (2, 0)]);
     }
