@@ -102,7 +102,7 @@ fn lyon_with_the_shift_register() {
 
 #[test]
 fn lyon_with_the_multiplier() {
-    let unit = configuration("configs/lyon_multiplier.toml");
+    let unit = configuration("configs/studies/lyon_multiplier.toml");
     let at = |[dx, dy, dz]: [i64; 3], n| {
         let operands = [("dx", dx), ("dy", dy), ("dz", dz), ("exponent", n)];
         let (red, clocks) = red(&unit, &operands);

@@ -91,6 +91,7 @@ fn the_main_job_generates_and_checks_everything() {
     let place = Place::with("configs/one.toml", COSINE_POWER);
     place.write("configs/two.toml", format!("{COSINE_POWER}power = 2\n"));
     place.write("configs/notes.txt", "no configuration");
+    place.write("configs/studies/three.toml", COSINE_POWER);
     let table = place.done([] as [&str; 0]);
     for config in ["configs/one.toml", "configs/two.toml"] {
         let row = table.lines().find(|line| line.contains(config)).expect("a row");

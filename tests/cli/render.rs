@@ -83,9 +83,9 @@ fn the_same_pixels_whichever_computes_them() {
 #[test]
 fn every_configuration_draws() {
     let place = Place::new();
-    let configs = fs::read_dir("configs").expect("configs/");
+    let configs = ["configs", "configs/studies"].map(|path| fs::read_dir(path).expect(path));
     let mut drawn = 0;
-    for entry in configs {
+    for entry in configs.into_iter().flatten() {
         let path = fs::canonicalize(entry.expect("an entry").path()).expect("a path");
         if !path.is_file() {
             continue;

@@ -14,24 +14,31 @@ use glint::registry::{Device, Registry};
 /// Pairs of a plain file name and contents.
 pub type Files = Vec<(String, String)>;
 
-/// The configurations in `configs/`, by path, sorted.
+/// The configurations in `configs/` and `configs/studies/`, by path, sorted.
 ///
 /// # Panics
 /// There are none, or one of them is wrong.
 pub fn configurations() -> Vec<(String, Unit)> {
-    let entries = fs::read_dir("configs").expect("configs/");
-    let paths = entries.map(|entry| entry.expect("a directory entry").path());
-    let mut paths: Vec<String> = paths
-        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
-        .map(|path| path.display().to_string())
-        .collect();
+    let mut paths: Vec<String> =
+        ["configs", "configs/studies"].into_iter().flat_map(configurations_in).collect();
     paths.sort();
-    assert!(!paths.is_empty(), "no configuration in configs/");
     let with_unit = |path: String| {
         let unit = configuration(&path);
         (path, unit)
     };
     paths.into_iter().map(with_unit).collect()
+}
+
+/// The paths of the configurations in a directory.
+fn configurations_in(directory: &str) -> Vec<String> {
+    let entries = fs::read_dir(directory).unwrap_or_else(|error| panic!("{directory}: {error}"));
+    let paths = entries.map(|entry| entry.expect("a directory entry").path());
+    let paths: Vec<String> = paths
+        .filter(|path| path.extension().is_some_and(|extension| extension == "toml"))
+        .map(|path| path.display().to_string())
+        .collect();
+    assert!(!paths.is_empty(), "no configuration in {directory}/");
+    paths
 }
 
 /// The configuration of that path.
