@@ -1,0 +1,173 @@
+//! Stated error bounds: no error measured at random points exceeds them, in any configuration. The proof
+//! over all control operands is recorded in `proofs/`, which `tests/quick/proofs.rs` re-checks.
+
+use std::path::Path;
+
+use glint::config;
+use glint::fixed::{Rounding, exp2};
+use glint::golden::rough::{self, RoughContract};
+use glint::golden::sine::Scheme;
+use glint::golden::{Contract, blinn, nearer};
+use glint::registry::Registry;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
+use rayon::prelude::*;
+
+/// Random configurations of each device.
+const CONFIGURATIONS: u64 = 300;
+
+/// Points of each, and places.
+const POINTS: usize = 2000;
+
+/// What f64 itself may add to an error in units.
+const F64: f64 = 1e-6;
+
+/// A point of the domain, more often than not within the highlight: cosines anywhere, small, or such
+/// that γ is near dγ, as near as n makes the highlight narrow.
+fn random_point(contract: &dyn Contract, rng: &mut ChaCha8Rng) -> Vec<i64> {
+    let mut unit = || rng.next_u32() as f64 / exp2(32);
+    let operands = contract.operands();
+    let mut point: Vec<i64> = operands
+        .iter()
+        .filter(|operand| !operand.colour)
+        .map(|operand| {
+            let (low, high) = operand.domain;
+            let part = if unit() < 0.5 { unit() } else { unit() * unit() * unit() };
+            // Cosines crowd at their upper end, exponents at their lower, what has a sign at 0.
+            let offset = (part * (high - low + 1) as f64) as i64;
+            if low < 0 && high > 0 {
+                (offset / 2 - (offset % 2) * offset).clamp(low, high)
+            } else if operand.name.starts_with("cos") {
+                high - offset
+            } else {
+                low + offset
+            }
+        })
+        .collect();
+    let place = |name: &str| operands.iter().position(|operand| operand.name == name);
+    if let (Some(gamma), Some(exponent)) = (place("cos_gamma"), place("exponent"))
+        && unit() < 0.75
+    {
+        let format = operands[gamma].format;
+        let centre =
+            place("cos_dgamma").map_or(0.0, |at| format.to_f64(point[at].into()).min(1.0).acos());
+        let half_width = (1.0 - 2.0 / point[exponent].max(1) as f64).max(-1.0).acos();
+        let angle = centre + 1.2 * (2.0 * unit() - 1.0) * half_width;
+        let (low, high) = operands[gamma].domain;
+        point[gamma] = (format.quantise(angle.cos()) as i64).clamp(low, high);
+    }
+    point
+}
+
+/// Asserts that no output is further from the formula than the bound says, at random points.
+fn assert_outputs_within_bound(
+    contract: &dyn Contract,
+    points: usize,
+    rng: &mut ChaCha8Rng,
+    what: &str,
+) {
+    let bound = contract.bound();
+    let largest = contract.operands().last().unwrap().domain.1;
+    for _ in 0..points {
+        let point = random_point(contract, rng);
+        let (f, exact) = (contract.f(&point), contract.references(&point));
+        for colour in [largest, rng.next_u32() as i64 & largest] {
+            let out = contract.colour(f, colour) as f64;
+            let error = nearer(out, exact.map(|exact| colour as f64 * exact));
+            assert!(
+                error <= bound.units + F64,
+                "{error} at {point:?} × {colour} of {what}: {bound:#?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn rough_at_random_points() {
+    let contract = RoughContract::from_params(&rough::Params::default()).unwrap();
+    let mut rng = ChaCha8Rng::seed_from_u64(1);
+    assert_outputs_within_bound(&contract, 5_000_000, &mut rng, "the default");
+}
+
+/// No random configuration's measured error exceeds its bound, good or bad as it may be: of the outputs at
+/// random points, and of f at random places of its sweep, which for a point of a line say all that matters.
+#[test]
+fn random_configurations_of_every_device() {
+    for device in Registry::catalogue().devices() {
+        let schema = (device.schema)();
+        (0..CONFIGURATIONS).into_par_iter().for_each(|seed| {
+            let config = config::sample(&schema, seed);
+            let contract = (device.contract)(&config);
+            let mut rng = ChaCha8Rng::seed_from_u64(seed);
+            let what = config.to_toml(&schema);
+            assert_outputs_within_bound(contract.as_ref(), POINTS, &mut rng, &what);
+            assert_places_within_bound(contract.as_ref(), POINTS, &mut rng, &what);
+        });
+    }
+}
+
+/// Asserts that f is no further from the formula than the bound says, at random places of the sweep.
+fn assert_places_within_bound(
+    contract: &dyn Contract,
+    places: usize,
+    rng: &mut ChaCha8Rng,
+    what: &str,
+) {
+    let (axes, bound) = (contract.sweep().axes, contract.bound());
+    for _ in 0..places {
+        let place: Vec<i64> = axes
+            .iter()
+            .map(|axis| axis.values.value(rng.next_u64() % axis.values.count()))
+            .collect();
+        let error = contract.sweep_error(&place);
+        assert!(error <= bound.f + F64, "{error} at {place:?} of {what}: {bound:#?}");
+    }
+}
+
+/// What the two configurations of `blinn` promise of f, by their bound or, for the small one, by this measure
+/// and the record of its proof: 1.0e-4 and 7e-4.
+#[test]
+fn blinn_is_as_close_as_it_promises() {
+    let read = |path: &str| {
+        config::read(Path::new(path), &Registry::catalogue().schemas())
+            .unwrap_or_else(|problems| panic!("{problems}"))
+    };
+    let best = blinn::contract(&read("configs/blinn.toml"));
+    assert!(best.bound().f <= 1.0e-4, "{:?}", best.bound());
+    assert!(best.f_format().frac >= 14);
+    let small = blinn::contract(&read("configs/blinn_small.toml"));
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    for _ in 0..2_000_000 {
+        let point = random_point(&small, &mut rng);
+        let error = small.sweep_error(&point);
+        assert!(error <= 7e-4, "{error} at {point:?}");
+    }
+}
+
+/// Configurations of which each widens one thing that the defaults leave alone.
+#[test]
+fn bounds_of_unusual_configurations() {
+    let segmented = rough::Params::default();
+    let params = [
+        rough::Params { clamp: false, ..segmented.clone() },
+        rough::Params { deviation: 90.0, ..segmented.clone() },
+        rough::Params {
+            product_rounding: Rounding::Nearest,
+            intensity_rounding: Rounding::Nearest,
+            ..segmented.clone()
+        },
+        rough::Params { output_rounding: Rounding::Truncate, ..segmented.clone() },
+        rough::Params { cosine_signed: true, ..segmented.clone() },
+        rough::Params {
+            sine_scheme: Scheme::Direct { address: 10 },
+            exponents: (1, 4),
+            ..segmented.clone()
+        },
+        rough::Params { arithmetic: rough::Kind::Patent, ..segmented },
+    ];
+    for params in params {
+        let contract = RoughContract::from_params(&params).unwrap();
+        let mut rng = ChaCha8Rng::seed_from_u64(2);
+        assert_outputs_within_bound(&contract, 300_000, &mut rng, &format!("{params:?}"));
+    }
+}

@@ -1,0 +1,297 @@
+//! `cosim`: the three simulators, the waveform, tools that are missing, fail or hang.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::BufReader;
+
+use serde_json::Value;
+use vcd::{Command, Parser, ScopeItem, Var};
+
+use crate::place::{COSINE_POWER, Place};
+
+const ROUGH: &str = "device = \"rough\"\n";
+
+#[test]
+fn built_in() {
+    let place = Place::with("core.toml", ROUGH);
+    let text = place.done(["cosim", "core.toml", "--points", "50"]);
+    assert!(text.starts_with("core.toml: 50 points, ") && text.contains(": holds\n"), "{text}");
+    let run = place.glint(["cosim", "core.toml", "--points", "50", "--json"]);
+    let value = run.json();
+    assert_eq!((run.code, &value["ok"]), (0, &Value::Bool(true)), "{run:?}");
+    let one = &value["configurations"][0];
+    assert_eq!(one["device"], "rough");
+    assert_eq!(one["points"], 50);
+    assert!(one["clocks"].as_u64() >= Some(500), "a point takes ten words: {one}");
+    let (error, bound) = (&one["largest_error"]["units"], &one["bound"]["units"]);
+    assert!(error.as_f64() <= bound.as_f64() && bound.as_f64() < Some(1.0), "{one}");
+    // The seed decides.
+    let again = place.glint(["cosim", "core.toml", "--points", "50", "--json"]);
+    assert_eq!(again.out, run.out);
+    let other = place.glint(["cosim", "core.toml", "--points", "50", "--json", "--seed", "2"]);
+    assert_ne!(other.out, run.out);
+}
+
+#[cfg(feature = "outside-tools")]
+#[test]
+fn emitted_verilog() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    for simulator in ["icarus", "verilator"] {
+        let text = place.done(["cosim", "core.toml", "--points", "3", "--simulator", simulator]);
+        assert!(text.starts_with("core.toml: 3 points, ") && text.ends_with(": holds\n"), "{text}");
+    }
+    let run =
+        place.glint(["cosim", "core.toml", "--points", "3", "--simulator", "icarus", "--json"]);
+    let one = &run.json()["configurations"][0];
+    assert_eq!((&one["simulator"], &one["passed"]), (&"icarus".into(), &true.into()), "{run:?}");
+    assert!(one["transcript"].as_str().unwrap().contains("PASS"), "{one}");
+    assert_eq!(place.files().len(), 1, "something is left");
+}
+
+/// All variables with the path of their scopes, joined by dots.
+fn variables(items: &[ScopeItem], path: &str, found: &mut Vec<(String, Var)>) {
+    for item in items {
+        match item {
+            ScopeItem::Scope(scope) => {
+                variables(&scope.children, &format!("{path}{}.", scope.identifier), found)
+            }
+            ScopeItem::Var(var) => found.push((format!("{path}{}", var.reference), var.clone())),
+        }
+    }
+}
+
+#[test]
+fn waveform() {
+    let place = Place::with("core.toml", ROUGH);
+    place.done(["generate", "core.toml"]);
+    let manifest: Value = serde_json::from_str(&place.read("rtl_out/core/core.json")).unwrap();
+    place.done(["cosim", "core.toml", "--points", "20", "--vcd", "wave.vcd"]);
+    let file = BufReader::new(fs::File::open(place.at("wave.vcd")).unwrap());
+    let mut parser = Parser::new(file);
+    let header = parser.parse_header().unwrap();
+    let mut found = Vec::new();
+    variables(&header.items, "", &mut found);
+    let size = |name: &str| {
+        found.iter().find(|(path, _)| path == name).map(|(_, var)| u64::from(var.size))
+    };
+    for port in manifest["ports"].as_array().unwrap() {
+        let name = port["name"].as_str().unwrap();
+        assert_eq!(size(&format!("core.{name}")), port["width"].as_u64(), "{name}");
+    }
+    // By the defaults of the configuration, and by the ten words of the patent.
+    assert_eq!(size("core.cos_gamma"), Some(21));
+    assert_eq!(size("core.datapath.reg11_cos_cos"), Some(23));
+    assert_eq!(size("core.control.word_address"), Some(4));
+
+    let (_, word) = found.iter().find(|(path, _)| path == "core.control.word").expect("the word");
+    let mut seen = BTreeSet::new();
+    for command in parser {
+        if let Command::ChangeString(code, text) = command.unwrap()
+            && code == word.code
+        {
+            seen.insert(text);
+        }
+    }
+    let words = manifest["control"]["words"].as_array().unwrap();
+    // A VCD string has no spaces.
+    let names = words.iter().map(|word| word["name"].as_str().unwrap().replace(' ', "_"));
+    let unseen: Vec<String> = names.filter(|name| !seen.contains(name)).collect();
+    assert!(unseen.is_empty(), "{unseen:?} not in {seen:?}");
+}
+
+#[test]
+fn waveforms_that_are_wrong_usage() {
+    let place = Place::with("a.toml", COSINE_POWER);
+    place.write("b.toml", COSINE_POWER);
+    let two = place.glint(["cosim", "a.toml", "b.toml", "--vcd", "wave.vcd"]);
+    two.refused(2, &["--vcd is for one configuration; here are 2"]);
+    let icarus = place.glint(["cosim", "a.toml", "--simulator", "icarus", "--vcd", "wave.vcd"]);
+    icarus.refused(2, &["--vcd is for the built-in simulator"]);
+    assert!(!place.at("wave.vcd").exists());
+}
+
+/// A run of an external simulator with `PATH` leading to `tools` alone, which holds `programs`.
+#[cfg(unix)]
+fn with_tools(simulator: &str, programs: &[(&str, &str)], more: &[&str]) -> crate::place::Run {
+    let place = Place::with("core.toml", COSINE_POWER);
+    fs::create_dir(place.at("tools")).unwrap();
+    for (name, script) in programs {
+        place.script(&format!("tools/{name}"), script);
+    }
+    let mut command = place.command();
+    command.env("PATH", place.at("tools"));
+    command.args(["cosim", "core.toml", "--points", "2", "--simulator", simulator]);
+    crate::place::Run::of(command.args(more).output())
+}
+
+#[cfg(unix)]
+#[test]
+fn a_simulator_that_is_missing() {
+    for (simulator, program) in [("icarus", "iverilog"), ("verilator", "verilator")] {
+        let message = format!("`{program}` is not on PATH; `bash tools/install` installs it");
+        with_tools(simulator, &[], &[]).refused(1, &[&message, "`core.toml`"]);
+        let run = with_tools(simulator, &[], &["--json"]);
+        assert_eq!((run.code, run.err.as_str()), (1, ""), "{run:?}");
+        let told = run.json()["problems"][0]["message"].to_string();
+        assert!(told.contains(&message), "{told}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_simulator_that_fails() {
+    let fails = ("iverilog", "echo 'core.v:1: out of luck' >&2; exit 3");
+    let run = with_tools("icarus", &[fails, ("vvp", "exit 0")], &[]);
+    run.refused(1, &["`iverilog` failed (exit status: 3)", "out of luck"]);
+    let silent = with_tools("icarus", &[("iverilog", "exit 0"), ("vvp", "exit 0")], &[]);
+    silent.refused(1, &["ended without a PASS or FAIL line"]);
+    let wrong =
+        with_tools("icarus", &[("iverilog", "exit 0"), ("vvp", "echo FAIL: red_out; exit 1")], &[]);
+    assert_eq!(wrong.code, 1, "{wrong:?}");
+    assert!(wrong.out.contains("FAILS\nFAIL: red_out"), "{wrong:?}");
+}
+
+/// Verilog in which red is multiplied as green should be, as far as the simulator knows.
+#[cfg(all(unix, feature = "outside-tools"))]
+#[test]
+fn what_differs_in_verilog_is_told_with_its_place() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    fs::create_dir(place.at("tools")).unwrap();
+    let spoil = "/bin/sed -i 's/accumulator . red_reg;/accumulator * green_reg;/' core_datapath.v";
+    place.script(
+        "tools/iverilog",
+        &format!("{spoil}\nexec /usr/bin/env PATH=\"$SOUND\" iverilog \"$@\""),
+    );
+    place.script("tools/vvp", "exec /usr/bin/env PATH=\"$SOUND\" vvp \"$@\"");
+    let run = |json: &[&str]| {
+        let mut command = place.command();
+        command.env("SOUND", std::env::var_os("PATH").unwrap());
+        command.env("PATH", place.at("tools"));
+        command.args(["cosim", "core.toml", "--points", "9", "--simulator", "icarus"]);
+        crate::place::Run::of(command.args(json).output())
+    };
+    let value = run(&["--json"]).json();
+    let one = &value["configurations"][0]["mismatch"];
+    assert_eq!((&one["signal"], &one["seed"]), (&"red_out".into(), &1.into()), "{value}");
+    assert_eq!(one["vcd"], "core_mismatch.vcd");
+    assert_ne!(one["golden"], one["simulated"]);
+    assert!(place.read("core_mismatch.vcd").contains("red_out"));
+    let (clock, word) = (&one["clock"], one["word"].as_str().unwrap());
+    let told = format!("FAILS: seed 1, clock {clock}, word `{word}`: `red_out` is ");
+    let text = run(&[]);
+    assert_eq!(text.code, 1, "{text:?}");
+    assert!(text.out.contains(&told), "{told}\n{}", text.out);
+    let again = one["reproduce"].as_str().unwrap();
+    assert_eq!(again, "glint cosim core.toml --simulator icarus --seed 1 --points 9");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_simulator_that_hangs() {
+    let hangs = "exec /bin/sleep 100";
+    let build =
+        with_tools("icarus", &[("iverilog", hangs), ("vvp", "exit 0")], &["--time-limit", "1"]);
+    build.refused(1, &["`iverilog` did not end within", "and was killed"]);
+    let bench =
+        with_tools("icarus", &[("iverilog", "exit 0"), ("vvp", hangs)], &["--time-limit", "1"]);
+    bench.refused(1, &["`vvp` did not end within", "and was killed"]);
+}
+
+#[test]
+fn exhaustive() {
+    let text = "device = \"cosine-power\"\npower = 2\ncosine.fraction = 8\nexponent.bits = 3\n\
+                colour.bits = 2\nintensity.fraction = 8\ndomain.exponent_max = 7\n";
+    let place = Place::with("core.toml", text);
+    let run = place.glint(["cosim", "core.toml", "--exhaustive", "--json"]);
+    let value = run.json();
+    assert_eq!((run.code, &value["ok"]), (0, &Value::Bool(true)), "{run:?}");
+    let one = &value["configurations"][0];
+    // 257 cosines and 7 exponents; 256 words and 4 colours.
+    assert_eq!((&one["evaluations"], &one["colour_products"]), (&1799.into(), &1024.into()));
+    assert_eq!(one["not_covered"], "");
+    // 9 bits of cosine, 3 of exponent, 2 of each colour.
+    assert_eq!(
+        (&one["clocks"]["operand_bits"], &one["clocks"]["combinations"]),
+        (&18.into(), &262_144.into())
+    );
+    assert_eq!(one["clocks"]["mismatch"], Value::Null);
+    assert!(one["together"].as_f64() <= one["bound"].as_f64(), "{one}");
+    let text = place.done(["cosim", "core.toml", "--exhaustive"]);
+    assert!(
+        text.contains("1 799 evaluations of f (cos_gamma = 0 to 256 x exponent = 1 to 7)"),
+        "{text}"
+    );
+    assert!(text.contains(": holds\n"), "{text}");
+    assert!(
+        text.contains("every register and output at every clock for 262 144 combinations of 18"),
+        "{text}"
+    );
+    assert!(text.contains("  less than a second on ") || text.contains("  about "), "{text}");
+    // Of a wide configuration it says that it does not cover them.
+    place.write("wide.toml", "device = \"cosine-power\"\npower = 2\ndomain.exponent_max = 2\n");
+    let text = place.done(["cosim", "wide.toml", "--exhaustive"]);
+    assert!(
+        text.contains("not covered: registers at every clock: the operands have 55 bits"),
+        "{text}"
+    );
+    let run = place.glint(["cosim", "core.toml", "--exhaustive", "--points", "5"]);
+    assert_eq!(run.code, 2, "{run:?}");
+    assert!(run.err.contains("--exhaustive"), "{run:?}");
+}
+
+/// A job that is killed, resumed, and divided reports what an uninterrupted one does.
+#[test]
+fn exhaustive_in_parts() {
+    // The operands of the one are too many for all combinations, those of the other few.
+    let wide = "device = \"cosine-power\"\npower = 2\ndomain.exponent_max = 100\n";
+    for text in [wide, include_str!("../../../configs/reduced/cosine_power.toml")] {
+        in_parts(text);
+    }
+}
+
+fn in_parts(text: &str) {
+    let place = Place::with("core.toml", text);
+    let whole = place.done(["cosim", "core.toml", "--exhaustive", "--json"]);
+    let proof = ["cosim", "core.toml", "--exhaustive", "--json", "--resume"];
+
+    let mut child = place
+        .command()
+        .args(proof)
+        .arg("state.json")
+        .stdout(std::process::Stdio::null())
+        .spawn()
+        .expect("started");
+    while !place.at("state.json").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(5));
+    }
+    child.kill().expect("killed");
+    child.wait().expect("ended");
+    let resumed = place.done(proof.iter().chain(&["state.json"]));
+    assert_eq!(resumed, whole);
+    // There is nothing left to do the second time.
+    assert_eq!(place.done(proof.iter().chain(&["state.json"])), whole);
+
+    for shard in ["1/2", "2/2"] {
+        let file = format!("part{}.json", &shard[..1]);
+        place.done(proof.iter().chain(&[file.as_str(), "--shard", shard]));
+    }
+    let merge = ["merge", "core.toml", "--json", "part2.json", "part1.json"];
+    assert_eq!(place.done(merge), whole);
+
+    let refused = |arguments: &[&str]| {
+        let run = place.glint(arguments);
+        assert_eq!(run.code, 1, "{run:?}");
+        run.err
+    };
+    let error = refused(&["merge", "core.toml", "part2.json"]);
+    assert!(error.contains("missing: shard 1/2"), "{error}");
+    let error = refused(&["merge", "core.toml", "part2.json", "core.toml"]);
+    assert!(error.contains("`core.toml` does not hold the state"), "{error}");
+    let error = refused(&["cosim", "core.toml", "--exhaustive", "--resume", "part1.json"]);
+    assert!(error.contains("another configuration, shard"), "{error}");
+    place.write("core.toml", "device = \"cosine-power\"\npower = 4\n");
+    let error = refused(&["merge", "core.toml", "part1.json", "part2.json"]);
+    assert!(error.contains("not of `core.toml` as it stands"), "{error}");
+    let error = refused(&["cosim", "core.toml", "--exhaustive", "--resume", "gone/state.json"]);
+    assert!(error.contains("gone/state.json"), "{error}");
+}

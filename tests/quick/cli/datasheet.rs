@@ -1,0 +1,133 @@
+//! `datasheet`: where pages go, whose they are, and what is refused.
+
+use serde_json::Value;
+
+use crate::place::{COSINE_POWER, Place, Run};
+
+fn place() -> Place {
+    Place::with("core.toml", COSINE_POWER)
+}
+
+fn datasheet(place: &Place, arguments: &[&str]) -> Run {
+    let start = ["datasheet", "core.toml", "--no-synthesis"];
+    place.glint(start.iter().chain(arguments))
+}
+
+fn names(place: &Place) -> Vec<String> {
+    place.files().into_keys().collect()
+}
+
+#[test]
+fn pages_go_where_they_are_told_to() {
+    let place = place();
+    let run = datasheet(&place, &[]);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert_eq!(run.out, "core.toml: datasheets/core.html written\n");
+    assert_eq!(names(&place), ["core.toml", "datasheets/core.html"]);
+    let again = datasheet(&place, &[]);
+    assert_eq!(again.out, "core.toml: datasheets/core.html up to date\n");
+    let single = datasheet(&place, &["--out", "one.html", "--wavedrom", "--json"]);
+    let told = single.json();
+    assert_eq!(told["datasheets"][0]["file"], "one.html", "{told}");
+    assert_eq!(told["datasheets"][1]["file"], "one.wavedrom.json");
+    assert_eq!(place.read("one.html"), place.read("datasheets/core.html"));
+    place.assert_no_staging();
+
+    let page = place.read("one.html");
+    assert!(page.contains("Not synthesised for this page"));
+    assert!(page.contains("There is no record of such a check"));
+    let directory = place.path().display().to_string();
+    assert!(!page.contains(&directory), "a path of this machine");
+}
+
+#[test]
+fn waves_have_one_length() {
+    let place = place();
+    datasheet(&place, &["--out", "core.html", "--wavedrom"]);
+    let waves: Value = serde_json::from_str(&place.read("core.wavedrom.json")).expect("JSON");
+    let signal = waves["signal"].as_array().expect("signals");
+    let lengths = signal.iter().map(|lane| {
+        let wave = lane["wave"].as_str().expect("a wave");
+        // A value for each frame.
+        let data = lane["data"].as_array().map_or(0, Vec::len);
+        assert_eq!(wave.matches('=').count(), data, "{lane}");
+        wave.len()
+    });
+    let mut lengths: Vec<usize> = lengths.collect();
+    lengths.dedup();
+    assert_eq!(lengths.len(), 1, "{lengths:?}");
+}
+
+#[test]
+fn what_was_edited_stays() {
+    let place = place();
+    let arguments = ["--out", "core.html", "--wavedrom"];
+    datasheet(&place, &arguments);
+    for file in ["core.html", "core.wavedrom.json"] {
+        let ours = place.read(file);
+        for mine in [&ours.replace("core", "mine"), "my notes\n"] {
+            place.write(file, mine);
+            let run = datasheet(&place, &arguments);
+            run.refused(1, &[file, "was edited since; nothing was changed", "--force"]);
+            assert_eq!(place.read(file), mine);
+        }
+        datasheet(&place, &["--out", "core.html", "--wavedrom", "--force"]);
+        assert_eq!(place.read(file), ours);
+    }
+}
+
+#[test]
+fn a_page_of_another_configuration_is_replaced() {
+    let place = place();
+    datasheet(&place, &[]);
+    let before = place.read("datasheets/core.html");
+    place.write("core.toml", "device = \"cosine-power\"\npower = 2\n");
+    assert_eq!(datasheet(&place, &[]).code, 0);
+    assert_ne!(place.read("datasheets/core.html"), before);
+}
+
+#[test]
+fn wrong_requests() {
+    let place = place();
+    place.write("other.toml", "device = \"schlick\"\n");
+    place.write("taken", "a file");
+    let both = ["datasheet", "core.toml", "other.toml", "--out", "both.html"];
+    place.glint(both).refused(2, &["both.html", "give a directory"]);
+    let missing = place.glint(["datasheet", "missing.toml"]);
+    missing.refused(1, &["missing.toml"]);
+    datasheet(&place, &["--out", "taken"]).refused(1, &["taken"]);
+    datasheet(&place, &["--out", "taken/deeper"]).refused(1, &["taken"]);
+    place.write("proofs/core.json", "{}");
+    datasheet(&place, &[]).refused(1, &["proofs/core.json", "cannot be used"]);
+    assert!(!names(&place).iter().any(|name| name.ends_with(".html")));
+}
+
+#[test]
+fn a_record_must_be_of_the_configuration() {
+    let place = place();
+    let record = include_str!("../../../proofs/cosine_power.json");
+    place.write("records/core.json", record);
+    let run = datasheet(&place, &["--proofs", "records"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    let page = place.read("datasheets/core.html");
+    // 1 048 577 cosines and 1000 exponents.
+    assert!(page.contains("1\u{202f}048\u{202f}577\u{202f}000 evaluations"));
+    place.write("core.toml", "device = \"cosine-power\"\npower = 2\n");
+    let run = datasheet(&place, &["--proofs", "records"]);
+    run.refused(1, &["records/core.json", "it is of another configuration"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn synthesis_has_its_section() {
+    let place = place();
+    let run = Run::of(place.with_yosys().args(["datasheet", "core.toml"]).output());
+    assert_eq!(run.code, 0, "{run:?}");
+    let page = place.read("datasheets/core.html");
+    assert!(page.contains("by Yosys 0."));
+    // The families count other cells, of which the made-up netlist has 100 of each kind.
+    for (family, luts) in [("iCE40", 100), ("ECP5", 100), ("Xilinx 7", 200)] {
+        let row = format!("<th scope=\"row\">{family}</th><td class=\"number\">{luts}</td>");
+        assert!(page.contains(&row), "{family}");
+    }
+}

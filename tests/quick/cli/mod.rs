@@ -1,0 +1,18 @@
+//! The command line as a user meets it: the built program, in a directory of its own; messages, exit
+//! codes, and what is in the directory afterwards.
+
+mod compare;
+mod configurations;
+mod cosim;
+mod datasheet;
+mod describe;
+mod fuzz;
+mod generate;
+mod mutate;
+mod output;
+pub mod place;
+mod questions;
+pub mod refusals;
+mod render;
+mod report;
+mod verify;

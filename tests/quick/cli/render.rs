@@ -1,0 +1,418 @@
+//! `glint render`: pictures, and everything that may be wrong with what they are made of.
+
+use std::fs;
+use std::io::Cursor;
+
+use png::{BitDepth, ColorType, Decoder, Encoder};
+
+use crate::place::{COSINE_POWER, Place};
+
+/// Every line of the documentation's list of pictures that is a command.
+const PICTURES: &str = "docs/images/README.md";
+
+/// A square in the plane z = 0 with texture coordinates.
+const SQUARE: &str = "\
+v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n\
+vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n\
+f 1/1 2/2 3/3 4/4\n";
+
+const SMALL: [&str; 4] = ["--size", "48x36", "--out", "out.png"];
+
+fn render<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
+    let command = ["render"].into_iter().chain(SMALL);
+    command.chain(arguments.iter().copied()).collect()
+}
+
+/// Width, height, and red, green and blue of each pixel.
+fn pixels(png: &[u8]) -> (u32, u32, Vec<[u8; 3]>) {
+    let mut reader = Decoder::new(Cursor::new(png)).read_info().expect("a PNG");
+    let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
+    let info = reader.next_frame(&mut bytes).expect("pixels");
+    assert_eq!(info.color_type, ColorType::Rgb);
+    let (pixels, []) = bytes.as_chunks() else {
+        panic!("whole pixels");
+    };
+    (info.width, info.height, pixels.to_vec())
+}
+
+fn png(colour: ColorType, bits: BitDepth, width: u32, bytes: &[u8]) -> Vec<u8> {
+    let mut file = Vec::new();
+    let row = width as usize * colour.samples() * if bits == BitDepth::Sixteen { 2 } else { 1 };
+    let mut encoder = Encoder::new(&mut file, width, (bytes.len() / row) as u32);
+    encoder.set_color(colour);
+    encoder.set_depth(bits);
+    let mut writer = encoder.write_header().expect("a header");
+    writer.write_image_data(bytes).expect("pixels");
+    writer.finish().expect("an end");
+    file
+}
+
+/// A map with bumps, 16 × 16.
+fn bumps() -> Vec<u8> {
+    let heights: Vec<u8> = (0..256).map(|at| (at % 16 * 37 + at / 16 * 91) as u8).collect();
+    png(ColorType::Grayscale, BitDepth::Eight, 16, &heights)
+}
+
+#[test]
+fn the_same_pixels_whichever_computes_them() {
+    let place = Place::with("power.toml", COSINE_POWER);
+    place.write("rough.toml", "device = \"rough\"\n");
+    place.write("bumps.png", bumps());
+    place.write("quad.toml", "device = \"quad-cosine\"\n");
+    place.write("squared.toml", "device = \"cosine-squared\"\n");
+    for (config, more) in [
+        ("power.toml", &["--height", "bumps.png"][..]),
+        ("rough.toml", &["--height", "bumps.png"]),
+        ("quad.toml", &["--shape", "torus"]),
+        ("squared.toml", &[]),
+    ] {
+        let mut pictures = Vec::new();
+        let all = ["golden", "rust-hdl", "verilator"];
+        let there = if cfg!(feature = "outside-tools") { &all[..] } else { &all[..2] };
+        for through in there {
+            let arguments = [&[config, "--through", through], more].concat();
+            let out = place.done(render(&arguments));
+            assert!(out.contains(&format!("through {through}")), "{out}");
+            pictures.push(fs::read(place.at("out.png")).expect("a picture"));
+        }
+        for (through, picture) in there.iter().zip(&pictures) {
+            assert!(pictures[0] == *picture, "{config}: golden, {through}");
+        }
+    }
+    place.assert_no_staging();
+}
+
+/// Every configuration that comes with Glint is understood, and stays within its bound in a picture.
+#[test]
+fn every_configuration_draws() {
+    let place = Place::new();
+    let configs = ["configs", "configs/studies"].map(|path| fs::read_dir(path).expect(path));
+    let mut drawn = 0;
+    for entry in configs.into_iter().flatten() {
+        let path = fs::canonicalize(entry.expect("an entry").path()).expect("a path");
+        if !path.is_file() {
+            continue;
+        }
+        let path = path.to_str().expect("UTF-8");
+        let mut pictures = Vec::new();
+        for through in ["golden", "rust-hdl"] {
+            let run = place.glint(render(&[path, "--through", through, "--compare", "--json"]));
+            assert_eq!(run.code, 0, "{path}: {run:?}");
+            let told = &run.json()["compare"];
+            let number = |key: &str| told[key].as_f64().expect("a number");
+            let units = number("largest_error_of_the_formula_in_units");
+            assert!(units <= number("bound_in_units"), "{path}: {told}");
+            pictures.push(fs::read(place.at("out.png")).expect("a picture"));
+        }
+        assert!(pictures[0] == pictures[1], "{path}: golden, rust_hdl");
+        drawn += 1;
+    }
+    assert!(drawn > 0, "no configuration");
+}
+
+#[test]
+fn the_same_bytes_with_any_number_of_threads() {
+    let place = Place::with("power.toml", COSINE_POWER);
+    let mut pictures = Vec::new();
+    for threads in ["1", "2", "5"] {
+        let run = place
+            .command()
+            .args(render(&["power.toml", "--shape", "group", "--compare"]))
+            .env("RAYON_NUM_THREADS", threads)
+            .output();
+        assert!(run.expect("the program runs").status.success());
+        pictures.push(fs::read(place.at("out.png")).expect("a picture"));
+    }
+    assert!(pictures.iter().all(|picture| *picture == pictures[0]));
+}
+
+/// The pictures of the documentation are what the commands beside them give.
+#[test]
+fn the_pictures_of_the_documentation() {
+    let text = fs::read_to_string(PICTURES).expect("a list of pictures");
+    let commands: Vec<&str> =
+        text.lines().filter_map(|line| line.strip_prefix("    glint ")).collect();
+    assert!(!commands.is_empty(), "no command in {PICTURES}");
+    let place = Place::new();
+    for command in commands {
+        let (command, file) = command.split_once(" --out ").expect("an --out at the end");
+        let run = std::process::Command::new(env!("CARGO_BIN_EXE_glint"))
+            .args(command.split_whitespace())
+            .arg("--out")
+            .arg(place.at("out.png"))
+            .output()
+            .expect("the program runs");
+        assert!(run.status.success(), "{run:?}");
+        let committed = fs::read(file).unwrap_or_else(|error| panic!("{file}: {error}"));
+        let made = fs::read(place.at("out.png")).expect("a picture");
+        assert!(pixels(&made) == pixels(&committed), "{file}: other pixels");
+        assert!(made == committed, "{file}: the same pixels in other bytes");
+    }
+}
+
+/// A sphere that fills the picture, lit from the eye: the highlight is in the middle, as bright as it can
+/// be, and the corners are the background.
+#[test]
+fn a_highlight_is_where_it_should_be() {
+    let place = Place::with("power.toml", COSINE_POWER);
+    let eye = ["--camera", "0,0,10", "--fov", "12.5", "--light", "0,0,1"];
+    let plain = ["--diffuse", "0", "--ambient", "0", "--specular", "1"];
+    let more = ["power.toml", "--samples", "1", "--background", "0,0,1"];
+    let arguments = [&eye[..], &plain, &more].concat();
+    let done =
+        place.done(["render", "--size", "41x41", "--out", "out.png"].into_iter().chain(arguments));
+    assert!(done.contains("41x41 pixels, n = 80"), "{done}");
+    let (width, height, pixels) = pixels(&fs::read(place.at("out.png")).expect("a picture"));
+    assert_eq!((width, height), (41, 41));
+    let at = |column: usize, row: usize| pixels[row * 41 + column];
+    // cos γ is 1 but for half a pixel; W(80, 0) falls short of 1 by an ulp of 2⁻¹⁶ for each squaring.
+    assert_eq!(at(20, 20), [255; 3]);
+    assert_eq!(at(0, 0), [0, 0, 255]);
+    // Symmetric, and darker outward; 8 pixels are about 0.43 of the radius: γ = 26°, cos⁸⁰γ = 0.0002.
+    assert_eq!(at(18, 20), at(22, 20));
+    assert_eq!(at(20, 17), at(20, 23));
+    assert!(at(20, 20) > at(22, 20) && at(22, 20) > at(24, 20));
+    assert_eq!(at(28, 20), [0; 3]);
+}
+
+/// Lines of points along the spans of triangles, set up by the host.
+#[test]
+fn lines_along_triangles() {
+    let place = Place::with("quad.toml", "device = \"quad-cosine\"\n");
+    place.write("squared.toml", "device = \"cosine-squared\"\nlength.bits = 4\n");
+    place.write("bumps.png", bumps());
+    // One large triangle whose normals turn from side to side: spans of up to 80 samples.
+    place.write(
+        "large.obj",
+        "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nvn -0.2 0.1 1\nvn 0.2 0.1 1\nvn 0 0.3 1\nf 1//1 2//2 3//3\n",
+    );
+    for (config, largest) in [("quad.toml", 4.0), ("squared.toml", 26.0)] {
+        let arguments = [config, "--compare", "--json", "--exponent", "20"];
+        let mesh = ["--mesh", "large.obj", "--light", "0,0.2,1"];
+        let run = place.glint(render(&[&arguments[..], &mesh].concat()));
+        assert_eq!(run.code, 0, "{run:?}");
+        let told = &run.json()["compare"];
+        let number = |key: &str| told[key].as_f64().expect("a number");
+        // Of 0.7·255: cos¹⁶(√(n/16)·δ) is within 0.6 % of cosⁿδ and cos² within 12 %. Angles that grow evenly
+        // are less than 0.002 from those of the interpolated normals, which is a level where cos²⁰γ is steepest.
+        assert!(number("largest_difference") <= largest, "{told}");
+        let units = number("largest_error_of_the_formula_in_units");
+        assert!(units <= number("bound_in_units"), "{told}");
+    }
+    let run = place.glint(render(&["quad.toml", "--height", "bumps.png"]));
+    run.refused(1, &["walks lines of points, which a height map cannot perturb"]);
+}
+
+#[test]
+fn comparison_in_numbers() {
+    let place = Place::with("power.toml", COSINE_POWER);
+    let run = place.glint(render(&["power.toml", "--compare", "--json"]));
+    assert_eq!(run.code, 0, "{run:?}");
+    let told = run.json();
+    let (width, height, pixels) = pixels(&fs::read(place.at("out.png")).expect("a picture"));
+    assert_eq!((width, height), (3 * 48, 36));
+    // Measured again in the picture.
+    let column = |panel: usize, at: usize| pixels[at / 48 * 144 + panel * 48 + at % 48];
+    let mut largest = 0;
+    for at in 0..48 * 36 {
+        let gain = told["compare"]["shown_times"].as_u64().expect("a gain");
+        for channel in 0..3 {
+            let difference = column(0, at)[channel].abs_diff(column(1, at)[channel]);
+            largest = largest.max(difference);
+            assert_eq!(u64::from(column(2, at)[channel]), u64::from(difference) * gain);
+        }
+    }
+    assert_eq!(told["compare"]["largest_difference"], largest);
+    // W(80, γ) with m = 16 is up to 0.018 from cos⁸⁰γ: 3 levels at k_s = 0.7, of two lights.
+    assert!((1..=7).contains(&largest), "{told}");
+    assert!(told["compare"]["psnr"].as_f64().expect("decibels") > 40.0, "{told}");
+    let units = told["compare"]["largest_error_of_the_formula_in_units"].as_f64();
+    let bound = told["compare"]["bound_in_units"].as_f64();
+    assert!(units.expect("units") <= bound.expect("a bound"), "{told}");
+}
+
+/// Meshes: a face toward the eye, whichever way around; degenerate triangles are told of.
+#[test]
+fn a_mesh_is_seen_from_both_sides() {
+    let place = Place::with("front.obj", SQUARE);
+    place.write(
+        "back.obj",
+        SQUARE.replace("f 1/1 2/2 3/3 4/4", "f 1/1 4/4 3/3 2/2\nf 1 1 2\nf 2 3 2"),
+    );
+    place.done(render(&["--mesh", "front.obj"]));
+    let front = fs::read(place.at("out.png")).expect("a picture");
+    let run = place.glint(render(&["--mesh", "back.obj"]));
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.err.contains("2 triangles are without area and were left out"), "{run:?}");
+    assert!(front == fs::read(place.at("out.png")).expect("a picture"));
+    let run = place.glint(render(&["--mesh", "back.obj", "--json"]));
+    assert_eq!(run.json()["degenerate_triangles"], 2);
+    assert_eq!(run.json()["triangles"], 2);
+}
+
+/// A wavy sheet of a million triangles.
+#[test]
+fn a_million_triangles() {
+    use std::fmt::Write;
+    let (columns, rows) = (1001, 501);
+    let mut text = String::new();
+    for row in 0..rows {
+        for column in 0..columns {
+            let wave = (column * 7 + row * 13) % 100;
+            let _ = writeln!(text, "v {column} {row} {}", f64::from(wave) / 25.0);
+        }
+    }
+    for row in 0..rows - 1 {
+        for column in 1..columns {
+            let at = row * columns + column;
+            let _ = writeln!(text, "f {at} {} {} {}", at + 1, at + columns + 1, at + columns);
+        }
+    }
+    let place = Place::with("sheet.obj", text);
+    let run = place.glint(render(&["--mesh", "sheet.obj", "--json"]));
+    assert_eq!(run.code, 0, "{run:?}");
+    assert_eq!(run.json()["triangles"], 1_000_000);
+}
+
+#[test]
+fn meshes_that_cannot_be_used() {
+    let place = Place::with("binary.obj", [0x76, 0x20, 0xff, 0xfe]);
+    place.write("empty.obj", "");
+    place.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    place.write("vertex.obj", "v 0 0 0\nv 1 NaN 0\n");
+    place.write("normal.obj", format!("vn 0 nan 1\n{SQUARE}"));
+    place.write("index.obj", format!("{SQUARE}f 1 2 9\n"));
+    place.write("face.obj", format!("{SQUARE}f 1 2\n"));
+    place.write("huge.obj", "v 1e200 0 0\nv -1e200 0 0\nv 0 1e200 0\nf 1 2 3\n");
+    let before = place.files();
+    for (file, message) in [
+        ("missing.obj", "No such file"),
+        (".", "it is a directory"),
+        ("binary.obj", "it is not text"),
+        ("empty.obj", "there is no triangle"),
+        ("flat.obj", "all 1 triangles are without area"),
+        ("vertex.obj", "line 2: not a vertex: `NaN` is not a finite number"),
+        ("normal.obj", "line 1: not a normal: `nan` is not a finite number"),
+        ("index.obj", "line 10: `9` is not a corner of a face: there is no vertex 9"),
+        ("face.obj", "line 10: a face has 2 corners"),
+        ("huge.obj", "vertex 1 is farther away than 1e30"),
+    ] {
+        let run = place.glint(render(&["--mesh", file]));
+        let causes = run.err.replace("\n  caused by: ", ": ");
+        assert_eq!(run.code, 1, "{run:?}");
+        assert!(causes.contains(message), "no `{message}` in\n{causes}");
+    }
+    assert!(before == place.files());
+}
+
+#[test]
+fn height_maps_that_cannot_be_used() {
+    let place = Place::with("text.png", "P2 1 1 255 0");
+    let colour = png(ColorType::Rgb, BitDepth::Eight, 2, &[9; 12]);
+    place.write("rgb.png", &colour);
+    place.write("alpha.png", png(ColorType::GrayscaleAlpha, BitDepth::Eight, 2, &[9; 8]));
+    let whole = png(ColorType::Grayscale, BitDepth::Sixteen, 4, &[9; 32]);
+    place.write("deep.png", &whole);
+    place.write("cut.png", &whole[..whole.len() - 20]);
+    place.write("wide.png", png(ColorType::Grayscale, BitDepth::Eight, 8193, &[0; 8193]));
+    place.write("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    place.write("rough.toml", "device = \"rough\"\n");
+    let before = place.files();
+    for (file, message) in [
+        ("missing.png", "No such file"),
+        ("text.png", "it is not a PNG file"),
+        ("rgb.png", "it is in colour; a height map is grey"),
+        ("alpha.png", "it is grey with transparency"),
+        ("cut.png", "it is not a whole PNG file"),
+        ("wide.png", "it has 8193x1 pixels; at most 8192x8192"),
+    ] {
+        let run = place.glint(render(&["--height", file]));
+        run.refused(1, &["the height map", file, message]);
+    }
+    let run = place.glint(render(&["--height", "deep.png", "--mesh", "bare.obj"]));
+    run.refused(2, &["texture coordinates (`vt`) at every corner"]);
+    assert!(before == place.files());
+    place.done(render(&["rough.toml", "--height", "deep.png"]));
+    // Steeper than 30°, the domain's largest dγ.
+    place.write("bumps.png", bumps());
+    let run = place.glint(render(&["rough.toml", "--height", "bumps.png", "--height-depth", "40"]));
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.err.contains("the deviation exceeds the device's domain"), "{run:?}");
+}
+
+#[test]
+fn wrong_settings() {
+    let place = Place::with("narrow.toml", "device = \"rough\"\ndomain.exponent_max = 128\n");
+    let before = place.files();
+    for (arguments, message) in [
+        (&["--size", "100000x10"][..], "1x1 to 8192x8192 are possible"),
+        (&["--size", "0x10"], "1x1 to 8192x8192 are possible"),
+        (&["--size", "8192x8192", "--samples", "8"], "at most 268435456 are possible"),
+        (&["--size", "640"], "a size is WxH in pixels"),
+        (&["--size", "-1x4"], "unexpected argument '-1'"),
+        (&["--samples", "9"], "1 to 8 are possible"),
+        (&["--samples", "0"], "1 to 8 are possible"),
+        (&["--light", "0,0,0"], "0,0,0 is no direction"),
+        (&["--light", "1,2"], "a light is a direction x,y,z"),
+        (&["--light", "1,2,nan"], "`nan` is not a finite number"),
+        (&["--light", "1,2,3,1,1,2"], "three numbers from 0 to 1"),
+        (&["--colour", "1,2,0"], "three numbers from 0 to 1"),
+        (&["--fov", "180"], "an angle from 1 to 150 degrees"),
+        (&["--specular", "1.5"], "a share is a number from 0 to 1"),
+        (&["--exponent", "0"], "takes 1 to 1000"),
+        (&["--exponent", "1001"], "takes 1 to 1000"),
+        (&["narrow.toml", "--exponent", "129"], "`narrow` takes 1 to 128"),
+        (&["--mesh", "a.obj", "--shape", "torus"], "cannot be used with"),
+        (&["--height-depth", "3"], "--height <FILE>"),
+        (&["--height", "x.png", "--height-repeat", "inf"], "not beyond a million"),
+        (&["--through", "icarus"], "possible values"),
+    ] {
+        // The last of several wins nowhere: the default size is given only where it is not set.
+        let size = !arguments.contains(&"--size");
+        let small = if size { &SMALL[..] } else { &SMALL[2..] };
+        let all = ["render"].iter().chain(small).chain(arguments);
+        place.glint(all).refused(2, &[message]);
+    }
+    let many: Vec<&str> = (0..17).flat_map(|_| ["--light", "1,1,1"]).collect();
+    place.glint(render(&many)).refused(2, &["17 lights; 1 to 16 are possible"]);
+    place.glint(["render"]).refused(2, &["--out <FILE>"]);
+    let run = place.glint(["render", "--out", "sphere.jpg"]);
+    run.refused(2, &["the picture is a PNG file"]);
+    let run = place.glint(render(&["--camera", "0,0,0"]));
+    run.refused(1, &["the camera stands where it looks at"]);
+    assert!(before == place.files());
+}
+
+#[test]
+fn places_that_cannot_be_written() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    fs::create_dir(place.at("here.png")).expect("a directory");
+    let before = place.files();
+    for (out, part) in [
+        ("nowhere/out.png", "cannot write `nowhere/out.png`"),
+        ("here.png", "cannot write `here.png`"),
+        ("core.toml/out.png", "cannot write `core.toml/out.png`"),
+    ] {
+        let run = place.glint(["render", "core.toml", "--size", "8x8", "--out", out]);
+        run.refused(1, &[part]);
+    }
+    assert!(before == place.files());
+    place.assert_no_staging();
+}
+
+/// What was there stays when something fails late.
+#[cfg(unix)]
+#[test]
+fn an_old_picture_stays() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    place.write("out.png", "the old one");
+    let run = place
+        .command()
+        .args(render(&["core.toml", "--through", "verilator"]))
+        .env("PATH", place.path())
+        .output();
+    let run = crate::place::Run::of(run);
+    run.refused(1, &["`verilator` is not on PATH"]);
+    assert_eq!(place.read("out.png"), "the old one");
+    place.assert_no_staging();
+}

@@ -1,0 +1,136 @@
+//! `verify`: page and record, the same whenever they are made; missing and failing tools; places that
+//! cannot be written.
+
+use serde_json::Value;
+
+use crate::place::{Place, Run};
+
+const WITHOUT_TOOLS: [&str; 3] = ["verify", "core.toml", "--without-tools"];
+
+/// With a configuration that is narrow enough for every leg.
+fn place() -> Place {
+    let narrow = include_str!("../../../configs/reduced/schlick.toml");
+    Place::with("core.toml", narrow.replace("schlick_reduced", "core"))
+}
+
+fn record(place: &Place, name: &str) -> Value {
+    serde_json::from_str(&place.read(name)).expect("JSON")
+}
+
+/// The verdicts of a record, by leg.
+fn verdicts(record: &Value) -> Vec<(&str, &str)> {
+    let legs = record["legs"].as_array().expect("legs");
+    legs.iter()
+        .map(|leg| {
+            let name = leg["leg"].as_str().expect("a leg");
+            (name, leg["verdict"].as_str().expect("a verdict"))
+        })
+        .collect()
+}
+
+#[test]
+fn page_and_record_are_the_same_every_time_but_for_the_timings() {
+    let place = place();
+    let run = place.glint(WITHOUT_TOOLS.iter().chain(&["--out", "first"]));
+    assert_eq!((run.code, run.err.as_str()), (0, ""), "{run:?}");
+    assert!(run.out.contains("core.toml: verified"), "{}", run.out);
+    let again = place.glint(WITHOUT_TOOLS.iter().chain(&["--out", "second", "--json"]));
+    assert_eq!((again.code, again.err.as_str()), (0, ""), "{again:?}");
+    assert_eq!(place.read("first/core.json"), place.read("second/core.json"));
+    let lasting = |name: &str| {
+        let page = place.read(name);
+        let (before, after) = page.split_once("id=\"timings\"").expect("timings");
+        assert!(after.contains("Seconds"));
+        before.to_owned()
+    };
+    let page = lasting("first/core.html");
+    assert_eq!(page, lasting("second/core.html"));
+    for reference in ["http", "src=", "url(", "<link", "<script", "file:"] {
+        assert!(!page.contains(reference), "`{reference}` in the page");
+    }
+    let here = place.path().display().to_string();
+    assert!(!page.contains(&here) && !place.read("first/core.json").contains(&here));
+
+    let found = record(&place, "first/core.json");
+    assert_eq!(found["conclusion"], "verified");
+    assert_eq!(found["full"], false);
+    let verdicts = verdicts(&found);
+    for expected in [
+        ("design", "proved"),
+        ("lockstep", "passed"),
+        ("clocks", "proved"),
+        ("contract", "proved"),
+        ("mutation", "passed"),
+    ] {
+        assert!(verdicts.contains(&expected), "{verdicts:?}");
+    }
+    assert!(verdicts.contains(&("icarus", "not-covered")), "{verdicts:?}");
+    assert!(page.contains("--without-tools leaves it out."));
+    assert_eq!(again.json()["configurations"][0]["record"], found);
+    let timings = record(&place, "second/core.timings.json");
+    assert_eq!(timings["seconds"].as_array().map(Vec::len), Some(verdicts.len()));
+    // Written over what is there.
+    place.done(WITHOUT_TOOLS.iter().chain(&["--out", "first"]));
+    assert_eq!(place.files().len(), 7);
+}
+
+#[test]
+fn a_missing_tool_leaves_it_incomplete() {
+    let place = place();
+    let run =
+        Run::of(place.command().args(["verify", "core.toml"]).env("PATH", place.path()).output());
+    assert_eq!(run.code, 1, "{run:?}");
+    assert!(run.out.contains("core.toml: incomplete"), "{}", run.out);
+    assert!(
+        run.out.contains("`iverilog` is not on PATH; `bash tools/install` installs it"),
+        "{}",
+        run.out
+    );
+    let found = record(&place, "verification/core.json");
+    assert_eq!(found["conclusion"], "incomplete");
+    let verdicts = verdicts(&found);
+    assert!(verdicts.contains(&("lockstep", "passed")), "{verdicts:?}");
+    assert!(verdicts.contains(&("icarus", "not-run")), "{verdicts:?}");
+}
+
+#[cfg(unix)]
+#[test]
+fn a_tool_that_does_not_do_its_work_is_a_failure() {
+    let place = place();
+    std::fs::create_dir(place.at("bin")).expect("a directory");
+    for tool in ["iverilog", "vvp", "verilator", "yosys", "yosys-smtbmc", "z3", "python3"] {
+        place.script(&format!("bin/{tool}"), "echo no such licence; exit 3");
+    }
+    let run = Run::of(
+        place
+            .command()
+            .args(["verify", "core.toml", "--json"])
+            .env("PATH", place.at("bin"))
+            .output(),
+    );
+    assert_eq!(run.code, 1, "{run:?}");
+    let told = run.json();
+    assert_eq!(told["ok"], false);
+    let found = &told["configurations"][0]["record"];
+    assert_eq!(found["conclusion"], "failed");
+    let verdicts = verdicts(found);
+    assert!(verdicts.contains(&("verilator", "failed")), "{verdicts:?}");
+    assert!(run.out.contains("no such licence"), "{}", run.out);
+}
+
+#[test]
+fn what_is_not_of_glints_making_is_not_overwritten() {
+    let place = place();
+    for name in ["core.html", "core.json", "core.timings.json"] {
+        let path = format!("verification/{name}");
+        place.write(&path, "mine");
+        let run = place.glint(WITHOUT_TOOLS);
+        run.refused(1, &[&path, "is not of Glint's making", "--out"]);
+        assert_eq!(place.read(&path), "mine");
+        assert_eq!(place.files().len(), 2, "something else was written");
+        std::fs::remove_file(place.at(&path)).expect("removed");
+    }
+    place.write("file", "");
+    let run = place.glint(WITHOUT_TOOLS.iter().chain(&["--out", "file"]));
+    run.refused(1, &["cannot make the directory `file`"]);
+}

@@ -1,0 +1,282 @@
+//! Every combination of operands of a narrow configuration of each device, clock by clock; and what is
+//! said when one of them differs.
+
+use std::collections::BTreeSet;
+use std::env;
+use std::ffi::OsString;
+use std::fs;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::process::{Command, Output};
+
+use crate::common::units::configuration;
+use glint::config::Config;
+use glint::cosim::exhaustive::{Clocks, Job, MOST_BITS, Proof, Shard, State};
+use glint::flow::Unit;
+use glint::golden::Model;
+use glint::registry::{Device, Registry};
+use serde_json::Value;
+
+const NARROW: &str = "configs/reduced/quadratic.toml";
+
+/// Operands, with what they must be for a model to err.
+type Aim = &'static [(&'static str, u64)];
+
+/// All operands of `quadratic`: one combination, and one whose cosine no other is clamped to.
+const ONE: Aim = &[("exponent", 13), ("cos_gamma", 200), ("red", 2), ("green", 1), ("blue", 3)];
+
+/// 64 combinations: those of all colours.
+const SOME: Aim = &[("exponent", 13), ("cos_gamma", 200)];
+
+/// A golden model that is wrong in the lowest bit of `red_out` for the operands that it aims at.
+struct Wrong {
+    inner: Box<dyn Model>,
+    /// The registers of operands among the values, and what they must hold.
+    aim: Vec<(usize, u64)>,
+    valid: usize,
+    red: usize,
+    values: Vec<u64>,
+}
+
+impl Wrong {
+    fn new(inner: Box<dyn Model>, aim: Aim) -> Self {
+        let signals = inner.signals();
+        let at = |name: &str| {
+            let at = signals.iter().position(|signal| signal == name);
+            at.unwrap_or_else(|| panic!("no {name}"))
+        };
+        Self {
+            aim: aim.iter().map(|(name, bits)| (at(&format!("{name}_reg")), *bits)).collect(),
+            valid: at("valid"),
+            red: at("red_out"),
+            values: inner.values().to_vec(),
+            inner,
+        }
+    }
+}
+
+impl Clone for Wrong {
+    fn clone(&self) -> Self {
+        Self {
+            inner: self.inner.boxed_clone(),
+            aim: self.aim.clone(),
+            values: self.values.clone(),
+            ..*self
+        }
+    }
+}
+
+impl Model for Wrong {
+    fn inputs(&self) -> &[String] {
+        self.inner.inputs()
+    }
+    fn signals(&self) -> &[String] {
+        self.inner.signals()
+    }
+    fn clock(&mut self, inputs: &[u64]) {
+        self.inner.clock(inputs);
+        self.values.copy_from_slice(self.inner.values());
+        let aimed = |&(at, bits): &(usize, u64)| self.values[at] == bits;
+        if self.values[self.valid] == 1 && self.aim.iter().all(aimed) {
+            self.values[self.red] ^= 1;
+        }
+    }
+    fn values(&self) -> &[u64] {
+        &self.values
+    }
+}
+
+/// The job of a configuration whose model is wrong.
+fn job(unit: &Unit, aim: Aim) -> Job<'_> {
+    let model = Wrong::new((unit.device.model)(&unit.config), aim);
+    let contract = unit.contract.as_ref();
+    let clocks = Clocks::new(&unit.design, Box::new(model), contract).expect("they fit");
+    Job::new(contract).with(clocks)
+}
+
+/// A shard, broken off and resumed after every look.
+fn done(job: &Job<'_>, shard: Shard) -> State {
+    let mut state = State::new("digest", shard);
+    while job.remaining(&state) > 0 {
+        let text = serde_json::to_string(&state).expect("a state");
+        state = serde_json::from_str(&text).expect("a state");
+        let _ = job
+            .run(&mut state, &|_| (), &mut |_| ControlFlow::Break(()))
+            .expect("it can be simulated");
+    }
+    state
+}
+
+/// A job without a break.
+fn whole(job: &Job<'_>) -> State {
+    let mut state = State::new("digest", Shard::WHOLE);
+    let end = job.run(&mut state, &|_| (), &mut |_| ControlFlow::Continue(()));
+    assert_eq!(end.expect("it can be simulated"), ControlFlow::Continue(()));
+    state
+}
+
+#[test]
+fn every_combination_of_every_device() {
+    let mut devices = BTreeSet::new();
+    for entry in fs::read_dir("configs/reduced").expect("configs/reduced/") {
+        let path = entry.expect("an entry").path().display().to_string();
+        let unit = configuration(&path);
+        let job = unit.job().expect("they fit");
+        let clocks = job.clocks.as_ref().expect("combinations");
+        let bits: u32 =
+            (unit.contract.operands().iter()).map(|operand| operand.format.width()).sum();
+        assert!(bits <= MOST_BITS && clocks.bits() == bits, "{path}: {bits}");
+        assert_eq!(clocks.count(), 1 << bits, "{path}");
+        let state = whole(&job);
+        let difference = state.clocks.differs.map(|place| clocks.difference(place));
+        assert!(difference.is_none(), "{path}: {difference:?}");
+        let proof = Proof::new(unit.contract.as_ref(), state.f.peak, state.colours.peak);
+        assert!(proof.faults.is_empty(), "{path}: {:?}", proof.faults);
+        devices.insert(unit.device.name);
+    }
+    let all: BTreeSet<&str> =
+        (Registry::catalogue().devices().iter()).map(|device| device.name).collect();
+    assert_eq!(devices, all);
+}
+
+#[test]
+fn a_fault_that_one_combination_shows_is_found() {
+    let unit = configuration(NARROW);
+    let job = job(&unit, ONE);
+    let clocks = job.clocks.as_ref().expect("combinations");
+    let place = whole(&job).clocks.differs.expect("it differs");
+    let found = clocks.difference(place).expect("it can be had again");
+    for (name, bits) in ONE {
+        let operand = found.operands.iter().find(|(operand, _)| operand == name);
+        assert_eq!(operand.map(|(_, bits)| bits), Some(bits), "{found:?}");
+    }
+    assert_eq!(found.place, place);
+    assert_eq!(found.mismatch.signal, "red_out");
+    assert_eq!(found.mismatch.golden ^ found.mismatch.simulated, 1);
+    // Word 3 is the result's. It begins with the edge that ends word 2, three clocks after that of `start`.
+    assert!(found.mismatch.word.starts_with("intensity"), "{found:?}");
+    assert_eq!(found.clock, 3);
+    // No other combination differs.
+    let block = place / (clocks.count() / clocks.blocks());
+    let others = (0..clocks.blocks()).filter(|&other| other != block);
+    assert_eq!(clocks.check(others.collect(), &|_| ()).expect("checked"), None);
+    assert!(clocks.difference(place + 1).is_err());
+}
+
+#[test]
+fn the_first_difference_is_the_same_however_the_work_is_divided() {
+    let unit = configuration(NARROW);
+    let job = job(&unit, SOME);
+    let clocks = job.clocks.as_ref().expect("combinations");
+    let whole = whole(&job);
+    let first = whole.clocks.differs;
+    let alone = (0..clocks.blocks()).filter_map(|block| {
+        let found = clocks.check(vec![block], &|_| ());
+        found.expect("checked")
+    });
+    assert!(first.is_some());
+    assert_eq!(alone.min(), first);
+    assert_eq!(done(&job, Shard::WHOLE), whole);
+    for of in [2, 3, 500] {
+        let shards = (1..=of).map(|number| done(&job, Shard { number, of }));
+        let shards: Vec<State> = shards.collect();
+        let names: Vec<String> = (1..=of).map(|number| number.to_string()).collect();
+        assert_eq!(job.merge(&shards, &names).expect("merged"), whole);
+    }
+    // A state of before there were combinations has them to do.
+    let mut text = serde_json::to_value(&whole).expect("a state");
+    text.as_object_mut().expect("an object").remove("clocks");
+    let old: State = serde_json::from_value(text).expect("it can be read");
+    assert_eq!(job.remaining(&old), clocks.count());
+}
+
+/// `quadratic` with a model that is wrong for some combinations.
+fn wrong_device() -> Device {
+    fn model(config: &Config) -> Box<dyn Model> {
+        let inner = (quadratic().model)(config);
+        Box::new(Wrong::new(inner, &[("exponent", 13)]))
+    }
+    Device { model, ..quadratic() }
+}
+
+fn quadratic() -> Device {
+    let registry = Registry::catalogue();
+    *registry.device("quadratic").expect("quadratic")
+}
+
+/// A command line of the wrong device, which the tests below start.
+#[test]
+#[ignore = "the program of other tests"]
+fn program() {
+    let arguments = env::var("GLINT_ARGUMENTS").expect("arguments");
+    let arguments = arguments.split(' ').map(OsString::from);
+    let registry = Registry::empty().with(wrong_device());
+    let code = glint::cli::run_from(&registry, arguments);
+    assert_ne!(format!("{code:?}"), format!("{:?}", std::process::ExitCode::SUCCESS));
+}
+
+/// What the wrong device's command line prints.
+fn wrong(directory: &Path, arguments: &str) -> String {
+    let program = env::current_exe().expect("this program");
+    let mut command = Command::new(program);
+    command.args(["--exact", "program", "--ignored", "--nocapture"]);
+    command.env("GLINT_ARGUMENTS", arguments);
+    let Output { status, stdout, stderr } =
+        command.current_dir(directory).output().expect("it runs");
+    let text = String::from_utf8(stdout).expect("UTF-8");
+    let errors = String::from_utf8_lossy(&stderr);
+    assert!(status.success(), "{arguments}: {text}{errors}");
+    text
+}
+
+/// The JSON among what the test program prints.
+fn json(text: &str) -> Value {
+    let (from, to) = (text.find('{'), text.rfind('}'));
+    let text = &text[from.expect("JSON")..=to.expect("JSON")];
+    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
+}
+
+#[test]
+fn a_difference_leaves_all_that_it_takes_to_have_it_again() {
+    let place = tempfile::tempdir().expect("a directory");
+    let narrow = fs::read(NARROW).expect("a configuration");
+    fs::write(place.path().join("core.toml"), narrow).expect("written");
+
+    let run = json(&wrong(place.path(), "glint cosim core.toml --json --seed 3"));
+    let one = &run["configurations"][0]["mismatch"];
+    let text = |value: &Value, key: &str| value[key].as_str().expect(key).to_owned();
+    let bits = |value: &Value, key| {
+        let text = text(value, key);
+        u64::from_str_radix(text.strip_prefix("0x").expect("hexadecimal"), 16).expect("a number")
+    };
+    assert_eq!((run["ok"].as_bool(), text(one, "signal").as_str()), (Some(false), "red_out"));
+    assert_eq!(bits(one, "golden") ^ bits(one, "simulated"), 1);
+    assert!(text(one, "word").starts_with("intensity"), "{one}");
+    let vcd = fs::read_to_string(place.path().join(text(one, "vcd"))).expect("a waveform");
+    assert!(vcd.contains("red_out"), "{vcd}");
+    // The command that it names finds the same, alone.
+    let again = text(one, "reproduce").replace("FILE", "all.vcd");
+    let (seed, clock) = (one["seed"].as_u64(), one["clock"].as_u64());
+    let said = wrong(place.path(), &again);
+    let wanted = format!(
+        "seed {}, after clock {}, word `intensity",
+        seed.expect("a seed"),
+        clock.expect("a clock")
+    );
+    assert!(said.contains(&wanted), "{said}");
+    assert!(place.path().join("all.vcd").exists());
+
+    let run = json(&wrong(place.path(), "glint cosim core.toml --json --exhaustive"));
+    let found = &run["configurations"][0];
+    let one = &found["clocks"]["mismatch"];
+    assert_eq!((&found["holds"], &one["seed"]), (&Value::Bool(false), &Value::Null));
+    assert_eq!(one["operands"]["exponent"], "0xd");
+    assert_eq!(
+        (text(one, "signal").as_str(), one["clock_of_computation"].as_u64()),
+        ("red_out", Some(3))
+    );
+    assert_eq!(bits(one, "golden") ^ bits(one, "simulated"), 1);
+    let said = wrong(place.path(), &text(one, "reproduce"));
+    assert!(said.contains(&format!("combination {} (exponent=0xd ", one["combination"])), "{said}");
+    assert!(said.contains("`quadratic_reduced_mismatch.vcd` shows clocks "), "{said}");
+}

@@ -1,0 +1,243 @@
+//! Whatever the text, the reader answers with a configuration or with problems that have a place.
+
+use crate::common::cases;
+use crate::config_device::{lamp, schemas};
+use glint::config::{Config, Schema, commented, parse, read, sample};
+use glint::flow::Unit;
+use glint::registry::Registry;
+use proptest::collection::vec;
+use proptest::prelude::*;
+
+/// Reads a text, and holds the answer to what it promises. What is accepted.
+fn answer(text: &str, schemas: &[Schema]) -> Result<Option<Config>, TestCaseError> {
+    let problems = match parse("fuzz.toml", text, schemas) {
+        Ok(config) => {
+            let schema = schemas.iter().find(|schema| schema.device == config.device);
+            let schema = schema.expect("an accepted configuration is of a known device");
+            let again = parse("fuzz.toml", &config.to_toml(schema), schemas);
+            prop_assert!(again.is_ok_and(|again| again == config), "{text}");
+            return Ok(Some(config));
+        }
+        Err(problems) => problems,
+    };
+    prop_assert!(!problems.is_empty());
+    let report = problems.to_string();
+    for problem in problems.iter() {
+        prop_assert!(!problem.message.is_empty() && !problem.remedy.is_empty());
+        prop_assert!(problem.message.chars().count() < 200, "{}", problem.message);
+        // The place that scripts are told is the one that people read.
+        if let Some((line, column)) = problems.position(problem) {
+            prop_assert!(
+                report.contains(&format!("--> fuzz.toml:{line}:{column}\n")),
+                "{line}:{column} is not in\n{report}"
+            );
+        }
+    }
+    Ok(None)
+}
+
+/// A value as it stands in a file: right, too large, of another type, or nested.
+fn value() -> impl Strategy<Value = String> {
+    let leaves = [
+        "0",
+        "1",
+        "-1",
+        "8",
+        "16",
+        "22",
+        "25",
+        "1000",
+        "4096",
+        "9223372036854775807",
+        "-9223372036854775808",
+        "99999999999999999999999",
+        "0xffff_ffff",
+        "1.5",
+        "-0.0",
+        "nan",
+        "-inf",
+        "1e400",
+        "5e-324",
+        "true",
+        "false",
+        "\"\"",
+        "\"truncate\"",
+        "\"nearest\"",
+        "\"direct\"",
+        "\"patent\"",
+        "'é🔆\\'",
+        "\"\\u0000\"",
+        "\"\"\"\n\"\"\"",
+        "1979-05-27",
+        "[6, 5, 4, 3]",
+        "[2]",
+        "[]",
+        "{}",
+    ];
+    let leaf = prop::sample::select(leaves.map(str::to_owned).to_vec());
+    leaf.prop_recursive(4, 24, 6, |inner| {
+        prop_oneof![
+            vec(inner.clone(), 0..6).prop_map(|items| format!("[{}]", items.join(", "))),
+            vec(inner, 1..3).prop_map(|items| format!("{{ a = {} }}", items.join(", b = "))),
+        ]
+    })
+}
+
+/// A file for a device of the catalogue in which keys have any values.
+fn settings() -> impl Strategy<Value = String> {
+    let devices: Vec<Schema> = Registry::catalogue().schemas();
+    let setting = (any::<prop::sample::Index>(), value(), 0..40u8);
+    (prop::sample::select(devices), vec(setting, 0..8)).prop_map(|(schema, settings)| {
+        let mut text = format!("device = \"{}\"\n", schema.device);
+        for (at, value, odd) in settings {
+            let key = at.get(&schema.keys).name;
+            let line = match odd {
+                0 => format!("{key}.deeper = {value}\n"),
+                1 => format!("[{key}]\n"),
+                2 => format!("\"{key}\" = {value}\n"),
+                3 => format!("é.{key} = {value}\n"),
+                4 => format!("name = {value}\n"),
+                5 => format!("strict = {value}\n"),
+                _ => format!("{key} = {value}\n"),
+            };
+            text.push_str(&line);
+        }
+        text
+    })
+}
+
+/// Pieces that a configuration is made of, and some that it is not.
+fn piece() -> impl Strategy<Value = String> {
+    let pieces = [
+        "\n",
+        "\r\n",
+        "\r",
+        " ",
+        "\t",
+        "=",
+        " = ",
+        ".",
+        ",",
+        "#",
+        "[",
+        "]",
+        "[[",
+        "]]",
+        "{",
+        "}",
+        "\"",
+        "'",
+        "\"\"\"",
+        "'''",
+        "\\",
+        "\u{feff}",
+        "\0",
+        "\u{1b}",
+        "é",
+        "🔆",
+        "device",
+        "name",
+        "strict",
+        "\"lamp\"",
+        "\"module\"",
+        "power",
+        "cosine",
+        "fraction",
+        "cosine.fraction",
+        "sine",
+        "segments",
+        "[6, 5]",
+        "scheme",
+        "\"segmented\"",
+        "true",
+        "nan",
+        "inf",
+        "-0",
+        "1_000",
+        "0x1f",
+        "1e400",
+        "99999999999999999999",
+        "1979-05-27T07:32:00Z",
+        "device = \"lamp\"\n",
+        "[sine]\n",
+    ];
+    prop::sample::select(pieces.map(str::to_owned).to_vec())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: cases(2000),
+        failure_persistence: None,
+        ..ProptestConfig::default() })]
+
+    #[test]
+    fn arbitrary_text(text in any::<String>()) {
+        answer(&text, &schemas())?;
+    }
+
+    #[test]
+    fn nested_without_end(depth in 1usize..20_000, opening in "[\\[{(a.=]{1,3}") {
+        let text = format!("device = \"lamp\"\npower = {}", opening.repeat(depth));
+        answer(&text, &schemas())?;
+        answer(&opening.repeat(depth), &schemas())?;
+    }
+
+    #[test]
+    fn arbitrary_settings(text in settings()) {
+        answer(&text, &Registry::catalogue().schemas())?;
+    }
+
+    #[test]
+    fn arbitrary_pieces(pieces in vec(piece(), 0..40), known in any::<bool>()) {
+        let start = if known { "device = \"lamp\"\n" } else { "" };
+        answer(&format!("{start}{}", pieces.concat()), &schemas())?;
+    }
+
+    #[test]
+    fn mutated_files(
+        seed in any::<u64>(),
+        comments in any::<bool>(),
+        changes in vec((any::<prop::sample::Index>(), 0usize..6, piece()), 1..6),
+    ) {
+        let text = match comments {
+            true => commented(&lamp(), "lamp"),
+            false => sample(&lamp(), seed).to_toml(&lamp()),
+        };
+        let mut text: Vec<char> = text.chars().collect();
+        for (place, removed, piece) in changes {
+            let start = place.index(text.len() + 1);
+            let end = (start + removed).min(text.len());
+            text.splice(start..end, piece.chars());
+        }
+        answer(&text.into_iter().collect::<String>(), &schemas())?;
+    }
+
+    #[test]
+    fn arbitrary_bytes(bytes in vec(any::<u8>(), 0..200)) {
+        let file = tempfile::NamedTempFile::new().expect("a temporary file");
+        std::fs::write(file.path(), &bytes).expect("written");
+        if let Err(problems) = read(file.path(), &schemas()) {
+            prop_assert!(!problems.to_string().is_empty());
+            prop_assert_eq!(problems.to_json().as_array().map(Vec::len), Some(problems.len()));
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: cases(2000) / 10,
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    /// What the reader accepts, the description and the golden model accept too.
+    #[test]
+    fn what_is_accepted_is_a_device(text in settings()) {
+        let registry = Registry::catalogue();
+        if let Some(config) = answer(&text, &registry.schemas())? {
+            let device = *registry.device(&config.device).expect("a device");
+            let unit = Unit::new(device, config);
+            prop_assert!(unit.is_ok(), "{:?}", unit.err());
+            prop_assert!(unit.expect("a unit").lockstep(1).is_ok());
+        }
+    }
+}

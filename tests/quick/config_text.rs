@@ -1,0 +1,154 @@
+//! Configurations written and read back, and random ones.
+
+use std::collections::BTreeSet;
+
+use crate::config_device::{lamp, schemas};
+use glint::config::{Config, Key, Schema, Value, commented, parse, sample};
+
+#[test]
+fn the_commented_file() {
+    let expected = "\
+# Glint configuration of the device \"lamp\". All keys are shown with their defaults; those
+# that you do not change may be deleted.
+
+# The device that is generated.
+device = \"lamp\"
+
+# The name of the Verilog module and of its files: a Verilog identifier of at most 60
+# characters. By default the name of this file, with _ for -.
+name = \"my_lamp\"
+
+# Refuse a configuration that misses the accuracy contract, rather than warn of it. True
+# or false, default false.
+strict = false
+
+# How numbers are kept.
+# \"exact\" or \"patent\", default \"exact\".
+arithmetic = \"exact\"
+
+# The power of the cosine.
+# 2, 4, 8 or 16, default 16.
+power = 16
+
+[cosine]
+# Fraction bits of the cosines.
+# An integer from 4 to 30, default 20.
+fraction = 20
+
+# Whether cosines may be negative.
+# True or false, default false.
+signed = false
+
+[sine]
+# How the sine is had.
+# \"direct\" or \"segmented\", default \"direct\".
+scheme = \"direct\"
+
+# Address bits of the table.
+# An integer from 1 to 16, default 12; only with sine.scheme = \"direct\".
+address = 12
+
+# Log2 of the segments.
+# 1 to 8 integers from 2 to 14, default [6, 5]; only with sine.scheme = \"segmented\".
+# segments = [6, 5]
+
+[domain]
+# Largest deviation in degrees.
+# A number from 0.5 to 90.0, default 30.0.
+deviation = 30.0
+";
+    let text = commented(&lamp(), "my_lamp");
+    assert_eq!(text, expected);
+    let read = parse("x.toml", &text, &schemas()).expect("valid");
+    assert_eq!(read, Config::defaults(&lamp(), "my_lamp"));
+}
+
+#[test]
+fn tables_and_dotted_keys_are_the_same() {
+    let tables = "device = \"lamp\"\npower = 4\n[cosine]\nfraction = 0x10\n[sine]\n\
+                  scheme = \"segmented\"\nsegments = [7, +6]\n[domain]\ndeviation = 45\n";
+    let dotted = "power = 4\ncosine.fraction = 16\nsine = { scheme = \"segmented\", segments = [7, 6] }\n\
+                  domain.deviation = 4.5e1\ndevice = \"lamp\"\n";
+    let config = parse("a-b.toml", tables, &schemas()).expect("valid");
+    assert_eq!(config, parse("a-b.toml", dotted, &schemas()).expect("valid"));
+    assert_eq!((config.name.as_str(), config.strict), ("a_b", false));
+    assert_eq!((config.choice("power"), config.integer("power")), ("4", 4));
+    assert_eq!(config.integer("cosine.fraction"), 16);
+    assert!(!config.flag("cosine.signed"));
+    assert_eq!(config.integers("sine.segments"), [7, 6]);
+    assert_eq!(config.number("domain.deviation"), 45.0);
+}
+
+#[test]
+fn samples_are_valid_and_read_back() {
+    for seed in 0..500 {
+        let config = sample(&lamp(), seed);
+        let text = config.to_toml(&lamp());
+        let read = parse("x.toml", &text, &schemas());
+        assert_eq!(read.expect("a sample is valid"), config, "{text}");
+    }
+}
+
+#[test]
+fn samples_cover_ends_and_both_sides_of_every_choice() {
+    let configs: Vec<Config> = (0..500).map(|seed| sample(&lamp(), seed)).collect();
+    let seen = |key: &str| -> BTreeSet<String> {
+        configs.iter().map(|config| config.value(key).bare()).collect()
+    };
+    assert_eq!(seen("power").len(), 4);
+    assert_eq!(seen("arithmetic").len(), 2);
+    assert_eq!(seen("cosine.fraction").len(), 27);
+    assert_eq!(seen("sine.address").len(), 16);
+    let often = |key: &str, value: Value| {
+        configs.iter().filter(|config| *config.value(key) == value).count()
+    };
+    // A uniform draw would give each about 18 times.
+    assert!(often("cosine.fraction", Value::Integer(4)) > 30);
+    assert!(often("cosine.fraction", Value::Integer(30)) > 40);
+    assert!(often("domain.deviation", Value::Number(0.5)) > 30);
+    let lengths: BTreeSet<usize> = configs
+        .iter()
+        .filter(|config| config.choice("sine.scheme") == "segmented")
+        .map(|config| config.integers("sine.segments").len())
+        .collect();
+    assert_eq!(lengths, (1..=8).collect());
+    // The same seed, the same configuration; and seeds differ.
+    assert_eq!(sample(&lamp(), 7), configs[7]);
+    assert_ne!(configs[7].to_toml(&lamp()), configs[8].to_toml(&lamp()));
+}
+
+#[test]
+fn mistakes_in_a_schema_are_found() {
+    assert_eq!(lamp().faults(), Vec::<String>::new());
+    let doc = "Something.";
+    let faulty = Schema {
+        device: "faulty",
+        keys: vec![
+            Key::integer("a", 0, 1..=2, doc),
+            Key::flag("a.b", false, doc),
+            Key::flag("Name", false, doc),
+            Key::flag("strict", false, doc),
+            Key::flag("twice", false, doc),
+            Key::flag("twice", false, doc).only_when("later", "true"),
+            Key::choice("later", "x", &["x", "y"], doc).only_when("twice", "maybe"),
+            Key::choice("mixed", "x", &["x", "1"], doc),
+        ],
+        check: |_, _| {},
+    };
+    assert_eq!(
+        faulty.faults(),
+        [
+            "`a` is both a key and a table",
+            "default of `a`: `a` = 0 is out of range",
+            "`Name` is not made of plain lower-case words",
+            "`strict` is a key of every device",
+            "`twice` is declared twice",
+            "`twice` depends on `later`, which is not declared before it",
+            "`later` depends on `twice` = maybe, which that can never be",
+            "`mixed` is a choice among integers and words",
+        ]
+    );
+    let refused =
+        Schema { check: |_, problems| problems.push("power", "too much", "less"), ..lamp() };
+    assert_eq!(refused.faults(), ["defaults: too much"]);
+}

@@ -1,0 +1,352 @@
+//! The datasheets of all configurations: well-formed, complete in themselves, usable without a pointer or colours, and
+//! true to the netlist, the manifest and the formula.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use crate::common::units::{configuration, configurations};
+use glint::emit::{Seal, is_sealed};
+use glint::flow::Unit;
+use glint::report::datasheet::{Datasheet, Proof, Subject, datasheet};
+use roxmltree::{Document, Node, ParsingOptions};
+use serde_json::Value;
+
+fn make(path: &str, unit: &Unit) -> Datasheet {
+    let record = fs::read_to_string(format!("proofs/{}.json", unit.config.name));
+    let proof = record.ok().map(|text| Proof::parse(&text, unit));
+    let subject = Subject {
+        unit,
+        path,
+        proof: proof.transpose().unwrap_or_else(|error| panic!("{path}: {error:?}")),
+        synthesis: None,
+    };
+    datasheet(&subject, &|| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"))
+}
+
+/// The pages are XML as well.
+fn parse(page: &str) -> Document<'_> {
+    let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
+    Document::parse_with_options(page, options).unwrap_or_else(|error| panic!("{error}"))
+}
+
+fn elements<'a>(document: &'a Document, name: &'a str) -> impl Iterator<Item = Node<'a, 'a>> {
+    let all = document.descendants();
+    all.filter(move |node| node.tag_name().name() == name)
+}
+
+fn text(node: Node) -> String {
+    let texts = node.descendants().filter(|node| node.is_text());
+    texts.filter_map(|node| node.text()).collect()
+}
+
+fn of_class<'a>(document: &'a Document, class: &'a str) -> impl Iterator<Item = Node<'a, 'a>> {
+    document.descendants().filter(move |node| {
+        let classes = node.attribute("class").unwrap_or_default();
+        classes.split(' ').any(|other| other == class)
+    })
+}
+
+#[test]
+fn every_configuration_has_its_page() {
+    for (path, unit) in configurations() {
+        let made = make(&path, &unit);
+        let document = parse(&made.page);
+        needs_nothing_else(&path, &made.page, &document);
+        is_accessible(&path, &document);
+        wires_are_clear(&path, &document);
+        has_the_blocks_of_the_netlist(&path, &document, &unit);
+        has_the_clocks_of_the_manifest(&path, &made.wavedrom, &unit);
+        has_every_word(&path, &document, &unit);
+        assert!(is_sealed(made.page.as_bytes(), Seal::Markup), "{path}");
+    }
+}
+
+fn needs_nothing_else(path: &str, page: &str, document: &Document) {
+    for load in ["http:", "https:", "url(", "@import", "file:"] {
+        assert!(!page.contains(load), "{path}: `{load}`");
+    }
+    for name in ["script", "link", "iframe", "object", "base"] {
+        assert_eq!(elements(document, name).count(), 0, "{path}: <{name}>");
+    }
+    for node in document.descendants() {
+        for attribute in node.attributes() {
+            let value = attribute.value();
+            match attribute.name() {
+                "src" => assert!(value.starts_with("data:image/png;"), "{path}: {value}"),
+                "href" => assert!(
+                    value.starts_with('#') || value.starts_with("data:application/json;"),
+                    "{path}: {value}"
+                ),
+                name => assert!(!name.starts_with("on"), "{path}: {name}"),
+            }
+        }
+    }
+}
+
+fn is_accessible(path: &str, document: &Document) {
+    let mut ids = BTreeSet::new();
+    for id in document.descendants().filter_map(|node| node.attribute("id")) {
+        assert!(ids.insert(id), "{path}: `{id}` twice");
+    }
+    for node in document.descendants() {
+        let references = ["aria-labelledby", "aria-describedby"];
+        let references = references.iter().filter_map(|&name| node.attribute(name));
+        for id in references.flat_map(|value| value.split(' ')) {
+            assert!(ids.contains(id), "{path}: no `{id}`");
+        }
+        if let Some(id) = node.attribute("href").and_then(|it| it.strip_prefix('#')) {
+            assert!(ids.contains(id), "{path}: no `{id}`");
+        }
+        if node.attribute("class") == Some("scroll") {
+            let usable = node.attribute("tabindex").is_some() && node.attribute("role").is_some();
+            assert!(usable && node.attribute("aria-label").is_some(), "{path}: a scroller");
+        }
+    }
+    for figure in elements(document, "figure") {
+        let has = |name| figure.descendants().any(|node| node.has_tag_name(name));
+        let named = |node: &Node| node.tag_name().name() == "figcaption";
+        assert!(figure.descendants().any(|node| named(&node)), "{path}: a figure without caption");
+        assert!(has("svg") || has("img"), "{path}: a figure without picture");
+    }
+    for picture in elements(document, "svg") {
+        let hidden = picture.attribute("aria-hidden") == Some("true");
+        let named = picture.attribute("role") == Some("img")
+            && picture.attribute("aria-labelledby").is_some();
+        assert!(hidden || named, "{path}: a picture without a name");
+    }
+    for heading in elements(document, "th") {
+        assert!(heading.attribute("scope").is_some(), "{path}: {}", text(heading));
+    }
+    // No level is left out.
+    let mut level = 0;
+    for node in document.descendants() {
+        if let Some(digit) = node.tag_name().name().strip_prefix('h')
+            && let Ok(found) = digit.parse::<u32>()
+        {
+            assert!(found <= level + 1, "{path}: h{found} after h{level}");
+            level = found;
+        }
+    }
+    assert_eq!(elements(document, "h1").count(), 1, "{path}");
+    let language = document.root_element().attribute("lang");
+    assert_eq!(language, Some("en"), "{path}");
+}
+
+fn diagram<'a>(document: &'a Document) -> Node<'a, 'a> {
+    let mut pictures = elements(document, "svg").filter(|svg| {
+        let label = svg.attribute("aria-labelledby").unwrap_or_default();
+        label.starts_with("block-diagram")
+    });
+    pictures.next().expect("a block diagram")
+}
+
+type Point = (i32, i32);
+
+/// The corners of a path of absolute lines.
+fn corners(path: &str) -> Vec<Point> {
+    let mut corners: Vec<Point> = Vec::new();
+    let (mut x, mut y) = (0, 0);
+    let mut rest = path.trim_end_matches('Z');
+    while let Some(command) = rest.chars().next() {
+        let end = rest[1..].find(|sign: char| sign.is_ascii_uppercase());
+        let end = end.map_or(rest.len(), |end| end + 1);
+        let mut numbers = rest[1..end].split(' ').map(|it| it.parse().expect("a number"));
+        let mut number = || numbers.next().expect("a number");
+        match command {
+            'H' => x = number(),
+            'V' => y = number(),
+            _ => (x, y) = (number(), number()),
+        }
+        corners.push((x, y));
+        rest = &rest[end..];
+    }
+    corners
+}
+
+/// No wire runs through a box or upon a wire of another net, and no box lies on another.
+fn wires_are_clear(path: &str, document: &Document) {
+    let mut boxes: Vec<(Point, Point)> = Vec::new();
+    let mut pieces: Vec<(usize, Point, Point)> = Vec::new();
+    let groups = diagram(document).children().filter(Node::is_element);
+    for (net, group) in groups.enumerate() {
+        let shape = |class: &str| {
+            let mut paths = group.children().filter(Node::is_element);
+            let found = paths.find(|node| {
+                let classes = node.attribute("class").unwrap_or_default();
+                classes.split(' ').next() == Some(class)
+            });
+            found.and_then(|node| node.attribute("d")).map(corners)
+        };
+        match group.attribute("class") {
+            Some("net") => {
+                let corners = shape("wire").expect("a wire");
+                let ends = corners.chunks(2);
+                pieces.extend(ends.map(|ends| (net, ends[0].min(ends[1]), ends[0].max(ends[1]))));
+            }
+            Some("block") => {
+                let corners = shape("box").expect("a box");
+                let low = |of: fn(&Point) -> i32| corners.iter().map(of).min().unwrap_or(0);
+                let high = |of: fn(&Point) -> i32| corners.iter().map(of).max().unwrap_or(0);
+                boxes.push(((low(|p| p.0), low(|p| p.1)), (high(|p| p.0), high(|p| p.1))));
+            }
+            _ => {}
+        }
+    }
+    assert!(boxes.len() > 5 && pieces.len() > 5, "{path}");
+    let clear = |a: (Point, Point), b: (Point, Point)| {
+        a.1.0 <= b.0.0 || b.1.0 <= a.0.0 || a.1.1 <= b.0.1 || b.1.1 <= a.0.1
+    };
+    for (at, &one) in boxes.iter().enumerate() {
+        for &other in &boxes[..at] {
+            assert!(clear(one, other), "{path}: {one:?} on {other:?}");
+        }
+        for &(_, from, to) in &pieces {
+            let through = from.0 < one.1.0 && one.0.0 < to.0 && one.0.1 < to.1 && from.1 < one.1.1;
+            assert!(!through, "{path}: {from:?} to {to:?} through {one:?}");
+        }
+    }
+    for (at, &(net, from, to)) in pieces.iter().enumerate() {
+        assert!(from.0 == to.0 || from.1 == to.1, "{path}: {from:?} to {to:?} is slanted");
+        for &(other, start, end) in &pieces[..at] {
+            let shared =
+                (to.0.min(end.0) - from.0.max(start.0), to.1.min(end.1) - from.1.max(start.1));
+            let upon = shared.0 >= 0 && shared.1 >= 0 && shared != (0, 0);
+            assert!(net == other || !upon, "{path}: {from:?} to {to:?} upon {start:?} to {end:?}");
+        }
+    }
+}
+
+/// The numbers that stand in the diagram.
+fn drawn(document: &Document) -> BTreeSet<u16> {
+    let texts = diagram(document).descendants().filter(|node| node.tag_name().name() == "text");
+    let numbers = texts.flat_map(|node| {
+        let text = text(node);
+        let class = node.attribute("class").unwrap_or_default();
+        let words = text.split(' ').map(str::to_owned);
+        // Control lines may be several; a block has its number before its name.
+        let count = match class {
+            "small" => usize::MAX,
+            "tick small" => 0,
+            _ => 1,
+        };
+        let numbers = words.map_while(|word| word.parse().ok()).take(count);
+        numbers.collect::<Vec<u16>>()
+    });
+    numbers.collect()
+}
+
+fn has_the_blocks_of_the_netlist(path: &str, document: &Document, unit: &Unit) {
+    let design = &unit.design;
+    let nets = design.nets.iter().filter_map(|net| net.block);
+    let roms = design.roms.iter().filter_map(|rom| rom.block);
+    let lines = design.control.fields.iter().flat_map(|field| field.lines.iter().copied());
+    let blocks: BTreeSet<u16> = nets.chain(roms).collect();
+    let known: BTreeSet<u16> = blocks.iter().copied().chain(lines).collect();
+    let drawn = drawn(document);
+    assert!(drawn.is_subset(&known), "{path}: {drawn:?}, {known:?}");
+    let missing: Vec<&u16> = blocks.difference(&drawn).collect();
+    assert!(missing.is_empty(), "{path}: not drawn: {missing:?}");
+}
+
+fn has_the_clocks_of_the_manifest(path: &str, wavedrom: &str, unit: &Unit) {
+    let name = &unit.config.name;
+    let manifest = fs::read_to_string(format!("rtl_out/{name}/{name}.json")).expect("a manifest");
+    let manifest: Value = serde_json::from_str(&manifest).expect("JSON");
+    let waves: Value = serde_json::from_str(wavedrom).expect("JSON");
+    let wave = |signal: &str| {
+        let lanes = waves["signal"].as_array().expect("signals");
+        let lane = lanes.iter().find(|lane| lane["name"] == signal);
+        let lane = lane.unwrap_or_else(|| panic!("{path}: no lane `{signal}`"));
+        lane["wave"].as_str().expect("a wave").to_owned()
+    };
+    assert!(wave("start").starts_with("10"), "{path}: {}", wave("start"));
+    assert!(wave("busy").starts_with("01"), "{path}: {}", wave("busy"));
+    for (signal, event) in [("valid", "start_to_valid"), ("done", "start_to_done")] {
+        // Beyond a gap places are no clocks.
+        let wave = wave(signal);
+        let shown = wave.split('|').next().and_then(|head| head.find('1'));
+        if let (Some(clock), Some(expected)) = (shown, manifest["timing"][event].as_u64()) {
+            assert_eq!(clock as u64, expected, "{path}: {signal}");
+        }
+    }
+}
+
+fn has_every_word(path: &str, document: &Document, unit: &Unit) {
+    let control = &unit.design.control;
+    let width = unit.design.width(unit.design.rom(control.rom).data);
+    let bits: String = of_class(document, "bit").map(text).collect();
+    let words = &unit.design.rom(control.rom).words;
+    let expected: String = words[..control.words.len()]
+        .iter()
+        .map(|word| format!("{word:0width$b}", width = width as usize))
+        .collect();
+    assert_eq!(bits, expected, "{path}");
+}
+
+#[test]
+fn the_same_bytes_twice() {
+    let path = "configs/quad_cosine.toml";
+    let unit = configuration(path);
+    let (first, second) = (make(path, &unit), make(path, &unit));
+    assert_eq!(first.page, second.page);
+    assert_eq!(first.wavedrom, second.wavedrom);
+}
+
+/// The worked example of a page: port, integer, value.
+fn example(path: &str) -> Vec<(String, i64, f64)> {
+    let unit = configuration(path);
+    let page = make(path, &unit).page;
+    let document = parse(&page);
+    let tables = elements(&document, "div");
+    let mut tables = tables.filter(|div| div.attribute("aria-label") == Some("A worked example"));
+    let table = tables.next().expect("a worked example");
+    let rows = table.descendants().filter(|node| node.tag_name().name() == "tr");
+    rows.skip(1)
+        .map(|row| {
+            let cells: Vec<String> = row.children().filter(Node::is_element).map(text).collect();
+            let integer = cells[1].parse().unwrap_or_else(|_| panic!("{path}: {cells:?}"));
+            let value = cells[2].parse().unwrap_or_else(|_| panic!("{path}: {cells:?}"));
+            (cells[0].clone(), integer, value)
+        })
+        .collect()
+}
+
+/// Outputs within a unit of colour times f, at the operands that the page shows; cosines have 20 fraction bits.
+fn agrees(path: &str, formula: impl Fn(&dyn Fn(&str) -> f64) -> f64) {
+    let rows = example(path);
+    let raw = |name: &str| {
+        let row = rows.iter().find(|row| row.0 == name);
+        row.unwrap_or_else(|| panic!("{path}: no `{name}`")).1 as f64
+    };
+    let f = formula(&raw);
+    assert!((0.1..0.9).contains(&f), "{path}: f = {f} shows nothing");
+    for colour in ["red", "green", "blue"] {
+        let (out, right) = (raw(&format!("{colour}_out")), raw(colour) * f);
+        assert!((out - right).abs() < 1.0, "{path}: {out} for {right}");
+    }
+    for (name, integer, value) in &rows {
+        let fraction = if name.starts_with("cos_") { 20 } else { 0 };
+        let right = *integer as f64 / f64::from(1 << fraction);
+        assert!((value - right).abs() < 1e-6, "{path}: {name}");
+    }
+}
+
+#[test]
+fn worked_examples_agree_with_the_formulas() {
+    const ONE: f64 = (1 << 20) as f64;
+    agrees("configs/cosine_power.toml", |raw| {
+        let (c, n) = (raw("cos_gamma") / ONE, raw("exponent"));
+        (n / 16.0 * (c - 1.0) + 1.0).max(0.0).powi(16)
+    });
+    agrees("configs/schlick.toml", |raw| {
+        let (c, n) = (raw("cos_gamma") / ONE, raw("exponent"));
+        c / (n - n * c + c)
+    });
+    agrees("configs/blinn.toml", |raw| (raw("cos_gamma") / ONE).powf(raw("exponent")));
+    agrees("configs/rough.toml", |raw| {
+        let (gamma, deviation) = (raw("cos_gamma") / ONE, raw("cos_dgamma") / ONE);
+        let sign = if raw("dgamma_negative") == 1.0 { -1.0 } else { 1.0 };
+        let c = (gamma.acos() + sign * deviation.acos()).cos();
+        (raw("exponent") / 2.0 * (c - 1.0) + 1.0).max(0.0).powi(2)
+    });
+}

@@ -1,0 +1,26 @@
+//! The quick tests: everything that needs no tool but Glint, under two minutes on two cores.
+//!
+//! What runs simulators, synthesis, provers or Python is in `tests/tools`.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod accuracy;
+mod analogues;
+mod cli;
+mod combinations;
+mod config_device;
+mod config_fuzz;
+mod config_problems;
+mod config_text;
+mod datasheet;
+mod diagnostics;
+mod divider;
+mod lines;
+mod pages;
+mod proofs;
+mod rough_microprogram;
+mod shared_products;
+mod streams;
+
+use cli::{place, refusals};

@@ -1,0 +1,82 @@
+//! The pages of the devices, `docs/devices/`: one for the default configuration of each, as Glint
+//! writes it today.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use crate::common::units::configuration;
+use glint::registry::Registry;
+
+/// The modules of the default configurations.
+fn names() -> Vec<String> {
+    let catalogue = Registry::catalogue();
+    let devices = catalogue.devices().iter();
+    devices.map(|device| device.name.replace('-', "_")).collect()
+}
+
+#[test]
+fn every_device_has_its_page() {
+    let readme = fs::read_to_string("README.md").expect("README.md");
+    for name in names() {
+        let (config, file) = (format!("configs/{name}.toml"), format!("docs/devices/{name}.md"));
+        let today = configuration(&config)
+            .page(&config)
+            .unwrap_or_else(|error| panic!("{config}: {error:?}"));
+        let found = fs::read_to_string(&file).unwrap_or_default();
+        assert!(
+            found == today,
+            "{file} is not what Glint writes today; cargo run --release -- describe {config} --out docs/devices"
+        );
+        assert!(readme.contains(&file), "README.md does not lead to {file}");
+    }
+}
+
+#[test]
+fn there_are_no_other_pages() {
+    let found: BTreeSet<String> = fs::read_dir("docs/devices")
+        .expect("docs/devices/")
+        .map(|entry| entry.expect("an entry").file_name())
+        .map(|name| name.to_string_lossy().into_owned())
+        .collect();
+    let wanted: BTreeSet<String> = names().into_iter().map(|name| format!("{name}.md")).collect();
+    assert_eq!(found, wanted);
+}
+
+/// The cells of the rows of a page's table that begin with a number, from the heading on.
+fn rows(page: &str, heading: &str) -> Vec<Vec<String>> {
+    let section = page.split(&format!("\n## {heading}\n")).nth(1).expect("a heading");
+    let section = section.split("\n## ").next().expect("a section");
+    let rows = section.lines().map(|line| {
+        let cells = line.trim_matches('|').split('|');
+        cells.map(|cell| cell.trim().to_owned()).collect()
+    });
+    rows.filter(|cells: &Vec<String>| cells[0].parse::<u32>().is_ok()).collect()
+}
+
+#[test]
+fn the_page_of_rough_reads_as_the_patent() {
+    let page = configuration("configs/rough.toml").page("configs/rough.toml").expect("a page");
+    // Table 1 of UA 60139: V1 ... V9.
+    let table = [
+        "000000001",
+        "000110001",
+        "011000001",
+        "011001001",
+        "101000001",
+        "101000101",
+        "111000001",
+        "111000101",
+        "101000011",
+        "000000000",
+    ];
+    let words: Vec<String> = rows(&page, "Microprogram")
+        .iter()
+        .map(|cells| cells[1..9].concat().replace(' ', ""))
+        .collect();
+    assert_eq!(words, table);
+    // The blocks of its figure 1 that are registers, muxes, adders, multipliers or the sine's ROM.
+    let numbers: Vec<u32> =
+        rows(&page, "Blocks").iter().map(|cells| cells[0].parse().expect("a number")).collect();
+    let figure: Vec<u32> = (1..=22).chain([31]).collect();
+    assert_eq!(numbers, figure);
+}

@@ -1,0 +1,113 @@
+//! A run is divided into streams; what it finds depends on its seed and its points alone, and what
+//! differs can be had again, with a waveform.
+
+use std::fs::File;
+use std::io::BufReader;
+
+use crate::common::units::configurations;
+use glint::cosim::{Lockstep, Outcome};
+use glint::flow::Unit;
+use glint::netlist::Design;
+
+/// Enough for streams of many lanes and several simulators.
+const POINTS: u64 = 70_000;
+
+fn unit(name: &str) -> Unit {
+    let found = configurations().into_iter();
+    let found = found.map(|(_, unit)| unit);
+    let named = |unit: &Unit| unit.config.name == name;
+    found.into_iter().find(named).expect("a configuration")
+}
+
+fn lockstep<'a>(unit: &'a Unit, design: &'a Design, seed: u64) -> Lockstep<'a> {
+    let model = (unit.device.model)(&unit.config);
+    Lockstep::new(design, model, unit.contract.as_ref(), seed).expect("they fit")
+}
+
+fn run(unit: &Unit, design: &Design, points: u64, threads: usize) -> Outcome {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+    let pool = pool.build().expect("threads");
+    let lockstep = lockstep(unit, design, 5);
+    pool.install(|| lockstep.run(points, &|_| ())).expect("it can be simulated")
+}
+
+/// A word of the sine that is seldom read is off by one.
+fn rarely_wrong(unit: &Unit) -> Design {
+    let mut design = unit.design.clone();
+    let sine = design.roms.iter_mut().find(|rom| rom.name.contains("sine"));
+    // Low bits may be of a slope that is not used; this one is of the sine itself.
+    sine.expect("a sine").words[550] ^= 1 << 20;
+    design
+}
+
+#[test]
+fn threads_have_no_influence() {
+    let unit = unit("rough");
+    let one = run(&unit, &unit.design, POINTS, 1);
+    let three = run(&unit, &unit.design, POINTS, 3);
+    assert_eq!((one.points, one.mismatch.is_none()), (POINTS, true));
+    assert_eq!(one.clocks, three.clocks);
+    assert_eq!(one.worst, three.worst);
+
+    let wrong = rarely_wrong(&unit);
+    let one = run(&unit, &wrong, POINTS, 1);
+    let three = run(&unit, &wrong, POINTS, 3);
+    assert!(one.mismatch.is_some(), "it is never read");
+    assert_eq!(one.mismatch, three.mismatch);
+    assert_eq!((one.points, one.clocks), (three.points, three.clocks));
+    assert_eq!(one.worst, three.worst);
+}
+
+#[test]
+fn every_point_is_counted() {
+    let unit = unit("rough");
+    // One stream, a few lanes, lanes that do not fill two simulators, and many.
+    for points in [1, 511, 515, 3_000, 4_096, 5_001] {
+        assert_eq!(run(&unit, &unit.design, points, 2).points, points);
+    }
+}
+
+#[test]
+fn what_differs_can_be_had_again_with_its_waveform() {
+    let unit = unit("rough");
+    let wrong = rarely_wrong(&unit);
+    let found = run(&unit, &wrong, POINTS, 2).mismatch.expect("it differs");
+    let place = tempfile::tempdir().expect("a directory");
+    let path = place.path().join("window.vcd");
+    let file = File::create(&path).expect("a file");
+    let from = found.clock.saturating_sub(10);
+    let again =
+        lockstep(&unit, &wrong, found.seed).trace(u64::MAX, from, file).expect("it can be traced");
+    assert_eq!(again.mismatch.as_ref(), Some(&found));
+    assert_eq!(again.clocks, found.clock);
+
+    // The signal ends with what was simulated, and ten clocks of two edges were written.
+    let mut parser = vcd::Parser::new(BufReader::new(File::open(&path).expect("a file")));
+    let header = parser.parse_header().expect("a header");
+    let scope = header.items.iter().find_map(|item| match item {
+        vcd::ScopeItem::Scope(scope) => Some(scope),
+        _ => None,
+    });
+    let signal = code(scope.expect("the design"), &found.signal).expect("the signal");
+    let (mut last, mut times) = (None, 0);
+    for command in parser {
+        match command.expect("a command") {
+            vcd::Command::ChangeVector(id, bits) if id == signal => {
+                let bit = |all: u64, bit: &vcd::Value| all << 1 | u64::from(*bit == vcd::Value::V1);
+                last = Some(bits.iter().fold(0, bit));
+            }
+            vcd::Command::Timestamp(_) => times += 1,
+            _ => {}
+        }
+    }
+    assert_eq!(last, Some(found.simulated));
+    assert!(times >= 20, "{times}");
+}
+
+fn code(scope: &vcd::Scope, name: &str) -> Option<vcd::IdCode> {
+    scope.children.iter().find_map(|item| match item {
+        vcd::ScopeItem::Var(var) if var.reference == name => Some(var.code),
+        vcd::ScopeItem::Scope(inner) => code(inner, name),
+        _ => None,
+    })
+}

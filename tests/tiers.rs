@@ -1,0 +1,12 @@
+//! Says which tests a run of `cargo test` leaves out.
+
+fn main() {
+    if cfg!(feature = "outside-tools") {
+        println!("all tests: those that need no tool but Glint, and those that run outside tools");
+    } else {
+        println!(
+            "LEFT OUT: the tests that run simulators, synthesis, provers and Python. \
+             `bash tools/test` installs the tools and runs every test."
+        );
+    }
+}

@@ -1,0 +1,152 @@
+//! The hand-written competitor computes what the device `rough` is defined to compute: a smaller
+//! circuit that computes something else would be no measure.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+use crate::common::tools;
+use glint::cosim::external::Simulator;
+
+const COSINE: u32 = 17;
+const ONE: u64 = 1 << COSINE;
+const INTENSITY: u32 = 16;
+const POINTS: usize = 20_000;
+
+struct Point {
+    cos_gamma: u64,
+    cos_dgamma: u64,
+    exponent: u64,
+    dgamma_negative: bool,
+    colours: [u64; 3],
+}
+
+/// √(1 − x²) in the middle of the bucket of x, to the nearest 2⁻¹⁷, in integers throughout.
+fn sine_of_bucket(bucket: u64) -> i64 {
+    // x = (2·bucket + 1)·2⁻¹¹, so (2·2¹⁷·sine)² = 4·2³⁴·(2²² − (2·bucket + 1)²)·2⁻²².
+    let square = ((4u128 << 34) * ((1 << 22) - u128::from(2 * bucket + 1).pow(2))) >> 22;
+    (square.isqrt() as i64 + 1) / 2
+}
+
+fn sine(x: u64) -> i64 {
+    sine_of_bucket(if x == ONE { 1023 } else { x >> 7 }).min(ONE as i64 - 1)
+}
+
+/// The definition of `rough`, step by step in integers.
+fn expected(point: &Point) -> [u64; 3] {
+    let (c, d) = (point.cos_gamma.min(ONE), point.cos_dgamma.min(ONE));
+    let cos_cos = (c * d) as i64 >> COSINE;
+    let sin_sin = (sine(d) * sine(c)) >> COSINE;
+    let cosine = if point.dgamma_negative { cos_cos + sin_sin } else { cos_cos - sin_sin };
+    let gate = |value: i64| {
+        let limit = 1 << INTENSITY;
+        if c == 0 { -limit } else { value.clamp(-limit, limit - 1) }
+    };
+    // n/2 has one fraction bit, so the product has 18.
+    let line = gate(((cosine - ONE as i64) * point.exponent as i64) >> (COSINE + 1 - INTENSITY));
+    let base = line + (1 << INTENSITY);
+    let f = (gate((base * base) >> INTENSITY) & ((1 << INTENSITY) - 1)) as u64;
+    point.colours.map(|colour| (f * colour + (1 << (INTENSITY - 1))) >> INTENSITY)
+}
+
+/// Numerical Recipes' 64-bit generator: the same points everywhere.
+fn random(state: &mut u64) -> u64 {
+    *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+    *state >> 33
+}
+
+fn points() -> Vec<Point> {
+    let corners = [0, 1, 127, 128, ONE / 2, ONE - 129, ONE - 1, ONE, ONE + 1, 2 * ONE - 1];
+    let mut state = 1;
+    let mut points = Vec::new();
+    for cos_gamma in corners {
+        for cos_dgamma in corners {
+            for exponent in [0, 1, 2, 3, 511, 512, 1000, 1023] {
+                for dgamma_negative in [false, true] {
+                    let colours = [255, 1, 128];
+                    points.push(Point {
+                        cos_gamma,
+                        cos_dgamma,
+                        exponent,
+                        dgamma_negative,
+                        colours,
+                    });
+                }
+            }
+        }
+    }
+    while points.len() < POINTS {
+        // Highlights live near 1.0: half of the points have an angle of a few degrees there.
+        let mut near_one = |bits: u32| ONE - (random(&mut state) % (1 << bits)).min(ONE);
+        let (cos_gamma, cos_dgamma) = match points.len() % 4 {
+            0 => (near_one(18), near_one(18)),
+            1 => (near_one(13), near_one(14)),
+            2 => (near_one(9), near_one(9)),
+            _ => (near_one(17), ONE),
+        };
+        let exponent = random(&mut state) % (1 << (1 + random(&mut state) % 10));
+        let dgamma_negative = random(&mut state) & 1 == 1;
+        let colours = [0; 3].map(|_| random(&mut state) % 256);
+        points.push(Point { cos_gamma, cos_dgamma, exponent, dgamma_negative, colours });
+    }
+    points
+}
+
+fn baseline(name: &str) -> (String, String) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("benches/baseline").join(name);
+    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path:?}: {error}"));
+    (name.to_owned(), text)
+}
+
+#[test]
+fn the_hand_written_core_computes_what_rough_does() {
+    let points = points();
+    let mut lines = String::new();
+    for point in &points {
+        let mut word = u128::from(point.cos_gamma);
+        let mut append = |value: u64, bits: u32| word = word << bits | u128::from(value);
+        append(point.cos_dgamma, 18);
+        append(point.exponent, 10);
+        append(point.dgamma_negative.into(), 1);
+        point.colours.iter().chain(&expected(point)).for_each(|colour| append(*colour, 8));
+        writeln!(lines, "{word:024x}").expect("a string");
+    }
+    let (name, bench) = baseline("rough_hand_tb.v");
+    let bench = bench.replace("POINTS = 1;", &format!("POINTS = {};", points.len()));
+    let (_, core) = baseline("rough_hand.v");
+    let held = core.replace("HELD_OPERANDS = 0", "HELD_OPERANDS = 1");
+    assert_ne!(core, held);
+    for core in [core, held] {
+        let files = [
+            ("rough_hand.v".to_owned(), core),
+            baseline("rough_hand_sine.mem"),
+            (name.clone(), bench.clone()),
+            ("rough_hand_points.mem".to_owned(), lines.clone()),
+        ];
+        let outcome = tools::assert_bench_passes(Simulator::Icarus, &files, "rough_hand_tb");
+        let verdict = format!("PASS: {POINTS} points");
+        assert!(outcome.transcript.contains(&verdict), "{}", outcome.transcript);
+    }
+    // The comparison is worth something only if the points are neither all dark nor all bright.
+    let lit = points.iter().filter(|point| (1..=254).contains(&expected(point)[0])).count();
+    assert!(lit > POINTS / 10, "{lit} of {POINTS} points are neither dark nor full");
+}
+
+#[test]
+fn its_sine_table_is_the_sine() {
+    let (_, text) = baseline("rough_hand_sine.mem");
+    let lines = text.lines().filter(|line| !line.starts_with("//"));
+    let words: Vec<i64> = lines.map(|line| i64::from_str_radix(line, 16).unwrap()).collect();
+    let wanted: Vec<i64> = (0..1024).map(|at| sine_of_bucket(at).min(ONE as i64 - 1)).collect();
+    assert_eq!(words, wanted);
+}
+
+#[test]
+fn it_is_clean() {
+    let place = tempfile::tempdir().unwrap();
+    for name in ["rough_hand.v", "rough_hand_sine.mem"] {
+        let (name, text) = baseline(name);
+        fs::write(place.path().join(name), text).unwrap();
+    }
+    tools::assert_lint_clean(place.path(), "rough_hand");
+}

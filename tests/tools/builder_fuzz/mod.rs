@@ -1,0 +1,91 @@
+//! Whatever is asked of the builder, it answers with a design that can be simulated and written, or with
+//! diagnostics that have a place; and what it accepts, the tools accept.
+
+mod build;
+
+use std::panic::Location;
+
+use crate::common::tools::{assert_lint_clean, yosys};
+use crate::common::units::{Files, write};
+use build::{Call, build, calls};
+use glint::emit::{EmitInputs, emit};
+use glint::netlist::Design;
+use glint::sim::Simulator;
+use proptest::prelude::*;
+use proptest::strategy::ValueTree;
+use proptest::test_runner::TestRunner;
+
+/// Designs that outside tools see.
+const OUTSIDE: usize = 40;
+
+/// Emits and simulates a design for some clocks.
+fn answer(design: &Design) -> Result<Files, TestCaseError> {
+    let files = emit(design, &EmitInputs::default());
+    let files = files.map_err(|error| TestCaseError::fail(format!("{error:?}\n{design}")))?;
+    let simulator = Simulator::<1>::new(design);
+    let mut simulator =
+        simulator.map_err(|error| TestCaseError::fail(format!("{error:?}\n{design}")))?;
+    for clock in 0..8 {
+        for input in 0..simulator.inputs().len() {
+            simulator.set(input, u64::from(clock > 0));
+        }
+        let settles = simulator.clock();
+        prop_assert!(settles.is_ok(), "{design}");
+    }
+    let plain = files.into_iter().filter_map(|file| {
+        let name = file.path.rsplit('/').next()?.to_owned();
+        let needed = name.ends_with(".v") || name.ends_with(".mem");
+        needed.then_some((name, file.contents))
+    });
+    Ok(plain.collect())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: crate::common::cases(3000),
+        failure_persistence: None,
+        ..ProptestConfig::default()
+    })]
+
+    #[test]
+    fn whatever_is_described_is_answered(calls in calls(true)) {
+        match build(&calls) {
+            Ok(design) => {
+                answer(&design)?;
+            }
+            Err(diagnostics) => {
+                let here = |place: &Location| place.file().starts_with("tests/");
+                let placed = diagnostics.0.iter().any(|found| here(found.location));
+                prop_assert!(placed, "{diagnostics}");
+                for diagnostic in &diagnostics.0 {
+                    prop_assert!(!diagnostic.message.is_empty());
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_right_is_accepted(calls in calls(false)) {
+        match build(&calls) {
+            Ok(design) => {
+                answer(&design)?;
+            }
+            Err(diagnostics) => prop_assert!(false, "{diagnostics}"),
+        }
+    }
+}
+
+#[test]
+fn what_is_accepted_the_tools_accept() {
+    let mut runner = TestRunner::deterministic();
+    for _ in 0..OUTSIDE {
+        let mut drawn: Vec<Call> = calls(false).new_tree(&mut runner).expect("calls").current();
+        drawn.retain(|call| !call.may_be_known());
+        let design = build(&drawn).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
+        let files = answer(&design).unwrap_or_else(|error| panic!("{error}"));
+        let place = tempfile::tempdir().expect("a directory");
+        write(place.path(), &files);
+        assert_lint_clean(place.path(), &design.name);
+        yosys(place.path(), "read_verilog *.v; hierarchy -top fuzz -check; proc; check -assert");
+    }
+}

@@ -1,0 +1,149 @@
+//! The benches in Python: every one passes, and each of their tests notices a fault.
+//!
+//! cocotb 2.1 refuses Verilator 5.006, so that they run under Icarus Verilog.
+
+use std::fs;
+use std::path::Path;
+
+use crate::common::bench::with_flipped_bit;
+use crate::common::tools::{LIMIT, tool};
+use crate::common::units::{Emitted, configuration, configurations};
+use glint::cosim::external::Run;
+use glint::emit;
+use glint::flow::Unit;
+use rayon::prelude::*;
+
+const EXACT: &str = "computations_are_exact";
+const IGNORED: &str = "writes_and_starts_while_busy_are_ignored";
+const HELD: &str = "held_start_repeats";
+const RESET: &str = "reset_ends_a_computation";
+const FORMULA: &str = "formula_holds_at_random_points";
+
+#[test]
+fn every_bench_passes() {
+    configurations().par_iter().for_each(|(path, unit)| {
+        let place = place(unit);
+        let run = run(place.path(), &unit.config.name);
+        let tests = [EXACT, IGNORED, HELD, RESET, FORMULA, "worked_example"];
+        let passed = tests.map(|test| run.output.contains(&format!("{test} passed")));
+        let says = format!("PASS {}: 6 tests, 0 failed", unit.config.name);
+        assert!(
+            run.status.success() && passed == [true; 6] && run.output.contains(&says),
+            "{path}:\n{}",
+            run.output
+        );
+    });
+}
+
+/// A fault: in which file of which configuration, what stands there, what stands there instead, and a test
+/// that notices.
+type Fault = (&'static str, &'static str, &'static str, &'static str, &'static str);
+
+const FAULTS: [Fault; 14] = [
+    // The handshake: late, early, forgotten.
+    (
+        "rough",
+        "_control.v",
+        "assign valid = valid_word;",
+        "reg late; always @(posedge clk) late <= valid_word; assign valid = late;",
+        EXACT,
+    ),
+    ("rough", "_control.v", "done = run &", "done = valid_word & run &", EXACT),
+    ("rough", "_control.v", "assign busy = run;", "assign busy = run & ~done;", HELD),
+    ("rough", "_control.v", "run ? go_on : start", "go_on | start", IGNORED),
+    ("rough", "_control.v", "run <= 1'b0;", "run <= run;", RESET),
+    ("schlick", "_control.v", "word_address <= 2'd0;", "word_address <= word_address;", RESET),
+    // Operands that are taken while busy.
+    ("rough", "_datapath.v", "exponent_write & idle", "exponent_write", IGNORED),
+    ("quad_cosine", "_datapath.v", "length_write & idle", "length_write", IGNORED),
+    // Loops that end a turn early or late.
+    ("lyon", "_datapath.v", "more_shifts = |remaining;", "more_shifts = remaining > 4'd1;", EXACT),
+    ("quad_cosine", "_datapath.v", "more = intervals > 12'd1;", "more = |intervals;", EXACT),
+    ("quad_cosine", "_control.v", "valid_in_1 <= angle_load;", "valid_in_1 <= run;", HELD),
+    // A manifest that says something else than the core does.
+    ("rough", ".json", "\"start_to_done\": 10", "\"start_to_done\": 11", EXACT),
+    ("rough", ".json", "max(exponent / 2", "max(exponent / 3", FORMULA),
+    ("threshold", ".json", "levels[int(exponent)]", "0.25 + levels[int(exponent)]", FORMULA),
+];
+
+#[test]
+fn every_test_notices_a_fault() {
+    FAULTS.par_iter().for_each(|(name, file, right, wrong, test)| {
+        let unit = configuration(&format!("configs/{name}.toml"));
+        let place = place(&unit);
+        let path = place.path().join(format!("rtl_out/{name}/{name}{file}"));
+        let text = fs::read_to_string(&path).expect("a file");
+        assert!(text.contains(right), "`{right}` is not in {name}{file}");
+        fs::write(&path, text.replace(right, wrong)).expect("written");
+        assert_noticed(place.path(), name, test, &format!("`{wrong}` in {file}"));
+    });
+}
+
+/// A bit of a word that is read often; a seldom read one is for the co-simulation to find.
+#[test]
+fn wrong_memories_are_noticed() {
+    let faults = [
+        ("rough", "control", 5, 2),
+        ("quad_cosine", "cosine", 0, 9),
+        ("quadratic", "coefficient", 1, 17),
+        ("threshold", "levels", 1, 14),
+    ];
+    faults.par_iter().for_each(|&(name, rom, word, bit)| {
+        let wrong = |text: &str| with_flipped_bit(text, word, bit);
+        memory_is_noticed(name, rom, wrong);
+    });
+}
+
+#[test]
+fn wrong_order_of_words_is_noticed() {
+    [3, 5, 8].into_par_iter().for_each(|word| {
+        memory_is_noticed("rough", "control", |text| {
+            let mut lines: Vec<&str> = text.lines().collect();
+            let first = lines.iter().position(|line| !line.starts_with("//"));
+            let first = first.expect("words") + word;
+            lines.swap(first, first + 1);
+            lines.join("\n")
+        });
+    });
+}
+
+fn memory_is_noticed(name: &str, rom: &str, wrong: impl Fn(&str) -> String) {
+    let place = place(&configuration(&format!("configs/{name}.toml")));
+    let file = format!("rtl_out/{name}/{name}_{rom}.mem");
+    let text = fs::read_to_string(place.path().join(&file)).expect("a memory");
+    fs::write(place.path().join(&file), wrong(&text)).expect("written");
+    assert_noticed(place.path(), name, EXACT, &file);
+}
+
+/// The files of a configuration where the bench expects them.
+fn place(unit: &Unit) -> tempfile::TempDir {
+    let place = tempfile::tempdir().expect("a directory");
+    let emitted = Emitted::new(unit, 1, 1);
+    for file in emitted.files.iter().chain([&emit::driver()]) {
+        let path = place.path().join(&file.path);
+        fs::create_dir_all(path.parent().expect("a directory")).expect("a directory");
+        fs::write(path, &file.contents).expect("written");
+    }
+    place
+}
+
+/// Runs the command that the head of the bench gives.
+fn run(place: &Path, name: &str) -> Run {
+    let bench = format!("testbench/{name}/test_{name}.py");
+    let text = fs::read_to_string(place.join(&bench)).expect("a bench");
+    assert!(text.contains(&format!("    $ python {bench}\n")), "{text}");
+    tool("python").run([bench], place, LIMIT).unwrap_or_else(|error| panic!("{error:#}"))
+}
+
+fn assert_noticed(place: &Path, name: &str, test: &str, what: &str) {
+    let run = run(place, name);
+    let says = |word: &str| run.output.lines().any(|line| line.starts_with(word));
+    assert!(
+        !run.status.success()
+            && says(&format!("FAIL {name}: 6 tests"))
+            && !says("PASS")
+            && run.output.contains(&format!("{test} failed")),
+        "{test} does not notice {what} in {name}:\n{}",
+        run.output
+    );
+}

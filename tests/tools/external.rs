@@ -1,0 +1,119 @@
+//! Real simulators and synthesis, with a small bench that is right, wrong, or endless.
+
+use std::fs;
+use std::time::Duration;
+
+use crate::common::tools;
+use glint::cosim::external::{Simulator, run_bench};
+
+const COUNTER: &str = "\
+`default_nettype none
+module counter (
+    input  wire       clk,
+    input  wire       rst_n,
+    output reg  [3:0] count
+);
+    always @(posedge clk)
+        if (!rst_n) count <= 4'd0;
+        else        count <= count + 4'd1;
+endmodule
+`default_nettype wire
+";
+
+/// Counts five clocks and compares with `expected`; `wait` may be a wait without end.
+fn bench(expected: &str, wait: &str) -> Vec<(String, String)> {
+    let bench = format!(
+        "module tb;
+    reg clk = 0;
+    reg rst_n = 0;
+    wire [3:0] count;
+    counter dut (.clk(clk), .rst_n(rst_n), .count(count));
+    always #5 clk = ~clk;
+    initial begin
+        @(negedge clk) rst_n = 1;
+        repeat (5) @(negedge clk);
+        {wait}
+        if (count === {expected}) $display(\"PASS: 5 clocks\");
+        else begin
+            $display(\"FAIL: count is %0d\", count);
+            $fatal(1, \"mismatch\");
+        end
+        $finish;
+    end
+endmodule
+"
+    );
+    vec![("counter.v".into(), COUNTER.into()), ("tb.v".into(), bench)]
+}
+
+const BOTH: [Simulator; 2] = [Simulator::Icarus, Simulator::Verilator];
+
+#[test]
+fn a_right_bench_passes() {
+    for simulator in BOTH {
+        let outcome = tools::assert_bench_passes(simulator, &bench("4'd5", ""), "tb");
+        assert!(outcome.transcript.starts_with("PASS: 5 clocks\n"), "{}", outcome.transcript);
+    }
+}
+
+#[test]
+fn a_wrong_bench_fails() {
+    for simulator in BOTH {
+        let outcome = run_bench(simulator, &bench("4'd6", ""), "tb", tools::LIMIT).unwrap();
+        assert!(!outcome.passed);
+        assert!(outcome.transcript.contains("FAIL: count is 5"), "{}", outcome.transcript);
+    }
+}
+
+#[test]
+fn an_endless_bench_is_killed() {
+    let limit = Duration::from_secs(2);
+    let endless = bench("4'd5", "forever @(negedge clk);");
+    let error = run_bench(Simulator::Icarus, &endless, "tb", limit).unwrap_err();
+    assert!(format!("{error:#}").contains("`vvp` did not end within"), "{error:#}");
+}
+
+#[test]
+fn bad_verilog_is_quoted() {
+    for simulator in BOTH {
+        let error = run_bench(simulator, &bench("nothing", ""), "tb", tools::LIMIT).unwrap_err();
+        let text = format!("{error:#}");
+        assert!(text.contains("tb.v:11") && text.contains("nothing"), "{text}");
+    }
+}
+
+#[test]
+fn lint_tells_clean_from_dubious() {
+    let place = tempfile::tempdir().unwrap();
+    let write = |text: &str| fs::write(place.path().join("counter.v"), text).unwrap();
+    write(COUNTER);
+    tools::assert_lint_clean(place.path(), "counter");
+    write(&COUNTER.replace("4'd1", "5'd1"));
+    let lint = || tools::assert_lint_clean(place.path(), "counter");
+    assert!(std::panic::catch_unwind(lint).is_err(), "a width mismatch went through");
+}
+
+#[test]
+fn yosys_synthesises_and_refuses_latches() {
+    let place = tempfile::tempdir().unwrap();
+    let write = |text: &str| fs::write(place.path().join("counter.v"), text).unwrap();
+    write(COUNTER);
+    let protocol = tools::yosys(place.path(), "read_verilog counter.v; synth_ice40 -top counter");
+    assert!(protocol.contains("SB_DFF"), "{protocol}");
+    let latch =
+        COUNTER.replace("posedge clk", "*").replace("else        count <= count + 4'd1;", "");
+    write(&latch);
+    let commands = "read_verilog counter.v; proc; select -assert-none t:$dlatch";
+    let check = || tools::yosys(place.path(), commands);
+    let panic = std::panic::catch_unwind(check).expect_err("a latch went through");
+    let text = panic.downcast_ref::<String>().expect("a message");
+    assert!(text.contains("t:$dlatch") && text.contains("count"), "{text}");
+}
+
+#[test]
+fn every_tool_of_the_install_script_answers() {
+    for name in ["iverilog", "vvp", "verilator", "yosys", "nextpnr-ice40", "fusesoc"] {
+        let version = tools::tool(name).version().unwrap_or_else(|error| panic!("{error:#}"));
+        assert!(version.contains(|c: char| c.is_ascii_digit()), "{name}: {version}");
+    }
+}

@@ -1,0 +1,124 @@
+//! Formal proof of the handshake: for every configuration the emitted properties are proved by
+//! k-induction, from any state and for all inputs; and faults in the emitted text break the proof.
+//!
+//! The tasks for SymbiYosys have the same commands and the same depth; it is no part of the tools here.
+
+use std::fs;
+
+use crate::common::bench::with_flipped_bit;
+use crate::common::tools::LIMIT;
+use crate::common::units::{Emitted, configuration, configurations, write};
+use glint::cosim::external::prove;
+use rayon::prelude::*;
+
+#[test]
+fn every_configuration_is_proved() {
+    configurations().par_iter().for_each(|(path, unit)| {
+        let (place, name) = emitted(unit);
+        prove(place.path(), &name, LIMIT).unwrap_or_else(|error| panic!("{path}: {error:#}"));
+    });
+}
+
+/// A fault, and the file of which it is: what stands there, and what stands there instead.
+type Fault = (&'static str, &'static str, &'static str);
+
+/// Of every device, whatever its words.
+const OF_ALL: [Fault; 9] = [
+    // A start that is not remembered, and one that is taken while busy.
+    ("_control.v", "run ? go_on : start", "run ? go_on : 1'b0"),
+    ("_control.v", "run ? go_on : start", "go_on | start"),
+    // The initial set leaves the word, or the run, as it was.
+    (
+        "_control.v",
+        "        if (!rst_n) begin\n            word_address",
+        "        if (1'b0) begin\n            word_address",
+    ),
+    ("_control.v", "run <= 1'b0;", "run <= run;"),
+    // A word that is not there.
+    ("_control.v", "following_word = word_address + ", "following_word = word_address - "),
+    // A handshake that says something else.
+    ("_control.v", "assign busy = run;", "assign busy = run | start;"),
+    ("_control.v", "done = run & last_word", "done = run | last_word"),
+    // Operands can be written at any time.
+    ("_datapath.v", "exponent_write & idle", "exponent_write"),
+    ("_datapath.v", "exponent_write & idle", "exponent_write | idle"),
+];
+
+/// Of a device whose loops turn as often as an operand says.
+const OF_LYON: [Fault; 4] = [
+    // A result that is shown while idle.
+    ("_control.v", "assign valid = valid_word;", "assign valid = valid_word | ~run;"),
+    // Loops without end: a counter that stands, one that goes past its end, one that is loaded again.
+    ("_datapath.v", "remaining_less_one = remaining - 4'd1", "remaining_less_one = remaining"),
+    ("_datapath.v", "more_shifts = |remaining;", "more_shifts = 1'b1;"),
+    ("_datapath.v", "remaining_next = remaining_load ?", "remaining_next = 1'b1 ?"),
+];
+
+/// Of a device that walks a line.
+const OF_QUAD_COSINE: [Fault; 6] = [
+    // Results that come late, stop early, or begin before there is one.
+    (
+        "_control.v",
+        "assign valid = valid_in_0;",
+        "reg late; always @(posedge clk) late <= valid_in_0; assign valid = late;",
+    ),
+    ("_control.v", "valid_in_1 <= angle_load;", "valid_in_1 <= angle_load & ~loop_back;"),
+    ("_control.v", "valid_in_0 <= valid_in_1;", "valid_in_0 <= angle_load;"),
+    // Those of the line before are left over.
+    ("_control.v", "valid_in_0 <= 1'b0;", "valid_in_0 <= valid_in_1;"),
+    // Lines without end.
+    (
+        "_datapath.v",
+        "intervals_less_one = intervals - 12'd1",
+        "intervals_less_one = intervals + 12'd1",
+    ),
+    ("_datapath.v", "more = intervals > 12'd1;", "more = 1'b1;"),
+];
+
+#[test]
+fn faults_break_the_proof() {
+    let faults = |config, faults: &'static [Fault]| faults.iter().map(move |fault| (config, fault));
+    let faults: Vec<(&str, &Fault)> = faults("rough", &OF_ALL)
+        .chain(faults("lyon", &OF_ALL[..7]))
+        .chain(faults("quad_cosine", &OF_ALL))
+        .chain(faults("lyon", &OF_LYON))
+        .chain(faults("quad_cosine", &OF_QUAD_COSINE))
+        .collect();
+    faults.par_iter().for_each(|(config, (file, right, wrong))| {
+        let (place, name) = emitted(&configuration(&format!("configs/{config}.toml")));
+        let path = place.path().join(format!("{name}{file}"));
+        let text = fs::read_to_string(&path).expect("a file");
+        assert!(text.contains(right), "`{right}` is not in {name}{file}");
+        fs::write(&path, text.replace(right, wrong)).expect("written");
+        let proof = prove(place.path(), &name, LIMIT);
+        assert!(proof.is_err(), "`{wrong}` in {name} is proved");
+    });
+}
+
+/// The lowest bit of a word lets the program go on; the one above it is `valid` in `rough`.
+#[test]
+fn a_wrong_bit_of_sequencing_breaks_the_proof() {
+    let bits = [("rough", 0), ("rough", 1), ("lyon", 0), ("quad_cosine", 0)];
+    bits.par_iter().for_each(|&(config, bit)| {
+        let unit = configuration(&format!("configs/{config}.toml"));
+        (0..unit.design.control.words.len()).into_par_iter().for_each(|word| {
+            let (place, name) = emitted(&unit);
+            let path = place.path().join(format!("{name}_control.mem"));
+            let text = fs::read_to_string(&path).expect("a file");
+            fs::write(&path, with_flipped_bit(&text, word, bit)).expect("written");
+            let proof = prove(place.path(), &name, LIMIT);
+            assert!(proof.is_err(), "{name}: word {word} without bit {bit}");
+        });
+    });
+}
+
+/// The files of a configuration in a directory of their own, and its name.
+fn emitted(unit: &glint::flow::Unit) -> (tempfile::TempDir, String) {
+    let emitted = Emitted::new(unit, 1, 1);
+    let place = tempfile::tempdir().expect("a directory");
+    let files = emitted.files.iter();
+    let files = files.map(|file| (file.name().to_owned(), file.contents.clone()));
+    let files = files.collect();
+    write(place.path(), &files);
+    (place, emitted.name)
+}

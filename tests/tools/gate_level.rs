@@ -1,0 +1,100 @@
+//! The bench notices faults in a synthesised netlist: that it passes means something, and so do the models
+//! of its cells. That every netlist passes is in `tests/tools/synthesis.rs`.
+
+use std::fs;
+
+use crate::common::netlist::{self, POINTS, synthesise};
+use crate::common::units::{Emitted, configuration};
+use glint::cosim::gates;
+use glint::cosim::synthesis::{FAMILIES, Family};
+use rayon::prelude::*;
+
+fn families() -> impl ParallelIterator<Item = &'static Family> {
+    let simulated = |family: &&Family| gates::is_simulated(family);
+    FAMILIES.par_iter().filter(simulated)
+}
+
+fn ecp5() -> &'static Family {
+    let ecp5 = FAMILIES.iter().find(|family| family.name == "ecp5");
+    ecp5.expect("ECP5")
+}
+
+fn netlist(emitted: &Emitted, family: &Family) -> String {
+    let place = tempfile::tempdir().expect("a directory");
+    synthesise(place.path(), emitted, family);
+    fs::read_to_string(place.path().join("netlist.v")).expect("a netlist")
+}
+
+/// One bit of a block RAM's initial values: in ROM(n) of `quadratic`, the top bit of a(1), which is often
+/// read. Its word is the second of the memory, 20 bits above the first.
+#[test]
+fn a_bit_of_a_block_ram_is_noticed() {
+    const PARAMETER: &str = ".INITVAL_00(320'h";
+    const BIT: usize = 20 + 17;
+    let emitted = Emitted::new(&configuration("configs/quadratic.toml"), POINTS, 1);
+    let netlist = netlist(&emitted, ecp5());
+    let at = netlist.find(PARAMETER).expect(PARAMETER) + PARAMETER.len();
+    let digits = netlist[at..].find(')').expect("the end of the number");
+    let wrong = with_digit(&netlist, at + digits - 1 - BIT / 4, |digit| digit ^ 1 << (BIT % 4));
+    netlist::bench(&emitted, wrong, ecp5()).assert_fails("a bit of a block RAM");
+}
+
+/// Look-up tables, spread over the netlist, each inverted. Not all of them matter: synthesis leaves tables whose
+/// output nobody reads, and low bits of a product that rounding hides. Half of them must be noticed at least.
+#[test]
+fn bits_of_look_up_tables_are_noticed() {
+    const TABLES: usize = 12;
+    families().for_each(|family| {
+        let emitted = Emitted::new(&configuration("configs/schlick.toml"), POINTS, 1);
+        let netlist = netlist(&emitted, family);
+        let (cell, parameter) = match family.name {
+            "ice40" => ("SB_LUT4 #(", ".LUT_INIT(16'h"),
+            _ => ("LUT4 #(", ".INIT(16'h"),
+        };
+        let tables: Vec<usize> = netlist
+            .match_indices(cell)
+            .filter_map(|(at, _)| Some(at + netlist[at..].find(parameter)? + parameter.len()))
+            .collect();
+        assert!(tables.len() > 10 * TABLES, "{}", family.name);
+        let step = tables.len() / TABLES;
+        let unnoticed: Vec<usize> = (0..TABLES)
+            .into_par_iter()
+            .map(|number| tables[number * step])
+            .filter(|&at| {
+                let wrong = (at..at + 4)
+                    .fold(netlist.clone(), |text, at| with_digit(&text, at, |digit| !digit & 15));
+                let run = netlist::bench(&emitted, wrong, family).run();
+                run.status.success()
+            })
+            .collect();
+        assert!(
+            unnoticed.len() * 2 <= TABLES,
+            "{}: {} of {TABLES} inverted look-up tables are not noticed: those at {unnoticed:?}",
+            family.name,
+            unnoticed.len()
+        );
+    });
+}
+
+/// A mode that the models do not know ends the simulation.
+#[test]
+fn an_unknown_mode_is_refused() {
+    let emitted = Emitted::new(&configuration("configs/quadratic.toml"), 1, 1);
+    let netlist = netlist(&emitted, ecp5());
+    for (right, wrong) in [
+        (".REGMODE_A(\"NOREG\")", ".REGMODE_A(\"OUTREG\")"),
+        (".DATA_WIDTH_A(32'd18)", ".DATA_WIDTH_A(32'd36)"),
+        (".SOURCEA(1'h0)", ".SOURCEA(1'h1)"),
+    ] {
+        assert!(netlist.contains(right), "{right}");
+        let wrong_netlist = netlist.replace(right, wrong);
+        netlist::bench(&emitted, wrong_netlist, ecp5()).assert_fails(wrong);
+    }
+}
+
+/// The text with another hexadecimal digit at a place.
+fn with_digit(text: &str, at: usize, change: impl Fn(u32) -> u32) -> String {
+    let digit = text[at..].chars().next().and_then(|digit| digit.to_digit(16));
+    let changed = char::from_digit(change(digit.expect("a digit")), 16).expect("a digit");
+    format!("{}{changed}{}", &text[..at], &text[at + 1..])
+}

@@ -1,0 +1,20 @@
+//! The tests that run outside tools: simulators, synthesis, place and route, provers, Python.
+//!
+//! `bash tools/install` installs them. A tool that is missing fails its test.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod baseline;
+mod bench_fails;
+mod builder_fuzz;
+mod cocotb;
+mod example;
+mod external;
+mod formal;
+mod gate_level;
+mod mutants;
+mod random_configurations;
+mod random_netlists;
+mod synthesis;
+mod verilog;

@@ -1,0 +1,155 @@
+//! Faults put into a design or into its Verilog are noticed, or proved to change nothing.
+//!
+//! The records in `mutation/` hold the score of every device's default configuration; here all faults of the netlists
+//! are planted again, and a part of those of the Verilog.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use crate::common::tools::LIMIT;
+use crate::common::units::{configuration, configurations};
+use glint::cosim::Lockstep;
+use glint::flow::{TEST_POINTS, Unit};
+use glint::mutate::{self, Faults, Found, Leg, Text, TextVerdict, Verdict};
+use glint::registry::Registry;
+use serde_json::Value;
+
+/// Faults of the Verilog that are planted of each device.
+const TEXT_FAULTS: usize = 24;
+
+/// Of the faults that are proved equivalent, about so many a device are given another test.
+const PROVED: usize = 40;
+
+/// The seed of that test.
+const SEED: u64 = 77;
+
+/// The default configuration of every device, with its path.
+fn defaults() -> Vec<(String, Unit)> {
+    let registry = Registry::catalogue();
+    let devices = registry.devices().iter();
+    let paths = devices.map(|device| format!("configs/{}.toml", device.name.replace('-', "_")));
+    paths.map(|path| (path.clone(), configuration(&path))).collect()
+}
+
+fn record(unit: &Unit) -> Value {
+    let path = format!("mutation/{}.json", unit.config.name);
+    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// What became of the fault of an id, by a record: those that the default test notices are not named.
+fn recorded(netlist: &Value, id: &str) -> Said {
+    let has = |list: &Value| list.as_array().is_some_and(|ids| ids.iter().any(|it| it == id));
+    let proofs = netlist["equivalent"].as_object();
+    let mut proofs = proofs.into_iter().flatten();
+    if has(&netlist["open"]) {
+        Said::Open
+    } else if has(&netlist["aimed"]) {
+        Said::Caught(Leg::Aimed)
+    } else if let Some((how, _)) = proofs.find(|(_, ids)| has(ids)) {
+        Said::Equivalent(how.clone())
+    } else {
+        Said::Caught(Leg::Cosim)
+    }
+}
+
+/// A verdict without what shows it.
+#[derive(Debug, PartialEq)]
+enum Said {
+    Caught(Leg),
+    Equivalent(String),
+    Open,
+}
+
+impl From<&Verdict> for Said {
+    fn from(verdict: &Verdict) -> Self {
+        match verdict {
+            Verdict::Caught(leg, _) => Self::Caught(*leg),
+            Verdict::Equivalent(how) => {
+                let how = serde_json::to_value(how).expect("JSON");
+                Self::Equivalent(how.as_str().expect("a name").to_owned())
+            }
+            Verdict::Open => Self::Open,
+        }
+    }
+}
+
+/// Proofs are of the whole design; another test must not find what they exclude.
+fn assert_unnoticed(path: &str, unit: &Unit, found: &[Found]) {
+    let proved = |it: &&Found| matches!(it.verdict, Verdict::Equivalent(_));
+    let proved: Vec<&Found> = found.iter().filter(proved).collect();
+    let step = (proved.len() / PROVED).max(1);
+    for one in proved.into_iter().step_by(step) {
+        let mutant = one.fault.planted(&unit.design);
+        let model = (unit.device.model)(&unit.config);
+        let outcome = Lockstep::new(&mutant, model, unit.contract.as_ref(), SEED)
+            .and_then(|lockstep| lockstep.run(TEST_POINTS / 5, &|_| ()))
+            .unwrap_or_else(|error| panic!("{path}: {}: {error:?}", one.fault.id));
+        assert_eq!(outcome.mismatch, None, "{path}: {}", one.fault.id);
+    }
+}
+
+#[test]
+fn the_records_hold_today() {
+    for (path, unit) in defaults() {
+        let record = record(&unit);
+        let netlist = &record["netlist"];
+        let stale = format!("{path}: `glint mutate --out mutation {path}` makes another record");
+        let faults = Faults::of(&unit.design);
+        let all = &netlist["all"];
+        assert_eq!(all["planted"], faults.len(), "{stale}");
+        let open = netlist["open"].as_array().expect("open").len();
+        assert_eq!(all["open"], open, "{stale}");
+        assert!(open * 100 <= faults.len(), "{path}: {open} are open");
+        let found = mutate::run(&unit, faults.iter(), &|| ())
+            .unwrap_or_else(|error| panic!("{path}: {error:?}"));
+        for Found { fault, verdict } in &found {
+            let expected = recorded(netlist, &fault.id);
+            assert_eq!(Said::from(verdict), expected, "{}: {stale}", fault.id);
+        }
+        assert_unnoticed(&path, &unit, &found);
+    }
+}
+
+#[test]
+fn faults_have_names_of_their_own() {
+    for (path, unit) in configurations() {
+        let faults = Faults::of(&unit.design);
+        let ids: BTreeSet<&str> = faults.iter().map(|fault| fault.id.as_str()).collect();
+        assert_eq!(ids.len(), faults.len(), "{path}");
+        assert!(faults.len() > 500, "{path}: a kind of fault is missing");
+    }
+}
+
+#[test]
+fn without_a_fault_nothing_is_noticed() {
+    for (path, unit) in configurations() {
+        let outcome = unit
+            .lockstep(3)
+            .and_then(|lockstep| lockstep.run(TEST_POINTS, &|_| ()))
+            .unwrap_or_else(|error| panic!("{path}: {error:?}"));
+        assert_eq!(outcome.mismatch, None, "{path}");
+    }
+}
+
+/// What the record does not name is noticed by lint or by the bench. Whether a proof of the rest comes to its end
+/// depends on how fast the machine is: nothing is said of it here.
+#[test]
+fn faults_of_the_verilog_are_noticed() {
+    for (path, unit) in defaults() {
+        let record = record(&unit);
+        let named = |list: &str| record["verilog"][list].as_array().into_iter().flatten();
+        let unnoticed: BTreeSet<&str> =
+            named("open").chain(named("equivalent")).filter_map(Value::as_str).collect();
+        let text = Text::of(&unit).unwrap_or_else(|error| panic!("{path}: {error:?}"));
+        let faults = text.sample(TEXT_FAULTS);
+        assert!(faults.len() >= 20, "{path}: {} faults", faults.len());
+        let verdicts =
+            text.run(&faults, LIMIT, &|| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"));
+        for (fault, verdict) in faults.iter().zip(verdicts) {
+            let noticed = matches!(verdict, TextVerdict::Lint | TextVerdict::Bench);
+            let expected = !unnoticed.contains(fault.id.as_str());
+            assert_eq!(noticed, expected, "{path}: {}: {verdict:?}", fault.id);
+        }
+    }
+}

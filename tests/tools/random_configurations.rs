@@ -1,0 +1,94 @@
+//! Random configurations over the whole stated ranges: whatever the configuration accepts is generated,
+//! equals its golden model on every clock, stays within the bound that was stated beforehand, is clean
+//! Verilog, and passes its own bench in Icarus Verilog.
+
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+
+use crate::common::tools::{assert_bench_passes, assert_lint_clean};
+use crate::common::units::{Emitted, random, write};
+use glint::config;
+use glint::cosim::external::Simulator;
+use glint::flow::Unit;
+use glint::registry::Registry;
+use rayon::prelude::*;
+
+/// Configurations of each device that are simulated inside the program.
+const SIMULATED: u64 = 400;
+
+/// Points of each.
+const POINTS: u64 = 150;
+
+/// Seeds of the configurations of each device that outside tools see: others than those above.
+const EMITTED: std::ops::Range<u64> = 10_000..10_100;
+
+/// Points of the bench of each.
+const BENCH_POINTS: u64 = 20;
+
+#[test]
+fn golden_model_and_simulation_agree_and_the_bound_holds() {
+    for &device in Registry::catalogue().devices() {
+        (0..SIMULATED).into_par_iter().for_each(|seed| {
+            let (toml, unit) = random(device, seed);
+            agrees_within_its_bound(&toml, &unit);
+        });
+    }
+}
+
+#[test]
+fn the_verilog_is_clean_and_passes_its_bench() {
+    for &device in Registry::catalogue().devices() {
+        EMITTED.into_par_iter().for_each(|seed| {
+            let (toml, unit) = random(device, seed);
+            passes_outside(&toml, &unit, seed);
+        });
+    }
+}
+
+/// Configurations that random draws once found wrong.
+const ONCE_WRONG: [&str; 1] = [
+    // Nothing but u = 0 remains below the last range of the sine.
+    "device = \"rough\"\ncosine.fraction = 14\nproduct.fraction = 14\n[sine]\nfraction = 14\nsegments = [2, 4, 2, 6, 2, 4, 2]\nslope_fraction = 9",
+];
+
+#[test]
+fn what_was_wrong_once_is_right() {
+    let registry = Registry::catalogue();
+    for (at, text) in ONCE_WRONG.into_iter().enumerate() {
+        let config = config::parse(&format!("once_wrong_{at}.toml"), text, &registry.schemas())
+            .unwrap_or_else(|problems| panic!("{problems}"));
+        let device = *registry.device(&config.device).expect("a device");
+        let unit = Unit::new(device, config).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
+        let toml = text.to_owned();
+        agrees_within_its_bound(&toml, &unit);
+        passes_outside(&toml, &unit, 1);
+    }
+}
+
+/// Golden model and built-in simulator agree on every clock, and no error is beyond the bound.
+fn agrees_within_its_bound(toml: &str, unit: &Unit) {
+    let bound = unit.contract.bound();
+    let outcome = unit
+        .lockstep(7)
+        .and_then(|lockstep| lockstep.run(POINTS, &|_| ()))
+        .unwrap_or_else(|error| panic!("{error:?}\n{toml}"));
+    assert!(outcome.mismatch.is_none(), "{:?}\n{toml}", outcome.mismatch);
+    assert_eq!(outcome.points, POINTS);
+    if let Some(worst) = outcome.worst {
+        assert!(worst.units <= bound.units, "{worst:?} is beyond {bound:?}\n{toml}");
+    }
+}
+
+/// Verilator and Icarus Verilog have no remarks on the Verilog, and the bench passes.
+fn passes_outside(toml: &str, unit: &Unit, seed: u64) {
+    let check = || {
+        let emitted = Emitted::new(unit, BENCH_POINTS, seed);
+        let place = tempfile::tempdir().expect("a directory");
+        write(place.path(), &emitted.rtl());
+        assert_lint_clean(place.path(), &emitted.name);
+        assert_bench_passes(Simulator::Icarus, &emitted.simulated(), &emitted.bench());
+    };
+    if let Err(panic) = catch_unwind(AssertUnwindSafe(check)) {
+        eprintln!("the configuration was:\n{toml}");
+        resume_unwind(panic);
+    }
+}

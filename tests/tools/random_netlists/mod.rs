@@ -1,0 +1,77 @@
+//! Random netlists: the emitted Verilog of any checked design computes what the netlist means.
+//!
+//! Devices use a handful of the ways in which cells can meet. Here every cell, sign and width meets every
+//! other, named or not, in either unit; an interpreter written from the documentation of
+//! [`glint::netlist::Op`] predicts the outputs, Icarus Verilog simulates the text, and both linters
+//! must have nothing to say.
+
+mod generate;
+mod interpret;
+
+use crate::common::tools::{assert_bench_passes, assert_lint_clean};
+use glint::cosim::external::Simulator;
+use glint::emit::{EmitInputs, Vectors, emit};
+use glint::netlist::{Design, Role};
+
+const DESIGNS: u64 = 60;
+const CLOCKS: usize = 120;
+
+/// By then every register has been reset or has taken something known.
+const KNOWN_FROM: usize = 40;
+
+#[test]
+fn emitted_verilog_means_what_the_netlist_means() {
+    for seed in 0..DESIGNS {
+        let design = generate::design(seed);
+        let inputs = EmitInputs {
+            config: "configs/random.toml".to_owned(),
+            vectors: Some(vectors(&design, seed)),
+            ..EmitInputs::default()
+        };
+        let files = emit(&design, &inputs).unwrap_or_else(|error| panic!("{error:?}\n{design}"));
+        let directory = tempfile::tempdir().expect("a directory");
+        let mut texts = Vec::new();
+        for file in files {
+            let name = file.name().to_owned();
+            if file.path.starts_with("rtl_out/") {
+                std::fs::write(directory.path().join(&name), &file.contents).expect("a file");
+            }
+            check_text(&name, &file.contents);
+            texts.push((name, file.contents));
+        }
+        assert_lint_clean(directory.path(), &design.name);
+        texts.retain(|(name, _)| name.ends_with(".v") || name.ends_with(".mem"));
+        assert_bench_passes(Simulator::Icarus, &texts, &format!("{}_tb", design.name));
+    }
+}
+
+fn check_text(name: &str, text: &str) {
+    assert!(text.ends_with('\n'), "{name} ends without a newline");
+    if name.ends_with(".json") {
+        return;
+    }
+    assert!(text.is_ascii(), "{name} is not ASCII");
+    for line in text.lines() {
+        assert!(line.len() <= 100 || name.contains("stimulus"), "{name}: {line}");
+        assert_eq!(line, line.trim_end(), "{name}");
+    }
+}
+
+fn vectors(design: &Design, seed: u64) -> Vectors {
+    let mut random = generate::Random::new(!seed);
+    let mut machine = interpret::Machine::new(design);
+    let mut vectors = Vectors { known_from: KNOWN_FROM, ..Vectors::default() };
+    for clock in 0..CLOCKS {
+        let row: Vec<u64> = design
+            .inputs()
+            .map(|port| match port.role {
+                Role::Reset => u64::from(clock >= 4 && clock % 50 != 0),
+                _ => random.bits(design.width(port.net)),
+            })
+            .collect();
+        vectors.expected.push(machine.outputs(&row));
+        vectors.inputs.push(row);
+        machine.edge();
+    }
+    vectors
+}

@@ -1,0 +1,170 @@
+//! Synthesis of every configuration by Yosys for iCE40, ECP5 and Xilinx 7: no latch, no warning, ROMs
+//! in block RAM and products in DSP blocks, and no ROM contents lost.
+//!
+//! The iCE40 and ECP5 netlists, control ROM and all, pass the bench of their source; that a fault in a
+//! netlist is noticed is in `tests/tools/gate_level.rs`. Yosys 0.23 has no model of Xilinx block RAMs; the ones in
+//! their initial values are counted, as in all.
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use crate::common::netlist::{self, POINTS, synthesise};
+use crate::common::tools::{LIMIT, tool};
+use crate::common::units::{Emitted, configuration, configurations};
+use glint::cosim::gates;
+use glint::cosim::synthesis::{self, FAMILIES, Family, Kinds, Usage};
+use glint::netlist::{Design, Driver, Op, Rom};
+use rayon::prelude::*;
+
+/// What the names of the initial values of a family's block RAMs begin with, before so many hexadecimal
+/// digits.
+fn initial(family: &Family) -> (&'static [&'static str], usize) {
+    match family.name {
+        "ice40" => (&["INIT_"], 1),
+        "ecp5" => (&["INITVAL_"], 2),
+        // INIT_A and INIT_B are of the output register.
+        _ => (&["INIT_", "INITP_"], 2),
+    }
+}
+
+#[test]
+fn every_configuration_is_synthesised_whole() {
+    configurations().par_iter().for_each(|(path, unit)| {
+        let emitted = Emitted::new(unit, POINTS, 1);
+        for family in &FAMILIES {
+            let place = tempfile::tempdir().expect("a directory");
+            synthesise(place.path(), &emitted, family);
+            let netlist = fs::read_to_string(place.path().join("netlist.json")).expect("a netlist");
+            let netlist = serde_json::from_str(&netlist).expect("a netlist");
+            let cells = Cells::new(&netlist, &emitted.name);
+            let what = format!("{path}, {}", family.command);
+            memories_are_whole(&unit.design, &cells, family, &what);
+            let products = products(&unit.design);
+            let blocks = cells.count_all(family.dsps);
+            assert!(blocks >= products, "{what}: {products} products in {blocks} DSP blocks");
+            println!(
+                "{what}: {blocks} DSP blocks, {} block RAMs, {} cells",
+                cells.count_all(family.block_rams),
+                cells.0.len()
+            );
+            if gates::is_simulated(family) {
+                let netlist =
+                    fs::read_to_string(place.path().join("netlist.v")).expect("a netlist");
+                netlist::bench(&emitted, netlist, family).assert_passes();
+            }
+        }
+    });
+}
+
+/// What the command line says that a design takes is what its netlist has.
+#[test]
+fn usage_is_that_of_the_netlist() {
+    let unit = configuration("configs/schlick.toml");
+    let emitted = Emitted::new(&unit, POINTS, 1);
+    FAMILIES.par_iter().for_each(|family| {
+        let told =
+            synthesis::synthesise(&tool("yosys"), &emitted.rtl(), &emitted.name, family, LIMIT)
+                .unwrap_or_else(|error| panic!("{error:#}"));
+        let place = tempfile::tempdir().expect("a directory");
+        synthesise(place.path(), &emitted, family);
+        let netlist = fs::read_to_string(place.path().join("netlist.json")).expect("a netlist");
+        let netlist = serde_json::from_str(&netlist).expect("a netlist");
+        let cells = Cells::new(&netlist, &emitted.name);
+        let wanted = Usage {
+            luts: cells.count_all(family.luts),
+            dsps: cells.count_all(family.dsps),
+            block_rams: cells.count_all(family.block_rams),
+        };
+        assert_eq!(told, wanted, "{}", family.title);
+        assert!(told.luts > 50 && told.dsps > 3, "{told:?}");
+    });
+}
+
+/// The cells of a flat netlist.
+struct Cells<'a>(Vec<&'a serde_json::Value>);
+
+impl<'a> Cells<'a> {
+    fn new(netlist: &'a serde_json::Value, top: &str) -> Self {
+        let cells = netlist["modules"][top]["cells"].as_object().expect("cells");
+        let all: Vec<_> = cells.values().collect();
+        let cells = Self(all);
+        for cell in &cells.0 {
+            let kind = Cells::kind(cell);
+            assert!(!kind.starts_with('$'), "{top}: {kind} was left over");
+            assert!(!kind.contains("LATCH") && !kind.starts_with("LD"), "{top}: a latch, {kind}");
+        }
+        cells
+    }
+
+    fn kind(cell: &serde_json::Value) -> &str {
+        cell["type"].as_str().expect("a type")
+    }
+
+    fn of<'b>(&'b self, kind: &'b str) -> impl Iterator<Item = &'a serde_json::Value> + 'b {
+        self.0.iter().copied().filter(move |cell| Self::kind(cell) == kind)
+    }
+
+    /// How many there are of some kinds, each with its weight.
+    fn count_all(&self, kinds: Kinds) -> u64 {
+        let weighed = kinds.iter().map(|(kind, weight)| self.of(kind).count() as u64 * weight);
+        weighed.sum()
+    }
+}
+
+/// Bits of a synchronous ROM from which on it is in block RAM; a smaller one may well be logic.
+fn warrants_block_ram(family: &Family) -> u64 {
+    if family.command.starts_with("synth_xilinx") {
+        // A look-up table is a ROM of 64 bits, and a block RAM has 18 432.
+        8192
+    } else {
+        2048
+    }
+}
+
+/// Synchronous ROMs of some size are in block RAM, with every 1 of their contents.
+fn memories_are_whole(design: &Design, cells: &Cells, family: &Family, what: &str) {
+    let bits = |rom: &Rom| rom.words.len() as u64 * u64::from(design.width(rom.data));
+    let large: Vec<&Rom> = design
+        .roms
+        .iter()
+        // A ROM whose words are all alike is wires.
+        .filter(|rom| rom.words.iter().any(|word| *word != rom.words[0]))
+        .filter(|rom| rom.synchronous && bits(rom) >= warrants_block_ram(family))
+        .collect();
+    let rams: Vec<_> = family.block_rams.iter().flat_map(|(kind, _)| cells.of(kind)).collect();
+    assert!(rams.len() >= large.len(), "{what}: ROMs are not in block RAM");
+    let ones: u64 = rams.iter().map(|cell| ones(cell, initial(family))).sum();
+    let ones_of = |rom: &Rom| -> u64 {
+        let ones = rom.words.iter().map(|word| u64::from(word.count_ones()));
+        ones.sum()
+    };
+    // With any of the smaller ones, whole.
+    let mut wanted = BTreeSet::from([large.iter().map(|rom| ones_of(rom)).sum::<u64>()]);
+    let small = |rom: &&Rom| rom.synchronous && bits(rom) < warrants_block_ram(family);
+    for rom in design.roms.iter().filter(small) {
+        let with: Vec<u64> = wanted.iter().map(|sum| sum + ones_of(rom)).collect();
+        wanted.extend(with);
+    }
+    assert!(
+        wanted.contains(&ones),
+        "{what}: {ones} ones in block RAM; its ROMs have one of {wanted:?}"
+    );
+}
+
+/// The ones in the initial values of a block RAM. Bits that are not given are `x` or 0.
+fn ones(cell: &serde_json::Value, (prefixes, digits): (&[&str], usize)) -> u64 {
+    let is_number =
+        |rest: &str| rest.len() == digits && rest.chars().all(|c| c.is_ascii_hexdigit());
+    let is_contents =
+        |name: &str| prefixes.iter().any(|prefix| name.strip_prefix(prefix).is_some_and(is_number));
+    let parameters = cell["parameters"].as_object().expect("parameters");
+    let contents = parameters.iter().filter(|(name, _)| is_contents(name));
+    let ones = contents.map(|(_, bits)| bits.as_str().expect("bits").matches('1').count() as u64);
+    ones.sum()
+}
+
+/// Multiplications in a design.
+fn products(design: &Design) -> u64 {
+    let is_product = |driver: &Driver| matches!(driver, Driver::Op(Op::Mul(..)));
+    design.nets.iter().filter(|net| is_product(&net.driver)).count() as u64
+}

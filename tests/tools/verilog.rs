@@ -1,0 +1,170 @@
+//! Leg 2: the emitted Verilog under Icarus Verilog and under Verilator.
+//!
+//! The expected values of a bench are those on which the golden model and the built-in simulator
+//! agree; it compares every output on every clock. That a bench can fail is tested with one wrong
+//! bit in what it expects, and in what the device's ROMs hold.
+
+use crate::common::bench::{Bench, with_flipped_bit};
+use crate::common::tools::assert_lint_clean;
+use crate::common::units::{Emitted, Files, configuration, configurations, write};
+use glint::cosim::external::Simulator as External;
+use glint::flow::Unit;
+use glint::netlist::{Design, Driver, RomId};
+use glint::sim::Simulator;
+use rayon::prelude::*;
+
+/// Points of a bench here; committed benches are shorter.
+const POINTS: u64 = 300;
+
+/// The stimulus of the benches here; committed benches have another.
+const SEED: u64 = 5;
+
+/// The longest line of a file.
+const COLUMNS: usize = 100;
+
+#[test]
+fn every_configuration_is_clean_verilog() {
+    configurations().par_iter().for_each(|(path, unit)| {
+        let emitted = Emitted::new(unit, 4, SEED);
+        let place = tempfile::tempdir().expect("a directory");
+        write(place.path(), &emitted.rtl());
+        assert_lint_clean(place.path(), &emitted.name);
+        for file in &emitted.files {
+            let place = format!("{path}: {}", file.path);
+            assert!(file.contents.is_ascii(), "{place} is not ASCII");
+            assert!(file.contents.ends_with('\n'), "{place} has no last newline");
+            for (at, line) in file.contents.lines().enumerate() {
+                assert!(!line.ends_with(' ') && !line.contains('\t'), "{place}:{}: blanks", at + 1);
+                assert!(
+                    line.len() <= COLUMNS || file.path.ends_with(".json"),
+                    "{place}:{} is longer than {COLUMNS} columns",
+                    at + 1
+                );
+            }
+            if file.path.ends_with(".v") {
+                let text = &file.contents;
+                assert!(
+                    text.contains("\n`default_nettype none\n"),
+                    "{place} declares nets by mistake"
+                );
+                assert!(text.ends_with("\n`default_nettype wire\n"), "{place} does not restore it");
+                assert!(!text.contains("lint_off"), "{place} silences a linter");
+            }
+        }
+    });
+}
+
+#[test]
+fn every_configuration_passes_in_icarus() {
+    configurations().par_iter().for_each(|(_, unit)| {
+        let (emitted, bench) = build(unit, External::Icarus);
+        bench.assert_passes();
+        notices_every_output(unit, &emitted, &bench);
+        notices_every_rom(unit, &emitted, &bench);
+    });
+}
+
+#[test]
+fn every_configuration_passes_in_verilator() {
+    configurations().par_iter().for_each(|(_, unit)| {
+        let (_, bench) = build(unit, External::Verilator);
+        bench.assert_passes();
+    });
+}
+
+#[test]
+fn a_bench_fails_in_verilator_too() {
+    let unit = configuration("configs/rough.toml");
+    let (emitted, bench) = build(&unit, External::Verilator);
+    notices_every_output(&unit, &emitted, &bench);
+    notices_every_rom(&unit, &emitted, &bench);
+}
+
+fn build(unit: &Unit, simulator: External) -> (Emitted, Bench) {
+    let emitted = Emitted::new(unit, POINTS, SEED);
+    let bench = Bench::build(simulator, &emitted.simulated(), &emitted.bench());
+    (emitted, bench)
+}
+
+fn memory<'a>(files: &'a Files, name: &str) -> &'a str {
+    let file = files.iter().find(|(file, _)| file == name);
+    &file.unwrap_or_else(|| panic!("no file {name}")).1
+}
+
+/// One wrong bit in one expected word, of each output in turn, fails the bench.
+fn notices_every_output(unit: &Unit, emitted: &Emitted, bench: &Bench) {
+    let files = emitted.simulated();
+    let name = format!("{}_expected.mem", emitted.name);
+    let expected = memory(&files, &name);
+    let vectors = unit.vectors(POINTS, SEED).expect("vectors");
+    let last = vectors.expected.len() - 1;
+    // From the low end: the outputs of a word stand in port order from the top.
+    let outputs: Vec<_> = unit.design.outputs().collect();
+    let mut low = 0;
+    for port in outputs.into_iter().rev() {
+        bench.replace(&name, &with_flipped_bit(expected, last, low));
+        bench.assert_fails(&format!("a wrong {}", unit.design.net(port.net).name));
+        low += unit.design.width(port.net);
+    }
+    bench.replace(&name, expected);
+    bench.assert_passes();
+}
+
+/// One wrong bit in one word of a ROM, of each ROM in turn, fails the bench.
+fn notices_every_rom(unit: &Unit, emitted: &Emitted, bench: &Bench) {
+    let files = emitted.simulated();
+    let design = &unit.design;
+    for (at, rom) in design.roms.iter().enumerate() {
+        let name = format!("{}_{}.mem", emitted.name, rom.name);
+        let contents = memory(&files, &name);
+        let (word, bit) = if RomId(at as u32) == design.control.rom {
+            // Word 1 carries on with word 2; its lowest bit is what makes it do so, or end.
+            (1, 0)
+        } else {
+            (telling_word(unit, RomId(at as u32)), design.width(rom.data) - 1)
+        };
+        bench.replace(&name, &with_flipped_bit(contents, word, bit));
+        bench.assert_fails(&format!("a wrong bit in word {word} of {name}"));
+        bench.replace(&name, contents);
+    }
+    bench.assert_passes();
+}
+
+/// A word of a ROM whose top bit is seen on the outputs over the bench's stimulus: of those the one that is
+/// addressed most often while the microprogram runs.
+fn telling_word(unit: &Unit, id: RomId) -> usize {
+    let design: &Design = &unit.design;
+    let rom = design.rom(id);
+    let vectors = unit.vectors(POINTS, SEED).expect("vectors");
+    assert!(matches!(design.net(rom.data).driver, Driver::Rom(driver) if driver == id));
+    let busy = design.register(design.control.run).q;
+    let mut reads = vec![0; rom.words.len()];
+    let right = outputs(design, &vectors.inputs, |simulator| {
+        if simulator.value(busy) == 1 {
+            reads[simulator.value(rom.address) as usize] += 1;
+        }
+    });
+    let mut words: Vec<usize> = (0..reads.len()).filter(|&word| reads[word] > 0).collect();
+    words.sort_by_key(|&word| std::cmp::Reverse(reads[word]));
+    let is_seen = |word: &usize| {
+        let mut wrong = design.clone();
+        wrong.roms[id.index()].words[*word] ^= 1 << (design.width(rom.data) - 1);
+        outputs(&wrong, &vectors.inputs, |_| ()) != right
+    };
+    words.into_iter().find(is_seen).expect("a word that is seen")
+}
+
+/// The outputs after every clock, of which `watch` is told.
+fn outputs(design: &Design, inputs: &[Vec<u64>], mut watch: impl FnMut(&Simulator)) -> Vec<u64> {
+    let mut simulator: Simulator = Simulator::new(design).expect("a simulator");
+    let mut values = Vec::new();
+    for inputs in inputs {
+        for (at, &bits) in inputs.iter().enumerate() {
+            simulator.set(at, bits);
+        }
+        simulator.clock().expect("a clock");
+        watch(&simulator);
+        values.extend(design.outputs().map(|port| simulator.value(port.net)));
+    }
+    values
+}
