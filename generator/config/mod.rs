@@ -13,6 +13,7 @@ mod problems;
 mod read;
 mod sample;
 mod schema;
+mod shared;
 mod validate;
 mod values;
 mod write;
@@ -24,10 +25,11 @@ pub use problems::{Problem, Problems};
 pub use read::read;
 pub use sample::sample;
 pub use schema::{Key, Kind, Schema, Value};
+pub use shared::shared_keys;
 pub use values::Config;
 pub use write::commented;
 
-/// The keys of every device, with what they govern.
+/// The keys of every device that a [`Config`] holds in fields of its own, with what they govern.
 const COMMON: [(&str, &str); 3] = [
     ("device", "The device that is generated."),
     (

@@ -222,7 +222,7 @@ impl Reader<'_> {
                 self.problems.locate(&name, span);
             } else if let Some(key) = schema.key(&name) {
                 self.value(key, value, span, draft);
-            } else if !schema.keys.iter().any(|key| key.name.starts_with(&as_table)) {
+            } else if !schema.all_keys().any(|key| key.name.starts_with(&as_table)) {
                 self.unknown(&name, key.span(), value, schema, draft);
             } else if let DeValue::Table(inner) = value.get_ref() {
                 self.table(inner, &as_table, schema, draft);
@@ -263,7 +263,7 @@ impl Reader<'_> {
         schema: &'s Schema,
         draft: &mut Draft<'s>,
     ) {
-        let keys = || schema.keys.iter();
+        let keys = || schema.all_keys();
         let tables = || keys().map(|key| key.table_and_leaf().0);
         let names = || keys().map(|key| key.name);
         let is_table = value.get_ref().is_table();

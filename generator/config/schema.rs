@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use super::problems::Problems;
+use super::shared::shared_keys;
 use super::values::Config;
 
 /// The keys of one device, and the conditions between them.
@@ -10,7 +11,8 @@ use super::values::Config;
 pub struct Schema {
     /// The name of the device, which the key `device` gives.
     pub device: &'static str,
-    /// The keys, in the order in which a written file shows them.
+    /// The keys, in the order in which a written file shows them. Those that every device shares
+    /// ([`shared_keys`]) are not among them.
     pub keys: Vec<Key>,
     /// Conditions between keys. It is called with every value inside its own range, in any
     /// combination, and must not panic on any. It pushes each violated condition under the key
@@ -176,9 +178,14 @@ impl Value {
 }
 
 impl Schema {
-    /// The key of this name.
+    /// The key of this name, the device's own or one of [`shared_keys`].
     pub fn key(&self, name: &str) -> Option<&Key> {
-        self.keys.iter().find(|key| key.name == name)
+        self.all_keys().find(|key| key.name == name)
+    }
+
+    /// The keys of the device, then those that every device shares.
+    pub fn all_keys(&self) -> impl Iterator<Item = &Key> {
+        self.keys.iter().chain(shared_keys())
     }
 
     /// Mistakes in the schema itself, for a device's own tests: names that repeat, that are not
@@ -193,14 +200,16 @@ impl Schema {
             if !name.split('.').all(is_plain) {
                 faults.push(format!("`{name}` is not made of plain lower-case words"));
             }
-            if super::COMMON.iter().any(|(common, _)| *common == name) {
+            let shared = shared_keys().iter().map(|key| key.name);
+            let mut common = super::COMMON.iter().map(|(common, _)| *common).chain(shared);
+            if common.any(|common| common == name) {
                 faults.push(format!("`{name}` is a key of every device"));
             }
             if self.keys[..index].iter().any(|other| other.name == name) {
                 faults.push(format!("`{name}` is declared twice"));
             }
             let table = format!("{name}.");
-            if self.keys.iter().any(|other| other.name.starts_with(&table)) {
+            if self.all_keys().any(|other| other.name.starts_with(&table)) {
                 faults.push(format!("`{name}` is both a key and a table"));
             }
             for fault in key.faults_of(&key.default) {

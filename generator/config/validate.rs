@@ -188,7 +188,7 @@ pub(super) struct Draft<'a> {
 /// A condition is reported only if it fails whatever the doubtful values may turn out to be (as
 /// far as the ends of their ranges tell), so that one mistake raises no messages about others.
 fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
-    for key in &schema.keys {
+    for key in schema.all_keys() {
         let governors = chain(schema, key);
         let doubtful = governors.iter().any(|(k, _)| draft.doubtful.contains(k));
         if !draft.given.contains(key.name) || doubtful {
@@ -243,8 +243,7 @@ fn chain(schema: &Schema, key: &Key) -> Vec<(&'static str, &'static str)> {
 /// The configuration with its doubtful values replaced by each of their stand-ins in turn.
 fn trials(schema: &Schema, draft: &Draft) -> Vec<Config> {
     let stand_ins: Vec<(&str, Vec<Value>)> = schema
-        .keys
-        .iter()
+        .all_keys()
         .filter(|key| draft.doubtful.contains(key.name))
         .map(|key| (key.name, key.stand_ins()))
         .collect();
@@ -324,8 +323,7 @@ impl<'a> Draft<'a> {
 /// A list of the keys of a table, for a remedy; the table of the keys at the top is empty.
 pub(super) fn keys_of(schema: &Schema, table: &str) -> String {
     let mut keys: Vec<&str> = schema
-        .keys
-        .iter()
+        .all_keys()
         .map(Key::table_and_leaf)
         .filter(|(of, _)| *of == table)
         .map(|(_, leaf)| leaf)
@@ -335,7 +333,7 @@ pub(super) fn keys_of(schema: &Schema, table: &str) -> String {
     }
     keys.splice(0..0, super::COMMON.map(|(name, _)| name));
     let mut tables: Vec<String> = Vec::new();
-    for key in &schema.keys {
+    for key in schema.all_keys() {
         let (table, _) = key.table_and_leaf();
         let table = format!("[{table}]");
         if table != "[]" && !tables.contains(&table) {

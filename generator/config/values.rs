@@ -25,7 +25,7 @@ impl Config {
             name: name.to_owned(),
             device: schema.device.to_owned(),
             strict: false,
-            values: schema.keys.iter().map(|key| (key.name, key.default.clone())).collect(),
+            values: schema.all_keys().map(|key| (key.name, key.default.clone())).collect(),
         }
     }
 
@@ -115,7 +115,8 @@ impl Config {
         }
     }
 
-    /// The configuration as a TOML file that reads back as the same: every key that applies.
+    /// The configuration as a TOML file that reads back as the same: every key of the device that
+    /// applies, and of those that every device shares the ones that differ from their defaults.
     pub fn to_toml(&self, schema: &Schema) -> String {
         super::write::plain(schema, self)
     }

@@ -1,6 +1,7 @@
 //! Configurations as TOML text.
 
 use super::schema::{Key, Schema, Value};
+use super::shared::shared_keys;
 use super::values::Config;
 
 /// The widest line of a comment.
@@ -47,24 +48,29 @@ pub fn commented(schema: &Schema, name: &str) -> String {
     text
 }
 
-/// All keys of a configuration that apply, without comments.
+/// The keys of a configuration that apply, without comments; of those that every device shares, the ones
+/// that differ from their defaults.
 pub(super) fn plain(schema: &Schema, config: &Config) -> String {
     let mut text = String::new();
     for (key, value) in common(config) {
         text += &format!("{key} = {value}\n");
     }
-    for (table, keys) in tables(schema) {
-        if !table.is_empty() {
+    for (table, mut keys) in tables(schema) {
+        keys.retain(|key| is_written(schema, config, key));
+        if !table.is_empty() && !keys.is_empty() {
             text += &format!("\n[{table}]\n");
         }
         for key in keys {
-            if config.applies(schema, key.name) {
-                let value = config.value(key.name).toml();
-                text += &format!("{} = {value}\n", key.table_and_leaf().1);
-            }
+            let value = config.value(key.name).toml();
+            text += &format!("{} = {value}\n", key.table_and_leaf().1);
         }
     }
     text
+}
+
+fn is_written(schema: &Schema, config: &Config, key: &Key) -> bool {
+    let shared = shared_keys().contains(key);
+    config.applies(schema, key.name) && !(shared && *config.value(key.name) == key.default)
 }
 
 /// The keys that every device has, in the order of [`super::COMMON`], with their values as TOML.
@@ -79,7 +85,7 @@ fn common(config: &Config) -> [(&'static str, String); 3] {
 /// The keys by table, that of the keys at the top first; otherwise in the order of the schema.
 fn tables(schema: &Schema) -> Vec<(&'static str, Vec<&Key>)> {
     let mut tables: Vec<(&str, Vec<&Key>)> = vec![("", Vec::new())];
-    for key in &schema.keys {
+    for key in schema.all_keys() {
         let (table, _) = key.table_and_leaf();
         match tables.iter_mut().find(|(name, _)| *name == table) {
             Some((_, keys)) => keys.push(key),

@@ -56,6 +56,25 @@ address = 12
 # Largest deviation in degrees.
 # A number from 0.5 to 90.0, default 30.0.
 deviation = 30.0
+
+[interface]
+# Write an AXI4-Stream wrapper of the core, <name>_axis.v.
+# True or false, default false.
+stream = false
+
+# Bits of tuser, the side channel that travels with a point.
+# An integer from 1 to 1024, default 1; only with interface.stream = true.
+# user_bits = 1
+
+# Write a register block for the core: <name>_axil.v on AXI4-Lite, <name>_wb.v on
+# Wishbone.
+# \"none\", \"axi-lite\" or \"wishbone\", default \"none\".
+registers = \"none\"
+
+[package]
+# Write software/<name>/: a bit-accurate model of the core in C.
+# True or false, default false.
+software = false
 ";
     let text = commented(&lamp(), "my_lamp");
     assert_eq!(text, expected);
@@ -77,6 +96,19 @@ fn tables_and_dotted_keys_are_the_same() {
     assert!(!config.flag("cosine.signed"));
     assert_eq!(config.integers("sine.segments"), [7, 6]);
     assert_eq!(config.number("domain.deviation"), 45.0);
+}
+
+#[test]
+fn keys_that_every_device_shares() {
+    let text = "device = \"lamp\"\n[interface]\nregisters = \"wishbone\"\n";
+    let config = parse("x.toml", text, &schemas()).expect("valid");
+    assert_eq!(config.choice("interface.registers"), "wishbone");
+    assert!(!config.flag("interface.stream"));
+    let again = parse("x.toml", &config.to_toml(&lamp()), &schemas());
+    assert_eq!(again.expect("it reads back"), config);
+    // At their defaults they are not written: records of configurations are older than they are.
+    let defaults = Config::defaults(&lamp(), "x").to_toml(&lamp());
+    assert!(!defaults.contains("interface"), "{defaults}");
 }
 
 #[test]
@@ -128,6 +160,8 @@ fn mistakes_in_a_schema_are_found() {
             Key::flag("a.b", false, doc),
             Key::flag("Name", false, doc),
             Key::flag("strict", false, doc),
+            Key::flag("interface.stream", false, doc),
+            Key::flag("package", false, doc),
             Key::flag("twice", false, doc),
             Key::flag("twice", false, doc).only_when("later", "true"),
             Key::choice("later", "x", &["x", "y"], doc).only_when("twice", "maybe"),
@@ -142,6 +176,8 @@ fn mistakes_in_a_schema_are_found() {
             "default of `a`: `a` = 0 is out of range",
             "`Name` is not made of plain lower-case words",
             "`strict` is a key of every device",
+            "`interface.stream` is a key of every device",
+            "`package` is both a key and a table",
             "`twice` is declared twice",
             "`twice` depends on `later`, which is not declared before it",
             "`later` depends on `twice` = maybe, which that can never be",

@@ -8,7 +8,7 @@ mod table;
 use super::facts::{self, Sequence};
 use super::naming::Naming;
 use super::{Quantity, Timing, WorkedExample};
-use crate::config::{Config, Schema, Value};
+use crate::config::{Config, Key, Schema, Value, shared_keys};
 use crate::fixed::Format;
 use crate::golden::{Bound, Contract, Values};
 use crate::netlist::Design;
@@ -328,7 +328,7 @@ pub fn example(contract: &dyn Contract, example: &WorkedExample) -> Table {
     table
 }
 
-/// The keys of the configuration.
+/// The keys of the device, and those that every device shares where they are not at their defaults.
 pub fn keys(schema: &Schema, config: &Config) -> Table {
     let mut table = Table::new(&[
         ("key", Align::Left),
@@ -336,7 +336,8 @@ pub fn keys(schema: &Schema, config: &Config) -> Table {
         ("accepts", Align::Left),
         ("what it governs", Align::Left),
     ]);
-    for key in &schema.keys {
+    let changed = |key: &&Key| *config.value(key.name) != key.default;
+    for key in schema.keys.iter().chain(shared_keys().iter().filter(changed)) {
         let (now, default) = (config.value(key.name).toml(), key.default.toml());
         let value = match config.applies(schema, key.name) {
             false => "–".to_owned(),

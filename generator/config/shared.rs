@@ -1,0 +1,42 @@
+//! The keys of every device, of a user's own too: what is put around a core, not what it computes.
+//!
+//! They are declared and read as a device's own keys, and [`Schema::key`] finds them. A configuration
+//! that leaves them at their defaults is written, and counts, as one without them: they came later than
+//! many records of what was proved.
+
+use std::sync::LazyLock;
+
+use super::schema::Key;
+
+/// The shared keys, in the order in which a written file shows them, after those of the device.
+pub fn shared_keys() -> &'static [Key] {
+    &KEYS
+}
+
+static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
+    vec![
+        Key::flag(
+            "interface.stream",
+            false,
+            "Write an AXI4-Stream wrapper of the core, <name>_axis.v.",
+        ),
+        Key::integer(
+            "interface.user_bits",
+            1,
+            1..=1024,
+            "Bits of tuser, the side channel that travels with a point.",
+        )
+        .only_when("interface.stream", "true"),
+        Key::choice(
+            "interface.registers",
+            "none",
+            &["none", "axi-lite", "wishbone"],
+            "Write a register block for the core: <name>_axil.v on AXI4-Lite, <name>_wb.v on Wishbone.",
+        ),
+        Key::flag(
+            "package.software",
+            false,
+            "Write software/<name>/: a bit-accurate model of the core in C.",
+        ),
+    ]
+});
