@@ -2,6 +2,7 @@
 
 pub mod bench;
 pub mod netlist;
+pub mod sample;
 pub mod tools;
 pub mod units;
 

@@ -4,6 +4,7 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
+use crate::common::sample::sampled;
 use crate::common::tools::{assert_bench_passes, assert_lint_clean};
 use crate::common::units::{Emitted, random, write};
 use glint::config;
@@ -13,7 +14,10 @@ use glint::registry::Registry;
 use rayon::prelude::*;
 
 /// Configurations of each device that are simulated inside the program.
-const SIMULATED: u64 = 400;
+const SIMULATED: std::ops::Range<u64> = 0..400;
+
+/// Of these, as many are drawn.
+const SIMULATED_DRAWN: usize = 120;
 
 /// Points of each.
 const POINTS: u64 = 150;
@@ -21,13 +25,16 @@ const POINTS: u64 = 150;
 /// Seeds of the configurations of each device that outside tools see: others than those above.
 const EMITTED: std::ops::Range<u64> = 10_000..10_100;
 
+/// Of these, as many are drawn.
+const EMITTED_DRAWN: usize = 16;
+
 /// Points of the bench of each.
 const BENCH_POINTS: u64 = 20;
 
 #[test]
 fn golden_model_and_simulation_agree_and_the_bound_holds() {
     for &device in Registry::catalogue().devices() {
-        (0..SIMULATED).into_par_iter().for_each(|seed| {
+        sampled(device.name, SIMULATED, SIMULATED_DRAWN).into_par_iter().for_each(|seed| {
             let (toml, unit) = random(device, seed);
             agrees_within_its_bound(&toml, &unit);
         });
@@ -37,7 +44,7 @@ fn golden_model_and_simulation_agree_and_the_bound_holds() {
 #[test]
 fn the_verilog_is_clean_and_passes_its_bench() {
     for &device in Registry::catalogue().devices() {
-        EMITTED.into_par_iter().for_each(|seed| {
+        sampled(device.name, EMITTED, EMITTED_DRAWN).into_par_iter().for_each(|seed| {
             let (toml, unit) = random(device, seed);
             passes_outside(&toml, &unit, seed);
         });
