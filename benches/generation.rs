@@ -7,8 +7,8 @@ use std::hint::black_box;
 use anyhow::{Context, Result, anyhow};
 use criterion::{Criterion, criterion_group, criterion_main};
 use glint::config;
-use glint::emit::OutputFile;
-use glint::flow::{BENCH_POINTS, BENCH_SEED, Unit};
+use glint::core::{BENCH_POINTS, BENCH_SEED, Unit};
+use glint::package::OutputFile;
 use glint::registry::Registry;
 
 /// One configuration of each device.

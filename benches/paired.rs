@@ -26,12 +26,12 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, ensure};
 use glint::config::Config;
-use glint::cosim::external::Tool;
-use glint::emit::Vectors;
-use glint::flow::Unit;
-use glint::netlist::{NetId, Role};
+use glint::core::Unit;
+use glint::hdl::netlist::{NetId, Role};
+use glint::hdl::sim::Simulator;
+use glint::package::Vectors;
 use glint::registry::Registry;
-use glint::sim::Simulator;
+use glint::tools::Tool;
 
 /// Streams side by side.
 const LANES: usize = 64;
@@ -165,7 +165,7 @@ impl Streams {
     }
 
     /// All streams, side by side: the seconds it took, and the sum of the results.
-    fn replay(&self, design: &glint::netlist::Design, passes: usize) -> Result<(f64, u64)> {
+    fn replay(&self, design: &glint::hdl::netlist::Design, passes: usize) -> Result<(f64, u64)> {
         let clocks = self.inputs[0].len();
         let inputs = self.inputs[0][0].len();
         let lanes: Vec<[u64; LANES]> = (0..clocks * inputs)

@@ -6,9 +6,9 @@ use std::hint::black_box;
 use anyhow::{Context, Result, anyhow};
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use glint::config::Config;
-use glint::netlist::{Design, NetId, Role};
+use glint::hdl::netlist::{Design, NetId, Role};
+use glint::hdl::sim::Simulator;
 use glint::registry::Registry;
-use glint::sim::Simulator;
 
 /// A device under a stream of random points.
 struct Stream<const LANES: usize> {

@@ -27,7 +27,6 @@
 use std::process::ExitCode;
 
 use glint::config::{Config, Key, Problems, Schema};
-use glint::dsl::blocks::colour::Colours;
 use glint::dsl::{About, Designer, end, step, valid};
 use glint::fixed::{Format, Overflow, Rounding, exp2};
 use glint::golden::contract::{bound, colour_operands, colour_outputs};
@@ -35,6 +34,7 @@ use glint::golden::handshake::{After, Handshake, OperandRegister};
 use glint::golden::keys;
 use glint::golden::narrow::{Narrow, rounding_error};
 use glint::golden::{Bound, Contract, Model, Operand};
+use glint::hdl::blocks::colour::Colours;
 use glint::registry::{Device, Registry};
 
 // 1. The keys: what the user of the device may choose. `new` writes them into a commented file, with

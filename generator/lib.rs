@@ -5,24 +5,22 @@
 //! registry, whether its devices are the catalogue's or your own: `examples/fresnel.rs` is a complete
 //! one, to be read from top to bottom.
 
-pub mod check;
+pub mod base;
 pub mod cli;
 pub mod config;
+pub mod core;
 pub mod cosim;
 pub mod devices;
-pub mod dsl;
-pub mod emit;
-pub mod fixed;
-pub mod flow;
+pub mod evidence;
 pub mod golden;
-pub mod identifier;
-pub mod microcode;
+pub mod hdl;
 pub mod mutate;
-pub mod netlist;
-pub mod reference;
+pub mod package;
+pub mod pages;
 pub mod registry;
-pub mod report;
-pub mod setup;
-pub mod sim;
+pub mod render;
+pub mod tools;
 pub mod verify;
-mod words;
+
+pub use base::fixed;
+pub use hdl::dsl;

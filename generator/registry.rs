@@ -1,11 +1,11 @@
 //! What a device is to the command line: keys, description, golden model, contract.
 
-use crate::check::Diagnostics;
 use crate::config::{Config, Schema};
 use crate::devices;
-use crate::dsl::Designer;
 use crate::golden::{self, Contract, Model};
-use crate::netlist::Design;
+use crate::hdl::dsl::Designer;
+use crate::hdl::dsl::rules::Diagnostics;
+use crate::hdl::netlist::Design;
 
 /// A device that Glint can generate, simulate and check.
 ///

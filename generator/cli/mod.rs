@@ -15,8 +15,8 @@ use std::process::ExitCode;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use crate::core::TEST_SEED;
 use crate::cosim::exhaustive::Shard;
-use crate::flow::TEST_SEED;
 use crate::registry::Registry;
 
 /// Specular-shading hardware from Rust descriptions: Verilog, co-simulation, accuracy.

@@ -14,7 +14,7 @@ use serde_json::Value;
 use tempfile::TempDir;
 
 use super::staged;
-use crate::emit::{OutputFile, Seal, digest, is_sealed};
+use crate::package::{OutputFile, Seal, digest, is_sealed};
 
 /// What [`write()`] did with the directories of a configuration, or [`write_sealed`] with a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

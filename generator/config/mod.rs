@@ -5,7 +5,6 @@
 //! with its place and a remedy. [`commented`] writes the file to start from, and [`sample()`] draws
 //! valid configurations for tests.
 
-mod keywords;
 mod module_name;
 mod nearest;
 mod parse;
@@ -18,7 +17,6 @@ mod validate;
 mod values;
 mod write;
 
-pub use keywords::is_keyword;
 pub use nearest::nearest;
 pub use parse::parse;
 pub use problems::{Problem, Problems};

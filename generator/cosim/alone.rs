@@ -4,7 +4,7 @@ use anyhow::Result;
 
 use super::pairing::Pairing;
 use super::stream::{Course, Seen, Stream};
-use crate::sim::Simulator;
+use crate::hdl::sim::Simulator;
 
 /// One stream in a simulator of its own.
 pub(super) struct Alone<'a> {

@@ -8,8 +8,8 @@
 use std::sync::Arc;
 
 use super::stream::Course;
-use crate::fixed::mask;
-use crate::netlist::{Design, NetId, Role};
+use crate::base::fixed::mask;
+use crate::hdl::netlist::{Design, NetId, Role};
 
 /// Odd, and without a pattern in its bits: 2^64 by the golden ratio.
 const SCATTER: u64 = 0x9e37_79b9_7f4a_7c15;

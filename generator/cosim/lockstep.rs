@@ -19,10 +19,10 @@ use super::pairing::Pairing;
 use super::stimulus::Random;
 use super::stream::{Course, Seen};
 use super::together::Together;
-use crate::emit::Vectors;
 use crate::golden::{Bound, Contract, Model};
-use crate::netlist::Design;
-use crate::sim::Simulator;
+use crate::hdl::netlist::Design;
+use crate::hdl::sim::Simulator;
+use crate::package::Vectors;
 
 /// Streams that share a simulator.
 pub(super) const LANES: usize = 32;

@@ -5,13 +5,10 @@ mod alone;
 pub mod batch;
 mod combinations;
 pub mod exhaustive;
-pub mod external;
-pub mod gates;
 mod lockstep;
 mod pairing;
 mod stimulus;
 mod stream;
-pub mod synthesis;
 mod together;
 pub mod trial;
 

@@ -8,9 +8,9 @@ use super::combinations::{Combinations, Ports};
 use super::lockstep::{Mismatch, Worst};
 use super::stimulus::Stimulus;
 use super::stream::Stream;
-use crate::fixed::{Format, MAX_WIDTH, exp2};
+use crate::base::fixed::{Format, MAX_WIDTH, exp2};
 use crate::golden::{Contract, Model, Operand, nearer};
-use crate::netlist::{Design, NetId, RegisterKind, Role};
+use crate::hdl::netlist::{Design, NetId, RegisterKind, Role};
 
 /// A design and its golden model, paired by the names of ports and registers.
 pub(super) struct Pairing<'a> {

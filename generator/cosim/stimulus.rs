@@ -9,9 +9,9 @@
 //! resets come often in the middle of a computation of ten clocks, and still let most of one of thousands
 //! come to its end.
 
-use crate::fixed::mask;
+use crate::base::fixed::mask;
 use crate::golden::Operand;
-use crate::netlist::{Design, NetId, Role};
+use crate::hdl::netlist::{Design, NetId, Role};
 
 /// A small deterministic generator (SplitMix64): the same numbers on every machine, and fast enough
 /// not to matter beside the simulation.
@@ -364,8 +364,8 @@ impl Stimulus {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dsl::{Designer, end, step, valid};
-    use crate::fixed::Format;
+    use crate::base::fixed::Format;
+    use crate::hdl::dsl::{Designer, end, step, valid};
 
     /// A design with one operand; how long a computation takes is for the tests to say.
     fn design() -> Design {

@@ -5,7 +5,7 @@ use anyhow::Result;
 use super::alone::Alone;
 use super::pairing::Pairing;
 use super::stream::{Course, Seen, Stream};
-use crate::sim::Simulator;
+use crate::hdl::sim::Simulator;
 
 /// Clocks for which each stream in turn is ahead of the simulator. Its model and stimulus then stay in
 /// the processor's cache and their branches are foreseen, and what they leave for the simulator still

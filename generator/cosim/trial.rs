@@ -4,11 +4,11 @@
 use anyhow::{Context, Result, ensure};
 
 use super::Random;
-use crate::emit::{self, Computation, Quantity, Shown, Timing, WorkedExample};
-use crate::fixed::Format;
+use crate::base::fixed::Format;
 use crate::golden::{Contract, Operand};
-use crate::netlist::{Design, NetId, Role};
-use crate::sim::Simulator;
+use crate::hdl::netlist::{self, Design, NetId, Role};
+use crate::hdl::sim::Simulator;
+use crate::package::{Computation, Quantity, Shown, Timing, WorkedExample};
 
 /// More clocks than any device takes.
 const LIMIT: u32 = 1 << 16;
@@ -66,7 +66,7 @@ pub fn timing(design: &Design, contract: &dyn Contract) -> Result<Timing> {
     let common = common.unwrap_or_default();
     let at_most = match common.start_to_done {
         Some(_) => None,
-        None => emit::latest_done(design),
+        None => netlist::latest_done(design),
     };
     Ok(Timing {
         start_to_done_at_most: at_most,

@@ -3,11 +3,11 @@
 //! The seeds give no circuit. This is the one that a table logarithm, a product and a table exponential
 //! make: cⁿ = 2^(−n·decay) with the decay −log₂ c, an octave number before what the table holds.
 
+use crate::base::fixed::{Format, exp2};
 use crate::config::{Config, Problems, Schema};
-use crate::dsl::Designer;
-use crate::dsl::blocks::shift;
-use crate::fixed::{Format, exp2};
-use crate::netlist::About;
+use crate::hdl::blocks::shift;
+use crate::hdl::dsl::Designer;
+use crate::hdl::netlist::About;
 
 use super::decay::{self, Curve, Defaults};
 

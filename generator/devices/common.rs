@@ -1,7 +1,7 @@
 //! Keys that several devices share, so that one name means one thing everywhere.
 
 use crate::config::{Config, Key, Problems};
-use crate::dsl::blocks::line::{LineBlocks, OperandBlocks};
+use crate::hdl::blocks::line::{LineBlocks, OperandBlocks};
 
 /// The names of the roundings.
 pub const ROUNDINGS: [&str; 2] = ["truncate", "nearest"];

@@ -5,12 +5,12 @@
 //! every number is a fraction from 0 to 1 and the clamp at the zero of W is the saturation of the
 //! first product.
 
+use crate::base::fixed::{Format, Overflow};
 use crate::config::{Config, Problems, Schema};
-use crate::dsl::blocks::colour::Colours;
-use crate::dsl::blocks::squaring::Squarings;
-use crate::dsl::{Designer, Signal, end, step, valid};
-use crate::fixed::{Format, Overflow};
-use crate::netlist::About;
+use crate::hdl::blocks::colour::Colours;
+use crate::hdl::blocks::squaring::Squarings;
+use crate::hdl::dsl::{Designer, Signal, end, step, valid};
+use crate::hdl::netlist::About;
 
 use super::{common, rounding};
 

@@ -3,13 +3,13 @@
 //! The accumulator of `quad-cosine`; the host multiplies its angles by `a = √(n/2)`, so that nothing stands
 //! between register 8 and a single table.
 
+use crate::base::fixed::Format;
 use crate::config::{Config, Key, Problems, Schema};
-use crate::dsl::Designer;
-use crate::dsl::blocks::angle;
-use crate::dsl::blocks::colour::Colours;
-use crate::dsl::blocks::line::Line;
-use crate::fixed::Format;
-use crate::netlist::About;
+use crate::hdl::blocks::angle;
+use crate::hdl::blocks::colour::Colours;
+use crate::hdl::blocks::line::Line;
+use crate::hdl::dsl::Designer;
+use crate::hdl::netlist::About;
 
 use super::{common, quad_cosine, rounding};
 

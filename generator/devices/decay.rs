@@ -3,13 +3,13 @@
 //! The decay is read from straight segments (the first product), the exponent multiplies it (the second,
 //! in the same multiplier), and 2^−y of their product is one look at tables and a shift.
 
+use crate::base::fixed::{Format, Overflow, Rounding, exp2};
 use crate::config::{Config, Key, Problems, Value};
-use crate::dsl::blocks::colour::Colours;
-use crate::dsl::blocks::exponential::{self, Shape as Exponential};
-use crate::dsl::blocks::multipartite::{Cut, Offset};
-use crate::dsl::blocks::segmented::{self, Entry, Segment, Segmentation, Shape};
-use crate::dsl::{Designer, Signal, end, step, valid};
-use crate::fixed::{Format, Overflow, Rounding, exp2};
+use crate::hdl::blocks::colour::Colours;
+use crate::hdl::blocks::exponential::{self, Shape as Exponential};
+use crate::hdl::blocks::multipartite::{Cut, Offset};
+use crate::hdl::blocks::segmented::{self, Entry, Segment, Segmentation, Shape};
+use crate::hdl::dsl::{Designer, Signal, end, step, valid};
 
 use super::{common, rounding};
 
@@ -394,7 +394,7 @@ fn ends<'d>(
     d.choose("reflectance_next", facing, [dark, lit])
 }
 
-/// What [`crate::netlist::About::notes`] says of both devices.
+/// What [`crate::hdl::netlist::About::notes`] says of both devices.
 pub fn notes() -> Vec<String> {
     vec![
         "Two products a point, in one shared multiplier (a second one would save a clock of six and cost one to \

@@ -5,10 +5,10 @@
 
 use std::f64::consts::LN_2;
 
+use crate::base::fixed::{Format, exp2};
 use crate::config::{Config, Problems, Schema};
-use crate::dsl::Designer;
-use crate::fixed::{Format, exp2};
-use crate::netlist::About;
+use crate::hdl::dsl::Designer;
+use crate::hdl::netlist::About;
 
 use super::decay::{self, Curve, Defaults};
 

@@ -4,12 +4,12 @@
 //! The seed lists the parts only: two adders, four multipliers, shift register, counter, comparator and
 //! mux. The wiring is our reading. Numbers count each kind of block.
 
+use crate::base::fixed::{Format, Overflow};
 use crate::config::{Config, Key, Problems, Schema};
-use crate::dsl::blocks::colour::Colours;
-use crate::dsl::blocks::squaring::Squarings;
-use crate::dsl::{Designer, Setting, Signal, Step, end, loop_while, step, valid};
-use crate::fixed::{Format, Overflow};
-use crate::netlist::About;
+use crate::hdl::blocks::colour::Colours;
+use crate::hdl::blocks::squaring::Squarings;
+use crate::hdl::dsl::{Designer, Setting, Signal, Step, end, loop_while, step, valid};
+use crate::hdl::netlist::About;
 
 use super::{common, rounding};
 
@@ -160,7 +160,7 @@ fn by_shift<'d>(d: &'d Designer, config: &Config, distance: Signal<'d>) -> Scale
         "doubled",
         register.q().shift_left(1),
         register.format(),
-        crate::fixed::Rounding::Truncate,
+        crate::base::fixed::Rounding::Truncate,
         Overflow::Saturate,
     );
     let input = d.mux("shift_input", [small, doubled]).doc("loads or shifts");

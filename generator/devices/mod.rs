@@ -13,8 +13,8 @@ pub mod rough;
 pub mod schlick;
 pub mod threshold;
 
+use crate::base::fixed::Rounding;
 use crate::config::Config;
-use crate::fixed::Rounding;
 
 /// The rounding that a key chooses.
 fn rounding(config: &Config, key: &str) -> Rounding {

@@ -3,13 +3,13 @@
 //! Block numbers are the patent's. Block 14's triggers become words of a microprogram with the same order
 //! of events; ROMs 9 and 12 are synchronous, and output 29 follows output 37 by two clocks.
 
+use crate::base::fixed::Format;
 use crate::config::{Config, Key, Problems, Schema};
-use crate::dsl::blocks::angle;
-use crate::dsl::blocks::colour::{ChannelBlocks, Colours};
-use crate::dsl::blocks::line::Line;
-use crate::dsl::{Designer, Signal};
-use crate::fixed::Format;
-use crate::netlist::About;
+use crate::hdl::blocks::angle;
+use crate::hdl::blocks::colour::{ChannelBlocks, Colours};
+use crate::hdl::blocks::line::Line;
+use crate::hdl::dsl::{Designer, Signal};
+use crate::hdl::netlist::About;
 
 use super::{common, rounding};
 

@@ -6,11 +6,11 @@
 
 mod coefficient;
 
+use crate::base::fixed::{Format, Overflow};
 use crate::config::{Config, Key, Problems, Schema};
-use crate::dsl::blocks::colour::{ChannelBlocks, Colours};
-use crate::dsl::{Designer, Rom, Signal, end, step, valid};
-use crate::fixed::{Format, Overflow};
-use crate::netlist::About;
+use crate::hdl::blocks::colour::{ChannelBlocks, Colours};
+use crate::hdl::dsl::{Designer, Rom, Signal, end, step, valid};
+use crate::hdl::netlist::About;
 
 use super::{common, rounding};
 

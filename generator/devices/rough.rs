@@ -8,11 +8,11 @@ mod sine;
 
 pub use keys::schema;
 
+use crate::base::fixed::{Format, Overflow, Rounding};
 use crate::config::Config;
-use crate::dsl::blocks::colour::{ChannelBlocks, Colours};
-use crate::dsl::{Designer, Register, Signal, end, hold, step, valid};
-use crate::fixed::{Format, Overflow, Rounding};
-use crate::netlist::About;
+use crate::hdl::blocks::colour::{ChannelBlocks, Colours};
+use crate::hdl::dsl::{Designer, Register, Signal, end, hold, step, valid};
+use crate::hdl::netlist::About;
 
 use super::rounding;
 use sine::sine_rom;

@@ -4,12 +4,12 @@
 //! is the least: one multiplier for the divisor and an iterative divider, one bit of the quotient a
 //! clock. The divisor is formed as n·(1 − c) + c, in which every term is positive.
 
+use crate::base::fixed::{Format, Overflow, Rounding};
 use crate::config::{Config, Key, Problems, Schema};
-use crate::dsl::blocks::colour::Colours;
-use crate::dsl::blocks::divider::Divider;
-use crate::dsl::{Designer, Signal, end, loop_while, step, valid};
-use crate::fixed::{Format, Overflow, Rounding};
-use crate::netlist::About;
+use crate::hdl::blocks::colour::Colours;
+use crate::hdl::blocks::divider::Divider;
+use crate::hdl::dsl::{Designer, Signal, end, loop_while, step, valid};
+use crate::hdl::netlist::About;
 
 use super::{common, rounding};
 

@@ -5,11 +5,11 @@
 //! so that no clock holds more than one multiplier before the outputs. Numbers count each kind of block, as the seed's
 //! text does: register 1, adder 1, multiplier 1.
 
+use crate::base::fixed::{Format, Overflow, Rounding, exp2};
 use crate::config::{Config, Key, Problems, Schema};
-use crate::dsl::blocks::colour::{ChannelBlocks, Colours};
-use crate::dsl::{Designer, Rom, Signal, end, step, valid};
-use crate::fixed::{Format, Overflow, Rounding, exp2};
-use crate::netlist::About;
+use crate::hdl::blocks::colour::{ChannelBlocks, Colours};
+use crate::hdl::dsl::{Designer, Rom, Signal, end, step, valid};
+use crate::hdl::netlist::About;
 
 use super::{common, rounding};
 

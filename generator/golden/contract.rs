@@ -1,7 +1,7 @@
 //! What the contracts of all devices share: colour operands and the sum of a bound.
 
 use super::{Bound, Operand, Term};
-use crate::fixed::{Format, Rounding, exp2};
+use crate::base::fixed::{Format, Rounding, exp2};
 
 /// The operand cos γ, where a device has it.
 pub const COSINE: &str = "cos_gamma";

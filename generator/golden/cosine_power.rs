@@ -8,8 +8,8 @@ pub use contract::CosinePowerContract;
 
 use super::keys;
 use super::narrow::Narrow;
+use crate::base::fixed::{Format, Rounding};
 use crate::config::Config;
-use crate::fixed::{Format, Rounding};
 
 /// What a configuration of the device says.
 #[derive(Clone, Debug, PartialEq)]

@@ -9,8 +9,8 @@ pub use contract::CosineSquaredContract;
 use super::keys;
 use super::line::{CosineTable, magnitude};
 use super::narrow::Narrow;
+use crate::base::fixed::{Format, Rounding};
 use crate::config::Config;
-use crate::fixed::{Format, Rounding};
 
 /// What a configuration of the device says.
 #[derive(Clone, Debug, PartialEq)]

@@ -14,8 +14,8 @@ use super::curve::{self, Curve};
 use super::halving::{self, Halving};
 use super::keys;
 use super::narrow::Narrow;
+use crate::base::fixed::{Format, Rounding, exp2};
 use crate::config::Config;
-use crate::fixed::{Format, Rounding, exp2};
 
 /// The decay as a function of c = cos γ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

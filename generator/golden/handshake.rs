@@ -1,6 +1,6 @@
 //! What all devices share: start, busy, the word counter, and operand registers.
 
-use crate::fixed::{Format, mask};
+use crate::base::fixed::{Format, mask};
 
 /// What the word that executes does to the sequence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

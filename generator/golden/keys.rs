@@ -1,7 +1,7 @@
 //! Reading a configuration's values in the types that the models want.
 
+use crate::base::fixed::Rounding;
 use crate::config::Config;
-use crate::fixed::Rounding;
 
 /// A number of bits.
 ///

@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::Operand;
 use super::handshake::{After, Handshake, OperandRegister, bits};
-use crate::fixed::{Format, Overflow, Rounding, exp2};
+use crate::base::fixed::{Format, Overflow, Rounding, exp2};
 
 /// The raw value of an angle operand that is nearest to `angle`, in radians, or the end of its domain.
 pub fn raw_angle(operand: &Operand, angle: f64) -> i64 {

@@ -8,8 +8,8 @@ pub use contract::LyonContract;
 
 use super::keys;
 use super::narrow::Narrow;
+use crate::base::fixed::{Format, Rounding};
 use crate::config::Config;
-use crate::fixed::{Format, Rounding};
 
 /// How β is had.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

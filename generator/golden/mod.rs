@@ -1,6 +1,6 @@
 //! Golden models: each device a second time, by its formula and the source's narrative.
 //!
-//! A golden model uses [`crate::fixed`] and [`crate::config`] alone. It never sees the description,
+//! A golden model uses [`crate::base::fixed`] and [`crate::config`] alone. It never sees the description,
 //! the netlist or the microcode, and it computes its own tables; that is what makes the comparison
 //! with the simulated hardware worth something.
 
@@ -10,6 +10,7 @@ pub mod cosine_power;
 pub mod cosine_squared;
 pub mod curve;
 pub mod decay;
+pub mod formulas;
 pub mod gauss;
 pub mod halving;
 pub mod handshake;
@@ -26,7 +27,7 @@ pub mod threshold;
 
 use std::fmt;
 
-use crate::fixed::Format;
+use crate::base::fixed::Format;
 
 /// A clock-by-clock model of a device.
 ///

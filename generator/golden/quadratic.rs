@@ -9,8 +9,8 @@ pub use contract::QuadraticContract;
 
 use super::keys;
 use super::narrow::Narrow;
+use crate::base::fixed::{Format, Rounding};
 use crate::config::Config;
-use crate::fixed::{Format, Rounding};
 
 /// What ROM(n) holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

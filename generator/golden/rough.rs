@@ -12,8 +12,8 @@ pub use contract::RoughContract;
 use super::keys;
 use super::narrow::Narrow;
 use super::sine::{self, Scheme, Sine};
+use crate::base::fixed::{Format, Rounding};
 use crate::config::Config;
-use crate::fixed::{Format, Rounding};
 
 /// How sums and products are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

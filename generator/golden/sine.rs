@@ -2,7 +2,7 @@
 //!
 //! Operands are raw values with C fraction bits, 0 … 2^C; a sine is a raw u0.S.
 
-use crate::fixed::exp2;
+use crate::base::fixed::exp2;
 
 /// How the table is organised.
 #[derive(Clone, Debug, PartialEq, Eq)]

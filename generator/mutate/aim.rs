@@ -8,10 +8,10 @@ use anyhow::Result;
 
 use super::coverage::{Operands, operand_of};
 use super::run::Difference;
+use crate::core::Unit;
 use crate::cosim::Lockstep;
 use crate::cosim::exhaustive::Clocks;
-use crate::flow::Unit;
-use crate::netlist::{Design, Driver, RegisterKind, RomId};
+use crate::hdl::netlist::{Design, Driver, RegisterKind, RomId};
 
 /// Results that are looked at with operands held.
 const POINTS: u64 = 1 << 17;

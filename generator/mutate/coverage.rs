@@ -4,8 +4,8 @@
 use anyhow::Result;
 
 use crate::cosim::Lockstep;
-use crate::netlist::{Design, NetId, RegisterKind, RomId};
-use crate::sim::Simulator;
+use crate::hdl::netlist::{Design, NetId, RegisterKind, RomId};
+use crate::hdl::sim::Simulator;
 
 /// Places that are kept of each word.
 const PLACES: usize = 6;

@@ -6,9 +6,9 @@ use std::fmt;
 use serde::{Deserialize, Serialize};
 
 use super::operators;
+use crate::base::fixed::mask;
 use crate::cosim::Random;
-use crate::fixed::mask;
-use crate::netlist::{Design, Driver, Net, NetId, Op, RegId, Role, RomId};
+use crate::hdl::netlist::{Design, Driver, Net, NetId, Op, RegId, Role, RomId};
 
 /// A ROM of at most so many words has all pairs of its words swapped, and one of at most so many bits
 /// each of them inverted.

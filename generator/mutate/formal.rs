@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use anyhow::Result;
 
-use crate::cosim::external::Tool;
+use crate::tools::Tool;
 
 /// The file in which the module with a fault stands beside the sound one.
 pub(super) const MUTANT: &str = "glint_mutant.v";

@@ -1,7 +1,7 @@
 //! What can be wrong with a cell as a whole.
 
 use super::fault::Kind;
-use crate::netlist::{Design, Driver, NetId, Op};
+use crate::hdl::netlist::{Design, Driver, NetId, Op};
 
 /// The wrong cells in the place of the one that drives `id`, each with a name and a kind.
 pub(super) fn of(design: &Design, id: NetId, op: &Op) -> Vec<(String, Kind, Op)> {

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 
 use super::fault::{Bit, Fault, Site};
-use crate::microcode;
-use crate::netlist::{Design, Driver, Net, NetId, Op, RegId, RomId};
+use crate::hdl::netlist::microcode;
+use crate::hdl::netlist::{Design, Driver, Net, NetId, Op, RegId, RomId};
 
 impl Fault {
     /// The design with this fault.
@@ -58,7 +58,7 @@ fn add(design: &mut Design, like: NetId, suffix: &str, driver: Driver) -> NetId 
 /// A new net that carries `sound` with a bit at fault, as a driver.
 fn at_fault(design: &mut Design, sound: NetId, bit: u32, how: Bit) -> Driver {
     let ones = match how {
-        Bit::Stuck0 => crate::fixed::mask(design.width(sound)) & !(1 << bit),
+        Bit::Stuck0 => crate::base::fixed::mask(design.width(sound)) & !(1 << bit),
         Bit::Stuck1 | Bit::Inverted => 1 << bit,
     };
     let ones = add(design, sound, "fault", Driver::Constant(ones));

@@ -12,10 +12,10 @@ use super::coverage::{Coverage, Operands};
 use super::fault::{Fault, Site};
 use super::plant;
 use super::proof::Prover;
+use crate::core::{self, Unit};
 use crate::cosim::{Lockstep, Mismatch};
-use crate::flow::{self, Unit};
 use crate::golden::Model;
-use crate::netlist::{Design, RomId};
+use crate::hdl::netlist::{Design, RomId};
 
 /// Points of a first look. They are the first of the default test's first stream, so that what differs in
 /// them differs in the test.
@@ -104,13 +104,13 @@ pub fn run<'f>(
     faults: impl IntoIterator<Item = &'f Fault>,
     progress: &(dyn Fn() + Sync),
 ) -> Result<Vec<Found>> {
-    let lockstep = unit.lockstep(flow::TEST_SEED)?;
+    let lockstep = unit.lockstep(core::TEST_SEED)?;
     let bench = Bench {
         unit,
         sound: plant::bare(&unit.design),
         model: (unit.device.model)(&unit.config),
         prover: Prover::new(&unit.design),
-        tested: Coverage::of(&unit.design, &lockstep, flow::TEST_POINTS)?,
+        tested: Coverage::of(&unit.design, &lockstep, core::TEST_POINTS)?,
         beyond: OnceLock::new(),
     };
     let faults: Vec<&Fault> = faults.into_iter().collect();
@@ -149,8 +149,8 @@ impl Bench<'_> {
         }
         let word = self.words(&fault.site);
         if word.is_none() || !self.places(&fault.site).is_empty() {
-            let lockstep = self.lockstep(&mutant, flow::TEST_SEED)?;
-            if let Some(mismatch) = lockstep.run(flow::TEST_POINTS, &|_| ())?.mismatch {
+            let lockstep = self.lockstep(&mutant, core::TEST_SEED)?;
+            if let Some(mismatch) = lockstep.run(core::TEST_POINTS, &|_| ())?.mismatch {
                 return Ok(caught(mismatch));
             }
         }
@@ -164,7 +164,7 @@ impl Bench<'_> {
     fn first_look(&self, mutant: &Design, site: &Site) -> Result<Option<Mismatch>> {
         let looks = match self.words(site) {
             Some(_) => self.places(site),
-            None => vec![(flow::TEST_SEED, FIRST_POINTS)],
+            None => vec![(core::TEST_SEED, FIRST_POINTS)],
         };
         for (seed, points) in looks {
             let lockstep = self.lockstep(mutant, seed)?;

@@ -7,8 +7,8 @@ use rayon::prelude::*;
 use super::proof::Prover;
 use super::{Faults, plant};
 use crate::config;
+use crate::core::Unit;
 use crate::cosim::Lockstep;
-use crate::flow::Unit;
 use crate::registry::Registry;
 
 /// One in so many faults is planted: not a multiple of three, as for each bit there are three.

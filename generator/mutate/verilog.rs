@@ -17,8 +17,8 @@ use regex::Regex;
 use serde::{Deserialize, Serialize};
 
 use super::formal;
-use crate::cosim::external::{BuiltBench, Simulator, Tool, Waveform};
-use crate::flow::{TEST_SEED, Unit};
+use crate::core::{TEST_SEED, Unit};
+use crate::tools::{BuiltBench, Simulator, Tool, Waveform};
 
 /// Results in the vectors of the bench that must notice.
 pub const POINTS: u64 = 2000;

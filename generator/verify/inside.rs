@@ -5,10 +5,10 @@ use std::ops::ControlFlow;
 use anyhow::Result;
 
 use super::{Finding, Leg, Subject, Verdict};
+use crate::base::text::{counted, grouped};
+use crate::core::{TEST_POINTS, TEST_SEED};
 use crate::cosim::exhaustive::{Job, Proof, Shard, State};
-use crate::flow::{TEST_POINTS, TEST_SEED};
 use crate::mutate::{self, Faults, Score};
-use crate::words::{counted, grouped};
 
 /// Results that lock-step compares, and with full effort.
 const POINTS: [u64; 2] = [TEST_POINTS, 100 * TEST_POINTS];

@@ -17,8 +17,8 @@ use std::time::{Duration, Instant};
 use anyhow::Result;
 use serde::Serialize;
 
-use crate::cosim::external::Tool;
-use crate::flow::Unit;
+use crate::core::Unit;
+use crate::tools::Tool;
 
 /// A configuration to be verified.
 pub struct Subject<'a> {

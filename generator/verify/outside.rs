@@ -7,12 +7,12 @@ use rayon::prelude::*;
 use tempfile::TempDir;
 
 use super::{Finding, Leg, Subject, Verdict};
-use crate::cosim::external::{Simulator, lint, prove, run_bench};
-use crate::cosim::gates;
-use crate::cosim::synthesis::{FAMILIES, Family, synthesise};
-use crate::emit;
-use crate::flow::{BENCH_POINTS, BENCH_SEED};
-use crate::words::grouped;
+use crate::base::text::grouped;
+use crate::core::{BENCH_POINTS, BENCH_SEED};
+use crate::package;
+use crate::tools::gates;
+use crate::tools::synthesis::{FAMILIES, Family, synthesise};
+use crate::tools::{Simulator, lint, prove, run_bench};
 
 /// Results of a bench, and with full effort.
 const POINTS: [u64; 2] = [200, 20_000];
@@ -79,7 +79,7 @@ fn bench(subject: &Subject<'_>, simulator: Simulator) -> Result<Finding> {
     let points = POINTS[usize::from(effort.full)];
     let vectors = unit.vectors(points, BENCH_SEED)?;
     let clocks = vectors.inputs.len() as u64;
-    let files = emit::sources(unit.files(subject.path, vectors)?);
+    let files = package::sources(unit.files(subject.path, vectors)?);
     let top = format!("{}_tb", unit.config.name);
     let outcome = run_bench(simulator, &files, &top, effort.time_limit)?;
     let faults = match outcome.passed {
@@ -200,7 +200,7 @@ fn place(subject: &Subject<'_>) -> Result<TempDir> {
     let place = tempfile::tempdir().context("cannot make a directory for what is emitted")?;
     let vectors = subject.unit.vectors(BENCH_POINTS, BENCH_SEED)?;
     let files = subject.unit.files(subject.path, vectors)?;
-    for file in files.iter().chain([&emit::driver()]) {
+    for file in files.iter().chain([&package::driver()]) {
         let path = place.path().join(&file.path);
         path.parent()
             .map_or(Ok(()), fs::create_dir_all)
@@ -221,7 +221,7 @@ pub const GATES: Leg = Leg {
         let (name, limit) = (&subject.unit.config.name, subject.effort.time_limit);
         let vectors = subject.unit.vectors(GATE_POINTS, BENCH_SEED)?;
         let clocks = vectors.inputs.len() as u64;
-        let sources = emit::sources(subject.unit.files(subject.path, vectors)?);
+        let sources = package::sources(subject.unit.files(subject.path, vectors)?);
         let rtl = subject.unit.verilog()?;
         let names: Vec<String> = rtl.iter().map(|(name, _)| name.clone()).collect();
         let families: Vec<_> = simulated().collect();

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::{Conclusion, Effort, Finding, LEGS, Record, Subject, Verdict};
 use crate::config;
-use crate::flow::Unit;
+use crate::core::Unit;
 use crate::registry::Registry;
 
 /// A narrow device, of which every leg says something.

@@ -5,7 +5,7 @@
 
 use std::fs;
 
-use glint::cosim::external::{Run, Simulator};
+use glint::tools::{Run, Simulator};
 use tempfile::TempDir;
 
 use super::tools::{LIMIT, tool};

@@ -5,9 +5,9 @@
 
 use std::path::Path;
 
-use glint::cosim::external::Simulator;
-use glint::cosim::gates;
-use glint::cosim::synthesis::Family;
+use glint::tools::Simulator;
+use glint::tools::gates;
+use glint::tools::synthesis::Family;
 
 use super::bench::Bench;
 use super::tools::{tool, verilog_files, yosys};

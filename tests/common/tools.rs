@@ -10,7 +10,7 @@ use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use glint::cosim::external::{BenchOutcome, Simulator, Tool, lint, run_bench};
+use glint::tools::{BenchOutcome, Simulator, Tool, lint, run_bench};
 
 /// What a run of any tool may take.
 pub const LIMIT: Duration = Duration::from_secs(300);

@@ -7,8 +7,8 @@ use std::fs;
 use std::path::Path;
 
 use glint::config;
-use glint::emit::{OutputFile, sources};
-use glint::flow::Unit;
+use glint::core::Unit;
+use glint::package::{OutputFile, sources};
 use glint::registry::{Device, Registry};
 
 /// Pairs of a plain file name and contents.

@@ -2,9 +2,9 @@
 //! their operands: the simulated hardware against values worked out by hand.
 
 use crate::common::units::configuration;
-use glint::flow::Unit;
-use glint::netlist::Role;
-use glint::sim::Simulator;
+use glint::core::Unit;
+use glint::hdl::netlist::Role;
+use glint::hdl::sim::Simulator;
 
 /// 1.0 as a cosine of the default configurations, and as a component of a vector.
 const COSINE_ONE: i64 = 1 << 20;

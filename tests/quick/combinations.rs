@@ -11,8 +11,8 @@ use std::process::{Command, Output};
 
 use crate::common::units::configuration;
 use glint::config::Config;
+use glint::core::Unit;
 use glint::cosim::exhaustive::{Clocks, Job, MOST_BITS, Proof, Shard, State};
-use glint::flow::Unit;
 use glint::golden::Model;
 use glint::registry::{Device, Registry};
 use serde_json::Value;

@@ -3,7 +3,7 @@
 use crate::common::cases;
 use crate::config_device::{lamp, schemas};
 use glint::config::{Config, Schema, commented, parse, read, sample};
-use glint::flow::Unit;
+use glint::core::Unit;
 use glint::registry::Registry;
 use proptest::collection::vec;
 use proptest::prelude::*;

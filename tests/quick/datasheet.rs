@@ -5,9 +5,9 @@ use std::collections::BTreeSet;
 use std::fs;
 
 use crate::common::units::{configuration, configurations};
-use glint::emit::{Seal, is_sealed};
-use glint::flow::Unit;
-use glint::report::datasheet::{Datasheet, Proof, Subject, datasheet};
+use glint::core::Unit;
+use glint::package::{Seal, is_sealed};
+use glint::pages::datasheet::{Datasheet, Proof, Subject, datasheet};
 use roxmltree::{Document, Node, ParsingOptions};
 use serde_json::Value;
 

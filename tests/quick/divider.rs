@@ -2,12 +2,12 @@
 //! remainder and clock of small operands against integer division; and the edges of `schlick`.
 
 use glint::config;
-use glint::dsl::blocks::divider::Divider;
 use glint::dsl::{Designer, end, loop_while, step, valid};
 use glint::fixed::Format;
-use glint::netlist::{Design, NetId};
+use glint::hdl::blocks::divider::Divider;
+use glint::hdl::netlist::{Design, NetId};
+use glint::hdl::sim::Simulator;
 use glint::registry::Registry;
-use glint::sim::Simulator;
 
 /// A device that divides two operands.
 fn ratio(dividend: Format, divisor: Format, bits: i32) -> Design {
@@ -50,7 +50,7 @@ impl<'a> Bench<'a> {
     }
 
     fn set(&mut self, name: &str, bits: u64) {
-        let is_it = |port: &glint::netlist::Port| self.design.net(port.net).name == name;
+        let is_it = |port: &glint::hdl::netlist::Port| self.design.net(port.net).name == name;
         let at = self.design.inputs().position(is_it).expect("an input");
         self.simulator.set(at, bits);
     }

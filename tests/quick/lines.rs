@@ -5,11 +5,11 @@
 use std::f64::consts::FRAC_PI_2;
 
 use glint::config::Config;
-use glint::flow::Unit;
-use glint::reference;
+use glint::core::Unit;
+use glint::golden::formulas;
+use glint::hdl::sim::Simulator;
 use glint::registry::Registry;
-use glint::setup::{Arc, Line, Operands};
-use glint::sim::Simulator;
+use glint::render::setup::{Arc, Line, Operands};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
@@ -308,13 +308,13 @@ fn the_longest_lines_stay_within_two_units_of_the_unquantised_set_up() {
         let n = i64::from(line.exponent);
         let it = line.quad_cosine(&quad.config).expect("operands");
         let control = [it.delta_zeta, it.zeta_start, n, it.length];
-        let error = drift(&quad, &line, &it, &control, |zeta| reference::quad_cosine(zeta, n));
+        let error = drift(&quad, &line, &it, &control, |zeta| formulas::quad_cosine(zeta, n));
         worst[0] = worst[0].max(error);
         let it = line.cosine_squared(&squared.config).expect("operands");
         let control = [it.delta_zeta, it.zeta_start, it.length];
         let a = (n as f64 / 2.0).sqrt();
         let error =
-            drift(&squared, &line, &it, &control, |zeta| reference::cosine_squared(a * zeta));
+            drift(&squared, &line, &it, &control, |zeta| formulas::cosine_squared(a * zeta));
         worst[1] = worst[1].max(error);
     }
     println!("quad-cosine {}, cosine-squared {} units", worst[0], worst[1]);
@@ -343,7 +343,7 @@ fn the_worst_rounding_of_the_longest_line_stays_within_two_units() {
         };
         let it = line.quad_cosine(&quad.config).expect("operands");
         let control = [it.delta_zeta, it.zeta_start, 1000, it.length];
-        let error = drift(&quad, &line, &it, &control, |zeta| reference::quad_cosine(zeta, 1000));
+        let error = drift(&quad, &line, &it, &control, |zeta| formulas::quad_cosine(zeta, 1000));
         worst = worst.max(error);
     }
     println!("{worst} units");

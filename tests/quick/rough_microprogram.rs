@@ -1,8 +1,8 @@
 //! The control ROM of `rough` is table 1 of UA 60139, bit for bit, whatever the configuration.
 
 use glint::config::{Config, parse, sample};
-use glint::emit::{EmitInputs, emit};
-use glint::netlist::Design;
+use glint::hdl::netlist::Design;
+use glint::package::{EmitInputs, emit};
 use glint::registry::{Device, Registry};
 
 /// The patent's table 1 (figure 4), typed from it. Columns V1 … V9, rows by address.

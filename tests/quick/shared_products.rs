@@ -3,8 +3,8 @@
 
 use glint::dsl::{Designer, end, hold, step, valid};
 use glint::fixed::Format;
-use glint::netlist::Design;
-use glint::sim::Simulator;
+use glint::hdl::netlist::Design;
+use glint::hdl::sim::Simulator;
 
 const SIGNED: Format = Format::signed(3, 2);
 const UNSIGNED: Format = Format::unsigned(4, 1);

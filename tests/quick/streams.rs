@@ -5,9 +5,9 @@ use std::fs::File;
 use std::io::BufReader;
 
 use crate::common::units::configurations;
+use glint::core::Unit;
 use glint::cosim::{Lockstep, Outcome};
-use glint::flow::Unit;
-use glint::netlist::Design;
+use glint::hdl::netlist::Design;
 
 /// Enough for streams of many lanes and several simulators.
 const POINTS: u64 = 70_000;

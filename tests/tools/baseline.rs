@@ -6,7 +6,7 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::tools;
-use glint::cosim::external::Simulator;
+use glint::tools::Simulator;
 
 const COSINE: u32 = 17;
 const ONE: u64 = 1 << COSINE;

@@ -1,11 +1,11 @@
 //! The emitted bench: what differs makes it fail, in every simulator, and it says where.
 
 use crate::common::tools::LIMIT;
-use glint::cosim::external::{BenchDifference, BenchOutcome, Simulator, bench_waveform, run_bench};
 use glint::dsl::{Designer, end, step, valid};
-use glint::emit::{EmitInputs, Vectors, emit, sources};
 use glint::fixed::{Format, Overflow, Rounding};
-use glint::netlist::Design;
+use glint::hdl::netlist::Design;
+use glint::package::{EmitInputs, Vectors, emit, sources};
+use glint::tools::{BenchDifference, BenchOutcome, Simulator, bench_waveform, run_bench};
 
 /// y = x², of an operand of four bits, to four bits.
 fn squarer() -> Design {

@@ -8,9 +8,9 @@ use std::path::Path;
 use crate::common::bench::with_flipped_bit;
 use crate::common::tools::{LIMIT, tool};
 use crate::common::units::{Emitted, configuration, configurations};
-use glint::cosim::external::Run;
-use glint::emit;
-use glint::flow::Unit;
+use glint::core::Unit;
+use glint::package;
+use glint::tools::Run;
 use rayon::prelude::*;
 
 const EXACT: &str = "computations_are_exact";
@@ -119,7 +119,7 @@ fn memory_is_noticed(name: &str, rom: &str, wrong: impl Fn(&str) -> String) {
 fn place(unit: &Unit) -> tempfile::TempDir {
     let place = tempfile::tempdir().expect("a directory");
     let emitted = Emitted::new(unit, 1, 1);
-    for file in emitted.files.iter().chain([&emit::driver()]) {
+    for file in emitted.files.iter().chain([&package::driver()]) {
         let path = place.path().join(&file.path);
         fs::create_dir_all(path.parent().expect("a directory")).expect("a directory");
         fs::write(path, &file.contents).expect("written");

@@ -11,7 +11,7 @@ use std::process::{Command, Output};
 
 use fresnel::FRESNEL;
 use glint::config::{Config, sample};
-use glint::flow::Unit;
+use glint::core::Unit;
 
 /// Runs the example as its user does.
 fn run(directory: &Path, arguments: &[&str]) -> Output {

@@ -4,7 +4,7 @@ use std::fs;
 use std::time::Duration;
 
 use crate::common::tools;
-use glint::cosim::external::{Simulator, run_bench};
+use glint::tools::{Simulator, run_bench};
 
 const COUNTER: &str = "\
 `default_nettype none

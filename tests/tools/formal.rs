@@ -8,7 +8,7 @@ use std::fs;
 use crate::common::bench::with_flipped_bit;
 use crate::common::tools::LIMIT;
 use crate::common::units::{Emitted, configuration, configurations, write};
-use glint::cosim::external::prove;
+use glint::tools::prove;
 use rayon::prelude::*;
 
 #[test]
@@ -113,7 +113,7 @@ fn a_wrong_bit_of_sequencing_breaks_the_proof() {
 }
 
 /// The files of a configuration in a directory of their own, and its name.
-fn emitted(unit: &glint::flow::Unit) -> (tempfile::TempDir, String) {
+fn emitted(unit: &glint::core::Unit) -> (tempfile::TempDir, String) {
     let emitted = Emitted::new(unit, 1, 1);
     let place = tempfile::tempdir().expect("a directory");
     let files = emitted.files.iter();

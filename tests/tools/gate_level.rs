@@ -5,8 +5,8 @@ use std::fs;
 
 use crate::common::netlist::{self, POINTS, synthesise};
 use crate::common::units::{Emitted, configuration};
-use glint::cosim::gates;
-use glint::cosim::synthesis::{FAMILIES, Family};
+use glint::tools::gates;
+use glint::tools::synthesis::{FAMILIES, Family};
 use rayon::prelude::*;
 
 fn families() -> impl ParallelIterator<Item = &'static Family> {

@@ -8,9 +8,9 @@ use crate::common::sample::sampled;
 use crate::common::tools::{assert_bench_passes, assert_lint_clean};
 use crate::common::units::{Emitted, random, write};
 use glint::config;
-use glint::cosim::external::Simulator;
-use glint::flow::Unit;
+use glint::core::Unit;
 use glint::registry::Registry;
+use glint::tools::Simulator;
 use rayon::prelude::*;
 
 /// Configurations of each device that are simulated inside the program.

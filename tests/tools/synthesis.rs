@@ -12,9 +12,9 @@ use crate::common::netlist::{self, POINTS, synthesise};
 use crate::common::sample::sampled;
 use crate::common::tools::{LIMIT, tool};
 use crate::common::units::{Emitted, configuration, configurations};
-use glint::cosim::gates;
-use glint::cosim::synthesis::{self, FAMILIES, Family, Kinds, Usage};
-use glint::netlist::{Design, Driver, Op, Rom};
+use glint::hdl::netlist::{Design, Driver, Op, Rom};
+use glint::tools::gates;
+use glint::tools::synthesis::{self, FAMILIES, Family, Kinds, Usage};
 use rayon::prelude::*;
 
 /// Pairs of a configuration and a family that are synthesised.

@@ -8,10 +8,10 @@ use crate::common::bench::{Bench, with_flipped_bit};
 use crate::common::sample::sampled;
 use crate::common::tools::assert_lint_clean;
 use crate::common::units::{Emitted, Files, configuration, configurations, write};
-use glint::cosim::external::Simulator as External;
-use glint::flow::Unit;
-use glint::netlist::{Design, Driver, RomId};
-use glint::sim::Simulator;
+use glint::core::Unit;
+use glint::hdl::netlist::{Design, Driver, RomId};
+use glint::hdl::sim::Simulator;
+use glint::tools::Simulator as External;
 use rayon::prelude::*;
 
 /// Points of a bench here; committed benches are shorter.

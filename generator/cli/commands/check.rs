@@ -8,13 +8,13 @@ use serde_json::{Value, json};
 
 use super::mismatch::Reproducer;
 use super::{Loaded, cosim, generate, load};
+use crate::base::text;
 use crate::cli::{Output, progress, tables};
+use crate::core::{TEST_POINTS, TEST_SEED};
 use crate::cosim::Outcome;
-use crate::emit::Timing;
-use crate::flow::{TEST_POINTS, TEST_SEED};
 use crate::golden::Bound;
+use crate::package::Timing;
 use crate::registry::Registry;
-use crate::words;
 
 /// What the main job found of one configuration.
 struct Finding {
@@ -80,11 +80,11 @@ fn print(loaded: &[Loaded], findings: &[Finding]) -> Result<()> {
             one.unit.device.name.to_owned(),
             one.path.clone(),
             clocks.map_or_else(|| "varies".to_owned(), |clocks| clocks.to_string()),
-            words::grouped(finding.outcome.points),
-            words::grouped(finding.outcome.clocks),
+            text::grouped(finding.outcome.points),
+            text::grouped(finding.outcome.clocks),
             finding.outcome.registers.to_string(),
             finding.outcome.outputs.to_string(),
-            words::grouped(one.unit.design.rom_bits()),
+            text::grouped(one.unit.design.rom_bits()),
             format!("{:.3}", finding.bound.units),
             finding
                 .outcome

@@ -12,12 +12,12 @@ use super::load;
 use crate::cli::failure::Usage as WrongUsage;
 use crate::cli::{Output, progress};
 use crate::config::{Config, Schema, Value};
-use crate::cosim::external::Tool;
-use crate::cosim::synthesis::{self, FAMILIES, Usage};
-use crate::flow::Unit;
+use crate::core::Unit;
+use crate::evidence::comparison::{self, Accuracy, Multiplier};
 use crate::golden::contract;
 use crate::registry::{Device, Registry};
-use crate::report::comparison::{self, Accuracy, Multiplier};
+use crate::tools::Tool;
+use crate::tools::synthesis::{self, FAMILIES, Usage};
 
 /// What `compare` was asked for.
 pub struct CompareRequest {

@@ -11,14 +11,14 @@ use serde_json::{Value, json};
 
 use super::mismatch::{self, Reproducer};
 use super::{Loaded, load};
+use crate::base::text;
 use crate::cli::failure::Usage;
 use crate::cli::{Output, Simulator, progress, tables};
-use crate::cosim::external;
+use crate::core::TEST_POINTS;
 use crate::cosim::{Outcome, Worst};
-use crate::flow::TEST_POINTS;
 use crate::golden::Bound;
 use crate::registry::Registry;
-use crate::words;
+use crate::tools;
 use benches::benches;
 
 /// What `cosim` was asked for.
@@ -48,8 +48,8 @@ pub fn cosim(
     }
     let which = match request.simulator {
         Simulator::RustHdl => return built_in(output, &loaded, request),
-        Simulator::Icarus => external::Simulator::Icarus,
-        Simulator::Verilator => external::Simulator::Verilator,
+        Simulator::Icarus => tools::Simulator::Icarus,
+        Simulator::Verilator => tools::Simulator::Verilator,
     };
     benches(output, &loaded, request, which)
 }
@@ -78,8 +78,8 @@ fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result
         tables::print_line(&format!(
             "{}: {} points, {} clocks; {} registers and {} outputs equal the golden model on each: {}",
             one.path,
-            words::grouped(outcome.points),
-            words::grouped(outcome.clocks),
+            text::grouped(outcome.points),
+            text::grouped(outcome.clocks),
             outcome.registers,
             outcome.outputs,
             if faults.is_empty() { "holds" } else { "FAILS" },

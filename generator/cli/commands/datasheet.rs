@@ -13,11 +13,11 @@ use super::{Loaded, load};
 use crate::cli::failure::Usage;
 use crate::cli::store::{self, Written};
 use crate::cli::{Configs, Output, progress, tables};
-use crate::cosim::external::Tool;
-use crate::emit::Seal;
-use crate::flow::Unit;
+use crate::core::Unit;
+use crate::package::Seal;
+use crate::pages::datasheet::{self, Proof, Subject};
 use crate::registry::Registry;
-use crate::report::datasheet::{self, Proof, Subject};
+use crate::tools::Tool;
 
 /// What `datasheet` was asked for.
 #[derive(Args)]

@@ -8,7 +8,7 @@ use serde_json::json;
 use super::load;
 use crate::cli::store::{self, Written};
 use crate::cli::{Output, tables};
-use crate::emit::Seal;
+use crate::package::Seal;
 use crate::registry::Registry;
 
 /// `glint describe`.

@@ -9,8 +9,8 @@ use serde_json::json;
 use super::{Loaded, load};
 use crate::cli::store::{self, Written};
 use crate::cli::{Output, progress, tables};
-use crate::emit::{self, OutputFile, Seal};
-use crate::flow::{BENCH_POINTS, BENCH_SEED};
+use crate::core::{BENCH_POINTS, BENCH_SEED};
+use crate::package::{self, OutputFile, Seal};
 use crate::registry::Registry;
 
 /// `glint generate`.
@@ -50,7 +50,7 @@ pub fn generate(
         }
     }
     if output.json {
-        let shared = [emit::driver().path];
+        let shared = [package::driver().path];
         tables::print_json(&json!({ "ok": true, "generated": report, "shared": shared }));
     }
     Ok(true)
@@ -82,7 +82,7 @@ fn files(one: &Loaded) -> Result<Vec<OutputFile>> {
 pub fn write(out: &Path, one: &Loaded, files: &[OutputFile], force: bool) -> Result<Written> {
     let written = store::write(out, &one.unit.config.name, files, force)
         .with_context(|| format!("`{}` was not generated", one.path))?;
-    let driver = emit::driver();
+    let driver = package::driver();
     let path = out.join(&driver.path);
     store::write_sealed(&path, &driver.contents, Seal::Python, force)?;
     Ok(written)
@@ -96,7 +96,7 @@ fn compare(
     made: &[Vec<OutputFile>],
 ) -> Result<bool> {
     let mut all = Vec::new();
-    let driver = emit::driver();
+    let driver = package::driver();
     if store::differs(out, &driver)? {
         all.push(driver.path);
     }

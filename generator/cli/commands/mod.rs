@@ -35,7 +35,7 @@ pub use verify::{VerifyRequest, verify};
 
 use super::failure::{self, Several};
 use crate::config;
-use crate::flow::Unit;
+use crate::core::Unit;
 use crate::registry::Registry;
 
 /// Where configurations are when none are named.

@@ -10,18 +10,18 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::load_one;
+use crate::base::text;
 use crate::cli::destination::Destination;
 use crate::cli::failure::{self, Usage};
 use crate::cli::{Output, progress, tables};
 use crate::config::Config;
-use crate::cosim::external;
-use crate::flow::{self, Unit};
+use crate::core::{self, Unit};
 use crate::registry::Registry;
-use crate::report::render::{
+use crate::render::{
     self, BuiltIn, Difference, Light, Material, Mesh, Object, Picture, Relief, Rendered, Scene,
     Settings, Shape, Vector, View,
 };
-use crate::words;
+use crate::tools;
 
 /// The largest file that is read, in bytes: about the OBJ file of the largest mesh.
 const LARGEST_FILE: u64 = 4 << 30;
@@ -141,10 +141,10 @@ pub fn render(registry: &Registry, output: Output, arguments: &RenderArguments) 
     render::check(&settings, &scene).map_err(|error| Usage(error.to_string()))?;
     let destination = Destination::open(&arguments.out)?;
     let through = match arguments.through {
-        Through::Golden => flow::Through::Golden,
-        Through::RustHdl => flow::Through::RustHdl,
-        Through::Verilator => flow::Through::Verilog(
-            external::Simulator::Verilator,
+        Through::Golden => core::Through::Golden,
+        Through::RustHdl => core::Through::RustHdl,
+        Through::Verilator => core::Through::Verilog(
+            tools::Simulator::Verilator,
             Duration::from_secs(arguments.time_limit),
         ),
     };
@@ -330,7 +330,7 @@ fn tell(
     tables::print_line(&format!(
         "{path}: {width}x{height} pixels, n = {}, {} points of {name} through {through}",
         settings.material.exponent,
-        words::grouped(rendered.points)
+        text::grouped(rendered.points)
     ));
     if degenerate > 0 {
         failure::warn(&format!("{degenerate} triangles are without area and were left out"));
@@ -338,7 +338,7 @@ fn tell(
     if rendered.beyond > 0 {
         failure::warn(&format!(
             "at {} points the deviation exceeds the device's domain and was shortened to it",
-            words::grouped(rendered.beyond)
+            text::grouped(rendered.beyond)
         ));
     }
     if let Some(comparison) = &rendered.comparison {

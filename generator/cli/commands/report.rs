@@ -9,12 +9,12 @@ use serde_json::json;
 
 use crate::cli::own_file::OwnFile;
 use crate::cli::{Output, progress, tables};
-use crate::cosim::external::Tool;
+use crate::evidence;
+use crate::evidence::benchmark;
+use crate::evidence::claims::Verdict;
+use crate::pages::report;
 use crate::registry::Registry;
-use crate::report::benchmark;
-use crate::report::claims::Verdict;
-use crate::report::evidence;
-use crate::report::page;
+use crate::tools::Tool;
 
 /// What `report` was asked for.
 pub struct ReportRequest {
@@ -33,7 +33,7 @@ pub fn report(registry: &Registry, output: Output, request: &ReportRequest) -> R
     // Before the work: a directory that cannot be written is known now.
     fs::create_dir_all(&request.out)
         .with_context(|| format!("cannot make the directory `{}`", request.out.display()))?;
-    let html = OwnFile::new(&request.out, "report.html", page::MARKER)?;
+    let html = OwnFile::new(&request.out, "report.html", report::MARKER)?;
     let figures = OwnFile::new(&request.out, "report.json", OwnFile::JSON)?;
     let timings = match request.benchmark {
         true => Some(OwnFile::new(&request.out, "benchmark.json", OwnFile::JSON)?),
@@ -56,8 +56,10 @@ pub fn report(registry: &Registry, output: Output, request: &ReportRequest) -> R
     let evidence = evidence::gather(registry, synthesis, &|| bar.inc(1))?;
     bar.finish_and_clear();
     notes.extend(evidence.notes.iter().cloned());
-    let mut written =
-        vec![figures.write_json(&evidence)?, html.write(&page::page(&evidence, timed.as_ref())?)?];
+    let mut written = vec![
+        figures.write_json(&evidence)?,
+        html.write(&report::page(&evidence, timed.as_ref())?)?,
+    ];
     if let (Some(target), Some(timed)) = (timings, &timed) {
         written.push(target.write_json(timed)?);
     }

@@ -6,10 +6,10 @@ use anyhow::{Context, Result, ensure};
 use rayon::prelude::*;
 
 use super::{Engine, Points};
-use crate::fixed::Format;
+use crate::base::fixed::Format;
 use crate::golden::Contract;
-use crate::netlist::{Design, NetId, Role};
-use crate::sim::Simulator;
+use crate::hdl::netlist::{Design, NetId, Role};
+use crate::hdl::sim::Simulator;
 
 /// Instances that one thread clocks together.
 const LANES: usize = 32;

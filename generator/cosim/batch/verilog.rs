@@ -7,11 +7,11 @@ use std::time::Duration;
 use anyhow::{Context, Result, ensure};
 
 use super::{Engine, Points};
-use crate::cosim::external::{BuiltBench, Simulator, Waveform};
-use crate::emit::{POINTS_FILE, RESULTS_FILE, points_bench};
-use crate::fixed::Format;
+use crate::base::fixed::Format;
 use crate::golden::Contract;
-use crate::netlist::Design;
+use crate::hdl::netlist::Design;
+use crate::package::{POINTS_FILE, RESULTS_FILE, points_bench};
+use crate::tools::{BuiltBench, Simulator, Waveform};
 
 /// More clocks than any computation takes.
 const LIMIT: u32 = 1 << 16;

@@ -20,7 +20,7 @@ use crate::cosim::pairing::Pairing;
 use crate::cosim::stream::Course;
 use crate::cosim::together::Together;
 use crate::golden::{Contract, Model};
-use crate::netlist::Design;
+use crate::hdl::netlist::Design;
 
 /// Beyond so many bits of operands there are too many combinations.
 pub const MOST_BITS: u32 = 26;

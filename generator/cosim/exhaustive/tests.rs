@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use super::*;
-use crate::fixed::Format;
+use crate::base::fixed::Format;
 use crate::golden::{Axis, Bound, Operand, Sweep, Values};
 
 /// f = 0; the "error" numbers the places 0, 1, 2, …, and repeats its largest value.

@@ -1,10 +1,10 @@
 //! ROM 18 of `rough`: the sine of a cosine, in one of two schemes.
 
 use super::Formats;
+use crate::base::fixed::Format;
 use crate::config::Config;
-use crate::dsl::blocks::segmented::{self, Entry, Segment, Segmentation, Shape};
-use crate::dsl::{Designer, Signal};
-use crate::fixed::Format;
+use crate::hdl::blocks::segmented::{self, Entry, Segment, Segmentation, Shape};
+use crate::hdl::dsl::{Designer, Signal};
 
 /// ROM 18: sin = √(1 − cos²).
 pub(super) fn sine_rom<'d>(

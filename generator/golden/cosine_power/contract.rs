@@ -1,12 +1,12 @@
 //! The accuracy contract of `cosine-power`.
 
 use super::{Arithmetic, Params};
+use crate::base::fixed::{Format, Rounding, exp2};
 use crate::config::Config;
-use crate::fixed::{Format, Rounding, exp2};
 use crate::golden::contract as shared;
+use crate::golden::formulas;
 use crate::golden::narrow::rounding_error;
 use crate::golden::{Bound, Contract, Operand};
-use crate::reference;
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
 #[derive(Clone, Debug)]
@@ -94,7 +94,7 @@ impl Contract for CosinePowerContract {
     fn reference(&self, control: &[i64]) -> f64 {
         let cosine = control[0].clamp(0, self.arithmetic.one) as f64;
         let cosine = cosine * self.ulp;
-        reference::cosine_power(cosine, control[1] as f64, self.params.power)
+        formulas::cosine_power(cosine, control[1] as f64, self.params.power)
     }
 
     fn expressions(&self) -> Vec<String> {
@@ -168,7 +168,7 @@ fn formula_error(n: i64, power: u32) -> f64 {
         .map(|step| {
             let cosine = f64::from(step) / f64::from(GRID);
             let n = n as f64;
-            (reference::cosine_power(cosine, n, power) - reference::blinn(cosine, n)).abs()
+            (formulas::cosine_power(cosine, n, power) - formulas::blinn(cosine, n)).abs()
         })
         .fold(0.0, f64::max)
 }

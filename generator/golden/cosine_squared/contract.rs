@@ -3,12 +3,12 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::{Arithmetic, Params};
+use crate::base::fixed::{Format, exp2};
 use crate::config::Config;
-use crate::fixed::{Format, exp2};
 use crate::golden::contract as shared;
+use crate::golden::formulas;
 use crate::golden::line;
 use crate::golden::{Axis, Bound, Contract, Operand, Sweep, Values};
-use crate::reference;
 
 /// The accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `length`; those of a point have its
 /// angle for `zeta_start`.
@@ -74,7 +74,7 @@ impl Contract for CosineSquaredContract {
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let right = exp2(self.params.angle_fraction as i32);
-        reference::cosine_squared(control[1] as f64 / right * FRAC_PI_2)
+        formulas::cosine_squared(control[1] as f64 / right * FRAC_PI_2)
     }
 
     fn expressions(&self) -> Vec<String> {
@@ -117,7 +117,7 @@ impl Contract for CosineSquaredContract {
         let word = self.arithmetic.table.words[step as usize];
         let f = self.f_format().to_f64(i128::from(word));
         let ulp = exp2(-(self.params.table_address as i32));
-        let end = |step: i64| reference::cosine_squared(step as f64 * ulp * FRAC_PI_2);
+        let end = |step: i64| formulas::cosine_squared(step as f64 * ulp * FRAC_PI_2);
         (end(step) - f).max(f - end(step + 1))
     }
 

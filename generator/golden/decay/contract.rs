@@ -3,11 +3,11 @@
 use std::f64::consts::LN_2;
 
 use super::{Arithmetic, Function, Params};
-use crate::fixed::{Format, exp2};
+use crate::base::fixed::{Format, exp2};
 use crate::golden::contract::{self as shared, Share};
 use crate::golden::curve::Piece;
+use crate::golden::formulas;
 use crate::golden::{Bound, Contract, Operand};
-use crate::reference;
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
 #[derive(Clone, Debug)]
@@ -109,8 +109,8 @@ impl Contract for DecayContract {
         let cosine = control[0].clamp(0, self.arithmetic.one) as f64 * self.ulp;
         let exponent = control[1] as f64;
         match self.params.function {
-            Function::Logarithm => reference::blinn(cosine, exponent),
-            Function::Angle => reference::gauss(cosine, exponent),
+            Function::Logarithm => formulas::blinn(cosine, exponent),
+            Function::Angle => formulas::gauss(cosine, exponent),
         }
     }
 

@@ -1,12 +1,12 @@
 //! The accuracy contract of `lyon`.
 
 use super::{Arithmetic, Params, Scale};
+use crate::base::fixed::{Format, Rounding, exp2};
 use crate::config::Config;
-use crate::fixed::{Format, Rounding, exp2};
 use crate::golden::contract as shared;
+use crate::golden::formulas;
 use crate::golden::narrow::rounding_error;
 use crate::golden::{Axis, Bound, Contract, Operand, Sweep, Values};
-use crate::reference;
 
 /// The most that D² can be: each component is at least −2.0.
 const FARTHEST: i64 = 12;
@@ -81,7 +81,7 @@ impl LyonContract {
     fn formula(&self, distance: f64, operand: i64) -> f64 {
         let power = self.params.power;
         let beta = self.params.exponent(operand) as f64 / f64::from(2 * power);
-        reference::lyon(distance, beta, power)
+        formulas::lyon(distance, beta, power)
     }
 }
 
@@ -267,8 +267,8 @@ fn formula_error(n: i64, rounded: i64, power: u32) -> f64 {
     (0..GRID)
         .map(|step| {
             let versine = reach * f64::from(step) / f64::from(GRID);
-            let value = reference::lyon(2.0 * versine, beta, power);
-            (value - reference::blinn(1.0 - versine, n as f64)).abs()
+            let value = formulas::lyon(2.0 * versine, beta, power);
+            (value - formulas::blinn(1.0 - versine, n as f64)).abs()
         })
         .fold(0.0, f64::max)
 }

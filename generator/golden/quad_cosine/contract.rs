@@ -3,12 +3,12 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::{Arithmetic, POWERS, Params, range_of};
+use crate::base::fixed::{Format, exp2};
 use crate::config::Config;
-use crate::fixed::{Format, exp2};
 use crate::golden::contract as shared;
+use crate::golden::formulas;
 use crate::golden::line;
 use crate::golden::{Axis, Bound, Contract, Operand, Sweep, Values};
-use crate::reference;
 
 /// The accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `exponent`, `length`; those of a
 /// point have its angle for `zeta_start`.
@@ -104,7 +104,7 @@ impl Contract for QuadCosineContract {
             return 0.0;
         }
         let angle = angle as f64 / right as f64;
-        reference::quad_cosine(angle * FRAC_PI_2, n)
+        formulas::quad_cosine(angle * FRAC_PI_2, n)
     }
 
     fn expressions(&self) -> Vec<String> {
@@ -160,7 +160,7 @@ impl Contract for QuadCosineContract {
         let word = it.cosine(n, Some(magnitude), it.root(n));
         let f = self.f_format().to_f64(i128::from(word));
         let ulp = exp2(-(self.params.angle_multiplied as i32));
-        let end = |magnitude: i64| reference::quad_cosine(magnitude as f64 * ulp * FRAC_PI_2, n);
+        let end = |magnitude: i64| formulas::quad_cosine(magnitude as f64 * ulp * FRAC_PI_2, n);
         (end(magnitude) - f).max(f - end(magnitude + 1))
     }
 

@@ -1,12 +1,12 @@
 //! The accuracy contract of `quadratic`.
 
 use super::{Arithmetic, Params, Scheme, coefficient};
+use crate::base::fixed::{Format, exp2};
 use crate::config::Config;
-use crate::fixed::{Format, exp2};
 use crate::golden::contract as shared;
+use crate::golden::formulas;
 use crate::golden::narrow::rounding_error;
 use crate::golden::{Bound, Contract, Operand};
-use crate::reference;
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
 #[derive(Clone, Debug)]
@@ -93,7 +93,7 @@ impl Contract for QuadraticContract {
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let cosine = control[0].clamp(0, self.arithmetic.one) as f64 * self.ulp;
-        reference::quadratic(cosine, self.arithmetic.exact[control[1] as usize])
+        formulas::quadratic(cosine, self.arithmetic.exact[control[1] as usize])
     }
 
     /// The coefficient of the least largest error has no closed form; ROM(n) holds it.
@@ -168,6 +168,6 @@ fn formula_error(n: i64, a: f64) -> f64 {
         .map(|step| 1.0 - reach * f64::from(step) / f64::from(GRID))
         // The zero of the parabola, where the error has its corner.
         .chain([1.0 - 1.0 / a.max(1.0)])
-        .map(|cosine| (reference::quadratic(cosine, a) - reference::blinn(cosine, n)).abs())
+        .map(|cosine| (formulas::quadratic(cosine, a) - formulas::blinn(cosine, n)).abs())
         .fold(0.0, f64::max)
 }

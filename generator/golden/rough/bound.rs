@@ -22,7 +22,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::{Kind, Params};
-use crate::fixed::{Rounding, exp2};
+use crate::base::fixed::{Rounding, exp2};
 use crate::golden::Bound;
 use crate::golden::contract::{self, Share};
 use crate::golden::narrow::rounding_error;

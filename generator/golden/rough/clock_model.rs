@@ -4,8 +4,8 @@ use std::array;
 use std::sync::Arc;
 
 use super::{Arithmetic, Params};
+use crate::base::fixed::Format;
 use crate::config::Config;
-use crate::fixed::Format;
 use crate::golden::Model;
 use crate::golden::handshake::{After, Handshake, OperandRegister, bits};
 

@@ -1,10 +1,10 @@
 //! The accuracy contract of `rough`.
 
 use super::{Arithmetic, Kind, Params, bound};
+use crate::base::fixed::{Format, exp2};
 use crate::config::Config;
-use crate::fixed::{Format, exp2};
+use crate::golden::formulas;
 use crate::golden::{Axis, Bound, Contract, Operand, Sweep, Values, contract};
-use crate::reference;
 
 /// The settings of dγ, in degrees, that an exhaustive check visits beside the largest of the domain.
 const SWEPT_DEVIATIONS: [f64; 4] = [0.0, 1.0, 5.0, 15.0];
@@ -129,9 +129,9 @@ impl Contract for RoughContract {
         let (negative, exponent) = (control[3] == 1, control[2] as f64);
         match (self.params.arithmetic, self.params.clamp) {
             (Kind::Exact, false) => {
-                reference::rough_unclamped(cos_gamma, cos_dgamma, negative, exponent)
+                formulas::rough_unclamped(cos_gamma, cos_dgamma, negative, exponent)
             }
-            _ => reference::rough(cos_gamma, cos_dgamma, negative, exponent),
+            _ => formulas::rough(cos_gamma, cos_dgamma, negative, exponent),
         }
     }
 

@@ -1,8 +1,8 @@
 //! `schlick` clock by clock.
 
 use super::{Arithmetic, Params};
+use crate::base::fixed::mask;
 use crate::config::Config;
-use crate::fixed::mask;
 use crate::golden::Model;
 use crate::golden::handshake::{After, Handshake, OperandRegister, bits};
 

@@ -1,11 +1,11 @@
 //! The accuracy contract of `schlick`.
 
 use super::{Arithmetic, Params};
+use crate::base::fixed::{Format, exp2};
 use crate::config::Config;
-use crate::fixed::{Format, exp2};
 use crate::golden::contract as shared;
+use crate::golden::formulas;
 use crate::golden::{Bound, Contract, Operand};
-use crate::reference;
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
 #[derive(Clone, Debug)]
@@ -92,7 +92,7 @@ impl Contract for SchlickContract {
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let cosine = control[0].clamp(0, self.arithmetic.one) as f64;
-        reference::schlick(cosine * self.ulp, control[1] as f64)
+        formulas::schlick(cosine * self.ulp, control[1] as f64)
     }
 
     fn expressions(&self) -> Vec<String> {

@@ -1,12 +1,12 @@
 //! The accuracy contract of `threshold`.
 
 use super::{Arithmetic, Params};
+use crate::base::fixed::{Format, exp2};
 use crate::config::Config;
-use crate::fixed::{Format, exp2};
 use crate::golden::contract as shared;
+use crate::golden::formulas;
 use crate::golden::narrow::rounding_error;
 use crate::golden::{Bound, Contract, Operand};
-use crate::reference;
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
 #[derive(Clone, Debug)]
@@ -74,7 +74,7 @@ impl ThresholdContract {
     fn square_and_level(&self, control: &[i64]) -> (f64, f64) {
         let cosine = control[0].clamp(0, self.arithmetic.one) as f64 * self.ulps.0;
         let level = self.arithmetic.threshold(control[1]) as f64 * self.ulps.1;
-        (reference::parabola(cosine, control[1] as f64), level)
+        (formulas::parabola(cosine, control[1] as f64), level)
     }
 }
 
@@ -106,7 +106,7 @@ impl Contract for ThresholdContract {
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let (square, level) = self.square_and_level(control);
-        reference::threshold(square, level)
+        formulas::threshold(square, level)
     }
 
     /// Where the exact square is within the bound on its error of ROM(n), the word may be on either side.
@@ -116,7 +116,7 @@ impl Contract for ThresholdContract {
         if (square - level).abs() <= self.margin {
             [square, 0.0]
         } else {
-            [reference::threshold(square, level); 2]
+            [formulas::threshold(square, level); 2]
         }
     }
 

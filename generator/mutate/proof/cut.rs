@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::netlist::{Design, Driver, NetId};
+use crate::hdl::netlist::{Design, Driver, NetId};
 
 /// Vertices of the flow: each net is divided, and what flows into it goes through its bits.
 type Vertex = (NetId, bool);

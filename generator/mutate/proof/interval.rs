@@ -4,7 +4,7 @@
 //! multiplier holds under some selections only.
 
 use super::known::{self, Known};
-use crate::netlist::{Design, Driver, NetId, Op, Register, RegisterKind};
+use crate::hdl::netlist::{Design, Driver, NetId, Op, Register, RegisterKind};
 
 /// The smallest and the largest raw value.
 pub(super) type Interval = (i128, i128);

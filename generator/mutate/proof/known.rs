@@ -1,7 +1,7 @@
 //! What is known of the bits of a net, and what a cell makes of it.
 
-use crate::fixed::mask;
-use crate::netlist::{Design, Driver, NetId, Op};
+use crate::base::fixed::mask;
+use crate::hdl::netlist::{Design, Driver, NetId, Op};
 
 /// Some bits of a pattern; the others may be anything.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -1,7 +1,7 @@
 //! Cells over many values at once.
 
-use crate::fixed::mask;
-use crate::netlist::{Design, NetId, Op};
+use crate::base::fixed::mask;
+use crate::hdl::netlist::{Design, NetId, Op};
 
 /// Values that are evaluated together.
 pub(super) const LANES: usize = 512;

@@ -19,8 +19,8 @@ use window::Windows;
 
 use super::fault::{Bit, Site};
 use super::run::How;
-use crate::fixed::mask;
-use crate::netlist::{Design, Driver, NetId, Op, RegId, RegisterKind, RomId};
+use crate::base::fixed::mask;
+use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId, RegisterKind, RomId};
 
 /// Proves faults of one design equivalent.
 pub(super) struct Prover<'a> {

@@ -2,7 +2,7 @@
 
 use super::interval;
 use super::known::{self, Known};
-use crate::netlist::{Design, Driver, NetId, Op, Register, Sequence};
+use crate::hdl::netlist::{Design, Driver, NetId, Op, Register, Sequence};
 
 /// What is known in each word, whatever the inputs are.
 pub(super) struct Sound<'a> {

@@ -11,8 +11,8 @@ use super::cut::smallest_cut;
 use super::interval::{self, Interval};
 use super::known::Known;
 use super::lanes::{self, LANES, Lanes};
+use crate::hdl::netlist::{Design, Driver, NetId, Op, RomId};
 use crate::mutate::fault::Site;
-use crate::netlist::{Design, Driver, NetId, Op, RomId};
 
 /// At most so many combinations are tried, as a power of two.
 const BITS: u32 = 22;

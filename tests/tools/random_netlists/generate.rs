@@ -3,7 +3,7 @@
 use std::panic::Location;
 
 use glint::fixed::{Format, mask};
-use glint::netlist::{
+use glint::hdl::netlist::{
     About, Control, Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, Port, RegId,
     Register, RegisterKind, Role, Rom, RomId, Sequence, Unit, Word,
 };

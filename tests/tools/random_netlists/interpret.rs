@@ -1,7 +1,7 @@
 //! What a netlist means, cell by cell, on whole numbers.
 
 use glint::fixed::mask;
-use glint::netlist::{Design, Driver, NetId, Op, Role};
+use glint::hdl::netlist::{Design, Driver, NetId, Op, Role};
 
 /// A design with its state.
 pub struct Machine<'a> {
@@ -57,7 +57,7 @@ impl<'a> Machine<'a> {
         }
         for (at, rom) in self.design.roms.iter().enumerate() {
             if rom.synchronous {
-                next.push((rom.data, self.word(glint::netlist::RomId(at as u32))));
+                next.push((rom.data, self.word(glint::hdl::netlist::RomId(at as u32))));
             }
         }
         for (net, value) in next {
@@ -73,7 +73,7 @@ impl<'a> Machine<'a> {
         self.design.net(net).format.raw(self.of(net))
     }
 
-    fn word(&self, rom: glint::netlist::RomId) -> u64 {
+    fn word(&self, rom: glint::hdl::netlist::RomId) -> u64 {
         let rom = self.design.rom(rom);
         rom.words[self.of(rom.address) as usize]
     }

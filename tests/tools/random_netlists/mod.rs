@@ -2,16 +2,16 @@
 //!
 //! Devices use a handful of the ways in which cells can meet. Here every cell, sign and width meets every
 //! other, named or not, in either unit; an interpreter written from the documentation of
-//! [`glint::netlist::Op`] predicts the outputs, Icarus Verilog simulates the text, and both linters
+//! [`glint::hdl::netlist::Op`] predicts the outputs, Icarus Verilog simulates the text, and both linters
 //! must have nothing to say.
 
 mod generate;
 mod interpret;
 
 use crate::common::tools::{assert_bench_passes, assert_lint_clean};
-use glint::cosim::external::Simulator;
-use glint::emit::{EmitInputs, Vectors, emit};
-use glint::netlist::{Design, Role};
+use glint::hdl::netlist::{Design, Role};
+use glint::package::{EmitInputs, Vectors, emit};
+use glint::tools::Simulator;
 
 const DESIGNS: u64 = 60;
 const CLOCKS: usize = 120;

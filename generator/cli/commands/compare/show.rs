@@ -3,10 +3,10 @@
 use serde_json::{Value, json};
 
 use super::{CompareRequest, Entry};
+use crate::base::text;
 use crate::cli::{Output, failure, tables};
-use crate::cosim::synthesis::{FAMILIES, Usage};
-use crate::report::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, Multiplier, Spread};
-use crate::words;
+use crate::evidence::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, Multiplier, Spread};
+use crate::tools::synthesis::{FAMILIES, Usage};
 
 /// Prints everything in the form that was asked for.
 pub fn show(
@@ -110,7 +110,7 @@ fn print_hardware(entries: &[Entry]) {
         let mut row = vec![
             entry.label.clone(),
             clocks(entry.figures.clocks_per_point),
-            words::grouped(entry.unit.design.rom_bits()),
+            text::grouped(entry.unit.design.rom_bits()),
             sizes(&entry.figures.multipliers),
         ];
         for usage in &entry.usage {

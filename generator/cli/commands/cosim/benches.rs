@@ -9,8 +9,8 @@ use crate::cli::commands::Loaded;
 use crate::cli::commands::mismatch::{first_clock, waveform_of};
 use crate::cli::failure::{self, Usage};
 use crate::cli::{Output, progress, staged, tables};
-use crate::cosim::external::{BenchDifference, BenchOutcome, Simulator, bench_waveform, run_bench};
-use crate::emit;
+use crate::package;
+use crate::tools::{BenchDifference, BenchOutcome, Simulator, bench_waveform, run_bench};
 
 /// Points when an external simulator runs.
 const POINTS: u64 = 200;
@@ -82,7 +82,7 @@ pub fn benches(
 fn bench(one: &Loaded, which: Simulator, points: u64, request: &CosimRequest) -> Result<Run> {
     let vectors = one.unit.vectors(points, request.seed)?;
     let clocks = vectors.inputs.len();
-    let files = emit::sources(one.unit.files(&one.path, vectors)?);
+    let files = package::sources(one.unit.files(&one.path, vectors)?);
     let top = format!("{}_tb", one.unit.config.name);
     let outcome = run_bench(which, &files, &top, request.time_limit)?;
     let mismatch = BenchDifference::first(&outcome.transcript).map(|difference| {

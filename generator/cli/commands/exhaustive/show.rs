@@ -5,21 +5,21 @@ use std::collections::BTreeMap;
 use anyhow::Result;
 use serde_json::{Value, json};
 
+use crate::base::text;
 use crate::cli::commands::Loaded;
 use crate::cli::commands::mismatch::Reproducer;
 use crate::cli::{Output, tables};
 use crate::cosim::exhaustive::{Difference, Job, Proof, Shard, State};
 use crate::golden::Values;
-use crate::words;
 
 /// What is about to be done, and what is not.
 pub fn announce(one: &Loaded, job: &Job<'_>, state: &State) {
     tables::print_line(&format!(
         "{}: {} evaluations of f ({}), {} colour products",
         one.path,
-        words::grouped(job.f.count()),
+        text::grouped(job.f.count()),
         job.f.sweep().words(),
-        words::grouped(job.colours.count())
+        text::grouped(job.colours.count())
     ));
     if !job.f.sweep().omits.is_empty() {
         tables::print_line(&format!("  not covered: {}", job.f.sweep().omits));
@@ -29,7 +29,7 @@ pub fn announce(one: &Loaded, job: &Job<'_>, state: &State) {
             0 => (),
             count => tables::print_line(&format!(
                 "  every register and output at every clock for {} combinations of {} operand bits",
-                words::grouped(count),
+                text::grouped(count),
                 clocks.bits()
             )),
         }
@@ -41,7 +41,7 @@ pub fn announce(one: &Loaded, job: &Job<'_>, state: &State) {
         tables::print_line(&format!(
             "  shard {}: {} evaluations to do here",
             state.shard,
-            words::grouped(left)
+            text::grouped(left)
         ));
     }
 }

@@ -1,0 +1,25 @@
+//! Names that Verilog takes.
+
+use crate::base::keywords::is_keyword;
+
+/// Whether `name` can name a net, a ROM or a module of the emitted Verilog.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn check(name: &str) -> Result<(), &'static str> {
+    let mut characters = name.chars();
+    match characters.next() {
+        None => return Err("it is empty"),
+        Some(first) if !(first.is_ascii_alphabetic() || first == '_') => {
+            return Err("it does not begin with a letter");
+        }
+        Some(_) => {}
+    }
+    if !characters.all(|other| other.is_ascii_alphanumeric() || other == '_') {
+        return Err("only ASCII letters, digits and _ are possible");
+    }
+    if is_keyword(name) {
+        return Err("it is a keyword");
+    }
+    Ok(())
+}

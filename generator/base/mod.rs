@@ -1,0 +1,6 @@
+//! What everything else is written with.
+
+pub mod fixed;
+pub mod identifier;
+pub mod keywords;
+pub mod text;

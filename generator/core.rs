@@ -1,0 +1,181 @@
+//! From a configuration to everything that is made of it.
+
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+
+use crate::config::Config;
+use crate::cosim::batch::{Engine, Golden, RustHdl, Verilog};
+use crate::cosim::exhaustive::{Clocks, Job};
+use crate::cosim::{Lockstep, trial};
+use crate::golden::Contract;
+use crate::hdl::netlist::Design;
+use crate::package::{self, Accuracy, EmitInputs, OutputFile, Timing, Vectors, WorkedExample};
+use crate::pages::{self, PageInputs};
+use crate::registry::Device;
+use crate::tools;
+
+/// Results that the main job and `cosim` check of each configuration, unless told otherwise: the default
+/// test.
+pub const TEST_POINTS: u64 = 100_000;
+
+/// The seed of the default test.
+pub const TEST_SEED: u64 = 1;
+
+/// Results in the stimulus of a committed bench.
+pub const BENCH_POINTS: u64 = 24;
+
+/// The seed of the stimulus of a committed bench.
+pub const BENCH_SEED: u64 = 1;
+
+/// What computes with a device.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Through {
+    /// The golden model's arithmetic.
+    Golden,
+    /// The built-in simulator.
+    RustHdl,
+    /// An outside simulator of the emitted Verilog, with a limit on each of its runs.
+    Verilog(tools::Simulator, Duration),
+}
+
+/// A configuration with its design.
+pub struct Unit {
+    /// The device.
+    pub device: Device,
+    /// Its configuration.
+    pub config: Config,
+    /// The design that the description makes of it.
+    pub design: Design,
+    /// The accuracy contract.
+    pub contract: Box<dyn Contract>,
+}
+
+impl Unit {
+    /// Builds and checks the design.
+    ///
+    /// # Errors
+    /// The mistakes of the description.
+    pub fn new(device: Device, config: Config) -> Result<Self> {
+        let design = device
+            .design(&config)
+            .with_context(|| format!("the description of `{}` is wrong", device.name))?;
+        let contract = (device.contract)(&config);
+        Ok(Self { device, config, design, contract })
+    }
+
+    /// Tells this configuration, and version of Glint, from others: SHA-256 in hexadecimal.
+    pub fn digest(&self) -> String {
+        let text = self.config.to_toml(&(self.device.schema)());
+        package::digest(format!("{}\n{text}", env!("CARGO_PKG_VERSION")).as_bytes())
+    }
+
+    /// Golden model and built-in simulator, side by side.
+    ///
+    /// # Errors
+    /// Model and design do not name the same signals.
+    pub fn lockstep(&self, seed: u64) -> Result<Lockstep<'_>> {
+        let model = (self.device.model)(&self.config);
+        Lockstep::new(&self.design, model, self.contract.as_ref(), seed)
+    }
+
+    /// The exhaustive check: the proof of the contract and, where they are not too many, every
+    /// combination of operands clock by clock.
+    ///
+    /// # Errors
+    /// Model and design do not name the same signals.
+    pub fn job(&self) -> Result<Job<'_>> {
+        Ok(Job::new(self.contract.as_ref()).with(self.clocks()?))
+    }
+
+    /// Every combination of operands, golden model against built-in simulator.
+    ///
+    /// # Errors
+    /// Model and design do not name the same signals.
+    pub fn clocks(&self) -> Result<Clocks<'_>> {
+        let model = (self.device.model)(&self.config);
+        Clocks::new(&self.design, model, self.contract.as_ref())
+    }
+
+    /// Clocks between the events of the handshake.
+    ///
+    /// # Errors
+    /// A device that does not end.
+    pub fn timing(&self) -> Result<Timing> {
+        trial::timing(&self.design, self.contract.as_ref())
+    }
+
+    /// One computation with all its numbers.
+    ///
+    /// # Errors
+    /// A device that does not end.
+    pub fn example(&self) -> Result<WorkedExample> {
+        trial::example(&self.design, self.contract.as_ref())
+    }
+
+    /// Stimulus and expected outputs for a bench; the golden model and the built-in simulator agree on
+    /// them.
+    ///
+    /// # Errors
+    /// They do not agree.
+    pub fn vectors(&self, points: u64, seed: u64) -> Result<Vectors> {
+        self.lockstep(seed)?.record(points)
+    }
+
+    /// Every file of the configuration, which the command line knows as `config`.
+    ///
+    /// # Errors
+    /// Golden model and simulation do not agree, or the design cannot be written as Verilog.
+    pub fn files(&self, config: &str, vectors: Vectors) -> Result<Vec<OutputFile>> {
+        let inputs = EmitInputs {
+            config: config.to_owned(),
+            timing: self.timing()?,
+            example: Some(self.example()?),
+            accuracy: Some(Accuracy::new(self.contract.as_ref())),
+            computations: trial::computations(&self.design, self.contract.as_ref())?,
+            vectors: Some(vectors),
+        };
+        package::emit(&self.design, &inputs)
+    }
+
+    /// Verilog and ROM contents alone, pairs of a plain name and contents: what synthesis needs.
+    ///
+    /// # Errors
+    /// The design cannot be written as Verilog.
+    pub fn verilog(&self) -> Result<Vec<(String, String)>> {
+        let files = package::emit(&self.design, &EmitInputs::default())?;
+        Ok(package::sources(files))
+    }
+
+    /// The page of the configuration, which the command line knows as `config`.
+    ///
+    /// # Errors
+    /// A device that does not end.
+    pub fn page(&self, config: &str) -> Result<String> {
+        let inputs = PageInputs {
+            path: config,
+            config: &self.config,
+            schema: &(self.device.schema)(),
+            contract: self.contract.as_ref(),
+            timing: &self.timing()?,
+            example: &self.example()?,
+        };
+        pages::page(&self.design, &inputs)
+    }
+
+    /// What computes many points of the device; see [`crate::cosim::batch`].
+    ///
+    /// # Errors
+    /// The design cannot be simulated or written as Verilog, or an outside tool is missing or refuses it.
+    pub fn engine(&self, through: Through) -> Result<Box<dyn Engine + '_>> {
+        let contract = self.contract.as_ref();
+        Ok(match through {
+            Through::Golden => Box::new(Golden(contract)),
+            Through::RustHdl => Box::new(RustHdl::new(&self.design, contract)?),
+            Through::Verilog(simulator, limit) => {
+                let (design, files) = (&self.design, self.verilog()?);
+                Box::new(Verilog::new(simulator, design, contract, files, limit)?)
+            }
+        })
+    }
+}

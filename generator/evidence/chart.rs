@@ -1,0 +1,159 @@
+//! A chart as data: what is plotted, tabulated and written to `report.json`.
+
+use serde::Serialize;
+
+/// How an axis is divided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Scale {
+    /// Evenly.
+    Linear,
+    /// By powers of ten; values that are not positive have no place on it.
+    Logarithmic,
+}
+
+/// An axis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Axis {
+    /// What it shows, with the unit.
+    pub label: String,
+    /// How it is divided.
+    pub scale: Scale,
+    /// What is shown of it. Values outside are cut off in the plot, not in the figures.
+    pub range: (f64, f64),
+}
+
+impl Axis {
+    /// An evenly divided axis.
+    pub fn linear(label: &str, low: f64, high: f64) -> Self {
+        Self { label: label.to_owned(), scale: Scale::Linear, range: (low, high) }
+    }
+
+    /// An axis of powers of ten.
+    pub fn logarithmic(label: &str, low: f64, high: f64) -> Self {
+        Self { scale: Scale::Logarithmic, ..Self::linear(label, low, high) }
+    }
+
+    /// The place of a value: itself, or its power of ten; `None` where it has none.
+    pub fn place(&self, value: f64) -> Option<f64> {
+        let place = match self.scale {
+            Scale::Linear => value,
+            Scale::Logarithmic if value > 0.0 => libm::log10(value),
+            Scale::Logarithmic => return None,
+        };
+        place.is_finite().then_some(place)
+    }
+}
+
+/// One line of a chart.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Series {
+    /// What it is, for the legend and the table's head.
+    pub name: String,
+    /// One value for each place on the chart's axis; NaN (`null` in JSON) where there is none.
+    pub values: Vec<f64>,
+}
+
+/// A line across a chart, for reference.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Mark {
+    /// What it stands for.
+    pub label: String,
+    /// Where it crosses the vertical axis.
+    pub at: f64,
+}
+
+/// A chart: several series over one axis.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Chart {
+    /// Unique on the page.
+    pub id: String,
+    /// The heading.
+    pub title: String,
+    /// What is to be seen, in a sentence or two: also what a screen reader says.
+    pub caption: String,
+    /// The horizontal axis.
+    pub x: Axis,
+    /// The vertical axis.
+    pub y: Axis,
+    /// Places on the horizontal axis, ascending.
+    pub places: Vec<f64>,
+    /// The lines, at most [`crate::pages::plots::STYLES`] of them.
+    pub series: Vec<Series>,
+    /// Reference lines.
+    pub marks: Vec<Mark>,
+}
+
+impl Chart {
+    /// About `rows` evenly spread indices into [`Chart::places`], the first and the last among them.
+    pub fn rows(&self, rows: usize) -> Vec<usize> {
+        let last = self.places.len().saturating_sub(1);
+        let mut chosen: Vec<usize> =
+            (0..rows).map(|row| row * last / rows.saturating_sub(1).max(1)).collect();
+        chosen.dedup();
+        chosen
+    }
+}
+
+/// `steps + 1` evenly spread values, both ends among them.
+pub fn even(low: f64, high: f64, steps: u32) -> Vec<f64> {
+    (0..=steps).map(|step| low + (high - low) * f64::from(step) / f64::from(steps)).collect()
+}
+
+/// Integers from `low` to `high` that a logarithmic axis shows evenly, about `per_decade` to a power of ten;
+/// both ends are among them.
+pub fn exponents(low: u32, high: u32, per_decade: u32) -> Vec<u32> {
+    let mut found = Vec::new();
+    let mut step = 0;
+    loop {
+        let value = f64::from(low) * libm::pow(10.0, f64::from(step) / f64::from(per_decade));
+        let value = libm::round(value) as u32;
+        if value >= high {
+            break;
+        }
+        if found.last() != Some(&value) {
+            found.push(value);
+        }
+        step += 1;
+    }
+    found.push(high);
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_of_values() {
+        let linear = Axis::linear("x", 0.0, 1.0);
+        assert_eq!(linear.place(-2.0), Some(-2.0));
+        assert_eq!(linear.place(f64::NAN), None);
+        let logarithmic = Axis::logarithmic("x", 0.1, 1000.0);
+        assert_eq!(logarithmic.place(100.0), Some(2.0));
+        assert_eq!([0.0, -1.0].map(|x| logarithmic.place(x)), [None, None]);
+    }
+
+    #[test]
+    fn grids() {
+        assert_eq!(even(0.0, 2.0, 4), [0.0, 0.5, 1.0, 1.5, 2.0]);
+        let n = exponents(1, 1000, 4);
+        assert_eq!(n, [1, 2, 3, 6, 10, 18, 32, 56, 100, 178, 316, 562, 1000]);
+    }
+
+    #[test]
+    fn rows_of_a_table() {
+        let chart = |count: u32| Chart {
+            id: String::new(),
+            title: String::new(),
+            caption: String::new(),
+            x: Axis::linear("", 0.0, 1.0),
+            y: Axis::linear("", 0.0, 1.0),
+            places: even(0.0, 1.0, count - 1),
+            series: Vec::new(),
+            marks: Vec::new(),
+        };
+        assert_eq!(chart(101).rows(5), [0, 25, 50, 75, 100]);
+        assert_eq!(chart(2).rows(5), [0, 1]);
+    }
+}

@@ -1,0 +1,237 @@
+//! "Simpler in hardware": W and Schlick's function, each as the device of the catalogue with its defaults.
+
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::claims::Measured;
+use super::comparison;
+use crate::config::Config;
+use crate::core::Unit;
+use crate::registry::Registry;
+use crate::tools::Tool;
+use crate::tools::synthesis::{self, FAMILIES, Family};
+
+/// W, whose default power is 16, and its rival.
+const RIVALS: [&str; 2] = ["cosine-power", "schlick"];
+
+/// The exponent at which clocks are counted.
+const EXPONENT: f64 = 35.0;
+
+/// The synthesis tool, and after which a run of it is given up.
+pub type Synthesis<'a> = (&'a Tool, Duration);
+
+/// The steps of work that [`synthesised`] reports as done.
+pub const STEPS: usize = RIVALS.len() * FAMILIES.len();
+
+/// What both devices take.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Hardware {
+    /// What was asked to synthesise.
+    pub tool: String,
+    /// In the order W, Schlick.
+    pub devices: Vec<Rival>,
+    /// Whether W takes no more of anything.
+    pub simpler: bool,
+    /// The outcome in a sentence.
+    pub words: String,
+}
+
+/// One of the two.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Rival {
+    /// The device.
+    pub device: String,
+    /// From one `start` to the next.
+    pub clocks_per_point: f64,
+    /// The multipliers of the design.
+    pub multipliers: Vec<String>,
+    /// By family of FPGAs.
+    pub usage: Vec<FamilyUsage>,
+}
+
+/// What a device takes of a family, before placement.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FamilyUsage {
+    /// The family.
+    pub family: &'static str,
+    /// Look-up tables.
+    pub luts: u64,
+    /// DSP blocks.
+    pub dsps: u64,
+    /// Block RAMs.
+    pub block_rams: u64,
+}
+
+impl Hardware {
+    /// The figures for the ledger.
+    pub fn measured(&self) -> Vec<Measured> {
+        let pair = |key: String, definition: String, value: &dyn Fn(&Rival) -> f64| {
+            let values: Vec<f64> = self.devices.iter().map(value).collect();
+            let texts: Vec<String> = values.iter().map(f64::to_string).collect();
+            Measured {
+                key,
+                definition,
+                value: values[0] / values[1],
+                text: texts.join(" for "),
+                n: None,
+            }
+        };
+        let mut found =
+            vec![pair("clocks".to_owned(), "clocks a point, W for Schlick".to_owned(), &|rival| {
+                rival.clocks_per_point
+            })];
+        for (at, family) in FAMILIES.iter().enumerate() {
+            found.push(pair(
+                format!("luts-{}", family.name),
+                format!("LUTs in {}, W for Schlick", family.title),
+                &|rival| rival.usage[at].luts as f64,
+            ));
+        }
+        found
+    }
+}
+
+/// Synthesises both devices for every family; `None` when the registry lacks one of them.
+///
+/// # Errors
+/// Yosys fails, or takes longer than `limit`.
+pub fn synthesised(
+    registry: &Registry,
+    (yosys, limit): Synthesis,
+    done: &(dyn Fn() + Sync),
+) -> Result<Option<Hardware>> {
+    let Some(rivals) =
+        RIVALS.map(|name| registry.device(name)).into_iter().collect::<Option<Vec<_>>>()
+    else {
+        return Ok(None);
+    };
+    let units: Vec<Unit> = rivals
+        .into_iter()
+        .map(|device| {
+            let schema = (device.schema)();
+            let config = Config::defaults(&schema, &device.name.replace('-', "_"));
+            Unit::new(*device, config)
+        })
+        .collect::<Result<_>>()?;
+    let files: Vec<_> = units.iter().map(Unit::verilog).collect::<Result<_>>()?;
+    let usage: Vec<FamilyUsage> = (0..STEPS)
+        .into_par_iter()
+        .map(|step| {
+            let (one, family) = (step / FAMILIES.len(), &FAMILIES[step % FAMILIES.len()]);
+            let usage = take(yosys, &files[one], &units[one].config.name, family, limit);
+            done();
+            usage
+        })
+        .collect::<Result<_>>()?;
+    let devices: Vec<Rival> = units
+        .iter()
+        .zip(usage.chunks(FAMILIES.len()))
+        .map(|(unit, usage)| {
+            let contract = unit.contract.as_ref();
+            let clocks = comparison::clocks_per_point(&unit.design, contract, EXPONENT)?;
+            let multipliers = comparison::multipliers(&unit.design);
+            Ok(Rival {
+                device: unit.device.name.to_owned(),
+                clocks_per_point: clocks,
+                multipliers: multipliers.iter().map(ToString::to_string).collect(),
+                usage: usage.to_vec(),
+            })
+        })
+        .collect::<Result<_>>()?;
+    let (simpler, words) = outcome(&devices[0], &devices[1]);
+    Ok(Some(Hardware { tool: yosys.version()?, devices, simpler, words }))
+}
+
+/// What the design `top` takes of a family.
+fn take(
+    yosys: &Tool,
+    files: &[(String, String)],
+    top: &str,
+    family: &Family,
+    limit: Duration,
+) -> Result<FamilyUsage> {
+    let usage = synthesis::synthesise(yosys, files, top, family, limit)
+        .with_context(|| format!("{top} for {}", family.title))?;
+    Ok(FamilyUsage {
+        family: family.title,
+        luts: usage.luts,
+        dsps: usage.dsps,
+        block_rams: usage.block_rams,
+    })
+}
+
+/// What one configuration takes of every family; `done` is called after each.
+///
+/// # Errors
+/// Yosys fails, or takes longer than `limit`.
+pub fn usage(
+    unit: &Unit,
+    (yosys, limit): Synthesis,
+    done: &(dyn Fn() + Sync),
+) -> Result<Vec<FamilyUsage>> {
+    let files = unit.verilog()?;
+    let families = FAMILIES.par_iter();
+    families
+        .map(|family| {
+            let usage = take(yosys, &files, &unit.config.name, family, limit);
+            done();
+            usage
+        })
+        .collect()
+}
+
+/// Whether W takes no more of anything, and that in words.
+fn outcome(w: &Rival, schlick: &Rival) -> (bool, String) {
+    let pairs = || w.usage.iter().zip(&schlick.usage);
+    let more: Vec<String> = pairs()
+        .flat_map(|(w, schlick)| {
+            [
+                ("LUTs", w.luts, schlick.luts),
+                ("DSP blocks", w.dsps, schlick.dsps),
+                ("block RAMs", w.block_rams, schlick.block_rams),
+            ]
+            .into_iter()
+            .filter(|(_, w, schlick)| w > schlick)
+            .map(|(what, ours, theirs)| format!("{ours} {what} for {theirs} in {}", w.family))
+        })
+        .collect();
+    let clocks = format!(
+        "W takes {} clocks a point, Schlick's function {}",
+        w.clocks_per_point, schlick.clocks_per_point
+    );
+    let simpler = more.is_empty() && w.clocks_per_point <= schlick.clocks_per_point;
+    let words = match more.is_empty() {
+        true => format!("{clocks}, and W takes no more of any resource of any family."),
+        false => format!(
+            "{clocks}. A divider of one bit a clock costs no multiplier and few LUTs: W takes more of some \
+             ({}), and no more of the others.",
+            more.join(", ")
+        ),
+    };
+    (simpler, words)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rival(clocks_per_point: f64, luts: u64) -> Rival {
+        Rival {
+            device: String::new(),
+            clocks_per_point,
+            multipliers: Vec::new(),
+            usage: vec![FamilyUsage { family: "iCE40", luts, dsps: 4, block_rams: 0 }],
+        }
+    }
+
+    #[test]
+    fn simpler_is_no_more_of_anything() {
+        assert!(outcome(&rival(8.0, 100), &rival(14.0, 100)).0);
+        assert!(!outcome(&rival(8.0, 100), &rival(7.0, 200)).0);
+        let (simpler, words) = outcome(&rival(8.0, 101), &rival(14.0, 100));
+        assert!(!simpler && words.contains("101 LUTs for 100 in iCE40"), "{words}");
+    }
+}

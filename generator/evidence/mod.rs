@@ -1,0 +1,139 @@
+//! Everything that the report shows, measured when it is made; `report.json` is this.
+
+pub mod benchmark;
+pub mod chart;
+pub mod claims;
+pub mod comparison;
+pub mod curves;
+pub mod hardware;
+pub mod measure;
+pub mod seed_plots;
+
+use anyhow::Result;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::registry::Registry;
+use claims::{Claim, Verdict};
+use curves::DeviceCurves;
+use hardware::{Hardware, Synthesis};
+use seed_plots::{Accuracy, Rom9Word, SeedPlot};
+
+/// The report's contents. The same program and tools give the same; no timing is in it.
+#[derive(Clone, Debug, Serialize)]
+pub struct Evidence {
+    /// The version of Glint.
+    pub glint: &'static str,
+    /// The ledger.
+    pub claims: Vec<Claim>,
+    /// The seeds' plots.
+    pub plots: Vec<SeedPlot>,
+    /// Powers for a required accuracy.
+    pub power_table: Vec<Accuracy>,
+    /// Error curves of every device.
+    pub devices: Vec<DeviceCurves>,
+    /// W and Schlick's function synthesised, if that was asked for and possible.
+    pub hardware: Option<Hardware>,
+    /// ROM 9's map.
+    pub rom_9: Vec<Rom9Word>,
+    /// What could not be measured.
+    pub notes: Vec<String>,
+}
+
+/// The steps of work that [`gather`] reports as done.
+pub fn steps(registry: &Registry, synthesis: bool) -> usize {
+    let hardware = if synthesis { hardware::STEPS } else { 0 };
+    2 + registry.devices().len() * curves::STEPS + hardware
+}
+
+/// Measures everything, on all processors.
+///
+/// # Errors
+/// Synthesis fails.
+pub fn gather(
+    registry: &Registry,
+    synthesis: Option<Synthesis>,
+    done: &(dyn Fn() + Sync),
+) -> Result<Evidence> {
+    let (hardware, (devices, (mut claims, (plots, power_table)))) = rayon::join(
+        || match synthesis {
+            Some(synthesis) => hardware::synthesised(registry, synthesis, done),
+            None => Ok(None),
+        },
+        || {
+            let devices = registry.devices().par_iter();
+            rayon::join(
+                || -> Vec<DeviceCurves> {
+                    devices.map(|device| curves::device(device, done)).collect()
+                },
+                || {
+                    let ledger = claims::ledger();
+                    done();
+                    let plots = (seed_plots::plots(), seed_plots::power_table());
+                    done();
+                    (ledger, plots)
+                },
+            )
+        },
+    );
+    let hardware = hardware?;
+    claims.push(simpler(hardware.as_ref()));
+    claims.push(faster());
+    let notes = devices
+        .iter()
+        .filter(|device| device.exponents.is_empty())
+        .map(|device| {
+            format!(
+                "{}: its contract does not say which operands stand for an angle and an exponent, so that it has no \
+                 curves.",
+                device.device
+            )
+        })
+        .collect();
+    Ok(Evidence {
+        glint: env!("CARGO_PKG_VERSION"),
+        claims,
+        plots,
+        power_table,
+        devices,
+        hardware,
+        rom_9: seed_plots::rom_9(),
+        notes,
+    })
+}
+
+/// The claim of simplicity, with what synthesis says.
+fn simpler(hardware: Option<&Hardware>) -> Claim {
+    let (verdict, words) = match hardware {
+        Some(hardware) if hardware.simpler => (Verdict::Holds, hardware.words.clone()),
+        Some(hardware) => (Verdict::Depends, hardware.words.clone()),
+        None => (
+            Verdict::Elsewhere,
+            "Not measured in this report: it needs Yosys, and both devices.".to_owned(),
+        ),
+    };
+    Claim {
+        id: "simpler",
+        source: "seed 002, the paper on W",
+        claim: "W is simpler in hardware than Schlick's function, which divides".to_owned(),
+        seed: "yes".to_owned(),
+        ours: hardware.map_or_else(Vec::new, Hardware::measured),
+        verdict,
+        words,
+    }
+}
+
+/// The claim of speed, whose figures stand apart.
+fn faster() -> Claim {
+    Claim {
+        id: "faster",
+        source: "seed 002, the paper on W",
+        claim: "W is 2.3 times as fast as Schlick's function in software".to_owned(),
+        seed: "2.3".to_owned(),
+        ours: Vec::new(),
+        verdict: Verdict::Elsewhere,
+        words: "A timing differs from run to run, so it stands apart: in the section on speed, which the option \
+                --benchmark adds."
+            .to_owned(),
+    }
+}

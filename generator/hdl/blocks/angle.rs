@@ -1,0 +1,102 @@
+//! Angles in right angles, and tables of powers of their cosine.
+//!
+//! The unit makes the binary point do the work: a signed angle has left −90° … 90° when its integer bits
+//! differ from its sign, and the fraction bits of its magnitude are an address as they stand.
+
+use crate::base::fixed::{Format, Overflow, Rounding, exp2};
+use crate::hdl::dsl::{Designer, Signal};
+
+/// A signed angle without its sign.
+#[derive(Clone, Copy)]
+pub struct Folded<'d> {
+    /// The leading bits of the angle's magnitude, when it is within a right angle.
+    pub magnitude: Signal<'d>,
+    /// One bit: −90° ≤ angle < 90°.
+    pub within: Signal<'d>,
+}
+
+/// The magnitude of a signed `angle` to `fraction` bits, at most as many as it has.
+///
+/// The magnitude of a negative angle is its complement: truncation has made a positive angle smaller by
+/// up to an ulp, and the complement makes a negative one smaller by as much, without an adder.
+#[track_caller]
+pub fn fold<'d>(d: &'d Designer, angle: Signal<'d>, fraction: i32) -> Folded<'d> {
+    let Format { int, frac, .. } = angle.format();
+    let name = angle.name();
+    let sign = angle.bit((int + frac) as u32).named(&format!("{name}_negative"));
+    let upper =
+        angle.bits(frac as u32, Format::unsigned(int + 1, 0)).named(&format!("{name}_upper"));
+    let positive =
+        d.not(&format!("{name}_small_positive"), d.any(&format!("{name}_upper_any"), upper));
+    let negative = d.all(&format!("{name}_small_negative"), upper);
+    let within = d
+        .or(&format!("{name}_within"), positive, negative)
+        .doc("from -90 degrees to less than 90: sign and integer bits agree");
+    let leading = angle
+        .bits((frac - fraction) as u32, Format::unsigned(0, fraction))
+        .named(&format!("{name}_leading"));
+    let complement = d.not(&format!("{name}_complement"), leading);
+    let magnitude =
+        d.choose(&format!("{name}_magnitude"), sign, [leading, complement]).doc("cos is even");
+    Folded { magnitude, within }
+}
+
+/// The address of a [`cosine_power_table`] for the angle `scaled`, unsigned, in right angles: its `bits`
+/// leading fraction bits; the last word where it is a right angle or more, or `within` is 0.
+#[track_caller]
+pub fn address<'d>(
+    d: &'d Designer,
+    name: &str,
+    scaled: Signal<'d>,
+    within: Signal<'d>,
+    bits: i32,
+) -> Signal<'d> {
+    let leading = d.narrow(
+        &format!("{name}_limited"),
+        scaled,
+        Format::unsigned(0, bits),
+        Rounding::Truncate,
+        Overflow::Saturate,
+    );
+    let step = leading.read_as(Format::unsigned(bits, 0));
+    let last = d.raw_constant(&format!("{name}_last"), (1 << bits) - 1, step.format());
+    d.choose(name, within, [last, step])
+}
+
+/// The words of a table of `cosᵏ` over a right angle in 2^`bits` steps, in `u0.fraction`.
+///
+/// A word stands for all angles of its step, and is the middle of the values there; the last one is 0,
+/// because it also stands for all angles beyond.
+pub fn cosine_power_table(power: u32, bits: i32, fraction: i32) -> Vec<i128> {
+    let format = Format::unsigned(0, fraction);
+    let steps = 1u32 << bits;
+    let value = |step: u32| {
+        let angle = f64::from(step) * exp2(-bits) * std::f64::consts::FRAC_PI_2;
+        let cosine = libm::cos(angle);
+        (0..power).fold(1.0, |product, _| product * cosine)
+    };
+    (0..steps)
+        .map(|step| {
+            if step + 1 == steps {
+                0
+            } else {
+                format.quantise((value(step) + value(step + 1)) / 2.0)
+            }
+        })
+        .collect()
+}
+
+/// For each word of such a table the angles that it stands for.
+pub fn step_comments(power: u32, bits: i32) -> Vec<String> {
+    let degrees = |step: u32| f64::from(step) * exp2(-bits) * 90.0;
+    let steps = 1u32 << bits;
+    (0..steps)
+        .map(|step| {
+            if step + 1 == steps {
+                format!("cos^{power}, {:.3} degrees and on", degrees(step))
+            } else {
+                format!("cos^{power}, {:.3} degrees", degrees(step))
+            }
+        })
+        .collect()
+}

@@ -1,0 +1,88 @@
+//! Colour operands and output multipliers.
+
+use crate::base::fixed::{Format, Overflow, Rounding};
+use crate::hdl::dsl::{Designer, Operand, Signal};
+
+/// The numbers of one colour channel in the source's figure.
+#[derive(Clone, Copy, Debug)]
+pub struct ChannelBlocks {
+    /// Data input and write strobe of the operand.
+    pub inputs: (u16, u16),
+    /// Operand register.
+    pub register: u16,
+    /// Output multiplier.
+    pub multiplier: u16,
+    /// Output.
+    pub output: u16,
+}
+
+/// The colour operands: the intensity of the light times k_s, integers.
+pub struct Colours<'d> {
+    designer: &'d Designer,
+    format: Format,
+    channels: Vec<Channel<'d>>,
+}
+
+struct Channel<'d> {
+    /// Of the output, without its `_out`.
+    name: &'static str,
+    operand: Operand<'d>,
+    blocks: Option<ChannelBlocks>,
+}
+
+impl<'d> Colours<'d> {
+    /// The operands `red`, `green`, `blue` of `bits` bits, with the source's numbers where it has some.
+    #[track_caller]
+    pub fn new(designer: &'d Designer, bits: i32, blocks: Option<[ChannelBlocks; 3]>) -> Self {
+        let format = Format::unsigned(bits, 0);
+        let names = ["red", "green", "blue"];
+        let mut channels = Vec::new();
+        for (at, name) in names.into_iter().enumerate() {
+            let blocks = blocks.map(|blocks| blocks[at]);
+            let mut operand =
+                designer.operand(name, format).doc("intensity of the light times k_s");
+            if let Some(blocks) = blocks {
+                operand = operand.block(blocks.register).inputs(blocks.inputs.0, blocks.inputs.1);
+            }
+            channels.push(Channel { name, operand, blocks });
+        }
+        Self { designer, format, channels }
+    }
+
+    /// One operand, `amplitude`, of `bits` bits, for the output `intensity_out`: a device that is there
+    /// once for each colour, or whose light has none.
+    #[track_caller]
+    pub fn amplitude(designer: &'d Designer, bits: i32, blocks: Option<ChannelBlocks>) -> Self {
+        let format = Format::unsigned(bits, 0);
+        let mut operand = designer
+            .operand("amplitude", format)
+            .doc("intensity of the light times k_s, at the highest point of the highlight");
+        if let Some(blocks) = blocks {
+            operand = operand.block(blocks.register).inputs(blocks.inputs.0, blocks.inputs.1);
+        }
+        Self { designer, format, channels: vec![Channel { name: "intensity", operand, blocks }] }
+    }
+
+    /// The outputs, `<colour>_out` or `intensity_out`, each f times its operand, rounded to integers.
+    #[track_caller]
+    pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) {
+        let d = self.designer;
+        for channel in &self.channels {
+            let Channel { name, operand, blocks } = channel;
+            let mut product = d
+                .mul(&format!("{name}_product"), f, operand.q())
+                .doc("an output before it is rounded");
+            let rounded = match *name {
+                "intensity" => "intensity_rounded".to_owned(),
+                colour => format!("{colour}_intensity"),
+            };
+            let narrowed = d.narrow(&rounded, product, self.format, rounding, Overflow::Saturate);
+            let mut out = d.output(&format!("{name}_out"), narrowed).doc("intensity on the output");
+            if let Some(blocks) = blocks {
+                product = product.block(blocks.multiplier);
+                out = out.block(blocks.output);
+            }
+            let _ = (product, out);
+        }
+    }
+}

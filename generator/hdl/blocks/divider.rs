@@ -1,0 +1,144 @@
+//! An iterative divider: one bit of the quotient a clock, by trial subtraction (restoring).
+//!
+//! The dividend becomes the first remainder. A step doubles the remainder and subtracts the divisor
+//! if that leaves no negative number; whether it did is the next bit of the quotient, the top bit
+//! first. What is left is the exact remainder, so the quotient is exact to its last bit.
+
+use crate::base::fixed::{Format, Overflow, Rounding};
+use crate::hdl::dsl::{Counter, Designer, Mux, Register, Setting, Signal};
+
+/// `dividend / divisor`, truncated to a fraction `u0.Q`; neither may be negative, and the dividend
+/// must not exceed the divisor.
+///
+/// A quotient of 1.0 comes out as `1.0 − ulp`, all ones, and so does the quotient by 0. A device that
+/// does not want the latter keeps the divisor above 0.
+///
+/// A division takes a word that [loads](Self::load) and Q executions of a word that
+/// [steps](Self::step), which is one word under a loop:
+///
+/// ```
+/// use glint::hdl::blocks::divider::Divider;
+/// use glint::dsl::{Designer, end, loop_while, step, valid};
+/// use glint::fixed::Format;
+///
+/// let d = Designer::new("ratio");
+/// let a = d.operand("a", Format::unsigned(8, 0));
+/// let b = d.operand("b", Format::unsigned(8, 0));
+/// let ratio = Divider::new(&d, "ratio", a.q(), b.q(), 12);
+/// d.output("ratio_out", ratio.quotient());
+/// d.microprogram([
+///     step("operands", []),
+///     step("load", ratio.load()),
+///     step("bit", ratio.step().into_iter().chain([loop_while(ratio.more(), "bit")])),
+///     step("result", [valid(), end()]),
+/// ]);
+/// assert!(d.finish().is_ok());
+/// ```
+pub struct Divider<'d> {
+    quotient: Register<'d>,
+    divisor: Register<'d>,
+    remainder: Register<'d>,
+    remaining: Counter<'d>,
+    source: Mux<'d>,
+    dividend: Signal<'d>,
+    stepped: Signal<'d>,
+    more: Signal<'d>,
+}
+
+impl<'d> Divider<'d> {
+    /// A divider of `bits` quotient bits, two or more. The register of the quotient is `name`; the
+    /// others are `<name>_divisor`, `<name>_remainder` and the counter `<name>_remaining`.
+    #[track_caller]
+    pub fn new(
+        d: &'d Designer,
+        name: &str,
+        dividend: Signal<'d>,
+        divisor: Signal<'d>,
+        bits: i32,
+    ) -> Self {
+        let part = |suffix: &str| format!("{name}_{suffix}");
+        if bits < 2 || dividend.range().0 < 0 || divisor.range().0 < 0 {
+            d.error(format!(
+                "divider `{name}`: `{}` / `{}` to {bits} bits; operands are not negative, and two bits are the least",
+                dividend.name(),
+                divisor.name()
+            ));
+        }
+        let bits = bits.max(2);
+        let frac = dividend.format().frac.max(divisor.format().frac);
+        let divisor = divisor.with_fraction(frac);
+        let format = divisor.format();
+        // Neither the dividend nor a remainder exceeds the divisor: their upper bits are 0.
+        let cut = |name: &str, signal: Signal<'d>| {
+            d.narrow(name, signal, format, Rounding::Truncate, Overflow::Wrap)
+        };
+        let dividend = cut(&part("dividend"), dividend.with_fraction(frac));
+
+        let held = d.register(&part("divisor"), format).doc("the divisor");
+        held.takes(divisor);
+        let remainder = d
+            .register(&part("remainder"), format)
+            .doc("the dividend, then what the bits so far leave of it, at most the divisor");
+        let quotient = d
+            .register(name, Format::unsigned(0, bits))
+            .doc("the quotient, which bits enter at the bottom");
+        let last = Format::holding(0, i128::from(bits) - 1, 0);
+        let last = d.raw_constant(&part("last"), i128::from(bits) - 1, last);
+        let remaining = d.down_counter(&part("remaining"), last).doc("bits to come after the next");
+
+        let doubled = remainder.q().shift_left(1).with_fraction(frac);
+        let trial =
+            d.sub(&part("trial"), doubled, held.q()).doc("negative where the divisor does not fit");
+        let negative = trial.bit(trial.format().width() - 1);
+        let bit =
+            d.not(&part("bit"), negative).doc("the divisor fits: the next bit of the quotient");
+        let left = d.choose(&part("left"), bit, [doubled, trial]);
+        let stepped = cut(&part("stepped"), left);
+        let source = d.mux(&part("source"), [dividend, stepped]);
+        remainder.takes(source.out());
+        let upper = quotient.q().bits(0, Format::unsigned(bits - 1, 0));
+        quotient.takes(upper.above(bit, quotient.format()));
+        Self {
+            quotient,
+            divisor: held,
+            remainder,
+            remaining,
+            source,
+            dividend,
+            stepped,
+            more: d.any(&part("more"), remaining.q()).doc("the next bit is not the last"),
+        }
+    }
+
+    /// The quotient, when all steps are done.
+    pub fn quotient(&self) -> Signal<'d> {
+        self.quotient.q()
+    }
+
+    /// The knobs: dividend and divisor are taken at the end of the word.
+    #[track_caller]
+    pub fn load(&self) -> [Setting; 4] {
+        [
+            self.source.pick(self.dividend),
+            self.remainder.load(),
+            self.divisor.load(),
+            self.remaining.load(),
+        ]
+    }
+
+    /// The knobs: the next bit enters the quotient at the end of the word.
+    #[track_caller]
+    pub fn step(&self) -> [Setting; 4] {
+        [
+            self.source.pick(self.stepped),
+            self.remainder.load(),
+            self.quotient.load(),
+            self.remaining.count(),
+        ]
+    }
+
+    /// The condition under which the word that steps is executed once more.
+    pub fn more(&self) -> Signal<'d> {
+        self.more
+    }
+}

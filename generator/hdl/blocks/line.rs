@@ -1,0 +1,153 @@
+//! A walk along a scan line: an angle that grows by the same difference from point to point.
+
+use crate::base::fixed::Format;
+use crate::hdl::dsl::{Counter, Designer, Mux, Register, Signal, end, jump_if, loop_while, step};
+
+/// The numbers of an operand in the source's figure: data input, write strobe, and what holds it.
+#[derive(Clone, Copy, Debug)]
+pub struct OperandBlocks {
+    /// Data input and write strobe.
+    pub inputs: (u16, u16),
+    /// Register.
+    pub register: u16,
+}
+
+/// The numbers of a line's parts in the source's figure.
+#[derive(Clone, Copy, Debug)]
+pub struct LineBlocks {
+    /// The difference from point to point.
+    pub delta: OperandBlocks,
+    /// The angle of the first point.
+    pub start: OperandBlocks,
+    /// Data input and write strobe of the number of intervals.
+    pub length_inputs: (u16, u16),
+    /// The counter of intervals.
+    pub counter: u16,
+    /// The adder.
+    pub adder: u16,
+    /// The mux before the angle's register.
+    pub mux: u16,
+    /// The angle's register.
+    pub register: u16,
+    /// The line that counts.
+    pub count: u16,
+    /// The line that selects.
+    pub select: u16,
+    /// The line that writes the angle's register.
+    pub write: u16,
+}
+
+/// The walk: operands `delta_zeta`, `zeta_start` and `length`, the register `angle`, and the outputs
+/// `count`, `accumulate` and `write_angle` that show its control.
+///
+/// Of `length` = l intervals it makes l + 1 points, one a clock. The angle is a signed word that wraps
+/// around, so its format must hold what a line may reach, or wrap where angles do.
+pub struct Line<'d> {
+    designer: &'d Designer,
+    start: Signal<'d>,
+    sum: Signal<'d>,
+    next: Mux<'d>,
+    angle: Register<'d>,
+    intervals: Counter<'d>,
+    empty: Signal<'d>,
+    more: Signal<'d>,
+}
+
+impl<'d> Line<'d> {
+    /// Angles of `format`, signed, and up to 2^`length_bits` − 1 intervals.
+    #[track_caller]
+    pub fn new(
+        d: &'d Designer,
+        format: Format,
+        length_bits: i32,
+        blocks: Option<LineBlocks>,
+    ) -> Self {
+        let delta =
+            d.operand("delta_zeta", format).doc("angle from a point to the next, in right angles");
+        let mut start =
+            d.operand("zeta_start", format).doc("angle of the first point, in right angles");
+        let mut length = d
+            .operand("length", Format::unsigned(length_bits, 0))
+            .doc("intervals of the line: one less than its points");
+        let mut angle =
+            d.register("angle", format).doc("angle of the point, in right angles; wraps around");
+        let mut sum =
+            d.add_modulo("next_angle", angle.q(), delta.q(), None).doc("angle of the next point");
+        let mut next = d.mux("angle_source", [start.q(), sum]).doc("first point, or next");
+        let mut intervals = d.down_counter("intervals", length.q()).doc("intervals still to go");
+        if let Some(blocks) = blocks {
+            let OperandBlocks { inputs, register } = blocks.delta;
+            let _ = delta.block(register).inputs(inputs.0, inputs.1);
+            let OperandBlocks { inputs, register } = blocks.start;
+            start = start.block(register).inputs(inputs.0, inputs.1);
+            length = length.inputs(blocks.length_inputs.0, blocks.length_inputs.1);
+            sum = sum.block(blocks.adder);
+            next = next.block(blocks.mux).line(blocks.select);
+            angle = angle.block(blocks.register).line(blocks.write);
+            intervals = intervals.block(blocks.counter).line(blocks.count);
+        }
+        angle.takes(next.out());
+        let none = d.raw_constant("no_interval", 0, length.q().format());
+        let empty = d.equal("empty", length.q(), none).doc("a line of one point");
+        let last = d.raw_constant("last_interval", 1, length.q().format());
+        let more = d.less("more", last, intervals.q()).doc("not the last interval");
+        let shown = [
+            ("count", intervals.counting(), "counts an interval"),
+            ("accumulate", next.select(), "the next point, not the first"),
+            ("write_angle", angle.loading(), "a point is written"),
+        ];
+        let numbers = blocks.map(|blocks| [blocks.count, blocks.select, blocks.write]);
+        for (at, (name, line, doc)) in shown.into_iter().enumerate() {
+            let output = d.status(name, line).doc(doc);
+            if let Some(numbers) = numbers {
+                let _ = output.block(numbers[at]);
+            }
+        }
+        Self { designer: d, start: start.q(), sum, next, angle, intervals, empty, more }
+    }
+
+    /// The angle of the point.
+    pub fn angle(&self) -> Signal<'d> {
+        self.angle.q()
+    }
+
+    /// The microprogram of a device that does nothing else: its results are on the outputs `clocks` clocks
+    /// after the word that writes their angle, one for the register itself and one for every register
+    /// between it and the outputs.
+    #[track_caller]
+    pub fn microprogram(&self, clocks: u32) {
+        let clocks = clocks.max(1);
+        self.designer.valid_after(self.angle.loading(), clocks);
+        let drain = |left: u32| match left {
+            0 => "last point on the output".to_owned(),
+            1 => "last point a clock away".to_owned(),
+            left => format!("last point {left} clocks away"),
+        };
+        let mut steps = vec![
+            step("operands", []),
+            step(
+                "angle <- zeta_start: first point",
+                [
+                    self.next.pick(self.start),
+                    self.angle.load(),
+                    self.intervals.load(),
+                    jump_if(self.empty, &drain(clocks - 1)),
+                ],
+            ),
+            step(
+                "angle <- angle + delta_zeta: next point",
+                [
+                    self.next.pick(self.sum),
+                    self.angle.load(),
+                    self.intervals.count(),
+                    loop_while(self.more, "angle <- angle + delta_zeta: next point"),
+                ],
+            ),
+        ];
+        for left in (1..clocks).rev() {
+            steps.push(step(&drain(left), []));
+        }
+        steps.push(step(&drain(0), [end()]));
+        self.designer.microprogram(steps);
+    }
+}

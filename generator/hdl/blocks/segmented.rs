@@ -1,0 +1,322 @@
+//! A function of one operand by linear interpolation in segments that shrink toward zero.
+//!
+//! The operand u (an integer of C bits, or exactly 2^C) is cut into ranges by factors of four:
+//! range j holds u in [2^(C−2j−2), 2^(C−2j)) and is cut uniformly, by the k_j top bits of the
+//! (C−2j)-bit number. What lies below the last range has one entry a value, or is cut uniformly too. So
+//! the segments are fine where a function such as √u is steep, or where one such as −log₂(1 − u) must
+//! keep its relative accuracy, at a cost of one mux, a tree, and no shifter.
+
+use crate::base::fixed::{Format, Overflow, Rounding};
+use crate::hdl::dsl::{Designer, Signal};
+
+/// How the operand is cut.
+#[derive(Clone, Debug)]
+pub struct Segmentation {
+    /// Bits of the operand, C.
+    pub operand_bits: u32,
+    /// k_j: log₂ of the segments into which range j would be cut if it reached down to 0.
+    pub segments: Vec<u32>,
+    /// log₂ of the segments into which what lies below the last range is cut; `None`: one entry a value.
+    pub tail: Option<u32>,
+    /// The operand is never 2^C. Then the words of a range's lowest quarter, where ranges below have taken
+    /// over, are addressed by nothing, and the blocks of those ranges stand there.
+    pub packed: bool,
+}
+
+/// A block of entries: a range, or what lies below the last one.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    /// Bits of u within the range.
+    bits: u32,
+    /// Bits of the address within the block.
+    prefix: u32,
+    /// The first entry.
+    base: u32,
+}
+
+/// One entry of the table: the value at the start of the segment and its rise over the segment, as
+/// raw values of the formats in [`Shape`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Entry {
+    /// At the start of the segment.
+    pub base: i128,
+    /// Over the whole segment; not negative.
+    pub slope: i128,
+}
+
+/// A segment: the values of u that one entry is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Segment {
+    /// The first value of u.
+    pub from: u64,
+    /// How many values.
+    pub length: u64,
+}
+
+/// The formats of a table: value `u0.S`, slope with D fraction bits.
+#[derive(Clone, Copy, Debug)]
+pub struct Shape {
+    /// S: fraction bits of the value.
+    pub fraction: i32,
+    /// D: fraction bits of the slope.
+    pub slope_fraction: i32,
+    /// Reads on the rising edge.
+    pub synchronous: bool,
+}
+
+impl Segmentation {
+    /// The blocks by range, the exact one last. In the ROM larger blocks come first, which aligns
+    /// each to its size, so that an address is a constant beside a prefix.
+    fn blocks(&self) -> Vec<Block> {
+        let ranges = self.segments.len() as u32;
+        let rest = self.operand_bits - 2 * ranges;
+        let mut blocks: Vec<Block> = (0u32..)
+            .zip(&self.segments)
+            .map(|(range, &prefix)| Block { bits: self.operand_bits - 2 * range, prefix, base: 0 })
+            .chain([Block { bits: rest, prefix: self.tail.unwrap_or(rest), base: 0 }])
+            .collect();
+        let mut order: Vec<usize> = (0..blocks.len()).collect();
+        order.sort_by_key(|&at| std::cmp::Reverse(blocks[at].prefix));
+        // Words that nothing addresses: the first, and log2 of how many, to which the first is aligned.
+        let mut holes: Vec<(u32, u32)> = Vec::new();
+        let mut next = 0;
+        for at in order {
+            let prefix = blocks[at].prefix;
+            let hole = (0..holes.len())
+                .filter(|&hole| holes[hole].1 >= prefix)
+                .min_by_key(|&hole| holes[hole].1);
+            blocks[at].base = match hole {
+                None => {
+                    next += 1 << prefix;
+                    next - (1 << prefix)
+                }
+                Some(hole) => {
+                    let (base, mut size) = holes.swap_remove(hole);
+                    while size > prefix {
+                        size -= 1;
+                        holes.push((base + (1 << size), size));
+                    }
+                    base
+                }
+            };
+            if self.packed && at < self.segments.len() {
+                holes.push((blocks[at].base, prefix - 2));
+            }
+        }
+        blocks
+    }
+
+    /// Bits of the remainder that the slope multiplies; one, a zero, when every entry is exact.
+    fn rest_bits(&self) -> u32 {
+        self.blocks().iter().map(|block| block.bits - block.prefix).max().unwrap_or(0).max(1)
+    }
+
+    /// Words of the table.
+    pub fn entries(&self) -> usize {
+        self.blocks()
+            .iter()
+            .map(|block| block.base as usize + (1 << block.prefix))
+            .max()
+            .unwrap_or(0)
+    }
+
+    /// The segment of each word of the table; `None` where no value of u leads. The word that
+    /// u = 2^C leads to, if it may be that, has that one value.
+    pub fn segment_of_words(&self) -> Vec<Option<Segment>> {
+        let mut words = vec![None; self.entries()];
+        let blocks = self.blocks();
+        for (at, block) in blocks.iter().enumerate() {
+            let is_rest = at + 1 == blocks.len();
+            let length = 1u64 << (block.bits - block.prefix);
+            let first = if is_rest { 0 } else { 1u64 << (block.prefix - 2) };
+            for prefix in first..1 << block.prefix {
+                words[block.base as usize + prefix as usize] =
+                    Some(Segment { from: prefix * length, length });
+            }
+        }
+        if !self.packed {
+            let top = blocks.first().map_or(0, |block| block.base as usize);
+            words[top] = Some(Segment { from: 1 << self.operand_bits, length: 1 });
+        }
+        words
+    }
+}
+
+/// The straight line of the segment that an operand lies in: `base + slope · rest`.
+#[derive(Clone, Copy)]
+pub struct Line<'d> {
+    /// The value at the start of the segment, `u0.S`.
+    pub base: Signal<'d>,
+    /// The rise over the whole segment, with D fraction bits.
+    pub slope: Signal<'d>,
+    /// Where in the segment the operand lies, a fraction of it.
+    pub rest: Signal<'d>,
+}
+
+/// The table as hardware: `u` is an integer from 0 to 2^C; the result is `u0.S`.
+///
+/// With `shape.synchronous` the ROM and the remainder are registered, and the result belongs to the
+/// `u` of the clock before.
+#[track_caller]
+pub fn interpolate<'d>(
+    d: &'d Designer,
+    name: &str,
+    u: Signal<'d>,
+    cut: &Segmentation,
+    shape: Shape,
+    entry: impl Fn(Segment) -> Entry,
+    block: Option<u16>,
+) -> Signal<'d> {
+    let line = look_up(d, name, u, cut, shape, entry, block);
+    let rise = d.mul(&format!("{name}_rise"), line.slope, line.rest);
+    line.at(d, name, rise)
+}
+
+impl<'d> Line<'d> {
+    /// The value of the line, `u0.S`, where `rise` is the product of slope and rest.
+    #[track_caller]
+    pub fn at(self, d: &'d Designer, name: &str, rise: Signal<'d>) -> Signal<'d> {
+        let value = self.base.format();
+        // The rise over a part of a segment is below the slope, which is below 1.
+        let rise = d.narrow(
+            &format!("{name}_rise_cut"),
+            rise,
+            value,
+            Rounding::Truncate,
+            Overflow::Saturate,
+        );
+        let sum = d.add(&format!("{name}_sum"), self.base, rise);
+        d.narrow(&format!("{name}_value"), sum, value, Rounding::Truncate, Overflow::Saturate)
+    }
+}
+
+/// The table without the multiplication, for a device whose multiplier has other work too.
+///
+/// As [`interpolate`]; [`Line::at`] is the rest of it.
+#[track_caller]
+pub fn look_up<'d>(
+    d: &'d Designer,
+    name: &str,
+    u: Signal<'d>,
+    cut: &Segmentation,
+    shape: Shape,
+    entry: impl Fn(Segment) -> Entry,
+    block: Option<u16>,
+) -> Line<'d> {
+    let words = cut.segment_of_words();
+    let entries: Vec<Entry> =
+        words.iter().map(|segment| segment.map_or_else(Entry::default, &entry)).collect();
+    let slope_most = entries.iter().map(|entry| entry.slope).max().unwrap_or(0).max(1);
+    let slope_bits = 128 - slope_most.leading_zeros();
+    let value = Format::unsigned(0, shape.fraction);
+    let packed: Vec<i128> =
+        entries.iter().map(|entry| entry.base << slope_bits | entry.slope).collect();
+
+    let (address, rest) = address_and_rest(d, name, u, cut);
+    let word = Format::unsigned(shape.fraction + slope_bits as i32, 0);
+    let rom = d
+        .rom(name, address, word, &packed, shape.synchronous)
+        .doc(&format!(
+            "value at the start of a segment (u0.{}), then its rise over the segment in units of 2^-{} ({} bits)",
+            shape.fraction, shape.slope_fraction, slope_bits
+        ))
+        .comments(
+            words
+                .iter()
+                .map(|segment| match segment {
+                    None => "not used".to_owned(),
+                    Some(Segment { from, length: 1 }) => format!("u = {from}"),
+                    Some(Segment { from, length }) => format!("u = {from} to {}", from + length - 1),
+                })
+                .collect(),
+        );
+    let rom = match block {
+        Some(number) => rom.block(number),
+        None => rom,
+    };
+    let rest =
+        if shape.synchronous { d.pipeline(&format!("{name}_rest_held"), rest) } else { rest };
+    let base = rom.out().bits(slope_bits, value).named(&format!("{name}_base"));
+    let slope = rom
+        .out()
+        .bits(0, Format::unsigned(slope_bits as i32 - shape.slope_fraction, shape.slope_fraction))
+        .named(&format!("{name}_slope"));
+    Line { base, slope, rest }
+}
+
+/// The word and the remainder, left-justified, a fraction of the segment.
+#[track_caller]
+fn address_and_rest<'d>(
+    d: &'d Designer,
+    name: &str,
+    u: Signal<'d>,
+    cut: &Segmentation,
+) -> (Signal<'d>, Signal<'d>) {
+    let blocks = cut.blocks();
+    let rest_bits = cut.rest_bits();
+    let address_bits = usize::BITS - (cut.entries() - 1).leading_zeros();
+    let address = Format::unsigned(address_bits as i32, 0);
+    let rest = Format::unsigned(0, rest_bits as i32);
+    // One arm a block: {constant, prefix} and {remainder, zeros}.
+    let arm = |block: &Block| {
+        let base = d.raw_constant(&format!("{name}_base_word"), i128::from(block.base), address);
+        let left = block.bits - block.prefix;
+        // What remains below the last range may be the one value 0.
+        let word = if block.prefix == 0 {
+            base
+        } else {
+            let prefix = u.bits(left, Format::unsigned(block.prefix as i32, 0));
+            d.beside(base, prefix, address)
+        };
+        let remainder = if left == 0 {
+            d.raw_constant(&format!("{name}_no_rest"), 0, rest)
+        } else {
+            u.bits(0, Format::unsigned(0, left as i32)).with_fraction(rest_bits as i32)
+        };
+        (word, remainder)
+    };
+    let arms: Vec<_> = blocks.iter().map(arm).collect();
+    let in_range = |at: usize| {
+        let low = blocks[at].bits - 2;
+        let top = u.format().width() - low;
+        d.any(&format!("{name}_in_range{at}"), u.bits(low, Format::unsigned(top as i32, 0)))
+            .doc(&format!("u is in range {at} or in one above"))
+    };
+    let picker = Picker { d, name, arms: &arms, in_range: &in_range };
+    picker.pick(0, arms.len())
+}
+
+/// A word and a remainder.
+type Arm<'d> = (Signal<'d>, Signal<'d>);
+
+/// Chooses between the arms of the blocks, in a tree of two-input muxes.
+struct Picker<'a, 'd> {
+    d: &'d Designer,
+    name: &'a str,
+    arms: &'a [Arm<'d>],
+    /// 1 when u is in the range of that number or in one above it.
+    in_range: &'a dyn Fn(usize) -> Signal<'d>,
+}
+
+impl<'d> Picker<'_, 'd> {
+    /// Between the arms `from` to `to`, less one.
+    #[track_caller]
+    fn pick(&self, from: usize, to: usize) -> Arm<'d> {
+        if to - from == 1 {
+            return self.arms[from];
+        }
+        let middle = (from + to) / 2;
+        let at = middle - 1;
+        let (upper, lower) = (self.pick(from, middle), self.pick(middle, to));
+        let here = (self.in_range)(at);
+        let (d, name) = (self.d, self.name);
+        let word = d.choose(&format!("{name}_word{at}"), here, [lower.0, upper.0]);
+        let no_rest = lower.1.range() == (0, 0) && upper.1.range() == (0, 0);
+        let rest = if no_rest {
+            upper.1
+        } else {
+            d.choose(&format!("{name}_rest{at}"), here, [lower.1, upper.1])
+        };
+        (word, rest)
+    }
+}

@@ -1,0 +1,61 @@
+//! Shifts by a number that is known at run time only, as rows of muxes.
+
+use crate::base::fixed::Format;
+use crate::hdl::dsl::{Designer, Signal};
+
+/// `x` divided by 2^`places` and rounded down to the fraction bits that it has: a barrel shifter, with one
+/// row of muxes for each bit of `places`.
+///
+/// `x` is unsigned, `places` an unsigned integer.
+#[track_caller]
+pub fn right_by<'d>(d: &'d Designer, name: &str, x: Signal<'d>, places: Signal<'d>) -> Signal<'d> {
+    let format = x.format();
+    // From the largest step down: what has become small is narrow in the rows that follow.
+    (0..places.format().width()).rev().fold(x, |row, bit| {
+        let step = 1u32.checked_shl(bit).unwrap_or(u32::MAX);
+        let width = row.format().width();
+        let shifted = if step < width {
+            let have = row.format();
+            row.bits(step, Format::unsigned(have.int - step as i32, have.frac))
+        } else {
+            d.raw_constant("zeros", 0, Format::unsigned(1 - format.frac, format.frac))
+        };
+        d.choose(&format!("{name}_by{step}"), places.bit(bit), [row, shifted])
+    })
+}
+
+/// A word without its leading zeros.
+#[derive(Clone, Copy)]
+pub struct Normalised<'d> {
+    /// The word shifted left until its top bit is 1, as an integer of the same width.
+    pub word: Signal<'d>,
+    /// By how many places, an integer.
+    pub zeros: Signal<'d>,
+}
+
+/// The bits of `x` shifted left until the top one is 1, and by how many places: a row of muxes for each bit
+/// of the count, which is thereby encoded. Of a word of zeros it makes zeros, and a count of ones.
+#[track_caller]
+pub fn normalise<'d>(d: &'d Designer, name: &str, x: Signal<'d>) -> Normalised<'d> {
+    let width = x.format().width();
+    let integer = |bits: u32| Format::unsigned(bits as i32, 0);
+    let mut word = x.read_as(integer(width));
+    let mut count = Vec::new();
+    for bit in (0..(width - 1).max(1).ilog2() + 1).rev() {
+        let step = 1u32 << bit;
+        if step >= width {
+            continue;
+        }
+        let used = d.any(&format!("{name}_top{step}"), word.bits(width - step, integer(step)));
+        let shifted =
+            word.bits(0, integer(width - step)).with_fraction(step as i32).shift_left(step as i32);
+        word = d.choose(&format!("{name}_by{step}"), used, [shifted, word]);
+        count.push(d.not(&format!("{name}_free{step}"), used));
+    }
+    let zeros = if count.is_empty() {
+        d.raw_constant("zeros", 0, Format::BIT)
+    } else {
+        d.join(&format!("{name}_zeros"), &count, integer(count.len() as u32))
+    };
+    Normalised { word, zeros }
+}

@@ -1,0 +1,89 @@
+//! Repeated squaring: a register raised to a power of two under a counter.
+//!
+//! The first squaring takes its operand from elsewhere and is a word of its own; all others are one
+//! word, executed again and again. The multiplier and the muxes before it are the device's.
+
+use crate::base::fixed::Format;
+use crate::hdl::dsl::{Counter, Designer, Mux, Register, Setting, Signal, Step, loop_while, step};
+
+/// So many squarings, and the counter of those to come: `remaining`, where there is more than one.
+pub struct Squarings<'d> {
+    designer: &'d Designer,
+    counter: Option<Counter<'d>>,
+    /// What the counter starts from, where it has a choice.
+    start: Option<(Mux<'d>, Signal<'d>)>,
+}
+
+impl<'d> Squarings<'d> {
+    /// `count` squarings, 1 to 4: the power is 2^count.
+    #[track_caller]
+    pub fn new(designer: &'d Designer, count: u32) -> Self {
+        let counter = (count > 1).then(|| {
+            designer.down_counter("remaining", start(designer, count)).doc("squarings to come")
+        });
+        Self { designer, counter, start: None }
+    }
+
+    /// `count` squarings under a counter that counts something else too, before them: it is returned
+    /// with the knob that makes it start from `other`.
+    #[track_caller]
+    pub fn sharing(
+        designer: &'d Designer,
+        count: u32,
+        other: Signal<'d>,
+    ) -> (Self, Counter<'d>, Vec<Setting>) {
+        let mux = (count > 1).then(|| {
+            let squarings = start(designer, count);
+            let mux = designer.mux("remaining_start", [squarings, other]).doc("what is counted");
+            (mux, squarings)
+        });
+        let from = mux.map_or(other, |(mux, _)| mux.out());
+        let counter = designer.down_counter("remaining", from);
+        let load_other =
+            mux.map(|(mux, _)| mux.pick(other)).into_iter().chain([counter.load()]).collect();
+        let squarings = Self { designer, counter: mux.map(|_| counter), start: mux };
+        (squarings, counter, load_other)
+    }
+
+    /// The knobs that load the counter, in a word before the second squaring.
+    #[track_caller]
+    pub fn load(&self) -> Vec<Setting> {
+        let pick = self.start.map(|(mux, squarings)| mux.pick(squarings));
+        let load = self.counter.map(|counter| counter.load());
+        pick.into_iter().chain(load).collect()
+    }
+
+    /// The words: `register` takes the square of a base, then its own, until all are done.
+    ///
+    /// `first` are the knobs that bring the square of the base to the register, `again` those that
+    /// bring the register's own.
+    #[track_caller]
+    pub fn steps(
+        &self,
+        register: Register<'d>,
+        first: impl IntoIterator<Item = Setting>,
+        again: impl IntoIterator<Item = Setting>,
+    ) -> Vec<Step> {
+        let name = register.q().name();
+        let first = first.into_iter().chain([register.load()]);
+        let mut steps = vec![step(&format!("{name} <- base^2"), first)];
+        if let Some(remaining) = self.counter {
+            let one = self.designer.raw_constant("one_left", 1, remaining.q().format());
+            let more = self.designer.less("more", one, remaining.q()).doc("not the last squaring");
+            let word = format!("{name} <- {name}^2");
+            let settings = again.into_iter().chain([
+                register.load(),
+                remaining.count(),
+                loop_while(more, &word),
+            ]);
+            steps.push(step(&word, settings));
+        }
+        steps
+    }
+}
+
+/// The squarings after the first.
+#[track_caller]
+fn start(designer: &Designer, count: u32) -> Signal<'_> {
+    designer.raw_constant("squarings", i128::from(count) - 1, Format::unsigned(2, 0))
+}

@@ -1,0 +1,281 @@
+//! A multiplier shared by operands of different formats.
+//!
+//! The formats of what a shared multiplier multiplies differ from word to word, so its operand muxes
+//! carry bits, not values: a [`Bus`] is as wide as its widest input. The product means something only
+//! together with the selection, and [`SharedProduct::of`] gives it back its format: exact, with its
+//! range, for one selection or for several that agree in their point. [`crate::hdl::dsl::rules`] then proves for
+//! every word that a register which takes such a view is loaded under a selection that it is for.
+
+use std::cmp::Ordering;
+
+use super::signal::product_range;
+use super::{Designer, Select, Setting, Signal, View};
+use crate::base::fixed::Format;
+use crate::hdl::netlist::{Driver, FieldId, Op};
+
+/// A mux of operands of different formats.
+#[derive(Clone)]
+pub struct Bus<'d> {
+    designer: &'d Designer,
+    name: String,
+    field: FieldId,
+    out: Signal<'d>,
+    inputs: Vec<Signal<'d>>,
+}
+
+impl Designer {
+    /// A mux whose inputs may differ in format, under `select`.
+    #[track_caller]
+    pub fn bus<'d>(
+        &'d self,
+        name: &str,
+        select: Select<'d>,
+        inputs: impl IntoIterator<Item = Signal<'d>>,
+    ) -> Bus<'d> {
+        let inputs: Vec<_> = inputs.into_iter().collect();
+        select.check_inputs(name, inputs.len());
+        let low = inputs.iter().map(|input| input.range().0).min().unwrap_or(0);
+        let high = inputs.iter().map(|input| input.range().1).max().unwrap_or(0);
+        let format = Format::holding(low, high, 0);
+        let carried = inputs
+            .iter()
+            .map(|input| {
+                let have = input.format();
+                self.resized(
+                    *input,
+                    Format { frac: have.frac, int: format.int - have.frac, signed: format.signed },
+                )
+            })
+            .collect();
+        let op = Op::Mux { select: self.field_net(select.field()).id(), inputs: carried };
+        let out = self.signal(self.add_net(name, format, (low, high), Driver::Op(op), true));
+        Bus { designer: self, name: name.to_owned(), field: select.field(), out, inputs }
+    }
+
+    /// The product of two buses under the same select lines.
+    ///
+    /// Where one of them alone has negative inputs, the multiplier takes the bits below its sign as an
+    /// unsigned number. That is a bit less on either side than a product of signed numbers needs, and
+    /// may save DSP blocks: 18 bits fit where 19 do not. What a negative operand makes too large by it,
+    /// the other operand at the weight of the sign, is taken off in [`SharedProduct::of`].
+    #[track_caller]
+    pub fn shared_mul<'d>(
+        &'d self,
+        name: &str,
+        first: &Bus<'d>,
+        second: &Bus<'d>,
+    ) -> SharedProduct<'d> {
+        if first.field != second.field || first.inputs.len() != second.inputs.len() {
+            self.error(format!(
+                "multiplier `{name}`: `{}` and `{}` must have as many inputs under the same select lines",
+                first.name, second.name
+            ));
+        }
+        let (out, excess) = match (first.out.format().signed, second.out.format().signed) {
+            (true, false) => self.unsigned_core(name, [first, second], |low| (low, second.out)),
+            (false, true) => self.unsigned_core(name, [second, first], |low| (first.out, low)),
+            _ => (self.mul(name, first.out, second.out), None),
+        };
+        SharedProduct {
+            out,
+            excess,
+            delay: 0,
+            field: first.field,
+            pairs: first.inputs.iter().copied().zip(second.inputs.iter().copied()).collect(),
+        }
+    }
+
+    /// The product of the bits of one bus below its sign by the other bus, in the order that `ordered`
+    /// says, and what is to be taken off above them.
+    #[track_caller]
+    fn unsigned_core<'d>(
+        &'d self,
+        name: &str,
+        [signed, other]: [&Bus<'d>; 2],
+        ordered: impl FnOnce(Signal<'d>) -> (Signal<'d>, Signal<'d>),
+    ) -> (Signal<'d>, Option<Excess<'d>>) {
+        let low = signed.out.format().width() - 1;
+        let (first, second) = ordered(signed.out.bits(0, Format::unsigned(low as i32, 0)));
+        let out = self.mul(name, first, second);
+        // Of the other bus only as many bits as its inputs opposite negative ones have.
+        let opposite = signed.inputs.iter().zip(&other.inputs);
+        let most = opposite
+            .filter(|(input, _)| input.range().0 < 0)
+            .map(|(_, opposite)| opposite.range().1)
+            .max()
+            .unwrap_or(0);
+        let format = Format::holding(0, most.max(1), 0);
+        let inputs =
+            vec![self.raw_constant("zeros", 0, format).id(), other.out.bits(0, format).id()];
+        let op = Op::Mux { select: signed.out.bit(low).id(), inputs };
+        let range = (0, format.max_raw());
+        let amount = self.add_net(&format!("{name}_excess"), format, range, Driver::Op(op), true);
+        let amount = self
+            .signal(amount)
+            .doc("what the product of a negative operand is too large by, above its sign");
+        (out, Some(Excess { amount, low }))
+    }
+}
+
+impl<'d> Bus<'d> {
+    /// The knob: passes `input` on. It must be one of the inputs.
+    #[track_caller]
+    pub fn pick(&self, input: Signal<'d>) -> Setting {
+        Setting::pick_of(self.designer, self.field, &self.name, input, &self.inputs)
+    }
+
+    /// The block number in the source's figure.
+    #[must_use]
+    pub fn block(self, number: u16) -> Self {
+        let _ = self.out.block(number);
+        self
+    }
+
+    /// One line for the reader of the Verilog.
+    #[must_use]
+    pub fn doc(self, line: &str) -> Self {
+        let _ = self.out.doc(line);
+        self
+    }
+}
+
+/// What a product of unsigned numbers is too large by, where an operand is negative.
+#[derive(Clone, Copy)]
+struct Excess<'d> {
+    /// The other operand, or 0.
+    amount: Signal<'d>,
+    /// The weight of its lowest bit: the number of the operand's sign bit.
+    low: u32,
+}
+
+/// The product of two buses.
+#[derive(Clone)]
+pub struct SharedProduct<'d> {
+    out: Signal<'d>,
+    excess: Option<Excess<'d>>,
+    /// Registers behind the multiplier.
+    delay: u32,
+    field: FieldId,
+    pairs: Vec<(Signal<'d>, Signal<'d>)>,
+}
+
+impl<'d> SharedProduct<'d> {
+    /// The product of `first` and `second`, which must stand opposite each other on the two buses.
+    #[track_caller]
+    pub fn of(&self, first: Signal<'d>, second: Signal<'d>) -> Signal<'d> {
+        self.of_any(&[(first, second)])
+    }
+
+    /// The product of any of the pairs, which must have one point: what a register takes in several
+    /// words.
+    #[track_caller]
+    pub fn of_any(&self, pairs: &[(Signal<'d>, Signal<'d>)]) -> Signal<'d> {
+        let d = self.out.designer();
+        let mut values = Vec::new();
+        let mut points = Vec::new();
+        let mut range: Option<(i128, i128)> = None;
+        for (first, second) in pairs {
+            let found =
+                self.pairs.iter().position(|(a, b)| a.id() == first.id() && b.id() == second.id());
+            let Some(at) = found else {
+                d.error(format!(
+                    "`{}` never multiplies `{}` by `{}`",
+                    self.out.name(),
+                    first.name(),
+                    second.name()
+                ));
+                continue;
+            };
+            values.push(at as u64);
+            points.push(first.format().frac + second.format().frac);
+            let (low, high) = product_range(first.range(), second.range());
+            range = Some(range.map_or((low, high), |(from, to)| (from.min(low), to.max(high))));
+        }
+        let (Some(range), Some(&frac)) = (range, points.first()) else {
+            return self.out;
+        };
+        if points.iter().any(|point| *point != frac) {
+            d.error(format!(
+                "the products of `{}` that are taken together have {points:?} fraction bits: append zeros to an operand",
+                self.out.name()
+            ));
+        }
+        let format = Format::holding(range.0, range.1, frac);
+        let view = match self.excess {
+            Some(excess) if range.0 < 0 && format.width() > excess.low => {
+                self.corrected(format, range, excess)
+            }
+            _ => resized(self.out, "view", format, range),
+        };
+        let described = View { field: self.field, values, delay: self.delay };
+        d.with(|inner| inner.views.insert(view.id(), described));
+        view
+    }
+
+    /// The product in `format` less the excess.
+    #[track_caller]
+    fn corrected(&self, format: Format, range: (i128, i128), excess: Excess<'d>) -> Signal<'d> {
+        let d = self.out.designer();
+        let upper = Format::unsigned((format.width() - excess.low) as i32, 0);
+        let whole = Format::unsigned(format.width() as i32, 0);
+        let raw = resized(self.out, "wide", whole, whole.range());
+        let too_large = raw.bits(excess.low, upper);
+        let amount = resized(excess.amount, "wide", upper, upper.range());
+        let name = format!("{}_upper", self.out.name());
+        let op = Op::Sub(too_large.id(), amount.id());
+        let upper = d.add_wiring(&name, upper, upper.range(), Driver::Op(op));
+        let lower = raw.bits(0, Format::unsigned(excess.low as i32, 0));
+        let op = Op::Concat(vec![upper, lower.id()]);
+        self.out.wiring("view", format, range, op)
+    }
+
+    /// The product of the word before, in a register `name` behind the multiplier.
+    ///
+    /// For a program that settles the operands in one word and takes the product in the next, under the
+    /// same selection: the multiplier then has the first of the two clocks to itself.
+    #[must_use]
+    #[track_caller]
+    pub fn held(&self, name: &str) -> Self {
+        let d = self.out.designer();
+        Self {
+            out: d.pipeline(name, self.out).doc("the product of the word before"),
+            excess: self.excess.map(|excess| Excess {
+                amount: d.pipeline(&format!("{name}_excess"), excess.amount),
+                ..excess
+            }),
+            delay: self.delay + 1,
+            ..self.clone()
+        }
+    }
+
+    /// The block number in the source's figure.
+    #[must_use]
+    pub fn block(self, number: u16) -> Self {
+        let _ = self.out.block(number);
+        self
+    }
+
+    /// One line for the reader of the Verilog.
+    #[must_use]
+    pub fn doc(self, line: &str) -> Self {
+        let _ = self.out.doc(line);
+        self
+    }
+}
+
+/// The low bits of `signal`, or all of them and zeros or signs above, as `format`.
+#[track_caller]
+fn resized<'d>(
+    signal: Signal<'d>,
+    suffix: &str,
+    format: Format,
+    range: (i128, i128),
+) -> Signal<'d> {
+    let id = signal.id();
+    let op = match format.width().cmp(&signal.format().width()) {
+        Ordering::Equal => Op::Relabel(id),
+        Ordering::Less => Op::Slice { of: id, low: 0 },
+        Ordering::Greater => Op::Extend(id),
+    };
+    signal.wiring(suffix, format, range, op)
+}

@@ -1,0 +1,221 @@
+//! Narrowing: where bits are given up, with stated rounding and overflow.
+
+use std::panic::Location;
+
+use super::{Designer, Signal};
+use crate::base::fixed::{Format, Overflow, Rounding};
+use crate::hdl::netlist::{Driver, NetId, Op};
+
+impl Designer {
+    /// `a` brought to `format`.
+    ///
+    /// Costs what it must: truncation is wiring; rounding to nearest is an incrementer; saturation is a
+    /// test of the upper bits, and of those only that the range of `a` lets differ. With
+    /// [`Overflow::Wrap`] the upper bits are dropped.
+    #[track_caller]
+    pub fn narrow<'d>(
+        &'d self,
+        name: &str,
+        a: Signal<'d>,
+        format: Format,
+        rounding: Rounding,
+        overflow: Overflow,
+    ) -> Signal<'d> {
+        let format = self.sound(name, format);
+        let rounded = self.rounded(name, a, format.frac, rounding);
+        let (low, high) = rounded.range();
+        let fits = format.holds(low) && format.holds(high);
+        let (op, range) = match (fits, overflow) {
+            (true, _) => (Op::Relabel(self.resized(rounded, format)), (low, high)),
+            (false, Overflow::Wrap) => (self.low_bits(rounded, format), format.range()),
+            (false, Overflow::Saturate) => (
+                self.placed(Location::caller(), || self.saturated(name, rounded, format)),
+                (
+                    low.clamp(format.min_raw(), format.max_raw()),
+                    high.clamp(format.min_raw(), format.max_raw()),
+                ),
+            ),
+        };
+        self.signal(self.add_net(name, format, range, Driver::Op(op), true))
+    }
+
+    /// The value with `frac` fraction bits.
+    #[track_caller]
+    fn rounded<'d>(
+        &'d self,
+        name: &str,
+        a: Signal<'d>,
+        frac: i32,
+        rounding: Rounding,
+    ) -> Signal<'d> {
+        let have = a.format();
+        let places = have.frac - frac;
+        if places <= 0 {
+            return a.with_fraction(frac);
+        }
+        let places = places as u32;
+        // A value with no bits above the new ulp still needs one to be sliced.
+        let a = if have.width() > places {
+            a
+        } else {
+            let int = places as i32 + 1 - have.frac - i32::from(have.signed);
+            self.signal(self.resized(a, Format { int, ..have }))
+        };
+        let have = a.format();
+        let (low, high) = a.range();
+        let floor = |raw: i128| Rounding::Truncate.shift(raw, places as i32);
+        let kept = Format { signed: have.signed, int: have.int, frac };
+        let truncated = a.wiring(
+            "kept",
+            kept,
+            (floor(low), floor(high)),
+            Op::Slice { of: a.id(), low: places },
+        );
+        match rounding {
+            Rounding::Truncate => truncated,
+            Rounding::Nearest => {
+                let half = a.bit(places - 1).shift_right(frac);
+                let nearest = |raw: i128| Rounding::Nearest.shift(raw, places as i32);
+                let range = (nearest(low), nearest(high));
+                let format = Format::holding(range.0.min(floor(low)), range.1, frac);
+                let op = Op::Add {
+                    a: self.resized(truncated, format),
+                    b: self.resized(half, unsigned_as(format)),
+                    carry: None,
+                };
+                let id = self.add_wiring(&format!("{name}_nearest"), format, range, Driver::Op(op));
+                self.signal(id)
+            }
+        }
+    }
+
+    /// The low bits of `a`, in `format`.
+    #[track_caller]
+    fn low_bits(&self, a: Signal<'_>, format: Format) -> Op {
+        if a.format().width() <= format.width() {
+            // Only the meaning of the top bit changes.
+            let same = Format { signed: a.format().signed, ..unsigned_as(format) };
+            let same = if same.signed { signed_as(format) } else { same };
+            let wide = a.wiring(
+                "wide",
+                same,
+                a.range(),
+                if a.format().width() == format.width() {
+                    Op::Relabel(a.id())
+                } else {
+                    Op::Extend(a.id())
+                },
+            );
+            Op::Relabel(wide.id())
+        } else {
+            Op::Slice { of: a.id(), low: 0 }
+        }
+    }
+
+    /// The saturation of `v`, whose range `format` does not hold.
+    #[track_caller]
+    fn saturated<'d>(&'d self, name: &str, v: Signal<'d>, format: Format) -> Op {
+        let (low, high) = v.range();
+        let (below, above) = (low < format.min_raw(), high > format.max_raw());
+        let have = v.format();
+        let (width, kept) = (have.width(), format.width());
+        let constant = |suffix: &str, raw: i128| {
+            self.add_wiring(
+                &format!("{name}_{suffix}"),
+                format,
+                (raw, raw),
+                Driver::Constant(format.bits(raw)),
+            )
+        };
+        let flag = |suffix: &str, op: Op| {
+            let id =
+                self.add_wiring(&format!("{name}_{suffix}"), Format::BIT, (0, 1), Driver::Op(op));
+            self.signal(id)
+        };
+        // The bits that carry the value inside `format`; shorter values are extended first.
+        let wide = if width < kept {
+            self.resized(v, Format { int: have.int + (kept - width) as i32, ..have })
+        } else {
+            v.id()
+        };
+        let inside = self
+            .signal(wide)
+            .wiring("inside", format, format.range(), Op::Slice { of: wide, low: 0 })
+            .id();
+        let mux = |select: NetId, normal: NetId, limit: NetId| Op::Mux {
+            select,
+            inputs: vec![normal, limit],
+        };
+        let upper = |from: u32, to: u32| {
+            (from < to).then(|| v.bits(from, Format::unsigned((to - from) as i32, 0)))
+        };
+        match (format.signed, have.signed) {
+            // Never negative: too large when any bit above the format is 1.
+            (_, false) => {
+                let magnitude = kept - u32::from(format.signed);
+                let over = upper(magnitude, width)
+                    .map_or(inside, |top| flag("over", Op::Any(top.id())).id());
+                mux(over, inside, constant("most", format.max_raw()))
+            }
+            (false, true) => {
+                let sign = v.bit(width - 1);
+                let top = upper(kept, width - 1).filter(|_| above);
+                let limited = top.map_or(inside, |top| {
+                    let over = flag("over", Op::Any(top.id()));
+                    let op = mux(over.id(), inside, constant("most", format.max_raw()));
+                    self.add_wiring(
+                        &format!("{name}_limited"),
+                        format,
+                        format.range(),
+                        Driver::Op(op),
+                    )
+                });
+                mux(sign.id(), limited, constant("least", 0))
+            }
+            // In range when all bits from the sign of the format up are equal to the sign: a test of
+            // sign bits, which is faster than a comparison of magnitudes.
+            (true, true) => {
+                let sign = v.bit(width - 1);
+                let Some(top) = upper(kept - 1, width - 1) else {
+                    return Op::Relabel(inside);
+                };
+                let not = |signal: Signal<'_>, suffix: &str| flag(suffix, Op::Not(signal.id()));
+                let over = || {
+                    let any = flag("high", Op::Any(top.id()));
+                    let positive = not(sign, "positive");
+                    let over = flag("over", Op::And(positive.id(), any.id()));
+                    mux(over.id(), inside, constant("most", format.max_raw()))
+                };
+                if !below {
+                    return over();
+                }
+                // One limit behind the other, rather than a choice of limits: the outer one becomes the
+                // synchronous reset of the register that takes the result.
+                let limited = if above {
+                    self.add_wiring(
+                        &format!("{name}_limited"),
+                        format,
+                        format.range(),
+                        Driver::Op(over()),
+                    )
+                } else {
+                    inside
+                };
+                let ones = flag("low", Op::All(top.id()));
+                let off = not(ones, "mixed");
+                let under = flag("under", Op::And(sign.id(), off.id()));
+                mux(under.id(), limited, constant("least", format.min_raw()))
+            }
+        }
+    }
+}
+
+/// `format` without a sign bit, as wide.
+fn unsigned_as(format: Format) -> Format {
+    Format { signed: false, int: format.int + i32::from(format.signed), frac: format.frac }
+}
+
+/// `format` with a sign bit, as wide.
+fn signed_as(format: Format) -> Format {
+    Format { signed: true, int: format.int - i32::from(!format.signed), frac: format.frac }
+}

@@ -1,0 +1,538 @@
+//! The microprogram: words that turn knobs, and the sequencer that runs them.
+
+use std::panic::Location;
+
+use super::{Designer, Place, Signal};
+use crate::base::fixed::Format;
+use crate::hdl::dsl::rules::Diagnostic;
+use crate::hdl::netlist::microcode;
+use crate::hdl::netlist::{
+    Control, Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role, Rom as NetRom, RomId,
+    Sequence, Unit, Word,
+};
+
+/// What one word does to one knob, or to the sequence.
+#[derive(Clone)]
+pub struct Setting {
+    kind: Kind,
+    location: Place,
+}
+
+#[derive(Clone)]
+enum Kind {
+    Field {
+        field: FieldId,
+        value: u64,
+        what: String,
+    },
+    Hold,
+    Valid,
+    Next,
+    WaitForStart,
+    LoopWhile {
+        condition: NetId,
+        to: String,
+    },
+    End,
+    /// Already reported.
+    Wrong,
+}
+
+impl Setting {
+    pub(crate) fn field(field: FieldId, value: u64, what: String, location: Place) -> Self {
+        let kind = Kind::Field { field, value, what };
+        Self { kind, location }
+    }
+
+    #[track_caller]
+    fn sequence(kind: Kind) -> Self {
+        Self { kind, location: Location::caller() }
+    }
+
+    /// A mux passes `input` on: found by what the mux's net selects from.
+    #[track_caller]
+    pub(crate) fn pick(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>) -> Self {
+        let inputs = match d.with(|inner| inner.design.find(mux)).map(|id| d.net(id).driver) {
+            Some(Driver::Op(Op::Mux { inputs, .. })) => inputs,
+            _ => Vec::new(),
+        };
+        // An input may have been widened to the mux's format.
+        let stands_for = |id: NetId| {
+            id == input.id()
+                || matches!(d.net(id).driver,
+                    Driver::Op(Op::Extend(a) | Op::Relabel(a) | Op::Slice { of: a, low: 0 }) if a == input.id())
+        };
+        let found: Vec<_> = (0..inputs.len()).filter(|&at| stands_for(inputs[at])).collect();
+        Self::picked(d, field, mux, input, &found)
+    }
+
+    #[track_caller]
+    pub(crate) fn pick_of(
+        d: &Designer,
+        field: FieldId,
+        mux: &str,
+        input: Signal<'_>,
+        inputs: &[Signal<'_>],
+    ) -> Self {
+        let found: Vec<_> = (0..inputs.len()).filter(|&at| inputs[at].id() == input.id()).collect();
+        Self::picked(d, field, mux, input, &found)
+    }
+
+    #[track_caller]
+    fn picked(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>, found: &[usize]) -> Self {
+        let [at] = found else {
+            let how = if found.is_empty() { "is no input" } else { "is more than one input" };
+            d.error(format!("`{}` {how} of `{mux}`", input.name()));
+            return Self::sequence(Kind::Wrong);
+        };
+        let what = format!("{mux}.pick({})", input.name());
+        Self::field(field, *at as u64, what, Location::caller())
+    }
+}
+
+/// Keeps the selections of the word before, where the word does not say otherwise.
+#[track_caller]
+pub fn hold() -> Setting {
+    Setting::sequence(Kind::Hold)
+}
+
+/// The results are on the outputs: `valid` is high in this word.
+#[track_caller]
+pub fn valid() -> Setting {
+    Setting::sequence(Kind::Valid)
+}
+
+/// On to the next word; what a word does that does not say otherwise.
+#[track_caller]
+pub fn next() -> Setting {
+    Setting::sequence(Kind::Next)
+}
+
+/// Stays in this word until `start` is high; the device is not busy meanwhile. Word 0 always does.
+#[track_caller]
+pub fn wait_for_start() -> Setting {
+    Setting::sequence(Kind::WaitForStart)
+}
+
+/// Back to the word named `to` while `condition`, one bit, is 1; then on to the next word.
+#[track_caller]
+pub fn loop_while(condition: Signal<'_>, to: &str) -> Setting {
+    Setting::sequence(Kind::LoopWhile { condition: condition.id(), to: to.to_owned() })
+}
+
+/// On to the word named `to` when `condition`, one bit, is 1; else to the next word: a way around words
+/// that there may be nothing to do for, as a loop whose body need not run even once.
+#[track_caller]
+pub fn jump_if(condition: Signal<'_>, to: &str) -> Setting {
+    // To the sequencer a jump is a jump, whichever way it goes.
+    loop_while(condition, to)
+}
+
+/// The last word: `done` is high in it, and the device is idle after it.
+#[track_caller]
+pub fn end() -> Setting {
+    Setting::sequence(Kind::End)
+}
+
+/// A word of the microprogram.
+#[derive(Clone)]
+pub struct Step {
+    name: String,
+    settings: Vec<Setting>,
+    location: Place,
+}
+
+/// A word with a name and what it turns. Muxes that are not mentioned pass on their first input;
+/// registers that are not mentioned keep their value.
+#[track_caller]
+pub fn step(name: &str, settings: impl IntoIterator<Item = Setting>) -> Step {
+    Step {
+        name: name.to_owned(),
+        settings: settings.into_iter().collect(),
+        location: Location::caller(),
+    }
+}
+
+/// A microprogram as it was written.
+pub struct Program {
+    pub(crate) steps: Vec<Step>,
+    pub(crate) location: Place,
+}
+
+/// The fields that the sequencer uses, as far as the program needs them.
+struct SequenceFields {
+    /// None when `valid` follows a signal.
+    valid: Option<FieldId>,
+    wait: Option<FieldId>,
+    again: Option<FieldId>,
+    condition: Option<FieldId>,
+    target: Option<FieldId>,
+    go_on: FieldId,
+}
+
+/// Lowers the program: words, control ROM, sequencer, and the outputs of the handshake.
+pub(crate) fn assemble(d: &Designer, program: &Program) {
+    let steps = &program.steps;
+    if steps.len() < 2 {
+        d.report(Diagnostic::new(
+            "a microprogram has at least two words: where it waits, and where it ends".to_owned(),
+            program.location,
+        ));
+        return;
+    }
+    let mut loops: Vec<(NetId, usize)> = Vec::new();
+    let sequences: Vec<Sequence> = steps.iter().map(|step| sequence(d, steps, step)).collect();
+    for sequence in &sequences {
+        if let Sequence::LoopWhile { condition, to } = sequence
+            && !loops.contains(&(*condition, *to))
+        {
+            loops.push((*condition, *to));
+        }
+    }
+    let waits = sequences.contains(&Sequence::WaitStart);
+    d.with(|inner| inner.unit = Unit::Control);
+    let (conditions, targets) = distinct(&loops);
+    let address_width = usize::BITS - (steps.len() - 1).leading_zeros();
+    let sequence_field = |name: &str, width: u32| d.add_field(name, width, FieldKind::Sequence);
+    let by_word = d.with(|inner| inner.valid.is_none());
+    let fields = SequenceFields {
+        valid: by_word.then(|| d.add_field("valid_word", 1, FieldKind::Flag)),
+        wait: waits.then(|| sequence_field("wait_word", 1)),
+        again: (!loops.is_empty()).then(|| sequence_field("loop_word", 1)),
+        condition: (conditions.len() > 1).then(|| {
+            let bits = usize::BITS - (conditions.len() - 1).leading_zeros();
+            sequence_field("loop_condition", bits)
+        }),
+        target: (targets.len() > 1).then(|| sequence_field("loop_target", address_width)),
+        go_on: sequence_field("go_on", 1),
+    };
+    let lines = d.with(|inner| inner.sequencer_lines);
+    let describe = |field: FieldId, doc: &str, line: Option<u16>| {
+        d.set_doc(d.field_net(field).id(), doc);
+        d.with(|inner| {
+            inner.design.control.fields[field.index()].lines = line.into_iter().collect();
+        });
+    };
+    if let Some(valid) = fields.valid {
+        describe(valid, "the word sets valid", lines.map(|[valid, _]| valid));
+    }
+    let line = lines.map(|[_, go_on]| go_on);
+    describe(fields.go_on, "0 in the last word", line);
+    let words = words(d, steps, &sequences, &fields, &conditions);
+    sequencer(d, program, words, &fields, &conditions, &targets, address_width);
+}
+
+fn distinct(loops: &[(NetId, usize)]) -> (Vec<NetId>, Vec<usize>) {
+    let mut conditions: Vec<NetId> = loops.iter().map(|(condition, _)| *condition).collect();
+    conditions.sort_unstable();
+    conditions.dedup();
+    let mut targets: Vec<usize> = loops.iter().map(|(_, to)| *to).collect();
+    targets.sort_unstable();
+    targets.dedup();
+    (conditions, targets)
+}
+
+fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
+    let mut found: Option<(Sequence, Place)> = None;
+    for setting in &step.settings {
+        let sequence = match &setting.kind {
+            Kind::Next => Sequence::Next,
+            // Word 0 waits anyhow.
+            Kind::WaitForStart if std::ptr::eq(step, &steps[0]) => Sequence::Next,
+            Kind::WaitForStart => Sequence::WaitStart,
+            Kind::End => Sequence::End,
+            Kind::LoopWhile { condition, to } => {
+                if d.net(*condition).format.width() != 1 {
+                    let name = d.net(*condition).name;
+                    d.report(Diagnostic::new(
+                        format!(
+                            "word `{}`: the condition `{name}` has more than one bit",
+                            step.name
+                        ),
+                        setting.location,
+                    ));
+                }
+                match steps.iter().position(|step| step.name == *to) {
+                    Some(to) => Sequence::LoopWhile { condition: *condition, to },
+                    None => {
+                        d.report(Diagnostic::new(
+                            format!(
+                                "word `{}` goes to `{to}`, but no word has that name",
+                                step.name
+                            ),
+                            setting.location,
+                        ));
+                        Sequence::Next
+                    }
+                }
+            }
+            _ => continue,
+        };
+        if let Some((first, place)) = &found
+            && *first != sequence
+        {
+            d.report(
+                Diagnostic::new(
+                    format!("word `{}` goes on in two ways", step.name),
+                    setting.location,
+                )
+                .note("the other way".to_owned(), place),
+            );
+        }
+        found = Some((sequence, setting.location));
+    }
+    found.map_or(Sequence::Next, |(sequence, _)| sequence)
+}
+
+fn words(
+    d: &Designer,
+    steps: &[Step],
+    sequences: &[Sequence],
+    fields: &SequenceFields,
+    conditions: &[NetId],
+) -> Vec<Word> {
+    let kinds: Vec<FieldKind> = d
+        .with(|inner| inner.design.control.fields.iter().map(|field| field.kind.clone()).collect());
+    let mut words: Vec<Word> = Vec::new();
+    for (step, sequence) in steps.iter().zip(sequences) {
+        if let Some(first) = steps.iter().find(|other| other.name == step.name)
+            && !std::ptr::eq(first, step)
+        {
+            d.report(
+                Diagnostic::new(format!("two words are named `{}`", step.name), step.location)
+                    .note("the first".to_owned(), first.location),
+            );
+        }
+        let mut values = vec![0; kinds.len()];
+        if step.settings.iter().any(|setting| matches!(setting.kind, Kind::Hold))
+            && let Some(before) = words.last()
+        {
+            for (at, kind) in kinds.iter().enumerate() {
+                if matches!(kind, FieldKind::Select(_)) {
+                    values[at] = before.values[at];
+                }
+            }
+        }
+        let mut set: Vec<Option<(u64, &str, Place)>> = vec![None; kinds.len()];
+        for setting in &step.settings {
+            let (field, value, what) = match &setting.kind {
+                Kind::Field { field, value, what } => (*field, *value, what.as_str()),
+                Kind::Valid => match fields.valid {
+                    Some(field) => (field, 1, "valid"),
+                    None => {
+                        d.report(Diagnostic::new(
+                            format!(
+                                "word `{}` raises valid, which follows a signal in this design",
+                                step.name
+                            ),
+                            setting.location,
+                        ));
+                        continue;
+                    }
+                },
+                _ => continue,
+            };
+            if let Some((other, other_what, place)) = set[field.index()]
+                && other != value
+            {
+                d.report(
+                    Diagnostic::new(
+                        format!("word `{}`: `{what}` clashes with `{other_what}`: they share select lines", step.name),
+                        setting.location,
+                    )
+                    .note("the other".to_owned(), place),
+                );
+            }
+            set[field.index()] = Some((value, what, setting.location));
+            values[field.index()] = value;
+        }
+        let mut assign = |field: Option<FieldId>, value: u64| {
+            if let Some(field) = field {
+                values[field.index()] = value;
+            }
+        };
+        match sequence {
+            Sequence::Next => assign(Some(fields.go_on), 1),
+            Sequence::End => {}
+            Sequence::WaitStart => {
+                assign(Some(fields.go_on), 1);
+                assign(fields.wait, 1);
+            }
+            Sequence::LoopWhile { condition, to } => {
+                assign(Some(fields.go_on), 1);
+                assign(fields.again, 1);
+                let number = conditions.iter().position(|other| other == condition);
+                assign(fields.condition, number.unwrap_or(0) as u64);
+                assign(fields.target, *to as u64);
+            }
+        }
+        words.push(Word {
+            name: step.name.clone(),
+            values,
+            sequence: sequence.clone(),
+            location: step.location,
+        });
+    }
+    words
+}
+
+/// The sequencer: address counter, run flag, control ROM, and the outputs of the handshake.
+fn sequencer(
+    d: &Designer,
+    program: &Program,
+    words: Vec<Word>,
+    fields: &SequenceFields,
+    conditions: &[NetId],
+    targets: &[usize],
+    address_width: u32,
+) {
+    let op =
+        |name: &str, format: Format, op: Op| d.signal(d.add_named(name, format, Driver::Op(op)));
+    let bit = |name: &str, cell: Op| op(name, Format::BIT, cell);
+    let wide = Format::unsigned(address_width as i32, 0);
+    let last_word = words.len() as i128 - 1;
+    let run = d.run;
+    let start = d.start;
+    let go_on = d.field_net(fields.go_on).id();
+    let zero = d.raw_constant("first_word", 0, wide);
+    let one = d.raw_constant("one_word", 1, wide);
+
+    let address = d.add_register("word_address", wide, (0, last_word), RegisterKind::Sequencer);
+    d.set_doc(address, "the word that is executed");
+    let following = op("following_word", wide, Op::Add { a: address, b: one.id(), carry: None });
+    // Where control goes while the program goes on: around a loop, or to the following word.
+    let mut onward = following;
+    if let Some(again) = fields.again {
+        let condition = match (fields.condition, conditions) {
+            (Some(select), inputs) => bit(
+                "condition",
+                Op::Mux { select: d.field_net(select).id(), inputs: inputs.to_vec() },
+            ),
+            (None, [only, ..]) => bit("condition", Op::Relabel(*only)),
+            (None, []) => return,
+        };
+        let again = bit("loop_back", Op::And(d.field_net(again).id(), condition.id()));
+        let target = match fields.target {
+            Some(field) => d.field_net(field),
+            None => d.raw_constant("loop_start", targets.first().map_or(0, |&to| to as i128), wide),
+        };
+        onward = op(
+            "onward_word",
+            wide,
+            Op::Mux { select: again.id(), inputs: vec![following.id(), target.id()] },
+        );
+    }
+    let next =
+        op("next_word", wide, Op::Mux { select: go_on, inputs: vec![zero.id(), onward.id()] });
+    // The address moves while a program runs and does not wait.
+    let (busy, advance) = match fields.wait {
+        None => (bit("busy", Op::Relabel(run)), run),
+        Some(wait) => {
+            let wait = d.field_net(wait).id();
+            let working = bit("working", Op::Not(wait));
+            let busy = bit("busy", Op::And(run, working.id()));
+            let released = bit("released", Op::Or(working.id(), start));
+            (busy, bit("advance", Op::And(run, released.id())).id())
+        }
+    };
+    d.set_doc(busy.id(), "high from the clock after start to the end");
+    d.connect(address, next.id(), Some(advance));
+    let next_run = bit("next_run", Op::Mux { select: run, inputs: vec![start, go_on] });
+    d.connect(run, next_run.id(), None);
+    let not_busy = bit("not_busy", Op::Not(busy.id()));
+    d.with(|inner| {
+        inner.design.nets[d.idle.index()].driver = Driver::Op(Op::Relabel(not_busy.id()));
+        for register in &mut inner.design.registers {
+            if register.q == run || register.q == address {
+                register.reset = Some(0);
+            }
+        }
+    });
+    let last = bit("last_word", Op::Not(go_on));
+    let done = bit("done", Op::And(run, last.id()));
+    d.set_doc(done.id(), "high in the last clock of a computation");
+    let source = match fields.valid {
+        Some(field) => d.field_net(field).id(),
+        None => valid_line(d),
+    };
+    let valid = bit("valid", Op::Relabel(source));
+    d.set_doc(valid.id(), "the results are on the outputs");
+    control_rom(d, program, words, address);
+
+    d.port(valid.id(), Role::Valid);
+    d.port(busy.id(), Role::Busy);
+    d.port(done.id(), Role::Done);
+    d.with(|inner| {
+        inner.unit = Unit::Datapath;
+        // Inputs first, then the handshake, then results.
+        inner.design.ports.sort_by_key(|port| match port.role {
+            role if role.is_input() => 0,
+            Role::Valid | Role::Busy | Role::Done => 1,
+            _ => 2,
+        });
+    });
+}
+
+/// The signal that `valid` follows, as many clocks later as was said. A reset drops what is on its way.
+fn valid_line(d: &Designer) -> NetId {
+    let Some((mut source, clocks)) = d.with(|inner| inner.valid) else {
+        return d.run;
+    };
+    for clock in 1..=clocks {
+        let q = d.add_register(
+            &format!("valid_in_{}", clocks - clock),
+            Format::BIT,
+            (0, 1),
+            RegisterKind::Internal,
+        );
+        d.set_doc(
+            q,
+            &match clocks - clock {
+                0 => "a result has come through the datapath".to_owned(),
+                1 => "a result is a clock away".to_owned(),
+                left => format!("a result is {left} clocks away"),
+            },
+        );
+        d.connect(q, source, None);
+        d.with(|inner| {
+            if let Some(register) = inner.design.registers.last_mut() {
+                register.reset = Some(0);
+            }
+        });
+        source = q;
+    }
+    source
+}
+
+fn control_rom(d: &Designer, program: &Program, words: Vec<Word>, address: NetId) {
+    let fields = d.with(|inner| inner.design.control.fields.clone());
+    let widths: Vec<u32> = fields.iter().map(|field| d.net(field.net).format.width()).collect();
+    let packed: Vec<u64> =
+        words.iter().map(|word| microcode::pack(&widths, &word.values)).collect();
+    let comments = words.iter().map(|word| word.name.clone()).collect();
+    let width: u32 = widths.iter().sum();
+    let format = Format::unsigned(width as i32, 0);
+    let rom = d.with(|inner| RomId(inner.design.roms.len() as u32));
+    let data = d.add_named("control_word", format, Driver::Rom(rom));
+    let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
+    let doc = vec![format!("the microprogram, a word a line: {}", names.join(", "))];
+    d.with(|inner| {
+        inner.design.roms.push(NetRom {
+            name: "control".to_owned(),
+            address,
+            data,
+            synchronous: false,
+            words: packed,
+            doc,
+            comments,
+            block: None,
+            location: program.location,
+        });
+        let register = |q: NetId| match inner.design.net(q).driver {
+            Driver::Register(id) => id,
+            _ => unreachable!("the sequencer's registers drive their nets"),
+        };
+        let (address, run) = (register(address), register(d.run));
+        inner.design.control = Control { fields, words, rom, address, run };
+    });
+}

@@ -1,0 +1,408 @@
+//! What holds state, and the knobs that the microprogram turns.
+
+use std::panic::Location;
+
+use super::{Designer, Setting, Signal};
+use crate::base::fixed::Format;
+use crate::hdl::netlist::{Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role};
+
+impl Designer {
+    /// An operand: the input port `name`, its write strobe `<name>_write` and the register
+    /// `<name>_reg`, which a write loads unless the device is busy.
+    #[track_caller]
+    pub fn operand(&self, name: &str, format: Format) -> Operand<'_> {
+        self.operand_port(name, format, |port| port)
+    }
+
+    /// An operand whose register holds values from `low` to `high` only: a write of a smaller or
+    /// larger value loads the limit. Both must be representable.
+    #[track_caller]
+    pub fn operand_clamped(&self, name: &str, format: Format, low: f64, high: f64) -> Operand<'_> {
+        let format = self.sound(name, format);
+        self.operand_port(name, format, |port| {
+            let (least, most) = (format.quantise(low), format.quantise(high));
+            let (from, to) = format.range();
+            let mut value = port;
+            let limit = |suffix: &str, raw: i128| {
+                self.raw_constant(
+                    &format!("{name}_{suffix}"),
+                    raw,
+                    Format::holding(raw, raw, format.frac),
+                )
+            };
+            if from < least {
+                let least = limit("least", least);
+                let under = self.less(&format!("{name}_under"), port, least);
+                value = self.chosen_within(
+                    &format!("{name}_at_least"),
+                    under,
+                    [value, least],
+                    (least.range().0, to),
+                );
+            }
+            if to > most {
+                let range = (value.range().0, most);
+                let one_bit = most > 0 && range.0 >= 0 && most.count_ones() == 1 && to < 2 * most;
+                let over = if one_bit {
+                    // At the limit it makes no difference which of the two is taken.
+                    value.bit(most.trailing_zeros()).named(&format!("{name}_over"))
+                } else {
+                    self.less(&format!("{name}_over"), limit("most", most), value)
+                };
+                let name = format!("{name}_at_most");
+                value = self.chosen_within(&name, over, [value, limit("most", most)], range);
+            }
+            value
+        })
+    }
+
+    /// A two-input mux of which it is known that the result stays within `range`.
+    #[track_caller]
+    fn chosen_within<'d>(
+        &'d self,
+        name: &str,
+        select: Signal<'d>,
+        inputs: [Signal<'d>; 2],
+        range: (i128, i128),
+    ) -> Signal<'d> {
+        let format = Format::holding(range.0, range.1, inputs[0].format().frac);
+        let inputs = inputs.map(|input| self.resized(input, format)).to_vec();
+        let op = Op::Mux { select: select.id(), inputs };
+        self.signal(self.add_net(name, format, range, Driver::Op(op), true))
+    }
+
+    #[track_caller]
+    fn operand_port<'d>(
+        &'d self,
+        name: &str,
+        format: Format,
+        limited: impl FnOnce(Signal<'d>) -> Signal<'d>,
+    ) -> Operand<'d> {
+        let port = self.add_named(name, format, Driver::Input);
+        let strobe = self.add_named(&format!("{name}_write"), Format::BIT, Driver::Input);
+        self.set_doc(strobe, &format!("writes {name}"));
+        self.port(port, Role::Operand { strobe });
+        self.port(strobe, Role::Strobe);
+        let data = limited(self.signal(port));
+        let load = self.and(&format!("{name}_load"), self.signal(strobe), self.signal(self.idle));
+        let q = self.add_register(
+            &format!("{name}_reg"),
+            data.format(),
+            data.range(),
+            RegisterKind::Operand,
+        );
+        self.connect(q, data.id(), Some(load.id()));
+        Operand { port: self.signal(port), strobe: self.signal(strobe), q: self.signal(q) }
+    }
+
+    /// A register of the datapath, loaded in the words that say so; its field is `<name>_load`.
+    ///
+    /// It has no reset, and an operand cannot have its name, because both would own `<name>_load`.
+    #[track_caller]
+    pub fn register(&self, name: &str, format: Format) -> Register<'_> {
+        let field = self.add_field(&format!("{name}_load"), 1, FieldKind::Enable);
+        let enable = self.field_net(field).id();
+        let format = self.sound(name, format);
+        let q = self.add_register(name, format, format.range(), RegisterKind::Architectural);
+        self.with(|inner| {
+            if let Some(register) = inner.design.registers.last_mut() {
+                register.enable = Some(enable);
+            }
+        });
+        Register { q: self.signal(q), field }
+    }
+
+    /// A register inside a block, loaded on every clock: it delays `source` by one.
+    #[track_caller]
+    pub fn pipeline<'d>(&'d self, name: &str, source: Signal<'d>) -> Signal<'d> {
+        let (low, high) = source.range();
+        // It holds 0 from power-up to the first clock.
+        let range = (low.min(0), high.max(0));
+        let q = self.add_register(name, source.format(), range, RegisterKind::Internal);
+        self.connect(q, source.id(), None);
+        self.signal(q)
+    }
+
+    /// Select lines that several muxes share, with a name for each value: what the muxes then pass on
+    /// together.
+    #[track_caller]
+    pub fn select(&self, name: &str, choices: &[&str]) -> Select<'_> {
+        let width = usize::BITS - choices.len().saturating_sub(1).leading_zeros();
+        let choices = choices.iter().map(|&choice| choice.to_owned()).collect();
+        let field = self.add_field(name, width.max(1), FieldKind::Select(choices));
+        Select { designer: self, field }
+    }
+
+    /// An output of the device that words raise.
+    #[track_caller]
+    pub fn flag(&self, name: &str) -> Flag<'_> {
+        let field = self.add_field(&format!("{name}_flag"), 1, FieldKind::Flag);
+        let net = self.field_net(field);
+        self.status(name, net);
+        Flag { designer: self, field }
+    }
+
+    /// A counter that counts down, with fields `<name>_load` and `<name>_count`.
+    ///
+    /// `load` takes the value of `start`; `count` subtracts one. Both in one word: `load` wins.
+    #[track_caller]
+    pub fn down_counter<'d>(&'d self, name: &str, start: Signal<'d>) -> Counter<'d> {
+        let format = start.format();
+        let load = self.add_field(&format!("{name}_load"), 1, FieldKind::Enable);
+        let count = self.add_field(&format!("{name}_count"), 1, FieldKind::Enable);
+        let (load_net, count_net) = (self.field_net(load), self.field_net(count));
+        let q = self.signal(self.add_register(
+            name,
+            format,
+            format.range(),
+            RegisterKind::Architectural,
+        ));
+        let one = self.raw_constant("one", 1, format);
+        let less_one = self.add_named(
+            &format!("{name}_less_one"),
+            format,
+            Driver::Op(Op::Sub(q.id(), one.id())),
+        );
+        let next = Op::Mux { select: load_net.id(), inputs: vec![less_one, start.id()] };
+        let next = self.add_named(&format!("{name}_next"), format, Driver::Op(next));
+        let enable = self.or(&format!("{name}_enable"), load_net, count_net);
+        self.connect(q.id(), next, Some(enable.id()));
+        Counter { q, load, count }
+    }
+
+    pub(crate) fn connect(&self, q: NetId, data: NetId, enable: Option<NetId>) {
+        self.with(|inner| {
+            if let Some(register) =
+                inner.design.registers.iter_mut().find(|register| register.q == q)
+            {
+                register.data = Some(data);
+                register.enable = enable;
+            }
+        });
+    }
+}
+
+/// An operand: port, write strobe and register.
+#[derive(Clone, Copy)]
+pub struct Operand<'d> {
+    port: Signal<'d>,
+    strobe: Signal<'d>,
+    q: Signal<'d>,
+}
+
+impl<'d> Operand<'d> {
+    /// What the register holds.
+    pub fn q(self) -> Signal<'d> {
+        self.q
+    }
+
+    /// The number of the register in the source's figure.
+    #[must_use]
+    pub fn block(self, number: u16) -> Self {
+        let _ = self.q.block(number);
+        self
+    }
+
+    /// The numbers of the data input and of the write strobe in the source's figure.
+    #[must_use]
+    pub fn inputs(self, data: u16, strobe: u16) -> Self {
+        let _ = self.port.block(data);
+        let _ = self.strobe.block(strobe);
+        self
+    }
+
+    /// One line for the reader of the Verilog.
+    #[must_use]
+    pub fn doc(self, line: &str) -> Self {
+        let _ = self.port.doc(line);
+        let _ = self.q.doc(line);
+        self
+    }
+}
+
+/// A register of the datapath.
+#[derive(Clone, Copy)]
+pub struct Register<'d> {
+    q: Signal<'d>,
+    field: FieldId,
+}
+
+impl<'d> Register<'d> {
+    /// What the register holds.
+    pub fn q(self) -> Signal<'d> {
+        self.q
+    }
+
+    /// The format.
+    pub fn format(self) -> Format {
+        self.q.format()
+    }
+
+    /// The load line: 1 in the words that load the register.
+    pub fn loading(self) -> Signal<'d> {
+        self.q.designer().field_net(self.field)
+    }
+
+    /// Connects the data input. Formats must agree: [`Designer::narrow`] first where bits are to go.
+    #[track_caller]
+    pub fn takes(self, data: Signal<'d>) {
+        let d = self.q.designer();
+        let net = d.net(self.q.id());
+        let taken = d.with(|inner| {
+            inner.design.registers.iter().any(|r| r.q == self.q.id() && r.data.is_some())
+        });
+        if taken {
+            d.error_at(
+                format!("`{}` has two drivers: `{}` is the second", net.name, data.name()),
+                [("the register", net.location)],
+            );
+            return;
+        }
+        if let Some(id) = d.fitted(data, net.format, &format!("register `{}`", net.name)) {
+            d.connect(self.q.id(), id, Some(d.field_net(self.field).id()));
+        }
+    }
+
+    /// The knob: the register takes its data at the end of the word.
+    #[track_caller]
+    pub fn load(self) -> Setting {
+        Setting::field(self.field, 1, format!("{}.load", self.q.name()), Location::caller())
+    }
+
+    /// The block number in the source's figure.
+    #[must_use]
+    pub fn block(self, number: u16) -> Self {
+        let _ = self.q.block(number);
+        self
+    }
+
+    /// The number of the load line in the source's figure.
+    #[must_use]
+    pub fn line(self, number: u16) -> Self {
+        self.q
+            .designer()
+            .with(|inner| inner.design.control.fields[self.field.index()].lines = vec![number]);
+        self
+    }
+
+    /// One line for the reader of the Verilog.
+    #[must_use]
+    pub fn doc(self, line: &str) -> Self {
+        let _ = self.q.doc(line);
+        self
+    }
+}
+
+/// Select lines.
+#[derive(Clone, Copy)]
+pub struct Select<'d> {
+    designer: &'d Designer,
+    field: FieldId,
+}
+
+impl<'d> Select<'d> {
+    /// The lines themselves, for a mux in the datapath that some of them turn too.
+    pub fn out(self) -> Signal<'d> {
+        self.designer.field_net(self.field)
+    }
+
+    pub(crate) fn field(self) -> FieldId {
+        self.field
+    }
+
+    /// The numbers of the lines in the source's figure, most significant first.
+    #[must_use]
+    pub fn lines(self, numbers: &[u16]) -> Self {
+        self.designer
+            .with(|inner| inner.design.control.fields[self.field.index()].lines = numbers.to_vec());
+        self
+    }
+
+    /// Mux `name` has as many inputs as the field has values.
+    #[track_caller]
+    pub(crate) fn check_inputs(self, name: &str, inputs: usize) {
+        let choices = self.designer.with(|inner| {
+            let FieldKind::Select(choices) = &inner.design.control.fields[self.field.index()].kind
+            else {
+                return 0;
+            };
+            choices.len()
+        });
+        if inputs != choices {
+            self.designer.error(format!(
+                "mux `{name}` has {inputs} inputs, but its select lines have {choices} choices"
+            ));
+        }
+    }
+}
+
+/// An output of the device that words raise.
+#[derive(Clone, Copy)]
+pub struct Flag<'d> {
+    designer: &'d Designer,
+    field: FieldId,
+}
+
+impl Flag<'_> {
+    /// The knob: the output is high in this word.
+    #[track_caller]
+    pub fn raise(self) -> Setting {
+        let name = self.designer.field_net(self.field).name();
+        Setting::field(self.field, 1, name, Location::caller())
+    }
+}
+
+/// A counter that counts down.
+#[derive(Clone, Copy)]
+pub struct Counter<'d> {
+    q: Signal<'d>,
+    load: FieldId,
+    count: FieldId,
+}
+
+impl<'d> Counter<'d> {
+    /// The count.
+    pub fn q(self) -> Signal<'d> {
+        self.q
+    }
+
+    /// The count line: 1 in the words that count.
+    pub fn counting(self) -> Signal<'d> {
+        self.q.designer().field_net(self.count)
+    }
+
+    /// The number of the count line in the source's figure.
+    #[must_use]
+    pub fn line(self, number: u16) -> Self {
+        self.q
+            .designer()
+            .with(|inner| inner.design.control.fields[self.count.index()].lines = vec![number]);
+        self
+    }
+
+    /// The knob: takes the start value at the end of the word.
+    #[track_caller]
+    pub fn load(self) -> Setting {
+        Setting::field(self.load, 1, format!("{}.load", self.q.name()), Location::caller())
+    }
+
+    /// The knob: one less at the end of the word.
+    #[track_caller]
+    pub fn count(self) -> Setting {
+        Setting::field(self.count, 1, format!("{}.count", self.q.name()), Location::caller())
+    }
+
+    /// The block number in the source's figure.
+    #[must_use]
+    pub fn block(self, number: u16) -> Self {
+        let _ = self.q.block(number);
+        self
+    }
+
+    /// One line for the reader of the Verilog.
+    #[must_use]
+    pub fn doc(self, line: &str) -> Self {
+        let _ = self.q.doc(line);
+        self
+    }
+}

@@ -1,0 +1,564 @@
+//! Signals: what can be done to bits by wiring, and the arithmetic blocks.
+
+use super::{Designer, Setting};
+use crate::base::fixed::Format;
+use crate::hdl::netlist::{Driver, FieldId, NetId, Op};
+
+/// A net of the design, as a handle.
+#[derive(Clone, Copy)]
+pub struct Signal<'d> {
+    designer: &'d Designer,
+    id: NetId,
+}
+
+impl<'d> Signal<'d> {
+    pub(crate) fn new(designer: &'d Designer, id: NetId) -> Self {
+        Self { designer, id }
+    }
+
+    pub(crate) fn id(self) -> NetId {
+        self.id
+    }
+
+    pub(crate) fn designer(self) -> &'d Designer {
+        self.designer
+    }
+
+    /// The name of the net.
+    pub fn name(self) -> String {
+        self.designer.net(self.id).name
+    }
+
+    /// The format.
+    pub fn format(self) -> Format {
+        self.designer.with(|inner| inner.design.net(self.id).format)
+    }
+
+    /// The smallest and the largest raw value that the signal can take.
+    pub fn range(self) -> (i128, i128) {
+        self.designer.with(|inner| inner.design.net(self.id).range)
+    }
+
+    /// The block number in the source's figure.
+    #[must_use]
+    pub fn block(self, number: u16) -> Self {
+        self.designer.with(|inner| inner.design.nets[self.id.index()].block = Some(number));
+        self
+    }
+
+    /// One line for the reader of the Verilog.
+    #[must_use]
+    pub fn doc(self, line: &str) -> Self {
+        self.designer.set_doc(self.id, line);
+        self
+    }
+
+    /// Gives a wiring net a name of its own, under which Verilog and waveforms show it.
+    #[must_use]
+    pub fn named(self, name: &str) -> Self {
+        self.designer.with(|inner| {
+            let net = &mut inner.design.nets[self.id.index()];
+            name.clone_into(&mut net.name);
+            net.named = true;
+        });
+        self
+    }
+
+    /// The same bits with the point `places` further left: the value divided by 2^places, by wiring.
+    #[must_use]
+    #[track_caller]
+    pub fn shift_right(self, places: i32) -> Self {
+        let mut format = self.format();
+        format.int = format.int.saturating_sub(places);
+        format.frac = format.frac.saturating_add(places);
+        self.relabelled(format)
+    }
+
+    /// The same bits with the point `places` further right: the value times 2^places, by wiring.
+    #[must_use]
+    #[track_caller]
+    pub fn shift_left(self, places: i32) -> Self {
+        self.shift_right(places.saturating_neg())
+    }
+
+    /// The same value with `frac` fraction bits: zeros are appended. Fewer than it has is an error.
+    #[must_use]
+    #[track_caller]
+    pub fn with_fraction(self, frac: i32) -> Self {
+        let format = self.format();
+        let places = frac.saturating_sub(format.frac);
+        if places == 0 {
+            return self;
+        }
+        if places < 0 {
+            self.designer.error(format!(
+                "`{}` is {format}: {frac} fraction bits would drop some; narrow it",
+                self.name()
+            ));
+            return self;
+        }
+        let name = format!("{}_scaled", self.name());
+        let scaled = Format { frac, ..format };
+        let sound = self.designer.sound(&name, scaled);
+        if sound != scaled {
+            return self.designer.raw_constant("zeros", 0, sound);
+        }
+        let zeros = self.designer.raw_constant("zeros", 0, Format::unsigned(places, 0));
+        let (low, high) = self.range();
+        self.wiring(
+            "scaled",
+            scaled,
+            (low << places, high << places),
+            Op::Concat(vec![self.id, zeros.id]),
+        )
+    }
+
+    /// Bits `low` … `low + width − 1`, read in `format` (which must be that wide).
+    #[must_use]
+    #[track_caller]
+    pub fn bits(self, low: u32, format: Format) -> Self {
+        let have = self.format().width();
+        let name = format!("{}_bits", self.name());
+        let format = self.designer.sound(&name, format);
+        if low.saturating_add(format.width()) > have {
+            self.designer.error(format!(
+                "bits {low} to {} of `{}`, which has {have}",
+                u64::from(low) + u64::from(format.width()) - 1,
+                self.name()
+            ));
+            return self.designer.raw_constant("zeros", 0, format);
+        }
+        // All bits of a value that is never negative are still within its range.
+        let (from, to) = self.range();
+        let top = low + format.width() == have && !format.signed && from >= 0;
+        let range = if top { (from >> low, to >> low) } else { format.range() };
+        self.wiring("bits", format, range, Op::Slice { of: self.id, low })
+    }
+
+    /// Bit number `at`.
+    #[must_use]
+    #[track_caller]
+    pub fn bit(self, at: u32) -> Self {
+        self.bits(at, Format::BIT)
+    }
+
+    /// The bits of this signal above those of `low`, read in `format` (which must be as wide as both
+    /// together): what a shift register takes.
+    #[must_use]
+    #[track_caller]
+    pub fn above(self, low: Signal<'d>, format: Format) -> Self {
+        let width = self.format().width() + low.format().width();
+        let name = format!("{}_above", self.name());
+        let format = self.designer.sound(&name, format);
+        if width != format.width() {
+            self.designer.error(format!(
+                "`{}` above `{}` is {width} bits, which is not {format}",
+                self.name(),
+                low.name()
+            ));
+            return self.designer.raw_constant("zeros", 0, format);
+        }
+        let op = Op::Concat(vec![self.id, low.id]);
+        self.wiring("above", format, format.range(), op)
+    }
+
+    /// The signal as a signed number of the same value, one bit wider when it was unsigned.
+    #[must_use]
+    #[track_caller]
+    pub fn as_signed(self) -> Self {
+        let format = self.format();
+        if format.signed {
+            return self;
+        }
+        let signed = Format { signed: true, ..format };
+        self.designer.signal(self.designer.resized(self, signed))
+    }
+
+    /// The same bits read in another format of the same width: what is written is not converted.
+    #[must_use]
+    #[track_caller]
+    pub fn read_as(self, format: Format) -> Self {
+        self.bits(0, format)
+    }
+
+    #[track_caller]
+    fn relabelled(self, format: Format) -> Self {
+        let range = self.range();
+        self.wiring("shifted", format, range, Op::Relabel(self.id))
+    }
+
+    /// A wiring net named after this one.
+    #[track_caller]
+    pub(crate) fn wiring(self, suffix: &str, format: Format, range: (i128, i128), op: Op) -> Self {
+        let name = format!("{}_{suffix}", self.name());
+        let id = self.designer.add_wiring(&name, format, range, Driver::Op(op));
+        self.designer.signal(id)
+    }
+}
+
+/// The arithmetic blocks. Results are exact: their formats hold every value that the operands can give.
+impl Designer {
+    /// `a + b`. Operands may differ in format: their points are aligned, and nothing is dropped.
+    #[track_caller]
+    pub fn add<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
+        self.sum(name, a, b, None)
+    }
+
+    /// `a + b`, and one ulp (of the finer operand) when `carry` is 1.
+    #[track_caller]
+    pub fn add_carry<'d>(
+        &'d self,
+        name: &str,
+        a: Signal<'d>,
+        b: Signal<'d>,
+        carry: Signal<'d>,
+    ) -> Signal<'d> {
+        self.sum(name, a, b, Some(carry))
+    }
+
+    #[track_caller]
+    fn sum<'d>(
+        &'d self,
+        name: &str,
+        a: Signal<'d>,
+        b: Signal<'d>,
+        carry: Option<Signal<'d>>,
+    ) -> Signal<'d> {
+        let (a, b) = aligned(a, b);
+        let (a_range, b_range) = (a.range(), b.range());
+        let carry_most = i128::from(carry.is_some());
+        let range = (a_range.0 + b_range.0, a_range.1 + b_range.1 + carry_most);
+        let format = Format::holding(range.0, range.1, a.format().frac);
+        let op = Op::Add {
+            a: self.resized(a, format),
+            b: self.resized(b, format),
+            carry: carry.map(Signal::id),
+        };
+        self.signal(self.add_net(name, format, range, Driver::Op(op), true))
+    }
+
+    /// `a + b` modulo the width, with the carry in when given: words without an integer position.
+    #[track_caller]
+    pub fn add_modulo<'d>(
+        &'d self,
+        name: &str,
+        a: Signal<'d>,
+        b: Signal<'d>,
+        carry: Option<Signal<'d>>,
+    ) -> Signal<'d> {
+        let format = a.format();
+        if format != b.format() {
+            self.error(format!(
+                "`{name}` adds `{}` ({format}) and `{}` ({}) modulo the width: the formats must be equal",
+                a.name(),
+                b.name(),
+                b.format()
+            ));
+            return a;
+        }
+        let op = Op::Add { a: a.id(), b: b.id(), carry: carry.map(Signal::id) };
+        self.signal(self.add_net(name, format, format.range(), Driver::Op(op), true))
+    }
+
+    /// `a − b`, aligned as in [`Designer::add`]; unsigned where the ranges show that it is never negative.
+    #[track_caller]
+    pub fn sub<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
+        let (a, b) = aligned(a, b);
+        let (a_range, b_range) = (a.range(), b.range());
+        let range = (a_range.0 - b_range.1, a_range.1 - b_range.0);
+        let format = Format::holding(range.0, range.1, a.format().frac);
+        let op = Op::Sub(self.resized(a, format), self.resized(b, format));
+        self.signal(self.add_net(name, format, range, Driver::Op(op), true))
+    }
+
+    /// `a · b`, whole.
+    #[track_caller]
+    pub fn mul<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
+        let (a, b) = if a.format().signed == b.format().signed {
+            (a, b)
+        } else {
+            (a.as_signed(), b.as_signed())
+        };
+        let (fa, fb) = (a.format(), b.format());
+        let frac = fa.frac + fb.frac;
+        let width = (fa.width() + fb.width()) as i32;
+        let format = Format { signed: fa.signed, int: width - frac - i32::from(fa.signed), frac };
+        let range = product_range(a.range(), b.range());
+        self.signal(self.add_net(name, format, range, Driver::Op(Op::Mul(a.id(), b.id())), true))
+    }
+
+    /// Every bit inverted: `−a − ulp` for a signed signal, `largest − a` for an unsigned one.
+    #[track_caller]
+    pub fn not<'d>(&'d self, name: &str, a: Signal<'d>) -> Signal<'d> {
+        let format = a.format();
+        let (low, high) = a.range();
+        let top = if format.signed { -1 } else { format.max_raw() };
+        let net =
+            self.add_net(name, format, (top - high, top - low), Driver::Op(Op::Not(a.id())), true);
+        self.signal(net)
+    }
+
+    /// `high` and `low` side by side, by wiring: an address made of two parts. Integers without a sign.
+    #[track_caller]
+    pub fn concat<'d>(&'d self, name: &str, high: Signal<'d>, low: Signal<'d>) -> Signal<'d> {
+        let width = low.format().width();
+        let format = Format::unsigned((high.format().width() + width) as i32, 0);
+        let (from, to) = (high.range().0 << width, high.range().1 << width);
+        let range = (from + low.range().0, to + low.range().1);
+        let op = Op::Concat(vec![high.id(), low.id()]);
+        self.signal(self.add_net(name, format, range, Driver::Op(op), true))
+    }
+
+    /// `low` in place of the low bits of the constant `high`, which must be zero there: an address made
+    /// of a constant and a prefix, by wiring.
+    #[track_caller]
+    pub(crate) fn beside<'d>(
+        &'d self,
+        high: Signal<'d>,
+        low: Signal<'d>,
+        format: Format,
+    ) -> Signal<'d> {
+        let low_bits = low.format().width();
+        let (from, to) = (high.range().0, high.range().0 + low.range().1);
+        if low_bits == format.width() {
+            return low;
+        }
+        let top = high.bits(low_bits, Format::unsigned((format.width() - low_bits) as i32, 0));
+        low.wiring("beside", format, (from, to), Op::Concat(vec![top.id(), low.id()]))
+    }
+
+    /// The bits of the parts side by side, the first in the top bits, read in `format`, which is as wide
+    /// as all together: wiring.
+    #[track_caller]
+    pub fn join<'d>(&'d self, name: &str, parts: &[Signal<'d>], format: Format) -> Signal<'d> {
+        let width: u32 = parts.iter().map(|part| part.format().width()).sum();
+        let format = self.sound(name, format);
+        if width != format.width() {
+            self.error(format!(
+                "`{name}` joins {width} bits to a word of {} ({format})",
+                format.width()
+            ));
+            return self.raw_constant("zeros", 0, format);
+        }
+        // Side by side, unsigned parts are the larger the larger each is.
+        let ends = parts.iter().try_fold((0, 0), |(low, high), part| {
+            let (from, to) = part.range();
+            let width = part.format().width();
+            (from >= 0).then_some((low << width | from, high << width | to))
+        });
+        let range = match ends {
+            Some((low, high)) if !format.signed => (low, high),
+            _ => format.range(),
+        };
+        let parts = parts.iter().map(|part| part.id()).collect();
+        self.signal(self.add_wiring(name, format, range, Driver::Op(Op::Concat(parts))))
+    }
+
+    /// 1 when both are 1; operands of one bit.
+    #[track_caller]
+    pub fn and<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
+        let (a, b) = (self.one_bit(a), self.one_bit(b));
+        self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::And(a, b))))
+    }
+
+    /// 1 when either is 1; operands of one bit.
+    #[track_caller]
+    pub fn or<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
+        let (a, b) = (self.one_bit(a), self.one_bit(b));
+        self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Or(a, b))))
+    }
+
+    /// 1 when `a < b`.
+    #[track_caller]
+    pub fn less<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
+        let (a, b) = self.comparable(a, b);
+        self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Less(a, b))))
+    }
+
+    /// 1 when `a = b`.
+    #[track_caller]
+    pub fn equal<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
+        let (a, b) = self.comparable(a, b);
+        self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Equal(a, b))))
+    }
+
+    /// 1 when any bit of `a` is 1: `a ≠ 0`.
+    #[track_caller]
+    pub fn any<'d>(&'d self, name: &str, a: Signal<'d>) -> Signal<'d> {
+        self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Any(a.id()))))
+    }
+
+    /// 1 when every bit of `a` is 1.
+    #[track_caller]
+    pub fn all<'d>(&'d self, name: &str, a: Signal<'d>) -> Signal<'d> {
+        self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::All(a.id()))))
+    }
+
+    /// Input 0 or 1 by the one-bit signal `select`, a signal of the datapath. Inputs have one point;
+    /// the result holds them all.
+    #[track_caller]
+    pub fn choose<'d>(
+        &'d self,
+        name: &str,
+        select: Signal<'d>,
+        inputs: [Signal<'d>; 2],
+    ) -> Signal<'d> {
+        let select = self.one_bit(select);
+        self.mux_of(name, select, &inputs)
+    }
+
+    /// A mux that the microprogram turns, with a select field of its own, `<name>_select`.
+    ///
+    /// The inputs have one point ([`Signal::with_fraction`] aligns them; [`Designer::bus`] carries
+    /// any); integer bits and signs may differ.
+    #[track_caller]
+    pub fn mux<'d>(&'d self, name: &str, inputs: impl IntoIterator<Item = Signal<'d>>) -> Mux<'d> {
+        let inputs: Vec<_> = inputs.into_iter().collect();
+        let names: Vec<String> = inputs.iter().map(|input| input.name()).collect();
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let select = self.select(&format!("{name}_select"), &names);
+        self.mux_on(name, select, inputs)
+    }
+
+    /// A mux that shares its select field with others.
+    #[track_caller]
+    pub fn mux_on<'d>(
+        &'d self,
+        name: &str,
+        select: super::Select<'d>,
+        inputs: impl IntoIterator<Item = Signal<'d>>,
+    ) -> Mux<'d> {
+        let inputs: Vec<_> = inputs.into_iter().collect();
+        select.check_inputs(name, inputs.len());
+        let out = self.mux_of(name, self.field_net(select.field()).id(), &inputs);
+        Mux { out, field: select.field() }
+    }
+
+    #[track_caller]
+    fn mux_of<'d>(&'d self, name: &str, select: NetId, inputs: &[Signal<'d>]) -> Signal<'d> {
+        let Some(first) = inputs.first() else {
+            self.error(format!("mux `{name}` has no inputs"));
+            return self.raw_constant("zeros", 0, Format::BIT);
+        };
+        let frac = first.format().frac;
+        if let Some(other) = inputs.iter().find(|input| input.format().frac != frac) {
+            self.error(format!(
+                "mux `{name}`: `{}` is {} and `{}` is {}; their points differ (with_fraction aligns them, a bus carries both)",
+                first.name(),
+                first.format(),
+                other.name(),
+                other.format()
+            ));
+            return *first;
+        }
+        let low = inputs.iter().map(|input| input.range().0).min().unwrap_or(0);
+        let high = inputs.iter().map(|input| input.range().1).max().unwrap_or(0);
+        let format = Format::holding(low, high, frac);
+        let inputs = inputs.iter().map(|input| self.resized(*input, format)).collect();
+        let op = Op::Mux { select, inputs };
+        self.signal(self.add_net(name, format, (low, high), Driver::Op(op), true))
+    }
+
+    #[track_caller]
+    fn one_bit(&self, a: Signal<'_>) -> NetId {
+        if a.format().width() != 1 {
+            self.error(format!("`{}` is {}: one bit is wanted here", a.name(), a.format()));
+        }
+        a.id()
+    }
+
+    #[track_caller]
+    fn comparable(&self, a: Signal<'_>, b: Signal<'_>) -> (NetId, NetId) {
+        let (a, b) = aligned(a, b);
+        let low = a.range().0.min(b.range().0);
+        let high = a.range().1.max(b.range().1);
+        let format = Format::holding(low, high, a.format().frac);
+        (self.resized(a, format), self.resized(b, format))
+    }
+
+    /// `a` as a net of exactly `format`, which has the same point. Where the format does not hold the
+    /// range of `a`, the upper bits are dropped: an operand of a sum whose result the format holds.
+    #[track_caller]
+    pub(crate) fn resized(&self, a: Signal<'_>, format: Format) -> NetId {
+        let have = a.format();
+        debug_assert_eq!(have.frac, format.frac);
+        if have == format {
+            return a.id();
+        }
+        let (have_width, width) = (have.width(), format.width());
+        let (suffix, op) = match width.cmp(&have_width) {
+            std::cmp::Ordering::Greater => ("wide", Op::Extend(a.id())),
+            std::cmp::Ordering::Equal => ("same", Op::Relabel(a.id())),
+            std::cmp::Ordering::Less => ("low", Op::Slice { of: a.id(), low: 0 }),
+        };
+        let (low, high) = a.range();
+        let fits = format.holds(low) && format.holds(high);
+        let range = if fits { (low, high) } else { format.range() };
+        a.wiring(suffix, format, range, op).id()
+    }
+}
+
+/// Both with as many fraction bits as the finer one.
+#[track_caller]
+fn aligned<'d>(a: Signal<'d>, b: Signal<'d>) -> (Signal<'d>, Signal<'d>) {
+    let frac = a.format().frac.max(b.format().frac);
+    (a.with_fraction(frac), b.with_fraction(frac))
+}
+
+/// The interval of the products of two intervals.
+pub(crate) fn product_range(a: (i128, i128), b: (i128, i128)) -> (i128, i128) {
+    // What is not exact here is a product of more than 64 bits, which no net can have.
+    let corners = [(a.0, b.0), (a.0, b.1), (a.1, b.0), (a.1, b.1)];
+    corners
+        .into_iter()
+        .map(|(a, b)| a.saturating_mul(b))
+        .fold((i128::MAX, i128::MIN), |(low, high), corner| (low.min(corner), high.max(corner)))
+}
+
+/// A mux whose select lines the microprogram drives.
+#[derive(Clone, Copy)]
+pub struct Mux<'d> {
+    out: Signal<'d>,
+    field: FieldId,
+}
+
+impl<'d> Mux<'d> {
+    /// What the mux passes on.
+    pub fn out(self) -> Signal<'d> {
+        self.out
+    }
+
+    /// The knob: passes `input` on. It must be one of the mux's inputs.
+    #[track_caller]
+    pub fn pick(self, input: Signal<'d>) -> Setting {
+        Setting::pick(self.out.designer(), self.field, &self.out.name(), input)
+    }
+
+    /// The block number in the source's figure.
+    #[must_use]
+    pub fn block(self, number: u16) -> Self {
+        let _ = self.out.block(number);
+        self
+    }
+
+    /// The select line or lines.
+    pub fn select(self) -> Signal<'d> {
+        self.out.designer().field_net(self.field)
+    }
+
+    /// The number of the select line in the source's figure.
+    #[must_use]
+    pub fn line(self, number: u16) -> Self {
+        self.out
+            .designer()
+            .with(|inner| inner.design.control.fields[self.field.index()].lines = vec![number]);
+        self
+    }
+
+    /// One line for the reader of the Verilog.
+    #[must_use]
+    pub fn doc(self, line: &str) -> Self {
+        let _ = self.out.doc(line);
+        self
+    }
+}

@@ -1,0 +1,125 @@
+//! How long a computation can take, by its microprogram alone.
+//!
+//! A loop of one word ends because a counter counts down: its condition depends on nothing else. That the
+//! counter does count in every turn is not assumed anywhere; the formal proof has to show it.
+
+use crate::hdl::netlist::{Design, Driver, NetId, RegId, Sequence};
+
+/// The clocks between a word and the one with `done`, at most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Left {
+    /// So many,
+    pub clocks: u64,
+    /// and one for each that this counter still has to go.
+    pub counter: Option<RegId>,
+}
+
+/// For each word what is left when it is executed; `None` if a word waits for `start`, or if something
+/// else than a counter decides about a loop.
+pub fn words(design: &Design) -> Option<Vec<Left>> {
+    let words = &design.control.words;
+    let mut left: Vec<Left> = Vec::with_capacity(words.len());
+    // From the last word, with a place for those before it.
+    for (at, word) in words.iter().enumerate().rev() {
+        let entering = |to: usize| -> Option<u64> {
+            let Left { clocks, counter } = *left.get(words.len() - 1 - to)?;
+            let most = counter.map_or(0, |counter| largest(design, counter));
+            Some(1 + clocks + most)
+        };
+        let (clocks, counter) = match word.sequence {
+            Sequence::End => (0, None),
+            Sequence::Next => (entering(at + 1)?, None),
+            Sequence::LoopWhile { to, condition } if to == at => {
+                (entering(at + 1)?, Some(decides(design, condition)?))
+            }
+            Sequence::LoopWhile { to, .. } if to > at => {
+                (entering(at + 1)?.max(entering(to)?), None)
+            }
+            Sequence::LoopWhile { .. } | Sequence::WaitStart => return None,
+        };
+        left.push(Left { clocks, counter });
+    }
+    left.reverse();
+    Some(left)
+}
+
+/// The number of the clock in which `done` is high, at most.
+pub fn latest_done(design: &Design) -> Option<u32> {
+    // Word 0 is executed in clock 1.
+    let first = *words(design)?.first()?;
+    let most = first.counter.map_or(0, |counter| largest(design, counter));
+    u32::try_from(1 + first.clocks + most).ok()
+}
+
+/// The largest value of a register.
+fn largest(design: &Design, register: RegId) -> u64 {
+    crate::base::fixed::mask(design.width(design.register(register).q))
+}
+
+/// The one register on which a net depends, without its own clock.
+fn decides(design: &Design, net: NetId) -> Option<RegId> {
+    let mut pending = vec![net];
+    let mut seen = Vec::new();
+    let mut found = None;
+    while let Some(net) = pending.pop() {
+        if seen.contains(&net) {
+            continue;
+        }
+        seen.push(net);
+        match &design.net(net).driver {
+            Driver::Constant(_) => {}
+            Driver::Op(op) => pending.extend(op.operands()),
+            Driver::Register(register) => match found {
+                None => found = Some(*register),
+                Some(_) => return None,
+            },
+            Driver::Undriven | Driver::Input | Driver::Rom(_) | Driver::Field(_) => return None,
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::fixed::Format;
+    use crate::hdl::dsl::{Designer, Signal, end, loop_while, step, valid};
+
+    type Condition = for<'d> fn(&'d Designer, Signal<'d>, Signal<'d>) -> Signal<'d>;
+
+    /// A counter of three bits goes from the operand to 0 in word 2.
+    fn counted(condition: Condition) -> Design {
+        let d = Designer::new("counted");
+        let x = d.operand("x", Format::unsigned(3, 0));
+        let turns = d.down_counter("turns", x.q());
+        let more = condition(&d, turns.q(), x.q());
+        d.output("turns_out", turns.q());
+        d.microprogram([
+            step("idle", []),
+            step("load", [turns.load()]),
+            step("count", [turns.count(), loop_while(more, "count")]),
+            step("result", [valid(), end()]),
+        ]);
+        d.finish().unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    #[test]
+    fn a_counter_bounds_its_loop() {
+        let design = counted(|d, turns, _| d.any("more", turns));
+        let left = words(&design).expect("a bound");
+        let clocks: Vec<u64> = left.iter().map(|left| left.clocks).collect();
+        // The result; up to seven turns more and the result; from the first of eight turns; the load.
+        assert_eq!(clocks, [10, 9, 1, 0]);
+        let counted: Vec<bool> = left.iter().map(|left| left.counter.is_some()).collect();
+        assert_eq!(counted, [false, false, true, false]);
+        // Words 0 and 1 in clocks 1 and 2, eight turns, the result.
+        assert_eq!(latest_done(&design), Some(11));
+    }
+
+    #[test]
+    fn what_else_decides_about_a_loop_bounds_nothing() {
+        let design = counted(|d, turns, x| d.or("more", d.any("some", turns), d.any("none", x)));
+        assert_eq!(words(&design), None);
+        assert_eq!(latest_done(&design), None);
+    }
+}

@@ -1,0 +1,236 @@
+//! A design as one block of a rust_hdl circuit.
+
+use std::sync::Arc;
+
+use anyhow::{Result, anyhow};
+use rust_hdl::core::check_error::check_all;
+use rust_hdl::core::prelude::{Block, Clock, In, Logic, Probe, Signal};
+use rust_hdl::core::signal::get_signal_id;
+
+use crate::hdl::netlist::{Design, NetId, Unit};
+use crate::hdl::sim::machine::Machine;
+use crate::hdl::sim::program::Program;
+use crate::hdl::sim::wire::{Direction, Wire, WordName};
+
+/// `LANES` independent instances of a design as a rust_hdl [`Block`]: rust_hdl clocks and settles
+/// it, checks it and, for lane 0, traces it.
+///
+/// Inputs are to be changed together with the falling edge of [`Circuit::clock`]. Inputs that
+/// change together with the rising edge are seen only after it.
+#[derive(Debug)]
+pub struct Circuit<const LANES: usize = 1> {
+    /// Everything happens on its rising edge.
+    pub clock: Signal<In, Clock>,
+    machine: Machine<LANES>,
+    /// What [`Circuit::set_lanes`] was told last, for each input port.
+    inputs: Vec<[u64; LANES]>,
+    /// The machine has yet to be told.
+    input_set: bool,
+    /// The latest update changed something.
+    changed: bool,
+    connected: bool,
+    ports: Vec<Observed>,
+    control: Vec<Observed>,
+    datapath: Vec<Observed>,
+    word: Microprogram,
+}
+
+/// A net that rust_hdl sees as an atom.
+#[derive(Debug)]
+struct Observed {
+    net: NetId,
+    name: String,
+    width: u32,
+    signed: bool,
+    direction: Direction,
+    id: usize,
+}
+
+/// What is needed to tell the name of the word that is executed.
+#[derive(Debug)]
+struct Microprogram {
+    names: Arc<[String]>,
+    /// The address register and the run flag, when there is a control unit.
+    state: Option<(NetId, NetId)>,
+    id: usize,
+}
+
+impl<const LANES: usize> Circuit<LANES> {
+    /// Compiles a design and has rust_hdl check the result. It is at power-up, the clock low.
+    ///
+    /// # Errors
+    /// Those of [`Program::new`], and what rust_hdl's `check_all` finds.
+    pub fn new(design: &Design) -> Result<Self> {
+        let program = Arc::new(Program::new(design)?);
+        let inputs = vec![[0; LANES]; program.inputs()];
+        let observed = |net: NetId, direction| Observed {
+            net,
+            name: design.net(net).name.clone(),
+            width: design.width(net),
+            signed: design.net(net).format.signed,
+            direction,
+            id: get_signal_id(),
+        };
+        let ports = design
+            .ports
+            .iter()
+            .map(|port| match port.role.is_input() {
+                true => observed(port.net, Direction::Input),
+                false => observed(port.net, Direction::Output),
+            })
+            .collect();
+        let of_unit = |unit| {
+            design
+                .iter()
+                .filter(|(id, net)| {
+                    net.named && net.unit == unit && design.ports.iter().all(|port| port.net != *id)
+                })
+                .map(|(id, _)| observed(id, Direction::Local))
+                .collect()
+        };
+        let mut circuit = Self {
+            clock: Signal::default(),
+            machine: Machine::new(program),
+            inputs,
+            input_set: false,
+            changed: false,
+            connected: false,
+            ports,
+            control: of_unit(Unit::Control),
+            datapath: of_unit(Unit::Datapath),
+            word: Microprogram::new(design),
+        };
+        circuit.connect_all();
+        check_all(&circuit).map_err(|error| anyhow!("rust_hdl refuses the circuit: {error:?}"))?;
+        Ok(circuit)
+    }
+
+    /// Sets the input port of the given position among [`Design::inputs`] in every lane; bits
+    /// beyond its width are ignored. It takes effect with rust_hdl's next update.
+    ///
+    /// # Panics
+    /// When there is no such port.
+    pub fn set_lanes(&mut self, input: usize, lanes: [u64; LANES]) {
+        self.inputs[input] = lanes;
+        self.input_set = true;
+    }
+
+    /// The input ports in order of declaration, for [`Circuit::set_lanes`] of many at once.
+    pub fn inputs_mut(&mut self) -> &mut [[u64; LANES]] {
+        self.input_set = true;
+        &mut self.inputs
+    }
+
+    /// The bit pattern of a net in each lane.
+    ///
+    /// # Panics
+    /// When the net is unnamed and was optimised away.
+    pub fn lanes(&self, net: NetId) -> [u64; LANES] {
+        self.machine.lanes(net)
+    }
+
+    /// The bit pattern of a net in one lane.
+    ///
+    /// # Panics
+    /// When the net is unnamed and was optimised away, or there is no such lane.
+    pub fn lane(&self, net: NetId, lane: usize) -> u64 {
+        self.machine.lane(net, lane)
+    }
+
+    /// For each lane, a pattern that is 0 exactly if each net carries what is expected of it.
+    ///
+    /// # Panics
+    /// When a net is unnamed and was optimised away.
+    pub fn differences(&self, nets: &[NetId], expected: &[[u64; LANES]]) -> [u64; LANES] {
+        self.machine.differences(nets, expected)
+    }
+
+    /// The number of input ports.
+    pub fn inputs(&self) -> usize {
+        self.inputs.len()
+    }
+
+    fn visit(&self, nets: &[Observed], probe: &mut dyn Probe) {
+        for net in nets {
+            let wire = Wire {
+                id: net.id,
+                width: net.width,
+                signed: net.signed,
+                direction: net.direction,
+                connected: self.connected,
+                changed: self.changed,
+                bits: self.lane(net.net, 0),
+            };
+            probe.visit_atom(&net.name, &wire);
+        }
+    }
+}
+
+impl Microprogram {
+    fn new(design: &Design) -> Self {
+        let control = &design.control;
+        let names = control.words.iter().map(|word| word.name.clone()).collect();
+        let registers = &design.registers;
+        let state = registers
+            .get(control.address.index())
+            .zip(registers.get(control.run.index()))
+            .filter(|_| !control.words.is_empty())
+            .map(|(address, run)| (address.q, run.q));
+        Self { names, state, id: get_signal_id() }
+    }
+}
+
+impl<const LANES: usize> Logic for Circuit<LANES> {
+    fn update(&mut self) {
+        let edge = self.clock.pos_edge();
+        let inputs = self.input_set.then_some(self.inputs.as_slice());
+        let changed = (edge || inputs.is_some()) && self.machine.update(edge, inputs);
+        self.changed = edge || changed;
+        self.input_set = false;
+    }
+
+    fn connect(&mut self) {
+        self.clock.connect();
+        self.connected = true;
+    }
+}
+
+impl<const LANES: usize> Block for Circuit<LANES> {
+    fn connect_all(&mut self) {
+        self.connect();
+        self.clock.connect_all();
+    }
+
+    fn update_all(&mut self) {
+        self.clock.update_all();
+        self.update();
+    }
+
+    fn has_changed(&self) -> bool {
+        self.changed || self.clock.has_changed()
+    }
+
+    fn accept(&self, name: &str, probe: &mut dyn Probe) {
+        probe.visit_start_scope(name, self);
+        self.clock.accept("clk", probe);
+        self.visit(&self.ports, probe);
+        probe.visit_start_namespace("control", self);
+        self.visit(&self.control, probe);
+        if let Some((address, run)) = self.word.state {
+            let word = WordName {
+                id: self.word.id,
+                names: &self.word.names,
+                connected: self.connected,
+                changed: self.changed,
+                address: self.lane(address, 0),
+                run: self.lane(run, 0) == 1,
+            };
+            probe.visit_atom("word", &word);
+        }
+        probe.visit_end_namespace("control", self);
+        probe.visit_start_namespace("datapath", self);
+        self.visit(&self.datapath, probe);
+        probe.visit_end_namespace("datapath", self);
+        probe.visit_end_scope(name, self);
+    }
+}

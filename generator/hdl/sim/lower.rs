@@ -1,0 +1,271 @@
+//! From cells to instructions.
+
+use anyhow::{Context, Result, bail, ensure};
+
+use crate::base::fixed::{MAX_WIDTH, mask};
+use crate::hdl::netlist::{NetId, Op};
+use crate::hdl::sim::compile::Compiler;
+use crate::hdl::sim::program::{Instruction, Slot};
+
+impl Compiler<'_> {
+    /// The slot with the result of a cell, whose operands have been compiled.
+    ///
+    /// # Errors
+    /// The cell breaks the rules of [`Op`].
+    pub(super) fn op(&mut self, op: &Op, id: NetId) -> Result<Slot> {
+        let design = self.design;
+        let width = design.width(id);
+        let slot = |net: NetId| self.of_net[net.index()];
+        let wide = |net: NetId, wanted: u32| {
+            ensure!(
+                design.width(net) == wanted,
+                "operand `{}` is {} bits wide, not {wanted}",
+                design.net(net).name,
+                design.width(net)
+            );
+            Ok(())
+        };
+        let result_wide = |wanted: u32| {
+            ensure!(width == wanted, "it is {width} bits wide, not {wanted}");
+            Ok(())
+        };
+        let signed = |net: NetId| design.net(net).format.signed;
+        let same_sign = |a: NetId, b: NetId| {
+            ensure!(
+                signed(a) == signed(b),
+                "one of `{}` and `{}` is signed, the other is not",
+                design.net(a).name,
+                design.net(b).name
+            );
+            Ok(signed(a))
+        };
+        let drop = drop_of(width);
+        Ok(match op {
+            Op::Relabel(a) => {
+                wide(*a, width)?;
+                slot(*a)
+            }
+            Op::Extend(of) => {
+                let narrow = design.width(*of);
+                ensure!(narrow <= width, "the operand is wider");
+                let (a, from) = (slot(*of), drop_of(narrow));
+                // A pattern is masked to its width, so zeros are above it already.
+                if narrow == width || !signed(*of) {
+                    a
+                } else {
+                    self.emit(&[a], |to| Instruction::SignExtend { to, a, from, drop })
+                }
+            }
+            Op::Slice { of, low } => self.slice(*of, *low, width)?,
+            Op::Concat(parts) => {
+                result_wide(parts.iter().map(|part| design.width(*part)).sum())?;
+                self.concat(parts)
+            }
+            Op::Not(of) => {
+                wide(*of, width)?;
+                let (a, b) = (slot(*of), self.constant(mask(width)));
+                self.emit(&[a, b], |to| Instruction::Xor { to, a, b })
+            }
+            Op::And(a, b) | Op::Or(a, b) | Op::Xor(a, b) | Op::Sub(a, b) => {
+                wide(*a, width)?;
+                wide(*b, width)?;
+                let (a, b) = (slot(*a), slot(*b));
+                self.emit(&[a, b], |to| match op {
+                    Op::And(..) => Instruction::And { to, a, b },
+                    Op::Or(..) => Instruction::Or { to, a, b },
+                    Op::Xor(..) => Instruction::Xor { to, a, b },
+                    _ => Instruction::Sub { to, a, b, drop },
+                })
+            }
+            Op::Add { a, b, carry } => {
+                wide(*a, width)?;
+                wide(*b, width)?;
+                let (a, b) = (slot(*a), slot(*b));
+                match carry {
+                    None => self.add(a, b, drop),
+                    Some(carry) => {
+                        wide(*carry, 1)?;
+                        let carry = slot(*carry);
+                        self.emit(&[a, b, carry], |to| Instruction::AddCarry {
+                            to,
+                            a,
+                            b,
+                            carry,
+                            drop,
+                        })
+                    }
+                }
+            }
+            Op::Mul(a, b) => {
+                result_wide(design.width(*a) + design.width(*b))?;
+                let signed = same_sign(*a, *b)?;
+                let (drop_a, drop_b) = (drop_of(design.width(*a)), drop_of(design.width(*b)));
+                let (a, b) = (slot(*a), slot(*b));
+                self.emit(&[a, b], |to| match signed {
+                    false => Instruction::MulUnsigned { to, a, b },
+                    true => Instruction::MulSigned { to, a, b, drop_a, drop_b, drop },
+                })
+            }
+            Op::Equal(a, b) | Op::Less(a, b) => {
+                result_wide(1)?;
+                wide(*b, design.width(*a))?;
+                let drop = drop_of(design.width(*a));
+                let less = matches!(op, Op::Less(..));
+                let signed = less && same_sign(*a, *b)?;
+                let (a, b) = (slot(*a), slot(*b));
+                self.emit(&[a, b], |to| match (less, signed) {
+                    (false, _) => Instruction::Equal { to, a, b },
+                    (true, false) => Instruction::LessUnsigned { to, a, b },
+                    (true, true) => Instruction::LessSigned { to, a, b, drop },
+                })
+            }
+            Op::Any(of) | Op::All(of) => {
+                result_wide(1)?;
+                let a = slot(*of);
+                if design.width(*of) == 1 {
+                    a
+                } else if let Op::Any(_) = op {
+                    let (a, low, drop) = self.sliced(a);
+                    self.emit(&[a], |to| Instruction::Any { to, a, low, drop })
+                } else {
+                    let b = self.constant(mask(design.width(*of)));
+                    self.emit(&[a, b], |to| Instruction::Equal { to, a, b })
+                }
+            }
+            Op::Mux { select, inputs } => {
+                for input in inputs {
+                    wide(*input, width)?;
+                }
+                let inputs: Vec<_> = inputs.iter().map(|net| slot(*net)).collect();
+                self.mux(slot(*select), &inputs)?
+            }
+        })
+    }
+
+    /// `width` bits of `of` from `low` up.
+    pub(super) fn slice(&mut self, of: NetId, low: u32, width: u32) -> Result<Slot> {
+        let whole = self.design.width(of);
+        ensure!(
+            low.checked_add(width).is_some_and(|top| top <= whole),
+            "{width} bits from bit {low} are not within the {whole} of `{}`",
+            self.design.net(of).name
+        );
+        if width == whole {
+            return Ok(self.of_net[of.index()]);
+        }
+        let (a, inner_low, inner_drop) = self.sliced(self.of_net[of.index()]);
+        // Where the operand is a slice with zeros above it, the new slice may reach into these.
+        let left = (64 - inner_drop).saturating_sub(low as u8);
+        if left == 0 {
+            return Ok(self.constant(0));
+        }
+        let (low, drop) = (inner_low + low as u8, drop_of(width).max(64 - left));
+        // Beyond what the operand holds there are only the zeros that extend it.
+        if u32::from(low) >= self.held(a) {
+            return Ok(self.constant(0));
+        }
+        Ok(self.emit(&[a], |to| Instruction::Slice { to, a, low, drop }))
+    }
+
+    /// The width of what a slot holds: that of the narrowest net in it, of which the others are extensions.
+    fn held(&self, slot: Slot) -> u32 {
+        let nets = self.of_net.iter().zip(&self.design.nets);
+        let widths = nets.filter(|(own, _)| **own == slot).map(|(_, net)| net.format.width());
+        widths.min().unwrap_or(MAX_WIDTH)
+    }
+
+    /// The operands side by side; together they are no wider than a net.
+    fn concat(&mut self, parts: &[NetId]) -> Slot {
+        let mut known = 0;
+        let mut others = Vec::new();
+        let mut shift = 0;
+        for part in parts.iter().rev() {
+            let slot = self.of_net[part.index()];
+            match self.known_value(slot) {
+                Some(bits) => known |= bits << shift,
+                None => others.push((slot, shift)),
+            }
+            shift += self.design.width(*part) as u8;
+        }
+        let mut all = self.constant(known);
+        for (slot, shift) in others {
+            let (base, (a, low, drop)) = (all, self.sliced(slot));
+            all = if shift == 0 && known == 0 && self.known_value(base).is_some() {
+                slot
+            } else {
+                self.emit(&[base, a], |to| Instruction::Place { to, base, a, low, drop, shift })
+            };
+        }
+        all
+    }
+
+    fn add(&mut self, a: Slot, b: Slot, drop: u8) -> Slot {
+        let (of_a, low_a, drop_a) = self.sliced(a);
+        let (of_b, low_b, drop_b) = self.sliced(b);
+        if of_a == a || of_b == b {
+            return self.emit(&[a, b], |to| Instruction::Add { to, a, b, drop });
+        }
+        self.emit(&[of_a, of_b], |to| Instruction::AddSlices {
+            to,
+            a: of_a,
+            b: of_b,
+            low_a,
+            drop_a,
+            low_b,
+            drop_b,
+            drop,
+        })
+    }
+
+    /// A mux of two inputs, together with what only prepares its operands: chains of such muxes tell in
+    /// which range a value is.
+    fn choose(&mut self, select: Slot, a: Slot, b: Slot) -> Slot {
+        let Some((of, low, drop)) = self.any(select) else {
+            return self.emit(&[select, a, b], |to| Instruction::Choose { to, select, a, b });
+        };
+        let zero = self.constant(0);
+        match self.placed(b, zero) {
+            Some((base, place_of, place_low, place_drop, shift)) if place_of == of => {
+                self.emit(&[of, a, base], |to| Instruction::ChoosePlace {
+                    to,
+                    of,
+                    low,
+                    drop,
+                    a,
+                    base,
+                    place_low,
+                    place_drop,
+                    shift,
+                })
+            }
+            _ => self.emit(&[of, a, b], |to| Instruction::ChooseAny { to, of, low, drop, a, b }),
+        }
+    }
+
+    fn mux(&mut self, select: Slot, inputs: &[Slot]) -> Result<Slot> {
+        let [.., last] = inputs else {
+            bail!("the mux has no inputs");
+        };
+        if let Some(value) = self.known_value(select) {
+            let chosen = usize::try_from(value).ok().and_then(|at| inputs.get(at));
+            return Ok(*chosen.unwrap_or(last));
+        }
+        if inputs.iter().all(|input| input == last) {
+            return Ok(*last);
+        }
+        let mut operands = vec![select];
+        operands.extend(inputs);
+        if let [a, b] = *inputs {
+            return Ok(self.choose(select, a, b));
+        }
+        let first = u32::try_from(self.choices.len()).context("too many muxes")?;
+        let last = first + (inputs.len() - 1) as u32;
+        self.choices.extend(inputs);
+        Ok(self.emit(&operands, |to| Instruction::Mux { to, select, first, last }))
+    }
+}
+
+/// How much narrower than 64 bits a width is.
+pub(super) fn drop_of(width: u32) -> u8 {
+    (MAX_WIDTH - width) as u8
+}

@@ -1,0 +1,502 @@
+//! The interpreter of simulation programs.
+
+use std::hint::select_unpredictable;
+use std::mem;
+use std::ops::{BitAnd, BitOr, BitXor, Shl, Shr};
+use std::sync::Arc;
+
+use crate::hdl::netlist::NetId;
+use crate::hdl::sim::program::{Bank, Instruction, Place, Program, Slot, Sources, Span, Step};
+
+/// The state of `LANES` independent instances of a design, which one pass over the [`Program`]
+/// advances together.
+///
+/// A pass is compiled twice on x86-64, for any processor and for those with AVX2; which one runs is
+/// decided at run time, and they compute the same.
+#[derive(Clone, Debug)]
+pub struct Machine<const LANES: usize = 1> {
+    program: Arc<Program>,
+    narrow: Vec<[u32; LANES]>,
+    wide: Vec<[u64; LANES]>,
+    /// The sources that have changed since the machine was last settled.
+    changed: Sources,
+}
+
+impl<const LANES: usize> Machine<LANES> {
+    /// Power-up: registers, outputs of synchronous ROMs and inputs are 0; settled.
+    pub fn new(program: Arc<Program>) -> Self {
+        let mut machine = Self {
+            narrow: power_up(&program.narrow),
+            wide: power_up(&program.wide),
+            program,
+            changed: Sources::MAX,
+        };
+        machine.update(false, None);
+        machine
+    }
+
+    /// The program that it runs.
+    pub fn program(&self) -> &Program {
+        &self.program
+    }
+
+    /// A rising edge, if there is one; then the inputs change, if there are new ones; then all nets are
+    /// brought up to date. Whether anything that starts a change has changed.
+    ///
+    /// At the edge, registers and synchronous ROMs take what their operands carry. `inputs` are the bit
+    /// patterns of the input ports, in order of declaration; bits beyond the width of a port are
+    /// ignored.
+    pub fn update(&mut self, edge: bool, inputs: Option<&[[u64; LANES]]>) -> bool {
+        #[cfg(target_arch = "x86_64")]
+        if is_x86_feature_detected!("avx2") {
+            // SAFETY: this processor has AVX2.
+            return unsafe { self.update_avx2(edge, inputs) };
+        }
+        self.update_here(edge, inputs)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn update_avx2(&mut self, edge: bool, inputs: Option<&[[u64; LANES]]>) -> bool {
+        self.update_here(edge, inputs)
+    }
+
+    #[inline(always)]
+    fn update_here(&mut self, edge: bool, inputs: Option<&[[u64; LANES]]>) -> bool {
+        let Program { narrow, wide, words, .. } = &*self.program;
+        if edge {
+            self.changed |= clock(narrow, words, &mut self.narrow);
+            self.changed |= clock(wide, words, &mut self.wide);
+        }
+        if let Some(inputs) = inputs {
+            self.changed |= take_inputs(narrow, inputs, &mut self.narrow);
+            self.changed |= take_inputs(wide, inputs, &mut self.wide);
+        }
+        let changed = self.changed != 0;
+        if changed {
+            self.settle();
+        }
+        changed
+    }
+
+    #[inline(always)]
+    fn settle(&mut self) {
+        let Program { steps, segments, choices, words, .. } = &*self.program;
+        let (narrow, wide) = (self.narrow.as_mut_slice(), self.wide.as_mut_slice());
+        let mut changed = mem::take(&mut self.changed);
+        let mut rest = steps.as_slice();
+        for segment in segments {
+            let (here, after) = rest.split_at(segment.len as usize);
+            rest = after;
+            if changed & segment.sources == 0 {
+                continue;
+            }
+            for step in here {
+                match *step {
+                    Step::Narrow(instruction) => {
+                        changed |= execute(instruction, choices, words, narrow);
+                    }
+                    Step::Wide(instruction) => {
+                        changed |= execute(instruction, choices, words, wide);
+                    }
+                    Step::Widen { to, a } => {
+                        map(&mut wide[to as usize], &narrow[a as usize], u64::from);
+                    }
+                    Step::Cut { to, a, low, drop } => {
+                        let cut = |a: u64| (a >> low & u64::MAX >> drop) as u32;
+                        map(&mut narrow[to as usize], &wide[a as usize], cut);
+                    }
+                    Step::Product { to, a, b } => {
+                        let [a, b] = [a, b].map(|slot| &narrow[slot as usize]);
+                        let product = |a, b| u64::from(a) * u64::from(b);
+                        map2(&mut wide[to as usize], a, b, product);
+                    }
+                    Step::SignedProduct { to, a, b, drop_a, drop_b, drop } => {
+                        let [a, b] = [a, b].map(|slot| &narrow[slot as usize]);
+                        let signed = |bits: u32, drop| i64::from(sign_extended(bits, drop) as i32);
+                        let product = |a, b| {
+                            (signed(a, drop_a) * signed(b, drop_b)) as u64 & u64::MAX >> drop
+                        };
+                        map2(&mut wide[to as usize], a, b, product);
+                    }
+                }
+            }
+        }
+    }
+
+    /// For each lane, a pattern that is 0 exactly if each net carries what is expected of it.
+    ///
+    /// # Panics
+    /// When a net is unnamed and was optimised away.
+    pub fn differences(&self, nets: &[NetId], expected: &[[u64; LANES]]) -> [u64; LANES] {
+        #[cfg(target_arch = "x86_64")]
+        if is_x86_feature_detected!("avx2") {
+            // SAFETY: this processor has AVX2.
+            return unsafe { self.differences_avx2(nets, expected) };
+        }
+        self.differences_here(nets, expected)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx2")]
+    fn differences_avx2(&self, nets: &[NetId], expected: &[[u64; LANES]]) -> [u64; LANES] {
+        self.differences_here(nets, expected)
+    }
+
+    #[inline(always)]
+    fn differences_here(&self, nets: &[NetId], expected: &[[u64; LANES]]) -> [u64; LANES] {
+        let mut differences = [0; LANES];
+        for (net, expected) in nets.iter().zip(expected) {
+            match self.program.place(*net) {
+                Place::Narrow(slot) => {
+                    let bits = &self.narrow[slot as usize];
+                    for lane in 0..LANES {
+                        differences[lane] |= u64::from(bits[lane]) ^ expected[lane];
+                    }
+                }
+                Place::Wide(slot) => {
+                    let bits = &self.wide[slot as usize];
+                    for lane in 0..LANES {
+                        differences[lane] |= bits[lane] ^ expected[lane];
+                    }
+                }
+            }
+        }
+        differences
+    }
+
+    /// The bit pattern of a net in each lane.
+    ///
+    /// # Panics
+    /// When the net is unnamed and was optimised away.
+    pub fn lanes(&self, net: NetId) -> [u64; LANES] {
+        match self.program.place(net) {
+            Place::Narrow(slot) => self.narrow[slot as usize].map(u64::from),
+            Place::Wide(slot) => self.wide[slot as usize],
+        }
+    }
+
+    /// The bit pattern of a net in one lane.
+    ///
+    /// # Panics
+    /// When the net is unnamed and was optimised away, or there is no such lane.
+    pub fn lane(&self, net: NetId, lane: usize) -> u64 {
+        match self.program.place(net) {
+            Place::Narrow(slot) => self.narrow[slot as usize][lane].into(),
+            Place::Wide(slot) => self.wide[slot as usize][lane],
+        }
+    }
+}
+
+/// What a slot holds in a lane.
+pub(super) trait Word:
+    Copy
+    + Ord
+    + From<bool>
+    + Into<u64>
+    + BitAnd<Output = Self>
+    + BitOr<Output = Self>
+    + BitXor<Output = Self>
+    + Shl<u8, Output = Self>
+    + Shr<u8, Output = Self>
+{
+    const ZERO: Self;
+    /// The low bits.
+    fn low(bits: u64) -> Self;
+    fn wrapping_add(self, other: Self) -> Self;
+    fn wrapping_sub(self, other: Self) -> Self;
+    fn wrapping_mul(self, other: Self) -> Self;
+}
+
+macro_rules! word {
+    ($word:ident) => {
+        impl Word for $word {
+            const ZERO: Self = 0;
+
+            #[inline(always)]
+            fn low(bits: u64) -> Self {
+                bits as Self
+            }
+
+            #[inline(always)]
+            fn wrapping_add(self, other: Self) -> Self {
+                $word::wrapping_add(self, other)
+            }
+
+            #[inline(always)]
+            fn wrapping_sub(self, other: Self) -> Self {
+                $word::wrapping_sub(self, other)
+            }
+
+            #[inline(always)]
+            fn wrapping_mul(self, other: Self) -> Self {
+                $word::wrapping_mul(self, other)
+            }
+        }
+    };
+}
+
+word!(u32);
+word!(u64);
+
+fn power_up<W: Word, const LANES: usize>(bank: &Bank) -> Vec<[W; LANES]> {
+    let slots = bank.initial.iter();
+    slots.map(|&bits| [W::low(bits); LANES]).collect()
+}
+
+/// The sources that are news.
+#[inline(always)]
+fn take_inputs<W: Word, const LANES: usize>(
+    bank: &Bank,
+    inputs: &[[u64; LANES]],
+    slots: &mut [[W; LANES]],
+) -> Sources {
+    let mut news = 0;
+    for port in &bank.inputs {
+        let mut bits = [W::ZERO; LANES];
+        map(&mut bits, &inputs[port.at as usize], |bits| W::low(bits & port.mask));
+        news |= store(&mut slots[port.slot as usize], &bits, port.source);
+    }
+    news
+}
+
+/// The rising edge, and the sources that are news.
+#[inline(always)]
+fn clock<W: Word, const LANES: usize>(
+    bank: &Bank,
+    words: &[u64],
+    slots: &mut [[W; LANES]],
+) -> Sources {
+    let mut news = 0;
+    for edge in &bank.reads {
+        let mut word = [W::ZERO; LANES];
+        map(&mut word, &slots[edge.address as usize], |address| {
+            W::low(read(words, edge.words, address.into()))
+        });
+        news |= store(&mut slots[edge.to as usize], &word, edge.source);
+    }
+    for edge in &bank.registers {
+        let [q, data, enable, keep] =
+            [edge.q, edge.data, edge.enable, edge.keep].map(|slot| &slots[slot as usize]);
+        let reset = W::low(edge.reset);
+        let mut next = [W::ZERO; LANES];
+        for lane in 0..LANES {
+            let loaded = select_unpredictable(enable[lane] == W::ZERO, q[lane], data[lane]);
+            next[lane] = select_unpredictable(keep[lane] == W::ZERO, reset, loaded);
+        }
+        news |= store(&mut slots[edge.q as usize], &next, edge.source);
+    }
+    news
+}
+
+/// Stores a value; `source` when that changes any lane.
+#[inline(always)]
+fn store<W: Word, const LANES: usize>(
+    slot: &mut [W; LANES],
+    new: &[W; LANES],
+    source: Sources,
+) -> Sources {
+    let mut differences = W::ZERO;
+    for lane in 0..LANES {
+        differences = differences | slot[lane] ^ new[lane];
+    }
+    *slot = *new;
+    if differences == W::ZERO { 0 } else { source }
+}
+
+/// Executes one instruction; the field that has changed, if it was one.
+#[inline(always)]
+pub(super) fn execute<W: Word, const LANES: usize>(
+    instruction: Instruction,
+    choices: &[Slot],
+    words: &[u64],
+    slots: &mut [[W; LANES]],
+) -> Sources {
+    use Instruction as I;
+    let mask = |drop: u8| W::low(u64::MAX >> drop);
+    match instruction {
+        I::Copy { to, a } => unary(slots, to, a, |a| a),
+        I::Field { to, a, low, drop, source } => {
+            let mut field = [W::ZERO; LANES];
+            map(&mut field, &slots[a as usize], |a| a >> low & mask(drop));
+            return store(&mut slots[to as usize], &field, 1 << source);
+        }
+        I::Slice { to, a, low, drop } => unary(slots, to, a, |a| a >> low & mask(drop)),
+        I::Place { to, base, a, low, drop, shift } => {
+            binary(slots, to, base, a, |base, a| base | (a >> low & mask(drop)) << shift)
+        }
+        I::SignExtend { to, a, from, drop } => {
+            unary(slots, to, a, |a| sign_extended(a, from) & mask(drop));
+        }
+        I::And { to, a, b } => binary(slots, to, a, b, |a, b| a & b),
+        I::Or { to, a, b } => binary(slots, to, a, b, |a, b| a | b),
+        I::Xor { to, a, b } => binary(slots, to, a, b, |a, b| a ^ b),
+        I::Add { to, a, b, drop } => {
+            binary(slots, to, a, b, |a, b| a.wrapping_add(b) & mask(drop));
+        }
+        I::AddSlices { to, a, b, low_a, drop_a, low_b, drop_b, drop } => {
+            binary(slots, to, a, b, |a, b| {
+                let (a, b) = (a >> low_a & mask(drop_a), b >> low_b & mask(drop_b));
+                a.wrapping_add(b) & mask(drop)
+            })
+        }
+        I::AddCarry { to, a, b, carry, drop } => {
+            ternary(slots, to, [a, b, carry], |a, b, carry| {
+                a.wrapping_add(b).wrapping_add(carry) & mask(drop)
+            })
+        }
+        I::Sub { to, a, b, drop } => {
+            binary(slots, to, a, b, |a, b| a.wrapping_sub(b) & mask(drop));
+        }
+        I::MulUnsigned { to, a, b } => binary(slots, to, a, b, W::wrapping_mul),
+        I::MulSigned { to, a, b, drop_a, drop_b, drop } => binary(slots, to, a, b, |a, b| {
+            sign_extended(a, drop_a).wrapping_mul(sign_extended(b, drop_b)) & mask(drop)
+        }),
+        I::Equal { to, a, b } => binary(slots, to, a, b, |a, b| W::from(a == b)),
+        I::Any { to, a, low, drop } => {
+            unary(slots, to, a, |a| W::from(a >> low & mask(drop) != W::ZERO));
+        }
+        I::LessUnsigned { to, a, b } => binary(slots, to, a, b, |a, b| W::from(a < b)),
+        // With the sign bits inverted, the order is that of unsigned numbers.
+        I::LessSigned { to, a, b, drop } => {
+            binary(slots, to, a, b, |a, b| W::from(a ^ sign::<W>(drop) < b ^ sign::<W>(drop)))
+        }
+        I::Choose { to, select, a, b } => ternary(slots, to, [select, a, b], |select, a, b| {
+            select_unpredictable(select == W::ZERO, a, b)
+        }),
+        I::ChooseAny { to, of, low, drop, a, b } => ternary(slots, to, [of, a, b], |of, a, b| {
+            select_unpredictable(of >> low & mask(drop) == W::ZERO, a, b)
+        }),
+        I::ChoosePlace { to, of, low, drop, a, base, place_low, place_drop, shift } => {
+            ternary(slots, to, [of, a, base], |of, a, base| {
+                let placed = base | (of >> place_low & mask(place_drop)) << shift;
+                select_unpredictable(of >> low & mask(drop) == W::ZERO, a, placed)
+            })
+        }
+        I::Mux { to, select, first, last } => {
+            let choices = &choices[first as usize..=last as usize];
+            mux(slots, to, select, choices);
+        }
+        I::Read { to, address, words: span } => {
+            unary(slots, to, address, |address| W::low(read(words, span, address.into())))
+        }
+    }
+    0
+}
+
+/// The sign bit of a pattern whose width is given as `drop`.
+#[inline(always)]
+fn sign<W: Word>(drop: u8) -> W {
+    W::low(1 << 63 >> drop)
+}
+
+/// A two's complement pattern whose width is given as `drop`, at the full width.
+#[inline(always)]
+fn sign_extended<W: Word>(bits: W, drop: u8) -> W {
+    (bits ^ sign(drop)).wrapping_sub(sign(drop))
+}
+
+/// A word of a ROM; 0 beyond its contents.
+#[inline(always)]
+fn read(words: &[u64], span: Span, address: u64) -> u64 {
+    if address < u64::from(span.len) { words[span.start as usize + address as usize] } else { 0 }
+}
+
+/// The last of the choices where `select` is beyond them.
+#[inline(always)]
+fn mux<W: Word, const LANES: usize>(
+    slots: &mut [[W; LANES]],
+    to: Slot,
+    select: Slot,
+    choices: &[Slot],
+) {
+    let (slots, after) = slots.split_at_mut(to as usize);
+    let (to, select) = (&mut after[0], &slots[select as usize]);
+    let last = choices.len() - 1;
+    if LANES < VECTOR || choices.len() > COMPARED {
+        for (lane, (to, number)) in to.iter_mut().zip(select).enumerate() {
+            let number: u64 = (*number).into();
+            *to = slots[choices[(number as usize).min(last)] as usize][lane];
+        }
+        return;
+    }
+    *to = slots[choices[last] as usize];
+    for (number, &choice) in choices[..last].iter().enumerate() {
+        let number = W::low(number as u64);
+        let choice = &slots[choice as usize];
+        for lane in 0..LANES {
+            to[lane] = select_unpredictable(select[lane] == number, choice[lane], to[lane]);
+        }
+    }
+}
+
+/// From so many lanes on it is worth while to compare them all with each number of a mux.
+const VECTOR: usize = 8;
+
+/// Of a mux of more inputs than this, each lane is looked up.
+const COMPARED: usize = 16;
+
+#[inline(always)]
+fn unary<W: Word, const LANES: usize>(
+    slots: &mut [[W; LANES]],
+    to: Slot,
+    a: Slot,
+    f: impl Fn(W) -> W,
+) {
+    let (slots, after) = slots.split_at_mut(to as usize);
+    map(&mut after[0], &slots[a as usize], f);
+}
+
+#[inline(always)]
+fn binary<W: Word, const LANES: usize>(
+    slots: &mut [[W; LANES]],
+    to: Slot,
+    a: Slot,
+    b: Slot,
+    f: impl Fn(W, W) -> W,
+) {
+    let (slots, after) = slots.split_at_mut(to as usize);
+    map2(&mut after[0], &slots[a as usize], &slots[b as usize], f);
+}
+
+#[inline(always)]
+fn ternary<W: Word, const LANES: usize>(
+    slots: &mut [[W; LANES]],
+    to: Slot,
+    operands: [Slot; 3],
+    f: impl Fn(W, W, W) -> W,
+) {
+    let (slots, after) = slots.split_at_mut(to as usize);
+    let [a, b, c] = operands.map(|slot| &slots[slot as usize]);
+    map3(&mut after[0], [a, b, c], f);
+}
+
+#[inline(always)]
+fn map<A: Copy, T, const LANES: usize>(to: &mut [T; LANES], a: &[A; LANES], f: impl Fn(A) -> T) {
+    for lane in 0..LANES {
+        to[lane] = f(a[lane]);
+    }
+}
+
+#[inline(always)]
+fn map2<A: Copy, T, const LANES: usize>(
+    to: &mut [T; LANES],
+    a: &[A; LANES],
+    b: &[A; LANES],
+    f: impl Fn(A, A) -> T,
+) {
+    for lane in 0..LANES {
+        to[lane] = f(a[lane], b[lane]);
+    }
+}
+
+#[inline(always)]
+fn map3<A: Copy, T, const LANES: usize>(
+    to: &mut [T; LANES],
+    [a, b, c]: [&[A; LANES]; 3],
+    f: impl Fn(A, A, A) -> T,
+) {
+    for lane in 0..LANES {
+        to[lane] = f(a[lane], b[lane], c[lane]);
+    }
+}

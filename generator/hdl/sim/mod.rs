@@ -1,0 +1,209 @@
+//! The built-in simulator.
+//!
+//! A [`Design`] is compiled to a [`Program`] of levelised instructions, which a [`Machine`] runs for a
+//! number of independent instances at once, its lanes; a [`Circuit`] is the machine as one rust_hdl
+//! block, and a [`Simulator`] the circuit with its clock.
+//!
+//! rust_hdl is the kernel. Its part is exactly this: it owns the clock, a `Signal`; each half of a clock
+//! is one call of its `simulate()`, which updates the block, finds the edge, and updates again until
+//! nothing changes; its `check_all` checks the ports, and its probes see every named net and write the
+//! waveforms. What an update does with the netlist is ours: the registers at an edge, and then one pass
+//! over the program, which settles all nets, because it is in an order of evaluation. An own rust_hdl
+//! block for each cell would be settled by rust_hdl as well, a hundred times more slowly.
+
+mod banks;
+mod circuit;
+mod compile;
+mod lower;
+mod machine;
+mod program;
+mod references;
+#[cfg(test)]
+mod tests;
+mod vcd;
+mod wire;
+
+use std::io::Write;
+
+use anyhow::{Result, ensure};
+use rust_hdl::core::simulate::simulate;
+
+use crate::hdl::netlist::{Design, NetId};
+
+pub use circuit::Circuit;
+pub use machine::Machine;
+pub use program::Program;
+pub use vcd::VcdWriter;
+
+/// Half a clock in waveforms, in picoseconds.
+const HALF_CLOCK: u64 = 5_000;
+
+/// A bound on rust_hdl's updates for one change: the change, and the update that finds none.
+const UPDATES: usize = 4;
+
+/// `LANES` independent instances of a design, clocked by rust_hdl.
+///
+/// ```
+/// # fn example(design: &glint::hdl::netlist::Design) -> anyhow::Result<()> {
+/// let mut simulator: glint::hdl::sim::Simulator = glint::hdl::sim::Simulator::new(design)?;
+/// let rst_n = simulator.input("rst_n").expect("a reset");
+/// simulator.clock()?;
+/// simulator.set(rst_n, 1);
+/// simulator.clock()?;
+/// let busy = design.find("busy").expect("an output");
+/// assert_eq!(simulator.value(busy), 0);
+/// # Ok(())
+/// # }
+/// ```
+pub struct Simulator<const LANES: usize = 1> {
+    circuit: Circuit<LANES>,
+    name: String,
+    inputs: Vec<String>,
+    trace: Option<VcdWriter<Box<dyn Write + Send>>>,
+    /// In picoseconds.
+    time: u64,
+}
+
+impl<const LANES: usize> Simulator<LANES> {
+    /// At power-up: all inputs, registers and outputs of synchronous ROMs are 0.
+    ///
+    /// # Errors
+    /// Those of [`Circuit::new`].
+    pub fn new(design: &Design) -> Result<Self> {
+        let name = |net| design.net(net).name.clone();
+        Ok(Self {
+            circuit: Circuit::new(design)?,
+            name: design.name.clone(),
+            inputs: design.inputs().map(|port| name(port.net)).collect(),
+            trace: None,
+            time: 0,
+        })
+    }
+
+    /// The position of an input port among [`Design::inputs`], by its name.
+    pub fn input(&self, name: &str) -> Option<usize> {
+        self.inputs.iter().position(|input| input == name)
+    }
+
+    /// The names of the input ports, in the order of their positions.
+    pub fn inputs(&self) -> &[String] {
+        &self.inputs
+    }
+
+    /// Sets an input port in every lane for the next clock; bits beyond its width are ignored.
+    ///
+    /// # Panics
+    /// When there is no port of this position.
+    pub fn set_lanes(&mut self, input: usize, lanes: [u64; LANES]) {
+        self.circuit.set_lanes(input, lanes);
+    }
+
+    /// The input ports in order of position, each with its lanes, for [`Simulator::set_lanes`] of many
+    /// at once.
+    pub fn inputs_mut(&mut self) -> &mut [[u64; LANES]] {
+        self.circuit.inputs_mut()
+    }
+
+    /// The bit pattern of a net in each lane, after the latest clock.
+    ///
+    /// # Panics
+    /// When the net is unnamed and was optimised away.
+    pub fn lanes(&self, net: NetId) -> [u64; LANES] {
+        self.circuit.lanes(net)
+    }
+
+    /// The bit pattern of a net in one lane, after the latest clock.
+    ///
+    /// # Panics
+    /// When the net is unnamed and was optimised away, or there is no such lane.
+    pub fn lane(&self, net: NetId, lane: usize) -> u64 {
+        self.circuit.lane(net, lane)
+    }
+
+    /// For each lane, a pattern that is 0 exactly if each net carries what is expected of it.
+    ///
+    /// # Panics
+    /// When a net is unnamed and was optimised away.
+    pub fn differences(&self, nets: &[NetId], expected: &[[u64; LANES]]) -> [u64; LANES] {
+        self.circuit.differences(nets, expected)
+    }
+
+    /// One clock: the falling edge, with which inputs change, and the rising edge.
+    ///
+    /// # Errors
+    /// The waveform cannot be written; or the circuit does not settle, which would be a bug.
+    #[inline]
+    pub fn clock(&mut self) -> Result<()> {
+        self.half(false)?;
+        self.half(true)
+    }
+
+    /// Brings all nets up to date with inputs that were set since the last clock, without an edge.
+    /// The next clock does not depend on whether this was called.
+    ///
+    /// # Errors
+    /// Those of [`Simulator::clock`].
+    pub fn settle(&mut self) -> Result<()> {
+        self.half(false)
+    }
+
+    #[inline]
+    fn half(&mut self, level: bool) -> Result<()> {
+        self.circuit.clock.next = level.into();
+        ensure!(simulate(&mut self.circuit, UPDATES), "`{}` does not settle", self.name);
+        match &mut self.trace {
+            None => Ok(()),
+            Some(trace) => {
+                self.time += HALF_CLOCK;
+                trace.step(self.time, &self.circuit)
+            }
+        }
+    }
+
+    /// From now on, writes the waveform of lane 0: VCD, a clock of 10 ns, starting at time 0.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn trace(&mut self, file: impl Write + Send + 'static) -> Result<()> {
+        self.time = 0;
+        let file: Box<dyn Write + Send> = Box::new(file);
+        self.trace = Some(VcdWriter::new(file, &self.name, self.time, &self.circuit)?);
+        Ok(())
+    }
+
+    /// Ends the waveform, if there is one, and flushes the file.
+    ///
+    /// # Errors
+    /// The file cannot be written.
+    pub fn end_trace(&mut self) -> Result<()> {
+        if let Some(trace) = self.trace.take() {
+            trace.finish(self.time + HALF_CLOCK)?;
+        }
+        Ok(())
+    }
+
+    /// The circuit, for use with rust_hdl's own probes.
+    pub fn circuit(&self) -> &Circuit<LANES> {
+        &self.circuit
+    }
+}
+
+impl Simulator {
+    /// Sets an input port for the next clock; bits beyond its width are ignored.
+    ///
+    /// # Panics
+    /// When there is no port of this position.
+    #[inline]
+    pub fn set(&mut self, input: usize, bits: u64) {
+        self.set_lanes(input, [bits]);
+    }
+
+    /// The bit pattern of a net after the latest clock.
+    ///
+    /// # Panics
+    /// When the net is unnamed and was optimised away.
+    #[inline]
+    pub fn value(&self, net: NetId) -> u64 {
+        self.lane(net, 0)
+    }
+}

@@ -1,0 +1,251 @@
+//! The simulation program: what a [`Design`] is compiled to.
+//!
+//! All values live in *slots*, bit patterns masked to their width. A clock has two phases. *Settling*
+//! runs the steps in order; each computes one slot from earlier ones. The *edge* writes the
+//! data outputs of synchronous ROMs and then the registers. Nets that are mere wiring (other names,
+//! zero extensions, whole slices) share a slot, constants are folded, and equal instructions are
+//! merged, so there are fewer instructions than cells. An unnamed net whose only readers can cut it
+//! out of its operand themselves has no slot at all.
+//!
+//! There are two banks of slots: *narrow* ones of 32 bits, where nearly all values fit and a vector of
+//! the processor holds twice as many lanes, and *wide* ones of 64 for the rest. An [`Instruction`] works
+//! within one bank; the other [`Step`]s lead from one to the other.
+//!
+//! What changes from outside settling, input ports and what the edge writes, is a *source*; so are
+//! the fields of the control word, most of which stay as they are from one word to the next.
+//! Instructions that depend on the same sources form a segment, and settling skips segments whose
+//! sources have not changed.
+
+use anyhow::Result;
+
+use crate::hdl::netlist::{Design, NetId};
+use crate::hdl::sim::compile;
+
+/// The number of a slot within its bank.
+pub(super) type Slot = u32;
+
+/// A set of sources, one bit each; when there are more than 64, several share a bit.
+pub(super) type Sources = u64;
+
+/// A computation within one bank: `to` from `a`, `b`, …, which have smaller numbers.
+///
+/// Widths are given as `drop`, 64 less the width: `u64::MAX >> drop` is the mask, and shifting up by
+/// `drop` brings the sign bit to the top.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) enum Instruction {
+    /// `a`, as it was before the coming edge.
+    Copy { to: Slot, a: Slot },
+    /// The bits of `a` from `low` up; when they are news, `source` has changed.
+    Field { to: Slot, a: Slot, low: u8, drop: u8, source: u8 },
+    /// The bits of `a` from `low` up.
+    Slice { to: Slot, a: Slot, low: u8, drop: u8 },
+    /// The bits of `a` from `low` up, shifted up, together with the bits of `base`.
+    Place { to: Slot, base: Slot, a: Slot, low: u8, drop: u8, shift: u8 },
+    /// `a`, whose width is given by `from`, with copies of its sign bit above it.
+    SignExtend { to: Slot, a: Slot, from: u8, drop: u8 },
+    /// Bitwise and.
+    And { to: Slot, a: Slot, b: Slot },
+    /// Bitwise or.
+    Or { to: Slot, a: Slot, b: Slot },
+    /// Bitwise exclusive or; with a mask, not.
+    Xor { to: Slot, a: Slot, b: Slot },
+    /// Sum.
+    Add { to: Slot, a: Slot, b: Slot, drop: u8 },
+    /// Sum of bits of `a` and bits of `b`: a value and what it is rounded up by, say.
+    AddSlices { to: Slot, a: Slot, b: Slot, low_a: u8, drop_a: u8, low_b: u8, drop_b: u8, drop: u8 },
+    /// Sum and carry.
+    AddCarry { to: Slot, a: Slot, b: Slot, carry: Slot, drop: u8 },
+    /// Difference.
+    Sub { to: Slot, a: Slot, b: Slot, drop: u8 },
+    /// Product of unsigned factors; it always fits.
+    MulUnsigned { to: Slot, a: Slot, b: Slot },
+    /// Product of signed factors, whose widths are given by `drop_a` and `drop_b`.
+    MulSigned { to: Slot, a: Slot, b: Slot, drop_a: u8, drop_b: u8, drop: u8 },
+    /// 1 when `a == b`; with a mask, when all bits are 1.
+    Equal { to: Slot, a: Slot, b: Slot },
+    /// 1 when the bits of `a` from `low` up are not all 0.
+    Any { to: Slot, a: Slot, low: u8, drop: u8 },
+    /// 1 when `a < b`, unsigned.
+    LessUnsigned { to: Slot, a: Slot, b: Slot },
+    /// 1 when `a < b`, signed.
+    LessSigned { to: Slot, a: Slot, b: Slot, drop: u8 },
+    /// `a` when `select` is 0, else `b`.
+    Choose { to: Slot, select: Slot, a: Slot, b: Slot },
+    /// `a` when the bits of `of` from `low` up are all 0, else `b`.
+    ChooseAny { to: Slot, of: Slot, low: u8, drop: u8, a: Slot, b: Slot },
+    /// `a` when the bits of `of` from `low` up are all 0, else other bits of it, placed as by `Place`.
+    ChoosePlace {
+        to: Slot,
+        of: Slot,
+        low: u8,
+        drop: u8,
+        a: Slot,
+        base: Slot,
+        place_low: u8,
+        place_drop: u8,
+        shift: u8,
+    },
+    /// The slot that entry `first + select`, at most `last`, of the table of choices names.
+    Mux { to: Slot, select: Slot, first: u32, last: u32 },
+    /// Word `address` of a ROM.
+    Read { to: Slot, address: Slot, words: Span },
+}
+
+impl Instruction {
+    /// Its slots, the result first. Those of a mux in the table of choices are not among them.
+    pub(super) fn slots_mut(&mut self) -> Vec<&mut Slot> {
+        match self {
+            Self::Copy { to, a }
+            | Self::Field { to, a, .. }
+            | Self::Slice { to, a, .. }
+            | Self::SignExtend { to, a, .. }
+            | Self::Any { to, a, .. }
+            | Self::Mux { to, select: a, .. }
+            | Self::Read { to, address: a, .. } => vec![to, a],
+            Self::Place { to, base: a, a: b, .. }
+            | Self::And { to, a, b }
+            | Self::Or { to, a, b }
+            | Self::Xor { to, a, b }
+            | Self::Add { to, a, b, .. }
+            | Self::AddSlices { to, a, b, .. }
+            | Self::Sub { to, a, b, .. }
+            | Self::MulUnsigned { to, a, b }
+            | Self::MulSigned { to, a, b, .. }
+            | Self::Equal { to, a, b }
+            | Self::LessUnsigned { to, a, b }
+            | Self::LessSigned { to, a, b, .. } => vec![to, a, b],
+            Self::AddCarry { to, a, b, carry: c, .. }
+            | Self::Choose { to, select: a, a: b, b: c }
+            | Self::ChooseAny { to, of: a, a: b, b: c, .. }
+            | Self::ChoosePlace { to, of: a, a: b, base: c, .. } => vec![to, a, b, c],
+        }
+    }
+}
+
+/// One step of settling.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Step {
+    /// Among the narrow slots.
+    Narrow(Instruction),
+    /// Among the wide slots.
+    Wide(Instruction),
+    /// A narrow slot as a wide one.
+    Widen { to: Slot, a: Slot },
+    /// The bits of a wide slot from `low` up, as a narrow one.
+    Cut { to: Slot, a: Slot, low: u8, drop: u8 },
+    /// The wide product of narrow unsigned factors.
+    Product { to: Slot, a: Slot, b: Slot },
+    /// The wide product of narrow signed factors, whose widths are given by `drop_a` and `drop_b`.
+    SignedProduct { to: Slot, a: Slot, b: Slot, drop_a: u8, drop_b: u8, drop: u8 },
+}
+
+/// Where a value is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    Narrow(Slot),
+    Wide(Slot),
+}
+
+/// The contents of a ROM in [`Program::words`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Span {
+    pub start: u32,
+    pub len: u32,
+}
+
+/// Consecutive steps that depend on the same sources.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Segment {
+    pub sources: Sources,
+    pub len: u32,
+}
+
+/// An input port.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct InputPort {
+    /// Its position among the input ports.
+    pub at: u32,
+    pub slot: Slot,
+    pub source: Sources,
+    pub mask: u64,
+}
+
+/// A synchronous ROM: at the edge, `to` takes word `address`.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct ReadEdge {
+    pub to: Slot,
+    pub source: Sources,
+    pub address: Slot,
+    pub words: Span,
+}
+
+/// A register: at the edge, `q` takes `reset` when `keep` is 0, else `data` when `enable` is 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RegisterEdge {
+    pub q: Slot,
+    pub source: Sources,
+    pub data: Slot,
+    /// The constant 1 when the register has no enable.
+    pub enable: Slot,
+    /// The slot of `rst_n`; the constant 1 when the register has no reset.
+    pub keep: Slot,
+    pub reset: u64,
+}
+
+/// One of the two banks: what happens to its slots outside settling.
+#[derive(Debug, Default)]
+pub(super) struct Bank {
+    pub inputs: Vec<InputPort>,
+    /// To be performed before `registers`; no operand of either is written by an earlier one.
+    pub reads: Vec<ReadEdge>,
+    pub registers: Vec<RegisterEdge>,
+    /// What the slots hold at power-up, before settling.
+    pub initial: Vec<u64>,
+}
+
+/// A compiled [`Design`]. Machines share it; it holds no state.
+#[derive(Debug)]
+pub struct Program {
+    /// In an order in which each stands after those that compute its operands.
+    pub(super) steps: Vec<Step>,
+    /// They cover the steps.
+    pub(super) segments: Vec<Segment>,
+    pub(super) narrow: Bank,
+    pub(super) wide: Bank,
+    /// The inputs of all muxes that have more than two, in the bank of the mux.
+    pub(super) choices: Vec<Slot>,
+    /// The contents of all ROMs.
+    pub(super) words: Vec<u64>,
+    /// The place of each net; none for unnamed nets that have none.
+    pub(super) places: Vec<Option<Place>>,
+}
+
+impl Program {
+    /// Compiles a design that [`crate::hdl::dsl::rules`] has accepted.
+    ///
+    /// # Errors
+    /// A net, named with the place where it was written, that breaks an invariant of
+    /// [`crate::hdl::netlist`] on which simulation relies: no driver, a combinational loop, wrong widths.
+    pub fn new(design: &Design) -> Result<Self> {
+        compile::compile(design)
+    }
+
+    /// The number of steps that settle the design after a clock edge.
+    pub fn steps(&self) -> usize {
+        self.steps.len()
+    }
+
+    /// The number of input ports.
+    pub fn inputs(&self) -> usize {
+        self.narrow.inputs.len() + self.wide.inputs.len()
+    }
+
+    /// The place of a net.
+    ///
+    /// # Panics
+    /// When the net is unnamed and has none.
+    pub(super) fn place(&self, net: NetId) -> Place {
+        let place = self.places[net.index()];
+        place.unwrap_or_else(|| panic!("{net:?} is unnamed and not simulated"))
+    }
+}

@@ -1,0 +1,182 @@
+//! Designs written net by net, and random numbers.
+
+use std::panic::Location;
+
+use crate::base::fixed::{Format, mask};
+use crate::hdl::netlist::{
+    About, Control, Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, Port, RegId,
+    Register, RegisterKind, Role, Rom, RomId, Sequence, Unit, Word,
+};
+
+/// A design under construction. It has the input port `rst_n`, number 0.
+pub struct Build {
+    pub design: Design,
+    pub rst_n: NetId,
+}
+
+impl Build {
+    pub fn new() -> Self {
+        let control = Control {
+            fields: Vec::new(),
+            words: Vec::new(),
+            rom: RomId(0),
+            address: RegId(0),
+            run: RegId(0),
+        };
+        let mut build = Self {
+            design: Design {
+                name: "probe".to_owned(),
+                about: About::default(),
+                nets: Vec::new(),
+                registers: Vec::new(),
+                roms: Vec::new(),
+                ports: Vec::new(),
+                control,
+            },
+            rst_n: NetId(0),
+        };
+        build.rst_n = build.input("rst_n", Format::BIT);
+        build.design.ports[0].role = Role::Reset;
+        build
+    }
+
+    #[track_caller]
+    pub fn net(&mut self, name: &str, format: Format, driver: Driver) -> NetId {
+        self.design.nets.push(Net {
+            name: name.to_owned(),
+            format,
+            range: (format.min_raw(), format.max_raw()),
+            driver,
+            block: None,
+            doc: String::new(),
+            named: true,
+            unit: Unit::Datapath,
+            location: Location::caller(),
+        });
+        NetId(self.design.nets.len() as u32 - 1)
+    }
+
+    pub fn input(&mut self, name: &str, format: Format) -> NetId {
+        let net = self.net(name, format, Driver::Input);
+        let role = Role::Strobe;
+        self.design.ports.push(Port { net, role });
+        net
+    }
+
+    pub fn output(&mut self, net: NetId) {
+        let role = Role::Result;
+        self.design.ports.push(Port { net, role });
+    }
+
+    pub fn op(&mut self, name: &str, format: Format, op: Op) -> NetId {
+        self.net(name, format, Driver::Op(op))
+    }
+
+    /// A register that takes nothing yet.
+    pub fn register(&mut self, name: &str, format: Format) -> NetId {
+        let id = RegId(self.design.registers.len() as u32);
+        let q = self.net(name, format, Driver::Register(id));
+        self.design.registers.push(Register {
+            q,
+            data: None,
+            enable: None,
+            reset: None,
+            kind: RegisterKind::Architectural,
+        });
+        q
+    }
+
+    /// The register that drives `q`.
+    pub fn of(&mut self, q: NetId) -> &mut Register {
+        let register = self.design.registers.iter_mut().find(|r| r.q == q);
+        register.expect("a register")
+    }
+
+    pub fn rom(
+        &mut self,
+        name: &str,
+        format: Format,
+        address: NetId,
+        synchronous: bool,
+        words: &[u64],
+    ) -> NetId {
+        let id = RomId(self.design.roms.len() as u32);
+        let data = self.net(name, format, Driver::Rom(id));
+        self.design.roms.push(Rom {
+            name: format!("{name}_rom"),
+            address,
+            data,
+            synchronous,
+            words: words.to_vec(),
+            doc: Vec::new(),
+            comments: Vec::new(),
+            block: None,
+            location: Location::caller(),
+        });
+        data
+    }
+
+    /// A field of the control word, below those that are there.
+    pub fn field(&mut self, name: &str, width: u32) -> NetId {
+        let id = FieldId(self.design.control.fields.len() as u32);
+        let format = Format::unsigned(width as i32, 0);
+        let net = self.net(name, format, Driver::Field(id));
+        self.design.control.fields.push(Field {
+            name: format!("{name}_field"),
+            net,
+            kind: FieldKind::Enable,
+            lines: Vec::new(),
+        });
+        net
+    }
+
+    pub fn word(&mut self, name: &str) {
+        self.design.control.words.push(Word {
+            name: name.to_owned(),
+            values: Vec::new(),
+            sequence: Sequence::Next,
+            location: Location::caller(),
+        });
+    }
+}
+
+/// Splitmix64.
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn bits(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        z ^ (z >> 31)
+    }
+
+    pub fn below(&mut self, bound: usize) -> usize {
+        (self.bits() % bound as u64) as usize
+    }
+
+    pub fn within(&mut self, low: u32, high: u32) -> u32 {
+        low + self.below((high - low + 1) as usize) as u32
+    }
+
+    /// A pattern of a width, often at a corner of the range.
+    pub fn pattern(&mut self, width: u32) -> u64 {
+        let top = 1 << (width - 1);
+        let pattern = match self.below(8) {
+            0 => 0,
+            1 => u64::MAX,
+            2 => top,
+            3 => top - 1,
+            4 => 1,
+            _ => self.bits(),
+        };
+        pattern & mask(width)
+    }
+
+    pub fn format(&mut self, width: u32) -> Format {
+        match self.below(2) {
+            0 => Format::unsigned(width as i32, 0),
+            _ => Format::signed(width as i32 - 1, 0),
+        }
+    }
+}

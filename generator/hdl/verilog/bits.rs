@@ -1,0 +1,216 @@
+//! Wiring, bit by bit.
+//!
+//! Slices, extensions, concatenations, relabelled nets and constants are no hardware. [`Bits`] is
+//! what any mixture of them amounts to: pieces of the nets that the Verilog declares, constants, and
+//! copies of a sign bit. Because it is a normal form, the printer finds `a[5:2]` behind three nets of
+//! wiring, and the bits that nobody reads are known exactly.
+
+use crate::base::fixed::mask;
+use crate::hdl::netlist::NetId;
+
+/// Neighbouring bits of one origin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Piece {
+    /// `width` bits of a net from `low` up.
+    Net {
+        /// The net.
+        net: NetId,
+        /// The lowest bit.
+        low: u32,
+        /// How many.
+        width: u32,
+    },
+    /// Known bits.
+    Constant {
+        /// The pattern.
+        value: u64,
+        /// How many.
+        width: u32,
+    },
+    /// One bit, `count` times (two or more).
+    Copies {
+        /// The net.
+        net: NetId,
+        /// The bit.
+        bit: u32,
+        /// How often.
+        count: u32,
+    },
+}
+
+impl Piece {
+    /// Width in bits.
+    pub fn width(self) -> u32 {
+        match self {
+            Self::Net { width, .. } | Self::Constant { width, .. } => width,
+            Self::Copies { count, .. } => count,
+        }
+    }
+
+    /// `width` bits from `low` up.
+    fn slice(self, low: u32, width: u32) -> Self {
+        match self {
+            Self::Net { net, low: from, .. } => Self::Net { net, low: from + low, width },
+            Self::Constant { value, .. } => {
+                Self::Constant { value: value >> low & mask(width), width }
+            }
+            Self::Copies { net, bit, .. } if width == 1 => Self::Net { net, low: bit, width: 1 },
+            Self::Copies { net, bit, .. } => Self::Copies { net, bit, count: width },
+        }
+    }
+
+    /// Both pieces as one, `self` above `below`, where they are neighbours of one origin.
+    fn join(self, below: Self) -> Option<Self> {
+        match (self, below) {
+            (Self::Net { net, low, width }, Self::Net { net: other, low: from, width: count })
+                if net == other && low == from + count =>
+            {
+                Some(Self::Net { net, low: from, width: width + count })
+            }
+            (Self::Constant { value, width }, Self::Constant { value: lower, width: count })
+                if width + count <= 64 =>
+            {
+                Some(Self::Constant { value: value << count | lower, width: width + count })
+            }
+            _ => None,
+        }
+    }
+}
+
+/// A word as pieces, the most significant first.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Bits(Vec<Piece>);
+
+impl Bits {
+    /// A whole net.
+    pub fn net(net: NetId, width: u32) -> Self {
+        Self(vec![Piece::Net { net, low: 0, width }])
+    }
+
+    /// A bit pattern.
+    pub fn constant(value: u64, width: u32) -> Self {
+        Self(vec![Piece::Constant { value, width }])
+    }
+
+    /// The pieces, the most significant first.
+    pub fn pieces(&self) -> &[Piece] {
+        &self.0
+    }
+
+    /// The only piece, if there is but one.
+    pub fn single(&self) -> Option<Piece> {
+        match self.0[..] {
+            [piece] => Some(piece),
+            _ => None,
+        }
+    }
+
+    /// Width in bits.
+    pub fn width(&self) -> u32 {
+        self.0.iter().map(|piece| piece.width()).sum()
+    }
+
+    /// `width` bits from `low` up.
+    pub fn slice(&self, low: u32, width: u32) -> Self {
+        let mut taken = Self::default();
+        let mut top = self.width();
+        for piece in &self.0 {
+            let bottom = top - piece.width();
+            let (from, to) = (low.max(bottom), (low + width).min(top));
+            if from < to {
+                taken.append(piece.slice(from - bottom, to - from));
+            }
+            top = bottom;
+        }
+        taken
+    }
+
+    /// `lower` below these bits.
+    pub fn followed_by(mut self, lower: &Self) -> Self {
+        for piece in &lower.0 {
+            self.append(*piece);
+        }
+        self
+    }
+
+    /// Copies of the top bit (signed) or zeros above, up to `width`.
+    pub fn extend(&self, width: u32, signed: bool) -> Self {
+        let count = width.saturating_sub(self.width());
+        if count == 0 {
+            return self.clone();
+        }
+        let above = match self.0.first() {
+            Some(Piece::Net { net, low, width }) if signed => {
+                let bit = low + width - 1;
+                match count {
+                    1 => Piece::Net { net: *net, low: bit, width: 1 },
+                    _ => Piece::Copies { net: *net, bit, count },
+                }
+            }
+            Some(Piece::Copies { net, bit, count: already }) if signed => {
+                let mut extended = self.clone();
+                extended.0[0] = Piece::Copies { net: *net, bit: *bit, count: count + already };
+                return extended;
+            }
+            Some(Piece::Constant { value, width }) if signed && value >> (width - 1) & 1 == 1 => {
+                Piece::Constant { value: mask(count), width: count }
+            }
+            _ => Piece::Constant { value: 0, width: count },
+        };
+        Self(vec![above]).followed_by(self)
+    }
+
+    fn append(&mut self, piece: Piece) {
+        match self.0.last().and_then(|above| above.join(piece)) {
+            Some(joined) => {
+                self.0.pop();
+                self.0.push(joined);
+            }
+            None => self.0.push(piece),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const A: NetId = NetId(1);
+    const B: NetId = NetId(2);
+
+    #[test]
+    fn slices_of_slices_are_one_slice() {
+        let bits = Bits::net(A, 20).slice(4, 10).slice(2, 3);
+        assert_eq!(bits.pieces(), [Piece::Net { net: A, low: 6, width: 3 }]);
+    }
+
+    #[test]
+    fn neighbours_join_and_strangers_do_not() {
+        let a = Bits::net(A, 8);
+        assert_eq!(a.slice(4, 4).followed_by(&a.slice(0, 4)), a);
+        assert_eq!(a.slice(0, 4).followed_by(&a.slice(4, 4)).pieces().len(), 2);
+        assert_eq!(Bits::net(A, 4).followed_by(&Bits::net(B, 4)).pieces().len(), 2);
+        let constant = Bits::constant(0b101, 3).followed_by(&Bits::constant(0b01, 2));
+        assert_eq!(constant, Bits::constant(0b10101, 5));
+    }
+
+    #[test]
+    fn extension_repeats_the_sign_bit() {
+        let once = Bits::net(A, 8).extend(9, true);
+        assert_eq!(once.pieces()[0], Piece::Net { net: A, low: 7, width: 1 });
+        let twice = Bits::net(A, 8).extend(10, true).extend(13, true);
+        assert_eq!(twice.pieces()[0], Piece::Copies { net: A, bit: 7, count: 5 });
+        assert_eq!(Bits::constant(0b10, 2).extend(4, true), Bits::constant(0b1110, 4));
+        assert_eq!(Bits::constant(0b10, 2).extend(4, false), Bits::constant(0b0010, 4));
+    }
+
+    #[test]
+    fn a_slice_across_pieces_keeps_their_order() {
+        let bits = Bits::net(A, 4).extend(8, true).slice(3, 3);
+        assert_eq!(bits.width(), 3);
+        assert_eq!(
+            bits.pieces(),
+            [Piece::Copies { net: A, bit: 3, count: 2 }, Piece::Net { net: A, low: 3, width: 1 }]
+        );
+    }
+}

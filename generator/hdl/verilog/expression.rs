@@ -1,0 +1,284 @@
+//! Cells as Verilog expressions.
+//!
+//! The operands of every cell have one width, which is also that of the result, so that no context
+//! can extend or cut a carry. The exceptions are handled by name: a product is written only as the
+//! whole right-hand side of a net of its full width, and the carry into an adder is extended to the
+//! adder's width. Signedness matters to products and comparisons alone, which state it.
+
+use super::bits::{Bits, Piece};
+use super::plan::{Form, Plan, Reader};
+use super::text::{Names, constant_name, literal};
+use crate::base::fixed::mask;
+use crate::hdl::netlist::{Driver, NetId, Op, Rom};
+
+/// A number that is baked in: a localparam.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Constant {
+    /// The localparam.
+    pub name: String,
+    /// The name in the description, without a number at its end.
+    base: String,
+    /// The bit pattern.
+    pub bits: u64,
+    /// Its width.
+    pub width: u32,
+    /// Its value, unless that is the bit pattern.
+    pub note: String,
+}
+
+/// Writes the expressions of one module.
+pub struct Expressions<'a> {
+    plan: &'a Plan<'a>,
+    names: Names,
+    /// The constants that were used, in that order.
+    pub constants: Vec<Constant>,
+}
+
+impl<'a> Expressions<'a> {
+    /// For a module in which nothing was written yet.
+    pub fn new(plan: &'a Plan<'a>, names: Names) -> Self {
+        Self { plan, names, constants: Vec::new() }
+    }
+
+    /// The right-hand side that drives a net.
+    pub fn driver(&mut self, id: NetId) -> String {
+        match &self.plan.design.net(id).driver {
+            Driver::Op(op) => self.cell(id, op),
+            Driver::Constant(value) => literal(*value, self.plan.design.width(id)),
+            Driver::Field(_) => {
+                let word = self.plan.design.rom(self.plan.design.control.rom).data;
+                self.bits(&self.plan.operand_bits(Reader::Cell(id), word))
+            }
+            _ => self.plan.design.net(id).name.clone(),
+        }
+    }
+
+    /// A net as the whole right-hand side.
+    pub fn whole(&mut self, id: NetId) -> String {
+        match self.inline(id) {
+            Some(cell) => self.driver(cell),
+            None => self.operand(id),
+        }
+    }
+
+    /// A net as an operand: a name, a selection, a concatenation, or a cell in parentheses.
+    pub fn operand(&mut self, id: NetId) -> String {
+        if let Some(constant) = self.constant(id) {
+            return constant;
+        }
+        match self.inline(id) {
+            Some(cell) => {
+                let text = self.driver(cell);
+                if is_primary(&text) { text } else { format!("({text})") }
+            }
+            None => self.bits(&self.plan.bits[id.index()]),
+        }
+    }
+
+    /// The operand of a unary operator, which may not begin with another one.
+    fn primary(&mut self, id: NetId) -> String {
+        let text = self.operand(id);
+        if text.starts_with('~') { format!("({text})") } else { text }
+    }
+
+    /// The localparam for a net that is a constant, possibly extended or relabelled, unless a literal
+    /// says as much: 0, 1 ulp, all ones.
+    fn constant(&mut self, id: NetId) -> Option<String> {
+        let design = self.plan.design;
+        let Some(Piece::Constant { value, width }) = self.plan.bits[id.index()].single() else {
+            return None;
+        };
+        let mut origin = id;
+        while let Driver::Op(Op::Relabel(of) | Op::Extend(of)) = &design.net(origin).driver {
+            origin = *of;
+        }
+        let from = design.net(origin);
+        if !matches!(from.driver, Driver::Constant(_)) {
+            return None;
+        }
+        if !from.named && (value <= 1 || (value == mask(width) && width >= 8)) {
+            return None;
+        }
+        let (name, origin) = (&from.name, from.format);
+        // The DSL numbers constants of one name apart; here only different bits are.
+        let base = if from.named { name } else { unnumbered(name) };
+        let same = |constant: &&Constant| {
+            constant.base == base && (constant.bits, constant.width) == (value, width)
+        };
+        if let Some(known) = self.constants.iter().find(same) {
+            return Some(known.name.clone());
+        }
+        let name = match from.named {
+            true if width == origin.width() => name.clone(),
+            _ => self.names.fresh(&constant_name(base)),
+        };
+        let Driver::Constant(bits) = from.driver else {
+            return None;
+        };
+        self.constants.push(Constant {
+            name: name.clone(),
+            base: base.to_owned(),
+            bits: value,
+            width,
+            note: match origin.signed || origin.frac != 0 {
+                true => format!("{:?} in {origin}", origin.to_f64(origin.raw(bits))),
+                false => String::new(),
+            },
+        });
+        Some(name)
+    }
+
+    /// The word number for a ROM, exactly as wide as its depth asks.
+    pub fn address(&mut self, rom: &Rom) -> String {
+        let width = super::plan::address_width(rom.words.len());
+        let bits = &self.plan.bits[rom.address.index()];
+        let exact =
+            if bits.width() > width { bits.slice(0, width) } else { bits.extend(width, false) };
+        self.bits(&exact)
+    }
+
+    /// The cell that a net stands for, if that is written in its place.
+    fn inline(&self, id: NetId) -> Option<NetId> {
+        match self.plan.bits[id.index()].single() {
+            Some(Piece::Net { net, .. }) if self.plan.forms[net.index()] == Form::Inline => {
+                Some(net)
+            }
+            _ => None,
+        }
+    }
+
+    /// Wiring.
+    pub fn bits(&self, bits: &Bits) -> String {
+        let parts: Vec<_> = bits.pieces().iter().map(|piece| self.piece(*piece)).collect();
+        match &parts[..] {
+            [only] => only.clone(),
+            _ => format!("{{{}}}", parts.join(", ")),
+        }
+    }
+
+    fn piece(&self, piece: Piece) -> String {
+        let name = |net: NetId| self.plan.design.net(net).name.as_str();
+        match piece {
+            Piece::Constant { value, width } => literal(value, width),
+            Piece::Copies { net, bit, count } if self.plan.design.width(net) == 1 => {
+                debug_assert_eq!(bit, 0, "a net of one bit has no other");
+                format!("{{{count}{{{}}}}}", name(net))
+            }
+            Piece::Copies { net, bit, count } => format!("{{{count}{{{}[{bit}]}}}}", name(net)),
+            Piece::Net { net, width, .. } if width == self.plan.design.width(net) => {
+                name(net).to_owned()
+            }
+            Piece::Net { net, low, width: 1 } => format!("{}[{low}]", name(net)),
+            Piece::Net { net, low, width } => format!("{}[{}:{low}]", name(net), low + width - 1),
+        }
+    }
+
+    fn cell(&mut self, id: NetId, op: &Op) -> String {
+        match op {
+            Op::Relabel(a) => self.whole(*a),
+            Op::Extend(_) | Op::Slice { .. } | Op::Concat(_) => {
+                let bits = self.plan.wiring(id).unwrap_or_default();
+                self.bits(&bits)
+            }
+            Op::Not(a) => format!("~{}", self.primary(*a)),
+            Op::And(a, b) => self.binary(*a, "&", *b),
+            Op::Or(a, b) => self.binary(*a, "|", *b),
+            Op::Xor(a, b) => self.binary(*a, "^", *b),
+            Op::Add { a, b, carry: None } => self.binary(*a, "+", *b),
+            Op::Add { a, b, carry: Some(carry) } => {
+                let sum = self.binary(*a, "+", *b);
+                let carry = self.extended_carry(*carry, self.plan.design.width(id));
+                format!("{sum} + {carry}")
+            }
+            Op::Sub(a, b) => self.binary(*a, "-", *b),
+            Op::Mul(a, b) => {
+                format!("{} * {}", self.with_sign(*a), self.with_sign(*b))
+            }
+            Op::Equal(a, b) => self.binary(*a, "==", *b),
+            Op::Less(a, b) => match self.plan.constant_comparison(*a, *b) {
+                Some(known) => literal(known, 1),
+                // A constant reads best on the right.
+                None if matches!(
+                    self.plan.bits[a.index()].single(),
+                    Some(Piece::Constant { .. })
+                ) =>
+                {
+                    format!("{} > {}", self.with_sign(*b), self.with_sign(*a))
+                }
+                None => format!("{} < {}", self.with_sign(*a), self.with_sign(*b)),
+            },
+            Op::Any(a) if self.plan.design.width(*a) == 1 => self.whole(*a),
+            Op::All(a) if self.plan.design.width(*a) == 1 => self.whole(*a),
+            Op::Any(a) => format!("|{}", self.primary(*a)),
+            Op::All(a) => format!("&{}", self.primary(*a)),
+            Op::Mux { select, inputs } => match &inputs[..] {
+                [zero, one] => {
+                    let select = self.operand(*select);
+                    let (one, zero) = (self.operand(*one), self.operand(*zero));
+                    format!("{select} ? {one} : {zero}")
+                }
+                _ => self.plan.design.net(id).name.clone(),
+            },
+        }
+    }
+
+    fn binary(&mut self, a: NetId, sign: &str, b: NetId) -> String {
+        let (a, b) = (self.operand(a), self.operand(b));
+        format!("{a} {sign} {b}")
+    }
+
+    fn extended_carry(&mut self, carry: NetId, width: u32) -> String {
+        let carry = self.operand(carry);
+        if width == 1 { carry } else { format!("{{{}, {carry}}}", literal(0, width - 1)) }
+    }
+
+    /// An operand whose signedness in the Verilog is that of its format.
+    fn with_sign(&mut self, id: NetId) -> String {
+        let text = self.operand(id);
+        let wanted = self.plan.design.net(id).format.signed;
+        let written = match self.plan.bits[id.index()].single() {
+            Some(Piece::Net { net, width, .. }) if width == self.plan.design.width(net) => {
+                self.plan.design.net(net).format.signed
+            }
+            _ => false,
+        };
+        match (written, wanted) {
+            (false, true) => format!("$signed({text})"),
+            (true, false) => format!("$unsigned({text})"),
+            _ => text,
+        }
+    }
+}
+
+/// `one_2` without its number.
+fn unnumbered(name: &str) -> &str {
+    let base = name.trim_end_matches(|sign: char| sign.is_ascii_digit());
+    match base.strip_suffix('_') {
+        Some(base) if base.len() + 1 < name.len() => base,
+        _ => name,
+    }
+}
+
+/// Whether a text needs no parentheses as an operand: a name, a selection, a concatenation or the
+/// inverse of one.
+fn is_primary(text: &str) -> bool {
+    let inner = text.strip_prefix('~').unwrap_or(text);
+    !inner.starts_with(['~', '|', '&', '-'])
+        && (!inner.contains(' ') || (inner.starts_with('{') && closes_at_end(inner)))
+}
+
+/// Whether the first brace closes with the last character.
+fn closes_at_end(text: &str) -> bool {
+    let mut depth = 0usize;
+    for (at, sign) in text.char_indices() {
+        match sign {
+            '{' => depth += 1,
+            '}' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        if depth == 0 {
+            return at + 1 == text.len();
+        }
+    }
+    false
+}

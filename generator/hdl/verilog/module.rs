@@ -1,0 +1,342 @@
+//! The modules: from a plan to the view that the templates print.
+
+use std::collections::BTreeSet;
+
+use super::expression::Expressions;
+use super::header;
+use super::interface::{Interface, unread};
+use super::naming::{Naming, is_control_rom, remark, rom_label};
+use super::plan::{Form, Plan};
+use super::rows::{Row, separated};
+use super::text::{annotated, comment, literal, range, statement};
+use super::view::{Item, Module, RomItem, Section, Spaced};
+use crate::hdl::netlist::{Driver, NetId, Op, RegId, RomId, Unit};
+use crate::package::EmitInputs;
+use crate::package::formal;
+
+/// Builds one unit.
+pub struct Builder<'a> {
+    plan: &'a Plan<'a>,
+    naming: &'a Naming,
+    interface: &'a Interface,
+    unit: Unit,
+    expressions: Expressions<'a>,
+    /// The choices of fields that label a case, as (field, value).
+    labels: BTreeSet<(usize, usize)>,
+}
+
+impl<'a> Builder<'a> {
+    /// For a unit.
+    pub fn new(
+        plan: &'a Plan<'a>,
+        naming: &'a Naming,
+        interface: &'a Interface,
+        unit: Unit,
+    ) -> Self {
+        Self {
+            plan,
+            naming,
+            interface,
+            unit,
+            expressions: Expressions::new(plan, naming.names.clone()),
+            labels: BTreeSet::new(),
+        }
+    }
+
+    /// The module.
+    pub fn module(mut self, inputs: &EmitInputs) -> Module {
+        // Statements first: they tell which constants and choices are to be declared.
+        let items = self.items();
+        let groups = self.groups();
+        let constants = self.constants();
+        let state = self.state();
+        let sections = [("Constants", constants), ("Registers", state)];
+        Module {
+            header: header::unit(self.plan.design, self.unit, inputs, self.naming),
+            name: self.naming.module(self.unit),
+            parameters: parameters(self.naming, &self.interface.roms),
+            ports: self.ports(),
+            declarations: sections
+                .into_iter()
+                .filter(|(_, lines)| !lines.is_empty())
+                .map(|(title, lines)| Section { title, lines })
+                .collect(),
+            items,
+            groups,
+            unused: self.unused(),
+            formal: formal::invariants(self.plan.design, self.naming, self.unit),
+        }
+    }
+
+    fn ports(&self) -> Vec<String> {
+        let mut rows = Vec::new();
+        if self.interface.clocked {
+            rows.push(Row::port("input", "wire", 1, false, "clk", ""));
+        }
+        for (nets, direction) in
+            [(&self.interface.inputs, "input"), (&self.interface.outputs, "output")]
+        {
+            for &net in nets {
+                let kind = if direction == "output" { self.kind(net) } else { "wire" };
+                rows.push(Row::net(self.plan, direction, kind, net));
+            }
+        }
+        Row::ports(&rows)
+    }
+
+    /// `reg` where a procedural block assigns the net.
+    fn kind(&self, net: NetId) -> &'static str {
+        match &self.plan.design.net(net).driver {
+            Driver::Register(_) => "reg",
+            Driver::Rom(rom) if self.plan.design.rom(*rom).synchronous => "reg",
+            Driver::Op(Op::Mux { inputs, .. }) if inputs.len() > 2 => "reg",
+            _ => "wire",
+        }
+    }
+
+    /// The declarations of what the clock changes, except ports.
+    fn state(&self) -> Vec<String> {
+        let design = self.plan.design;
+        let registers = design.registers.iter().map(|register| register.q);
+        let roms = design.roms.iter().filter(|rom| rom.synchronous).map(|rom| rom.data);
+        let rows: Vec<_> = registers
+            .chain(roms)
+            .filter(|net| {
+                self.plan.unit(*net) == self.unit && !self.interface.outputs.contains(net)
+            })
+            .map(|net| Row::net(self.plan, "", "reg", net))
+            .collect();
+        Row::declarations(&rows)
+    }
+
+    fn constants(&self) -> Vec<String> {
+        let design = self.plan.design;
+        let mut lines = Vec::new();
+        for constant in &self.expressions.constants {
+            lines.extend(localparam(&constant.name, constant.bits, constant.width, &constant.note));
+        }
+        for &(field, value) in &self.labels {
+            let name = &self.naming.choices[field][value];
+            let width = design.width(design.control.fields[field].net);
+            lines.extend(localparam(name, value as u64, width, ""));
+        }
+        lines
+    }
+
+    fn items(&mut self) -> Vec<Spaced> {
+        let design = self.plan.design;
+        let mut items = Vec::new();
+        for &id in &self.plan.live {
+            if self.plan.unit(id) != self.unit || self.plan.forms[id.index()] != Form::Declared {
+                continue;
+            }
+            match &design.net(id).driver {
+                Driver::Op(Op::Mux { select, inputs }) if inputs.len() > 2 => {
+                    items.push(self.case(id, *select, inputs));
+                }
+                Driver::Op(_) | Driver::Field(_) | Driver::Constant(_) => {
+                    items.push(self.assign(id))
+                }
+                Driver::Rom(rom) if !design.rom(*rom).synchronous => items.push(self.rom(*rom)),
+                _ => {}
+            }
+        }
+        for &rom in &self.interface.roms {
+            if design.rom(rom).synchronous {
+                items.push(self.rom(rom));
+            }
+        }
+        // One-liners stand together.
+        let mut after_line = false;
+        let mut spaced = Vec::new();
+        for item in items {
+            let line = matches!(&item, Item::Assign(lines) if lines.len() == 1);
+            spaced.push(Spaced { gap: !(line && after_line), item });
+            after_line = line;
+        }
+        spaced
+    }
+
+    fn assign(&mut self, id: NetId) -> Item {
+        let note = remark(self.plan.design, id);
+        let right = self.expressions.driver(id);
+        let lines = statement(4, &format!("{} = {right};", self.target(id)));
+        if let [line] = &lines[..] {
+            return Item::Assign(annotated(line.trim_start(), 4, &note));
+        }
+        Item::Assign(comment(4, &note).into_iter().chain(lines).collect())
+    }
+
+    /// The left side of a continuous assignment: with the declaration, unless the net is a port.
+    fn target(&self, id: NetId) -> String {
+        let net = self.plan.design.net(id);
+        if self.interface.outputs.contains(&id) {
+            return format!("assign {}", net.name);
+        }
+        let sign = if net.format.signed { "signed" } else { "" };
+        let words = ["wire", sign, &range(net.format.width()), &net.name];
+        words.into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
+    }
+
+    fn case(&mut self, id: NetId, select: NetId, inputs: &[NetId]) -> Item {
+        let design = self.plan.design;
+        let name = &design.net(id).name;
+        let labels = self.case_labels(select, inputs.len());
+        let mut arms = Vec::new();
+        for (label, input) in labels.iter().zip(inputs) {
+            let value = self.expressions.whole(*input);
+            arms.extend(statement(12, &format!("{label}: {name} = {value};")));
+        }
+        let last = inputs.last().map(|input| self.expressions.whole(*input)).unwrap_or_default();
+        let declaration = if self.interface.outputs.contains(&id) {
+            Vec::new()
+        } else {
+            Row::declarations(&[Row::net(self.plan, "", "reg", id).without_note()])
+        };
+        Item::Case {
+            comment: comment(4, &remark(design, id)),
+            declaration,
+            select: self.expressions.whole(select),
+            arms,
+            default: statement(12, &format!("default: {name} = {last};")),
+        }
+    }
+
+    /// Names where the select is a field of the control word, else numbers.
+    fn case_labels(&mut self, select: NetId, count: usize) -> Vec<String> {
+        let design = self.plan.design;
+        let width = design.width(select);
+        let field =
+            design.control.fields.iter().position(|field| {
+                self.plan.bits[select.index()] == self.plan.bits[field.net.index()]
+            });
+        (0..count)
+            .map(|value| {
+                let named = field.filter(|field| value < self.naming.choices[*field].len());
+                match named {
+                    Some(field) => {
+                        self.labels.insert((field, value));
+                        self.naming.choices[field][value].clone()
+                    }
+                    None => literal(value as u64, width),
+                }
+            })
+            .collect()
+    }
+
+    fn rom(&mut self, id: RomId) -> Item {
+        let rom = self.plan.design.rom(id);
+        let width = self.plan.design.width(rom.data);
+        let what =
+            if rom.doc.is_empty() { String::new() } else { format!(": {}", rom.doc.join(" ")) };
+        let control = is_control_rom(self.plan.design, id);
+        let word =
+            format!("{}[{}]", self.naming.memories[id.index()], self.expressions.address(rom));
+        let read = match rom.synchronous {
+            true => {
+                let data = &self.plan.design.net(rom.data).name;
+                format!("always @(posedge clk) {data} <= {word};")
+            }
+            false => format!("{} = {word};", self.target(rom.data)),
+        };
+        Item::Rom(RomItem {
+            comment: comment(4, &format!("{}{what}", rom_label(rom))),
+            range: range(width),
+            memory: self.naming.memories[id.index()].clone(),
+            last: rom.words.len().saturating_sub(1),
+            radix: if control { 'b' } else { 'h' },
+            parameter: self.naming.parameters[id.index()].clone(),
+            read: statement(4, &read),
+        })
+    }
+
+    /// Registers with the same enable and the same reset behaviour share a block.
+    fn groups(&mut self) -> Vec<Vec<String>> {
+        /// The enable, and whether reset sets the registers.
+        type Key = (Option<NetId>, bool);
+        let design = self.plan.design;
+        let mut groups: Vec<(Key, Vec<RegId>)> = Vec::new();
+        for (at, register) in design.registers.iter().enumerate() {
+            if self.plan.unit(register.q) != self.unit {
+                continue;
+            }
+            let key = (register.enable, register.reset.is_some());
+            let member = RegId(at as u32);
+            match groups.iter_mut().find(|(group, _)| *group == key) {
+                Some((_, members)) => members.push(member),
+                None => groups.push((key, vec![member])),
+            }
+        }
+        let mut blocks = Vec::new();
+        for ((enable, _), members) in groups {
+            blocks.push(self.group(enable, &members));
+        }
+        blocks
+    }
+
+    fn group(&mut self, enable: Option<NetId>, members: &[RegId]) -> Vec<String> {
+        let design = self.plan.design;
+        let reset = self
+            .plan
+            .reset
+            .filter(|_| members.iter().any(|member| design.register(*member).reset.is_some()));
+        let enable = enable.map(|enable| self.expressions.whole(enable));
+        let nested = reset.is_some() || enable.is_some();
+        let mut takes = Vec::new();
+        for &member in members {
+            let register = design.register(member);
+            let data = register.data.map(|data| self.expressions.whole(data)).unwrap_or_default();
+            let text = format!("{} <= {data};", design.net(register.q).name);
+            takes.extend(statement(if nested { 12 } else { 8 }, &text));
+        }
+        let mut lines = Vec::new();
+        if let Some(reset) = reset {
+            lines.push(format!("        if (!{}) begin", design.net(reset).name));
+            for &member in members {
+                let register = design.register(member);
+                let value = literal(register.reset.unwrap_or(0), design.width(register.q));
+                lines.push(format!("            {} <= {value};", design.net(register.q).name));
+            }
+        }
+        match (reset, enable) {
+            (Some(_), Some(enable)) => {
+                lines.extend(statement(8, &format!("end else if ({enable}) begin")))
+            }
+            (Some(_), None) => lines.push("        end else begin".to_owned()),
+            (None, Some(enable)) => lines.extend(statement(8, &format!("if ({enable}) begin"))),
+            (None, None) => {}
+        }
+        lines.extend(takes);
+        if nested {
+            lines.push("        end".to_owned());
+        }
+        lines
+    }
+
+    fn unused(&self) -> Vec<String> {
+        let ranges = unread(self.plan, self.unit, self.interface);
+        if ranges.is_empty() {
+            return Vec::new();
+        }
+        let mut parts = vec!["1'b0".to_owned()];
+        for (net, low, count) in ranges {
+            let bits = self.plan.bits[net.index()].slice(low, count);
+            parts.push(self.expressions.bits(&bits));
+        }
+        statement(4, &format!("wire {} = &{{{}}};", self.naming.unused, parts.join(", ")))
+    }
+}
+
+/// The file parameters of ROMs, with their commas.
+pub fn parameters(naming: &Naming, roms: &[RomId]) -> Vec<String> {
+    let texts = roms.iter().map(|rom| {
+        format!("parameter {} = \"{}\"", naming.parameters[rom.index()], naming.files[rom.index()])
+    });
+    separated(texts.collect())
+}
+
+fn localparam(name: &str, value: u64, width: u32, note: &str) -> Vec<String> {
+    let range = range(width);
+    let space = if range.is_empty() { "" } else { " " };
+    annotated(&format!("localparam {range}{space}{name} = {};", literal(value, width)), 4, note)
+}

@@ -1,0 +1,153 @@
+//! The names and comments that emission adds to those of the description.
+
+use super::text::{Names, constant_name};
+use crate::hdl::netlist::{Control, Design, Driver, FieldKind, Net, NetId, Op, Rom, RomId, Unit};
+
+/// Names of modules, instances, memories, files and parameters.
+pub struct Naming {
+    /// The instance of the control unit, and of the datapath, in the top module.
+    pub control_instance: String,
+    /// See above.
+    pub datapath_instance: String,
+    /// The memory of each ROM.
+    pub memories: Vec<String>,
+    /// The parameter with the file name of each ROM.
+    pub parameters: Vec<String>,
+    /// The file of each ROM.
+    pub files: Vec<String>,
+    /// The localparams of each field's choices, by value.
+    pub choices: Vec<Vec<String>>,
+    /// The net that takes unread bits. Linters leave a net alone whose name contains `unused`.
+    pub unused: String,
+    /// All names so far: a module may add its own.
+    pub names: Names,
+    design: String,
+}
+
+impl Naming {
+    /// Chooses names that collide with none of the description.
+    pub fn new(design: &Design) -> Self {
+        let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
+        names.fresh("clk");
+        Self {
+            control_instance: names.fresh("control"),
+            datapath_instance: names.fresh("datapath"),
+            memories: design
+                .roms
+                .iter()
+                .map(|rom| names.fresh(&format!("{}_rom", rom.name)))
+                .collect(),
+            parameters: design
+                .roms
+                .iter()
+                .map(|rom| names.fresh(&format!("{}_FILE", constant_name(&rom.name))))
+                .collect(),
+            files: design
+                .roms
+                .iter()
+                .map(|rom| format!("{}_{}.mem", design.name, rom.name))
+                .collect(),
+            choices: choices(&design.control, &mut names),
+            unused: names.fresh("unused"),
+            names,
+            design: design.name.clone(),
+        }
+    }
+
+    /// The module of a unit.
+    pub fn module(&self, unit: Unit) -> String {
+        match unit {
+            Unit::Control => format!("{}_control", self.design),
+            Unit::Datapath => format!("{}_datapath", self.design),
+        }
+    }
+
+    /// The instance of a unit.
+    pub fn instance(&self, unit: Unit) -> &str {
+        match unit {
+            Unit::Control => &self.control_instance,
+            Unit::Datapath => &self.datapath_instance,
+        }
+    }
+}
+
+fn choices(control: &Control, names: &mut Names) -> Vec<Vec<String>> {
+    let mut of_field = |field: &crate::hdl::netlist::Field| match &field.kind {
+        FieldKind::Select(choices) => choices
+            .iter()
+            .map(|choice| names.fresh(constant_name(&format!("{} {choice}", field.name)).as_str()))
+            .collect(),
+        FieldKind::Enable | FieldKind::Flag | FieldKind::Sequence => Vec::new(),
+    };
+    control.fields.iter().map(&mut of_field).collect()
+}
+
+/// The control ROM or not.
+pub fn is_control_rom(design: &Design, rom: RomId) -> bool {
+    design.control.rom == rom
+}
+
+/// What to say of a net beside its declaration: `mux 8, s1.20: first operand`.
+pub fn remark(design: &Design, id: NetId) -> String {
+    let net = design.net(id);
+    // The width already says all of an unsigned integer.
+    let format = match net.format.signed || net.format.frac != 0 {
+        true => net.format.to_string(),
+        false => String::new(),
+    };
+    let label = match &net.driver {
+        Driver::Field(field) => field_label(&design.control, field.index()),
+        _ => net
+            .block
+            .map(|number| {
+                let port = design.ports.iter().find(|port| port.net == id);
+                let kind = match port {
+                    Some(port) if port.role.is_input() => "input",
+                    Some(_) => "output",
+                    None => kind(design, net),
+                };
+                format!("{kind} {number}")
+            })
+            .unwrap_or_default(),
+    };
+    let what: Vec<_> = [label, format].into_iter().filter(|part| !part.is_empty()).collect();
+    match (what.is_empty(), net.doc.is_empty()) {
+        (_, true) => what.join(", "),
+        (true, false) => net.doc.clone(),
+        (false, false) => format!("{}: {}", what.join(", "), net.doc),
+    }
+}
+
+/// `ROM 18`, or `ROM sine` where the source has no number.
+pub fn rom_label(rom: &Rom) -> String {
+    match rom.block {
+        Some(number) => format!("ROM {number}"),
+        None => format!("ROM {}", rom.name),
+    }
+}
+
+fn field_label(control: &Control, field: usize) -> String {
+    let lines: Vec<_> = control.fields[field].lines.iter().map(ToString::to_string).collect();
+    match lines.len() {
+        0 => String::new(),
+        1 => format!("line {}", lines[0]),
+        _ => format!("lines {}", lines.join(", ")),
+    }
+}
+
+/// What the source's figure would call the block behind a net.
+fn kind(design: &Design, net: &Net) -> &'static str {
+    match &net.driver {
+        Driver::Register(_) => "register",
+        Driver::Rom(_) => "ROM",
+        Driver::Op(op) => match op {
+            Op::Mux { .. } => "mux",
+            Op::Add { .. } | Op::Sub(..) => "adder",
+            Op::Mul(..) => "multiplier",
+            Op::Equal(..) | Op::Less(..) => "comparator",
+            Op::Relabel(of) | Op::Slice { of, .. } => kind(design, design.net(*of)),
+            _ => "block",
+        },
+        _ => "block",
+    }
+}

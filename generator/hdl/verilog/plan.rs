@@ -1,0 +1,379 @@
+//! Which nets the Verilog declares, what the others stand for, and who reads which bits.
+//!
+//! Wiring (slices, extensions, concatenations, relabelled nets, constants) that nobody named is
+//! written where it is used, as [`Bits`]. Other cells that nobody named are written into the one
+//! expression that uses them while that stays short. Everything else is declared, under its name.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Context as _, Result, bail};
+
+use super::bits::{Bits, Piece};
+use crate::base::fixed::mask;
+use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId, Role, RomId, Unit};
+
+/// How a net appears in the Verilog.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// Pure wiring: its [`Bits`] are written wherever it is used.
+    Wiring,
+    /// A `wire`, `reg` or port of its own.
+    Declared,
+    /// Written into the one expression that uses it.
+    Inline,
+}
+
+/// Something that reads nets, and the module that it is written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Reader {
+    /// The right-hand side of a declared net, or of one written in its place.
+    Cell(NetId),
+    /// Data, enable and reset of a register.
+    Register(RegId),
+    /// The address of a ROM.
+    Rom(RomId),
+}
+
+/// The decisions about a design.
+pub struct Plan<'a> {
+    /// What is emitted.
+    pub design: &'a Design,
+    /// How each net appears.
+    pub forms: Vec<Form>,
+    /// What each net stands for.
+    pub bits: Vec<Bits>,
+    /// The same through declared wiring too, down to cells, state and inputs.
+    pub roots: Vec<Bits>,
+    /// The nets whose cells are written at all, in an order in which operands come first.
+    pub live: Vec<NetId>,
+    /// The bits of each net that each module reads.
+    pub reads: BTreeMap<(Unit, NetId), u64>,
+    /// The reset port, if a register is reset.
+    pub reset: Option<NetId>,
+}
+
+impl<'a> Plan<'a> {
+    /// Decides.
+    ///
+    /// # Errors
+    /// A design that `check` would have refused: a loop, an undriven net, a register without data, a
+    /// reset without a port for it.
+    pub fn new(design: &'a Design) -> Result<Self> {
+        for net in &design.nets {
+            if net.driver == Driver::Undriven {
+                bail!("nothing drives `{}`, described at {}", net.name, net.location);
+            }
+        }
+        for register in &design.registers {
+            if register.data.is_none() {
+                bail!("register `{}` takes no data", design.net(register.q).name);
+            }
+        }
+        let order = design.levelise().map_err(|around| {
+            let names: Vec<_> = around.iter().map(|net| design.net(*net).name.as_str()).collect();
+            anyhow::anyhow!("a combinational loop: {}", names.join(" -> "))
+        })?;
+        let reset = if design.registers.iter().any(|register| register.reset.is_some()) {
+            let port = design
+                .port(|role| role == Role::Reset)
+                .context("a register is reset, but no port is the reset")?;
+            Some(port.net)
+        } else {
+            None
+        };
+        let mut plan = Self {
+            design,
+            forms: vec![Form::Declared; design.nets.len()],
+            bits: vec![Bits::default(); design.nets.len()],
+            roots: vec![Bits::default(); design.nets.len()],
+            live: Vec::new(),
+            reads: BTreeMap::new(),
+            reset,
+        };
+        plan.resolve_wiring(&order);
+        plan.find_live(&order);
+        plan.place_expressions();
+        plan.count_reads();
+        Ok(plan)
+    }
+
+    /// The module that declares a net: fields belong to the control unit whatever they turn.
+    pub fn unit(&self, net: NetId) -> Unit {
+        match self.design.net(net).driver {
+            Driver::Field(_) => Unit::Control,
+            _ => self.design.net(net).unit,
+        }
+    }
+
+    /// Whether a net is a port of the top module.
+    pub fn is_port(&self, net: NetId) -> bool {
+        self.design.ports.iter().any(|port| port.net == net)
+    }
+
+    /// Whether a net is driven inside, and so by exactly one of the two modules.
+    pub fn is_input(&self, net: NetId) -> bool {
+        self.design.net(net).driver == Driver::Input
+    }
+
+    /// The module that a reader is written in.
+    pub fn home(&self, reader: Reader) -> Unit {
+        match reader {
+            Reader::Cell(net) => self.unit(net),
+            Reader::Register(register) => self.unit(self.design.register(register).q),
+            Reader::Rom(rom) => self.unit(self.design.rom(rom).data),
+        }
+    }
+
+    /// The nets that a reader is written with.
+    pub fn operands(&self, reader: Reader) -> Vec<NetId> {
+        match reader {
+            Reader::Cell(net) => match &self.design.net(net).driver {
+                Driver::Op(Op::Less(a, b)) if self.constant_comparison(*a, *b).is_some() => {
+                    Vec::new()
+                }
+                Driver::Op(op) => op.operands(),
+                Driver::Field(_) => vec![self.design.rom(self.design.control.rom).data],
+                _ => Vec::new(),
+            },
+            Reader::Register(register) => {
+                let register = self.design.register(register);
+                register.data.into_iter().chain(register.enable).collect()
+            }
+            Reader::Rom(rom) => vec![self.design.rom(rom).address],
+        }
+    }
+
+    /// The bits of the operand that a reader really reads: all of them, but for a field, a slice and
+    /// the address of a ROM, which may have bits to spare.
+    pub fn operand_bits(&self, reader: Reader, operand: NetId) -> Bits {
+        let bits = &self.bits[operand.index()];
+        match reader {
+            Reader::Cell(net) => match &self.design.net(net).driver {
+                Driver::Field(field) => {
+                    let low = self.design.field_positions()[field.index()];
+                    bits.slice(low, self.design.width(net))
+                }
+                Driver::Op(Op::Slice { low, .. }) => bits.slice(*low, self.design.width(net)),
+                _ => bits.clone(),
+            },
+            Reader::Rom(rom) => {
+                let width = address_width(self.design.rom(rom).words.len());
+                bits.slice(0, width.min(bits.width()))
+            }
+            Reader::Register(_) => bits.clone(),
+        }
+    }
+
+    /// A comparison that the format alone decides (`a < 0` without a sign), which linters refuse.
+    pub fn constant_comparison(&self, a: NetId, b: NetId) -> Option<u64> {
+        let format = self.design.net(a).format;
+        let constant = |id: NetId| match self.roots[id.index()].single() {
+            Some(Piece::Constant { value, .. }) => Some(format.raw(value)),
+            _ => None,
+        };
+        match (constant(a), constant(b)) {
+            (Some(a), Some(b)) => Some(u64::from(a < b)),
+            (Some(a), None) if a == format.max_raw() => Some(0),
+            (None, Some(b)) if b == format.min_raw() => Some(0),
+            _ => None,
+        }
+    }
+
+    /// Every reader that is written.
+    pub fn readers(&self) -> Vec<Reader> {
+        let cells =
+            self.live.iter().copied().filter(|net| {
+                matches!(self.design.net(*net).driver, Driver::Op(_) | Driver::Field(_))
+            });
+        let registers =
+            (0..self.design.registers.len()).map(|at| Reader::Register(RegId(at as u32)));
+        let roms = (0..self.design.roms.len()).map(|at| Reader::Rom(RomId(at as u32)));
+        cells.map(Reader::Cell).chain(registers).chain(roms).collect()
+    }
+
+    /// What a net is by wiring alone, if it is, with `known` in place of each operand.
+    fn wired(&self, id: NetId, known: &[Bits]) -> Option<Bits> {
+        let width = self.design.width(id);
+        let of = |operand: &NetId| &known[operand.index()];
+        match &self.design.net(id).driver {
+            Driver::Constant(value) => Some(Bits::constant(value & mask(width), width)),
+            Driver::Op(Op::Relabel(a)) => Some(of(a).clone()),
+            Driver::Op(Op::Extend(a)) => {
+                Some(of(a).extend(width, self.design.net(*a).format.signed))
+            }
+            Driver::Op(Op::Slice { of: a, low }) => Some(of(a).slice(*low, width)),
+            Driver::Op(Op::Concat(parts)) => {
+                let all = parts.iter().map(of);
+                Some(all.fold(Bits::default(), |all, part| all.followed_by(part)))
+            }
+            _ => None,
+        }
+    }
+
+    /// The right-hand side of a declared net that is wiring.
+    pub fn wiring(&self, id: NetId) -> Option<Bits> {
+        self.wired(id, &self.bits)
+    }
+
+    fn resolve_wiring(&mut self, order: &[NetId]) {
+        for &id in order {
+            let whole = Bits::net(id, self.design.width(id));
+            // A named constant is a localparam where it is used whole, and known bits elsewhere.
+            let net = self.design.net(id);
+            let constant = matches!(net.driver, Driver::Constant(_)) && !self.is_port(id);
+            let transparent = constant || !(net.named || self.is_port(id));
+            self.roots[id.index()] = self.wired(id, &self.roots).unwrap_or_else(|| whole.clone());
+            self.bits[id.index()] = match self.wiring(id) {
+                Some(bits) if transparent => {
+                    self.forms[id.index()] = Form::Wiring;
+                    bits
+                }
+                _ => whole,
+            };
+        }
+    }
+
+    /// Cells that nobody named and nothing needs are left out.
+    fn find_live(&mut self, order: &[NetId]) {
+        let mut live = vec![false; self.design.nets.len()];
+        let mut pending: Vec<Reader> = Vec::new();
+        for (at, _) in self.design.registers.iter().enumerate() {
+            pending.push(Reader::Register(RegId(at as u32)));
+        }
+        for (at, _) in self.design.roms.iter().enumerate() {
+            pending.push(Reader::Rom(RomId(at as u32)));
+        }
+        for (id, net) in self.design.iter() {
+            if self.forms[id.index()] == Form::Declared && (net.named || self.is_port(id)) {
+                live[id.index()] = true;
+                pending.push(Reader::Cell(id));
+            }
+        }
+        while let Some(reader) = pending.pop() {
+            for operand in self.operands(reader) {
+                for piece in self.operand_bits(reader, operand).pieces() {
+                    let (Piece::Net { net, .. } | Piece::Copies { net, .. }) = *piece else {
+                        continue;
+                    };
+                    if !std::mem::replace(&mut live[net.index()], true) {
+                        pending.push(Reader::Cell(net));
+                    }
+                }
+            }
+        }
+        for (id, net) in self.design.iter() {
+            if matches!(net.driver, Driver::Input | Driver::Register(_) | Driver::Rom(_)) {
+                live[id.index()] = true;
+            }
+        }
+        self.live = order.iter().copied().filter(|net| live[net.index()]).collect();
+    }
+
+    /// Finds the cells that read better inside the one expression that uses them.
+    fn place_expressions(&mut self) {
+        let mut uses: BTreeMap<NetId, Vec<(Reader, bool)>> = BTreeMap::new();
+        for reader in self.readers() {
+            for operand in self.operands(reader) {
+                let bits = self.operand_bits(reader, operand);
+                for piece in bits.pieces() {
+                    if let Piece::Net { net, width, .. } | Piece::Copies { net, count: width, .. } =
+                        *piece
+                    {
+                        let whole = bits.single().is_some() && width == self.design.width(net);
+                        uses.entry(net).or_default().push((reader, whole));
+                    }
+                }
+            }
+        }
+        // The size of an expression: the declared nets and constants that it mentions.
+        let mut size = vec![1usize; self.design.nets.len()];
+        for &id in &self.live {
+            let net = self.design.net(id);
+            let Driver::Op(op) = &net.driver else {
+                continue;
+            };
+            if net.named || self.is_port(id) {
+                continue;
+            }
+            let [(reader, true)] = uses.get(&id).map_or(&[][..], Vec::as_slice) else {
+                continue;
+            };
+            let mentioned: usize =
+                op.operands().iter().map(|operand| self.mentioned(*operand, &size)).sum();
+            if self.home(*reader) == self.unit(id) && self.reads_well(op, *reader, mentioned) {
+                self.forms[id.index()] = Form::Inline;
+                size[id.index()] = mentioned;
+            }
+        }
+    }
+
+    fn mentioned(&self, operand: NetId, size: &[usize]) -> usize {
+        let nets = self.bits[operand.index()].pieces().iter().map(|piece| match piece {
+            Piece::Net { net, .. } => size[net.index()],
+            _ => 0,
+        });
+        nets.sum::<usize>().max(1)
+    }
+
+    /// Whether `op` may stand inside what `reader` writes. Products never do, except as the whole
+    /// right-hand side: in a larger expression they would be cut to the width of their operands.
+    fn reads_well(&self, op: &Op, reader: Reader, mentioned: usize) -> bool {
+        const SMALL: usize = 3;
+        let alone = match reader {
+            Reader::Cell(net) => match &self.design.net(net).driver {
+                Driver::Op(Op::Relabel(_)) => true,
+                // Comparisons and products need declared operands, whose signedness is visible; the
+                // select of a case reads best as a name.
+                Driver::Op(Op::Mul(..) | Op::Less(..)) => return false,
+                // Bits can be selected from a net alone, not from an expression.
+                Driver::Op(Op::Extend(_) | Op::Slice { .. } | Op::Concat(_)) => return false,
+                Driver::Op(Op::Mux { inputs, .. }) if inputs.len() > 2 => return false,
+                Driver::Op(_) => false,
+                _ => return false,
+            },
+            Reader::Register(register) => {
+                // Registers with one enable share an always block: the enable must have a name if
+                // several use it, and `uses` has seen that it has one reader only.
+                self.design.register(register).data.is_some() && mentioned <= SMALL
+            }
+            Reader::Rom(_) => return false,
+        };
+        match op {
+            Op::Mul(..) => alone && matches!(reader, Reader::Cell(_)),
+            Op::Mux { inputs, .. } => alone && inputs.len() == 2,
+            _ => alone || mentioned <= SMALL,
+        }
+    }
+
+    fn count_reads(&mut self) {
+        let mut reads = BTreeMap::new();
+        let mut read = |unit: Unit, net: NetId, bits: u64| {
+            *reads.entry((unit, net)).or_insert(0) |= bits;
+        };
+        for reader in self.readers() {
+            let unit = self.home(reader);
+            for operand in self.operands(reader) {
+                for piece in self.operand_bits(reader, operand).pieces() {
+                    match *piece {
+                        Piece::Net { net, low, width } => read(unit, net, mask(width) << low),
+                        Piece::Copies { net, bit, .. } => read(unit, net, 1 << bit),
+                        Piece::Constant { .. } => {}
+                    }
+                }
+            }
+        }
+        if let Some(reset) = self.reset {
+            for register in &self.design.registers {
+                if register.reset.is_some() {
+                    read(self.unit(register.q), reset, 1);
+                }
+            }
+        }
+        self.reads = reads;
+    }
+}
+
+/// The bits that number `depth` words; a memory of one word has one address bit.
+pub fn address_width(depth: usize) -> u32 {
+    depth.max(2).next_power_of_two().trailing_zeros()
+}

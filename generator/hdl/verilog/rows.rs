@@ -1,0 +1,89 @@
+//! Declarations and port lists, set in columns.
+
+use super::naming::remark;
+use super::plan::Plan;
+use super::text::{annotated, range};
+use crate::hdl::netlist::NetId;
+
+/// A comma behind each text but the last.
+pub fn separated(mut texts: Vec<String>) -> Vec<String> {
+    let last = texts.len().saturating_sub(1);
+    for text in texts.iter_mut().take(last) {
+        text.push(',');
+    }
+    texts
+}
+
+/// A declaration that is set in columns with its neighbours.
+pub struct Row {
+    head: String,
+    range: String,
+    name: String,
+    note: String,
+}
+
+impl Row {
+    /// A declaration of a net; the direction is empty for one that is no port.
+    pub fn net(plan: &Plan, direction: &str, kind: &str, id: NetId) -> Self {
+        let net = plan.design.net(id);
+        let format = net.format;
+        let note = remark(plan.design, id);
+        Self::port(direction, kind, format.width(), format.signed, &net.name, &note)
+    }
+
+    /// A declaration.
+    pub fn port(
+        direction: &str,
+        kind: &str,
+        width: u32,
+        signed: bool,
+        name: &str,
+        note: &str,
+    ) -> Self {
+        let direction = match direction {
+            "" => String::new(),
+            _ => format!("{direction:6} "),
+        };
+        let sign = if signed { " signed" } else { "" };
+        Self {
+            head: format!("{direction}{kind:4}{sign}"),
+            range: range(width),
+            name: name.to_owned(),
+            note: note.to_owned(),
+        }
+    }
+
+    /// Without the comment.
+    #[must_use]
+    pub fn without_note(mut self) -> Self {
+        self.note.clear();
+        self
+    }
+
+    /// As ports, with commas.
+    pub fn ports(rows: &[Self]) -> Vec<String> {
+        Self::set(rows, |at| if at + 1 < rows.len() { "," } else { "" })
+    }
+
+    /// As declarations.
+    pub fn declarations(rows: &[Self]) -> Vec<String> {
+        Self::set(rows, |_| ";")
+    }
+
+    fn set(rows: &[Self], end: impl Fn(usize) -> &'static str) -> Vec<String> {
+        let head = rows.iter().map(|row| row.head.len()).max().unwrap_or(0);
+        let range = rows.iter().map(|row| row.range.len()).max().unwrap_or(0);
+        let name = rows.iter().map(|row| row.name.len() + 1).max().unwrap_or(0);
+        let mut lines = Vec::new();
+        for (at, row) in rows.iter().enumerate() {
+            let gap = if range == 0 { "" } else { " " };
+            let named = format!("{}{}", row.name, end(at));
+            let code = format!("{:head$}{gap}{:range$} {named:name$}", row.head, row.range);
+            lines.extend(annotated(&code, 4, &row.note));
+        }
+        for line in &mut lines {
+            line.truncate(line.trim_end().len());
+        }
+        lines
+    }
+}

@@ -1,0 +1,260 @@
+//! What a device is, as plain facts: ports, fields and words of the microprogram, ROMs.
+//!
+//! The manifest writes them as JSON, the page as tables.
+
+use serde::{Serialize, Serializer, ser::SerializeMap};
+
+use crate::hdl::netlist::{self, Design, FieldKind, NetId, Role, RomId};
+use crate::hdl::verilog::naming::{Naming, is_control_rom};
+
+/// A port of the top module.
+#[derive(Serialize)]
+pub struct Port<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// `input` or `output`.
+    pub direction: &'static str,
+    /// What the environment does with it.
+    pub role: &'static str,
+    /// In bits.
+    pub width: u32,
+    /// Of operands, results and status.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub format: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    signed: Option<bool>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fraction_bits: Option<i32>,
+    /// The port that writes the operand.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub strobe: Option<&'a str>,
+    /// The number in the source's figure.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub block: Option<u16>,
+    /// One line.
+    #[serde(skip_serializing_if = "str::is_empty")]
+    pub doc: &'a str,
+}
+
+/// A field of the control word.
+#[derive(Serialize)]
+pub struct Field<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// What it turns: `select`, `enable`, `flag` or `sequence`.
+    pub kind: &'static str,
+    /// Its lowest bit in the word.
+    pub low: u32,
+    /// In bits.
+    pub width: u32,
+    /// What the values of a select choose, from 0.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    pub choices: &'a [String],
+    /// The numbers of its lines in the source's figure.
+    #[serde(skip_serializing_if = "<[_]>::is_empty")]
+    pub lines: &'a [u16],
+}
+
+/// A word of the microprogram.
+#[derive(Serialize)]
+pub struct Word<'a> {
+    /// Its number.
+    pub address: usize,
+    /// What it does.
+    pub name: &'a str,
+    /// The value of each field, in their order.
+    #[serde(serialize_with = "as_map")]
+    pub fields: Vec<(&'a str, u64)>,
+    /// What follows.
+    pub sequence: Sequence<'a>,
+}
+
+/// Where control goes after a word.
+#[derive(Serialize)]
+#[serde(untagged)]
+pub enum Sequence<'a> {
+    /// `next`, `wait for start` or `end`.
+    Plain(&'static str),
+    /// Around a loop.
+    Loop {
+        /// The word to go to.
+        loop_to: usize,
+        /// The net that must be 1 for that.
+        #[serde(rename = "while")]
+        condition: &'a str,
+    },
+    /// Over some words.
+    Jump {
+        /// The word to go to.
+        jump_to: usize,
+        /// The net that must be 1 for that.
+        #[serde(rename = "if")]
+        condition: &'a str,
+    },
+}
+
+/// A ROM.
+#[derive(Serialize)]
+pub struct Rom<'a> {
+    /// Its name in the description.
+    pub name: &'a str,
+    /// The file of its contents.
+    pub file: &'a str,
+    parameter: &'a str,
+    /// Words.
+    pub depth: usize,
+    /// Bits of a word.
+    pub width: u32,
+    /// Bits in all.
+    pub bits: u64,
+    /// Of the net that takes a word.
+    pub format: String,
+    /// Reads on the clock.
+    pub synchronous: bool,
+    radix: u8,
+    /// What an entry means.
+    pub doc: &'a [String],
+    /// The number in the source's figure.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub block: Option<u16>,
+}
+
+fn as_map<S: Serializer>(pairs: &[(&str, u64)], serializer: S) -> Result<S::Ok, S::Error> {
+    let mut map = serializer.serialize_map(Some(pairs.len()))?;
+    for (name, value) in pairs {
+        map.serialize_entry(name, value)?;
+    }
+    map.end()
+}
+
+/// The ports, the clock first.
+pub fn ports(design: &Design) -> Vec<Port<'_>> {
+    let clock = Port {
+        name: "clk",
+        direction: "input",
+        role: "clock",
+        width: 1,
+        format: None,
+        signed: None,
+        fraction_bits: None,
+        strobe: None,
+        block: None,
+        doc: "",
+    };
+    let of_port = |port: &netlist::Port| {
+        let net = design.net(port.net);
+        let strobe = match port.role {
+            Role::Operand { strobe } => Some(name(design, strobe)),
+            _ => None,
+        };
+        let number = matches!(port.role, Role::Operand { .. } | Role::Result | Role::Status);
+        Port {
+            name: &net.name,
+            direction: if port.role.is_input() { "input" } else { "output" },
+            role: role(port.role),
+            width: net.format.width(),
+            format: number.then(|| net.format.to_string()),
+            signed: number.then_some(net.format.signed),
+            fraction_bits: number.then_some(net.format.frac),
+            strobe,
+            block: net.block,
+            doc: &net.doc,
+        }
+    };
+    std::iter::once(clock).chain(design.ports.iter().map(of_port)).collect()
+}
+
+fn name(design: &Design, net: NetId) -> &str {
+    &design.net(net).name
+}
+
+fn role(role: Role) -> &'static str {
+    match role {
+        Role::Reset => "reset",
+        Role::Start => "start",
+        Role::Operand { .. } => "operand",
+        Role::Strobe => "strobe",
+        Role::Valid => "valid",
+        Role::Busy => "busy",
+        Role::Done => "done",
+        Role::Result => "result",
+        Role::Status => "status",
+    }
+}
+
+/// The fields of the control word, from the top bits.
+pub fn fields(design: &Design) -> Vec<Field<'_>> {
+    let positions = design.field_positions();
+    design
+        .control
+        .fields
+        .iter()
+        .zip(positions)
+        .map(|(field, low)| {
+            let (kind, choices): (_, &[String]) = match &field.kind {
+                FieldKind::Select(choices) => ("select", choices),
+                FieldKind::Enable => ("enable", &[]),
+                FieldKind::Flag => ("flag", &[]),
+                FieldKind::Sequence => ("sequence", &[]),
+            };
+            Field {
+                name: &field.name,
+                kind,
+                low,
+                width: design.width(field.net),
+                choices,
+                lines: &field.lines,
+            }
+        })
+        .collect()
+}
+
+/// The words of the microprogram.
+pub fn words(design: &Design) -> Vec<Word<'_>> {
+    let control = &design.control;
+    let names = || control.fields.iter().map(|field| field.name.as_str());
+    control
+        .words
+        .iter()
+        .enumerate()
+        .map(|(address, word)| Word {
+            address,
+            name: &word.name,
+            fields: names().zip(word.values.iter().copied()).collect(),
+            sequence: match &word.sequence {
+                netlist::Sequence::Next => Sequence::Plain("next"),
+                netlist::Sequence::WaitStart => Sequence::Plain("wait for start"),
+                netlist::Sequence::End => Sequence::Plain("end"),
+                netlist::Sequence::LoopWhile { condition, to } => {
+                    let condition = name(design, *condition);
+                    match *to > address {
+                        true => Sequence::Jump { jump_to: *to, condition },
+                        false => Sequence::Loop { loop_to: *to, condition },
+                    }
+                }
+            },
+        })
+        .collect()
+}
+
+/// The ROMs, that of the microprogram among them.
+pub fn roms<'a>(design: &'a Design, naming: &'a Naming) -> Vec<Rom<'a>> {
+    let entry = |(at, rom): (usize, &'a netlist::Rom)| {
+        let width = design.width(rom.data);
+        let binary = is_control_rom(design, RomId(at as u32));
+        Rom {
+            name: &rom.name,
+            file: &naming.files[at],
+            parameter: &naming.parameters[at],
+            depth: rom.words.len(),
+            width,
+            bits: rom.words.len() as u64 * u64::from(width),
+            format: design.net(rom.data).format.to_string(),
+            synchronous: rom.synchronous,
+            radix: if binary { 2 } else { 16 },
+            doc: &rom.doc,
+            block: rom.block,
+        }
+    };
+    design.roms.iter().enumerate().map(entry).collect()
+}

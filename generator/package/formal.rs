@@ -1,0 +1,331 @@
+//! What is proved of the emitted Verilog itself, by k-induction.
+//!
+//! Both units carry the invariants that a proof stands on, in a section for formal tools alone. A wrapper
+//! states what the manifest promises of the handshake, and a Yosys script makes the problem for
+//! `yosys-smtbmc`: products and the datapath's ROMs are cut out, since no property depends on them.
+
+use anyhow::Result;
+use askama::Template;
+
+use super::{Computation, EmitInputs, Timing};
+use crate::hdl::netlist::termination::{self, Left};
+use crate::hdl::netlist::{Design, NetId, RegId, RegisterKind, Sequence, Unit};
+use crate::hdl::verilog::naming::Naming;
+use crate::hdl::verilog::rows::{Row, separated};
+use crate::hdl::verilog::text::{Names, literal, range};
+
+/// Steps of an induction where the clocks depend on the data: more than a result takes through a pipeline.
+const UNROLLED: u32 = 8;
+
+#[derive(Template)]
+#[template(path = "formal.sv")]
+struct Wrapper {
+    name: String,
+    module: String,
+    depth: u32,
+    /// The solver, as the command line of yosys-smtbmc has it.
+    solver: &'static str,
+    instance: String,
+    age: Option<AgeView>,
+    /// Ports with their commas.
+    ports: Vec<String>,
+    outputs: Vec<String>,
+    connections: Vec<String>,
+    /// The program never waits for a second `start`: busy from start to done.
+    straight: bool,
+    exact: Option<Exact>,
+    bounded: Option<Bounded>,
+}
+
+/// The register that counts clocks since start.
+struct Age {
+    name: String,
+    width: u32,
+}
+
+impl Age {
+    fn literal(&self, clocks: u32) -> String {
+        literal(u64::from(clocks), self.width)
+    }
+}
+
+/// The same for the template.
+struct AgeView {
+    name: String,
+    range: String,
+    one: String,
+}
+
+/// When the events come, where that does not depend on the data.
+struct Exact {
+    valid: String,
+    done: String,
+    last: String,
+}
+
+/// The latest end, where the clocks depend on the data.
+struct Bounded {
+    /// What the proof sees of the inside: declarations.
+    inside: Vec<String>,
+    word: String,
+    most: String,
+    words: Vec<Word>,
+    /// In the clock of `done` there is a result.
+    ends_with_result: bool,
+    /// The clock of the first result, where one follows another from then on to the end.
+    first: Option<String>,
+}
+
+/// A word of the microprogram.
+struct Word {
+    label: String,
+    /// The age at which the computation ends, if it takes as long as it can.
+    end: String,
+}
+
+/// Commands of Yosys that make the problem, alone or for SymbiYosys.
+#[derive(Template)]
+#[template(path = "formal.ys")]
+struct Script<'a> {
+    name: &'a str,
+    instance: &'a str,
+    datapath: &'a str,
+    rtl: &'a [String],
+}
+
+#[derive(Template)]
+#[template(path = "formal.sby")]
+struct Task<'a> {
+    name: &'a str,
+    instance: &'a str,
+    datapath: &'a str,
+    depth: u32,
+    engine: &'static str,
+    rtl: &'a [String],
+    memories: &'a [String],
+}
+
+/// The files of the device that a proof reads.
+#[derive(Clone, Copy)]
+pub struct Sources<'a> {
+    /// Verilog.
+    pub rtl: &'a [String],
+    /// ROM contents.
+    pub memories: &'a [String],
+}
+
+/// The lines of a unit's section for formal tools.
+pub fn invariants(design: &Design, naming: &Naming, unit: Unit) -> Vec<String> {
+    let mut names = naming.names.clone();
+    let lines = match unit {
+        Unit::Control => control(design),
+        Unit::Datapath => datapath(design, &names.fresh("was_busy")),
+    };
+    lines.into_iter().map(|line| format!("    {line}")).collect()
+}
+
+/// From the first clock on, which has the initial set.
+fn control(design: &Design) -> Vec<String> {
+    let name = |register| design.net(design.register(register).q).name.as_str();
+    let (address, run) = (name(design.control.address), name(design.control.run));
+    let width = design.width(design.register(design.control.address).q);
+    let last = literal(design.control.words.len() as u64 - 1, width);
+    vec![
+        "always @* if (!$initstate) begin".to_owned(),
+        format!("    assert ({address} <= {last});  // no other word is reached"),
+        format!("    if (!{run}) assert ({address} == {});", literal(0, width)),
+        "end".to_owned(),
+    ]
+}
+
+/// Operands are stable while the device is busy.
+fn datapath(design: &Design, was_busy: &str) -> Vec<String> {
+    let operands: Vec<&str> = design
+        .registers
+        .iter()
+        .filter(|register| register.kind == RegisterKind::Operand)
+        .map(|register| design.net(register.q).name.as_str())
+        .collect();
+    if operands.is_empty() {
+        return Vec::new();
+    }
+    let mut lines = vec![
+        format!("reg {was_busy} = 1'b0;"),
+        "always @(posedge clk) begin".to_owned(),
+        format!("    {was_busy} <= !idle;"),
+        format!("    if ({was_busy}) begin"),
+    ];
+    for operand in operands {
+        lines.push(format!("        assert ({operand} == $past({operand}));"));
+    }
+    lines.extend(["    end".to_owned(), "end".to_owned()]);
+    lines
+}
+
+/// Wrapper and script, as names and texts.
+///
+/// # Errors
+/// A template that fails.
+pub fn files(
+    design: &Design,
+    naming: &Naming,
+    inputs: &EmitInputs,
+    sources: Sources,
+) -> Result<Vec<(String, String)>> {
+    let timing = &inputs.timing;
+    let module = &design.name;
+    let name = format!("{module}_formal");
+    let mut names = Names::new(design.ports.iter().map(|port| design.net(port.net).name.as_str()));
+    names.fresh("clk");
+    let instance = names.fresh("dut");
+    let exact = exact(timing);
+    let bounded = match exact {
+        Some(_) => None,
+        None => termination::words(design).zip(termination::latest_done(design)),
+    };
+    let depth = match &exact {
+        // An induction that is longer than a computation has seen its start.
+        Some((_, start)) => start + 2,
+        None => UNROLLED,
+    };
+    let largest_age = match (&exact, &bounded) {
+        (Some((_, start)), _) => Some(*start),
+        // What is left is added to it.
+        (None, Some((_, most))) => Some(2 * most),
+        (None, None) => None,
+    };
+    let age = largest_age.map(|largest| Age {
+        name: names.fresh("age"),
+        width: u32::BITS - largest.leading_zeros(),
+    });
+    let port_name = |net| design.net(net).name.clone();
+    let mut ports = vec!["input  wire clk".to_owned()];
+    for port in design.inputs() {
+        let range = range(design.width(port.net));
+        let space = if range.is_empty() { "" } else { " " };
+        ports.push(format!("input  wire {range}{space}{}", port_name(port.net)));
+    }
+    let outputs: Vec<_> = design
+        .outputs()
+        .map(|port| Row::port("", "wire", design.width(port.net), false, &port_name(port.net), ""))
+        .collect();
+    let connections = std::iter::once("clk".to_owned())
+        .chain(design.ports.iter().map(|port| port_name(port.net)))
+        .map(|name| format!(".{name}({name})"))
+        .collect();
+    let waits = design.control.words.iter().any(|word| word.sequence == Sequence::WaitStart);
+    // A few steps with much state between them z3 solves at once when they are unrolled; many it
+    // solves faster when they are not.
+    let unroll = exact.is_none();
+    let wrapper = Wrapper {
+        name: name.clone(),
+        module: module.clone(),
+        depth,
+        solver: if unroll { "--unroll -s z3" } else { "-s z3" },
+        instance: instance.clone(),
+        ports: separated(ports),
+        outputs: Row::declarations(&outputs),
+        connections: separated(connections),
+        straight: !waits,
+        exact: exact.zip(age.as_ref()).map(|((clocks, start), age)| Exact {
+            valid: age.literal(clocks[0]),
+            done: age.literal(clocks[1]),
+            last: age.literal(start - 1),
+        }),
+        bounded: bounded.zip(age.as_ref()).map(|((words, most), age)| Bounded {
+            // Results follow one another without a pause, once the first is there.
+            first: match timing.valid_to_valid {
+                Some(1) => timing.start_to_valid.map(|first| age.literal(first)),
+                _ => None,
+            },
+            ends_with_result: !inputs.computations.is_empty()
+                && inputs.computations.iter().all(Computation::ends_with_result),
+            ..bounded_view(design, naming, &instance, &mut names, (&words, most), age)
+        }),
+        age: age.as_ref().map(|age| AgeView {
+            range: range(age.width),
+            one: age.literal(1),
+            name: age.name.clone(),
+        }),
+    };
+    let datapath = naming.instance(Unit::Datapath);
+    let script = Script { name: &name, instance: &instance, datapath, rtl: sources.rtl };
+    let task = Task {
+        name: &name,
+        instance: &instance,
+        datapath,
+        depth,
+        engine: if unroll { "smtbmc --unroll z3" } else { "smtbmc z3" },
+        rtl: sources.rtl,
+        memories: sources.memories,
+    };
+    Ok(vec![
+        (format!("{name}.sv"), super::render(&wrapper)?),
+        (format!("{name}.ys"), super::render(&script)?),
+        (format!("{name}.sby"), super::render(&task)?),
+    ])
+}
+
+/// How the end of every computation is proved: in each word the age and what is left at most are no more
+/// than the whole.
+fn bounded_view(
+    design: &Design,
+    naming: &Naming,
+    instance: &str,
+    names: &mut Names,
+    (words, most): (&[Left], u32),
+    age: &Age,
+) -> Bounded {
+    // A net of the inside under a name of the wrapper; Yosys joins the two when it flattens.
+    let mut inside = Vec::new();
+    let mut seen = |unit: Unit, net: NetId, name: String| {
+        let range = range(design.width(net));
+        let path = format!("{instance}.{}.{}", naming.instance(unit), design.net(net).name);
+        inside.push(format!("(* hierconn *) wire {range} \\{path} ;"));
+        inside.push(format!("wire {range} {name} = \\{path} ;"));
+    };
+    let address = design.register(design.control.address).q;
+    let word = names.fresh("word");
+    seen(Unit::Control, address, word.clone());
+    let mut counters: Vec<(RegId, String)> = Vec::new();
+    for counter in words.iter().filter_map(|left| left.counter) {
+        if counters.iter().all(|(other, _)| *other != counter) {
+            let q = design.register(counter).q;
+            let name = names.fresh(&design.net(q).name);
+            seen(Unit::Datapath, q, name.clone());
+            counters.push((counter, name));
+        }
+    }
+    let end = |left: &Left| {
+        let mut sum = age.name.clone();
+        for (counter, name) in &counters {
+            if left.counter == Some(*counter) {
+                sum = format!("{sum} + {name}");
+            }
+        }
+        match left.clocks {
+            0 => sum,
+            clocks => format!("{sum} + {}", age.literal(clocks as u32)),
+        }
+    };
+    let address_width = design.width(address);
+    let words = words
+        .iter()
+        .enumerate()
+        .map(|(at, left)| Word { label: literal(at as u64, address_width), end: end(left) });
+    Bounded {
+        words: words.collect(),
+        word,
+        most: age.literal(most),
+        first: None,
+        ends_with_result: false,
+        inside,
+    }
+}
+
+/// The clocks of `valid` and `done`, and that of the next start, where all are known, and the result is
+/// there in one clock.
+fn exact(timing: &Timing) -> Option<([u32; 2], u32)> {
+    let (valid, done) = (timing.start_to_valid?, timing.start_to_done?);
+    Some(([valid, done], timing.start_to_start?))
+}

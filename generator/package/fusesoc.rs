@@ -1,0 +1,51 @@
+//! FuseSoC cores (CAPI2): the device, and the bench in a core of its own, because a core may only
+//! list files beside it.
+
+use anyhow::Result;
+use askama::Template;
+
+use crate::hdl::verilog::text::ascii;
+
+/// The core of the device.
+#[derive(Template)]
+#[template(path = "device.core")]
+struct DeviceCore<'a> {
+    name: &'a str,
+    description: String,
+    rtl: &'a [String],
+    memories: &'a [String],
+    testbench: bool,
+}
+
+/// The core of the bench.
+#[derive(Template)]
+#[template(path = "testbench.core")]
+struct BenchCore<'a> {
+    name: &'a str,
+    bench: &'a str,
+    vectors: &'a [String],
+}
+
+/// `<name>.core`; with a simulation target if there is a bench. File names are relative to it.
+///
+/// # Errors
+/// A template that fails to print.
+pub fn device(
+    name: &str,
+    title: &str,
+    rtl: &[String],
+    memories: &[String],
+    testbench: bool,
+) -> Result<String> {
+    // A YAML string in single quotes; a quote in it is doubled.
+    let description = ascii(title).replace('\'', "''");
+    super::render(&DeviceCore { name, description, rtl, memories, testbench })
+}
+
+/// `<name>_tb.core`. File names are relative to it.
+///
+/// # Errors
+/// A template that fails to print.
+pub fn bench(name: &str, bench: &str, vectors: &[String]) -> Result<String> {
+    super::render(&BenchCore { name, bench, vectors })
+}

@@ -1,0 +1,102 @@
+//! ROM contents as `$readmem` files.
+
+use anyhow::{Result, ensure};
+use askama::Template;
+
+use crate::base::fixed::mask;
+use crate::hdl::netlist::{Design, RomId};
+use crate::hdl::verilog::naming::{is_control_rom, rom_label};
+use crate::hdl::verilog::text::{ascii, comment};
+
+#[derive(Template)]
+#[template(path = "rom.mem")]
+struct Memory {
+    header: Vec<String>,
+    words: Vec<String>,
+}
+
+/// The `.mem` file of a ROM.
+///
+/// # Errors
+/// A control ROM whose words are not exactly as wide as all fields; a word that is wider than its ROM.
+pub fn contents(design: &Design, id: RomId) -> Result<String> {
+    let rom = design.rom(id);
+    let width = design.width(rom.data);
+    for (address, word) in rom.words.iter().enumerate() {
+        ensure!(
+            word & !mask(width) == 0,
+            "word {address} of ROM `{}`, {word:#x}, is wider than {width} bits",
+            rom.name
+        );
+    }
+    let control = is_control_rom(design, id);
+    let mut header = comment(
+        0,
+        &format!("{}, {}: {} words of {width} bits", design.name, rom_label(rom), rom.words.len()),
+    );
+    if control {
+        header.extend(fields(design, width)?);
+    } else {
+        header.extend(rom.doc.iter().flat_map(|line| comment(0, line)));
+    }
+    let texts: Vec<_> = rom
+        .words
+        .iter()
+        .map(|word| if control { in_fields(design, *word) } else { in_hex(*word, width) })
+        .collect();
+    let words = texts
+        .into_iter()
+        .enumerate()
+        .map(|(address, text)| match note(design, id, address) {
+            Some(note) => format!("{text} // {address} {note}").trim_end().to_owned(),
+            None => text,
+        })
+        .collect();
+    super::render(&Memory { header, words })
+}
+
+/// What there is to say of a word.
+fn note(design: &Design, id: RomId, address: usize) -> Option<String> {
+    let given = design.rom(id).comments.get(address);
+    let word = || {
+        let word = design.control.words.get(address).filter(|_| is_control_rom(design, id))?;
+        Some(&word.name)
+    };
+    given.or_else(word).map(|text| ascii(text))
+}
+
+/// The names of the fields, in the order of the digits below.
+fn fields(design: &Design, width: u32) -> Result<Vec<String>> {
+    let fields = &design.control.fields;
+    let total: u32 = fields.iter().map(|field| design.width(field.net)).sum();
+    ensure!(
+        total == width,
+        "the fields of the control word have {total} bits, the control ROM {width}"
+    );
+    let names: Vec<_> = fields
+        .iter()
+        .map(|field| match &field.lines[..] {
+            [] => field.name.clone(),
+            [line] => format!("{} (line {line})", field.name),
+            lines => {
+                let lines: Vec<_> = lines.iter().map(ToString::to_string).collect();
+                format!("{} (lines {})", field.name, lines.join(" "))
+            }
+        })
+        .collect();
+    Ok(comment(0, &format!("Fields from the left: {}", names.join(", "))))
+}
+
+fn in_fields(design: &Design, word: u64) -> String {
+    let positions = design.field_positions();
+    let digits = design.control.fields.iter().zip(positions).map(|(field, low)| {
+        let width = design.width(field.net);
+        format!("{:0width$b}", word >> low & mask(width), width = width as usize)
+    });
+    digits.collect::<Vec<_>>().join("_")
+}
+
+/// As many digits as the width needs.
+pub fn in_hex(word: u64, width: u32) -> String {
+    format!("{word:0digits$x}", digits = width.div_ceil(4) as usize)
+}

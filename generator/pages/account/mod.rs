@@ -1,0 +1,376 @@
+//! What is said of a configuration: tables and sentences, whichever kind of page they go to.
+//!
+//! A cell and a sentence are plain text in which names stand in backquotes.
+
+pub mod blocks;
+mod table;
+
+use crate::base::fixed::Format;
+use crate::config::{Config, Key, Schema, Value, shared_keys};
+use crate::golden::{Bound, Contract, Values};
+use crate::hdl::netlist::Design;
+use crate::hdl::verilog::naming::Naming;
+use crate::package::facts::{self, Sequence};
+use crate::package::{Quantity, Timing, WorkedExample};
+pub use table::{Align, Column, Table, code};
+
+/// The heading of the column with the source's numbers.
+const NUMBER: &str = "no.";
+
+/// What the page says beyond the design.
+pub struct PageInputs<'a> {
+    /// The configuration as the command line names it, `configs/<name>.toml`.
+    pub path: &'a str,
+    /// The values of the keys.
+    pub config: &'a Config,
+    /// The keys.
+    pub schema: &'a Schema,
+    /// The accuracy contract.
+    pub contract: &'a dyn Contract,
+    /// Clocks.
+    pub timing: &'a Timing,
+    /// One computation with all its numbers.
+    pub example: &'a WorkedExample,
+}
+
+/// The formats, in a sentence.
+pub const FORMATS: &str = "Formats: `uI.F` is unsigned, `sI.F` two's complement, with I integer bits (a sign bit apart) \
+                           and F fraction bits; the value of a word is its integer times 2⁻ᶠ.";
+
+/// Whose the numbers of the blocks are.
+pub fn numbering(design: &Design) -> &'static str {
+    match design.nets.iter().any(|net| net.block.is_some()) {
+        true => {
+            "In order of their numbers in the source's figure; those without a number are ours."
+        }
+        false => "The source gives them no numbers.",
+    }
+}
+
+/// How a format is told: a single bit is no number.
+pub fn format_text(format: Format) -> String {
+    match format.width() {
+        1 => "1 bit".to_owned(),
+        _ => format.to_string(),
+    }
+}
+
+/// The key that the bound depends on most, in a sentence; nothing when there is none.
+pub fn limit(bound: &Bound) -> String {
+    bound.limiting().map_or_else(String::new, |term| {
+        format!(
+            "The key to change first is `{}`: {}, {:.3} units.",
+            term.key, term.what, term.units
+        )
+    })
+}
+
+/// The bound, in sentences.
+pub fn accuracy(bound: &Bound) -> String {
+    let verdict = match bound.units < 1.0 {
+        true => "which is inside the contract (less than 1 unit)",
+        false => "which is outside the contract (less than 1 unit)",
+    };
+    format!(
+        "An output differs from K·f by at most {:.3} units, {verdict}. K is the integer of its colour operand, f the \
+         formula in f64, unrounded, at the quantised operands. The word f itself is off by at most {:.2e}. The bound is \
+         proven, not measured; this is what it is made of:",
+        bound.units, bound.f
+    )
+}
+
+/// What an exhaustive check of `f` goes through.
+pub fn proof(inputs: &PageInputs) -> String {
+    let sweep = inputs.contract.sweep();
+    let axes: Vec<String> = sweep
+        .axes
+        .iter()
+        .map(|axis| match &axis.values {
+            Values::Range(low, high) => format!("{} = {low} … {high}", code(&axis.name)),
+            Values::List(values) => format!("{} settings of {}", values.len(), code(&axis.name)),
+        })
+        .collect();
+    let omits = match sweep.omits.as_str() {
+        "" => String::new(),
+        omits => format!(" Not covered: {omits}."),
+    };
+    format!(
+        "`glint cosim {} --exhaustive` checks it: every word f with every colour, and f at every combination of {} \
+         (integers, as on the ports).{omits}",
+        inputs.path,
+        axes.join(", ")
+    )
+}
+
+fn number(number: Option<u16>) -> String {
+    number.map_or_else(String::new, |number| number.to_string())
+}
+
+/// The ports; a strobe stands with its operand.
+pub fn ports(design: &Design) -> Table {
+    let mut table = Table::new(&[
+        ("port", Align::Left),
+        (NUMBER, Align::Right),
+        ("direction", Align::Left),
+        ("role", Align::Left),
+        ("format", Align::Left),
+        ("written by", Align::Left),
+        ("what it is", Align::Left),
+    ]);
+    let ports = facts::ports(design);
+    // A strobe stands with its operand.
+    for port in ports.iter().filter(|port| port.role != "strobe") {
+        let strobe = ports.iter().find(|strobe| port.strobe == Some(strobe.name));
+        let written = strobe.map_or_else(String::new, |strobe| match strobe.block {
+            None => code(strobe.name),
+            Some(number) => format!("{} ({number})", code(strobe.name)),
+        });
+        let format = match (port.width, &port.format) {
+            (1, _) => "1 bit".to_owned(),
+            (_, Some(format)) => format.clone(),
+            (width, None) => format!("{width} bits"),
+        };
+        let doc = match port.role {
+            "clock" => "everything happens on its rising edge",
+            _ => port.doc,
+        };
+        table.row([
+            code(port.name),
+            number(port.block),
+            port.direction.to_owned(),
+            port.role.to_owned(),
+            format,
+            written,
+            doc.to_owned(),
+        ]);
+    }
+    table.without_empty(NUMBER)
+}
+
+/// The ROMs, that of the microprogram among them.
+pub fn roms(design: &Design) -> Table {
+    let naming = Naming::new(design);
+    let mut table = Table::new(&[
+        ("ROM", Align::Left),
+        (NUMBER, Align::Right),
+        ("words × bits", Align::Right),
+        ("bits", Align::Right),
+        ("reads", Align::Left),
+        ("file", Align::Left),
+        ("an entry", Align::Left),
+    ]);
+    for rom in facts::roms(design, &naming) {
+        let reads = match rom.synchronous {
+            true => "on the clock",
+            false => "at once",
+        };
+        table.row([
+            code(rom.name),
+            number(rom.block),
+            format!("{} × {}", rom.depth, rom.width),
+            rom.bits.to_string(),
+            reads.to_owned(),
+            code(rom.file),
+            rom.doc.join(" "),
+        ]);
+    }
+    table.without_empty(NUMBER)
+}
+
+/// The lines of a field as the source numbers them.
+fn lines(lines: &[u16]) -> String {
+    let lines: Vec<String> = lines.iter().map(u16::to_string).collect();
+    lines.join(" ")
+}
+
+/// The fields of the control word.
+pub fn fields(design: &Design) -> Table {
+    let mut table = Table::new(&[
+        ("field", Align::Left),
+        ("lines", Align::Left),
+        ("bits", Align::Left),
+        ("turns", Align::Left),
+    ]);
+    for field in facts::fields(design) {
+        let width = field.width as usize;
+        let turns = match field.kind {
+            "select" => {
+                let choices: Vec<String> = (0..)
+                    .zip(field.choices)
+                    .map(|(value, choice): (u64, _)| format!("{value:0width$b} {}", code(choice)))
+                    .collect();
+                format!("selects: {}", choices.join(", "))
+            }
+            "enable" => "loads a register or moves a counter".to_owned(),
+            "flag" => "is an output of the device".to_owned(),
+            _ => "tells the sequencer where to go".to_owned(),
+        };
+        let bits = match width {
+            1 => field.low.to_string(),
+            _ => format!("{}:{}", field.low + field.width - 1, field.low),
+        };
+        table.row([code(field.name), lines(field.lines), bits, turns]);
+    }
+    table.without_empty("lines")
+}
+
+/// The microprogram as the patents print theirs: a word a row, a line a column.
+pub fn words(design: &Design) -> Table {
+    let fields = facts::fields(design);
+    let headings: Vec<String> = fields
+        .iter()
+        .map(|field| match field.lines {
+            [] => code(field.name),
+            numbers => lines(numbers),
+        })
+        .collect();
+    let mut columns = vec![("word", Align::Right)];
+    columns.extend(headings.iter().map(|heading| (heading.as_str(), Align::Left)));
+    columns.extend([("what it does", Align::Left), ("then", Align::Left)]);
+    let mut table = Table::new(&columns);
+    for word in facts::words(design) {
+        let mut cells = vec![word.address.to_string()];
+        for (field, (_, value)) in fields.iter().zip(&word.fields) {
+            let width = field.width as usize;
+            let bits: Vec<String> = format!("{value:0width$b}").chars().map(String::from).collect();
+            cells.push(bits.join(" "));
+        }
+        cells.push(word.name.to_owned());
+        cells.push(match word.sequence {
+            Sequence::Plain("next") => String::new(),
+            Sequence::Plain(what) => what.to_owned(),
+            Sequence::Loop { loop_to, condition } => {
+                format!("word {loop_to} while {}", code(condition))
+            }
+            Sequence::Jump { jump_to, condition } => {
+                format!("word {jump_to} if {}", code(condition))
+            }
+        });
+        table.row(cells);
+    }
+    table
+}
+
+/// When what happens after `start`.
+pub fn clocks(timing: &Timing) -> Table {
+    let mut table = Table::new(&[("event", Align::Left), ("clock", Align::Right)]);
+    let events = [
+        ("`valid` is high, first", timing.start_to_valid),
+        ("`done` is high", timing.start_to_done),
+        ("the next `start` is taken", timing.start_to_start),
+    ];
+    for (event, clock) in events {
+        let clock =
+            clock.map_or_else(|| "depends on the operands".to_owned(), |clock| clock.to_string());
+        table.row([event.to_owned(), clock]);
+    }
+    table
+}
+
+/// What the bound is made of.
+pub fn terms(bound: &Bound) -> Table {
+    let mut table = Table::new(&[
+        ("key", Align::Left),
+        ("units", Align::Right),
+        ("what rounds or approximates", Align::Left),
+    ]);
+    for term in &bound.terms {
+        table.row([code(term.key), format!("{:.3}", term.units), term.what.to_owned()]);
+    }
+    table
+}
+
+/// The operands, and for which values of them the contract is stated.
+pub fn domain(contract: &dyn Contract) -> Table {
+    let mut table = Table::new(&[
+        ("operand", Align::Left),
+        ("format", Align::Left),
+        ("from", Align::Right),
+        ("to", Align::Right),
+        ("what it is", Align::Left),
+    ]);
+    for operand in contract.operands() {
+        let value = |raw: i64| short(operand.format.to_f64(i128::from(raw)));
+        table.row([
+            code(&operand.name),
+            format_text(operand.format),
+            value(operand.domain.0),
+            value(operand.domain.1),
+            operand.doc.clone(),
+        ]);
+    }
+    table
+}
+
+/// The worked example beside the formula.
+pub fn example(contract: &dyn Contract, example: &WorkedExample) -> Table {
+    let mut table = Table::new(&[
+        ("port", Align::Left),
+        ("integer", Align::Right),
+        ("value", Align::Right),
+        ("formula in f64", Align::Right),
+    ]);
+    let mut row = |quantity: &Quantity, formula: String| {
+        table.row([code(&quantity.name), quantity.raw.to_string(), short(quantity.value), formula]);
+    };
+    let (mut control, mut colours) = (Vec::new(), Vec::new());
+    for (operand, quantity) in contract.operands().iter().zip(&example.operands) {
+        row(quantity, String::new());
+        match operand.colour {
+            true => colours.push(quantity.value),
+            false => control.push(quantity.raw as i64),
+        }
+    }
+    let f = contract.reference(&contract.point(&control, 0));
+    for (output, colour) in example.outputs.iter().zip(colours) {
+        row(output, short(f * colour));
+    }
+    table
+}
+
+/// The keys of the device, and those that every device shares where they are not at their defaults.
+pub fn keys(schema: &Schema, config: &Config) -> Table {
+    let mut table = Table::new(&[
+        ("key", Align::Left),
+        ("value", Align::Left),
+        ("accepts", Align::Left),
+        ("what it governs", Align::Left),
+    ]);
+    let changed = |key: &&Key| *config.value(key.name) != key.default;
+    for key in schema.keys.iter().chain(shared_keys().iter().filter(changed)) {
+        let (now, default) = (config.value(key.name).toml(), key.default.toml());
+        let value = match config.applies(schema, key.name) {
+            false => "–".to_owned(),
+            true if now == default => code(&now),
+            true => format!("{} (default {})", code(&now), code(&default)),
+        };
+        let only = key.only_when.map_or_else(String::new, |(other, value)| {
+            let value = match config.value(other) {
+                Value::Text(_) => Value::Text(value.to_owned()).toml(),
+                _ => value.to_owned(),
+            };
+            format!(" Only with {}.", code(&format!("{other} = {value}")))
+        });
+        table.row([code(key.name), value, key.accepts(), format!("{}{only}", key.doc)]);
+    }
+    table
+}
+
+/// A value in six decimals, without the zeros at their end.
+pub fn short(value: f64) -> String {
+    let text = format!("{value:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_short() {
+        assert_eq!(short(1.0), "1");
+        assert_eq!(short(0.866_025_924_682_617_2), "0.866026");
+        assert_eq!(short(1000.0), "1000");
+        assert_eq!(short(-0.25), "-0.25");
+    }
+}

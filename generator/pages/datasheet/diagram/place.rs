@@ -1,0 +1,147 @@
+//! Where boxes stand: columns from left to right, by the layered layout of the `dagre` library.
+
+use dagre::graph::{Graph as Layered, GraphOptions};
+use dagre::{EdgeLabel, LayoutOptions, NodeLabel, RankDir, layout};
+
+use super::graph::{Form, Graph};
+use crate::pages::account::blocks::Kind;
+
+/// Between boxes of a column.
+const BOXES: f64 = 18.0;
+
+/// Between wires that pass a column.
+const WIRES: f64 = 10.0;
+
+/// How much a wire between a port and what it leads to counts when columns are chosen.
+const PORT: i32 = 4;
+
+/// How much it counts that ports stand at the ends.
+const END: i32 = 20;
+
+/// The ends of the diagram, to which ports are tied.
+const ENDS: [&str; 2] = ["inputs", "outputs"];
+
+/// Where everything is, from above; columns are numbered from the left.
+pub struct Placement {
+    /// The column of each box.
+    pub column: Vec<usize>,
+    /// The middle of the place of each box.
+    pub middle: Vec<f64>,
+    /// How many columns there are.
+    pub columns: usize,
+    /// Whether each wire leads back to the left.
+    pub back: Vec<bool>,
+    /// Where each wire passes the columns between its ends, in its own direction.
+    pub passes: Vec<Vec<(usize, f64)>>,
+}
+
+impl Placement {
+    /// Places boxes that take so much height, with wires that lead back as [`back`] says.
+    pub fn new(graph: &Graph, heights: &[f64], back: Vec<bool>) -> Self {
+        let mut layered: Layered<NodeLabel, EdgeLabel> =
+            Layered::with_options(GraphOptions { multigraph: true, ..GraphOptions::default() });
+        let node = |height| NodeLabel { width: 1.0, height, ..NodeLabel::default() };
+        for end in ENDS {
+            layered.set_node(end, Some(node(1.0)));
+        }
+        for (at, &height) in heights.iter().enumerate() {
+            layered.set_node(at.to_string(), Some(node(height)));
+            let edge = EdgeLabel { weight: END, ..EdgeLabel::default() };
+            let (from, to) = match graph.boxes[at].form {
+                Form::Input => (ENDS[0].to_owned(), at.to_string()),
+                Form::Output => (at.to_string(), ENDS[1].to_owned()),
+                _ => continue,
+            };
+            layered.set_edge(from, to, Some(edge), None);
+        }
+        let is_port = |at: usize| matches!(graph.boxes[at].form, Form::Input | Form::Output);
+        let ends = |wire: usize| {
+            let (from, to) = (graph.wires[wire].from, graph.wires[wire].to);
+            let (from, to) = if back[wire] { (to, from) } else { (from, to) };
+            (from.to_string(), to.to_string(), wire.to_string())
+        };
+        for (at, wire) in graph.wires.iter().enumerate() {
+            // What leads from a box to itself goes around it.
+            if wire.from == wire.to {
+                continue;
+            }
+            let (from, to, name) = ends(at);
+            let edge = EdgeLabel {
+                weight: if is_port(wire.from) || is_port(wire.to) { PORT } else { 1 },
+                ..EdgeLabel::default()
+            };
+            layered.set_edge(from, to, Some(edge), Some(&name));
+        }
+        let options = LayoutOptions {
+            rankdir: RankDir::LR,
+            nodesep: BOXES,
+            edgesep: WIRES,
+            ..LayoutOptions::default()
+        };
+        layout(&mut layered, Some(options));
+
+        let at = |node: usize| {
+            let found = layered.node(&node.to_string());
+            found.and_then(|found| Some((found.x?, found.y?))).unwrap_or_default()
+        };
+        let places: Vec<(f64, f64)> = (0..heights.len()).map(at).collect();
+        let mut xs: Vec<f64> = places.iter().map(|place| place.0.round()).collect();
+        xs.sort_unstable_by(f64::total_cmp);
+        xs.dedup();
+        let column = |x: f64| xs.iter().position(|&column| (column - x).abs() < 1.5);
+        let passes = (0..graph.wires.len()).map(|wire| {
+            let (from, to, name) = ends(wire);
+            let edge = layered.edge(&from, &to, Some(&name));
+            let points = edge.map_or(&[][..], |edge| &edge.points);
+            // The first and the last are on the borders of the boxes.
+            let between = points.get(1..points.len().saturating_sub(1)).unwrap_or_default();
+            let mut passes: Vec<(usize, f64)> =
+                between.iter().filter_map(|point| Some((column(point.x)?, point.y))).collect();
+            if back[wire] {
+                passes.reverse();
+            }
+            passes
+        });
+        Self {
+            column: places.iter().map(|place| column(place.0).unwrap_or(0)).collect(),
+            middle: places.iter().map(|place| place.1).collect(),
+            columns: xs.len(),
+            passes: passes.collect(),
+            back,
+        }
+    }
+}
+
+/// Which wires lead back: of each loop the one into the mux that chooses among the most, where it has one.
+pub fn back(graph: &Graph) -> Vec<bool> {
+    let weight = |at: usize| match graph.boxes[at].form {
+        Form::Block(Kind::Mux(inputs)) if !graph.boxes[at].control.is_empty() => 2 + inputs,
+        Form::Block(Kind::Mux(_)) => 2,
+        Form::Block(Kind::Register) => 1,
+        _ => 0,
+    };
+    let mut order: Vec<usize> = (0..graph.wires.len()).collect();
+    order.sort_by_key(|&wire| std::cmp::Reverse(weight(graph.wires[wire].to)));
+    let mut back = vec![false; graph.wires.len()];
+    for wire in order {
+        back[wire] = reaches(graph, &back, graph.wires[wire].to, graph.wires[wire].from);
+    }
+    back
+}
+
+/// Whether there is a way from one box to another that does not lead back.
+fn reaches(graph: &Graph, back: &[bool], from: usize, to: usize) -> bool {
+    let mut seen = vec![false; graph.boxes.len()];
+    let mut pending = vec![from];
+    while let Some(at) = pending.pop() {
+        if at == to {
+            return true;
+        }
+        if !std::mem::replace(&mut seen[at], true) {
+            let wires = graph.wires.iter().zip(back);
+            let onward = wires.filter(|(wire, back)| wire.from == at && !**back);
+            pending.extend(onward.map(|(wire, _)| wire.to));
+        }
+    }
+    false
+}

@@ -1,0 +1,90 @@
+//! The microprogram as the patents print theirs: words by control lines.
+
+use crate::hdl::netlist::{Design, FieldKind};
+use crate::pages::account;
+
+use super::table::html;
+
+/// The table of words and lines.
+pub struct Microprogram {
+    /// Whether the source numbers any line.
+    pub numbered: bool,
+    /// The fields of the control word, from the top bits.
+    pub fields: Vec<FieldView>,
+    /// The words, from address 0.
+    pub words: Vec<WordView>,
+}
+
+/// A field.
+pub struct FieldView {
+    /// Its name.
+    pub name: String,
+    /// Of each of its lines, the number in the source's figure, or else the bit of the word.
+    pub lines: Vec<String>,
+}
+
+/// A word.
+pub struct WordView {
+    /// Its number.
+    pub address: usize,
+    /// What it does.
+    pub name: String,
+    /// Of each line: whether a field begins here, whether it is 1, and what the field's value means.
+    pub bits: Vec<(bool, bool, String)>,
+    /// What follows, as HTML.
+    pub then: String,
+}
+
+impl Microprogram {
+    /// Of a design.
+    pub fn new(design: &Design) -> Self {
+        let control = &design.control;
+        let numbered = control.fields.iter().any(|field| !field.lines.is_empty());
+        let positions = design.field_positions();
+        let fields = control.fields.iter().zip(positions).map(|(field, low)| {
+            let width = design.width(field.net);
+            FieldView {
+                name: field.name.clone(),
+                lines: match (&field.lines[..], numbered) {
+                    ([], true) => vec!["–".to_owned(); width as usize],
+                    ([], false) => (low..low + width).rev().map(|bit| bit.to_string()).collect(),
+                    (lines, _) => lines.iter().map(u16::to_string).collect(),
+                },
+            }
+        });
+        // The column "then" of the page's table of words is the last.
+        let then = account::words(design).rows.into_iter().map(|mut row| row.pop());
+        let words = control.words.iter().zip(then).enumerate();
+        Self {
+            numbered,
+            fields: fields.collect(),
+            words: words
+                .map(|(address, (word, then))| WordView {
+                    address,
+                    name: word.name.clone(),
+                    bits: bits(design, &word.values),
+                    then: html(&then.unwrap_or_default()),
+                })
+                .collect(),
+        }
+    }
+}
+
+fn bits(design: &Design, values: &[u64]) -> Vec<(bool, bool, String)> {
+    let fields = design.control.fields.iter().zip(values);
+    fields
+        .flat_map(|(field, &value)| {
+            let width = design.width(field.net);
+            let meaning = match &field.kind {
+                FieldKind::Select(choices) => {
+                    let choice = choices.get(value as usize).map_or("", String::as_str);
+                    format!("{}: {choice}", field.name)
+                }
+                _ => format!("{}: {value}", field.name),
+            };
+            (0..width)
+                .rev()
+                .map(move |bit| (bit + 1 == width, value >> bit & 1 == 1, meaning.clone()))
+        })
+        .collect()
+}

@@ -1,0 +1,143 @@
+//! A configuration as a vendor's product guide would present it: one HTML page that needs nothing but itself.
+//!
+//! Everything on it comes from the design, the golden model and simulation; nothing knows a device by name.
+
+mod diagram;
+mod microprogram;
+mod page;
+mod record;
+mod table;
+mod timing;
+mod waves;
+
+use anyhow::Result;
+
+pub use record::Proof;
+
+use crate::core::{Through, Unit};
+use crate::evidence::curves::{self, DeviceCurves};
+use crate::evidence::hardware::{self, FamilyUsage, Synthesis};
+use crate::package::{Timing, WorkedExample};
+use crate::render::{
+    self, BACKGROUND, BuiltIn, Light, Material, Picture, Rendered, Scene, Settings, View,
+};
+use crate::tools::synthesis::FAMILIES;
+use waves::Waves;
+
+/// A side of the picture of a highlight, in pixels.
+const SIDE: u32 = 260;
+
+/// Samples along each side of a pixel.
+const SAMPLES: u32 = 2;
+
+/// What a datasheet is about.
+pub struct Subject<'a> {
+    /// The configuration.
+    pub unit: &'a Unit,
+    /// As the command line names it, `configs/<name>.toml`.
+    pub path: &'a str,
+    /// The record of its exhaustive check, where there is one.
+    pub proof: Option<Proof>,
+    /// What is to synthesise it; without it the page says how to.
+    pub synthesis: Option<Synthesis<'a>>,
+}
+
+/// What was made of it.
+pub struct Datasheet {
+    /// The page, whose last line vouches for those above; see [`crate::package::is_sealed`].
+    pub page: String,
+    /// The timing diagram for WaveDrom.
+    pub wavedrom: String,
+}
+
+/// What a page shows that takes work.
+struct Measured {
+    timing: Timing,
+    example: WorkedExample,
+    waves: Waves,
+    curves: DeviceCurves,
+    highlight: Highlight,
+    synthesis: Option<(String, Vec<FamilyUsage>)>,
+}
+
+/// A picture through the golden model, beside Blinn's in f64 and their difference.
+struct Highlight {
+    png: Vec<u8>,
+    exponent: u32,
+    /// In dB; none for the same picture.
+    psnr: Option<f64>,
+    /// Of 255.
+    largest: u8,
+    gain: u8,
+}
+
+/// The steps of work that [`datasheet`] reports as done.
+pub fn steps(synthesis: bool) -> usize {
+    curves::STEPS + 1 + if synthesis { FAMILIES.len() } else { 0 }
+}
+
+/// Makes the page of a configuration.
+///
+/// # Errors
+/// The device never ends, or synthesis fails.
+pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datasheet> {
+    let unit = subject.unit;
+    let contract = unit.contract.as_ref();
+    let synthesis = || -> Result<_> {
+        let Some(synthesis) = subject.synthesis else {
+            return Ok(None);
+        };
+        let usage = hardware::usage(unit, synthesis, done)?;
+        Ok(Some((synthesis.0.version()?, usage)))
+    };
+    let pictures = || -> Result<_> {
+        let highlight = highlight(unit)?;
+        done();
+        Ok((highlight, curves::configuration(&unit.device, contract, done)))
+    };
+    let (synthesis, pictures) = rayon::join(synthesis, pictures);
+    let (highlight, curves) = pictures?;
+    let measured = Measured {
+        timing: unit.timing()?,
+        example: unit.example()?,
+        waves: Waves::record(unit)?,
+        curves,
+        highlight,
+        synthesis: synthesis?,
+    };
+    Ok(Datasheet { page: page::page(subject, &measured)?, wavedrom: measured.waves.wavedrom()? })
+}
+
+/// A ball in the light that pictures have by default.
+fn highlight(unit: &Unit) -> Result<Highlight> {
+    let contract = unit.contract.as_ref();
+    let exponent = render::usual_exponent(contract);
+    let settings = Settings {
+        size: (SIDE, SIDE),
+        samples: SAMPLES,
+        view: View { eye: None, target: None, field: 30.0 },
+        material: Material::usual(exponent),
+        background: BACKGROUND,
+        compare: true,
+    };
+    let scene = Scene {
+        objects: Scene::built_in(BuiltIn::Sphere, None, render::walks_lines(contract))?,
+        lights: Light::usual(),
+        relief: None,
+    };
+    let mut engine = unit.engine(Through::Golden)?;
+    let Rendered { picture, comparison, .. } =
+        render::render(unit, engine.as_mut(), &scene, &settings, &mut |_| ())?;
+    let mut beside = vec![&picture];
+    if let Some(comparison) = &comparison {
+        beside.extend([&comparison.blinn, &comparison.difference.picture]);
+    }
+    let difference = comparison.as_ref().map(|comparison| &comparison.difference);
+    Ok(Highlight {
+        png: Picture::beside(&beside).png()?,
+        exponent,
+        psnr: difference.and_then(|difference| difference.psnr),
+        largest: difference.map_or(0, |difference| difference.largest),
+        gain: difference.map_or(1, |difference| difference.gain),
+    })
+}

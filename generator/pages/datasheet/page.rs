@@ -1,0 +1,248 @@
+//! The page: everything that is known of a configuration, as views that the template prints.
+
+use anyhow::Result;
+use askama::Template;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+
+use super::microprogram::Microprogram;
+use super::table::{TableView, html};
+use super::{Measured, Subject, diagram, timing};
+use crate::base::text;
+use crate::evidence::chart::Chart;
+use crate::evidence::comparison::{self, Multiplier};
+use crate::evidence::hardware::FamilyUsage;
+use crate::hdl::netlist::Design;
+use crate::package::{self, Seal, Timing};
+use crate::pages::account::{self, PageInputs, blocks, short};
+use crate::pages::drawing::Drawing;
+use crate::pages::figure::{Figure, figures, scientific};
+
+/// The clock at which rates are told, in MHz: what a small FPGA reaches.
+const CLOCK: f64 = 25.0;
+
+/// What stands beside a drawing in the widest figure: margins of page and figure, and a scroll bar.
+const MARGINS: i32 = 130;
+
+#[derive(Template)]
+#[template(path = "datasheet.html")]
+struct Page<'a> {
+    version: &'static str,
+    design: &'a Design,
+    path: &'a str,
+    title: String,
+    source: String,
+    notes: Vec<String>,
+    glance: Vec<(&'static str, String)>,
+    /// A page that is so wide shows the diagram without scrolling.
+    fits: i32,
+    diagram: &'a Drawing,
+    diagram_svg: String,
+    numbering: &'static str,
+    formats: String,
+    ports: TableView,
+    domain: TableView,
+    example: TableView,
+    blocks: TableView,
+    roms: TableView,
+    fields: TableView,
+    microprogram: Microprogram,
+    clocks: TableView,
+    throughput: String,
+    timing: String,
+    wavedrom: String,
+    wavedrom_link: String,
+    accuracy: String,
+    terms: TableView,
+    limit: String,
+    sweep: String,
+    proof: Option<ProofView>,
+    remarks: Vec<String>,
+    figures: Vec<Figure<'a>>,
+    highlight: HighlightView,
+    synthesis: Option<&'a (String, Vec<FamilyUsage>)>,
+    instance: String,
+    keys: TableView,
+    toml: String,
+}
+
+struct ProofView {
+    holds: bool,
+    evaluations: String,
+    products: String,
+    error: String,
+    units: String,
+    together: String,
+}
+
+struct HighlightView {
+    data: String,
+    exponent: u32,
+    likeness: String,
+    gain: u8,
+}
+
+/// The page.
+///
+/// # Errors
+/// A chart that cannot be plotted, or a template that fails to print.
+pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
+    let unit = subject.unit;
+    let design = &unit.design;
+    let about = &design.about;
+    let contract = unit.contract.as_ref();
+    let schema = (unit.device.schema)();
+    let bound = contract.bound();
+    let inputs = PageInputs {
+        path: subject.path,
+        config: &unit.config,
+        schema: &schema,
+        contract,
+        timing: &measured.timing,
+        example: &measured.example,
+    };
+    let charts: Vec<(&Chart, &str)> = measured.curves.charts.iter().map(|it| (it, "")).collect();
+    let wavedrom = measured.waves.wavedrom()?;
+    let drawing = diagram::drawing(design);
+    let highlight = &measured.highlight;
+    let page = Page {
+        version: env!("CARGO_PKG_VERSION"),
+        design,
+        path: subject.path,
+        title: html(&about.title),
+        source: html(&about.source),
+        notes: about.notes.iter().map(|note| html(note)).collect(),
+        glance: glance(subject, measured),
+        diagram_svg: drawing.svg()?,
+        fits: drawing.width + MARGINS,
+        diagram: &drawing,
+        numbering: account::numbering(design),
+        formats: html(account::FORMATS),
+        ports: TableView::new("Ports", &account::ports(design)),
+        domain: TableView::new("Domain of the operands", &account::domain(contract)),
+        example: TableView::new("A worked example", &account::example(contract, &measured.example)),
+        blocks: TableView::new("Blocks", &blocks::table(design)),
+        roms: TableView::new("ROMs", &account::roms(design)),
+        fields: TableView::new("Fields of the control word", &account::fields(design)),
+        microprogram: Microprogram::new(design),
+        clocks: TableView::new("Clocks", &account::clocks(&measured.timing)),
+        throughput: throughput(&measured.timing),
+        timing: timing::drawing(&measured.waves, described(measured)).svg()?,
+        wavedrom_link: format!("data:application/json;base64,{}", STANDARD.encode(&wavedrom)),
+        wavedrom,
+        accuracy: html(&account::accuracy(&bound)),
+        terms: TableView::new("Terms of the bound", &account::terms(&bound)),
+        limit: html(&account::limit(&bound)),
+        sweep: html(&account::proof(&inputs)),
+        proof: subject.proof.as_ref().map(|proof| ProofView {
+            holds: proof.holds,
+            evaluations: grouped(proof.evaluations),
+            products: grouped(proof.colour_products),
+            error: scientific(proof.f.error),
+            units: format!("{:.3}", proof.f.units),
+            together: format!("{:.3}", proof.together),
+        }),
+        remarks: contract.remarks().iter().map(|it| html(it)).collect(),
+        figures: figures(&charts)?,
+        highlight: HighlightView {
+            data: STANDARD.encode(&highlight.png),
+            exponent: highlight.exponent,
+            likeness: match highlight.psnr {
+                Some(psnr) => format!(
+                    "The largest difference is {} of 255, PSNR {psnr:.1} dB over what is lit",
+                    highlight.largest
+                ),
+                None => "The two are the same".to_owned(),
+            },
+            gain: highlight.gain,
+        },
+        synthesis: measured.synthesis.as_ref(),
+        instance: package::instance(design)?,
+        keys: TableView::new("Keys of the configuration", &account::keys(&schema, &unit.config)),
+        toml: unit.config.to_toml(&schema),
+    };
+    let mut text = page.render()?;
+    text.push('\n');
+    Ok(package::sealed(text, Seal::Markup))
+}
+
+/// What one wants to know first.
+fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)> {
+    let design = &subject.unit.design;
+    let contract = subject.unit.contract.as_ref();
+    let clocks = |clocks: Option<u32>| clocks.map_or("by data".to_owned(), |it| it.to_string());
+    let timing = &measured.timing;
+    let outputs = contract.outputs().len();
+    let registers = design.registers.iter();
+    let flip_flops: u32 = registers.map(|register| design.width(register.q)).sum();
+    let mut glance = vec![
+        ("Largest error of an output", format!("{:.3} units, proven", contract.bound().units)),
+        ("Word f", contract.f_format().to_string()),
+        ("Outputs", outputs.to_string()),
+        ("Clocks, start to valid", clocks(timing.start_to_valid)),
+        ("Clocks a point", clocks(timing.clocks_per_point())),
+        ("Control words", design.control.words.len().to_string()),
+        ("ROM", format!("{} bits", grouped(design.rom_bits()))),
+        ("Register bits", flip_flops.to_string()),
+        ("Multipliers", multipliers(design)),
+    ];
+    if let Some((_, usage)) = &measured.synthesis
+        && let Some(usage) = usage.first()
+    {
+        glance.push((
+            "LUTs, DSPs, block RAMs",
+            format!("{}, {}, {} ({})", usage.luts, usage.dsps, usage.block_rams, usage.family),
+        ));
+    }
+    glance
+}
+
+/// How many there are of each size, the largest first.
+fn multipliers(design: &Design) -> String {
+    let mut sizes: Vec<(Multiplier, usize)> = Vec::new();
+    for multiplier in comparison::multipliers(design) {
+        match sizes.last_mut() {
+            Some((size, count)) if *size == multiplier => *count += 1,
+            _ => sizes.push((multiplier, 1)),
+        }
+    }
+    let sizes = sizes.iter().map(|(size, count)| {
+        let (first, second) = (size.first, size.second);
+        match count {
+            1 => format!("{first}\u{a0}×\u{a0}{second}"),
+            _ => format!("{count}\u{a0}of {first}\u{a0}×\u{a0}{second}"),
+        }
+    });
+    match sizes.collect::<Vec<_>>()[..] {
+        [] => "none".to_owned(),
+        ref sizes => sizes.join(", "),
+    }
+}
+
+fn throughput(timing: &Timing) -> String {
+    match timing.clocks_per_point() {
+        Some(clocks) => format!(
+            "Back to back a point takes {clocks} {}: {} million points a second at {CLOCK} MHz.",
+            if clocks == 1 { "clock" } else { "clocks" },
+            short((CLOCK / f64::from(clocks) * 100.0).round() / 100.0)
+        ),
+        None => "How many clocks a point takes depends on its operands.".to_owned(),
+    }
+}
+
+/// What the timing diagram shows, for those who do not see it.
+fn described(measured: &Measured) -> String {
+    let at = |clock: Option<u32>| clock.map_or("some".to_owned(), |clock| clock.to_string());
+    format!(
+        "One computation in {} clocks, simulated: start is high in clock 0, valid first in clock {}, done in clock {}. \
+         Below the handshake are the word of the microprogram, registers and results with their values.",
+        measured.waves.clocks.last().map_or(0, |last| last + 1),
+        at(measured.waves.first("valid")),
+        at(measured.waves.first("done")),
+    )
+}
+
+/// With a narrow space between thousands, which no line ends at.
+fn grouped(number: u64) -> String {
+    text::grouped(number).replace(' ', "\u{202f}")
+}

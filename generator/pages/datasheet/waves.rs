@@ -1,0 +1,279 @@
+//! The waveform of one computation, from the built-in simulator: lanes of values, and WaveDrom's JSON of them.
+
+use anyhow::{Context, Result};
+use serde_json::{Value, json};
+
+use crate::base::fixed::Format;
+use crate::core::Unit;
+use crate::cosim::trial;
+use crate::hdl::netlist::{Design, Driver, NetId, RegisterKind, Role};
+use crate::package::sealed_json;
+use crate::pages::account::short;
+
+/// Clocks that are shown at most; of longer computations the middle is left out.
+const MOST: usize = 40;
+
+/// Clocks that are shown of the beginning of a long computation.
+const HEAD: usize = 24;
+
+/// Clocks that are shown of its end.
+const TAIL: usize = 8;
+
+/// A computation, clock by clock.
+pub struct Waves {
+    /// The name of the module.
+    pub name: String,
+    /// The clocks that are shown, from 0; a number that is not one more than that before follows a gap.
+    pub clocks: Vec<usize>,
+    /// One below the other.
+    pub lanes: Vec<Lane>,
+}
+
+/// What one signal does.
+pub struct Lane {
+    /// The signal.
+    pub name: String,
+    /// The number of its block in the source's figure.
+    pub number: Option<u16>,
+    /// How it is drawn.
+    pub shape: Shape,
+    /// In each clock that is shown; `None` where the value means nothing yet.
+    pub values: Vec<Option<String>>,
+}
+
+/// How a lane is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// A rising edge begins each clock.
+    Clock,
+    /// High or low.
+    Bit,
+    /// A value in a frame.
+    Bus,
+}
+
+/// What is recorded for a lane.
+struct Probe {
+    net: NetId,
+    kind: Meaning,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Meaning {
+    /// Known from the start.
+    Control,
+    /// Not known before it first changes.
+    Register,
+    /// Not known before the first `valid`.
+    Result,
+}
+
+impl Waves {
+    /// Simulates the worked example.
+    ///
+    /// # Errors
+    /// A device that never ends.
+    pub fn record(unit: &Unit) -> Result<Self> {
+        let design = &unit.design;
+        let handshake = |wanted: Role| {
+            let port = design.port(|role| role == wanted);
+            port.map(|port| port.net).context("no handshake")
+        };
+        let [start, busy, valid, done] =
+            [Role::Start, Role::Busy, Role::Valid, Role::Done].map(handshake);
+        let (start, busy, valid, done) = (start?, busy?, valid?, done?);
+        let address = design.register(design.control.address).q;
+        let probes = probes(design, [start, busy, valid, done]);
+        let mut nets: Vec<NetId> = probes.iter().map(|probe| probe.net).collect();
+        nets.extend([address, busy, valid]);
+        let clocks = trial::record(design, unit.contract.as_ref(), &nets)?;
+        let column = |at: usize| -> Vec<u64> { clocks.iter().map(|values| values[at]).collect() };
+        let [words, busy, valid] = [0, 1, 2].map(|at| column(probes.len() + at));
+
+        let mut lanes = vec![Lane {
+            name: "clk".to_owned(),
+            number: None,
+            shape: Shape::Clock,
+            values: vec![None; clocks.len()],
+        }];
+        let known = valid.iter().position(|&valid| valid == 1).unwrap_or(0);
+        for (at, probe) in probes.iter().enumerate() {
+            if at == 4 {
+                lanes.push(word_lane(design, &words, &busy));
+            }
+            if let Some(lane) = lane(design, probe, &column(at), known) {
+                lanes.push(lane);
+            }
+        }
+        let shown = shown(clocks.len());
+        for lane in &mut lanes {
+            lane.values = shown.iter().map(|&at| lane.values[at].take()).collect();
+        }
+        Ok(Self { name: design.name.clone(), clocks: shown, lanes })
+    }
+
+    /// The first clock in which a signal is 1.
+    pub fn first(&self, name: &str) -> Option<u32> {
+        let lane = self.lanes.iter().find(|lane| lane.name == name)?;
+        let at = lane.values.iter().position(|value| value.as_deref() == Some("1"))?;
+        u32::try_from(self.clocks[at]).ok()
+    }
+
+    /// As WaveDrom's JSON, ending with a newline.
+    ///
+    /// # Errors
+    /// None that a user could cause.
+    pub fn wavedrom(&self) -> Result<String> {
+        let signal: Vec<Value> = self.lanes.iter().map(|lane| self.signal(lane)).collect();
+        sealed_json(json!({
+            "signal": signal,
+            "head": { "text": format!("{}: one computation", self.name), "tick": 0 },
+        }))
+    }
+
+    fn signal(&self, lane: &Lane) -> Value {
+        let (mut wave, mut data) = (String::new(), Vec::new());
+        let mut before: Option<&Option<String>> = None;
+        for (at, value) in lane.values.iter().enumerate() {
+            if at > 0 && self.clocks[at] != self.clocks[at - 1] + 1 {
+                wave.push('|');
+            }
+            wave.push(match (lane.shape, value) {
+                (Shape::Clock, _) if at == 0 => 'p',
+                (Shape::Clock, _) => '.',
+                _ if before == Some(value) => '.',
+                (_, None) => 'x',
+                (Shape::Bit, Some(bit)) if bit == "1" => '1',
+                (Shape::Bit, Some(_)) => '0',
+                (Shape::Bus, Some(text)) => {
+                    data.push(text.clone());
+                    '='
+                }
+            });
+            before = Some(value);
+        }
+        match data.is_empty() {
+            true => json!({ "name": lane.name, "wave": wave }),
+            false => json!({ "name": lane.name, "wave": wave, "data": data }),
+        }
+    }
+}
+
+/// The handshake, the registers of the source's datapath, and the results.
+fn probes(design: &Design, handshake: [NetId; 4]) -> Vec<Probe> {
+    let control = handshake.into_iter().map(|net| (net, Meaning::Control));
+    let registers = design.registers.iter();
+    let registers = registers.filter(|register| register.kind == RegisterKind::Architectural);
+    let results = design.outputs().filter(|port| port.role == Role::Result);
+    control
+        .chain(registers.map(|register| (register.q, Meaning::Register)))
+        .chain(results.map(|port| (port.net, Meaning::Result)))
+        .map(|(net, kind)| Probe { net, kind })
+        .collect()
+}
+
+/// The lane of a probe; none for a register that the computation leaves alone.
+fn lane(design: &Design, probe: &Probe, bits: &[u64], valid: usize) -> Option<Lane> {
+    let net = design.net(probe.net);
+    let known = match probe.kind {
+        Meaning::Control => 0,
+        Meaning::Result => valid,
+        Meaning::Register => {
+            let resets = match net.driver {
+                Driver::Register(register) => design.register(register).reset.is_some(),
+                _ => false,
+            };
+            let change = bits.windows(2).position(|pair| pair[0] != pair[1])?;
+            if resets { 0 } else { change + 1 }
+        }
+    };
+    let format = net.format;
+    let value = |(clock, &bits): (usize, &u64)| (clock >= known).then(|| text(format, bits));
+    Some(Lane {
+        name: net.name.clone(),
+        number: net.block,
+        shape: match format.width() {
+            1 => Shape::Bit,
+            _ => Shape::Bus,
+        },
+        values: bits.iter().enumerate().map(value).collect(),
+    })
+}
+
+/// The word of the microprogram, by its name.
+fn word_lane(design: &Design, words: &[u64], busy: &[u64]) -> Lane {
+    let name = |word: u64| match design.control.words.get(word as usize) {
+        Some(found) => format!("{word} {}", found.name),
+        None => word.to_string(),
+    };
+    Lane {
+        name: "word".to_owned(),
+        number: None,
+        shape: Shape::Bus,
+        values: words
+            .iter()
+            .zip(busy)
+            .map(|(&word, &busy)| {
+                Some(match (word, busy) {
+                    (0, 0) => "idle".to_owned(),
+                    _ => name(word),
+                })
+            })
+            .collect(),
+    }
+}
+
+/// A value in few digits.
+fn text(format: Format, bits: u64) -> String {
+    let value = format.to_f64(format.raw(bits));
+    match format.frac {
+        ..=0 => short(value),
+        _ => short((value * 1e5).round() / 1e5),
+    }
+}
+
+/// The clocks that are shown of so many.
+fn shown(clocks: usize) -> Vec<usize> {
+    match clocks {
+        0..=MOST => (0..clocks).collect(),
+        _ => (0..HEAD).chain(clocks - TAIL..clocks).collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_computations_are_cut_in_the_middle() {
+        assert_eq!(shown(3), [0, 1, 2]);
+        assert_eq!(shown(MOST).len(), MOST);
+        let cut = shown(100);
+        assert_eq!(cut.len(), HEAD + TAIL);
+        assert_eq!((cut[HEAD - 1], cut[HEAD], cut.last()), (23, 92, Some(&99)));
+    }
+
+    #[test]
+    fn wavedrom_repeats_with_dots() {
+        let lane = |name: &str, shape, values: [Option<&str>; 4]| Lane {
+            name: name.to_owned(),
+            number: None,
+            shape,
+            values: values.map(|value| value.map(str::to_owned)).to_vec(),
+        };
+        let waves = Waves {
+            name: "core".to_owned(),
+            clocks: vec![0, 1, 7, 8],
+            lanes: vec![
+                lane("clk", Shape::Clock, [None; 4]),
+                lane("busy", Shape::Bit, ["0", "1", "1", "0"].map(Some)),
+                lane("r", Shape::Bus, [None, None, Some("5"), Some("6")]),
+            ],
+        };
+        let text = waves.wavedrom().expect("JSON");
+        let value: Value = serde_json::from_str(&text).expect("JSON");
+        let wave = |at: usize| value["signal"][at]["wave"].clone();
+        assert_eq!([wave(0), wave(1), wave(2)], ["p.|..", "01|.0", "x.|=="]);
+        assert_eq!(value["signal"][2]["data"], json!(["5", "6"]));
+    }
+}

@@ -1,0 +1,76 @@
+//! Charts as figures of a page: the plot, its legend, and a table of its values.
+
+use anyhow::Result;
+use rayon::prelude::*;
+
+use super::plots;
+use crate::evidence::chart::{Chart, Scale};
+
+/// The rows of the table beside a plot.
+const ROWS: usize = 11;
+
+/// A chart as a page shows it.
+pub struct Figure<'a> {
+    /// What is plotted.
+    pub chart: &'a Chart,
+    /// Where the seed has it; empty for a figure of ours.
+    pub source: &'a str,
+    /// The plot.
+    pub svg: String,
+    /// Class and name of each line.
+    pub legend: Vec<(String, &'a str)>,
+    /// Some of its figures, for a table: the place, and a value of each series.
+    pub rows: Vec<(String, Vec<String>)>,
+}
+
+/// Charts, each with where its source has it, as figures.
+///
+/// # Errors
+/// A chart cannot be plotted.
+pub fn figures<'a>(charts: &[(&'a Chart, &'a str)]) -> Result<Vec<Figure<'a>>> {
+    charts.par_iter().map(|(chart, source)| figure(chart, source)).collect()
+}
+
+fn figure<'a>(chart: &'a Chart, source: &'a str) -> Result<Figure<'a>> {
+    let marks = chart.marks.iter().map(|mark| ("mark".to_owned(), mark.label.as_str()));
+    let legend = chart
+        .series
+        .iter()
+        .enumerate()
+        .map(|(at, series)| (plots::class(at), series.name.as_str()))
+        .chain(marks)
+        .collect();
+    let rows = chart
+        .rows(ROWS)
+        .into_iter()
+        .map(|at| {
+            let values = chart.series.iter();
+            let values = values.map(|series| cell(series.values[at], chart.y.scale));
+            (number(chart.places[at]), values.collect())
+        })
+        .collect();
+    Ok(Figure { chart, source, svg: plots::svg(chart)?, legend, rows })
+}
+
+/// A value in a table: errors on a logarithmic axis keep their magnitude.
+fn cell(value: f64, scale: Scale) -> String {
+    match scale {
+        _ if value.is_nan() => "\u{2013}".to_owned(),
+        Scale::Logarithmic => scientific(value),
+        Scale::Linear => format!("{value:.4}").replace('-', "\u{2212}"),
+    }
+}
+
+/// An error by its magnitude.
+pub fn scientific(value: f64) -> String {
+    match value {
+        0.0 => "0".to_owned(),
+        _ => format!("{value:.1e}").replace('-', "\u{2212}"),
+    }
+}
+
+/// At most three digits after the point.
+fn number(value: f64) -> String {
+    let text = format!("{value:.3}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}

@@ -1,0 +1,77 @@
+//! The page of a configuration: what the device is, for people, in Markdown.
+
+mod prose;
+
+use anyhow::Result;
+use askama::Template;
+
+use super::account::{self, PageInputs};
+use crate::hdl::netlist::Design;
+use crate::package::seal::{Seal, sealed};
+use prose::{prose, table};
+
+#[derive(Template)]
+#[template(path = "page.md")]
+struct Page<'a> {
+    title: String,
+    device: &'a str,
+    name: &'a str,
+    formula: &'a str,
+    source: String,
+    notes: Vec<String>,
+    ports: String,
+    numbering: &'static str,
+    blocks: String,
+    roms: String,
+    fields: String,
+    words: String,
+    clocks: String,
+    accuracy: String,
+    terms: String,
+    limit: String,
+    proof: String,
+    domain: String,
+    remarks: Vec<String>,
+    example: String,
+    keys: String,
+    config: &'a str,
+}
+
+/// The page of a design, ending with a newline.
+///
+/// # Errors
+/// A template that fails to print.
+pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
+    let about = &design.about;
+    let bound = inputs.contract.bound();
+    let text = crate::package::render(&Page {
+        title: prose(&about.title),
+        device: &about.device,
+        name: &design.name,
+        formula: &about.formula,
+        source: prose(&about.source),
+        notes: about.notes.iter().map(|note| prose(note)).collect(),
+        ports: table(&account::ports(design)),
+        numbering: account::numbering(design),
+        blocks: table(&account::blocks::table(design)),
+        roms: table(&account::roms(design)),
+        fields: table(&account::fields(design)),
+        words: table(&account::words(design)),
+        clocks: table(&account::clocks(inputs.timing)),
+        accuracy: account::accuracy(&bound),
+        terms: table(&account::terms(&bound)),
+        limit: prose(&account::limit(&bound)),
+        proof: prose(&account::proof(inputs)),
+        domain: table(&account::domain(inputs.contract)),
+        remarks: inputs
+            .contract
+            .remarks()
+            .iter()
+            .map(|remark| format!("Remark: {}.", prose(remark)))
+            .collect(),
+        example: table(&account::example(inputs.contract, inputs.example)),
+        keys: table(&account::keys(inputs.schema, inputs.config)),
+        config: inputs.path,
+    })?;
+    Ok(sealed(text, Seal::Markup))
+}

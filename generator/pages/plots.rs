@@ -1,0 +1,289 @@
+//! Charts as inline SVG, in colours that the page's style sheet decides.
+
+use anyhow::{Result, anyhow};
+use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
+use plotters::prelude::*;
+
+use crate::evidence::chart::{Axis, Chart, Scale};
+
+/// Lines that the style sheet can tell apart, by colour and by dashes.
+pub const STYLES: usize = 6;
+
+/// The library places points on whole units: this many of them make one of the page's at full size.
+const FINE: u32 = 4;
+
+const WIDTH: u32 = 480 * FINE;
+const HEIGHT: u32 = 300 * FINE;
+
+/// Stand-ins for the roles of lines and text; [`themed`] puts classes in their place.
+const INK: RGBColor = RGBColor(1, 0, 0);
+const GRID: RGBColor = RGBColor(2, 0, 0);
+const MARK: RGBColor = RGBColor(3, 0, 0);
+
+/// The colour that stands for series number `at`.
+fn style(at: usize) -> RGBColor {
+    RGBColor(4, 0, (at % STYLES) as u8)
+}
+
+/// The class of series number `at` in the style sheet.
+pub fn class(at: usize) -> String {
+    format!("s{}", at % STYLES + 1)
+}
+
+/// The chart as an `svg` element, which scales to its place and takes its colours from the classes `ink`,
+/// `grid`, `mark` and those of [`class`].
+///
+/// # Errors
+/// The plotting library refuses; an empty range does that.
+pub fn svg(chart: &Chart) -> Result<String> {
+    let mut text = String::new();
+    draw(chart, &mut text).map_err(|error| anyhow!("cannot plot `{}`: {error}", chart.id))?;
+    Ok(themed(&text, chart))
+}
+
+/// An axis as the library takes it: the places of values, with lines and labels at our ticks.
+struct Places {
+    range: std::ops::Range<f64>,
+    ticks: Vec<f64>,
+}
+
+impl Places {
+    fn new(axis: &Axis) -> Result<Self> {
+        let end = |value| {
+            axis.place(value)
+                .ok_or_else(|| anyhow!("an end of `{}` has no place on it", axis.label))
+        };
+        Ok(Self {
+            range: end(axis.range.0)?..end(axis.range.1)?,
+            ticks: ticks(axis).into_iter().filter_map(|tick| axis.place(tick)).collect(),
+        })
+    }
+}
+
+impl Ranged for Places {
+    type FormatOption = DefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, limit: (i32, i32)) -> i32 {
+        let share = (value - self.range.start) / (self.range.end - self.range.start);
+        limit.0 + (f64::from(limit.1 - limit.0) * share).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
+        match hint.weight().allow_light_points() {
+            true => Vec::new(),
+            false => self.ticks.clone(),
+        }
+    }
+
+    fn range(&self) -> std::ops::Range<f64> {
+        self.range.clone()
+    }
+}
+
+fn draw(chart: &Chart, text: &mut String) -> Result<(), Box<dyn std::error::Error>> {
+    let area = SVGBackend::with_string(text, (WIDTH, HEIGHT)).into_drawing_area();
+    let mut plane = ChartBuilder::on(&area)
+        .margin_top(8 * FINE)
+        .margin_right(16 * FINE)
+        .margin_bottom(4 * FINE)
+        .x_label_area_size(44 * FINE)
+        .y_label_area_size(58 * FINE)
+        .build_cartesian_2d(Places::new(&chart.x)?, Places::new(&chart.y)?)?;
+    // The library's sizes are larger than the SVG's by a quarter.
+    let font = ("sans-serif", 16 * FINE).into_font().color(&INK);
+    let label = |axis: &Axis, place: f64| match axis.scale {
+        Scale::Linear => number(place),
+        Scale::Logarithmic => number(libm::pow(10.0, place)),
+    };
+    plane
+        .configure_mesh()
+        .axis_style(INK)
+        .bold_line_style(GRID)
+        .light_line_style(GRID.mix(0.0))
+        .set_all_tick_mark_size(5 * FINE)
+        .x_desc(chart.x.label.as_str())
+        .label_style(font.clone())
+        .axis_desc_style(font)
+        .x_label_formatter(&|place| label(&chart.x, *place))
+        .y_label_formatter(&|place| label(&chart.y, *place))
+        .draw()?;
+    let (low, high) = chart.x.range;
+    for mark in &chart.marks {
+        let line = [low, high].map(|x| Some((chart.x.place(x)?, chart.y.place(mark.at)?)));
+        plane.draw_series(LineSeries::new(line.into_iter().flatten(), MARK))?;
+    }
+    for (at, series) in chart.series.iter().enumerate() {
+        let style = style(at).stroke_width(2);
+        for run in runs(chart, &series.values) {
+            plane.draw_series(LineSeries::new(run, style))?;
+        }
+    }
+    area.present()?;
+    Ok(())
+}
+
+/// The stretches of a series that can be shown, as places; a line that leaves the range ends at its border.
+fn runs(chart: &Chart, values: &[f64]) -> Vec<Vec<(f64, f64)>> {
+    let low = chart.y.place(chart.y.range.0).unwrap_or(f64::NEG_INFINITY);
+    let high = chart.y.place(chart.y.range.1).unwrap_or(f64::INFINITY);
+    let inside = |y: f64| (low..=high).contains(&y);
+    let points: Vec<Option<(f64, f64)>> = chart
+        .places
+        .iter()
+        .zip(values)
+        .map(|(x, y)| Some((chart.x.place(*x)?, chart.y.place(*y)?)))
+        .collect();
+    let mut runs = vec![Vec::new()];
+    let mut previous: Option<(f64, f64)> = None;
+    for point in points {
+        let Some((x, y)) = point else {
+            runs.push(Vec::new());
+            previous = None;
+            continue;
+        };
+        if let Some((before, from)) = previous
+            && inside(from) != inside(y)
+        {
+            let border = if from.max(y) > high { high } else { low };
+            let crossing = before + (x - before) * (border - from) / (y - from);
+            if let Some(run) = runs.last_mut() {
+                run.push((crossing, border));
+            }
+            if inside(from) {
+                runs.push(Vec::new());
+            }
+        }
+        if inside(y)
+            && let Some(run) = runs.last_mut()
+        {
+            run.push((x, y));
+        }
+        previous = Some((x, y));
+    }
+    runs.retain(|run| run.len() > 1);
+    runs
+}
+
+/// Round values within the range of an axis, in order.
+fn ticks(axis: &Axis) -> Vec<f64> {
+    let (low, high) = axis.range;
+    match axis.scale {
+        Scale::Linear => {
+            let rough = (high - low) / 5.0;
+            let decade = libm::pow(10.0, libm::floor(libm::log10(rough)));
+            let step = [1.0, 2.0, 2.5, 5.0, 10.0]
+                .into_iter()
+                .map(|factor| factor * decade)
+                .find(|step| *step >= rough * 0.999)
+                .unwrap_or(rough);
+            let (first, last) = (libm::ceil(low / step), libm::floor(high / step + 1e-9));
+            (0..=(last - first) as u32).map(|at| (first + f64::from(at)) * step).collect()
+        }
+        Scale::Logarithmic => {
+            let (first, last) = (libm::log10(low), libm::log10(high));
+            // Few decades have room for steps in between.
+            let steps: &[f64] = match last - first < 3.0 {
+                true => &[1.0, 2.0, 5.0],
+                false => &[1.0],
+            };
+            let (first, last) = (libm::floor(first) as i32, libm::ceil(last) as i32);
+            (first..=last)
+                .flat_map(|decade| {
+                    let decade = libm::pow(10.0, f64::from(decade));
+                    steps.iter().map(move |step| step * decade)
+                })
+                .filter(|tick| (low * 0.999..=high * 1.001).contains(tick))
+                .collect()
+        }
+    }
+}
+
+/// A value at a tick: at most six significant digits, no trailing zeros.
+fn number(value: f64) -> String {
+    if value != 0.0 && value.abs() < 0.001 {
+        return format!("{value:.0e}").replace("e-", "e\u{2212}");
+    }
+    let text = format!("{value:.6}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0" } else { text }.replace('-', "\u{2212}")
+}
+
+/// Classes in place of the stand-ins, and what makes the element an image to a screen reader.
+fn themed(text: &str, chart: &Chart) -> String {
+    let hex = |RGBColor(r, g, b): RGBColor| format!("#{r:02X}{g:02X}{b:02X}");
+    let mut roles = vec![
+        (hex(INK), "ink".to_owned()),
+        (hex(GRID), "grid".to_owned()),
+        (hex(MARK), "mark".to_owned()),
+    ];
+    roles.extend((0..STYLES).map(|at| (hex(style(at)), class(at))));
+    let mut themed = text.to_owned();
+    for (colour, class) in roles {
+        for property in ["fill", "stroke"] {
+            themed =
+                themed.replace(&format!("{property}=\"{colour}\""), &format!("class=\"{class}\""));
+        }
+    }
+    let body = themed.split_once('>').map_or("", |(_, body)| body);
+    format!(
+        "<svg viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-labelledby=\"{id}-title\" aria-describedby=\"{id}-caption\">{body}",
+        id = chart.id,
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::evidence::chart::{Mark, Series};
+
+    fn chart() -> Chart {
+        Chart {
+            id: "parabola".to_owned(),
+            title: "A parabola".to_owned(),
+            caption: "It rises.".to_owned(),
+            x: Axis::linear("x", 0.0, 4.0),
+            y: Axis::linear("y", 0.0, 4.0),
+            places: vec![0.0, 1.0, 2.0, 3.0, 4.0],
+            series: vec![Series {
+                name: "x squared".to_owned(),
+                values: vec![0.0, 1.0, f64::NAN, 3.0, 5.0],
+            }],
+            marks: vec![Mark { label: "two".to_owned(), at: 2.0 }],
+        }
+    }
+
+    #[test]
+    fn colours_are_classes() {
+        let svg = svg(&chart()).expect("it plots");
+        for class in ["ink", "grid", "mark", "s1"] {
+            assert!(svg.contains(&format!("class=\"{class}\"")), "{class}: {svg}");
+        }
+        assert!(!svg.contains("=\"#"), "{svg}");
+        assert!(!svg.contains("http"), "{svg}");
+        assert_eq!(svg.matches("<svg").count(), 1);
+    }
+
+    #[test]
+    fn lines_end_where_the_range_does() {
+        let chart = chart();
+        let found = runs(&chart, &chart.series[0].values);
+        // 5 is outside: the line from 3 at 3 leaves at 4, half way.
+        assert_eq!(found, [vec![(0.0, 0.0), (1.0, 1.0)], vec![(3.0, 3.0), (3.5, 4.0)]]);
+        let found = runs(&chart, &[6.0, 2.0, 2.0, 6.0, 6.0]);
+        assert_eq!(found, [vec![(0.5, 4.0), (1.0, 2.0), (2.0, 2.0), (2.5, 4.0)]]);
+    }
+
+    #[test]
+    fn round_ticks() {
+        let linear = |low, high| ticks(&Axis::linear("", low, high));
+        assert_eq!(linear(0.0, 1.0).len(), 6);
+        assert_eq!(linear(0.0, 10.0), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
+        assert_eq!(linear(-4.0, 4.0), [-4.0, -2.0, 0.0, 2.0, 4.0]);
+        let logarithmic = ticks(&Axis::logarithmic("", 0.05, 1000.0));
+        let labels: Vec<String> = logarithmic.into_iter().map(number).collect();
+        assert_eq!(labels, ["0.1", "1", "10", "100", "1000"]);
+        assert_eq!(ticks(&Axis::logarithmic("", 2.0, 60.0)), [2.0, 5.0, 10.0, 20.0, 50.0]);
+        assert_eq!([-0.5, 1e-5].map(number), ["\u{2212}0.5", "1e\u{2212}5"]);
+    }
+}

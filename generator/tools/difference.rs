@@ -1,0 +1,70 @@
+//! What a bench that fails says of the first difference, and the waveform of the clocks before it.
+
+use std::fs;
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+
+use super::Simulator;
+use super::bench::{BuiltBench, Waveform};
+use crate::package::{WINDOW_FILE, window};
+
+/// The first difference that a bench printed.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct BenchDifference {
+    /// The clock of the bench, from 0.
+    pub clock: u64,
+    /// The word of the microprogram that is executed in it.
+    pub word: String,
+    /// The output.
+    pub signal: String,
+    /// Its value, in hexadecimal; x and z are possible.
+    pub simulated: String,
+    /// What the vectors say, in hexadecimal.
+    pub expected: String,
+}
+
+impl BenchDifference {
+    /// The first in what a bench printed, if there is one.
+    pub fn first(transcript: &str) -> Option<Self> {
+        transcript.lines().find_map(Self::of_line)
+    }
+
+    /// `clock 9, word 3 (result): red_out is 1f, expected 20`.
+    fn of_line(line: &str) -> Option<Self> {
+        let (clock, rest) = line.strip_prefix("clock ")?.split_once(", ")?;
+        // A word's name may have anything in it.
+        let (word, rest) = rest.rsplit_once(": ")?;
+        let (signal, rest) = rest.split_once(" is ")?;
+        let (simulated, expected) = rest.split_once(", expected ")?;
+        let name = word.split_once('(').and_then(|(_, name)| name.strip_suffix(')'));
+        Some(Self {
+            clock: clock.parse().ok()?,
+            word: name.unwrap_or_default().to_owned(),
+            signal: signal.to_owned(),
+            simulated: simulated.to_owned(),
+            expected: expected.to_owned(),
+        })
+    }
+}
+
+/// Runs the bench `top` of `files` once more, as [`super::run_bench`] does; returns the waveform (VCD) of
+/// clocks `from` to `to`.
+///
+/// # Errors
+/// Those of [`super::run_bench`]; there is no waveform.
+pub fn bench_waveform(
+    simulator: Simulator,
+    files: &[(String, String)],
+    top: &str,
+    (from, to): (u64, u64),
+    limit: Duration,
+) -> Result<Vec<u8>> {
+    let name = format!("{top}_window");
+    let mut files = files.to_vec();
+    files.push((format!("{name}.v"), window(&name, top, from, to)?));
+    let bench = BuiltBench::build(simulator, &files, &name, Waveform::Written, limit)?;
+    bench.run(limit)?;
+    fs::read(bench.directory().join(WINDOW_FILE))
+        .with_context(|| format!("{simulator} wrote no waveform"))
+}

@@ -1,0 +1,97 @@
+//! Netlists from synthesis in a simulator: the bench of the source, around gates.
+
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+
+use anyhow::{Context, Result, bail};
+
+use super::synthesis::{self, Family};
+use crate::tools::Tool;
+
+/// Models of the ECP5 cells for which Yosys has none.
+const ECP5: &str = include_str!("ecp5.v");
+
+/// Whether all cells to which devices are mapped have a model: in Yosys, or here.
+pub fn is_simulated(family: &Family) -> bool {
+    matches!(family.name, "ice40" | "ecp5")
+}
+
+/// The flat netlist of the module `top`, as Verilog, with the contents of the ROMs.
+///
+/// # Errors
+/// Those of [`synthesis::synthesise`].
+pub fn netlist(
+    yosys: &Tool,
+    files: &[(String, String)],
+    top: &str,
+    family: &Family,
+    limit: Duration,
+) -> Result<String> {
+    const NETLIST: &str = "netlist.v";
+    let command = format!("write_verilog -noattr {NETLIST}");
+    let place = synthesis::run(yosys, files, top, family, &command, limit)?;
+    fs::read_to_string(place.path().join(NETLIST)).context("`yosys` wrote no netlist")
+}
+
+/// The files of the bench around a netlist, of `sources`, those of device and bench: without those named in
+/// `rtl`, and with the models of the family's cells.
+///
+/// # Errors
+/// The models are not where Yosys has them; there are none.
+pub fn bench(
+    yosys: &Tool,
+    sources: Vec<(String, String)>,
+    rtl: &[String],
+    netlist: String,
+    family: &Family,
+) -> Result<Vec<(String, String)>> {
+    let mut files = sources;
+    files.retain(|(name, _)| !rtl.contains(name));
+    for (_, contents) in &mut files {
+        // A flat netlist has no instance of that name; only messages speak of the word.
+        *contents = contents.replace("dut.control.word_address", "4'd15");
+    }
+    files.push(("netlist.v".to_owned(), netlist));
+    files.extend(models(yosys, family)?);
+    Ok(files)
+}
+
+/// The models of a family's cells.
+fn models(yosys: &Tool, family: &Family) -> Result<Vec<(String, String)>> {
+    let shipped = shipped(yosys, family)?;
+    let mut files = Vec::new();
+    let shipped = match family.name {
+        // Default values of ports are beyond Icarus Verilog 11, and a netlist from synthesis needs none.
+        "ice40" => format!("`define NO_ICE40_DEFAULT_ASSIGNMENTS\n{shipped}"),
+        "ecp5" => {
+            files.push(("ecp5.v".to_owned(), ECP5.to_owned()));
+            // The flip-flops and pads of other tools are in files that it includes.
+            format!("`define NO_INCLUDES\n{}", without(&shipped, "DP16KD")?)
+        }
+        _ => bail!("there are no models of all cells of {}", family.title),
+    };
+    files.push(("cells_sim.v".to_owned(), shipped));
+    Ok(files)
+}
+
+/// The models that Yosys brings.
+fn shipped(yosys: &Tool, family: &Family) -> Result<String> {
+    let tool = yosys.path().canonicalize();
+    let tool = tool.with_context(|| format!("cannot find `{}`", yosys.path().display()))?;
+    let installation = tool.parent().and_then(Path::parent).unwrap_or(Path::new("/"));
+    let models = installation.join(format!("share/yosys/{}/cells_sim.v", family.name));
+    fs::read_to_string(&models).with_context(|| {
+        format!("cannot read `{}`, the models of cells that belong to `{yosys}`", models.display())
+    })
+}
+
+/// Verilog without a module, which is there without behaviour.
+fn without(verilog: &str, module: &str) -> Result<String> {
+    let start = format!("(* blackbox *)\nmodule {module}(");
+    let parts = verilog.split_once(&start);
+    let parts = parts.and_then(|(before, rest)| Some((before, rest.split_once("endmodule\n")?.1)));
+    let (before, after) =
+        parts.with_context(|| format!("the models of Yosys have no black box {module}"))?;
+    Ok(format!("{before}{after}"))
+}

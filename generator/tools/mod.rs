@@ -1,0 +1,216 @@
+//! External simulators and synthesis tools, run as child processes.
+//!
+//! A [`Tool`] is a program found on a search path. Every run has a time limit, after which its
+//! whole process group is killed. Output is drained to the end but kept only in part, so a tool
+//! that prints without end costs neither memory nor a deadlock. Errors name the tool and quote the
+//! last lines that it wrote.
+//!
+//! [`run_bench`] builds and runs a self-checking Verilog bench; a [`BuiltBench`] can be run repeatedly.
+
+use std::env;
+use std::ffi::OsStr;
+use std::fmt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::mpsc;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use anyhow::{Context, Result, anyhow, bail};
+
+mod bench;
+mod capture;
+mod difference;
+pub mod gates;
+mod lint;
+mod proof;
+pub mod synthesis;
+
+pub use bench::{BenchOutcome, BuiltBench, Simulator, Waveform, run_bench};
+use capture::Capture;
+pub use difference::{BenchDifference, bench_waveform};
+pub use lint::lint;
+pub use proof::prove;
+
+/// What asking for a version may take: the first run of a WebAssembly tool compiles it.
+const VERSION_LIMIT: Duration = Duration::from_secs(600);
+/// How long the output of a killed process group may take to close.
+const CLOSING_LIMIT: Duration = Duration::from_secs(1);
+
+/// A program outside Glint.
+#[derive(Clone, Debug)]
+pub struct Tool {
+    name: String,
+    path: PathBuf,
+}
+
+/// A run that ended by itself.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// How the program ended; not necessarily well.
+    pub status: ExitStatus,
+    /// Standard output and standard error in the order of writing. Of more than about a megabyte
+    /// the middle is left out, and a line says so.
+    pub output: String,
+}
+
+impl Tool {
+    /// The tool `name` on `PATH`.
+    ///
+    /// # Errors
+    /// It is not there; the message says how to install it.
+    pub fn find(name: &str) -> Result<Self> {
+        Self::find_in(name, &env::var_os("PATH").unwrap_or_default())
+    }
+
+    /// The tool `name` on the search path `search`, which is written as `PATH` is.
+    ///
+    /// # Errors
+    /// It is not there; the message says how to install it.
+    pub fn find_in(name: &str, search: &OsStr) -> Result<Self> {
+        let file = format!("{name}{}", env::consts::EXE_SUFFIX);
+        env::split_paths(search)
+            .map(|directory| directory.join(&file))
+            .find(|path| is_executable(path))
+            .map(|path| Self { name: name.to_owned(), path })
+            .ok_or_else(|| anyhow!("`{name}` is not on PATH; `bash tools/install` installs it"))
+    }
+
+    /// The name by which the tool was looked for.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Where it was found.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The first line of what the tool says of its version.
+    ///
+    /// # Errors
+    /// The tool does not start, does not end, fails, or says nothing.
+    pub fn version(&self) -> Result<String> {
+        // Icarus Verilog knows no long options.
+        let flag = match self.name.as_str() {
+            "iverilog" | "vvp" => "-V",
+            _ => "--version",
+        };
+        let output = self.run_to_success([flag], Path::new("."), VERSION_LIMIT)?;
+        let line = output.lines().map(str::trim).find(|line| !line.is_empty());
+        line.map(str::to_owned).with_context(|| format!("`{} {flag}` printed nothing", self.name))
+    }
+
+    /// Runs the tool in `directory` with nothing on its standard input, until it has ended and
+    /// everything that writes to its output has too.
+    ///
+    /// # Errors
+    /// It does not start, or takes longer than `limit`; then it and the processes that it started
+    /// are killed.
+    pub fn run<A: AsRef<OsStr>>(
+        &self,
+        arguments: impl IntoIterator<Item = A>,
+        directory: &Path,
+        limit: Duration,
+    ) -> Result<Run> {
+        let (mut reader, writer) = std::io::pipe().context("cannot make a pipe")?;
+        let mut command = Command::new(&self.path);
+        command
+            .args(arguments)
+            .current_dir(directory)
+            // Messages that people and tests read should not depend on the user's language.
+            .env("LC_ALL", "C")
+            .stdin(Stdio::null())
+            .stdout(writer.try_clone().context("cannot make a pipe")?)
+            .stderr(writer);
+        // A group of its own, so that the tool's children can be killed with it.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        let deadline = Instant::now() + limit;
+        let mut child =
+            command.spawn().with_context(|| format!("cannot start `{}`", self.path.display()))?;
+        // The command holds the writing ends: without this the reader would never see the end.
+        drop(command);
+
+        let (sender, receiver) = mpsc::channel();
+        let capture = Capture::default();
+        let shared = capture.clone();
+        thread::spawn(move || {
+            shared.drain(&mut reader);
+            // The receiver is gone only if the run was given up.
+            let _ = sender.send(());
+        });
+
+        let closed = receiver.recv_timeout(limit).is_ok();
+        let status = if closed { wait_until(&mut child, deadline) } else { None };
+        if let Some(status) = status {
+            return Ok(Run { status, output: capture.text() });
+        }
+        kill_group(&mut child);
+        // Only a process that left the group can still hold the pipe; its reader is abandoned.
+        let _ = receiver.recv_timeout(CLOSING_LIMIT);
+        bail!("`{}` did not end within {limit:?} and was killed{}", self.name, capture.quote());
+    }
+
+    /// Like [`Tool::run`], for a tool that is expected to succeed; returns its output.
+    ///
+    /// # Errors
+    /// Those of [`Tool::run`], and any exit status but 0.
+    pub fn run_to_success<A: AsRef<OsStr>>(
+        &self,
+        arguments: impl IntoIterator<Item = A>,
+        directory: &Path,
+        limit: Duration,
+    ) -> Result<String> {
+        let run = self.run(arguments, directory, limit)?;
+        if !run.status.success() {
+            bail!("`{}` failed ({}){}", self.name, run.status, capture::quote(&run.output));
+        }
+        Ok(run.output)
+    }
+}
+
+impl fmt::Display for Tool {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(&self.name)
+    }
+}
+
+/// Waits for the end of a child whose output is closed already, which as a rule is immediate.
+fn wait_until(child: &mut Child, deadline: Instant) -> Option<ExitStatus> {
+    loop {
+        // An error means that there is no such child: as good as a hang, and reported as one.
+        if let Some(status) = child.try_wait().ok()? {
+            return Some(status);
+        }
+        if Instant::now() >= deadline {
+            return None;
+        }
+        thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// Kills the child and all of its process group, and collects the child.
+fn kill_group(child: &mut Child) {
+    // The child is not collected yet, so its number still names this group and no other. Errors
+    // mean that it has just ended.
+    #[cfg(unix)]
+    if let Some(group) = rustix::process::Pid::from_raw(child.id() as i32) {
+        let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
+    }
+    let _ = child.kill();
+    let _ = child.wait();
+}
+
+fn is_executable(path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        path.metadata().is_ok_and(|data| data.is_file() && data.permissions().mode() & 0o111 != 0)
+    }
+    #[cfg(not(unix))]
+    path.is_file()
+}
+
+#[cfg(all(test, unix))]
+mod tests;

@@ -1,0 +1,135 @@
+//! Synthesis by Yosys: what a design takes of an FPGA.
+
+use std::fs;
+use std::path::Path;
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::tools::Tool;
+
+/// Kinds of cells, each with what one of them counts for.
+pub type Kinds = &'static [(&'static str, u64)];
+
+/// A family of FPGAs.
+#[derive(Clone, Copy, Debug)]
+pub struct Family {
+    /// For scripts: `ice40`.
+    pub name: &'static str,
+    /// For people.
+    pub title: &'static str,
+    /// The command of Yosys, without the top module.
+    pub command: &'static str,
+    /// Look-up tables. A carry cell that takes the place of two counts for two.
+    pub luts: Kinds,
+    /// DSP blocks.
+    pub dsps: Kinds,
+    /// Block RAMs: of 4 kbit in iCE40, of 18 kbit in the others.
+    pub block_rams: Kinds,
+}
+
+/// The families that Glint's Verilog is meant for.
+pub const FAMILIES: [Family; 3] = [
+    Family {
+        name: "ice40",
+        title: "iCE40",
+        command: "synth_ice40 -dsp",
+        luts: &[("SB_LUT4", 1)],
+        dsps: &[("SB_MAC16", 1)],
+        block_rams: &[("SB_RAM40_4K", 1)],
+    },
+    Family {
+        name: "ecp5",
+        title: "ECP5",
+        command: "synth_ecp5",
+        luts: &[("LUT4", 1), ("CCU2C", 2)],
+        dsps: &[("MULT18X18D", 1)],
+        block_rams: &[("DP16KD", 1), ("PDPW16KD", 1)],
+    },
+    Family {
+        name: "xilinx7",
+        title: "Xilinx 7",
+        // Not -abc9: Yosys 0.23 crashes in it.
+        command: "synth_xilinx -flatten",
+        luts: &[("LUT1", 1), ("LUT2", 1), ("LUT3", 1), ("LUT4", 1), ("LUT5", 1), ("LUT6", 1)],
+        dsps: &[("DSP48E1", 1)],
+        block_rams: &[("RAMB18E1", 1), ("RAMB36E1", 2)],
+    },
+];
+
+/// What a design takes, before placement.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Usage {
+    /// Look-up tables.
+    pub luts: u64,
+    /// DSP blocks.
+    pub dsps: u64,
+    /// Block RAMs.
+    pub block_rams: u64,
+}
+
+/// Synthesises the module `top` of Verilog and memory files, pairs of a plain name and contents.
+///
+/// # Errors
+/// The files cannot be written; Yosys fails, or takes longer than `limit`; it does not say what the
+/// design takes.
+pub fn synthesise(
+    yosys: &Tool,
+    files: &[(String, String)],
+    top: &str,
+    family: &Family,
+    limit: Duration,
+) -> Result<Usage> {
+    const STATISTICS: &str = "statistics.json";
+    let command = format!("tee -q -o {STATISTICS} stat -json");
+    let place = run(yosys, files, top, family, &command, limit)?;
+    usage(&place.path().join(STATISTICS), top, family)
+        .with_context(|| format!("`{}` for {}", family.command, family.title))
+}
+
+/// Synthesises, has Yosys run `command` on the netlist, and returns the directory in which it did.
+pub(super) fn run(
+    yosys: &Tool,
+    files: &[(String, String)],
+    top: &str,
+    family: &Family,
+    command: &str,
+    limit: Duration,
+) -> Result<TempDir> {
+    let place = tempfile::tempdir().context("cannot make a directory for synthesis")?;
+    for (name, contents) in files {
+        fs::write(place.path().join(name), contents)
+            .with_context(|| format!("cannot write `{name}` for synthesis"))?;
+    }
+    let sources: Vec<&str> =
+        files.iter().map(|(name, _)| name.as_str()).filter(|name| name.ends_with(".v")).collect();
+    let script = format!(
+        "read_verilog {}; hierarchy -check -top {top}; {} -top {top}; {command}",
+        sources.join(" "),
+        family.command,
+    );
+    yosys.run_to_success(["-q", "-p", &script], place.path(), limit)?;
+    Ok(place)
+}
+
+/// Reads what `stat -json` has written.
+fn usage(path: &Path, top: &str, family: &Family) -> Result<Usage> {
+    let text = fs::read_to_string(path).context("`yosys` wrote no statistics")?;
+    let statistics: Value =
+        serde_json::from_str(&text).context("the statistics of `yosys` are no JSON")?;
+    // The netlist is flat: the top module is all of it.
+    let cells = statistics["modules"][format!("\\{top}")]["num_cells_by_type"]
+        .as_object()
+        .with_context(|| format!("the statistics of `yosys` do not tell the cells of `{top}`"))?;
+    let count = |kinds: Kinds| {
+        let of = |kind: &str| cells.get(kind).and_then(Value::as_u64).unwrap_or(0);
+        kinds.iter().map(|(kind, weight)| of(kind) * weight).sum()
+    };
+    Ok(Usage {
+        luts: count(family.luts),
+        dsps: count(family.dsps),
+        block_rams: count(family.block_rams),
+    })
+}
