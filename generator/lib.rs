@@ -2,7 +2,7 @@
 //!
 //! A device is a [`registry::Device`]: keys ([`config::Schema`]), a description ([`dsl`]), a golden model
 //! ([`golden::Model`]) and a contract ([`golden::Contract`]). [`cli::run`] makes a command line of a
-//! registry, whether its devices are the catalogue's or your own: `examples/fresnel.rs` is a complete
+//! registry, whether its devices are the catalogue's or your own: `examples/fresnel` is a complete
 //! one, to be read from top to bottom.
 
 pub mod base;

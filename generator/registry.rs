@@ -10,7 +10,7 @@ use crate::hdl::netlist::Design;
 /// A device that Glint can generate, simulate and check.
 ///
 /// All functions are called with configurations that the schema accepts. The file
-/// `examples/fresnel.rs` is a device of one's own, in full.
+/// `examples/fresnel` is a device of one's own, in full.
 #[derive(Clone, Copy)]
 pub struct Device {
     /// As the key `device` names it: the same as [`Schema::device`].
@@ -57,82 +57,80 @@ impl Registry {
                 summary: "cos^k(sqrt(n/k)*delta) along a scan line, k = 1, 2, 4, 16 by n (seed 000)",
                 schema: devices::quad_cosine::schema,
                 describe: devices::quad_cosine::describe,
-                model: |config| Box::new(golden::quad_cosine::QuadCosineModel::new(config)),
-                contract: |config| Box::new(golden::quad_cosine::QuadCosineContract::new(config)),
+                model: golden::quad_cosine::model,
+                contract: golden::quad_cosine::contract,
             },
             Device {
                 name: "cosine-squared",
                 summary: "cos^2(a*delta) along a scan line, a = sqrt(n/2) outside (seed 000's prototype)",
                 schema: devices::cosine_squared::schema,
                 describe: devices::cosine_squared::describe,
-                model: |config| Box::new(golden::cosine_squared::CosineSquaredModel::new(config)),
-                contract: |config| {
-                    Box::new(golden::cosine_squared::CosineSquaredContract::new(config))
-                },
+                model: golden::cosine_squared::model,
+                contract: golden::cosine_squared::contract,
             },
             Device {
                 name: "lyon",
                 summary: "max(0, 1 - beta*D^2)^m, D = N - H, m = 2, 4, 8, 16 (US 5 739 820)",
                 schema: devices::lyon::schema,
                 describe: devices::lyon::describe,
-                model: |config| Box::new(golden::lyon::LyonModel::new(config)),
-                contract: |config| Box::new(golden::lyon::LyonContract::new(config)),
+                model: golden::lyon::model,
+                contract: golden::lyon::contract,
             },
             Device {
                 name: "rough",
                 summary: "rough surface, (n/2*(cos(gamma +- dgamma) - 1) + 1)^2 (UA 60139)",
                 schema: devices::rough::schema,
                 describe: devices::rough::describe,
-                model: |config| Box::new(golden::rough::RoughModel::new(config)),
-                contract: |config| Box::new(golden::rough::RoughContract::new(config)),
+                model: golden::rough::model,
+                contract: golden::rough::contract,
             },
             Device {
                 name: "threshold",
                 summary: "(n/2*(cos gamma - 1) + 1)^2 where it reaches ROM(n) (UA 30041)",
                 schema: devices::threshold::schema,
                 describe: devices::threshold::describe,
-                model: |config| Box::new(golden::threshold::ThresholdModel::new(config)),
-                contract: |config| Box::new(golden::threshold::ThresholdContract::new(config)),
+                model: golden::threshold::model,
+                contract: golden::threshold::contract,
             },
             Device {
                 name: "quadratic",
                 summary: "c + a(n)*(c^2 - c), c = cos gamma, a(n) from ROM (UA 20998)",
                 schema: devices::quadratic::schema,
                 describe: devices::quadratic::describe,
-                model: |config| Box::new(golden::quadratic::QuadraticModel::new(config)),
-                contract: |config| Box::new(golden::quadratic::QuadraticContract::new(config)),
+                model: golden::quadratic::model,
+                contract: golden::quadratic::contract,
             },
             Device {
                 name: "cosine-power",
                 summary: "W(n, gamma) = (n/m*(cos gamma - 1) + 1)^m, m = 2, 4, 8, 16 (seed 002)",
                 schema: devices::cosine_power::schema,
                 describe: devices::cosine_power::describe,
-                model: |config| Box::new(golden::cosine_power::CosinePowerModel::new(config)),
-                contract: |config| Box::new(golden::cosine_power::CosinePowerContract::new(config)),
+                model: golden::cosine_power::model,
+                contract: golden::cosine_power::contract,
             },
             Device {
                 name: "schlick",
                 summary: "Schlick's function, c / (n - n*c + c), by a divider (seed 002)",
                 schema: devices::schlick::schema,
                 describe: devices::schlick::describe,
-                model: |config| Box::new(golden::schlick::SchlickModel::new(config)),
-                contract: |config| Box::new(golden::schlick::SchlickContract::new(config)),
+                model: golden::schlick::model,
+                contract: golden::schlick::contract,
             },
             Device {
                 name: "blinn",
                 summary: "cos(gamma)^n itself, by tables of -log2 and 2^-x (seeds 000 to 002)",
                 schema: devices::blinn::schema,
                 describe: devices::blinn::describe,
-                model: |config| Box::new(golden::blinn::model(config)),
-                contract: |config| Box::new(golden::blinn::contract(config)),
+                model: golden::blinn::model,
+                contract: golden::blinn::contract,
             },
             Device {
                 name: "gauss",
                 summary: "exp(-n*gamma^2/2), by tables of gamma^2 and 2^-x (seed 002)",
                 schema: devices::gauss::schema,
                 describe: devices::gauss::describe,
-                model: |config| Box::new(golden::gauss::model(config)),
-                contract: |config| Box::new(golden::gauss::contract(config)),
+                model: golden::gauss::model,
+                contract: golden::gauss::contract,
             },
         ])
     }

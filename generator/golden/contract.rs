@@ -9,43 +9,23 @@ pub const COSINE: &str = "cos_gamma";
 /// The operand n, where a device has it.
 pub const EXPONENT: &str = "exponent";
 
-/// The colours, in the order of operands and outputs.
-const COLOURS: [&str; 3] = ["red", "green", "blue"];
-
 /// One contribution to the error of `f`: its configuration key, what it is, and its size.
 pub type Share = (&'static str, &'static str, f64);
 
-/// The operands of the building block `Colours`; every value is in the domain.
-pub fn colour_operands(format: Format) -> impl Iterator<Item = Operand> {
-    COLOURS.into_iter().map(move |colour| Operand {
-        name: colour.to_string(),
-        format,
-        domain: (0, format.max_raw() as i64),
-        colour: true,
-        doc: format!("{colour} of the light times the surface's specular coefficient"),
-    })
+/// The operand cos γ.
+pub fn cosine_operand(format: Format, domain: (i64, i64)) -> Operand {
+    let doc = "cosine of the angle between the normal and the half vector";
+    control(COSINE, format, domain, doc)
 }
 
-/// The outputs of the building block `Colours`.
-pub fn colour_outputs() -> Vec<String> {
-    COLOURS.map(|colour| format!("{colour}_out")).to_vec()
+/// The operand n.
+pub fn exponent_operand(format: Format, domain: (i64, i64)) -> Operand {
+    control(EXPONENT, format, domain, "specular exponent n")
 }
 
-/// The operand of the building block `Colours::amplitude`; every value is in the domain.
-pub fn amplitude_operand(format: Format) -> Operand {
-    Operand {
-        name: "amplitude".to_string(),
-        format,
-        domain: (0, format.max_raw() as i64),
-        colour: true,
-        doc: "intensity of the light times the surface's specular coefficient, at the peak"
-            .to_string(),
-    }
-}
-
-/// The output of the building block `Colours::amplitude`.
-pub fn intensity_output() -> Vec<String> {
-    vec!["intensity_out".to_string()]
+/// An operand that f depends on.
+pub fn control(name: &str, format: Format, domain: (i64, i64), doc: &str) -> Operand {
+    Operand { name: name.to_owned(), format, domain, colour: false, doc: doc.to_owned() }
 }
 
 /// The bound from the errors of `f`, a word with `frac` fraction bits.
@@ -131,20 +111,14 @@ mod tests {
 
     #[test]
     fn operands_stand_for_an_angle_and_an_exponent() {
-        let operand = |name: &str, format, domain| Operand {
-            name: name.to_string(),
-            format,
-            domain,
-            colour: false,
-            doc: String::new(),
-        };
+        let operand = |name: &str, format, domain| control(name, format, domain, "");
         let mut operands = vec![
             operand("exponent", Format::unsigned(6, 0), (2, 50)),
             operand("cos_gamma", Format::unsigned(1, 4), (0, 16)),
             operand("turn", Format::signed(2, 2), (1, 7)),
             operand("tint", Format::unsigned(2, 2), (0, 15)),
         ];
-        operands.extend(colour_operands(Format::unsigned(8, 0)));
+        operands.push(Operand { colour: true, ..operand("red", Format::unsigned(8, 0), (0, 255)) });
         let at = |gamma: f64, n| operands_at(&operands, gamma, n, &[("tint", 5)]);
         // cos 60° = 8/16; 0 is not in the domain of `turn`, and 1 is nearest to it.
         let third = std::f64::consts::FRAC_PI_3;

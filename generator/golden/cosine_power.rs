@@ -1,140 +1,54 @@
 //! `cosine-power`: the paper's W(n, γ) = (n/m·(cos γ − 1) + 1)^m (seed 002), by formula.
 
-mod clock_model;
-mod contract;
-
-pub use clock_model::CosinePowerModel;
-pub use contract::CosinePowerContract;
-
-use super::keys;
-use super::narrow::Narrow;
-use crate::base::fixed::{Format, Rounding};
+use super::contract::{self, Share};
+use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
+use super::highlight::{Highlight, Keys, ProductSlots, Reflectance};
+use super::narrow::{Narrow, rounding_error};
+use super::{Contract, Model, keys};
+use crate::base::fixed::{Format, Rounding, exp2};
 use crate::config::Config;
+use crate::golden::formulas;
 
-/// What a configuration of the device says.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Params {
-    /// `power`: m, a power of two, 2 … 16.
-    pub power: u32,
-    /// `cosine.fraction`: fraction bits of cos γ, C.
-    pub cosine_fraction: u32,
-    /// `cosine.signed`: cos γ may be negative, and is then taken as 0.
-    pub cosine_signed: bool,
-    /// `exponent.bits`: bits of n.
-    pub exponent_bits: u32,
-    /// `colour.bits`: bits of a colour operand and of a colour output, K.
-    pub colour_bits: u32,
-    /// `intensity.fraction`: fraction bits of the accumulator, F.
-    pub intensity_fraction: u32,
-    /// `intensity.rounding`: of everything that the accumulator takes.
-    pub intensity_rounding: Rounding,
-    /// `output.rounding`: of the colour outputs.
-    pub output_rounding: Rounding,
-    /// `domain.exponent_min` and `domain.exponent_max`: the contract's n.
-    pub exponents: (i64, i64),
-}
-
-impl Default for Params {
-    /// Proven below one unit with 16-bit squarings, which are one DSP block everywhere.
-    fn default() -> Self {
-        Self {
-            power: 16,
-            cosine_fraction: 20,
-            cosine_signed: false,
-            exponent_bits: 10,
-            colour_bits: 8,
-            intensity_fraction: 16,
-            intensity_rounding: Rounding::Truncate,
-            output_rounding: Rounding::Nearest,
-            exponents: (1, 1000),
-        }
-    }
-}
-
-impl Params {
-    /// What a configuration of the device `cosine-power` says.
-    pub fn from_config(config: &Config) -> Self {
-        Self {
-            power: keys::bits(config, "power"),
-            cosine_fraction: keys::bits(config, "cosine.fraction"),
-            cosine_signed: config.flag("cosine.signed"),
-            exponent_bits: keys::bits(config, "exponent.bits"),
-            colour_bits: keys::bits(config, "colour.bits"),
-            intensity_fraction: keys::bits(config, "intensity.fraction"),
-            intensity_rounding: keys::rounding(config, "intensity.rounding"),
-            output_rounding: keys::rounding(config, "output.rounding"),
-            exponents: keys::exponents(config),
-        }
-    }
-
-    /// Whether the model's 64-bit arithmetic holds every intermediate value.
-    ///
-    /// # Errors
-    /// Names the configuration key that is out of its range.
-    pub fn check(&self) -> Result<(), String> {
-        let in_range = |key: &str, value: u32, most: u32| match value {
-            v if (1..=most).contains(&v) => Ok(()),
-            v => Err(format!("{key} is {v}; 1 to {most} are possible")),
-        };
-        if !matches!(self.power, 2 | 4 | 8 | 16) {
-            return Err(format!("power is {}; 2, 4, 8 or 16 are possible", self.power));
-        }
-        in_range("cosine.fraction", self.cosine_fraction, 30)?;
-        in_range("exponent.bits", self.exponent_bits, 16)?;
-        in_range("colour.bits", self.colour_bits, 16)?;
-        in_range("intensity.fraction", self.intensity_fraction, 30)
-    }
-
-    fn one(&self) -> i64 {
-        1 << self.cosine_fraction
-    }
-
-    fn cosine_format(&self) -> Format {
-        Format { signed: self.cosine_signed, int: 1, frac: self.cosine_fraction as i32 }
-    }
-
-    fn exponent_format(&self) -> Format {
-        Format::unsigned(self.exponent_bits as i32, 0)
-    }
-
-    fn colour_format(&self) -> Format {
-        Format::unsigned(self.colour_bits as i32, 0)
-    }
-}
-
-/// The arithmetic of the device, one operation a method.
-#[derive(Clone, Debug)]
+/// The arithmetic of the device, one operation a method. f is the accumulator.
+#[derive(Clone)]
 struct Arithmetic {
-    one: i64,
+    keys: Keys,
+    /// `power`: m, a power of two, 2 … 16.
+    power: u32,
+    squarings: u32,
+    /// `intensity.rounding`: of everything that the accumulator takes.
+    rounding: Rounding,
     /// 1.0 − ulp of the accumulator.
     largest: i64,
     scaled: Narrow,
     square: Narrow,
-    output: Narrow,
-    squarings: u32,
 }
 
 impl Arithmetic {
-    fn new(params: &Params) -> Self {
-        let f = params.intensity_fraction;
-        let accumulator = Format::unsigned(0, f as i32);
-        let squarings = params.power.ilog2();
-        let narrow = |frac| Narrow::new(frac, accumulator, params.intensity_rounding);
+    fn new(keys: Keys, power: u32, rounding: Rounding) -> Self {
+        let (f, squarings) = (keys.intensity_fraction, power.ilog2());
+        let narrow = |frac| Narrow::new(frac, keys.f_format(), rounding);
         Self {
-            one: params.one(),
             largest: (1 << f) - 1,
             // n/m has log₂ m fraction bits: the same integer n, read elsewhere.
-            scaled: narrow(params.cosine_fraction + squarings),
+            scaled: narrow(keys.cosine_fraction + squarings),
             square: narrow(2 * f),
-            output: Narrow::new(f, params.colour_format(), params.output_rounding),
+            keys,
+            power,
             squarings,
+            rounding,
         }
     }
 
-    /// Word 1: `n/m·(1 − cos γ)`, saturated.
+    fn of(config: &Config) -> Self {
+        let rounding = keys::rounding(config, "intensity.rounding");
+        Self::new(Keys::new(config), keys::bits(config, "power"), rounding)
+    }
+
+    /// `n/m·(1 − cos γ)`, saturated.
     #[inline]
     fn scaled(&self, cosine: i64, exponent: i64) -> i64 {
-        self.scaled.apply((self.one - cosine) * exponent)
+        self.scaled.apply((self.keys.one() - cosine) * exponent)
     }
 
     /// The inverse of the accumulator, `1.0 − ulp − accumulator`; 0 for a surface that faces away.
@@ -147,36 +61,182 @@ impl Arithmetic {
     fn square(&self, x: i64) -> i64 {
         self.square.apply(x * x)
     }
+}
+
+/// The golden model.
+pub fn model(config: &Config) -> Box<dyn Model> {
+    Box::new(clocked(&Arithmetic::of(config)))
+}
+
+/// The device, clock by clock.
+struct Device {
+    it: Arithmetic,
+    cosine: Slot,
+    exponent: Slot,
+    accumulator: Slot,
+    remaining: Slot,
+    products: ProductSlots,
+}
+
+impl Datapath for Device {
+    fn outputs(&self, s: &mut State) {
+        self.products.show(s[self.accumulator], s);
+    }
+}
+
+fn clocked(it: &Arithmetic) -> Clocked<Device> {
+    let mut frame = Frame::default();
+    let [cosine, exponent] = it.keys.slots(&mut frame);
+    // A single squaring needs no count of the squarings that remain.
+    let counted = it.squarings > 1;
+    let device = Device {
+        it: it.clone(),
+        cosine,
+        exponent,
+        accumulator: frame.register("accumulator", it.keys.f_format()),
+        remaining: match counted {
+            true => frame.register("remaining", Format::unsigned(2, 0)),
+            false => frame.hidden(),
+        },
+        products: it.keys.products().slots(&mut frame),
+    };
+    // The accumulator takes n/m·(1 − cos γ).
+    let scale = step(|d: &Device, s| {
+        s[d.accumulator] = d.it.scaled(s[d.cosine], s[d.exponent]);
+        s[d.remaining] = i64::from(d.it.squarings) - 1;
+    });
+    // It takes the square of its inverse …
+    let base = step(|d: &Device, s| {
+        s[d.accumulator] = d.it.square(d.it.base(s[d.cosine], s[d.accumulator]));
+    });
+    // … and then its own square, until log₂ m squarings are done.
+    let square = step(|d: &Device, s| {
+        s[d.accumulator] = d.it.square(s[d.accumulator]);
+        s[d.remaining] -= 1;
+    })
+    .repeat_while(|d, s| s[d.remaining] > 1);
+    let mut program = vec![idle(), scale, base];
+    program.extend(counted.then_some(square));
+    program.push(idle().valid().end());
+    frame.model(device, program)
+}
+
+/// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
+pub fn contract(config: &Config) -> Box<dyn Contract> {
+    let it = Arithmetic::of(config);
+    let keys = it.keys.clone();
+    Box::new(Highlight::of_cosine(it, &keys))
+}
+
+impl Reflectance for Arithmetic {
+    #[inline]
+    fn f(&self, control: &[i64]) -> i64 {
+        let cosine = self.keys.clamped(control[0]);
+        let base = self.base(cosine, self.scaled(cosine, control[1]));
+        (0..self.squarings).fold(base, |power, _| self.square(power))
+    }
 
     #[inline]
-    fn colour(&self, f: i64, colour: i64) -> i64 {
-        self.output.apply(f * colour)
+    fn reference(&self, control: &[i64]) -> f64 {
+        formulas::cosine_power(self.keys.cosine(control[0]), control[1] as f64, self.power)
     }
+
+    fn expressions(&self) -> Vec<String> {
+        let power = self.power;
+        let base = format!("exponent / {power} * (cos_gamma - 1) + 1");
+        let base = contract::clamped_at_0(&base);
+        vec![contract::where_it_faces(&format!("{base} ** {power}"))]
+    }
+
+    /// Every quantity here lies in 0 … 1, hardware's and formula's alike, so by the mean value
+    /// theorem an error ε before a power p grows to at most p·ε.
+    ///
+    /// - Base: the inverse stands for 1.0 − ulp − t where 1.0 − t is meant. With t rounded by an error
+    ///   in (−ulp, 0] (truncated) the base is low by (0, ulp]; by ±ulp/2 (nearest), low by up to
+    ///   3/2 ulp. Saturation of t at 1.0 − ulp makes the base 0 where the formula has at most as much.
+    ///   The base is raised to m.
+    /// - The result of squaring number i is rounded, and then raised to m/2^i: m − 1 in sum.
+    /// - The output adds its own rounding; it cannot exceed the largest colour, for f < 1.
+    fn shares(&self) -> Vec<Share> {
+        let (f, power) = (self.keys.intensity_fraction, f64::from(self.power));
+        let ulp = exp2(-(f as i32));
+        let scaled_fraction = self.keys.cosine_fraction + self.squarings;
+        let scaled = rounding_error(scaled_fraction, f, self.rounding);
+        let base = match self.rounding {
+            // Truncation is upward in 1.0 − ulp − t, and so works against the missing ulp.
+            Rounding::Truncate => ulp,
+            Rounding::Nearest => ulp + scaled,
+        };
+        let squares = rounding_error(2 * f, f, self.rounding);
+        vec![
+            ("intensity.fraction", "the base, with the inverse for 1.0 − t", base * power),
+            ("intensity.rounding", "rounding of the squares", squares * (power - 1.0)),
+        ]
+    }
+
+    /// Below n = m, W loses to a smaller m: its base no longer reaches 0 where cosⁿγ does.
+    fn remarks(&self) -> Vec<String> {
+        let power = self.power;
+        let (first, last) = self.keys.exponents;
+        let worse: Vec<(i64, f64, u32, f64)> = (first.max(1)..=last.min(i64::from(power) - 1))
+            .filter_map(|n| {
+                let own = formula_error(n, power);
+                let (error, other) = [2, 4, 8, 16]
+                    .into_iter()
+                    .filter(|&other| other < power)
+                    .map(|other| (formula_error(n, other), other))
+                    .min_by(|a, b| a.0.total_cmp(&b.0))?;
+                (error < own).then_some((n, own, other, error))
+            })
+            .collect();
+        let Some(&(n, own, other, error)) =
+            worse.iter().max_by(|a, b| (a.1 - a.3).total_cmp(&(b.1 - b.3)))
+        else {
+            return Vec::new();
+        };
+        let exponents: Vec<String> = worse.iter().map(|entry| entry.0.to_string()).collect();
+        vec![format!(
+            "power = {power} is above some n of the domain: for n = {} a smaller power is closer to cos^n; \
+             at n = {n} the formula is off by {own:.4} with power = {power}, by {error:.4} with power = {other} \
+             (raise domain.exponent_min, or choose the smaller power)",
+            exponents.join(", ")
+        )]
+    }
+}
+
+/// The largest difference between W and cosⁿγ over the cosines from 0 to 1, on a fine grid.
+fn formula_error(n: i64, power: u32) -> f64 {
+    const GRID: u32 = 512;
+    (1..=GRID)
+        .map(|step| {
+            let cosine = f64::from(step) / f64::from(GRID);
+            let n = n as f64;
+            (formulas::cosine_power(cosine, n, power) - formulas::blinn(cosine, n)).abs()
+        })
+        .fold(0.0, f64::max)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::golden::{Contract, Model};
 
-    /// C = 4, F = 4, m = 4, small enough to follow by hand.
-    fn small(power: u32) -> Params {
-        Params {
-            power,
+    /// C = 4, F = 4, small enough to follow by hand.
+    fn small(power: u32) -> Arithmetic {
+        let keys = Keys {
             cosine_fraction: 4,
+            cosine_signed: false,
             exponent_bits: 4,
             colour_bits: 4,
             intensity_fraction: 4,
+            output_rounding: Rounding::Nearest,
             exponents: (1, 15),
-            ..Params::default()
-        }
+        };
+        Arithmetic::new(keys, power, Rounding::Truncate)
     }
 
     #[test]
     fn f_by_hand() {
-        let f = |power, cosine, exponent| {
-            CosinePowerContract::from_params(&small(power)).unwrap().f(&[cosine, exponent])
-        };
+        let f = |power, cosine, exponent| small(power).f(&[cosine, exponent]);
         // c = 15/16, n = 6, m = 4: t = 1/16·6/4 = 1.5/16 → 1/16; base 15 − 1 = 14; 14² = 196/256 →
         // 12/16; 144/256 → 9/16.
         assert_eq!(f(4, 15, 6), 9);
@@ -194,21 +254,10 @@ mod tests {
     /// One point with m = 8 followed clock by clock: words 0, 1, 2, 3, 3, 4 and idle.
     #[test]
     fn a_point_clock_by_clock() {
-        let mut model = CosinePowerModel::from_params(&small(8)).unwrap();
-        let value = |model: &CosinePowerModel, name: &str| {
-            model.values()[model.signals().iter().position(|it| it == name).unwrap()]
-        };
+        let mut model = clocked(&small(8));
         // c = 14/16, n = 12, red 15, written together with start: t = 2/16·12/8 = 3/16; base 12.
         model.clock(&[1, 1, 14, 1, 12, 1, 15, 1, 0, 0, 0, 0]);
-        let mut seen = Vec::new();
-        for _ in 0..6 {
-            seen.push(
-                ["run", "word_address", "accumulator", "remaining", "valid", "done"]
-                    .map(|name| value(&model, name)),
-            );
-            // Writes while busy change nothing.
-            model.clock(&[1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0]);
-        }
+        let names = ["run", "word_address", "accumulator", "remaining", "valid", "done"];
         let expected = [
             [1, 0, 0, 0, 0, 0],
             [1, 1, 0, 0, 0, 0],
@@ -218,29 +267,14 @@ mod tests {
             [1, 3, 5, 1, 0, 0],
             [1, 4, 1, 0, 1, 1],
         ];
-        assert_eq!(seen, expected);
-        assert_eq!(
-            ["run", "word_address", "valid", "done", "accumulator"].map(|name| value(&model, name)),
-            [0, 0, 0, 0, 1]
-        );
-        // red: 15/16 → 1, to the nearest.
-        assert_eq!(value(&model, "red_out"), 1);
-        assert_eq!(value(&model, "cos_gamma_reg"), 14);
-    }
-
-    #[test]
-    fn the_default_is_proven() {
-        let bound = CosinePowerContract::from_params(&Params::default()).unwrap().bound();
-        // (16 + 15) ulps of 2⁻¹⁶ times 255, and half a unit.
-        assert_eq!(bound.units, 31.0 * 255.0 / 65536.0 + 0.5);
-    }
-
-    #[test]
-    fn parameters_out_of_range_are_named() {
-        let refused = |params: Params| CosinePowerContract::from_params(&params).unwrap_err();
-        assert!(refused(Params { power: 3, ..small(4) }).contains("power"));
-        assert!(
-            refused(Params { intensity_fraction: 0, ..small(4) }).contains("intensity.fraction")
-        );
+        for row in expected {
+            assert_eq!(names.map(|name| model.value(name).unwrap()), row);
+            // Writes while busy change nothing.
+            model.clock(&[1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0]);
+        }
+        // Idle. red: 15/16 → 1, to the nearest.
+        let names =
+            ["run", "word_address", "valid", "done", "accumulator", "red_out", "cos_gamma_reg"];
+        assert_eq!(names.map(|name| model.value(name).unwrap()), [0, 0, 0, 0, 1, 1, 14]);
     }
 }

@@ -1,54 +1,37 @@
 //! `cosine-squared`: cos²(a·δ) along a scan line (seed 000, the prototype), by formula.
 
-mod clock_model;
-mod contract;
+use std::f64::consts::FRAC_PI_2;
 
-pub use clock_model::CosineSquaredModel;
-pub use contract::CosineSquaredContract;
-
-use super::keys;
-use super::line::{CosineTable, magnitude};
-use super::narrow::Narrow;
-use crate::base::fixed::{Format, Rounding};
+use super::contract::Share;
+use super::frame::{Clocked, Datapath, Frame, Slot, State};
+use super::highlight::{Highlight, ProductSlots, Products, Reflectance};
+use super::line::{self, CosineTable, Walker, magnitude};
+use super::{Axis, Contract, Model, Operand, Sweep, Values, keys};
+use crate::base::fixed::{Format, Rounding, exp2};
 use crate::config::Config;
+use crate::golden::formulas;
 
 /// What a configuration of the device says.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Params {
+#[derive(Clone)]
+struct Params {
     /// `angle.integer`: integer bits of a stretched angle in right angles.
-    pub angle_integer: u32,
+    angle_integer: u32,
     /// `angle.fraction`: its fraction bits, F.
-    pub angle_fraction: u32,
+    angle_fraction: u32,
     /// `table.address`: log₂ of the steps of ROM 12, T.
-    pub table_address: u32,
+    table_address: u32,
     /// `length.bits`: bits of counter 5.
-    pub length_bits: u32,
+    length_bits: u32,
     /// `colour.bits`: bits of the amplitude and of the output, K.
-    pub colour_bits: u32,
+    colour_bits: u32,
     /// `intensity.fraction`: fraction bits of ROM 12.
-    pub intensity_fraction: u32,
+    intensity_fraction: u32,
     /// `output.rounding`: of the output.
-    pub output_rounding: Rounding,
-}
-
-impl Default for Params {
-    /// Proven below one unit with 10 kbit of ROM 12, and within two over the longest line.
-    fn default() -> Self {
-        Self {
-            angle_integer: 7,
-            angle_fraction: 22,
-            table_address: 10,
-            length_bits: 12,
-            colour_bits: 8,
-            intensity_fraction: 10,
-            output_rounding: Rounding::Nearest,
-        }
-    }
+    output_rounding: Rounding,
 }
 
 impl Params {
-    /// What a configuration of the device `cosine-squared` says.
-    pub fn from_config(config: &Config) -> Self {
+    fn of(config: &Config) -> Self {
         Self {
             angle_integer: keys::bits(config, "angle.integer"),
             angle_fraction: keys::bits(config, "angle.fraction"),
@@ -60,81 +43,181 @@ impl Params {
         }
     }
 
-    /// Whether the model's 64-bit arithmetic holds every intermediate value.
-    ///
-    /// # Errors
-    /// Names the configuration key that is out of its range.
-    pub fn check(&self) -> Result<(), String> {
-        let in_range = |key: &str, value: u32, least: u32, most: u32| match value {
-            v if (least..=most).contains(&v) => Ok(()),
-            v => Err(format!("{key} is {v}; {least} to {most} are possible")),
-        };
-        in_range("angle.integer", self.angle_integer, 1, 16)?;
-        in_range("angle.fraction", self.angle_fraction, 1, 30)?;
-        in_range("table.address", self.table_address, 1, self.angle_fraction.min(20))?;
-        in_range("length.bits", self.length_bits, 1, 16)?;
-        in_range("colour.bits", self.colour_bits, 1, 16)?;
-        in_range("intensity.fraction", self.intensity_fraction, 1, 30)
-    }
-
     fn angle_format(&self) -> Format {
         Format::signed(self.angle_integer as i32, self.angle_fraction as i32)
     }
 
-    fn colour_format(&self) -> Format {
-        Format::unsigned(self.colour_bits as i32, 0)
+    fn products(&self) -> Products {
+        let f = Format::unsigned(0, self.intensity_fraction as i32);
+        Products::amplitude(f, self.colour_bits, self.output_rounding)
     }
 }
 
 /// The arithmetic of the device, one operation a method.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 struct Arithmetic {
     params: Params,
     /// ROM 12.
     table: CosineTable,
-    output: Narrow,
 }
 
 impl Arithmetic {
-    fn new(params: &Params) -> Self {
-        let f = params.intensity_fraction;
-        Self {
-            table: CosineTable::new(2, params.table_address, f),
-            output: Narrow::new(f, params.colour_format(), params.output_rounding),
-            params: params.clone(),
-        }
+    fn new(params: Params) -> Self {
+        Self { table: CosineTable::new(2, params.table_address, params.intensity_fraction), params }
     }
 
     /// The word of ROM 12 for a stretched angle.
     #[inline]
-    fn cosine(&self, angle: i64) -> i64 {
+    fn cosine_of(&self, angle: i64) -> i64 {
         let params = &self.params;
         let words = &self.table.words;
         magnitude(angle, params.angle_fraction, params.table_address)
             .map_or(words[words.len() - 1], |step| words[step as usize])
     }
+}
+
+/// The golden model.
+pub fn model(config: &Config) -> Box<dyn Model> {
+    Box::new(clocked(Params::of(config)))
+}
+
+/// The device, clock by clock.
+struct Device {
+    it: Arithmetic,
+    walker: Walker,
+    /// What ROM 12 read at the latest edge.
+    cosine: Slot,
+    products: ProductSlots,
+}
+
+impl AsRef<Walker> for Device {
+    fn as_ref(&self) -> &Walker {
+        &self.walker
+    }
+}
+
+impl Datapath for Device {
+    fn edge(&self, s: &mut State) {
+        s[self.cosine] = self.it.cosine_of(s[self.walker.angle]);
+    }
+
+    fn outputs(&self, s: &mut State) {
+        self.products.show(s[self.cosine], s);
+    }
+}
+
+fn clocked(params: Params) -> Clocked<Device> {
+    let mut frame = Frame::default();
+    let walker = Walker::new(&mut frame, params.angle_format(), params.length_bits);
+    let program = walker.program();
+    let device = Device {
+        walker,
+        cosine: frame.hidden(),
+        products: params.products().slots(&mut frame),
+        it: Arithmetic::new(params),
+    };
+    frame.model(device, program)
+}
+
+/// The accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `length`; those of a point have its
+/// angle for `zeta_start`.
+pub fn contract(config: &Config) -> Box<dyn Contract> {
+    Box::new(highlight(Params::of(config)))
+}
+
+fn highlight(params: Params) -> Highlight {
+    let mut operands = line::angle_operands(params.angle_format()).to_vec();
+    operands.push(line::length_operand(params.length_bits));
+    let products = params.products();
+    Highlight::new(Arithmetic::new(params), operands, products)
+}
+
+impl Reflectance for Arithmetic {
+    #[inline]
+    fn f(&self, control: &[i64]) -> i64 {
+        self.cosine_of(control[1])
+    }
 
     #[inline]
-    fn colour(&self, f: i64, amplitude: i64) -> i64 {
-        self.output.apply(f * amplitude)
+    fn reference(&self, control: &[i64]) -> f64 {
+        let right = exp2(self.params.angle_fraction as i32);
+        formulas::cosine_squared(control[1] as f64 / right * FRAC_PI_2)
+    }
+
+    fn expressions(&self) -> Vec<String> {
+        let angle = line::angle_expression(self.params.angle_format());
+        vec![format!("cos(pi / 2 * min(abs({angle}), 1)) ** 2")]
+    }
+
+    fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
+        let format = self.params.angle_format();
+        let angle = line::angle_at(format, control[1], control[0], index);
+        vec![control[0], angle, control[2]]
+    }
+
+    /// A line of one point, its angle stretched by `√(n/2)` as the host does it. What the operand denotes is
+    /// an angle and n together, so no cosine is told of it.
+    fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
+        let stretched = (n / 2.0).sqrt() * gamma;
+        Some(vec![0, line::raw_angle(&operands[1], stretched), 0])
+    }
+
+    /// What the operand denotes is an angle and n together.
+    fn cosine(&self, _: &[Operand], _: &[i64]) -> Option<f64> {
+        None
+    }
+
+    fn length(&self) -> Option<&str> {
+        Some("length")
+    }
+
+    /// Every angle that a line can come to, by the step of ROM 12 that it is in. Beyond a right angle the
+    /// word is the table's last, 0, and so is the formula.
+    fn sweep(&self) -> Option<Sweep> {
+        Some(Sweep {
+            axes: vec![Axis {
+                name: "step of the table".to_string(),
+                values: Values::Range(0, (1 << self.params.table_address) - 1),
+            }],
+            omits: String::new(),
+        })
+    }
+
+    /// The worst over the step's angles of either sign: the formula falls from one end to the other.
+    fn sweep_error(&self, place: &[i64]) -> Option<f64> {
+        let step = place[0];
+        let word = self.table.words[step as usize];
+        let f = word as f64 * exp2(-(self.params.intensity_fraction as i32));
+        let ulp = exp2(-(self.params.table_address as i32));
+        let end = |step: i64| formulas::cosine_squared(step as f64 * ulp * FRAC_PI_2);
+        Some((end(step) - f).max(f - end(step + 1)))
+    }
+
+    /// How far ROM 12 is from the formula within a step: the angle itself is exact, and so is its step.
+    fn shares(&self) -> Vec<Share> {
+        let table = &self.table;
+        vec![
+            ("table.address", "the steps of ROM 12", table.step),
+            ("intensity.fraction", "rounding of ROM 12", table.total - table.step),
+        ]
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::golden::Contract;
 
     #[test]
     fn f_by_hand() {
-        let contract = CosineSquaredContract::from_params(&Params {
+        let contract = highlight(Params {
             angle_integer: 2,
             angle_fraction: 6,
             table_address: 3,
+            length_bits: 12,
+            colour_bits: 8,
             intensity_fraction: 6,
-            ..Params::default()
-        })
-        .unwrap();
+            output_rounding: Rounding::Nearest,
+        });
         let f = |angle| contract.f(&[0, angle, 0]);
         // Steps of 11.25°: (1 + cos² 11.25°)/2 = 0.98097; 20/64 is step 2: (0.85355 + 0.69134)/2 = 0.77245.
         assert_eq!(f(0), 63);
@@ -146,11 +229,5 @@ mod tests {
         // s2.6 wraps at 256.
         assert_eq!(contract.point(&[100, 100, 7], 2), [100, -212, 7]);
         assert_eq!(contract.colour(49, 255), 195);
-    }
-
-    #[test]
-    fn the_default_is_within_the_contract() {
-        let bound = CosineSquaredContract::from_params(&Params::default()).unwrap().bound();
-        assert!(bound.units < 1.0, "{bound:?}");
     }
 }

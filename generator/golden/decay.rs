@@ -1,21 +1,20 @@
 //! What the models of `blinn` and `gauss` share: f = 2^(−n·decay), where the decay is a function of cos γ.
 
-mod clock_model;
-mod contract;
 #[cfg(test)]
 mod tests;
 
-pub use clock_model::DecayModel;
-pub use contract::DecayContract;
-
 use std::f64::consts::LN_2;
 
-use super::curve::{self, Curve};
+use super::contract::{self, Share};
+use super::curve::{self, Curve, Piece};
+use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
 use super::halving::{self, Halving};
-use super::keys;
+use super::highlight::{Highlight, Keys, ProductSlots, Reflectance};
 use super::narrow::Narrow;
+use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
 use crate::config::Config;
+use crate::golden::formulas;
 
 /// The decay as a function of c = cos γ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,55 +26,38 @@ pub enum Function {
 }
 
 /// What a configuration of a device says.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Params {
+#[derive(Clone)]
+struct Params {
     /// The device.
-    pub function: Function,
-    /// `cosine.fraction`: fraction bits of cos γ, C.
-    pub cosine_fraction: u32,
-    /// `cosine.signed`: cos γ may be negative, and is then taken as 0.
-    pub cosine_signed: bool,
-    /// `exponent.bits`: bits of n.
-    pub exponent_bits: u32,
-    /// `colour.bits`: bits of a colour operand and of a colour output, K.
-    pub colour_bits: u32,
+    function: Function,
+    keys: Keys,
     /// `decay.fraction`: fraction bits of what the table of the decay gives, S.
-    pub decay_fraction: u32,
+    decay_fraction: u32,
     /// `decay.segments`, by range.
-    pub decay_segments: Vec<u32>,
+    decay_segments: Vec<u32>,
     /// `decay.tail`.
-    pub decay_tail: u32,
+    decay_tail: u32,
     /// `decay.slope_fraction`.
-    pub decay_slope_fraction: u32,
+    decay_slope_fraction: u32,
     /// `decay.coarse_fraction`: fraction bits of a decay that is not small.
-    pub decay_coarse_fraction: u32,
+    decay_coarse_fraction: u32,
     /// `exponential.address`.
-    pub exponential_address: u32,
+    exponential_address: u32,
     /// `exponential.offset_bits` and `exponential.offset_address`, by field.
-    pub exponential_offsets: Vec<(u32, u32)>,
+    exponential_offsets: Vec<(u32, u32)>,
     /// `exponential.fraction`.
-    pub exponential_fraction: u32,
-    /// `intensity.fraction`: fraction bits of f, F.
-    pub intensity_fraction: u32,
+    exponential_fraction: u32,
     /// `intensity.rounding`: of f.
-    pub intensity_rounding: Rounding,
-    /// `output.rounding`: of the colour outputs.
-    pub output_rounding: Rounding,
-    /// `domain.exponent_min` and `domain.exponent_max`: the contract's n.
-    pub exponents: (i64, i64),
+    intensity_rounding: Rounding,
 }
 
 impl Params {
-    /// What a configuration of one of the devices says.
-    pub fn from_config(config: &Config, function: Function) -> Self {
+    fn new(config: &Config, function: Function) -> Self {
         // The schema allows no negative entries.
         let list = |key: &str| config.integers(key).iter().map(|&entry| entry as u32);
         Self {
             function,
-            cosine_fraction: keys::bits(config, "cosine.fraction"),
-            cosine_signed: config.flag("cosine.signed"),
-            exponent_bits: keys::bits(config, "exponent.bits"),
-            colour_bits: keys::bits(config, "colour.bits"),
+            keys: Keys::new(config),
             decay_fraction: keys::bits(config, "decay.fraction"),
             decay_segments: list("decay.segments").collect(),
             decay_tail: keys::bits(config, "decay.tail"),
@@ -86,48 +68,8 @@ impl Params {
                 .zip(list("exponential.offset_address"))
                 .collect(),
             exponential_fraction: keys::bits(config, "exponential.fraction"),
-            intensity_fraction: keys::bits(config, "intensity.fraction"),
             intensity_rounding: keys::rounding(config, "intensity.rounding"),
-            output_rounding: keys::rounding(config, "output.rounding"),
-            exponents: keys::exponents(config),
         }
-    }
-
-    /// Whether the model's 64-bit arithmetic holds every intermediate value, and the tables are defined.
-    ///
-    /// # Errors
-    /// Names the configuration key that is out of its range.
-    pub fn check(&self) -> Result<(), String> {
-        let limits = [
-            ("cosine.fraction", self.cosine_fraction, 2, 26),
-            ("exponent.bits", self.exponent_bits, 1, 16),
-            ("colour.bits", self.colour_bits, 1, 16),
-            ("intensity.fraction", self.intensity_fraction, 1, 28),
-            ("decay.coarse_fraction", self.decay_coarse_fraction, 1, self.decay_fraction),
-        ];
-        for (key, value, least, most) in limits {
-            if !(least..=most).contains(&value) {
-                return Err(format!("{key} is {value}; {least} to {most} are possible"));
-            }
-        }
-        self.curve().check()?;
-        self.halving().check()
-    }
-
-    fn one(&self) -> i64 {
-        1 << self.cosine_fraction
-    }
-
-    fn cosine_format(&self) -> Format {
-        Format { signed: self.cosine_signed, int: 1, frac: self.cosine_fraction as i32 }
-    }
-
-    fn exponent_format(&self) -> Format {
-        Format::unsigned(self.exponent_bits as i32, 0)
-    }
-
-    fn colour_format(&self) -> Format {
-        Format::unsigned(self.colour_bits as i32, 0)
     }
 
     /// How many times what the table gives the decay is, as a power of two.
@@ -142,8 +84,8 @@ impl Params {
         curve::Params {
             // Of a cosine of at least one half, u is below one half.
             operand_bits: match self.function {
-                Function::Logarithm => self.cosine_fraction - 1,
-                Function::Angle => self.cosine_fraction,
+                Function::Logarithm => self.keys.cosine_fraction - 1,
+                Function::Angle => self.keys.cosine_fraction,
             },
             fraction: self.decay_fraction,
             slope_fraction: self.decay_slope_fraction,
@@ -154,7 +96,7 @@ impl Params {
 
     /// What the table holds, at u, an integer with C fraction bits: 1 − c, less an ulp.
     fn table(&self, u: f64) -> f64 {
-        let cosine = 1.0 - (u + 1.0) * exp2(-(self.cosine_fraction as i32));
+        let cosine = 1.0 - (u + 1.0) * self.keys.ulp();
         match self.function {
             Function::Logarithm => -libm::log2(cosine),
             Function::Angle => {
@@ -169,59 +111,51 @@ impl Params {
             address: self.exponential_address,
             offsets: self.exponential_offsets.clone(),
             fraction: self.exponential_fraction,
-            result_fraction: self.intensity_fraction,
+            result_fraction: self.keys.intensity_fraction,
             rounding: self.intensity_rounding,
         }
     }
 }
 
 /// The arithmetic of the device, one operation a method.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 struct Arithmetic {
-    function: Function,
-    cosine_fraction: u32,
-    one: i64,
+    params: Params,
+    keys: Keys,
     /// 1.0 − ulp of f.
     largest: i64,
     /// A raw decay below this is small.
     small: i64,
-    coarse_fraction: u32,
     /// Bits that a coarse decay loses.
     coarse_loss: u32,
     curve: Curve,
+    /// Of the register `halvings`.
+    halvings: Format,
     from_fine: Narrow,
     from_coarse: Narrow,
     halving: Halving,
-    output: Narrow,
 }
 
 impl Arithmetic {
-    fn new(params: &Params) -> Result<Self, String> {
-        params.check()?;
+    fn new(params: Params) -> Self {
         let halving = params.halving();
         // The integer reaches F + 2 at least, where no bit of f is left.
-        let integer = 64 - u64::from(params.intensity_fraction + 2).leading_zeros();
+        let integer = 64 - u64::from(params.keys.intensity_fraction + 2).leading_zeros();
         let halvings = Format::unsigned(integer as i32, halving.bits() as i32);
         let narrow =
             |fraction: u32| Narrow::new(fraction - params.scale(), halvings, Rounding::Truncate);
-        Ok(Self {
-            function: params.function,
-            cosine_fraction: params.cosine_fraction,
-            one: params.one(),
-            largest: (1 << params.intensity_fraction) - 1,
+        Self {
+            largest: (1 << params.keys.intensity_fraction) - 1,
             small: 1 << (params.decay_fraction - 2),
-            coarse_fraction: params.decay_coarse_fraction,
             coarse_loss: params.decay_fraction - params.decay_coarse_fraction,
-            curve: Curve::new(&params.curve(), |u| params.table(u))?,
+            curve: Curve::new(&params.curve(), |u| params.table(u)),
+            halvings,
             from_fine: narrow(params.decay_fraction),
             from_coarse: narrow(params.decay_coarse_fraction),
-            halving: Halving::new(&halving)?,
-            output: Narrow::new(
-                params.intensity_fraction,
-                params.colour_format(),
-                params.output_rounding,
-            ),
-        })
+            halving: Halving::new(&halving),
+            keys: params.keys.clone(),
+            params,
+        }
     }
 
     /// How often c doubles before it is at least one half, and the operand of the table: the inverse of what
@@ -230,52 +164,188 @@ impl Arithmetic {
     /// Without a fraction (c = 0 and 1.0) the hardware counts all ones; f does not depend on either.
     #[inline]
     fn operand(&self, cosine: i64) -> (i64, i64) {
-        let fraction = cosine & (self.one - 1);
-        match self.function {
-            Function::Angle => (0, self.one - 1 - fraction),
+        let fraction = cosine & (self.keys.one() - 1);
+        match self.params.function {
+            Function::Angle => (0, self.keys.one() - 1 - fraction),
             Function::Logarithm if fraction == 0 => {
-                let ones = (self.cosine_fraction - 1).ilog2() + 1;
-                ((1 << ones) - 1, self.one / 2 - 1)
+                let ones = (self.keys.cosine_fraction - 1).ilog2() + 1;
+                ((1 << ones) - 1, self.keys.one() / 2 - 1)
             }
             Function::Logarithm => {
-                let octave = self.cosine_fraction - 1 - fraction.ilog2();
-                (i64::from(octave), self.one - 1 - (fraction << octave))
+                let octave = self.keys.cosine_fraction - 1 - fraction.ilog2();
+                (i64::from(octave), self.keys.one() - 1 - (fraction << octave))
             }
         }
     }
 
-    /// Word 1: what the table says of the decay.
+    /// What the table says of the decay.
     #[inline]
     fn decay(&self, cosine: i64) -> i64 {
         self.curve.at(self.operand(cosine).1)
     }
 
-    /// Word 2: n times the decay.
+    /// n times the decay.
     #[inline]
     fn halvings(&self, cosine: i64, decay: i64, exponent: i64) -> i64 {
         let octave = self.operand(cosine).0;
         if octave == 0 && decay < self.small {
             self.from_fine.apply(decay * exponent)
         } else {
-            let coarse = (octave << self.coarse_fraction) + (decay >> self.coarse_loss);
+            let coarse =
+                (octave << self.params.decay_coarse_fraction) + (decay >> self.coarse_loss);
             self.from_coarse.apply(coarse * exponent)
         }
     }
 
-    /// Word 4: f.
+    /// f.
     #[inline]
     fn reflectance(&self, cosine: i64, halvings: i64) -> i64 {
         if cosine == 0 {
             0
-        } else if cosine == self.one || halvings == 0 {
+        } else if cosine == self.keys.one() || halvings == 0 {
             self.largest
         } else {
             self.halving.at(halvings)
         }
     }
 
+    /// The error of f from the decay of a piece in an octave: that of the segment's shape, of its words, and of
+    /// what the product does not see.
+    fn of_piece(&self, piece: &Piece, octave: f64) -> [f64; 3] {
+        let params = &self.params;
+        let scale = exp2(params.scale() as i32);
+        // Small decays are multiplied whole.
+        let quarter = 0.25 - piece.error;
+        let coarse = if octave > 0.0 || params.table(piece.last as f64) >= quarter {
+            scale * exp2(-(params.decay_coarse_fraction as i32))
+        } else {
+            0.0
+        };
+        let shape = piece.shape.min(piece.error) * scale;
+        let parts = [shape, piece.error * scale - shape, coarse];
+        let error: f64 = parts.iter().sum();
+        let least = octave + params.table(piece.start as f64) * scale - error;
+        let (from, to) = (params.keys.exponents.0 as f64, params.keys.exponents.1 as f64);
+        let n = if least > 0.0 { (1.0 / (least * LN_2)).clamp(from, to) } else { to };
+        let weight = LN_2 * n * libm::exp2(-n * least.max(0.0));
+        parts.map(|part| part * weight)
+    }
+}
+
+/// The golden model of one of the devices.
+pub fn model(config: &Config, function: Function) -> Box<dyn Model> {
+    Box::new(clocked(&Arithmetic::new(Params::new(config, function))))
+}
+
+/// The device, clock by clock.
+///
+/// Synchronous tables are addressed by registers that the microinstruction before did not change, so that they
+/// show the same as others would.
+struct Device {
+    it: Arithmetic,
+    cosine: Slot,
+    exponent: Slot,
+    decay: Slot,
+    halvings: Slot,
+    reflectance: Slot,
+    f: Slot,
+    products: ProductSlots,
+}
+
+impl Datapath for Device {
+    fn outputs(&self, s: &mut State) {
+        s[self.f] = s[self.reflectance];
+        self.products.show(s[self.f], s);
+    }
+}
+
+fn clocked(it: &Arithmetic) -> Clocked<Device> {
+    let mut frame = Frame::default();
+    let [cosine, exponent] = it.keys.slots(&mut frame);
+    let device = Device {
+        it: it.clone(),
+        cosine,
+        exponent,
+        decay: frame.register("decay", Format::unsigned(0, it.params.decay_fraction as i32)),
+        halvings: frame.register("halvings", it.halvings),
+        reflectance: frame.register("reflectance", it.keys.f_format()),
+        f: frame.output("f_out", it.keys.f_format()),
+        products: it.keys.products().slots(&mut frame),
+    };
+    let decay = step(|d: &Device, s| s[d.decay] = d.it.decay(s[d.cosine]));
+    let multiply = step(|d: &Device, s| {
+        s[d.halvings] = d.it.halvings(s[d.cosine], s[d.decay], s[d.exponent]);
+    });
+    let halve = step(|d: &Device, s| {
+        s[d.reflectance] = d.it.reflectance(s[d.cosine], s[d.halvings]);
+    });
+    frame.model(device, [idle(), decay, multiply, idle(), halve, idle().valid().end()])
+}
+
+/// The accuracy contract of one of the devices. Control operands: `cos_gamma`, `exponent`.
+pub fn contract(config: &Config, function: Function) -> Box<dyn Contract> {
+    let it = Arithmetic::new(Params::new(config, function));
+    let keys = it.keys.clone();
+    Box::new(Highlight::of_cosine(it, &keys))
+}
+
+impl Reflectance for Arithmetic {
     #[inline]
-    fn colour(&self, f: i64, colour: i64) -> i64 {
-        self.output.apply(f * colour)
+    fn f(&self, control: &[i64]) -> i64 {
+        let cosine = self.keys.clamped(control[0]);
+        let halvings = self.halvings(cosine, self.decay(cosine), control[1]);
+        self.reflectance(cosine, halvings)
+    }
+
+    #[inline]
+    fn reference(&self, control: &[i64]) -> f64 {
+        let (cosine, exponent) = (self.keys.cosine(control[0]), control[1] as f64);
+        match self.params.function {
+            Function::Logarithm => formulas::blinn(cosine, exponent),
+            Function::Angle => formulas::gauss(cosine, exponent),
+        }
+    }
+
+    fn expressions(&self) -> Vec<String> {
+        vec![contract::where_it_faces(match self.params.function {
+            Function::Logarithm => "cos_gamma ** exponent",
+            Function::Angle => "exp(-exponent * acos(cos_gamma) ** 2 / 2)",
+        })]
+    }
+
+    /// Let y = n·decay be exact and z the hardware's product before it is cut to the fraction bits of the tables of 2^−x.
+    ///
+    /// - |z − y| ≤ n·e, where e is the error of the decay's segment and of the bits that a coarse decay
+    ///   loses. So |2^−z − 2^−y| ≤ ln 2·n·e·2^−min(y, z), and min(y, z) ≥ n·(decay − e) with the smallest decay of
+    ///   the segment: as a function of n this is largest at n = 1/(ln 2·(decay − e)). Octaves beyond the
+    ///   first have the same segments and larger decays; the first of them is the worst.
+    /// - The tables' error covers every z that is cut to one word; the shift makes it smaller.
+    /// - f is rounded, or saturated just below 1.0: an ulp. Where n·decay saturates, nothing of f is left: its integer
+    ///   is F + 2 at least, which is less than that ulp too.
+    /// - The output adds its own rounding; it cannot exceed the largest colour, for f < 1.
+    fn shares(&self) -> Vec<Share> {
+        let octaves: &[f64] = match self.params.function {
+            Function::Logarithm => &[0.0, 1.0],
+            Function::Angle => &[0.0],
+        };
+        let [shape, words, coarse] = octaves
+            .iter()
+            .flat_map(|&octave| {
+                let pieces = self.curve.pieces().iter();
+                pieces.map(move |piece| self.of_piece(piece, octave))
+            })
+            .max_by(|a, b| a.iter().sum::<f64>().total_cmp(&b.iter().sum()))
+            .unwrap_or_default();
+        vec![
+            ("decay.segments", "straight segments for the decay, times n", shape),
+            ("decay.fraction", "rounding of the decay, times n", words),
+            (
+                "decay.coarse_fraction",
+                "bits of the decay that the product by n does not see",
+                coarse,
+            ),
+            ("exponential.address", "the tables of 2^-x", self.halving.error()),
+            ("intensity.fraction", "rounding of f", self.halving.rounding_error()),
+        ]
     }
 }

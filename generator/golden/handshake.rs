@@ -1,6 +1,4 @@
-//! What all devices share: start, busy, the word counter, and operand registers.
-
-use crate::base::fixed::{Format, mask};
+//! The sequence of microinstructions: start, busy, the counter.
 
 /// What the word that executes does to the sequence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,49 +44,6 @@ impl Handshake {
     }
 }
 
-/// An operand register with its write strobe. It ignores writes while a point is in flight, and does
-/// not know the reset.
-#[derive(Clone, Copy, Debug)]
-pub struct OperandRegister {
-    format: Format,
-    min: i64,
-    max: i64,
-    /// The raw value held.
-    pub value: i64,
-}
-
-impl OperandRegister {
-    /// A register that holds whatever `format` can denote.
-    pub fn new(format: Format) -> Self {
-        Self::clamped(format, format.min_raw() as i64, format.max_raw() as i64)
-    }
-
-    /// A register that moves what it loads into `min ..= max`.
-    pub fn clamped(format: Format, min: i64, max: i64) -> Self {
-        Self { format, min, max, value: 0 }
-    }
-
-    /// What the register takes when `raw` is offered.
-    #[inline]
-    pub fn taken(&self, raw: i64) -> i64 {
-        raw.clamp(self.min, self.max)
-    }
-
-    /// One rising edge: `data` is a bit pattern, `run` the state before the edge.
-    #[inline]
-    pub fn clock(&mut self, run: bool, strobe: u64, data: u64) {
-        if strobe & 1 == 1 && !run {
-            self.value = self.taken(self.format.raw(data) as i64);
-        }
-    }
-}
-
-/// The bit pattern of a raw value on a wire of `width` bits.
-#[inline]
-pub fn bits(raw: i64, width: u32) -> u64 {
-    raw as u64 & mask(width)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -118,23 +73,5 @@ mod tests {
         it.clock(true, false, After::Next);
         it.clock(false, true, After::Next);
         assert_eq!(it, state(false, 0));
-    }
-
-    #[test]
-    fn an_operand_register_clamps_and_ignores_writes_while_busy() {
-        // s1.2 clamped to 0 … 1.0, that is 0 … 4.
-        let mut it = OperandRegister::clamped(Format::signed(1, 2), 0, 4);
-        it.clock(false, 1, 3);
-        assert_eq!(it.value, 3);
-        it.clock(false, 0, 1);
-        assert_eq!(it.value, 3);
-        it.clock(true, 1, 1);
-        assert_eq!(it.value, 3);
-        it.clock(false, 1, 7);
-        assert_eq!(it.value, 4);
-        // 1111 is −1/4.
-        it.clock(false, 1, 15);
-        assert_eq!(it.value, 0);
-        assert_eq!(bits(-1, 3), 7);
     }
 }

@@ -5,7 +5,8 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::Operand;
-use super::handshake::{After, Handshake, OperandRegister, bits};
+use super::contract::control;
+use super::frame::{Frame, Microinstruction, Slot, idle, step};
 use crate::base::fixed::{Format, Overflow, Rounding, exp2};
 
 /// The raw value of an angle operand that is nearest to `angle`, in radians, or the end of its domain.
@@ -17,131 +18,62 @@ pub fn raw_angle(operand: &Operand, angle: f64) -> i64 {
 
 /// Control block 14 with the accumulator: counter 5, adder 6, mux 7, register 8, and the operand registers
 /// that they use.
-#[derive(Clone, Debug)]
 pub struct Walker {
     format: Format,
-    length_bits: u32,
-    handshake: Handshake,
-    delta: OperandRegister,
-    start: OperandRegister,
-    length: OperandRegister,
+    delta: Slot,
+    start: Slot,
+    length: Slot,
     /// Counter 5: intervals still to go.
-    intervals: i64,
+    intervals: Slot,
     /// Register 8, raw.
-    angle: i64,
-    /// The pulse on output 37 one and two clocks ago.
-    written: [bool; 2],
+    pub angle: Slot,
+    /// Outputs 34, 36 and 37 of control block 14.
+    count: Slot,
+    accumulate: Slot,
+    write_angle: Slot,
 }
 
-/// The word that writes the first point.
-const FIRST: u32 = 1;
-/// The word that writes every other one.
-const NEXT: u32 = 2;
-/// The first of the two words in which the last point comes out.
-const DRAIN: u32 = 3;
-
 impl Walker {
-    /// The operands whose inputs [`Walker::clock`] takes, in this order.
-    pub const OPERANDS: [&'static str; 3] = ["delta_zeta", "zeta_start", "length"];
-
-    /// The names of [`Walker::values`].
-    pub const SIGNALS: [&'static str; 13] = [
-        "valid",
-        "busy",
-        "done",
-        "count",
-        "accumulate",
-        "write_angle",
-        "run",
-        "word_address",
-        "delta_zeta_reg",
-        "zeta_start_reg",
-        "length_reg",
-        "intervals",
-        "angle",
-    ];
-
-    /// At power-up; angles are of `format`.
-    pub fn new(format: Format, length_bits: u32) -> Self {
+    /// With angles of `format`. The outputs show a point two clocks after the pulse on output 37.
+    pub fn new(frame: &mut Frame, format: Format, length_bits: u32) -> Self {
+        frame.delay_valid(2);
+        let length = length_format(length_bits);
         Self {
             format,
-            length_bits,
-            handshake: Handshake::default(),
-            delta: OperandRegister::new(format),
-            start: OperandRegister::new(format),
-            length: OperandRegister::new(length_format(length_bits)),
-            intervals: 0,
-            angle: 0,
-            written: [false; 2],
+            delta: frame.operand("delta_zeta", format),
+            start: frame.operand("zeta_start", format),
+            length: frame.operand("length", length),
+            intervals: frame.register("intervals", length),
+            angle: frame.register("angle", format),
+            count: frame.flag("count"),
+            accumulate: frame.flag("accumulate"),
+            write_angle: frame.flag("write_angle"),
         }
     }
 
-    /// Whether a line is in progress.
-    pub fn busy(&self) -> bool {
-        self.handshake.run
-    }
-
-    /// The angle in register 8, raw.
-    pub fn angle(&self) -> i64 {
-        self.angle
-    }
-
-    /// One rising edge. `operands` has data and strobe of each of [`Walker::OPERANDS`].
-    pub fn clock(&mut self, rst_n: bool, start: bool, operands: &[u64]) {
-        let run = self.handshake.run;
-        let pulse = self.pulse();
-        let after = self.execute();
-        let registers = [&mut self.delta, &mut self.start, &mut self.length];
-        for (register, pair) in registers.into_iter().zip(operands.chunks_exact(2)) {
-            register.clock(run, pair[1], pair[0]);
-        }
-        self.written = [rst_n && pulse, rst_n && self.written[0]];
-        self.handshake.clock(rst_n, start, after);
-    }
-
-    /// Output 37: a point's angle is written in this word.
-    fn pulse(&self) -> bool {
-        matches!(self.handshake.word, FIRST | NEXT)
-    }
-
-    fn execute(&mut self) -> After {
-        match self.handshake.word {
-            // The first pulse on output 37 loads ζ(X_start), and the counter is set to l.
-            FIRST => {
-                self.angle = self.start.value;
-                self.intervals = self.length.value;
-                if self.length.value == 0 { After::To(DRAIN) } else { After::Next }
-            }
-            // Each of the others adds Δζ and counts, until the counter comes to 0.
-            NEXT => {
-                self.angle = wrapped(self.format, self.angle + self.delta.value);
-                let left = self.intervals - 1;
-                self.intervals = left & ((1 << self.length_bits) - 1);
-                if left > 0 { After::Again } else { After::Next }
-            }
-            word if word > DRAIN => After::End,
-            _ => After::Next,
-        }
-    }
-
-    /// What is predicted, in the order of [`Walker::SIGNALS`].
-    pub fn values(&self) -> [u64; Self::SIGNALS.len()] {
-        let Handshake { run, word } = self.handshake;
-        let width = self.format.width();
+    /// The microinstructions of a device that has this walker.
+    pub fn program<D: AsRef<Walker>>(&self) -> [Microinstruction<D>; 5] {
+        // The first pulse on output 37 loads ζ(X_start), and the counter is set to l.
+        let first = step(|d: &D, s| {
+            let it = d.as_ref();
+            s[it.angle] = s[it.start];
+            s[it.intervals] = s[it.length];
+        })
+        .skip_if(1, |d, s| s[d.as_ref().length] == 0);
+        // Each of the others adds Δζ and counts, until the counter comes to 0.
+        let next = step(|d: &D, s| {
+            let it = d.as_ref();
+            s[it.angle] = wrapped(it.format, s[it.angle] + s[it.delta]);
+            s[it.intervals] -= 1;
+        })
+        .repeat_while(|d, s| s[d.as_ref().intervals] > 1);
         [
-            u64::from(self.written[1]),
-            u64::from(run),
-            u64::from(run && word > DRAIN),
-            u64::from(word == NEXT),
-            u64::from(word == NEXT),
-            u64::from(self.pulse()),
-            u64::from(run),
-            u64::from(word),
-            bits(self.delta.value, width),
-            bits(self.start.value, width),
-            self.length.value as u64,
-            self.intervals as u64,
-            bits(self.angle, width),
+            idle(),
+            first.valid().asserts(self.write_angle),
+            next.valid().asserts(self.write_angle).asserts(self.count).asserts(self.accumulate),
+            // The last point comes out.
+            idle(),
+            idle().end(),
         ]
     }
 }
@@ -170,13 +102,8 @@ pub fn angle_expression(format: Format) -> String {
 
 /// `delta_zeta` and `zeta_start` as the contract sees them: every value is in the domain.
 pub fn angle_operands(format: Format) -> [Operand; 2] {
-    let operand = |name: &str, doc: &str| Operand {
-        name: name.to_string(),
-        format,
-        domain: (format.min_raw() as i64, format.max_raw() as i64),
-        colour: false,
-        doc: doc.to_string(),
-    };
+    let domain = (format.min_raw() as i64, format.max_raw() as i64);
+    let operand = |name: &str, doc: &str| control(name, format, domain, doc);
     [
         operand("delta_zeta", "angle from a point to the next, in right angles"),
         operand("zeta_start", "angle of the first point, in right angles"),
@@ -186,13 +113,8 @@ pub fn angle_operands(format: Format) -> [Operand; 2] {
 /// `length` as the contract sees it: every value is in the domain.
 pub fn length_operand(length_bits: u32) -> Operand {
     let format = length_format(length_bits);
-    Operand {
-        name: "length".to_string(),
-        format,
-        domain: (0, format.max_raw() as i64),
-        colour: false,
-        doc: "intervals of the line: one less than its points".to_string(),
-    }
+    let doc = "intervals of the line: one less than its points";
+    control("length", format, (0, format.max_raw() as i64), doc)
 }
 
 /// The leading `kept` fraction bits of an angle's magnitude, complement for a negative one; `None`
@@ -265,6 +187,21 @@ fn slope(power: u32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::golden::Model;
+    use crate::golden::frame::{Datapath, State};
+
+    /// The walker without anything behind it.
+    struct Alone(Walker);
+
+    impl AsRef<Walker> for Alone {
+        fn as_ref(&self) -> &Walker {
+            &self.0
+        }
+    }
+
+    impl Datapath for Alone {
+        fn outputs(&self, _: &mut State) {}
+    }
 
     #[test]
     fn angles_wrap_as_the_circle_does() {
@@ -307,31 +244,13 @@ mod tests {
     /// The order of events of seed 000 for l = 3, with register 8 and ROM 12 between outputs 37 and 29.
     #[test]
     fn a_line_of_three_intervals_event_by_event() {
-        let mut walker = Walker::new(Format::signed(1, 4), 4);
-        let value = |walker: &Walker, name: &str| {
-            let at = Walker::SIGNALS.iter().position(|it| *it == name).unwrap();
-            walker.values()[at]
-        };
-        // Δζ = 2/16, ζ = −3/16, l = 3, written together with start.
-        walker.clock(true, true, &[2, 1, 64 - 3, 1, 3, 1]);
-        let mut seen = Vec::new();
-        for _ in 0..8 {
-            // Outputs 28, 29, 34, 36, 37, then done, counter 5 and register 8.
-            seen.push(
-                [
-                    "busy",
-                    "valid",
-                    "count",
-                    "accumulate",
-                    "write_angle",
-                    "done",
-                    "intervals",
-                    "angle",
-                ]
-                .map(|name| value(&walker, name)),
-            );
-            walker.clock(true, false, &[0, 1, 0, 1, 0, 1]);
-        }
+        let mut frame = Frame::default();
+        let walker = Alone(Walker::new(&mut frame, Format::signed(1, 4), 4));
+        let program = walker.0.program();
+        let mut model = frame.model(walker, program);
+        // Outputs 28, 29, 34, 36, 37, then done, counter 5 and register 8.
+        let names =
+            ["busy", "valid", "count", "accumulate", "write_angle", "done", "intervals", "angle"];
         let expected = [
             [1, 0, 0, 0, 0, 0, 0, 0],
             // Pulse 1 on output 37 with 36 low loads ζ(X_start) …
@@ -344,6 +263,11 @@ mod tests {
             [1, 1, 0, 0, 0, 1, 0, 3],
             [0, 0, 0, 0, 0, 0, 0, 3],
         ];
-        assert_eq!(seen, expected);
+        // Δζ = 2/16, ζ = −3/16, l = 3, written together with start.
+        model.clock(&[1, 1, 2, 1, 64 - 3, 1, 3, 1]);
+        for row in expected {
+            assert_eq!(names.map(|name| model.value(name).unwrap()), row);
+            model.clock(&[1, 0, 0, 1, 0, 1, 0, 1]);
+        }
     }
 }

@@ -1,19 +1,21 @@
 //! `lyon`: `max(0, 1 − β·D²)^m` from a difference vector (US 5 739 820), by formula.
 
-mod clock_model;
 mod contract;
+#[cfg(test)]
+mod tests;
 
-pub use clock_model::LyonModel;
-pub use contract::LyonContract;
+pub use contract::contract;
 
-use super::keys;
+use super::frame::{Clocked, Datapath, Frame, Microinstruction, Slot, State, idle, step};
+use super::highlight::{ProductSlots, Products};
 use super::narrow::Narrow;
+use super::{Model, keys};
 use crate::base::fixed::{Format, Rounding};
 use crate::config::Config;
 
 /// How β is had.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scale {
+enum Scale {
     /// `2^shift/(2·m)`; the operand is `shift`.
     Shift,
     /// `n/(2·m)`; the operand is `exponent`.
@@ -21,54 +23,34 @@ pub enum Scale {
 }
 
 /// What a configuration of the device says.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Params {
+#[derive(Clone)]
+struct Params {
     /// `power`: m, a power of two, 2 … 16.
-    pub power: u32,
+    power: u32,
     /// `scale`.
-    pub scale: Scale,
+    scale: Scale,
     /// `vector.fraction`: fraction bits of dx, dy and dz.
-    pub vector_fraction: u32,
+    vector_fraction: u32,
     /// `distance.fraction`: fraction bits of D².
-    pub distance_fraction: u32,
+    distance_fraction: u32,
     /// `distance.rounding`: of D².
-    pub distance_rounding: Rounding,
+    distance_rounding: Rounding,
     /// `exponent.bits`: bits of n.
-    pub exponent_bits: u32,
+    exponent_bits: u32,
     /// `colour.bits`: bits of a colour operand and of a colour output.
-    pub colour_bits: u32,
+    colour_bits: u32,
     /// `intensity.fraction`: fraction bits of the accumulator.
-    pub intensity_fraction: u32,
+    intensity_fraction: u32,
     /// `intensity.rounding`: of β·D² and of the squares.
-    pub intensity_rounding: Rounding,
+    intensity_rounding: Rounding,
     /// `output.rounding`: of the colour outputs.
-    pub output_rounding: Rounding,
+    output_rounding: Rounding,
     /// `domain.exponent_min` and `domain.exponent_max`: the contract's n.
-    pub exponents: (i64, i64),
-}
-
-impl Default for Params {
-    /// Proven below one unit with 18-bit components and 16-bit squarings.
-    fn default() -> Self {
-        Self {
-            power: 16,
-            scale: Scale::Shift,
-            vector_fraction: 16,
-            distance_fraction: 20,
-            distance_rounding: Rounding::Truncate,
-            exponent_bits: 10,
-            colour_bits: 8,
-            intensity_fraction: 16,
-            intensity_rounding: Rounding::Truncate,
-            output_rounding: Rounding::Nearest,
-            exponents: (1, 1000),
-        }
-    }
+    exponents: (i64, i64),
 }
 
 impl Params {
-    /// What a configuration of the device `lyon` says.
-    pub fn from_config(config: &Config) -> Self {
+    fn of(config: &Config) -> Self {
         Self {
             power: keys::bits(config, "power"),
             scale: match config.choice("scale") {
@@ -85,25 +67,6 @@ impl Params {
             output_rounding: keys::rounding(config, "output.rounding"),
             exponents: keys::exponents(config),
         }
-    }
-
-    /// Whether the model's 64-bit arithmetic holds every intermediate value.
-    ///
-    /// # Errors
-    /// Names the configuration key that is out of its range.
-    pub fn check(&self) -> Result<(), String> {
-        let in_range = |key: &str, value: u32, most: u32| match value {
-            v if (1..=most).contains(&v) => Ok(()),
-            v => Err(format!("{key} is {v}; 1 to {most} are possible")),
-        };
-        if !matches!(self.power, 2 | 4 | 8 | 16) {
-            return Err(format!("power is {}; 2, 4, 8 or 16 are possible", self.power));
-        }
-        in_range("vector.fraction", self.vector_fraction, 24)?;
-        in_range("distance.fraction", self.distance_fraction, 30.min(2 * self.vector_fraction))?;
-        in_range("exponent.bits", self.exponent_bits, 14)?;
-        in_range("colour.bits", self.colour_bits, 16)?;
-        in_range("intensity.fraction", self.intensity_fraction, 30)
     }
 
     /// s, the number of squarings.
@@ -123,12 +86,16 @@ impl Params {
         }
     }
 
-    fn colour_format(&self) -> Format {
-        Format::unsigned(self.colour_bits as i32, 0)
+    fn f_format(&self) -> Format {
+        Format::unsigned(0, self.intensity_fraction as i32)
+    }
+
+    fn products(&self) -> Products {
+        Products::colours(self.f_format(), self.colour_bits, self.output_rounding)
     }
 
     /// The operand `shift` or `exponent` for an exponent: log₂ n to the nearest, or n itself.
-    pub fn scale_operand(&self, n: i64) -> i64 {
+    fn scale_operand(&self, n: i64) -> i64 {
         match self.scale {
             Scale::Multiplier => n,
             Scale::Shift => {
@@ -138,6 +105,18 @@ impl Params {
                 i64::from(below) + i64::from(n * n > 2 << (2 * below))
             }
         }
+    }
+
+    fn scale_name(&self) -> &'static str {
+        match self.scale {
+            Scale::Shift => "shift",
+            Scale::Multiplier => "exponent",
+        }
+    }
+
+    /// The domain of that operand.
+    fn scale_domain(&self) -> (i64, i64) {
+        (self.scale_operand(self.exponents.0), self.scale_operand(self.exponents.1))
     }
 
     /// The exponent that an operand `shift` or `exponent` stands for.
@@ -150,9 +129,9 @@ impl Params {
 }
 
 /// The arithmetic of the device, one operation a method.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 struct Arithmetic {
-    scale: Scale,
+    params: Params,
     squarings: u32,
     /// 1.0 in the point of f.
     one: i64,
@@ -161,11 +140,10 @@ struct Arithmetic {
     distance: Narrow,
     scaled: Narrow,
     square: Narrow,
-    output: Narrow,
 }
 
 impl Arithmetic {
-    fn new(params: &Params) -> Self {
+    fn new(params: Params) -> Self {
         let (f, squarings) = (params.intensity_fraction, params.squarings());
         let distance = params.distance_fraction;
         let rounding = params.intensity_rounding;
@@ -175,7 +153,6 @@ impl Arithmetic {
             Scale::Shift => squarings + 2,
         };
         Self {
-            scale: params.scale,
             squarings,
             one: 1 << f,
             shifted_most: (2 << (distance + squarings + 2)) - 1,
@@ -186,11 +163,11 @@ impl Arithmetic {
             ),
             scaled: Narrow::new(distance + beta_fraction, Format::unsigned(1, f as i32), rounding),
             square: Narrow::new(2 * f, Format::unsigned(0, f as i32), rounding),
-            output: Narrow::new(f, params.colour_format(), params.output_rounding),
+            params,
         }
     }
 
-    /// Word 1: D² as the register takes it.
+    /// D² as the register takes it.
     #[inline]
     fn distance(&self, vector: [i64; 3]) -> i64 {
         let [x, y, z] = vector;
@@ -203,7 +180,7 @@ impl Arithmetic {
         (2 * word).min(self.shifted_most)
     }
 
-    /// Word 2 with the multiplier, and what becomes of the shift register's word: β·D², saturated below 2.0.
+    /// What the multiplier gives, and what becomes of the shift register's word: β·D², saturated below 2.0.
     #[inline]
     fn scaled(&self, product: i64) -> i64 {
         self.scaled.apply(product)
@@ -212,7 +189,7 @@ impl Arithmetic {
     /// β·D² from the word of D² and the operand `shift` or `exponent`.
     #[inline]
     fn beta_distance(&self, distance: i64, operand: i64) -> i64 {
-        self.scaled(match self.scale {
+        self.scaled(match self.params.scale {
             Scale::Multiplier => distance * operand,
             Scale::Shift => (distance << (operand + 1)).min(self.shifted_most),
         })
@@ -231,19 +208,114 @@ impl Arithmetic {
 
     /// f from the word of D².
     #[inline]
-    fn f(&self, distance: i64, operand: i64) -> i64 {
+    fn f_of(&self, distance: i64, operand: i64) -> i64 {
         let base = self.base(self.beta_distance(distance, operand));
         if base == 0 {
             return 0;
         }
         (0..self.squarings).fold(base, |power, _| self.square(power))
     }
+}
 
-    #[inline]
-    fn colour(&self, f: i64, colour: i64) -> i64 {
-        self.output.apply(f * colour)
+/// The golden model.
+pub fn model(config: &Config) -> Box<dyn Model> {
+    Box::new(clocked(&Arithmetic::new(Params::of(config))))
+}
+
+/// The device, clock by clock.
+struct Device {
+    it: Arithmetic,
+    vector: [Slot; 3],
+    /// `shift` or `exponent`.
+    scale: Slot,
+    /// D², where a multiplier scales it; otherwise the shift register.
+    distance: Slot,
+    /// β·D² behind the multiplier.
+    scaled: Slot,
+    accumulator: Slot,
+    remaining: Slot,
+    products: ProductSlots,
+}
+
+impl Datapath for Device {
+    fn outputs(&self, s: &mut State) {
+        self.products.show(s[self.accumulator], s);
     }
 }
 
-#[cfg(test)]
-mod tests;
+fn clocked(it: &Arithmetic) -> Clocked<Device> {
+    let (params, squarings) = (&it.params, it.squarings);
+    let (vector, scale) = (params.vector_format(), params.scale_format());
+    let shift = params.scale == Scale::Shift;
+    // The counter counts squarings after the first, and shifts.
+    let remaining = match (shift, squarings) {
+        (false, _) => 2,
+        (true, 3..) => scale.width().max(2),
+        (true, _) => scale.width(),
+    };
+    let point = params.distance_fraction as i32;
+    let shifted = Format::unsigned(1, point + squarings as i32 + 2);
+    let mut frame = Frame::default();
+    let device = Device {
+        it: it.clone(),
+        vector: ["dx", "dy", "dz"].map(|name| frame.operand(name, vector)),
+        scale: frame.operand(params.scale_name(), scale),
+        products: params.products().slots(&mut frame),
+        distance: match shift {
+            true => frame.register("shift_register", shifted),
+            false => frame.register("distance", Format::unsigned(4, point)),
+        },
+        scaled: match shift {
+            true => frame.hidden(),
+            false => {
+                frame.register("scaled", Format::unsigned(1, params.intensity_fraction as i32))
+            }
+        },
+        accumulator: frame.register("accumulator", params.f_format()),
+        remaining: match shift || squarings > 1 {
+            true => frame.register("remaining", Format::unsigned(remaining as i32, 0)),
+            false => frame.hidden(),
+        },
+    };
+    let distance = step(|d: &Device, s| {
+        s[d.distance] = d.it.distance(d.vector.map(|component| s[component]));
+        if d.it.params.scale == Scale::Shift {
+            s[d.remaining] = s[d.scale];
+        }
+    });
+    // The accumulator takes the square of the base …
+    let base = step(|d: &Device, s| {
+        let scaled = match d.it.params.scale {
+            Scale::Shift => d.it.scaled(s[d.distance]),
+            Scale::Multiplier => s[d.scaled],
+        };
+        s[d.accumulator] = d.it.square(d.it.base(scaled));
+        if d.it.squarings > 1 {
+            s[d.remaining] = i64::from(d.it.squarings) - 1;
+        }
+    });
+    // … and then its own.
+    let square = step(|d: &Device, s| {
+        s[d.accumulator] = d.it.square(s[d.accumulator]);
+        s[d.remaining] -= 1;
+    })
+    .repeat_while(|d, s| s[d.remaining] > 1);
+    let mut program = vec![idle(), distance, scale_step(params.scale), base];
+    program.extend((squarings > 1).then_some(square));
+    program.push(idle().valid().end());
+    frame.model(device, program)
+}
+
+/// β·D²: the product, or one place of the shift register.
+fn scale_step(scale: Scale) -> Microinstruction<Device> {
+    match scale {
+        Scale::Multiplier => {
+            step(|d: &Device, s| s[d.scaled] = d.it.scaled(s[d.distance] * s[d.scale]))
+        }
+        Scale::Shift => step(|d: &Device, s| {
+            s[d.distance] = d.it.shifted(s[d.distance]);
+            s[d.remaining] -= 1;
+        })
+        .repeat_while(|d, s| s[d.remaining] > 0),
+    }
+}

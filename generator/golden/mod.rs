@@ -11,9 +11,11 @@ pub mod cosine_squared;
 pub mod curve;
 pub mod decay;
 pub mod formulas;
+pub mod frame;
 pub mod gauss;
 pub mod halving;
-pub mod handshake;
+mod handshake;
+pub mod highlight;
 pub mod keys;
 pub mod line;
 pub mod lyon;
@@ -51,6 +53,12 @@ pub trait Model: CloneModel + Send + Sync {
 
     /// The values after the latest edge, in the order of [`Model::signals`].
     fn values(&self) -> &[u64];
+
+    /// The value of one signal.
+    fn value(&self, name: &str) -> Option<u64> {
+        let at = self.signals().iter().position(|signal| signal == name)?;
+        Some(self.values()[at])
+    }
 }
 
 /// What a [`Model`] has by being [`Clone`].

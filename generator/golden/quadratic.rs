@@ -1,16 +1,17 @@
 //! `quadratic`: `c + a(n)·(c² − c)`, not below 0 (UA 20998), by formula.
 
-mod clock_model;
 pub mod coefficient;
-mod contract;
+#[cfg(test)]
+mod tests;
 
-pub use clock_model::QuadraticModel;
-pub use contract::QuadraticContract;
-
-use super::keys;
-use super::narrow::Narrow;
-use crate::base::fixed::{Format, Rounding};
+use super::contract::{self, Share};
+use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
+use super::highlight::{Highlight, Keys, ProductSlots, Reflectance};
+use super::narrow::{Narrow, rounding_error};
+use super::{Contract, Model, keys};
+use crate::base::fixed::{Format, Rounding, exp2};
 use crate::config::Config;
+use crate::golden::formulas;
 
 /// What ROM(n) holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,131 +22,24 @@ pub enum Scheme {
     Minimax { fraction: u32 },
 }
 
-/// What a configuration of the device says.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Params {
-    /// `coefficient.scheme`, and `coefficient.fraction` where it applies.
-    pub scheme: Scheme,
-    /// `cosine.fraction`: fraction bits of c = cos γ.
-    pub cosine_fraction: u32,
-    /// `cosine.signed`: cos γ may be negative, and is then taken as 0.
-    pub cosine_signed: bool,
-    /// `exponent.bits`: bits of n.
-    pub exponent_bits: u32,
-    /// `colour.bits`: bits of a colour operand and of a colour output.
-    pub colour_bits: u32,
-    /// `difference.fraction`: fraction bits of c² − c.
-    pub difference_fraction: u32,
-    /// `difference.rounding`: of c² − c.
-    pub difference_rounding: Rounding,
-    /// `intensity.fraction`: fraction bits of f.
-    pub intensity_fraction: u32,
-    /// `intensity.rounding`: of f.
-    pub intensity_rounding: Rounding,
-    /// `output.rounding`: of the colour outputs.
-    pub output_rounding: Rounding,
-    /// `domain.exponent_min` and `domain.exponent_max`: the contract's n.
-    pub exponents: (i64, i64),
-}
-
-impl Default for Params {
-    /// Proven below one unit with 18 bits of c² − c.
-    fn default() -> Self {
-        Self {
-            scheme: Scheme::Minimax { fraction: 8 },
-            cosine_fraction: 20,
-            cosine_signed: false,
-            exponent_bits: 10,
-            colour_bits: 8,
-            difference_fraction: 19,
-            difference_rounding: Rounding::Truncate,
-            intensity_fraction: 16,
-            intensity_rounding: Rounding::Truncate,
-            output_rounding: Rounding::Nearest,
-            exponents: (1, 1000),
+impl Scheme {
+    fn fraction(self) -> u32 {
+        match self {
+            Self::Taylor => 0,
+            Self::Minimax { fraction } => fraction,
         }
-    }
-}
-
-impl Params {
-    /// What a configuration of the device `quadratic` says.
-    pub fn from_config(config: &Config) -> Self {
-        Self {
-            scheme: match config.choice("coefficient.scheme") {
-                "minimax" => {
-                    Scheme::Minimax { fraction: keys::bits(config, "coefficient.fraction") }
-                }
-                _ => Scheme::Taylor,
-            },
-            cosine_fraction: keys::bits(config, "cosine.fraction"),
-            cosine_signed: config.flag("cosine.signed"),
-            exponent_bits: keys::bits(config, "exponent.bits"),
-            colour_bits: keys::bits(config, "colour.bits"),
-            difference_fraction: keys::bits(config, "difference.fraction"),
-            difference_rounding: keys::rounding(config, "difference.rounding"),
-            intensity_fraction: keys::bits(config, "intensity.fraction"),
-            intensity_rounding: keys::rounding(config, "intensity.rounding"),
-            output_rounding: keys::rounding(config, "output.rounding"),
-            exponents: keys::exponents(config),
-        }
-    }
-
-    /// Whether the model's 64-bit arithmetic holds every intermediate value.
-    ///
-    /// # Errors
-    /// Names the configuration key that is out of its range.
-    pub fn check(&self) -> Result<(), String> {
-        let in_range = |key: &str, value: u32, most: u32| match value {
-            v if (1..=most).contains(&v) => Ok(()),
-            v => Err(format!("{key} is {v}; 1 to {most} are possible")),
-        };
-        in_range("cosine.fraction", self.cosine_fraction, 28)?;
-        in_range("exponent.bits", self.exponent_bits, 14)?;
-        in_range("colour.bits", self.colour_bits, 16)?;
-        in_range(
-            "difference.fraction",
-            self.difference_fraction,
-            30.min(2 * self.cosine_fraction),
-        )?;
-        in_range("intensity.fraction", self.intensity_fraction, 30)?;
-        // A fraction of 0 is possible too.
-        in_range("coefficient.fraction", self.coefficient_fraction() + 1, 15)
-    }
-
-    fn coefficient_fraction(&self) -> u32 {
-        match self.scheme {
-            Scheme::Taylor => 0,
-            Scheme::Minimax { fraction } => fraction,
-        }
-    }
-
-    fn one(&self) -> i64 {
-        1 << self.cosine_fraction
-    }
-
-    fn cosine_format(&self) -> Format {
-        Format { signed: self.cosine_signed, int: 1, frac: self.cosine_fraction as i32 }
-    }
-
-    fn exponent_format(&self) -> Format {
-        Format::unsigned(self.exponent_bits as i32, 0)
-    }
-
-    fn colour_format(&self) -> Format {
-        Format::unsigned(self.colour_bits as i32, 0)
-    }
-
-    /// c² − c: from −0.25 to 0.
-    fn difference_format(&self) -> Format {
-        Format::signed(-2, self.difference_fraction as i32)
     }
 }
 
 /// The arithmetic of the device, one operation a method.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 struct Arithmetic {
-    one: i64,
-    cosine_fraction: u32,
+    keys: Keys,
+    scheme: Scheme,
+    /// `difference.fraction`: fraction bits of c² − c, which is from −0.25 to 0.
+    difference_fraction: u32,
+    /// `difference.rounding`: of c² − c.
+    difference_rounding: Rounding,
     difference: Narrow,
     /// ROM(n), unrounded and as words.
     exact: Vec<f64>,
@@ -153,50 +47,190 @@ struct Arithmetic {
     /// Zeros to append to c and to the product, so that their points agree.
     pads: (u32, u32),
     sum: Narrow,
-    output: Narrow,
 }
 
 impl Arithmetic {
-    fn new(params: &Params) -> Self {
-        let (cosine, f) = (params.cosine_fraction, params.intensity_fraction);
-        let scale = f64::from(1u32 << params.coefficient_fraction());
-        let exact = coefficient::table(params.scheme, 1 << params.exponent_bits);
-        let product = params.difference_fraction + params.coefficient_fraction();
+    /// The difference c² − c and f by their fraction bits and roundings.
+    fn new(keys: Keys, scheme: Scheme, difference: (u32, Rounding), rounding: Rounding) -> Self {
+        let cosine = keys.cosine_fraction;
+        let scale = f64::from(1u32 << scheme.fraction());
+        let exact = coefficient::table(scheme, 1 << keys.exponent_bits);
+        let product = difference.0 + scheme.fraction();
         let point = product.max(cosine);
         Self {
-            one: params.one(),
-            cosine_fraction: cosine,
-            difference: Narrow::new(
-                2 * cosine,
-                params.difference_format(),
-                params.difference_rounding,
-            ),
+            scheme,
+            difference_fraction: difference.0,
+            difference_rounding: difference.1,
+            difference: Narrow::new(2 * cosine, difference_format(difference.0), difference.1),
             words: exact.iter().map(|a| (a * scale + 0.5).floor() as i64).collect(),
             exact,
             pads: (point - cosine, point - product),
-            sum: Narrow::new(point, Format::unsigned(0, f as i32), params.intensity_rounding),
-            output: Narrow::new(f, params.colour_format(), params.output_rounding),
+            sum: Narrow::new(point, keys.f_format(), rounding),
+            keys,
         }
     }
 
-    /// Word 1: `c² − c`.
-    #[inline]
-    fn difference(&self, cosine: i64) -> i64 {
-        self.difference.apply(cosine * cosine - (cosine << self.cosine_fraction))
+    fn of(config: &Config) -> Self {
+        let scheme = match config.choice("coefficient.scheme") {
+            "minimax" => Scheme::Minimax { fraction: keys::bits(config, "coefficient.fraction") },
+            _ => Scheme::Taylor,
+        };
+        let difference = keys::rounding(config, "difference.rounding");
+        Self::new(
+            Keys::new(config),
+            scheme,
+            (keys::bits(config, "difference.fraction"), difference),
+            keys::rounding(config, "intensity.rounding"),
+        )
     }
 
-    /// Word 2: `c + a(n)·(c² − c)`, limited to a fraction.
+    /// `c² − c`.
+    #[inline]
+    fn difference(&self, cosine: i64) -> i64 {
+        self.difference.apply(cosine * cosine - (cosine << self.keys.cosine_fraction))
+    }
+
+    /// `c + a(n)·(c² − c)`, limited to a fraction.
     #[inline]
     fn intensity(&self, cosine: i64, exponent: i64, difference: i64) -> i64 {
         let product = difference * self.words[exponent as usize];
         self.sum.apply((cosine << self.pads.0) + (product << self.pads.1))
     }
+}
 
-    #[inline]
-    fn colour(&self, f: i64, colour: i64) -> i64 {
-        self.output.apply(f * colour)
+fn difference_format(fraction: u32) -> Format {
+    Format::signed(-2, fraction as i32)
+}
+
+/// The golden model.
+pub fn model(config: &Config) -> Box<dyn Model> {
+    Box::new(clocked(&Arithmetic::of(config)))
+}
+
+/// The device, clock by clock.
+struct Device {
+    it: Arithmetic,
+    cosine: Slot,
+    exponent: Slot,
+    difference: Slot,
+    intensity: Slot,
+    products: ProductSlots,
+}
+
+impl Datapath for Device {
+    fn outputs(&self, s: &mut State) {
+        self.products.show(s[self.intensity], s);
     }
 }
 
-#[cfg(test)]
-mod tests;
+fn clocked(it: &Arithmetic) -> Clocked<Device> {
+    let mut frame = Frame::default();
+    let [cosine, exponent] = it.keys.slots(&mut frame);
+    let device = Device {
+        it: it.clone(),
+        cosine,
+        exponent,
+        difference: frame.register("difference", difference_format(it.difference_fraction)),
+        intensity: frame.register("intensity", it.keys.f_format()),
+        products: it.keys.products().slots(&mut frame),
+    };
+    let subtract = step(|d: &Device, s| s[d.difference] = d.it.difference(s[d.cosine]));
+    let blend = step(|d: &Device, s| {
+        s[d.intensity] = d.it.intensity(s[d.cosine], s[d.exponent], s[d.difference]);
+    });
+    frame.model(device, [idle(), subtract, blend, idle().valid().end()])
+}
+
+/// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
+pub fn contract(config: &Config) -> Box<dyn Contract> {
+    let it = Arithmetic::of(config);
+    let keys = it.keys.clone();
+    Box::new(Highlight::of_cosine(it, &keys))
+}
+
+impl Reflectance for Arithmetic {
+    #[inline]
+    fn f(&self, control: &[i64]) -> i64 {
+        let cosine = self.keys.clamped(control[0]);
+        self.intensity(cosine, control[1], self.difference(cosine))
+    }
+
+    /// With a(n) as it was before ROM(n) rounded it.
+    #[inline]
+    fn reference(&self, control: &[i64]) -> f64 {
+        formulas::quadratic(self.keys.cosine(control[0]), self.exact[control[1] as usize])
+    }
+
+    /// The coefficient of the least largest error has no closed form; ROM(n) holds it.
+    fn expressions(&self) -> Vec<String> {
+        let coefficient = match self.scheme {
+            Scheme::Taylor => "(max(exponent, 1) - 1)",
+            Scheme::Minimax { .. } => "coefficient[int(exponent)]",
+        };
+        let f = format!("cos_gamma * (1 - {coefficient} * (1 - cos_gamma))");
+        vec![contract::where_it_faces(&contract::clamped_at_0(&f))]
+    }
+
+    /// The error of `c − a·g`, with g = c − c² in 0 … 1/4. Where formula and hardware are both clamped there is
+    /// none; otherwise `a·g ≤ c`, that is `1 − c ≤ 1/a`, for one of the two, and g is at most 1/a.
+    ///
+    /// - An error of the word a(n) is multiplied by g.
+    /// - The rounding of g is multiplied by the word a(n).
+    /// - f is rounded; 1.0 is an ulp low.
+    fn shares(&self) -> Vec<Share> {
+        let f = self.keys.intensity_fraction;
+        let scale = exp2(-(self.scheme.fraction() as i32));
+        let (first, last) = self.keys.exponents;
+        let table = (first..=last).map(|n| {
+            let n = n as usize;
+            (self.exact[n], self.words[n] as f64 * scale)
+        });
+        let (mut rounded, mut largest) = (0.0f64, 0.0f64);
+        for (exact, word) in table {
+            let reach = (1.0 / exact.min(word).max(4.0)).min(0.25);
+            rounded = rounded.max((exact - word).abs() * reach);
+            largest = largest.max(word);
+        }
+        let difference = rounding_error(
+            2 * self.keys.cosine_fraction,
+            self.difference_fraction,
+            self.difference_rounding,
+        );
+        vec![
+            ("coefficient.fraction", "rounding of a(n)", rounded),
+            ("difference.fraction", "rounding of c² − c, times a(n)", difference * largest),
+            ("intensity.fraction", "rounding of f, and 1.0 as the largest word", exp2(-(f as i32))),
+        ]
+    }
+
+    /// What n − 1 costs beside the minimax table.
+    fn remarks(&self) -> Vec<String> {
+        if self.scheme != Scheme::Taylor {
+            return Vec::new();
+        }
+        let n = self.keys.exponents.1;
+        let best = coefficient::table(Scheme::Minimax { fraction: 0 }, n as u32 + 1);
+        let errors = [(n - 1) as f64, best[n as usize]].map(|a| formula_error(n, a));
+        if errors[1] >= errors[0] {
+            return Vec::new();
+        }
+        vec![format!(
+            "with coefficient.scheme = \"taylor\" the formula is off from cos^n by up to {:.4}, at n = {n}; with \
+             \"minimax\" by {:.4}",
+            errors[0], errors[1]
+        )]
+    }
+}
+
+/// The largest difference between the parabola and cⁿ, on a grid that the highlight fills.
+fn formula_error(n: i64, a: f64) -> f64 {
+    const GRID: u32 = 2048;
+    let n = n as f64;
+    let reach = (8.0 / n).min(1.0);
+    (0..=GRID)
+        .map(|step| 1.0 - reach * f64::from(step) / f64::from(GRID))
+        // The zero of the parabola, where the error has its corner.
+        .chain([1.0 - 1.0 / a.max(1.0)])
+        .map(|cosine| (formulas::quadratic(cosine, a) - formulas::blinn(cosine, n)).abs())
+        .fold(0.0, f64::max)
+}

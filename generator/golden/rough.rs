@@ -6,9 +6,10 @@ mod contract;
 #[cfg(test)]
 mod tests;
 
-pub use clock_model::RoughModel;
-pub use contract::RoughContract;
+pub use clock_model::model;
+pub use contract::contract;
 
+use super::highlight::Products;
 use super::keys;
 use super::narrow::Narrow;
 use super::sine::{self, Scheme, Sine};
@@ -17,7 +18,7 @@ use crate::config::Config;
 
 /// How sums and products are kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+enum Kind {
     /// With integer bits and signs.
     Exact,
     /// The patent's: every word is a fraction modulo 1.0, and every "−1" a missing carry.
@@ -28,72 +29,44 @@ pub enum Kind {
 ///
 /// In the patent's arithmetic all words have `cosine.fraction` bits; `cosine.signed`, `clamp`,
 /// `product.*`, `intensity.*` and `sine.fraction` do not apply.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Params {
+#[derive(Clone)]
+struct Params {
     /// `cosine.fraction`: fraction bits of both cosines, C.
-    pub cosine_fraction: u32,
+    cosine_fraction: u32,
     /// `cosine.signed`: cos γ may be negative, and is then taken as 0.
-    pub cosine_signed: bool,
+    cosine_signed: bool,
     /// `exponent.bits`: bits of n, N.
-    pub exponent_bits: u32,
+    exponent_bits: u32,
     /// `colour.bits`: bits of a colour operand and of a colour output, K.
-    pub colour_bits: u32,
+    colour_bits: u32,
     /// `arithmetic`.
-    pub arithmetic: Kind,
+    arithmetic: Kind,
     /// `clamp`: a negative base becomes 0.
-    pub clamp: bool,
+    clamp: bool,
     /// `product.fraction`: fraction bits of registers 11 and 12, P.
-    pub product_fraction: u32,
+    product_fraction: u32,
     /// `product.rounding`: of what they take.
-    pub product_rounding: Rounding,
+    product_rounding: Rounding,
     /// `intensity.fraction`: fraction bits of register 13, F.
-    pub intensity_fraction: u32,
+    intensity_fraction: u32,
     /// `intensity.rounding`: of what it takes.
-    pub intensity_rounding: Rounding,
+    intensity_rounding: Rounding,
     /// `output.rounding`: of the colour outputs.
-    pub output_rounding: Rounding,
+    output_rounding: Rounding,
     /// `sine.scheme` with `sine.address`, or `sine.segments` and `sine.slope_fraction`.
-    pub sine_scheme: Scheme,
+    sine_scheme: Scheme,
     /// `sine.fraction`: fraction bits of the sine, S.
-    pub sine_fraction: u32,
+    sine_fraction: u32,
     /// `sine.synchronous`: ROM 18 answers a clock later.
-    pub sine_synchronous: bool,
+    sine_synchronous: bool,
     /// `domain.exponent_min` and `domain.exponent_max`: the contract's n.
-    pub exponents: (i64, i64),
+    exponents: (i64, i64),
     /// `domain.deviation`: the contract's largest dγ, in degrees, 0 … 90.
-    pub deviation: f64,
-}
-
-impl Default for Params {
-    /// Proven below one unit with the smallest ROM 18.
-    fn default() -> Self {
-        Self {
-            cosine_fraction: 20,
-            cosine_signed: false,
-            exponent_bits: 10,
-            colour_bits: 8,
-            arithmetic: Kind::Exact,
-            clamp: true,
-            product_fraction: 22,
-            product_rounding: Rounding::Truncate,
-            intensity_fraction: 16,
-            intensity_rounding: Rounding::Truncate,
-            output_rounding: Rounding::Nearest,
-            sine_scheme: Scheme::Segmented {
-                segments: vec![6, 8, 7, 6, 5, 4, 3, 3, 2],
-                slope_fraction: 18,
-            },
-            sine_fraction: 22,
-            sine_synchronous: true,
-            exponents: (1, 1000),
-            deviation: 30.0,
-        }
-    }
+    deviation: f64,
 }
 
 impl Params {
-    /// What a configuration of the device `rough` says.
-    pub fn from_config(config: &Config) -> Self {
+    fn of(config: &Config) -> Self {
         let sine_scheme = match config.choice("sine.scheme") {
             "direct" => Scheme::Direct { address: keys::bits(config, "sine.address") },
             _ => Scheme::Segmented {
@@ -129,28 +102,6 @@ impl Params {
         }
     }
 
-    /// Whether the model's 64-bit arithmetic holds every intermediate value.
-    ///
-    /// # Errors
-    /// Names the configuration key that is out of its range.
-    pub fn check(&self) -> Result<(), String> {
-        let limits = [
-            ("exponent.bits", self.exponent_bits, 16),
-            ("colour.bits", self.colour_bits, 16),
-            ("product.fraction", self.product_fraction, 40),
-            ("intensity.fraction", self.intensity_fraction, 28),
-        ];
-        for (key, value, most) in limits {
-            if !(1..=most).contains(&value) {
-                return Err(format!("{key} is {value}; 1 to {most} are possible"));
-            }
-        }
-        if !(0.0..=90.0).contains(&self.deviation) {
-            return Err(format!("domain.deviation is {}; 0 to 90 are possible", self.deviation));
-        }
-        self.sine().check()
-    }
-
     fn patent(&self) -> bool {
         self.arithmetic == Kind::Patent
     }
@@ -182,8 +133,12 @@ impl Params {
         Format::unsigned(self.exponent_bits as i32, 0)
     }
 
-    fn colour_format(&self) -> Format {
-        Format::unsigned(self.colour_bits as i32, 0)
+    fn f_format(&self) -> Format {
+        Format::unsigned(0, self.f_fraction() as i32)
+    }
+
+    fn products(&self) -> Products {
+        Products::colours(self.f_format(), self.colour_bits, self.output_rounding)
     }
 
     /// The largest raw cosine that a register holds: 1.0, or in the patent's words an ulp less.
@@ -203,14 +158,14 @@ impl Params {
 }
 
 /// The blocks between the registers, one a method. Words are raw values.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 struct Arithmetic {
+    params: Params,
     sine: Sine,
-    output: Narrow,
     kind: Blocks,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 enum Blocks {
     Exact {
         /// 1.0 of registers 11 and 12, and of register 13.
@@ -229,8 +184,7 @@ enum Blocks {
 }
 
 impl Arithmetic {
-    fn new(params: &Params) -> Result<Self, String> {
-        params.check()?;
+    fn new(params: Params) -> Self {
         let (p, f) = (params.product_fraction, params.intensity_fraction);
         let kind = match params.arithmetic {
             Kind::Patent => Blocks::Patent {
@@ -254,15 +208,7 @@ impl Arithmetic {
                 }
             }
         };
-        Ok(Self {
-            sine: Sine::new(&params.sine())?,
-            output: Narrow::new(
-                params.f_fraction(),
-                params.colour_format(),
-                params.output_rounding,
-            ),
-            kind,
-        })
+        Self { sine: Sine::new(&params.sine()), kind, params }
     }
 
     /// What register 11 takes: cos γ·cos dγ.
@@ -337,17 +283,11 @@ impl Arithmetic {
     /// With the clamp, its low bits: the square is below 1.0. Without, register 13 has an integer bit,
     /// and is brought to 0 … 1.0 − ulp.
     #[inline]
-    fn f(&self, result: i64) -> i64 {
+    fn f_of(&self, result: i64) -> i64 {
         match &self.kind {
             Blocks::Exact { result_one, clamp: true, .. } => result & (result_one - 1),
             Blocks::Exact { result_one, clamp: false, .. } => result.clamp(0, result_one - 1),
             Blocks::Patent { .. } => result,
         }
-    }
-
-    /// Multipliers 20, 21 and 22.
-    #[inline]
-    fn colour(&self, f: i64, colour: i64) -> i64 {
-        self.output.apply(f * colour)
     }
 }

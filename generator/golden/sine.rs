@@ -85,49 +85,6 @@ struct Segment {
     slope: i64,
 }
 
-impl Params {
-    /// Whether the table is defined.
-    ///
-    /// # Errors
-    /// Says which parameter is out of its range, by its configuration key.
-    pub fn check(&self) -> Result<(), String> {
-        let (operand, fraction) = (self.operand_fraction, self.fraction);
-        if !(1..=26).contains(&operand) {
-            return Err(format!("cosine.fraction is {operand}; a sine table takes 1 to 26"));
-        }
-        if !(1..=30).contains(&fraction) {
-            return Err(format!("sine.fraction is {fraction}; 1 to 30 are possible"));
-        }
-        match &self.scheme {
-            Scheme::Direct { address } if !(1..=operand).contains(address) => Err(format!(
-                "sine.address is {address}; 1 to cosine.fraction, {operand}, are possible"
-            )),
-            Scheme::Direct { .. } => Ok(()),
-            Scheme::Segmented { segments, slope_fraction } => {
-                if segments.is_empty() {
-                    return Err("sine.segments is empty; one range is the least".to_string());
-                }
-                for (j, &bits) in segments.iter().enumerate() {
-                    let most = i64::from(operand) - 2 * j as i64;
-                    if bits < 2 || i64::from(bits) > most {
-                        return Err(format!(
-                            "sine.segments[{j}] is {bits}; 2 to {most} are possible there"
-                        ));
-                    }
-                }
-                let remainder = remainder_bits(operand, segments);
-                if *slope_fraction > fraction || slope_fraction + remainder < fraction {
-                    return Err(format!(
-                        "sine.slope_fraction is {slope_fraction}; {} to {fraction} are possible",
-                        fraction.saturating_sub(remainder)
-                    ));
-                }
-                Ok(())
-            }
-        }
-    }
-}
-
 /// R: the bits of u below the prefix in the range that has most of them.
 fn remainder_bits(operand: u32, segments: &[u32]) -> u32 {
     let bits = |(j, &k): (usize, &u32)| operand - 2 * j as u32 - k;
@@ -136,11 +93,7 @@ fn remainder_bits(operand: u32, segments: &[u32]) -> u32 {
 
 impl Sine {
     /// Builds the table.
-    ///
-    /// # Errors
-    /// As [`Params::check`].
-    pub fn new(params: &Params) -> Result<Self, String> {
-        params.check()?;
+    pub fn new(params: &Params) -> Self {
         let (operand, fraction) = (params.operand_fraction, params.fraction);
         let table = match &params.scheme {
             Scheme::Direct { address } => Table::Direct {
@@ -165,7 +118,7 @@ impl Sine {
                 }
             }
         };
-        Ok(Self { operand_fraction: operand, fraction, table })
+        Self { operand_fraction: operand, fraction, table }
     }
 
     /// The raw sine of the raw operand `x`, 0 … 2^C.
@@ -193,19 +146,6 @@ impl Sine {
                 let t = (u & ((1 << range.width) - 1)) << (remainder - range.width);
                 let rise = (segment.slope * t) >> (remainder + slope_fraction - self.fraction);
                 (segment.base + rise).min(largest)
-            }
-        }
-    }
-
-    /// Words and bits per word of the ROM, the unused entries counted.
-    pub fn rom_size(&self) -> (u64, u32) {
-        match &self.table {
-            Table::Direct { entries, .. } => (entries.len() as u64, self.fraction),
-            Table::Segmented { ranges, rest, .. } => {
-                let slopes = ranges.iter().flat_map(|range| &range.segments).map(|it| it.slope);
-                let largest = slopes.max().unwrap_or(0).max(1);
-                let prefixes: i64 = ranges.iter().map(|range| 4 * range.first).sum();
-                (prefixes as u64 + rest.len() as u64, self.fraction + largest.ilog2() + 1)
             }
         }
     }
@@ -329,7 +269,7 @@ mod tests {
     use super::*;
 
     fn sine(operand_fraction: u32, fraction: u32, scheme: Scheme) -> Sine {
-        Sine::new(&Params { operand_fraction, fraction, scheme }).unwrap()
+        Sine::new(&Params { operand_fraction, fraction, scheme })
     }
 
     fn segmented(segments: &[u32], slope_fraction: u32) -> Scheme {
@@ -343,7 +283,6 @@ mod tests {
         let it = sine(3, 4, Scheme::Direct { address: 2 });
         let sines = [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|x| it.at(x));
         assert_eq!(sines, [15, 15, 15, 15, 12, 12, 8, 8, 8]);
-        assert_eq!(it.rom_size(), (4, 4));
     }
 
     #[test]
@@ -363,8 +302,6 @@ mod tests {
         assert_eq!(sines[..4], rest);
         assert_eq!(sines[4..16], ranges);
         assert_eq!(sines[16], 63);
-        // Four prefixes (one of them unused) and four exact entries; the largest slope has 3 bits.
-        assert_eq!(it.rom_size(), (8, 9));
     }
 
     /// Every operand of several tables is within its piece's error, and the pieces cover them all.
@@ -392,21 +329,5 @@ mod tests {
                 assert!(piece.error <= 0.25);
             }
         }
-    }
-
-    #[test]
-    fn undefined_tables_are_refused_by_key() {
-        let refusal = |operand_fraction, fraction, scheme| {
-            let params = Params { operand_fraction, fraction, scheme };
-            Sine::new(&params).unwrap_err()
-        };
-        assert!(refusal(8, 8, Scheme::Direct { address: 9 }).contains("sine.address"));
-        assert!(refusal(8, 8, segmented(&[], 8)).contains("sine.segments"));
-        assert!(refusal(8, 8, segmented(&[4, 7], 8)).contains("sine.segments[1]"));
-        assert!(refusal(8, 8, segmented(&[1], 8)).contains("sine.segments[0]"));
-        assert!(refusal(8, 8, segmented(&[4], 3)).contains("sine.slope_fraction"));
-        assert!(refusal(8, 8, segmented(&[4], 9)).contains("sine.slope_fraction"));
-        assert!(refusal(27, 8, segmented(&[4], 8)).contains("cosine.fraction"));
-        assert!(refusal(8, 31, segmented(&[4], 8)).contains("sine.fraction"));
     }
 }

@@ -1,157 +1,73 @@
 //! `threshold`: `(n/2·(cos γ − 1) + 1)²` where it reaches ROM(n), otherwise 0 (UA 30041), by formula.
 
-mod clock_model;
-mod contract;
+#[cfg(test)]
+mod tests;
 
-pub use clock_model::ThresholdModel;
-pub use contract::ThresholdContract;
-
-use super::keys;
-use super::narrow::Narrow;
-use crate::base::fixed::{Format, Rounding};
+use super::contract::{self, Share};
+use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
+use super::highlight::{Highlight, Keys, ProductSlots, Reflectance};
+use super::narrow::{Narrow, rounding_error};
+use super::{Contract, Model, keys};
+use crate::base::fixed::{Format, Rounding, exp2};
 use crate::config::Config;
-
-/// What a configuration of the device says.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Params {
-    /// `cosine.fraction`: fraction bits of cos γ.
-    pub cosine_fraction: u32,
-    /// `cosine.signed`: cos γ may be negative, and is then taken as 0.
-    pub cosine_signed: bool,
-    /// `exponent.bits`: bits of n.
-    pub exponent_bits: u32,
-    /// `colour.bits`: bits of a colour operand and of a colour output.
-    pub colour_bits: u32,
-    /// `intensity.fraction`: fraction bits of the base, of its square and of the levels.
-    pub intensity_fraction: u32,
-    /// `intensity.rounding`: of the base and of its square.
-    pub intensity_rounding: Rounding,
-    /// `output.rounding`: of the colour outputs.
-    pub output_rounding: Rounding,
-    /// `visibility.levels`: hundredths of an output unit, an octave of n each, at least one.
-    pub levels: Vec<i64>,
-    /// `domain.exponent_min` and `domain.exponent_max`: the contract's n.
-    pub exponents: (i64, i64),
-}
-
-impl Default for Params {
-    /// Half an output unit for every n: what would be rounded to 0 is 0.
-    fn default() -> Self {
-        Self {
-            cosine_fraction: 20,
-            cosine_signed: false,
-            exponent_bits: 10,
-            colour_bits: 8,
-            intensity_fraction: 16,
-            intensity_rounding: Rounding::Truncate,
-            output_rounding: Rounding::Nearest,
-            levels: vec![50],
-            exponents: (1, 1000),
-        }
-    }
-}
-
-impl Params {
-    /// What a configuration of the device `threshold` says.
-    pub fn from_config(config: &Config) -> Self {
-        Self {
-            cosine_fraction: keys::bits(config, "cosine.fraction"),
-            cosine_signed: config.flag("cosine.signed"),
-            exponent_bits: keys::bits(config, "exponent.bits"),
-            colour_bits: keys::bits(config, "colour.bits"),
-            intensity_fraction: keys::bits(config, "intensity.fraction"),
-            intensity_rounding: keys::rounding(config, "intensity.rounding"),
-            output_rounding: keys::rounding(config, "output.rounding"),
-            levels: config.integers("visibility.levels").to_vec(),
-            exponents: keys::exponents(config),
-        }
-    }
-
-    /// Whether the model's 64-bit arithmetic holds every intermediate value.
-    ///
-    /// # Errors
-    /// Names the configuration key that is out of its range.
-    pub fn check(&self) -> Result<(), String> {
-        let in_range = |key: &str, value: u32, most: u32| match value {
-            v if (1..=most).contains(&v) => Ok(()),
-            v => Err(format!("{key} is {v}; 1 to {most} are possible")),
-        };
-        in_range("cosine.fraction", self.cosine_fraction, 30)?;
-        in_range("exponent.bits", self.exponent_bits, 16)?;
-        in_range("colour.bits", self.colour_bits, 16)?;
-        in_range("intensity.fraction", self.intensity_fraction, 30)?;
-        let most = 100 * ((1 << self.colour_bits) - 1);
-        if self.levels.is_empty() || self.levels.iter().any(|level| !(0..most).contains(level)) {
-            return Err(format!(
-                "visibility.levels is {:?}; levels from 0 to {} are possible, at least one",
-                self.levels,
-                most - 1
-            ));
-        }
-        Ok(())
-    }
-
-    fn one(&self) -> i64 {
-        1 << self.cosine_fraction
-    }
-
-    fn cosine_format(&self) -> Format {
-        Format { signed: self.cosine_signed, int: 1, frac: self.cosine_fraction as i32 }
-    }
-
-    fn exponent_format(&self) -> Format {
-        Format::unsigned(self.exponent_bits as i32, 0)
-    }
-
-    fn colour_format(&self) -> Format {
-        Format::unsigned(self.colour_bits as i32, 0)
-    }
-
-    /// The least word of f that is shown, an entry an octave of n: `levels / 100` units, rounded up to a
-    /// word. There is none above 1.0 − ulp.
-    fn thresholds(&self) -> Vec<i64> {
-        // 100 · largest · word ≥ level · 2^F, for the least word; less than 2^30 · 2^24.
-        let unit = 100 * ((1 << self.colour_bits) - 1);
-        let word = |level: i64| {
-            let wanted = level << self.intensity_fraction;
-            wanted / unit + i64::from(wanted % unit != 0)
-        };
-        let largest = (1 << self.intensity_fraction) - 1;
-        self.levels.iter().map(|&level| word(level).min(largest)).collect()
-    }
-}
+use crate::golden::formulas;
 
 /// The arithmetic of the device, one operation a method.
-#[derive(Clone, Debug)]
+#[derive(Clone)]
 struct Arithmetic {
-    one: i64,
+    keys: Keys,
+    /// `intensity.rounding`: of the base and of its square.
+    rounding: Rounding,
     /// 1.0 as a base.
     base_one: i64,
     scaled: Narrow,
     square: Narrow,
-    output: Narrow,
+    /// By octave of n.
     thresholds: Vec<i64>,
+    /// How far from ROM(n) the square may be seen on its other side: the bound of f.
+    margin: f64,
 }
 
 impl Arithmetic {
-    fn new(params: &Params) -> Self {
-        let f = params.intensity_fraction;
-        let rounding = params.intensity_rounding;
-        Self {
-            one: params.one(),
+    /// `levels` are hundredths of an output unit, an octave of n each, at least one.
+    fn new(keys: Keys, rounding: Rounding, levels: &[i64]) -> Self {
+        let f = keys.intensity_fraction;
+        let mut it = Self {
             base_one: 1 << f,
             // n/2 has one fraction bit.
-            scaled: Narrow::new(params.cosine_fraction + 1, Format::signed(0, f as i32), rounding),
-            square: Narrow::new(2 * f, Format::unsigned(0, f as i32), rounding),
-            output: Narrow::new(f, params.colour_format(), params.output_rounding),
-            thresholds: params.thresholds(),
-        }
+            scaled: Narrow::new(keys.cosine_fraction + 1, Format::signed(0, f as i32), rounding),
+            square: Narrow::new(2 * f, keys.f_format(), rounding),
+            thresholds: Self::thresholds(&keys, levels),
+            margin: 0.0,
+            keys,
+            rounding,
+        };
+        it.margin = it.shares().iter().map(|share| share.2).sum::<f64>().min(1.0);
+        it
     }
 
-    /// Word 1: `n/2·(cos γ − 1)`, not below −1.0.
+    fn of(config: &Config) -> Self {
+        let rounding = keys::rounding(config, "intensity.rounding");
+        Self::new(Keys::new(config), rounding, config.integers("visibility.levels"))
+    }
+
+    /// The least word of f that is shown, an entry an octave of n: `levels / 100` units, rounded up to a
+    /// word. There is none above 1.0 − ulp.
+    fn thresholds(keys: &Keys, levels: &[i64]) -> Vec<i64> {
+        // 100 · largest · word ≥ level · 2^F, for the least word; less than 2^30 · 2^24.
+        let unit = 100 * ((1 << keys.colour_bits) - 1);
+        let word = |level: i64| {
+            let wanted = level << keys.intensity_fraction;
+            wanted / unit + i64::from(wanted % unit != 0)
+        };
+        let largest = (1 << keys.intensity_fraction) - 1;
+        levels.iter().map(|&level| word(level).min(largest)).collect()
+    }
+
+    /// `n/2·(cos γ − 1)`, not below −1.0.
     #[inline]
     fn scaled(&self, cosine: i64, exponent: i64) -> i64 {
-        self.scaled.apply((cosine - self.one) * exponent)
+        self.scaled.apply((cosine - self.keys.one()) * exponent)
     }
 
     /// ROM(n).
@@ -161,7 +77,7 @@ impl Arithmetic {
         self.thresholds[octave.min(self.thresholds.len() - 1)]
     }
 
-    /// Word 2: the square of the base, if it is shown.
+    /// The square of the base, if it is shown.
     #[inline]
     fn gated(&self, cosine: i64, exponent: i64, scaled: i64) -> i64 {
         let base = scaled + self.base_one;
@@ -169,11 +85,145 @@ impl Arithmetic {
         if cosine == 0 || square < self.threshold(exponent) { 0 } else { square }
     }
 
+    /// The ungated parabola's square in f64, and ROM(n).
     #[inline]
-    fn colour(&self, f: i64, colour: i64) -> i64 {
-        self.output.apply(f * colour)
+    fn square_and_level(&self, control: &[i64]) -> (f64, f64) {
+        let ulp = exp2(-(self.keys.intensity_fraction as i32));
+        let level = self.threshold(control[1]) as f64 * ulp;
+        (formulas::parabola(self.keys.cosine(control[0]), control[1] as f64), level)
     }
 }
 
-#[cfg(test)]
-mod tests;
+/// The golden model.
+pub fn model(config: &Config) -> Box<dyn Model> {
+    Box::new(clocked(&Arithmetic::of(config)))
+}
+
+/// The device, clock by clock.
+struct Device {
+    it: Arithmetic,
+    cosine: Slot,
+    exponent: Slot,
+    scaled: Slot,
+    intensity: Slot,
+    products: ProductSlots,
+}
+
+impl Datapath for Device {
+    fn outputs(&self, s: &mut State) {
+        self.products.show(s[self.intensity], s);
+    }
+}
+
+fn clocked(it: &Arithmetic) -> Clocked<Device> {
+    let mut frame = Frame::default();
+    let [cosine, exponent] = it.keys.slots(&mut frame);
+    let fraction = it.keys.intensity_fraction as i32;
+    let device = Device {
+        it: it.clone(),
+        cosine,
+        exponent,
+        scaled: frame.register("scaled", Format::signed(0, fraction)),
+        intensity: frame.register("intensity", it.keys.f_format()),
+        products: it.keys.products().slots(&mut frame),
+    };
+    let scale = step(|d: &Device, s| s[d.scaled] = d.it.scaled(s[d.cosine], s[d.exponent]));
+    let gate = step(|d: &Device, s| {
+        s[d.intensity] = d.it.gated(s[d.cosine], s[d.exponent], s[d.scaled]);
+    });
+    frame.model(device, [idle(), scale, gate, idle().valid().end()])
+}
+
+/// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
+pub fn contract(config: &Config) -> Box<dyn Contract> {
+    Box::new(highlight(Arithmetic::of(config)))
+}
+
+fn highlight(it: Arithmetic) -> Highlight {
+    let keys = it.keys.clone();
+    Highlight::of_cosine(it, &keys)
+}
+
+impl Reflectance for Arithmetic {
+    #[inline]
+    fn f(&self, control: &[i64]) -> i64 {
+        let cosine = self.keys.clamped(control[0]);
+        self.gated(cosine, control[1], self.scaled(cosine, control[1]))
+    }
+
+    #[inline]
+    fn reference(&self, control: &[i64]) -> f64 {
+        let (square, level) = self.square_and_level(control);
+        formulas::threshold(square, level)
+    }
+
+    /// Where the exact square is within the bound on its error of ROM(n), the word may be on either side.
+    #[inline]
+    fn references(&self, control: &[i64]) -> [f64; 2] {
+        let (square, level) = self.square_and_level(control);
+        if (square - level).abs() <= self.margin {
+            [square, 0.0]
+        } else {
+            [formulas::threshold(square, level); 2]
+        }
+    }
+
+    /// With ROM(n) as it stands.
+    fn expressions(&self) -> Vec<String> {
+        let square =
+            format!("{} ** 2", contract::clamped_at_0("exponent / 2 * (cos_gamma - 1) + 1"));
+        let margin = self.margin;
+        ["-", "+"]
+            .map(|side| {
+                let level = format!("levels[int(exponent)] {side} {margin:e}");
+                contract::where_it_faces(&format!("({square} if {square} >= {level} else 0)"))
+            })
+            .to_vec()
+    }
+
+    /// All of base, square and formula lie in 0 … 1, so that an error ε of the base is at most 2·ε in the square.
+    ///
+    /// The product is rounded into the base, and limited to −1.0 where the formula is clamped. The square
+    /// is rounded; the square of 1.0 is an ulp low. The gates add nothing: within the sum of these of
+    /// ROM(n) either side is right.
+    fn shares(&self) -> Vec<Share> {
+        let f = self.keys.intensity_fraction;
+        let base = rounding_error(self.keys.cosine_fraction + 1, f, self.rounding);
+        vec![
+            ("intensity.rounding", "rounding of the base", 2.0 * base),
+            (
+                "intensity.fraction",
+                "rounding of the square, and 1.0 as the largest word",
+                exp2(-(f as i32)),
+            ),
+        ]
+    }
+
+    /// A level above what rounds to 0 is seen as an edge around the highlight.
+    fn remarks(&self) -> Vec<String> {
+        let largest = (1 << self.keys.colour_bits) - 1;
+        let (first, last) = self.keys.exponents;
+        let output = Narrow::new(
+            self.keys.intensity_fraction,
+            Format::unsigned(self.keys.colour_bits as i32, 0),
+            self.keys.output_rounding,
+        );
+        let hidden = |n: i64| self.threshold(n) - 1;
+        // One n of each octave stands for all.
+        let Some((n, word)) = (0..=12)
+            .map(|octave| (1i64 << octave).clamp(first, last))
+            .map(|n| (n, hidden(n)))
+            .max_by_key(|&(n, word)| (word, -n))
+        else {
+            return Vec::new();
+        };
+        let shown = output.apply(word.max(0) * largest);
+        if shown == 0 {
+            return Vec::new();
+        }
+        vec![format!(
+            "visibility.levels cut into what is visible: at n = {n} outputs up to {shown} become 0, which the \
+             formula without ROM(n) shows (levels of at most 50 hide only what rounds to 0)"
+        )]
+    }
+}

@@ -4,9 +4,7 @@
 use std::path::Path;
 
 use glint::config;
-use glint::fixed::{Rounding, exp2};
-use glint::golden::rough::{self, RoughContract};
-use glint::golden::sine::Scheme;
+use glint::fixed::exp2;
 use glint::golden::{Contract, blinn, nearer};
 use glint::registry::Registry;
 use rand_chacha::ChaCha8Rng;
@@ -21,6 +19,15 @@ const POINTS: usize = 2000;
 
 /// What f64 itself may add to an error in units.
 const F64: f64 = 1e-6;
+
+/// The contract of a device with these settings, lines of TOML, and defaults elsewhere.
+fn of(device: &str, settings: &str) -> Box<dyn Contract> {
+    let registry = Registry::catalogue();
+    let text = format!("device = \"{device}\"\n{settings}\n");
+    let config = config::parse("settings.toml", &text, &registry.schemas())
+        .unwrap_or_else(|problems| panic!("{problems}"));
+    (registry.device(device).expect("a device of the catalogue").contract)(&config)
+}
 
 /// A point of the domain, more often than not within the highlight: cosines anywhere, small, or such
 /// that γ is near dγ, as near as n makes the highlight narrow.
@@ -84,9 +91,9 @@ fn assert_outputs_within_bound(
 
 #[test]
 fn rough_at_random_points() {
-    let contract = RoughContract::from_params(&rough::Params::default()).unwrap();
+    let contract = of("rough", "");
     let mut rng = ChaCha8Rng::seed_from_u64(1);
-    assert_outputs_within_bound(&contract, 5_000_000, &mut rng, "the default");
+    assert_outputs_within_bound(contract.as_ref(), 5_000_000, &mut rng, "the default");
 }
 
 /// No random configuration's measured error exceeds its bound, good or bad as it may be: of the outputs at
@@ -138,7 +145,7 @@ fn blinn_is_as_close_as_it_promises() {
     let small = blinn::contract(&read("configs/blinn_small.toml"));
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     for _ in 0..2_000_000 {
-        let point = random_point(&small, &mut rng);
+        let point = random_point(small.as_ref(), &mut rng);
         let error = small.sweep_error(&point);
         assert!(error <= 7e-4, "{error} at {point:?}");
     }
@@ -147,27 +154,51 @@ fn blinn_is_as_close_as_it_promises() {
 /// Configurations of which each widens one thing that the defaults leave alone.
 #[test]
 fn bounds_of_unusual_configurations() {
-    let segmented = rough::Params::default();
-    let params = [
-        rough::Params { clamp: false, ..segmented.clone() },
-        rough::Params { deviation: 90.0, ..segmented.clone() },
-        rough::Params {
-            product_rounding: Rounding::Nearest,
-            intensity_rounding: Rounding::Nearest,
-            ..segmented.clone()
-        },
-        rough::Params { output_rounding: Rounding::Truncate, ..segmented.clone() },
-        rough::Params { cosine_signed: true, ..segmented.clone() },
-        rough::Params {
-            sine_scheme: Scheme::Direct { address: 10 },
-            exponents: (1, 4),
-            ..segmented.clone()
-        },
-        rough::Params { arithmetic: rough::Kind::Patent, ..segmented },
+    let settings = [
+        "clamp = false",
+        "domain.deviation = 90.0",
+        "product.rounding = \"nearest\"\nintensity.rounding = \"nearest\"",
+        "output.rounding = \"truncate\"",
+        "cosine.signed = true",
+        "sine.scheme = \"direct\"\nsine.address = 10\ndomain.exponent_max = 4",
+        "arithmetic = \"patent\"",
     ];
-    for params in params {
-        let contract = RoughContract::from_params(&params).unwrap();
+    for settings in settings {
+        let contract = of("rough", settings);
         let mut rng = ChaCha8Rng::seed_from_u64(2);
-        assert_outputs_within_bound(&contract, 300_000, &mut rng, &format!("{params:?}"));
+        assert_outputs_within_bound(contract.as_ref(), 300_000, &mut rng, settings);
+    }
+}
+
+/// Bounds as their proofs add them up by hand: of the defaults, and of a setting beside them.
+#[test]
+fn bounds_by_hand() {
+    let units = |device, settings| of(device, settings).bound().units;
+    let (ulp, largest) = (1.0 / 65536.0, 255.0);
+    for (device, settings, expected) in [
+        ("schlick", "", largest / 1024.0 + 0.5),
+        ("schlick", "intensity.fraction = 9", largest / 512.0 + 0.5),
+        // 16 ulps for the base, 15 for the squarings.
+        ("cosine-power", "", 31.0 * ulp * largest + 0.5),
+        // Two for the base, one for the square.
+        ("threshold", "", 3.0 * ulp * largest + 0.5),
+        // 2⁹ ulps of 2⁻²⁰ upward; downward 16 + 15 of 2⁻¹⁶ are less.
+        ("lyon", "", 512.0 / 1048576.0 * largest + 0.5),
+        ("lyon", "intensity.fraction = 15", 31.0 * 2.0 * ulp * largest + 0.5),
+        (
+            "lyon",
+            "distance.rounding = \"nearest\"",
+            (256.0 / 1048576.0 + 31.0 * ulp) * largest + 0.5,
+        ),
+        // 999 ulps of 2⁻¹⁹ and one of 2⁻¹⁶.
+        ("quadratic", "coefficient.scheme = \"taylor\"", (999.0 / 524288.0 + ulp) * largest + 0.5),
+    ] {
+        let bound = units(device, settings);
+        assert!((bound - expected).abs() < 1e-12, "{device}, {settings}: {bound} {expected}");
+    }
+    // 8 bits of the quotient are not enough.
+    assert!(units("schlick", "intensity.fraction = 8") > 1.0);
+    for device in Registry::catalogue().devices() {
+        assert!(units(device.name, "") < 1.0, "{}", device.name);
     }
 }

@@ -1,8 +1,8 @@
-//! The device of `examples/fresnel.rs`, which no catalogue knows, goes through the whole command line.
+//! The device of `examples/fresnel`, which no catalogue knows, goes through the whole command line.
 
 // The example's own source; its `main` is run as a program below.
 #[allow(dead_code)]
-#[path = "../../examples/fresnel.rs"]
+#[path = "../../examples/fresnel/main.rs"]
 mod fresnel;
 
 use std::fs;

@@ -1,79 +1,46 @@
 //! The accuracy contract of `lyon`.
 
 use super::{Arithmetic, Params, Scale};
-use crate::base::fixed::{Format, Rounding, exp2};
+use crate::base::fixed::{Rounding, exp2};
 use crate::config::Config;
-use crate::golden::contract as shared;
+use crate::golden::contract::{self as shared, Share};
 use crate::golden::formulas;
+use crate::golden::highlight::{Highlight, Reflectance};
 use crate::golden::narrow::rounding_error;
-use crate::golden::{Axis, Bound, Contract, Operand, Sweep, Values};
+use crate::golden::{Axis, Contract, Operand, Sweep, Values};
 
 /// The most that D² can be: each component is at least −2.0.
 const FARTHEST: i64 = 12;
 
 /// The accuracy contract. Control operands: `dx`, `dy`, `dz`, and `shift` or `exponent`.
-#[derive(Clone, Debug)]
-pub struct LyonContract {
-    params: Params,
-    arithmetic: Arithmetic,
-    /// An ulp of the square of a component, and one of D².
-    ulps: (f64, f64),
-    operands: Vec<Operand>,
-    outputs: Vec<String>,
+pub fn contract(config: &Config) -> Box<dyn Contract> {
+    Box::new(highlight(Params::of(config)))
 }
 
-impl LyonContract {
-    /// The contract of a configuration.
-    ///
-    /// # Panics
-    /// If the configuration is one that [`Params::check`] refuses and the device's schema does not.
-    pub fn new(config: &Config) -> Self {
-        Self::from_params(&Params::from_config(config))
-            .expect("a configuration that its schema accepts")
-    }
+pub(super) fn highlight(params: Params) -> Highlight {
+    let vector = params.vector_format();
+    let component = |name: &str| {
+        let domain = (vector.min_raw() as i64, vector.max_raw() as i64);
+        let doc = format!("{} of the normal less the half vector", &name[1..]);
+        shared::control(name, vector, domain, &doc)
+    };
+    let doc = match params.scale {
+        Scale::Shift => "log2 of the specular exponent n, rounded",
+        Scale::Multiplier => "specular exponent n",
+    };
+    let mut operands: Vec<Operand> = ["dx", "dy", "dz"].map(component).into();
+    let (name, format) = (params.scale_name(), params.scale_format());
+    operands.push(shared::control(name, format, params.scale_domain(), doc));
+    let products = params.products();
+    Highlight::new(Arithmetic::new(params), operands, products)
+}
 
-    /// The contract from parameters.
-    ///
-    /// # Errors
-    /// As [`Params::check`].
-    pub fn from_params(params: &Params) -> Result<Self, String> {
-        params.check()?;
-        let vector = params.vector_format();
-        let component = |name: &str| Operand {
-            name: name.to_string(),
-            format: vector,
-            domain: (vector.min_raw() as i64, vector.max_raw() as i64),
-            colour: false,
-            doc: format!("{} of the normal less the half vector", &name[1..]),
-        };
-        let (name, doc) = match params.scale {
-            Scale::Shift => ("shift", "log2 of the specular exponent n, rounded"),
-            Scale::Multiplier => ("exponent", "specular exponent n"),
-        };
-        let (first, last) = params.exponents;
-        let mut operands = vec![
-            component("dx"),
-            component("dy"),
-            component("dz"),
-            Operand {
-                name: name.to_string(),
-                format: params.scale_format(),
-                domain: (params.scale_operand(first), params.scale_operand(last)),
-                colour: false,
-                doc: doc.to_string(),
-            },
-        ];
-        operands.extend(shared::colour_operands(params.colour_format()));
-        Ok(Self {
-            arithmetic: Arithmetic::new(params),
-            ulps: (
-                exp2(-2 * params.vector_fraction as i32),
-                exp2(-(params.distance_fraction as i32)),
-            ),
-            params: params.clone(),
-            operands,
-            outputs: shared::colour_outputs(),
-        })
+impl Arithmetic {
+    /// D² of the raw components.
+    #[inline]
+    fn exact_distance(&self, vector: &[i64]) -> f64 {
+        let squares = vector[..3].iter().map(|component| component * component);
+        squares.sum::<i64>() as f64 * exp2(-2 * self.params.vector_fraction as i32)
     }
 
     /// The formula at a D², with the β that the operand stands for.
@@ -85,34 +52,15 @@ impl LyonContract {
     }
 }
 
-impl Contract for LyonContract {
-    fn operands(&self) -> &[Operand] {
-        &self.operands
-    }
-
-    fn outputs(&self) -> &[String] {
-        &self.outputs
-    }
-
-    fn f_format(&self) -> Format {
-        Format::unsigned(0, self.params.intensity_fraction as i32)
-    }
-
+impl Reflectance for Arithmetic {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
-        let it = &self.arithmetic;
-        it.f(it.distance([control[0], control[1], control[2]]), control[3])
-    }
-
-    #[inline]
-    fn colour(&self, f: i64, colour: i64) -> i64 {
-        self.arithmetic.colour(f, colour)
+        self.f_of(self.distance([control[0], control[1], control[2]]), control[3])
     }
 
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
-        let squares = control[..3].iter().map(|component| component * component);
-        self.formula(squares.sum::<i64>() as f64 * self.ulps.0, control[3])
+        self.formula(self.exact_distance(control), control[3])
     }
 
     fn expressions(&self) -> Vec<String> {
@@ -127,13 +75,13 @@ impl Contract for LyonContract {
     }
 
     /// The normal is (0, 0, 1), and the half vector (sin γ, 0, cos γ).
-    fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
+    fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let (first, last) = self.params.exponents;
         let exponent = n as i64;
         if exponent as f64 != n || !(first..=last).contains(&exponent) {
             return None;
         }
-        let component = |value: f64| self.operands[0].format.quantise(value) as i64;
+        let component = |value: f64| operands[0].format.quantise(value) as i64;
         // 1 − cos γ.
         let half = libm::sin(gamma / 2.0);
         Some(vec![
@@ -145,48 +93,46 @@ impl Contract for LyonContract {
     }
 
     /// Of unit vectors at the distance D: 1 − D²/2.
-    fn cosine(&self, control: &[i64]) -> Option<f64> {
-        let squares = control[..3].iter().map(|component| component * component);
-        Some((1.0 - squares.sum::<i64>() as f64 * self.ulps.0 / 2.0).max(0.0))
+    fn cosine(&self, _: &[Operand], control: &[i64]) -> Option<f64> {
+        Some((1.0 - self.exact_distance(control) / 2.0).max(0.0))
     }
 
     /// The word of D² and the operand that scales it determine f: adders 1 and 2 and multipliers 1 to 3 are exact.
-    fn sweep(&self) -> Sweep {
-        let operand = &self.operands[3];
-        Sweep {
+    fn sweep(&self) -> Option<Sweep> {
+        let (low, high) = self.params.scale_domain();
+        let most = FARTHEST << self.params.distance_fraction;
+        Some(Sweep {
             axes: vec![
                 Axis {
-                    name: operand.name.clone(),
-                    values: Values::Range(operand.domain.0, operand.domain.1),
+                    name: self.params.scale_name().to_owned(),
+                    values: Values::Range(low, high),
                 },
-                Axis {
-                    name: "word of D^2".to_string(),
-                    values: Values::Range(0, FARTHEST << self.params.distance_fraction),
-                },
+                Axis { name: "word of D^2".to_owned(), values: Values::Range(0, most) },
             ],
             omits: String::new(),
-        }
+        })
     }
 
     /// The worst over every D² that is rounded to the word. The formula falls as D² grows, so that it is at an end.
     #[inline]
-    fn sweep_error(&self, place: &[i64]) -> f64 {
+    fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (operand, word) = (place[0], place[1]);
-        let f = self.arithmetic.f(word, operand) as f64 * exp2(-self.f_format().frac);
+        let f = self.f_of(word, operand) as f64 * exp2(-(self.params.intensity_fraction as i32));
         let word = word as f64;
+        let ulp = exp2(-(self.params.distance_fraction as i32));
         let exact = 2 * self.params.vector_fraction <= self.params.distance_fraction;
         let (low, high) = match self.params.distance_rounding {
             _ if exact => (word, word),
             Rounding::Truncate => (word, word + 1.0),
             Rounding::Nearest => (word - 0.5, word + 0.5),
         };
-        let formula = |at: f64| self.formula(at.max(0.0) * self.ulps.1, operand);
+        let formula = |at: f64| self.formula(at.max(0.0) * ulp, operand);
         let nearest = formula(low);
         // Beyond the zero, where most places are.
         if f == 0.0 && nearest == 0.0 {
-            return 0.0;
+            return Some(0.0);
         }
-        (f - nearest).abs().max((f - formula(high)).abs())
+        Some((f - nearest).abs().max((f - formula(high)).abs()))
     }
 
     /// Base and powers lie in 0 … 1, hardware's and formula's alike, so by the mean value theorem an error
@@ -199,7 +145,7 @@ impl Contract for LyonContract {
     ///
     /// Where all of them truncate, D² makes f too large and the others make it too small, by so much at
     /// most: only the larger of the two counts.
-    fn bound(&self) -> Bound {
+    fn shares(&self) -> Vec<Share> {
         let params = &self.params;
         let (f, power) = (params.intensity_fraction, f64::from(params.power));
         let ulp = exp2(-(f as i32));
@@ -208,7 +154,7 @@ impl Contract for LyonContract {
             params.distance_fraction,
             params.distance_rounding,
         );
-        let largest = params.exponent(self.operands[3].domain.1) as f64;
+        let largest = params.exponent(params.scale_domain().1) as f64;
         let scaled_fraction = params.distance_fraction + params.squarings() + 1;
         let base = match params.intensity_rounding {
             Rounding::Truncate => ulp,
@@ -222,12 +168,11 @@ impl Contract for LyonContract {
         ];
         let apart =
             [params.distance_rounding, params.intensity_rounding] == [Rounding::Truncate; 2];
-        let shares = match apart {
+        match apart {
             true if above[0].2 > below[0].2 + below[1].2 => above.to_vec(),
             true => below.to_vec(),
             false => [&above[..], &below].concat(),
-        };
-        shared::bound(&shares, f, params.colour_bits, params.output_rounding)
+        }
     }
 
     /// What a β that is a power of two costs: most where n is midway between two.

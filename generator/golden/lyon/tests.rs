@@ -1,7 +1,9 @@
 //! Values worked out by hand.
 
+use super::contract::highlight;
 use super::*;
-use crate::golden::{Contract, Model};
+use crate::golden::Contract;
+use crate::golden::highlight::Reflectance;
 
 /// V = 4, D = 6, F = 4, K = 4, small enough to follow by hand.
 fn small(power: u32, scale: Scale) -> Params {
@@ -13,16 +15,16 @@ fn small(power: u32, scale: Scale) -> Params {
         exponent_bits: 4,
         colour_bits: 4,
         intensity_fraction: 4,
+        distance_rounding: Rounding::Truncate,
+        intensity_rounding: Rounding::Truncate,
+        output_rounding: Rounding::Nearest,
         exponents: (1, 15),
-        ..Params::default()
     }
 }
 
 #[test]
 fn points_by_hand() {
-    let f = |power, scale, control: [i64; 4]| {
-        LyonContract::from_params(&small(power, scale)).unwrap().f(&control)
-    };
+    let f = |power, scale, control: [i64; 4]| Arithmetic::new(small(power, scale)).f(&control);
     // D² = (9 + 4 + 1)/256 → 3/64. n = 12, m = 2: 36/256 → 2/16; base 13/16; 169/256 → 10.
     assert_eq!(f(2, Scale::Multiplier, [3, -2, 1, 12]), 10);
     // m = 4: 36/512 → 1/16; 14 → 196/256 → 12 → 144/256 → 9.
@@ -50,7 +52,7 @@ fn exponents_round_to_powers_of_two_by_their_ratio() {
 
 #[test]
 fn operands_of_an_angle() {
-    let contract = LyonContract::from_params(&small(4, Scale::Shift)).unwrap();
+    let contract = highlight(small(4, Scale::Shift));
     // N − H = (−sin 60°, 0, 1/2), in sixteenths; 11 is nearest to 2³.
     let third = std::f64::consts::FRAC_PI_3;
     let control = contract.at(third, 11.0).unwrap();
@@ -63,7 +65,7 @@ fn operands_of_an_angle() {
 /// The sweep's error is the worst over what rounds to a word.
 #[test]
 fn a_word_stands_for_an_interval() {
-    let contract = LyonContract::from_params(&small(2, Scale::Multiplier)).unwrap();
+    let contract = highlight(small(2, Scale::Multiplier));
     // Word 3 and n = 12: 10/16 is held against (1 − 3/64·3)² and (1 − 4/64·3)².
     let ends: [f64; 2] = [55.0 / 64.0, 52.0 / 64.0];
     let worst = ends.map(|base| (base * base - 0.625).abs());
@@ -73,17 +75,14 @@ fn a_word_stands_for_an_interval() {
 /// One point with the shift register followed clock by clock.
 #[test]
 fn a_point_clock_by_clock() {
-    let mut model = LyonModel::from_params(&small(4, Scale::Shift)).unwrap();
-    let value = |model: &LyonModel, name: &str| {
-        model.values()[model.signals().iter().position(|it| it == name).unwrap()]
-    };
+    let mut model = clocked(&Arithmetic::new(small(4, Scale::Shift)));
     // D = (3, −2, 1)/16, shift 2, red 15, written together with start.
     model.clock(&[1, 1, 3, 1, 62, 1, 1, 1, 2, 1, 15, 1, 0, 0, 0, 0]);
     let names =
         ["run", "word_address", "shift_register", "remaining", "accumulator", "valid", "done"];
     let mut seen = Vec::new();
     for _ in 0..9 {
-        seen.push(names.map(|name| value(&model, name)));
+        seen.push(names.map(|name| model.value(name).unwrap()));
         // Writes while busy change nothing.
         model.clock(&[1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0]);
     }
@@ -101,26 +100,5 @@ fn a_point_clock_by_clock() {
         [0, 0, 24, 0, 12, 0, 0],
     ];
     assert_eq!(seen, expected);
-    assert_eq!(value(&model, "dx_reg"), 1);
-}
-
-#[test]
-fn the_default_is_proven() {
-    let bound = LyonContract::from_params(&Params::default()).unwrap().bound();
-    // 2⁹ ulps of 2⁻²⁰ upward, times 255, and half a unit; downward 16 + 15 of 2⁻¹⁶ are less.
-    assert_eq!(bound.units, 512.0 / 1048576.0 * 255.0 + 0.5);
-    let coarse = Params { intensity_fraction: 15, ..Params::default() };
-    let bound = LyonContract::from_params(&coarse).unwrap().bound();
-    assert_eq!(bound.units, 31.0 / 32768.0 * 255.0 + 0.5);
-    let nearest = Params { distance_rounding: Rounding::Nearest, ..Params::default() };
-    let bound = LyonContract::from_params(&nearest).unwrap().bound();
-    let expected = (256.0 / 1048576.0 + 31.0 / 65536.0) * 255.0 + 0.5;
-    assert!((bound.units - expected).abs() < 1e-12, "{bound:?}");
-}
-
-#[test]
-fn parameters_out_of_range_are_named() {
-    let params = Params { distance_fraction: 9, ..small(4, Scale::Shift) };
-    let refused = LyonContract::from_params(&params).unwrap_err();
-    assert!(refused.contains("distance.fraction"), "{refused}");
+    assert_eq!(model.value("dx_reg").unwrap(), 1);
 }

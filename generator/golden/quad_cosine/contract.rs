@@ -3,58 +3,29 @@
 use std::f64::consts::FRAC_PI_2;
 
 use super::{Arithmetic, POWERS, Params, range_of};
-use crate::base::fixed::{Format, exp2};
+use crate::base::fixed::exp2;
 use crate::config::Config;
-use crate::golden::contract as shared;
+use crate::golden::contract::{self as shared, Share};
 use crate::golden::formulas;
+use crate::golden::highlight::{Highlight, Reflectance};
 use crate::golden::line;
-use crate::golden::{Axis, Bound, Contract, Operand, Sweep, Values};
+use crate::golden::{Axis, Contract, Operand, Sweep, Values};
 
 /// The accuracy contract. Control operands: `delta_zeta`, `zeta_start`, `exponent`, `length`; those of a
 /// point have its angle for `zeta_start`.
-#[derive(Clone, Debug)]
-pub struct QuadCosineContract {
-    params: Params,
-    arithmetic: Arithmetic,
-    operands: Vec<Operand>,
-    outputs: Vec<String>,
+pub fn contract(config: &Config) -> Box<dyn Contract> {
+    Box::new(highlight(Params::of(config)))
 }
 
-impl QuadCosineContract {
-    /// The contract of a configuration.
-    ///
-    /// # Panics
-    /// If the configuration is one that [`Params::check`] refuses and the device's schema does not.
-    pub fn new(config: &Config) -> Self {
-        Self::from_params(&Params::from_config(config))
-            .expect("a configuration that its schema accepts")
-    }
+pub(super) fn highlight(params: Params) -> Highlight {
+    let mut operands = line::angle_operands(params.angle_format()).to_vec();
+    operands.push(shared::exponent_operand(params.exponent_format(), params.exponents));
+    operands.push(line::length_operand(params.length_bits));
+    let products = params.products();
+    Highlight::new(Arithmetic::new(params), operands, products)
+}
 
-    /// The contract from parameters.
-    ///
-    /// # Errors
-    /// As [`Params::check`].
-    pub fn from_params(params: &Params) -> Result<Self, String> {
-        params.check()?;
-        let exponent = Operand {
-            name: "exponent".to_string(),
-            format: params.exponent_format(),
-            domain: params.exponents,
-            colour: false,
-            doc: "specular exponent n".to_string(),
-        };
-        let mut operands = line::angle_operands(params.angle_format()).to_vec();
-        operands.push(exponent);
-        operands.push(line::length_operand(params.length_bits));
-        operands.push(shared::amplitude_operand(params.colour_format()));
-        Ok(Self {
-            arithmetic: Arithmetic::new(params),
-            params: params.clone(),
-            operands,
-            outputs: shared::intensity_output(),
-        })
-    }
-
+impl Arithmetic {
     /// The largest error of the stretched angle for n, in right angles, from what multiplier 11 takes of
     /// the angle and from ROM 9's rounding.
     ///
@@ -63,36 +34,18 @@ impl QuadCosineContract {
     /// 1/s is in the table's last word anyway, and so is one beyond 1/s'.
     fn stretching(&self, n: i64) -> (f64, f64) {
         let s = (n as f64 / POWERS[range_of(n)] as f64).sqrt();
-        let word = self.arithmetic.root(n) as f64 * exp2(-(self.params.root_fraction as i32));
+        let word = self.root(n) as f64 * exp2(-(self.params.root_fraction as i32));
         let reach = (1.0 / s.min(word)).min(1.0);
         let cut = s * exp2(-(self.params.angle_multiplied as i32));
         (cut, (s - word).abs() * reach)
     }
 }
 
-impl Contract for QuadCosineContract {
-    fn operands(&self) -> &[Operand] {
-        &self.operands
-    }
-
-    fn outputs(&self) -> &[String] {
-        &self.outputs
-    }
-
-    fn f_format(&self) -> Format {
-        Format::unsigned(0, self.params.intensity_fraction as i32)
-    }
-
+impl Reflectance for Arithmetic {
     #[inline]
     fn f(&self, control: &[i64]) -> i64 {
         let (angle, n) = (control[1], control[2]);
-        let it = &self.arithmetic;
-        it.cosine(n, it.magnitude(angle), it.root(n))
-    }
-
-    #[inline]
-    fn colour(&self, f: i64, colour: i64) -> i64 {
-        self.arithmetic.colour(f, colour)
+        self.cosine_of(n, self.magnitude(angle), self.root(n))
     }
 
     /// The surface faces from −90° to less than 90°, as two's complement has it.
@@ -121,12 +74,12 @@ impl Contract for QuadCosineContract {
     }
 
     /// A line of one point.
-    fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
-        let angle = line::raw_angle(&self.operands[1], gamma);
-        Some(vec![0, angle, shared::exponent_at(&self.operands[2], n)?, 0])
+    fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
+        let angle = line::raw_angle(&operands[1], gamma);
+        Some(vec![0, angle, shared::exponent_at(&operands[2], n)?, 0])
     }
 
-    fn cosine(&self, control: &[i64]) -> Option<f64> {
+    fn cosine(&self, _: &[Operand], control: &[i64]) -> Option<f64> {
         let angle = control[1] as f64 * exp2(-(self.params.angle_fraction as i32));
         Some(libm::cos(angle * FRAC_PI_2).max(0.0))
     }
@@ -137,10 +90,10 @@ impl Contract for QuadCosineContract {
 
     /// Every angle that a line can come to, by what multiplier 11 takes of it, and every n. Where the surface
     /// faces away the word is the table's last, 0, for every n, and so is the formula.
-    fn sweep(&self) -> Sweep {
+    fn sweep(&self) -> Option<Sweep> {
         let magnitudes = 1i64 << self.params.angle_multiplied;
         let (low, high) = self.params.exponents;
-        Sweep {
+        Some(Sweep {
             axes: vec![
                 Axis { name: "exponent".to_string(), values: Values::Range(low, high) },
                 Axis {
@@ -149,47 +102,40 @@ impl Contract for QuadCosineContract {
                 },
             ],
             omits: String::new(),
-        }
+        })
     }
 
     /// The worst over the angles of either sign that have this magnitude: the formula falls from one end
     /// of them to the other.
-    fn sweep_error(&self, place: &[i64]) -> f64 {
+    fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (n, magnitude) = (place[0], place[1]);
-        let it = &self.arithmetic;
-        let word = it.cosine(n, Some(magnitude), it.root(n));
-        let f = self.f_format().to_f64(i128::from(word));
+        let word = self.cosine_of(n, Some(magnitude), self.root(n));
+        let f = word as f64 * exp2(-(self.params.intensity_fraction as i32));
         let ulp = exp2(-(self.params.angle_multiplied as i32));
         let end = |magnitude: i64| formulas::quad_cosine(magnitude as f64 * ulp * FRAC_PI_2, n);
-        (end(magnitude) - f).max(f - end(magnitude + 1))
+        Some((end(magnitude) - f).max(f - end(magnitude + 1)))
     }
 
     /// For each n: how far ROM 12 is from the formula within a step, and the error of the stretched angle
     /// by the steepest slope of the power. The terms are those of the worst n.
-    fn bound(&self) -> Bound {
+    fn shares(&self) -> Vec<Share> {
         let params = &self.params;
         let (low, high) = params.exponents;
         let largest = (1 << params.exponent_bits) - 1;
         let worst = (low..=high.min(largest))
             .map(|n| {
-                let table = &self.arithmetic.tables[range_of(n)];
+                let table = &self.tables[range_of(n)];
                 let (cut, root) = self.stretching(n);
                 [table.step, table.total - table.step, table.slope * cut, table.slope * root]
             })
             .max_by(|a, b| a.iter().sum::<f64>().total_cmp(&b.iter().sum()))
             .unwrap_or_default();
         let [step, rounding, cut, root] = worst;
-        let shares = [
+        vec![
             ("table.address", "the steps of ROM 12", step),
             ("intensity.fraction", "rounding of ROM 12", rounding),
             ("angle.multiplied", "the angle that multiplier 11 takes", cut),
             ("root.fraction", "rounding of ROM 9", root),
-        ];
-        shared::bound(
-            &shares,
-            params.intensity_fraction,
-            params.colour_bits,
-            params.output_rounding,
-        )
+        ]
     }
 }

@@ -1,3 +1,4 @@
+use super::contract::highlight;
 use super::*;
 use crate::golden::Contract;
 
@@ -8,8 +9,12 @@ fn small() -> Params {
         angle_multiplied: 4,
         root_fraction: 4,
         table_address: 3,
+        length_bits: 12,
+        exponent_bits: 10,
+        colour_bits: 8,
         intensity_fraction: 6,
-        ..Params::default()
+        output_rounding: Rounding::Nearest,
+        exponents: (1, 1000),
     }
 }
 
@@ -33,7 +38,7 @@ fn the_decoder_at_its_edges() {
 
 #[test]
 fn f_by_hand() {
-    let contract = QuadCosineContract::from_params(&small()).unwrap();
+    let contract = highlight(small());
     let f = |angle, n| contract.f(&[0, angle, n, 0]);
     // n = 1: cos in 8 steps of 11.25°. 20/64 of 90° is magnitude 5/16, step 2: (cos 22.5° + cos 33.75°)/2 = 0.8777.
     assert_eq!(f(20, 1), 56);
@@ -57,15 +62,9 @@ fn f_by_hand() {
 
 #[test]
 fn points_follow_the_line() {
-    let contract = QuadCosineContract::from_params(&small()).unwrap();
+    let contract = highlight(small());
     // From −10/64 by 3/64; and around: 120 + 2·5 is 130 − 256.
     assert_eq!(contract.point(&[3, -10, 20, 7], 0), [3, -10, 20, 7]);
     assert_eq!(contract.point(&[3, -10, 20, 7], 4), [3, 2, 20, 7]);
     assert_eq!(contract.point(&[5, 120, 20, 7], 2), [5, -126, 20, 7]);
-}
-
-#[test]
-fn the_default_is_within_the_contract() {
-    let bound = QuadCosineContract::from_params(&Params::default()).unwrap().bound();
-    assert!(bound.units < 1.0, "{bound:?}");
 }

@@ -1,25 +1,24 @@
 //! Values worked out by hand.
 
 use super::*;
-use crate::golden::{Contract, Model};
 
 /// C = 4, D = 6, F = 4, K = 4, small enough to follow by hand.
-fn small(scheme: Scheme) -> Params {
-    Params {
-        scheme,
+fn small(scheme: Scheme) -> Arithmetic {
+    let keys = Keys {
         cosine_fraction: 4,
+        cosine_signed: false,
         exponent_bits: 4,
         colour_bits: 4,
-        difference_fraction: 6,
         intensity_fraction: 4,
+        output_rounding: Rounding::Nearest,
         exponents: (1, 15),
-        ..Params::default()
-    }
+    };
+    Arithmetic::new(keys, scheme, (6, Rounding::Truncate), Rounding::Truncate)
 }
 
 #[test]
 fn points_by_hand() {
-    let contract = QuadraticContract::from_params(&small(Scheme::Taylor)).unwrap();
+    let contract = small(Scheme::Taylor);
     let f = |cosine, n| contract.f(&[cosine, n]);
     // n = 1 and n = 0: f = c.
     assert_eq!((f(14, 1), f(14, 0)), (14, 14));
@@ -36,9 +35,9 @@ fn points_by_hand() {
 #[test]
 fn minimax_words_by_hand() {
     let scheme = Scheme::Minimax { fraction: 2 };
-    let contract = QuadraticContract::from_params(&small(scheme)).unwrap();
+    let contract = small(scheme);
     // n = 3: the errors are equal, 0.0424, at a = 1.535; six quarters.
-    assert_eq!(Arithmetic::new(&small(scheme)).words[..4], [0, 0, 4, 6]);
+    assert_eq!(contract.words[..4], [0, 0, 4, 6]);
     // c = 14/16: 56/64 − 1.5·7/64 = 45.5/64 → 11/16.
     assert_eq!(contract.f(&[14, 3]), 11);
 }
@@ -66,16 +65,13 @@ fn the_table_is_minimax() {
 /// One point followed clock by clock: words 0, 1, 2, 3 and idle.
 #[test]
 fn a_point_clock_by_clock() {
-    let mut model = QuadraticModel::from_params(&small(Scheme::Taylor)).unwrap();
-    let value = |model: &QuadraticModel, name: &str| {
-        model.values()[model.signals().iter().position(|it| it == name).unwrap()]
-    };
+    let mut model = clocked(&small(Scheme::Taylor));
     // c = 14/16, n = 5, red 15, written together with start.
     model.clock(&[1, 1, 14, 1, 5, 1, 15, 1, 0, 0, 0, 0]);
     let names = ["run", "word_address", "difference", "intensity", "valid", "done"];
     let mut seen = Vec::new();
     for _ in 0..4 {
-        seen.push(names.map(|name| value(&model, name)));
+        seen.push(names.map(|name| model.value(name).unwrap()));
         // Writes while busy change nothing.
         model.clock(&[1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0]);
     }
@@ -88,24 +84,5 @@ fn a_point_clock_by_clock() {
     ];
     assert_eq!(seen, expected);
     // 7/16 of 15 units.
-    assert_eq!(value(&model, "red_out"), 7);
-}
-
-#[test]
-fn the_defaults_are_proven() {
-    let bound = |scheme| {
-        let params = Params { scheme, ..Params::default() };
-        QuadraticContract::from_params(&params).unwrap().bound()
-    };
-    // 999 ulps of 2⁻¹⁹ and one of 2⁻¹⁶, times 255, and half a unit.
-    let taylor = bound(Scheme::Taylor).units;
-    assert!((taylor - (999.0 / 524288.0 + 1.0 / 65536.0) * 255.0 - 0.5).abs() < 1e-12);
-    assert!(bound(Scheme::Minimax { fraction: 8 }).units < 0.9);
-}
-
-#[test]
-fn parameters_out_of_range_are_named() {
-    let params = Params { difference_fraction: 9, ..small(Scheme::Taylor) };
-    let refused = QuadraticContract::from_params(&params).unwrap_err();
-    assert!(refused.contains("difference.fraction"), "{refused}");
+    assert_eq!(model.value("red_out").unwrap(), 7);
 }

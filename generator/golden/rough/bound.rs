@@ -23,8 +23,7 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::{Kind, Params};
 use crate::base::fixed::{Rounding, exp2};
-use crate::golden::Bound;
-use crate::golden::contract::{self, Share};
+use crate::golden::contract::Share;
 use crate::golden::narrow::rounding_error;
 use crate::golden::sine::{Piece, Scheme, Sine};
 
@@ -35,15 +34,14 @@ const BIN: f64 = FRAC_PI_2 / BINS as f64;
 /// A slack that covers the rounding of angles in f64.
 const SLACK: f64 = 1e-9;
 
-/// The bound of a configuration, whose ROM 18 is `sine`.
-pub fn bound(params: &Params, sine: &Sine) -> Bound {
-    let shares = match params.arithmetic {
+/// What the error of f is made of with a configuration, whose ROM 18 is `sine`.
+pub fn shares(params: &Params, sine: &Sine) -> Vec<Share> {
+    match params.arithmetic {
         Kind::Patent => {
             vec![("arithmetic", "words modulo 1.0 wrap where the base is negative", 1.0)]
         }
         Kind::Exact => exact(params, sine),
-    };
-    contract::bound(&shares, params.f_fraction(), params.colour_bits, params.output_rounding)
+    }
 }
 
 /// The table's error by angle.

@@ -1,7 +1,10 @@
 //! `rough` worked by hand in words of a few bits.
 
+use super::clock_model::{Device, clocked};
 use super::*;
-use crate::golden::{Contract, Model};
+use crate::golden::Model;
+use crate::golden::frame::Clocked;
+use crate::golden::highlight::Reflectance;
 
 /// C = 4, S = P = 6, F = 4, and the sine table that `sine.rs` works out by hand.
 fn small() -> Params {
@@ -14,12 +17,19 @@ fn small() -> Params {
         sine_scheme: Scheme::Segmented { segments: vec![2], slope_fraction: 5 },
         sine_fraction: 6,
         exponents: (1, 15),
-        ..Params::default()
+        cosine_signed: false,
+        arithmetic: Kind::Exact,
+        clamp: true,
+        product_rounding: Rounding::Truncate,
+        intensity_rounding: Rounding::Truncate,
+        output_rounding: Rounding::Nearest,
+        sine_synchronous: true,
+        deviation: 30.0,
     }
 }
 
 fn f(params: &Params, control: [i64; 4]) -> i64 {
-    RoughContract::from_params(params).unwrap().f(&control)
+    Arithmetic::new(params.clone()).f(&control)
 }
 
 #[test]
@@ -75,18 +85,14 @@ fn patent_arithmetic() {
     assert_eq!(f(&params, [12, 14, 5, 1]), 10);
 }
 
-fn values(model: &RoughModel, names: &[&str]) -> Vec<u64> {
-    let of = |name: &&str| {
-        let at = model.signals().iter().position(|signal| signal == name);
-        model.values()[at.unwrap()]
-    };
-    names.iter().map(of).collect()
+fn values(model: &Clocked<Device>, names: &[&str]) -> Vec<u64> {
+    names.iter().map(|name| model.value(name).unwrap()).collect()
 }
 
 /// c = 12/16, cd = 14/16, n = 4, dγ negative, red 15; all written.
 const WRITE: [u64; 14] = [12, 1, 14, 1, 4, 1, 1, 1, 15, 1, 0, 1, 0, 1];
 
-fn clock(model: &mut RoughModel, rst_n: u64, start: u64, operands: &[u64; 14]) {
+fn clock(model: &mut Clocked<Device>, rst_n: u64, start: u64, operands: &[u64; 14]) {
     let mut inputs = vec![rst_n, start];
     inputs.extend(operands);
     model.clock(&inputs);
@@ -98,7 +104,7 @@ fn clock(model: &mut RoughModel, rst_n: u64, start: u64, operands: &[u64; 14]) {
 fn a_point_clock_by_clock() {
     for sine_synchronous in [false, true] {
         let params = Params { sine_synchronous, ..small() };
-        let mut model = RoughModel::from_params(&params).unwrap();
+        let mut model = clocked(params);
         let names = [
             "run",
             "word_address",
@@ -142,7 +148,7 @@ fn a_point_clock_by_clock() {
 /// A reset in word 5 ends the point, but the word's transfer still takes place.
 #[test]
 fn a_reset_stops_the_words_alone() {
-    let mut model = RoughModel::from_params(&small()).unwrap();
+    let mut model = clocked(small());
     clock(&mut model, 1, 1, &WRITE);
     for _ in 0..5 {
         clock(&mut model, 1, 0, &[0; 14]);
@@ -150,24 +156,4 @@ fn a_reset_stops_the_words_alone() {
     clock(&mut model, 0, 1, &[0; 14]);
     let names = ["run", "word_address", "reg13_result", "exponent_reg"];
     assert_eq!(values(&model, &names), [0, 0, 31, 4]);
-}
-
-#[test]
-fn parameters_out_of_range_are_named() {
-    let refused = |params: Params| RoughContract::from_params(&params).unwrap_err();
-    let product_fraction = Params { product_fraction: 41, ..small() };
-    assert!(refused(product_fraction).contains("product.fraction"));
-    let deviation = Params { deviation: 91.0, ..small() };
-    assert!(refused(deviation).contains("domain.deviation"));
-    let table = Params { sine_scheme: Scheme::Direct { address: 5 }, ..small() };
-    assert!(refused(table).contains("sine.address"));
-}
-
-/// What the default promises: below one unit from 20.4 kbit.
-#[test]
-fn the_default_is_proven_with_a_small_rom() {
-    let contract = RoughContract::from_params(&Params::default()).unwrap();
-    let (words, width) = contract.rom_size();
-    assert_eq!((words, width), (584, 35));
-    assert!(contract.bound().units < 1.0);
 }

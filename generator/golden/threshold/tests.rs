@@ -1,27 +1,24 @@
 //! Values worked out by hand.
 
 use super::*;
-use crate::golden::{Contract, Model};
 
 /// C = 4, F = 4, K = 4, small enough to follow by hand.
-fn small(levels: &[i64]) -> Params {
-    Params {
+fn small(levels: &[i64]) -> Arithmetic {
+    let keys = Keys {
         cosine_fraction: 4,
+        cosine_signed: false,
         exponent_bits: 4,
         colour_bits: 4,
         intensity_fraction: 4,
-        levels: levels.to_vec(),
+        output_rounding: Rounding::Nearest,
         exponents: (1, 15),
-        ..Params::default()
-    }
+    };
+    Arithmetic::new(keys, Rounding::Truncate, levels)
 }
 
 #[test]
 fn points_by_hand() {
-    let f = |levels: &[i64], cosine, n| {
-        let contract = ThresholdContract::from_params(&small(levels)).unwrap();
-        contract.f(&[cosine, n])
-    };
+    let f = |levels: &[i64], cosine, n| small(levels).f(&[cosine, n]);
     // n = 4, c = 14/16: 2·(−2/16) = −4/16; base 12/16; 144/256 = 9/16.
     assert_eq!(f(&[0], 14, 4), 9);
     // n = 3: −3/16; 13² = 169 → 10.
@@ -49,7 +46,7 @@ fn points_by_hand() {
 #[test]
 fn either_side_of_the_level_is_right_and_no_other() {
     // The square is exactly the level.
-    let contract = ThresholdContract::from_params(&small(&[843])).unwrap();
+    let contract = highlight(small(&[843]));
     assert_eq!(contract.references(&[14, 4]), [0.5625, 0.0]);
     // Margin: 2 ulps for the base, one for the square.
     assert_eq!(contract.bound().f, 3.0 / 16.0);
@@ -63,16 +60,13 @@ fn either_side_of_the_level_is_right_and_no_other() {
 /// One point followed clock by clock: words 0, 1, 2, 3 and idle.
 #[test]
 fn a_point_clock_by_clock() {
-    let mut model = ThresholdModel::from_params(&small(&[50])).unwrap();
-    let value = |model: &ThresholdModel, name: &str| {
-        model.values()[model.signals().iter().position(|it| it == name).unwrap()]
-    };
+    let mut model = clocked(&small(&[50]));
     // c = 14/16, n = 4, red 15, written together with start.
     model.clock(&[1, 1, 14, 1, 4, 1, 15, 1, 0, 0, 0, 0]);
     let names = ["run", "word_address", "scaled", "intensity", "valid", "done"];
     let mut seen = Vec::new();
     for _ in 0..5 {
-        seen.push(names.map(|name| value(&model, name)));
+        seen.push(names.map(|name| model.value(name).unwrap()));
         // Writes while busy change nothing.
         model.clock(&[1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0]);
     }
@@ -86,30 +80,24 @@ fn a_point_clock_by_clock() {
     ];
     assert_eq!(seen, expected);
     // The clock before was idle again: its write of red counts. 9/16 of 1 unit.
-    assert_eq!(value(&model, "red_out"), 1);
-}
-
-#[test]
-fn the_default_is_proven() {
-    let bound = ThresholdContract::from_params(&Params::default()).unwrap().bound();
-    // Three ulps of 2⁻¹⁶ times 255, and half a unit.
-    assert_eq!(bound.units, 3.0 * 255.0 / 65536.0 + 0.5);
+    assert_eq!(model.value("red_out").unwrap(), 1);
 }
 
 /// Half a unit hides nothing that could be seen; a whole unit does.
 #[test]
 fn levels_that_are_seen_are_remarked_on() {
     let remarks = |levels: &[i64]| {
-        let params = Params { levels: levels.to_vec(), ..Params::default() };
-        ThresholdContract::from_params(&params).unwrap().remarks()
+        let keys = Keys {
+            cosine_fraction: 20,
+            exponent_bits: 10,
+            colour_bits: 8,
+            intensity_fraction: 16,
+            exponents: (1, 1000),
+            ..small(&[0]).keys
+        };
+        Arithmetic::new(keys, Rounding::Truncate, levels).remarks()
     };
     assert!(remarks(&[50]).is_empty());
     let seen = remarks(&[50, 50, 320]);
     assert!(seen.len() == 1 && seen[0].contains("n = 4 outputs up to 3"), "{seen:?}");
-}
-
-#[test]
-fn parameters_out_of_range_are_named() {
-    let refused = ThresholdContract::from_params(&small(&[1500])).unwrap_err();
-    assert!(refused.contains("visibility.levels"), "{refused}");
 }

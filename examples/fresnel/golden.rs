@@ -1,0 +1,162 @@
+//! The golden model: the device once more, from the formula, in integers. It never looks at the description; that
+//! `cosim` finds both equal on every clock is what makes the description right. The contract follows.
+
+use glint::config::Config;
+use glint::fixed::{Format, Rounding, exp2};
+use glint::golden::contract::{Share, control};
+use glint::golden::frame::{Datapath, Frame, Slot, State, idle, step};
+use glint::golden::highlight::{Highlight, ProductSlots, Products, Reflectance};
+use glint::golden::narrow::{Narrow, rounding_error};
+use glint::golden::{Contract, Model, keys};
+
+/// The arithmetic, one operation a method.
+#[derive(Clone)]
+struct Fresnel {
+    /// Fraction bits of c, of f0 and of the powers.
+    cosine: u32,
+    reflectance: u32,
+    power: u32,
+    rounding: Rounding,
+    /// From the fraction bits of a product to those of the powers.
+    rounded: Narrow,
+}
+
+impl Fresnel {
+    fn new(config: &Config) -> Self {
+        let (power, rounding) =
+            (keys::bits(config, "power.fraction"), keys::rounding(config, "power.rounding"));
+        Self {
+            cosine: keys::bits(config, "cosine.fraction"),
+            reflectance: keys::bits(config, "reflectance.fraction"),
+            power,
+            rounding,
+            rounded: Narrow::new(2 * power, Format::unsigned(0, power as i32), rounding),
+        }
+    }
+
+    /// 1 − x, from so many fraction bits to those of the powers.
+    fn complement(&self, x: i64, fraction: u32) -> i64 {
+        ((1 << fraction) - x) << (self.power - fraction)
+    }
+
+    fn square(&self, c: i64) -> i64 {
+        let t = self.complement(c, self.cosine);
+        self.rounded.apply(t * t)
+    }
+
+    fn fourth(&self, square: i64) -> i64 {
+        self.rounded.apply(square * square)
+    }
+
+    fn fifth(&self, fourth: i64, c: i64) -> i64 {
+        self.rounded.apply(fourth * self.complement(c, self.cosine))
+    }
+
+    fn blend(&self, fifth: i64, f0: i64) -> i64 {
+        let exact = f0 << (2 * self.power - self.reflectance);
+        self.rounded.apply(exact + fifth * self.complement(f0, self.reflectance))
+    }
+
+    /// The formats of c, f0 and f.
+    fn formats(&self) -> [Format; 3] {
+        [(1, self.cosine), (0, self.reflectance), (0, self.power)]
+            .map(|(int, fraction)| Format::unsigned(int, fraction as i32))
+    }
+}
+
+/// The colours, which f multiplies.
+fn products(it: &Fresnel, config: &Config) -> Products {
+    let rounding = keys::rounding(config, "output.rounding");
+    Products::colours(it.formats()[2], keys::bits(config, "colour.bits"), rounding)
+}
+
+/// The device at one clock: where its operands and registers are in the state that the frame keeps.
+struct Device {
+    it: Fresnel,
+    c: Slot,
+    f0: Slot,
+    power: Slot,
+    f: Slot,
+    products: ProductSlots,
+}
+
+impl Datapath for Device {
+    fn outputs(&self, s: &mut State) {
+        self.products.show(s[self.f], s);
+    }
+}
+
+/// The golden model.
+pub fn model(config: &Config) -> Box<dyn Model> {
+    let it = Fresnel::new(config);
+    let [cosine, reflectance, power] = it.formats();
+    let mut frame = Frame::default();
+    let device = Device {
+        c: frame.clamped("cos_half", cosine, 0, 1 << it.cosine),
+        f0: frame.operand("f0", reflectance),
+        power: frame.register("power", power),
+        f: frame.register("f", power),
+        products: products(&it, config).slots(&mut frame),
+        it,
+    };
+    let program = [
+        idle(),
+        step(|d: &Device, s| s[d.power] = d.it.square(s[d.c])),
+        step(|d: &Device, s| s[d.power] = d.it.fourth(s[d.power])),
+        step(|d: &Device, s| s[d.power] = d.it.fifth(s[d.power], s[d.c])),
+        step(|d: &Device, s| s[d.f] = d.it.blend(s[d.power], s[d.f0])),
+        idle().valid().end(),
+    ];
+    Box::new(frame.model(device, program))
+}
+
+/// Which function the device computes, and how far off it may be.
+pub fn contract(config: &Config) -> Box<dyn Contract> {
+    let it = Fresnel::new(config);
+    let [cosine, reflectance, _] = it.formats();
+    let most = reflectance.max_raw() as i64;
+    let operands = vec![
+        control("cos_half", cosine, (0, 1 << it.cosine), "cosine to the half vector"),
+        control("f0", reflectance, (0, most), "reflectance head-on"),
+    ];
+    let products = products(&it, config);
+    Box::new(Highlight::new(it, operands, products))
+}
+
+impl Reflectance for Fresnel {
+    fn f(&self, control: &[i64]) -> i64 {
+        let fifth = self.fifth(self.fourth(self.square(control[0])), control[0]);
+        self.blend(fifth, control[1])
+    }
+
+    fn reference(&self, control: &[i64]) -> f64 {
+        let [c, f0] = [(control[0], self.cosine), (control[1], self.reflectance)]
+            .map(|(raw, fraction)| raw as f64 * exp2(-(fraction as i32)));
+        let t = 1.0 - c;
+        f0 + (1.0 - f0) * (t * t * t * t * t)
+    }
+
+    fn expressions(&self) -> Vec<String> {
+        vec!["f0 + (1 - f0) * (1 - cos_half) ** 5".to_owned()]
+    }
+
+    /// Let u be the last place of u0.F, r what a rounding is off by at most (u/2 or u), and t = 1 − c,
+    /// which is exact, as is 1 − f0.
+    ///
+    /// - The square s is off by at most u: t = 1 saturates to 1 − u. Any other t is at most 1 − u, so that
+    ///   t² ≤ 1 − 2u + u² is rounded, by r ≤ u, to no more than 1 − u.
+    /// - The fourth power q is off by at most 2u + r: |s² − t⁴| = |s − t²|·(s + t²) ≤ u·2; s ≤ 1 − u does
+    ///   not saturate, as t above.
+    /// - The fifth is off by at most 2u + 2r: |q·t − t⁵| ≤ |q − t⁴|; q·t ≤ 1 − u does not saturate.
+    /// - f is off by at most 2u + 2r + u: 1 − f0 ≤ 1 adds nothing to the error of the fifth power, and
+    ///   the sum is at most 1, so that rounding and saturation together move it by u at most.
+    fn shares(&self) -> Vec<Share> {
+        let u = exp2(-(self.power as i32));
+        let r = rounding_error(2 * self.power, self.power, self.rounding);
+        vec![
+            ("power.fraction", "(1 - c)^2 below 1", 2.0 * u),
+            ("power.rounding", "rounding of the higher powers", 2.0 * r),
+            ("power.fraction", "f rounded and below 1", u),
+        ]
+    }
+}

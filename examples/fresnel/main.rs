@@ -1,0 +1,87 @@
+//! A device of your own: Schlick's approximation of the Fresnel factor.
+//!
+//! Glint knows the devices of its catalogue. This program knows one that is not there, and has the
+//! whole command line for it:
+//!
+//! ```sh
+//! cargo run --release --example fresnel -- new fresnel > f.toml
+//! cargo run --release --example fresnel -- generate f.toml --out /tmp/x
+//! cargo run --release --example fresnel -- cosim f.toml --simulator verilator
+//! cargo run --release --example fresnel -- eval f.toml cos_half=0.1 f0=0.04
+//! ```
+//!
+//! Seen at a grazing angle, every surface is a mirror. C. Schlick ("An Inexpensive BRDF Model for
+//! Physically-based Rendering", Computer Graphics Forum 13(3), 1994) puts it as
+//!
+//! ```text
+//! f = f0 + (1 − f0)·(1 − c)⁵
+//! ```
+//!
+//! where c is the cosine between the direction of the light and the half vector, and f0 the
+//! reflectance at normal incidence: 0.04 for glass, 0.95 for silver. The device multiplies the three
+//! colours by it. It has one multiplier for f, which a microprogram of six words uses four times.
+//!
+//! A device is five things: configuration keys, a description, a golden model, a contract, and the line that
+//! ties them together. Keys and line are here; the description is in `description.rs`, model and contract are
+//! in `golden.rs`, and these two share nothing but the names of the keys.
+
+mod description;
+mod golden;
+
+use std::process::ExitCode;
+
+use glint::config::{Config, Key, Problems, Schema};
+use glint::registry::{Device, Registry};
+
+// The keys: what the user of the device may choose. `new` writes them into a commented file, with
+//    these sentences; a file with a wrong value is refused with its line and a remedy.
+
+const ROUNDINGS: &[&str] = &["truncate", "nearest"];
+
+fn schema() -> Schema {
+    let bits = |name, default, doc| Key::integer(name, default, 4..=16, doc);
+    let rounding = |name, doc| Key::choice(name, "nearest", ROUNDINGS, doc);
+    let power = "Fraction bits of the powers of 1 - c and of f, u0.F: the width of the multiplier.";
+    Schema {
+        device: "fresnel",
+        keys: vec![
+            bits("cosine.fraction", 10, "Fraction bits of cos_half, u1.F."),
+            bits("reflectance.fraction", 8, "Fraction bits of f0, u0.F."),
+            Key::integer("power.fraction", 12, 4..=24, power),
+            rounding("power.rounding", "How the powers and f are rounded."),
+            bits("colour.bits", 8, "Bits of colour operands and outputs."),
+            rounding("output.rounding", "How the outputs are rounded."),
+        ],
+        check,
+    }
+}
+
+/// The multiplier takes 1 − c and 1 − f0 whole, so they have no more fraction bits than the powers.
+fn check(config: &Config, problems: &mut Problems) {
+    let power = config.integer("power.fraction");
+    for key in ["cosine.fraction", "reflectance.fraction"] {
+        if config.integer(key) > power {
+            problems.push(
+                key,
+                format!("more fraction bits than the {power} of power.fraction"),
+                format!("at most {power}, or a larger power.fraction"),
+            );
+        }
+    }
+}
+
+// The line that ties all together, and the command line.
+
+/// The device.
+pub const FRESNEL: Device = Device {
+    name: "fresnel",
+    summary: "Schlick's Fresnel factor, f0 + (1 - f0)*(1 - c)^5",
+    schema,
+    describe: description::describe,
+    model: golden::model,
+    contract: golden::contract,
+};
+
+fn main() -> ExitCode {
+    glint::cli::run(&Registry::empty().with(FRESNEL))
+}

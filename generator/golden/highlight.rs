@@ -1,0 +1,350 @@
+//! What highlights have in common: colours that are multiplied by a reflectance `f`.
+
+use super::contract::{self, COSINE, Share};
+use super::frame::{Frame, Slot, State};
+use super::narrow::Narrow;
+use super::{Axis, Bound, Contract, Operand, Sweep, Values, keys, nearer};
+use crate::base::fixed::{Format, Rounding, exp2};
+use crate::config::Config;
+
+/// The keys of a device that computes f from cos γ and n.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Keys {
+    /// `cosine.fraction`: fraction bits of cos γ.
+    pub cosine_fraction: u32,
+    /// `cosine.signed`: cos γ may be negative, and is then taken as 0.
+    pub cosine_signed: bool,
+    /// `exponent.bits`: bits of n.
+    pub exponent_bits: u32,
+    /// `colour.bits`: bits of a colour operand and of a colour output.
+    pub colour_bits: u32,
+    /// `intensity.fraction`: fraction bits of f.
+    pub intensity_fraction: u32,
+    /// `output.rounding`: of the colour outputs.
+    pub output_rounding: Rounding,
+    /// `domain.exponent_min` and `domain.exponent_max`: the contract's n.
+    pub exponents: (i64, i64),
+}
+
+impl Keys {
+    /// What a configuration says.
+    pub fn new(config: &Config) -> Self {
+        Self {
+            cosine_fraction: keys::bits(config, "cosine.fraction"),
+            cosine_signed: config.flag("cosine.signed"),
+            exponent_bits: keys::bits(config, "exponent.bits"),
+            colour_bits: keys::bits(config, "colour.bits"),
+            intensity_fraction: keys::bits(config, "intensity.fraction"),
+            output_rounding: keys::rounding(config, "output.rounding"),
+            exponents: keys::exponents(config),
+        }
+    }
+
+    /// 1.0 as a raw cosine.
+    pub fn one(&self) -> i64 {
+        1 << self.cosine_fraction
+    }
+
+    /// An ulp of the cosine.
+    pub fn ulp(&self) -> f64 {
+        exp2(-(self.cosine_fraction as i32))
+    }
+
+    /// The format of cos γ.
+    pub fn cosine_format(&self) -> Format {
+        Format { signed: self.cosine_signed, int: 1, frac: self.cosine_fraction as i32 }
+    }
+
+    /// The format of n.
+    pub fn exponent_format(&self) -> Format {
+        Format::unsigned(self.exponent_bits as i32, 0)
+    }
+
+    /// The format of f.
+    pub fn f_format(&self) -> Format {
+        Format::unsigned(0, self.intensity_fraction as i32)
+    }
+
+    /// What multiplies by f.
+    pub fn products(&self) -> Products {
+        Products::colours(self.f_format(), self.colour_bits, self.output_rounding)
+    }
+
+    /// The operands cos γ and n.
+    pub fn operands(&self) -> Vec<Operand> {
+        let lowest = if self.cosine_signed { -self.one() } else { 0 };
+        vec![
+            contract::cosine_operand(self.cosine_format(), (lowest, self.one())),
+            contract::exponent_operand(self.exponent_format(), self.exponents),
+        ]
+    }
+
+    /// The slots of the operands cos γ, which is taken for 0 … 1.0, and n.
+    pub fn slots(&self, frame: &mut Frame) -> [Slot; 2] {
+        let cosine = frame.clamped("cos_gamma", self.cosine_format(), 0, self.one());
+        [cosine, frame.operand("exponent", self.exponent_format())]
+    }
+
+    /// cos γ as the register takes it.
+    #[inline]
+    pub fn clamped(&self, cosine: i64) -> i64 {
+        cosine.clamp(0, self.one())
+    }
+
+    /// The value of [`Keys::clamped`].
+    #[inline]
+    pub fn cosine(&self, cosine: i64) -> f64 {
+        self.clamped(cosine) as f64 * self.ulp()
+    }
+}
+
+/// What is multiplied by f: three colours, or one amplitude.
+#[derive(Clone, Debug)]
+pub struct Products {
+    /// Of f.
+    f: Format,
+    bits: u32,
+    rounding: Rounding,
+    narrow: Narrow,
+    operands: Vec<Operand>,
+    outputs: Vec<String>,
+}
+
+impl Products {
+    /// The colours of the building block `Colours`; every value is in the domain.
+    pub fn colours(f: Format, bits: u32, rounding: Rounding) -> Self {
+        let colours = ["red", "green", "blue"];
+        let doc =
+            |colour| format!("{colour} of the light times the surface's specular coefficient");
+        let outputs = colours.map(|colour| format!("{colour}_out"));
+        Self::new(f, bits, rounding, colours.map(|it| (it, doc(it))).into(), outputs.into())
+    }
+
+    /// The amplitude of the building block `Colours::amplitude`; every value is in the domain.
+    pub fn amplitude(f: Format, bits: u32, rounding: Rounding) -> Self {
+        let doc = "intensity of the light times the surface's specular coefficient, at the peak";
+        let operand = vec![("amplitude", doc.to_owned())];
+        Self::new(f, bits, rounding, operand, vec!["intensity_out".to_owned()])
+    }
+
+    fn new(
+        f: Format,
+        bits: u32,
+        rounding: Rounding,
+        operands: Vec<(&str, String)>,
+        outputs: Vec<String>,
+    ) -> Self {
+        let format = Format::unsigned(bits as i32, 0);
+        let operand = |(name, doc): (&str, String)| Operand {
+            name: name.to_owned(),
+            format,
+            domain: (0, format.max_raw() as i64),
+            colour: true,
+            doc,
+        };
+        Self {
+            f,
+            bits,
+            rounding,
+            narrow: Narrow::new(f.frac as u32, format, rounding),
+            operands: operands.into_iter().map(operand).collect(),
+            outputs,
+        }
+    }
+
+    /// Their operands and outputs in a clock model.
+    pub fn slots(&self, frame: &mut Frame) -> ProductSlots {
+        let pairs = self.operands.iter().zip(&self.outputs).map(|(operand, output)| {
+            (frame.operand(&operand.name, operand.format), frame.output(output, operand.format))
+        });
+        ProductSlots { pairs: pairs.collect(), narrow: self.narrow }
+    }
+}
+
+/// Products in a clock model.
+pub struct ProductSlots {
+    /// Operand and output.
+    pairs: Vec<(Slot, Slot)>,
+    narrow: Narrow,
+}
+
+impl ProductSlots {
+    /// The outputs for a raw f.
+    #[inline]
+    pub fn show(&self, f: i64, state: &mut State) {
+        for &(operand, output) in &self.pairs {
+            state[output] = self.narrow.apply(f * state[operand]);
+        }
+    }
+}
+
+/// What a highlight's control operands determine: a number f in 0 … 1.
+pub trait Reflectance: Send + Sync {
+    /// The raw f that the device computes from the raw control operands.
+    fn f(&self, control: &[i64]) -> i64;
+
+    /// As [`Contract::reference`].
+    fn reference(&self, control: &[i64]) -> f64;
+
+    /// As [`Contract::references`].
+    fn references(&self, control: &[i64]) -> [f64; 2] {
+        [self.reference(control); 2]
+    }
+
+    /// As [`Contract::expressions`].
+    fn expressions(&self) -> Vec<String> {
+        Vec::new()
+    }
+
+    /// As [`Contract::point`].
+    fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
+        let _ = index;
+        control.to_vec()
+    }
+
+    /// As [`Contract::length`].
+    fn length(&self) -> Option<&str> {
+        None
+    }
+
+    /// As [`Contract::at`], with the operands of the contract.
+    fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
+        contract::operands_at(operands, gamma, n, &[])
+    }
+
+    /// As [`Contract::cosine`], with the operands of the contract.
+    fn cosine(&self, operands: &[Operand], control: &[i64]) -> Option<f64> {
+        let (operand, raw) =
+            operands.iter().zip(control).find(|(operand, _)| operand.name == COSINE)?;
+        Some(operand.format.to_f64(i128::from(*raw)).clamp(0.0, 1.0))
+    }
+
+    /// As [`Contract::sweep`]; none for every combination of the control operands.
+    fn sweep(&self) -> Option<Sweep> {
+        None
+    }
+
+    /// As [`Contract::sweep_error`]; none where a place of the sweep is a point.
+    #[inline]
+    fn sweep_error(&self, place: &[i64]) -> Option<f64> {
+        let _ = place;
+        None
+    }
+
+    /// What the error of f is made of, each a proven upper limit.
+    fn shares(&self) -> Vec<Share>;
+
+    /// As [`Contract::remarks`].
+    fn remarks(&self) -> Vec<String> {
+        Vec::new()
+    }
+}
+
+/// The accuracy contract of a device that multiplies by a reflectance.
+pub struct Highlight {
+    reflectance: Box<dyn Reflectance>,
+    products: Products,
+    operands: Vec<Operand>,
+}
+
+impl Highlight {
+    /// With these control operands, in the order in which the reflectance takes them.
+    pub fn new(
+        reflectance: impl Reflectance + 'static,
+        control: Vec<Operand>,
+        products: Products,
+    ) -> Self {
+        let mut operands = control;
+        operands.extend(products.operands.iter().cloned());
+        Self { reflectance: Box::new(reflectance), products, operands }
+    }
+
+    /// From cos γ and n.
+    pub fn of_cosine(reflectance: impl Reflectance + 'static, keys: &Keys) -> Self {
+        Self::new(reflectance, keys.operands(), keys.products())
+    }
+}
+
+impl Contract for Highlight {
+    fn operands(&self) -> &[Operand] {
+        &self.operands
+    }
+
+    fn outputs(&self) -> &[String] {
+        &self.products.outputs
+    }
+
+    fn f_format(&self) -> Format {
+        self.products.f
+    }
+
+    #[inline]
+    fn f(&self, control: &[i64]) -> i64 {
+        self.reflectance.f(control)
+    }
+
+    #[inline]
+    fn colour(&self, f: i64, colour: i64) -> i64 {
+        self.products.narrow.apply(f * colour)
+    }
+
+    #[inline]
+    fn reference(&self, control: &[i64]) -> f64 {
+        self.reflectance.reference(control)
+    }
+
+    #[inline]
+    fn references(&self, control: &[i64]) -> [f64; 2] {
+        self.reflectance.references(control)
+    }
+
+    fn expressions(&self) -> Vec<String> {
+        self.reflectance.expressions()
+    }
+
+    fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
+        self.reflectance.point(control, index)
+    }
+
+    fn length(&self) -> Option<&str> {
+        self.reflectance.length()
+    }
+
+    fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
+        self.reflectance.at(&self.operands, gamma, n)
+    }
+
+    fn cosine(&self, control: &[i64]) -> Option<f64> {
+        self.reflectance.cosine(&self.operands, control)
+    }
+
+    fn sweep(&self) -> Sweep {
+        let all = || {
+            let control = self.operands.iter().filter(|operand| !operand.colour);
+            let axis = |operand: &Operand| Axis {
+                name: operand.name.clone(),
+                values: Values::Range(operand.domain.0, operand.domain.1),
+            };
+            Sweep { axes: control.map(axis).collect(), omits: String::new() }
+        };
+        self.reflectance.sweep().unwrap_or_else(all)
+    }
+
+    #[inline]
+    fn sweep_error(&self, place: &[i64]) -> f64 {
+        self.reflectance.sweep_error(place).unwrap_or_else(|| {
+            let f = self.products.f.to_f64(i128::from(self.reflectance.f(place)));
+            nearer(f, self.reflectance.references(place))
+        })
+    }
+
+    fn bound(&self) -> Bound {
+        let products = &self.products;
+        let shares = self.reflectance.shares();
+        contract::bound(&shares, products.f.frac as u32, products.bits, products.rounding)
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        self.reflectance.remarks()
+    }
+}
