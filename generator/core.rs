@@ -11,6 +11,7 @@ use crate::cosim::{Lockstep, trial};
 use crate::golden::Contract;
 use crate::hdl::netlist::Design;
 use crate::package::{self, Accuracy, EmitInputs, OutputFile, Timing, Vectors, WorkedExample};
+use crate::pages::{self, PageInputs};
 use crate::registry::Device;
 use crate::tools;
 
@@ -144,6 +145,22 @@ impl Unit {
     pub fn verilog(&self) -> Result<Vec<(String, String)>> {
         let files = package::emit(&self.design, &EmitInputs::default())?;
         Ok(package::sources(files))
+    }
+
+    /// The page of the configuration, which the command line knows as `config`.
+    ///
+    /// # Errors
+    /// A device that does not end.
+    pub fn page(&self, config: &str) -> Result<String> {
+        let inputs = PageInputs {
+            path: config,
+            config: &self.config,
+            schema: &(self.device.schema)(),
+            contract: self.contract.as_ref(),
+            timing: &self.timing()?,
+            example: &self.example()?,
+        };
+        pages::page(&self.design, &inputs)
     }
 
     /// What computes many points of the device; see [`crate::cosim::batch`].

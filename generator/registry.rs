@@ -6,6 +6,7 @@ use crate::golden::{self, Contract, Model};
 use crate::hdl::dsl::Designer;
 use crate::hdl::dsl::rules::Diagnostics;
 use crate::hdl::netlist::Design;
+use crate::hdl::pipeline;
 
 /// A device that Glint can generate, simulate and check.
 ///
@@ -31,8 +32,20 @@ impl Device {
     /// The design that a configuration asks for.
     ///
     /// # Errors
-    /// The mistakes of the description.
+    /// The mistakes of the description; a pipeline that cannot be made.
     pub fn design(&self, config: &Config) -> Result<Design, Diagnostics> {
+        let sequential = self.sequential(config)?;
+        match pipeline::options(config) {
+            None => Ok(sequential),
+            Some(options) => pipeline::pipeline(&sequential, &options),
+        }
+    }
+
+    /// The design with the microprogram, of which a pipeline is made too.
+    ///
+    /// # Errors
+    /// The mistakes of the description.
+    pub fn sequential(&self, config: &Config) -> Result<Design, Diagnostics> {
         let designer = Designer::new(&config.name);
         (self.describe)(&designer, config);
         designer.finish()

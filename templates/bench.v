@@ -40,6 +40,7 @@ ${ line }$
         ${ line }$
 <%- endfor %>
     );
+<%- if let Some(address) = address %>
 
     // Prints the word of the microprogram that is executed.
     task ${ names.write_word }$;
@@ -50,6 +51,7 @@ ${ line }$
             default: $write("no word");
         endcase
     endtask
+<%- endif %>
 
     initial begin
         $readmemh(STIMULUS_FILE, ${ names.stimulus }$);

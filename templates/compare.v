@@ -1,8 +1,10 @@
                 if (${ output.name }$ !== ${ output.select }$) begin
                     ${ names.errors }$ = ${ names.errors }$ + 1;
                     if (${ names.errors }$ <= REPORTED) begin
-                        $write("clock %0d, ", ${ names.clock }$);
+                        $write("clock %0d<% if address.is_some() %>, <% endif %>", ${ names.clock }$);
+<%- if address.is_some() %>
                         ${ names.write_word }$;
+<%- endif %>
                         $display(": ${ output.name }$ is %h, expected %h", ${ output.name }$, ${ output.select }$);
                     end
                 end

@@ -18,50 +18,8 @@ ${ line }$
 ${ line }$
 <%- endfor %>
 <%- endfor %>
-<%- for spaced in items %>
-<%- if spaced.gap %>
-<% endif %>
-<%- match spaced.item %>
-<%- when Item::Assign with (lines) %>
-<%- for line in lines %>
-${ line }$
-<%- endfor %>
-<%- when Item::Case with { comment, declaration, select, arms, default } %>
-<%- for line in comment %>
-${ line }$
-<%- endfor %>
-<%- for line in declaration %>
-${ line }$
-<%- endfor %>
-    always @* begin
-        case (${ select }$)
-<%- for line in arms %>
-${ line }$
-<%- endfor %>
-<%- for line in default %>
-${ line }$
-<%- endfor %>
-        endcase
-    end
-<%- when Item::Rom with (rom) %>
-<%- for line in rom.comment %>
-${ line }$
-<%- endfor %>
-    reg ${ rom.range }$ ${ rom.memory }$ [0:${ rom.last }$];
-    initial $readmem${ rom.radix }$(${ rom.parameter }$, ${ rom.memory }$);
-<%- for line in rom.read %>
-${ line }$
-<%- endfor %>
-<%- endmatch %>
-<%- endfor %>
-<%- for group in groups %>
-
-    always @(posedge clk) begin
-<%- for line in group %>
-${ line }$
-<%- endfor %>
-    end
-<%- endfor %>
+<%- include "items.v" %>
+<%- include "groups.v" %>
 <%- if !unused.is_empty() %>
 
     // Bits that nothing needs, among them those that narrowing drops.

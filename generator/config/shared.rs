@@ -15,6 +15,47 @@ pub fn shared_keys() -> &'static [Key] {
 
 static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
     vec![
+        Key::choice(
+            "architecture",
+            "sequential",
+            &["sequential", "pipelined"],
+            "A microprogram on one set of arithmetic, or the same unrolled: a point every clock.",
+        ),
+        Key::choice(
+            "pipeline.target",
+            "ecp5",
+            &["ecp5", "ice40", "xilinx7", "generic"],
+            "Whose delays and multipliers decide what a stage of the pipeline does.",
+        )
+        .only_when("architecture", "pipelined"),
+        Key::number(
+            "pipeline.clock_mhz",
+            130.0,
+            1.0..=2000.0,
+            "The clock that every stage keeps, with the fewest registers.",
+        )
+        .only_when("architecture", "pipelined"),
+        Key::integer(
+            "pipeline.stages",
+            0,
+            0..=1000,
+            "So many stages in place of a clock: as fast as they allow. 0 for pipeline.clock_mhz.",
+        )
+        .only_when("architecture", "pipelined"),
+        Key::choice(
+            "pipeline.stall",
+            "ready",
+            &["ready", "none"],
+            "Whether out_ready can hold the results back; without it every register moves in every clock.",
+        )
+        .only_when("architecture", "pipelined"),
+        Key::integer(
+            "pipeline.side",
+            0,
+            0..=64,
+            "Bits of side_in and side_out, which travel with a point: a pixel's address, say.",
+        )
+        .only_when("architecture", "pipelined"),
         Key::flag(
             "interface.stream",
             false,

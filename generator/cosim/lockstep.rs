@@ -93,7 +93,7 @@ pub struct Worst {
 /// A signal on which model and hardware differ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mismatch {
-    /// The seed of the stream: a run with it that is not divided, [`Lockstep::trace`] say, goes the same
+    /// The seed of the stream: a run with it that is not divided, [`Lockstep::trace`](super::Lockstep::trace) say, goes the same
     /// way from the first clock on. Where combinations are gone through, the place of the one that runs.
     pub seed: u64,
     /// Rising edges of the stream so far.
@@ -118,13 +118,13 @@ impl fmt::Display for Mismatch {
     }
 }
 
-/// Golden model and simulator of one design.
-pub struct Lockstep<'a> {
+/// Golden model and simulator of a design with a microprogram.
+pub(super) struct Sequential<'a> {
     pairing: Pairing<'a>,
     seed: u64,
 }
 
-impl<'a> Lockstep<'a> {
+impl<'a> Sequential<'a> {
     /// Pairs them by the names of ports and registers.
     ///
     /// # Errors
@@ -231,10 +231,10 @@ impl<'a> Lockstep<'a> {
         outcome
     }
 
-    /// As [`Lockstep::run`], in one stream.
+    /// As [`Sequential::run`], in one stream.
     ///
     /// # Errors
-    /// Those of [`Lockstep::run`].
+    /// Those of [`Sequential::run`].
     pub fn run_alone(&self, points: u64) -> Result<Outcome> {
         Ok(self.outcome([self.alone(points)?.run(&|_| ())?]))
     }
@@ -244,7 +244,7 @@ impl<'a> Lockstep<'a> {
     /// in the order of the streams.
     ///
     /// # Errors
-    /// Those of [`Lockstep::run`].
+    /// Those of [`Sequential::run`].
     pub fn watch<W: Send>(
         &self,
         points: u64,
@@ -290,10 +290,10 @@ impl<'a> Lockstep<'a> {
         Ok(vectors)
     }
 
-    /// As [`Lockstep::run`], in one stream, of which `file` takes the waveform from clock `from` on.
+    /// As [`Sequential::run`], in one stream, of which `file` takes the waveform from clock `from` on.
     ///
     /// # Errors
-    /// Those of [`Lockstep::run`]; the file cannot be written.
+    /// Those of [`Sequential::run`]; the file cannot be written.
     pub fn trace(
         &self,
         points: u64,

@@ -2,15 +2,18 @@
 //! synthesis.
 
 mod alone;
+mod architecture;
 pub mod batch;
 mod combinations;
 pub mod exhaustive;
 mod lockstep;
 mod pairing;
+mod pipelined;
 mod stimulus;
 mod stream;
 mod together;
 pub mod trial;
 
-pub use lockstep::{Lockstep, Mismatch, Outcome, Worst};
+pub use architecture::Lockstep;
+pub use lockstep::{Mismatch, Outcome, Worst};
 pub use stimulus::{Random, Stimulus};

@@ -56,6 +56,15 @@ impl Random {
         self.near_an_end(choice, domain)
     }
 
+    /// A bit pattern for an operand: mostly of its domain, as [`Random::of_domain`] draws it, at times any.
+    pub fn pattern(&mut self, operand: &Operand) -> u64 {
+        let raw = match self.below(16) {
+            ANYTHING => self.bits() as i64,
+            choice => self.near_an_end(choice, operand.domain),
+        };
+        raw as u64 & mask(operand.format.width())
+    }
+
     /// By one of 16 choices: an end, close to one, anywhere.
     fn near_an_end(&mut self, choice: u64, (low, high): (i64, i64)) -> i64 {
         match choice {
@@ -341,11 +350,7 @@ impl Stimulus {
             let above = self.random.below(1 << bits.min(62)).min(reach);
             return low.wrapping_add(above as i64) as u64 & mask;
         }
-        let raw = match self.random.below(16) {
-            ANYTHING => self.random.bits() as i64,
-            choice => self.random.near_an_end(choice, (low, high)),
-        };
-        raw as u64 & mask
+        self.random.pattern(&self.operands[at].operand)
     }
 
     /// Notes what the registers take at this edge.

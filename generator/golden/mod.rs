@@ -20,6 +20,7 @@ pub mod keys;
 pub mod line;
 pub mod lyon;
 pub mod narrow;
+pub mod pipeline;
 pub mod quad_cosine;
 pub mod quadratic;
 pub mod rough;

@@ -3,5 +3,6 @@
 pub mod blocks;
 pub mod dsl;
 pub mod netlist;
+pub mod pipeline;
 pub mod sim;
 pub mod verilog;

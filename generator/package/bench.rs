@@ -31,7 +31,8 @@ struct Bench {
     reset_seen: &'static str,
     handshake: Vec<Output>,
     results: Vec<Output>,
-    address: String,
+    /// None without a microprogram.
+    address: Option<String>,
     words: Vec<Word>,
 }
 
@@ -128,12 +129,12 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
         };
         let output = Output { name: port_name(port), select };
         match port.role {
-            Role::Valid | Role::Busy | Role::Done => handshake.push(output),
+            Role::Valid | Role::Busy | Role::Done | Role::InReady => handshake.push(output),
             _ => results.push(output),
         }
     }
-    let address = design.register(design.control.address).q;
-    let address_width = design.width(address);
+    let address = design.registers.get(design.control.address.index()).map(|register| register.q);
+    let address_width = address.map_or(1, |address| design.width(address));
     let words: Vec<_> = design
         .control
         .words
@@ -183,12 +184,10 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
         reset,
         handshake,
         results,
-        address: format!(
-            "{}.{}.{}",
-            variables.dut,
-            naming.control_instance,
-            design.net(address).name
-        ),
+        address: address.map(|address| {
+            let address = &design.net(address).name;
+            format!("{}.{}.{address}", variables.dut, naming.control_instance)
+        }),
         words,
         names: variables,
     }

@@ -147,7 +147,8 @@ pub fn ports(design: &Design) -> Vec<Port<'_>> {
             Role::Operand { strobe } => Some(name(design, strobe)),
             _ => None,
         };
-        let number = matches!(port.role, Role::Operand { .. } | Role::Result | Role::Status);
+        let number =
+            matches!(port.role, Role::Operand { .. } | Role::Point | Role::Result | Role::Status);
         Port {
             name: &net.name,
             direction: if port.role.is_input() { "input" } else { "output" },
@@ -179,6 +180,12 @@ fn role(role: Role) -> &'static str {
         Role::Done => "done",
         Role::Result => "result",
         Role::Status => "status",
+        Role::InValid => "in_valid",
+        Role::InReady => "in_ready",
+        Role::Point => "operand",
+        Role::SideIn => "side_in",
+        Role::SideOut => "side_out",
+        Role::OutReady => "out_ready",
     }
 }
 
@@ -256,5 +263,6 @@ pub fn roms<'a>(design: &'a Design, naming: &'a Naming) -> Vec<Rom<'a>> {
             block: rom.block,
         }
     };
-    design.roms.iter().enumerate().map(entry).collect()
+    let memories = design.roms.iter().enumerate().filter(|(_, rom)| rom.shares.is_none());
+    memories.map(entry).collect()
 }

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::facts::{self, Port, Rom};
 use super::{Accuracy, Computation, EmitInputs, OutputFile, Quantity, Timing, digest};
-use crate::hdl::netlist::{Design, RegId};
+use crate::hdl::netlist::{Design, Pipeline, RegId};
 use crate::hdl::verilog::naming::Naming;
 
 #[derive(Serialize)]
@@ -22,7 +22,10 @@ struct Manifest<'a> {
     scale: &'static str,
     ports: Vec<Port<'a>>,
     timing: &'a Timing,
-    control: Value,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    control: Option<Value>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pipeline: Option<Value>,
     roms: Vec<Rom<'a>>,
     files: Value,
     sha256: serde_json::Map<String, Value>,
@@ -69,7 +72,8 @@ pub fn contents(
         scale: "value = raw * 2^-fraction_bits",
         ports: facts::ports(design),
         timing: &inputs.timing,
-        control: control(design),
+        control: design.pipeline.is_none().then(|| control(design)),
+        pipeline: design.pipeline.as_ref().map(pipeline),
         roms: facts::roms(design, naming),
         files: json!({
             "rtl": files.rtl,
@@ -140,6 +144,26 @@ fn control(design: &Design) -> Value {
         "rom": design.rom(control.rom).name,
         "fields": facts::fields(design),
         "words": facts::words(design),
+    })
+}
+
+/// Latency and interval are in clocks; a register bit counts in each stage that it ends.
+fn pipeline(pipeline: &Pipeline) -> Value {
+    let stages = pipeline.stages.iter().map(|stage| {
+        json!({
+            "microinstructions": stage.microinstructions,
+            "logic_ns": (stage.logic_ns * 100.0).round() / 100.0,
+            "register_bits": stage.register_bits,
+        })
+    });
+    json!({
+        "latency": pipeline.stages.len(),
+        "interval": 1,
+        "target": pipeline.target,
+        "clock_mhz": (pipeline.clock_mhz * 10.0).round() / 10.0,
+        "stall": pipeline.stall,
+        "side_bits": pipeline.side,
+        "stages": stages.collect::<Vec<_>>(),
     })
 }
 

@@ -23,6 +23,7 @@ use serde::Serialize;
 use sha2::{Digest, Sha256};
 
 use crate::golden::Contract;
+use crate::hdl;
 use crate::hdl::netlist::{Design, RomId, Unit};
 use crate::hdl::verilog::interface::Interface;
 use crate::hdl::verilog::naming::Naming;
@@ -215,28 +216,35 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     let plan = Plan::new(design)?;
     let naming = Naming::new(design);
     let name = &design.name;
-    let control = Interface::new(&plan, Unit::Control);
-    let datapath = Interface::new(&plan, Unit::Datapath);
-    let units = [(Unit::Control, &control), (Unit::Datapath, &datapath)];
-
-    let mut rtl = vec![(format!("{name}.v"), render(&top::module(&plan, &naming, units, inputs))?)];
-    for (unit, interface) in units {
-        let module = module::Builder::new(&plan, &naming, interface, unit).module(inputs);
-        rtl.push((format!("{}.v", naming.module(unit)), render(&module)?));
-    }
+    let rtl = match &design.pipeline {
+        Some(pipeline) => {
+            let module = hdl::verilog::pipeline::module(&plan, &naming, pipeline, inputs);
+            vec![(format!("{name}.v"), render(&module)?)]
+        }
+        None => units(&plan, &naming, inputs)?,
+    };
     let mut memories = Vec::new();
     for (at, file) in naming.files.iter().enumerate() {
-        memories.push((file.clone(), memory::contents(design, RomId(at as u32))?));
+        let id = RomId(at as u32);
+        if !naming.second.contains(&id) {
+            memories.push((file.clone(), memory::contents(design, id)?));
+        }
     }
     let mut testbench = Vec::new();
     if let Some(vectors) = &inputs.vectors {
         testbench = bench::files(design, &naming, vectors)?;
         let names = names_of(&testbench);
         testbench.push((format!("{name}_tb.core"), fusesoc::bench(name, &names[0], &names[1..])?));
+        // The properties and the bench in Python are of the handshake of a microprogram.
+        let sequential = design.pipeline.is_none();
         let sources = formal::Sources { rtl: &names_of(&rtl), memories: &names_of(&memories) };
-        let formal = formal::files(design, &naming, inputs, sources)?;
-        testbench.splice(0..0, formal);
-        if let (Some(example), Some(accuracy)) = (&inputs.example, &inputs.accuracy) {
+        if sequential {
+            let formal = formal::files(design, &naming, inputs, sources)?;
+            testbench.splice(0..0, formal);
+        }
+        if let (true, Some(example), Some(accuracy)) =
+            (sequential, &inputs.example, &inputs.accuracy)
+        {
             testbench.insert(0, cocotb::bench(design, example, accuracy)?);
         }
     }
@@ -269,6 +277,20 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     let contents = manifest::contents(design, inputs, &naming, &files, &all)?;
     all.push(OutputFile { path: format!("rtl_out/{name}/{name}.json"), contents });
     Ok(all)
+}
+
+/// The top module, the control unit and the datapath.
+fn units(plan: &Plan, naming: &Naming, inputs: &EmitInputs) -> Result<Vec<(String, String)>> {
+    let control = Interface::new(plan, Unit::Control);
+    let datapath = Interface::new(plan, Unit::Datapath);
+    let units = [(Unit::Control, &control), (Unit::Datapath, &datapath)];
+    let top = render(&top::module(plan, naming, units, inputs))?;
+    let mut rtl = vec![(format!("{}.v", plan.design.name), top)];
+    for (unit, interface) in units {
+        let module = module::Builder::new(plan, naming, interface, unit).module(inputs);
+        rtl.push((format!("{}.v", naming.module(unit)), render(&module)?));
+    }
+    Ok(rtl)
 }
 
 /// The digest of a file, as the manifest holds it: SHA-256 in hexadecimal.

@@ -522,6 +522,8 @@ fn control_rom(d: &Designer, program: &Program, words: Vec<Word>, address: NetId
             address,
             data,
             synchronous: false,
+            enable: None,
+            shares: None,
             words: packed,
             doc,
             comments,

@@ -106,7 +106,7 @@ pub enum Driver {
 }
 
 /// A combinational cell. Widths are those of the nets; "same width" includes the result.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub enum Op {
     /// The operand's bits under another name or format; same width.
     Relabel(NetId),
@@ -274,6 +274,10 @@ pub struct Rom {
     pub data: NetId,
     /// Reads on the rising edge (block RAM) instead of at once (logic).
     pub synchronous: bool,
+    /// One bit; a synchronous read keeps its word while it is 0. Without it every edge reads.
+    pub enable: Option<NetId>,
+    /// Another ROM, of the same words: this is the second read port of its memory.
+    pub shares: Option<RomId>,
     /// Bit patterns.
     pub words: Vec<u64>,
     /// What one entry means, in one or more lines.
@@ -309,6 +313,18 @@ pub enum Role {
     },
     /// Input: a write strobe.
     Strobe,
+    /// Input `in_valid`: the operands are those of a point, which is taken in this clock if `in_ready`.
+    InValid,
+    /// Input: an operand of the point that is offered.
+    Point,
+    /// Input `side_in`: travels with the point.
+    SideIn,
+    /// Input `out_ready`: the results are taken in this clock.
+    OutReady,
+    /// Output `in_ready`.
+    InReady,
+    /// Output `side_out`: what came in with the point whose results are on the outputs.
+    SideOut,
     /// Output: high exactly in the words that set it; results are then on the outputs.
     Valid,
     /// Output: high from the clock after start to the end.
@@ -324,7 +340,17 @@ pub enum Role {
 impl Role {
     /// Whether the port is an input.
     pub fn is_input(self) -> bool {
-        matches!(self, Self::Reset | Self::Start | Self::Operand { .. } | Self::Strobe)
+        matches!(
+            self,
+            Self::Reset
+                | Self::Start
+                | Self::Operand { .. }
+                | Self::Strobe
+                | Self::InValid
+                | Self::Point
+                | Self::SideIn
+                | Self::OutReady
+        )
     }
 }
 
@@ -403,6 +429,65 @@ pub enum Sequence {
     End,
 }
 
+impl Control {
+    /// That of a pipeline: no microinstruction, and so neither fields nor a sequencer.
+    pub fn none() -> Self {
+        Self {
+            fields: Vec::new(),
+            words: Vec::new(),
+            rom: RomId(u32::MAX),
+            address: RegId(u32::MAX),
+            run: RegId(u32::MAX),
+        }
+    }
+}
+
+/// What a design is that takes a point every clock.
+#[derive(Clone, Debug)]
+pub struct Pipeline {
+    /// Whose delays the stages keep, by the name of the target.
+    pub target: String,
+    /// The clock that they keep.
+    pub clock_mhz: f64,
+    /// The environment can hold the results back by `out_ready`.
+    pub stall: bool,
+    /// Bits that travel with a point.
+    pub side: u32,
+    /// From the operands on. Results are behind the registers of the last: there are as many stages as
+    /// clocks from a point to its results.
+    pub stages: Vec<Stage>,
+    /// For each net its stage. A register of stage k holds what stage k - 1 made.
+    pub stage_of: Vec<usize>,
+    /// The nets that say which stage has a point, and when points move.
+    pub handshake: Vec<NetId>,
+    /// Where values are to be seen that the sequential design has in registers.
+    pub checkpoints: Vec<Checkpoint>,
+}
+
+/// The logic between two rows of registers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stage {
+    /// The microinstructions of the sequential design that compute what it computes.
+    pub microinstructions: Vec<String>,
+    /// Nanoseconds that the longest way through it takes on the target.
+    pub logic_ns: f64,
+    /// Bits of the registers that end it.
+    pub register_bits: u32,
+}
+
+/// A value of a pipeline that a register of the sequential design has in some microinstruction.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Checkpoint {
+    /// The register, by name.
+    pub register: String,
+    /// The microinstruction while which it has the value, by its place in the microprogram.
+    pub word: usize,
+    /// How often this was executed before in the same computation.
+    pub visit: usize,
+    /// The net with the value, in its stage.
+    pub net: NetId,
+}
+
 /// What the header of the emitted Verilog, the manifest and the documentation say of a device.
 #[derive(Clone, Debug, Default)]
 pub struct About {
@@ -433,8 +518,10 @@ pub struct Design {
     pub roms: Vec<Rom>,
     /// Inputs, then outputs, in order of declaration.
     pub ports: Vec<Port>,
-    /// The control unit.
+    /// The control unit; [`Control::none`] of a pipeline.
     pub control: Control,
+    /// The stages, of a pipeline.
+    pub pipeline: Option<Pipeline>,
 }
 
 impl Design {

@@ -256,7 +256,12 @@ impl Divider<'_> {
                 let sources = self.compiler.sources[slot as usize];
                 self.operand(slot, wide, sources)
             };
-            let edge = ReadEdge { to: slot(edge.to), address: slot(edge.address), ..*edge };
+            let edge = ReadEdge {
+                to: slot(edge.to),
+                address: slot(edge.address),
+                enable: slot(edge.enable),
+                ..*edge
+            };
             self.bank(wide).reads.push(edge);
         }
         for edge in registers {

@@ -282,11 +282,14 @@ impl<'a> Compiler<'a> {
             if rom.synchronous {
                 let to = self.of_net[rom.data.index()];
                 let address = self.stable(self.of_net[rom.address.index()], &written);
+                let enable = rom.enable.map_or(one, |net| self.of_net[net.index()]);
+                let enable = self.stable(enable, &written);
                 written.push(to);
                 reads.push(ReadEdge {
                     to,
                     source: self.sources[to as usize],
                     address,
+                    enable,
                     words: self.roms[at],
                 });
             }
@@ -335,7 +338,7 @@ impl<'a> Compiler<'a> {
         let mut needed = vec![false; self.sources.len()];
         let of_edge = reads
             .iter()
-            .map(|edge| edge.address)
+            .flat_map(|edge| [edge.address, edge.enable])
             .chain(registers.iter().flat_map(|edge| [edge.data, edge.enable, edge.keep]));
         let of_nets = design
             .iter()

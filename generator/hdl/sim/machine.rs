@@ -273,6 +273,10 @@ fn clock<W: Word, const LANES: usize>(
         map(&mut word, &slots[edge.address as usize], |address| {
             W::low(read(words, edge.words, address.into()))
         });
+        let [to, enable] = [edge.to, edge.enable].map(|slot| &slots[slot as usize]);
+        for lane in 0..LANES {
+            word[lane] = select_unpredictable(enable[lane] == W::ZERO, to[lane], word[lane]);
+        }
         news |= store(&mut slots[edge.to as usize], &word, edge.source);
     }
     for edge in &bank.registers {

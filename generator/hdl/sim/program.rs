@@ -170,12 +170,14 @@ pub(super) struct InputPort {
     pub mask: u64,
 }
 
-/// A synchronous ROM: at the edge, `to` takes word `address`.
+/// A synchronous ROM: at the edge, `to` takes word `address` when `enable` is 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ReadEdge {
     pub to: Slot,
     pub source: Sources,
     pub address: Slot,
+    /// The constant 1 when every edge reads.
+    pub enable: Slot,
     pub words: Span,
 }
 

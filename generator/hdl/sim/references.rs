@@ -38,7 +38,10 @@ pub(super) fn check(design: &Design) -> Result<()> {
             .try_for_each(exists)?;
     }
     for rom in &design.roms {
-        [rom.address, rom.data].into_iter().try_for_each(exists)?;
+        [Some(rom.address), Some(rom.data), rom.enable]
+            .into_iter()
+            .flatten()
+            .try_for_each(exists)?;
     }
     for port in &design.ports {
         exists(port.net)?;

@@ -3,7 +3,7 @@
 use super::naming::Naming;
 use super::text::comment;
 use crate::base::fixed::Format;
-use crate::hdl::netlist::{Design, NetId, Role, Sequence, Unit};
+use crate::hdl::netlist::{Design, NetId, Pipeline, Role, Sequence, Unit};
 use crate::package::{EmitInputs, Timing};
 
 /// Of the top module: what it computes and all that its user must know.
@@ -14,7 +14,10 @@ pub fn top(design: &Design, inputs: &EmitInputs) -> Vec<String> {
     if !about.source.is_empty() {
         lines.extend(paragraph(&format!("Source: {}", about.source)));
     }
-    lines.extend(latency(&inputs.timing));
+    match &design.pipeline {
+        None => lines.extend(latency(&inputs.timing)),
+        Some(pipeline) => lines.extend(paragraph(&stages(pipeline))),
+    }
     lines.push("//".to_owned());
     lines.push(
         "// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit"
@@ -76,6 +79,20 @@ fn latency(timing: &Timing) -> Vec<String> {
     paragraph(&format!("Latency: {}.", facts.join(", ")))
 }
 
+/// What a pipeline's user has to know of it.
+fn stages(pipeline: &Pipeline) -> String {
+    let (clocks, clock) = (pipeline.stages.len(), pipeline.clock_mhz);
+    let stall = if pipeline.stall {
+        "While out_valid is high and out_ready low, nothing moves, and in_ready is low."
+    } else {
+        "Nothing holds it: results are there for one clock."
+    };
+    format!(
+        "Pipeline: a point every clock, its results {clocks} clocks later; stages for {clock:.0} MHz on {}. {stall}",
+        pipeline.target
+    )
+}
+
 /// The ports with format and role, in columns.
 fn ports(design: &Design) -> Vec<String> {
     let name = |net: NetId| design.net(net).name.as_str();
@@ -93,6 +110,12 @@ fn ports(design: &Design) -> Vec<String> {
             Role::Done => "high in the last clock of a computation".to_owned(),
             Role::Result => "result".to_owned(),
             Role::Status => "status".to_owned(),
+            Role::InValid => "a point is offered: the operands are its own".to_owned(),
+            Role::InReady => "the point that is offered is taken in this clock".to_owned(),
+            Role::Point => "operand".to_owned(),
+            Role::SideIn => "travels with the point".to_owned(),
+            Role::SideOut => "side_in of the point whose results these are".to_owned(),
+            Role::OutReady => "the results are taken in this clock".to_owned(),
         };
         let format = match net.format {
             Format::BIT => String::new(),

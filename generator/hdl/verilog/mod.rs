@@ -7,6 +7,7 @@ pub(crate) mod header;
 pub(crate) mod interface;
 pub(crate) mod module;
 pub(crate) mod naming;
+pub(crate) mod pipeline;
 pub(crate) mod plan;
 pub(crate) mod rows;
 pub(crate) mod text;

@@ -46,10 +46,10 @@ impl<'a> Builder<'a> {
     /// The module.
     pub fn module(mut self, inputs: &EmitInputs) -> Module {
         // Statements first: they tell which constants and choices are to be declared.
-        let items = self.items();
-        let groups = self.groups();
+        let items = self.items(&|_| true);
+        let groups = self.groups(&|_| true);
         let constants = self.constants();
-        let state = self.state();
+        let state = self.state(&|_| true);
         let sections = [("Constants", constants), ("Registers", state)];
         Module {
             header: header::unit(self.plan.design, self.unit, inputs, self.naming),
@@ -68,7 +68,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn ports(&self) -> Vec<String> {
+    pub(super) fn ports(&self) -> Vec<String> {
         let mut rows = Vec::new();
         if self.interface.clocked {
             rows.push(Row::port("input", "wire", 1, false, "clk", ""));
@@ -94,22 +94,23 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The declarations of what the clock changes, except ports.
-    fn state(&self) -> Vec<String> {
+    /// The declarations of what the clock changes and is wanted, except ports.
+    pub(super) fn state(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<String> {
         let design = self.plan.design;
         let registers = design.registers.iter().map(|register| register.q);
         let roms = design.roms.iter().filter(|rom| rom.synchronous).map(|rom| rom.data);
         let rows: Vec<_> = registers
             .chain(roms)
             .filter(|net| {
-                self.plan.unit(*net) == self.unit && !self.interface.outputs.contains(net)
+                let here = self.plan.unit(*net) == self.unit && wanted(*net);
+                here && !self.interface.outputs.contains(net)
             })
             .map(|net| Row::net(self.plan, "", "reg", net))
             .collect();
         Row::declarations(&rows)
     }
 
-    fn constants(&self) -> Vec<String> {
+    pub(super) fn constants(&self) -> Vec<String> {
         let design = self.plan.design;
         let mut lines = Vec::new();
         for constant in &self.expressions.constants {
@@ -123,11 +124,13 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    fn items(&mut self) -> Vec<Spaced> {
+    /// The cells and memories whose nets are wanted.
+    pub(super) fn items(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Spaced> {
         let design = self.plan.design;
         let mut items = Vec::new();
         for &id in &self.plan.live {
-            if self.plan.unit(id) != self.unit || self.plan.forms[id.index()] != Form::Declared {
+            let declared = self.plan.forms[id.index()] == Form::Declared;
+            if self.plan.unit(id) != self.unit || !declared || !wanted(id) {
                 continue;
             }
             match &design.net(id).driver {
@@ -142,7 +145,7 @@ impl<'a> Builder<'a> {
             }
         }
         for &rom in &self.interface.roms {
-            if design.rom(rom).synchronous {
+            if design.rom(rom).synchronous && wanted(design.rom(rom).data) {
                 items.push(self.rom(rom));
             }
         }
@@ -235,7 +238,9 @@ impl<'a> Builder<'a> {
         let read = match rom.synchronous {
             true => {
                 let data = &self.plan.design.net(rom.data).name;
-                format!("always @(posedge clk) {data} <= {word};")
+                let when = rom.enable.map(|enable| self.expressions.whole(enable));
+                let when = when.map_or_else(String::new, |enable| format!("if ({enable}) "));
+                format!("always @(posedge clk) {when}{data} <= {word};")
             }
             false => format!("{} = {word};", self.target(rom.data)),
         };
@@ -246,18 +251,19 @@ impl<'a> Builder<'a> {
             last: rom.words.len().saturating_sub(1),
             radix: if control { 'b' } else { 'h' },
             parameter: self.naming.parameters[id.index()].clone(),
+            second: rom.shares.is_some(),
             read: statement(4, &read),
         })
     }
 
     /// Registers with the same enable and the same reset behaviour share a block.
-    fn groups(&mut self) -> Vec<Vec<String>> {
+    pub(super) fn groups(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
         /// The enable, and whether reset sets the registers.
         type Key = (Option<NetId>, bool);
         let design = self.plan.design;
         let mut groups: Vec<(Key, Vec<RegId>)> = Vec::new();
         for (at, register) in design.registers.iter().enumerate() {
-            if self.plan.unit(register.q) != self.unit {
+            if self.plan.unit(register.q) != self.unit || !wanted(register.q) {
                 continue;
             }
             let key = (register.enable, register.reset.is_some());
@@ -313,7 +319,7 @@ impl<'a> Builder<'a> {
         lines
     }
 
-    fn unused(&self) -> Vec<String> {
+    pub(super) fn unused(&self) -> Vec<String> {
         let ranges = unread(self.plan, self.unit, self.interface);
         if ranges.is_empty() {
             return Vec::new();
@@ -329,7 +335,7 @@ impl<'a> Builder<'a> {
 
 /// The file parameters of ROMs, with their commas.
 pub fn parameters(naming: &Naming, roms: &[RomId]) -> Vec<String> {
-    let texts = roms.iter().map(|rom| {
+    let texts = roms.iter().filter(|rom| !naming.second.contains(rom)).map(|rom| {
         format!("parameter {} = \"{}\"", naming.parameters[rom.index()], naming.files[rom.index()])
     });
     separated(texts.collect())

@@ -15,6 +15,8 @@ pub struct Naming {
     pub parameters: Vec<String>,
     /// The file of each ROM.
     pub files: Vec<String>,
+    /// The ROMs that are the second read port of another, and have its memory.
+    pub second: Vec<RomId>,
     /// The localparams of each field's choices, by value.
     pub choices: Vec<Vec<String>>,
     /// The net that takes unread bits. Linters leave a net alone whose name contains `unused`.
@@ -29,14 +31,21 @@ impl Naming {
     pub fn new(design: &Design) -> Self {
         let mut names = Names::new(design.nets.iter().map(|net| net.name.as_str()));
         names.fresh("clk");
+        let control_instance = names.fresh("control");
+        let datapath_instance = names.fresh("datapath");
+        let mut memories: Vec<String> = Vec::new();
+        for rom in &design.roms {
+            memories.push(match rom.shares {
+                Some(first) => memories[first.index()].clone(),
+                None => names.fresh(&format!("{}_rom", rom.name)),
+            });
+        }
+        let numbers = (0..design.roms.len() as u32).map(RomId);
         Self {
-            control_instance: names.fresh("control"),
-            datapath_instance: names.fresh("datapath"),
-            memories: design
-                .roms
-                .iter()
-                .map(|rom| names.fresh(&format!("{}_rom", rom.name)))
-                .collect(),
+            control_instance,
+            datapath_instance,
+            memories,
+            second: numbers.filter(|&rom| design.rom(rom).shares.is_some()).collect(),
             parameters: design
                 .roms
                 .iter()

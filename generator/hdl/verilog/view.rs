@@ -67,6 +67,8 @@ pub enum Item {
 pub struct RomItem {
     /// Comment lines.
     pub comment: Vec<String>,
+    /// It is the second read port of a memory that is there.
+    pub second: bool,
     /// `[7:0]`.
     pub range: String,
     /// The memory's name.
@@ -109,4 +111,36 @@ pub struct Instance {
     pub parameters: Vec<String>,
     /// Ports with comma.
     pub connections: Vec<String>,
+}
+
+/// A pipeline: one module, stage by stage.
+#[derive(Template)]
+#[template(path = "pipeline.v")]
+pub struct PipelineModule {
+    /// Comment lines.
+    pub header: Vec<String>,
+    /// Its name.
+    pub name: String,
+    /// Parameters with default and comma.
+    pub parameters: Vec<String>,
+    /// Ports with comma and comment.
+    pub ports: Vec<String>,
+    /// Localparams.
+    pub constants: Vec<String>,
+    /// The handshake, the stages, the outputs.
+    pub stages: Vec<StageSection>,
+    /// The net that takes the bits that nobody reads, or nothing.
+    pub unused: Vec<String>,
+}
+
+/// A part of a pipeline.
+pub struct StageSection {
+    /// Comment lines.
+    pub title: Vec<String>,
+    /// The registers that end it.
+    pub registers: Vec<String>,
+    /// Combinational cells and ROMs, operands first.
+    pub items: Vec<Spaced>,
+    /// The bodies of the clocked blocks.
+    pub groups: Vec<Vec<String>>,
 }

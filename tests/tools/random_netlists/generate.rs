@@ -68,13 +68,8 @@ fn skeleton(seed: u64) -> Design {
         registers: Vec::new(),
         roms: Vec::new(),
         ports: Vec::new(),
-        control: Control {
-            fields: Vec::new(),
-            words: Vec::new(),
-            rom: RomId(0),
-            address: RegId(0),
-            run: RegId(0),
-        },
+        control: Control::none(),
+        pipeline: None,
     }
 }
 
@@ -145,6 +140,8 @@ impl Build {
             address,
             data,
             synchronous,
+            enable: None,
+            shares: None,
             words,
             doc: vec!["a random word".to_owned()],
             comments: Vec::new(),

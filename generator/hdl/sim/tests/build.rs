@@ -16,13 +16,7 @@ pub struct Build {
 
 impl Build {
     pub fn new() -> Self {
-        let control = Control {
-            fields: Vec::new(),
-            words: Vec::new(),
-            rom: RomId(0),
-            address: RegId(0),
-            run: RegId(0),
-        };
+        let control = Control::none();
         let mut build = Self {
             design: Design {
                 name: "probe".to_owned(),
@@ -31,6 +25,7 @@ impl Build {
                 registers: Vec::new(),
                 roms: Vec::new(),
                 ports: Vec::new(),
+                pipeline: None,
                 control,
             },
             rst_n: NetId(0),
@@ -107,6 +102,8 @@ impl Build {
             address,
             data,
             synchronous,
+            enable: None,
+            shares: None,
             words: words.to_vec(),
             doc: Vec::new(),
             comments: Vec::new(),

@@ -1,0 +1,119 @@
+//! Golden model and simulated hardware side by side, whatever the architecture.
+
+use std::io::Write;
+
+use anyhow::Result;
+
+use super::lockstep::{Outcome, Sequential};
+use super::pipelined::Pipelined;
+use crate::golden::{Contract, Model};
+use crate::hdl::netlist::Design;
+use crate::hdl::sim::Simulator;
+use crate::package::Vectors;
+
+/// Golden model and simulator of one design.
+pub struct Lockstep<'a>(Architecture<'a>);
+
+enum Architecture<'a> {
+    Sequential(Sequential<'a>),
+    Pipelined(Pipelined<'a>),
+}
+
+use Architecture::{Pipelined as Pipe, Sequential as Core};
+
+impl<'a> Lockstep<'a> {
+    /// Pairs them by the names of ports and registers.
+    ///
+    /// # Errors
+    /// A name of one side that the other does not have.
+    pub fn new(
+        design: &'a Design,
+        model: Box<dyn Model>,
+        contract: &'a dyn Contract,
+        seed: u64,
+    ) -> Result<Self> {
+        Ok(Self(match &design.pipeline {
+            None => Core(Sequential::new(design, model, contract, seed)?),
+            Some(pipeline) => Pipe(Pipelined::new(design, pipeline, model, contract, seed)?),
+        }))
+    }
+
+    /// The same with some operands held at raw values: the stimulus seldom draws others for them.
+    #[must_use]
+    pub fn holding(self, held: &[(String, i64)]) -> Self {
+        Self(match self.0 {
+            Core(core) => Core(core.holding(held)),
+            Pipe(pipe) => Pipe(pipe.holding(held)),
+        })
+    }
+
+    /// Runs until `points` results were seen or something differs, on all threads of rayon's pool.
+    ///
+    /// `progress` is told now and then how many points there are more.
+    ///
+    /// # Errors
+    /// A design that cannot be simulated, or does not settle.
+    pub fn run(&self, points: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Outcome> {
+        match &self.0 {
+            Core(core) => core.run(points, progress),
+            Pipe(pipe) => pipe.run(points, progress),
+        }
+    }
+
+    /// As [`Lockstep::run`], in one stream.
+    ///
+    /// # Errors
+    /// Those of [`Lockstep::run`].
+    pub fn run_alone(&self, points: u64) -> Result<Outcome> {
+        match &self.0 {
+            Core(core) => core.run_alone(points),
+            Pipe(pipe) => pipe.run_alone(points),
+        }
+    }
+
+    /// Goes through the streams of a run of `points` results, each alone. `begin` makes what watches a stream,
+    /// of its seed; after each clock `note` shows it the results so far and the simulator. They come back
+    /// in the order of the streams.
+    ///
+    /// # Errors
+    /// Those of [`Lockstep::run`].
+    pub fn watch<W: Send>(
+        &self,
+        points: u64,
+        begin: impl Fn(u64) -> W + Sync,
+        note: impl Fn(&mut W, u64, &Simulator) + Sync,
+    ) -> Result<Vec<W>> {
+        match &self.0 {
+            Core(core) => core.watch(points, begin, note),
+            Pipe(pipe) => pipe.watch(points, begin, note),
+        }
+    }
+
+    /// Stimulus and expected outputs for a bench: the inputs of every clock of one stream of `points`
+    /// results, and the outputs before its edge.
+    ///
+    /// # Errors
+    /// Golden model and simulation differ; a design that cannot be simulated, or does not settle.
+    pub fn record(&self, points: u64) -> Result<Vectors> {
+        match &self.0 {
+            Core(core) => core.record(points),
+            Pipe(pipe) => pipe.record(points),
+        }
+    }
+
+    /// As [`Lockstep::run`], in one stream, of which `file` takes the waveform from clock `from` on.
+    ///
+    /// # Errors
+    /// Those of [`Lockstep::run`]; the file cannot be written.
+    pub fn trace(
+        &self,
+        points: u64,
+        from: u64,
+        file: impl Write + Send + 'static,
+    ) -> Result<Outcome> {
+        match &self.0 {
+            Core(core) => core.trace(points, from, file),
+            Pipe(pipe) => pipe.trace(points, from, file),
+        }
+    }
+}

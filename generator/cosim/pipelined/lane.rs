@@ -1,0 +1,138 @@
+//! One stream of points through a pipeline: what is offered and taken, and what is expected where.
+
+use anyhow::Result;
+
+use super::Setup;
+use super::reference::{Expected, Reference};
+use crate::base::fixed::mask;
+use crate::cosim::lockstep::Worst;
+use crate::cosim::stimulus::Random;
+use crate::golden::pipeline::Occupancy;
+
+/// How eager a side of the handshake is: it is ready once in so many clocks.
+const PACES: [u64; 4] = [1, 1, 2, 5];
+
+/// Clocks for which a pace is kept.
+const PACE_CLOCKS: u64 = 24;
+
+/// A reset comes once in so many clocks.
+const RESET_CLOCKS: u64 = 1024;
+
+/// A point on its way.
+#[derive(Clone, Debug)]
+pub(super) struct Point {
+    /// Bit patterns.
+    pub operands: Vec<u64>,
+    pub side: u64,
+    pub expected: Expected,
+}
+
+/// A stream.
+pub(super) struct Lane {
+    seed: u64,
+    random: Random,
+    reference: Reference,
+    /// What is offered until it is taken.
+    offered: Option<Point>,
+    pub(super) stages: Occupancy<Point>,
+    reset_left: u64,
+    pace: (u64, u64),
+    pace_left: u64,
+    /// The inputs of the latest clock.
+    pub(super) inputs: Vec<u64>,
+    pub(super) points: u64,
+    pub(super) clocks: u64,
+    pub(super) worst: Option<Worst>,
+    pub(super) out_ready: bool,
+}
+
+impl Lane {
+    pub(super) fn new(setup: &Setup<'_>, seed: u64) -> Result<Self> {
+        Ok(Self {
+            seed,
+            random: Random::new(seed),
+            reference: setup.reference()?,
+            offered: None,
+            stages: Occupancy::empty(setup.latency),
+            // Resets are there from power-up on.
+            reset_left: 2,
+            pace: (1, 1),
+            pace_left: 0,
+            inputs: vec![0; setup.inputs],
+            points: 0,
+            clocks: 0,
+            worst: None,
+            out_ready: true,
+        })
+    }
+
+    pub(super) fn seed(&self) -> u64 {
+        self.seed
+    }
+
+    /// The inputs of the next clock, and what they make of the points.
+    pub(super) fn clock(&mut self, setup: &Setup<'_>) -> Result<()> {
+        self.clocks += 1;
+        if self.pace_left == 0 {
+            let mut pace = || PACES[self.random.below(PACES.len() as u64) as usize];
+            self.pace = (pace(), pace());
+            self.pace_left = PACE_CLOCKS;
+        }
+        self.pace_left -= 1;
+        if self.reset_left == 0 && self.random.once_in(RESET_CLOCKS) {
+            self.reset_left = 1 + self.random.below(3);
+        }
+        let rst_n = self.reset_left == 0;
+        self.reset_left = self.reset_left.saturating_sub(1);
+        // What is offered stays until it is taken; now and then it is withdrawn.
+        if self.offered.is_some() && self.random.once_in(64) {
+            self.offered = None;
+        }
+        if self.offered.is_none() && self.random.once_in(self.pace.0) {
+            let operands: Vec<u64> =
+                setup.operands.iter().map(|operand| self.random.pattern(operand)).collect();
+            let expected = self.reference.point(&operands)?;
+            let side = self.random.bits() & mask(setup.side.max(1));
+            self.offered = Some(Point { operands, side, expected });
+        }
+        let out_ready = !setup.stall || self.random.once_in(self.pace.1);
+        self.out_ready = out_ready;
+        self.inputs[setup.reset] = u64::from(rst_n);
+        self.inputs[setup.in_valid] = u64::from(self.offered.is_some());
+        for (at, &position) in setup.positions.iter().enumerate() {
+            self.inputs[position] = match &self.offered {
+                Some(point) => point.operands[at],
+                None => self.random.pattern(&setup.operands[at]),
+            };
+        }
+        if let Some(at) = setup.side_in {
+            let noise = self.random.bits() & mask(setup.side);
+            self.inputs[at] = self.offered.as_ref().map_or(noise, |point| point.side);
+        }
+        if let Some(at) = setup.out_ready {
+            self.inputs[at] = u64::from(out_ready);
+        }
+        let moves = self.stages.moves(out_ready);
+        let offered = if moves { self.offered.take() } else { self.offered.clone() };
+        if let Some(point) = self.stages.clock(rst_n, offered, out_ready) {
+            self.points += 1;
+            self.judge(setup, &point);
+        }
+        Ok(())
+    }
+
+    /// The error of a result against the formula.
+    fn judge(&mut self, setup: &Setup<'_>, point: &Point) {
+        let Some((units, at)) = setup.formula.worst(&point.operands, &point.expected.results)
+        else {
+            return;
+        };
+        if self.worst.as_ref().is_none_or(|worst| units > worst.units) {
+            self.worst = Some(Worst {
+                units,
+                output: setup.design.net(setup.results[at]).name.clone(),
+                operands: setup.formula.operands(&point.operands).0,
+            });
+        }
+    }
+}

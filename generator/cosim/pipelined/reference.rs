@@ -1,0 +1,218 @@
+//! What the golden model says of one point: its results, and its registers along the microprogram.
+
+use anyhow::{Context, Result, anyhow};
+
+use crate::golden::{Contract, Model};
+use crate::hdl::netlist::{Design, NetId, Pipeline, Role};
+
+/// A computation ends within so many clocks.
+const MOST_CLOCKS: usize = 8192;
+
+/// The golden model of the sequential core, run a point at a time.
+pub(super) struct Reference {
+    model: Box<dyn Model>,
+    inputs: Vec<u64>,
+    reset: usize,
+    start: usize,
+    /// For each operand of the pipeline, data and strobe among the model's inputs.
+    operands: Vec<(usize, usize)>,
+    busy: usize,
+    valid: usize,
+    address: usize,
+    /// The signals of the results.
+    results: Vec<usize>,
+    /// For each checkpoint, its signal.
+    registers: Vec<usize>,
+    /// For each microinstruction, the checkpoints in it: how often it was executed before, and which.
+    due: Vec<Vec<(usize, usize)>>,
+    visits: Vec<usize>,
+}
+
+/// What is expected of a point.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Expected {
+    /// The results, bit patterns.
+    pub results: Vec<u64>,
+    /// For each checkpoint the value of its register, if the point came there.
+    pub registers: Vec<Option<u64>>,
+}
+
+impl Reference {
+    /// # Errors
+    /// A name of one side that the other does not have.
+    pub(super) fn new(
+        design: &Design,
+        pipeline: &Pipeline,
+        model: &dyn Model,
+        results: &[NetId],
+    ) -> Result<Self> {
+        let input = |name: &str| {
+            let at = model.inputs().iter().position(|other| other == name);
+            at.with_context(|| format!("the golden model has no input `{name}`"))
+        };
+        let signal = |name: &str| {
+            let at = model.signals().iter().position(|other| other == name);
+            at.with_context(|| format!("the golden model does not predict `{name}`"))
+        };
+        let name = |net: NetId| design.net(net).name.as_str();
+        let operands = design
+            .ports
+            .iter()
+            .filter(|port| port.role == Role::Point)
+            .map(|port| {
+                let name = name(port.net);
+                Ok((input(name)?, input(&format!("{name}_write"))?))
+            })
+            .collect::<Result<_>>()?;
+        let checkpoints = &pipeline.checkpoints;
+        let registers =
+            checkpoints.iter().map(|it| signal(&it.register)).collect::<Result<Vec<_>>>()?;
+        let words = checkpoints.iter().map(|it| it.word + 1).max().unwrap_or(0);
+        let mut due = vec![Vec::new(); words];
+        for (at, checkpoint) in checkpoints.iter().enumerate() {
+            due[checkpoint.word].push((checkpoint.visit, at));
+        }
+        Ok(Self {
+            inputs: vec![0; model.inputs().len()],
+            reset: input("rst_n")?,
+            start: input("start")?,
+            operands,
+            busy: signal("busy")?,
+            valid: signal("valid")?,
+            address: signal("word_address")?,
+            results: results.iter().map(|&net| signal(name(net))).collect::<Result<_>>()?,
+            registers,
+            visits: vec![0; words],
+            due,
+            model: model.boxed_clone(),
+        })
+    }
+
+    /// One computation, of these bit patterns.
+    ///
+    /// # Errors
+    /// A model that does not come to an end.
+    pub(super) fn point(&mut self, operands: &[u64]) -> Result<Expected> {
+        self.inputs.fill(0);
+        self.inputs[self.reset] = 1;
+        self.inputs[self.start] = 1;
+        for (&bits, &(data, strobe)) in operands.iter().zip(&self.operands) {
+            self.inputs[data] = bits;
+            self.inputs[strobe] = 1;
+        }
+        self.model.clock(&self.inputs);
+        self.inputs.fill(0);
+        self.inputs[self.reset] = 1;
+        self.visits.fill(0);
+        let mut expected =
+            Expected { results: Vec::new(), registers: vec![None; self.registers.len()] };
+        for _ in 0..MOST_CLOCKS {
+            let values = self.model.values();
+            if values[self.busy] == 0 {
+                return Ok(expected);
+            }
+            let word = values[self.address] as usize;
+            if let Some(due) = self.due.get(word) {
+                for &(visit, at) in due {
+                    if visit == self.visits[word] {
+                        expected.registers[at] = Some(values[self.registers[at]]);
+                    }
+                }
+                self.visits[word] += 1;
+            }
+            if values[self.valid] == 1 && expected.results.is_empty() {
+                expected.results.extend(self.results.iter().map(|&at| values[at]));
+            }
+            self.model.clock(&self.inputs);
+        }
+        Err(anyhow!("the golden model does not end"))
+    }
+}
+
+/// The largest error of results against the formula in f64.
+pub(super) struct Formula<'a> {
+    contract: &'a dyn Contract,
+    /// For each operand of the contract its position among those of the pipeline.
+    operands: Vec<usize>,
+    /// For each output of the contract its position among the results, the value of its last place, its
+    /// sign and width, and the value of the last place of its colour operand.
+    outputs: Vec<(usize, crate::base::fixed::Format, f64)>,
+}
+
+impl<'a> Formula<'a> {
+    /// # Errors
+    /// A name of one side that the other does not have.
+    pub(super) fn new(
+        design: &Design,
+        contract: &'a dyn Contract,
+        results: &[NetId],
+    ) -> Result<Self> {
+        let name = |net: NetId| design.net(net).name.as_str();
+        let ports: Vec<&str> = design
+            .ports
+            .iter()
+            .filter(|port| port.role == Role::Point)
+            .map(|port| name(port.net))
+            .collect();
+        let operands = contract
+            .operands()
+            .iter()
+            .map(|operand| {
+                let at = ports.iter().position(|&port| port == operand.name);
+                at.with_context(|| format!("the contract speaks of operand `{}`", operand.name))
+            })
+            .collect::<Result<_>>()?;
+        let colours = contract.operands().iter().filter(|operand| operand.colour);
+        let outputs = contract
+            .outputs()
+            .iter()
+            .zip(colours)
+            .map(|(output, colour)| {
+                let at = results.iter().position(|&net| name(net) == output);
+                let at =
+                    at.with_context(|| format!("the contract takes `{output}` for an output"))?;
+                let unit = crate::base::fixed::exp2(-colour.format.frac);
+                Ok((at, design.net(results[at]).format, unit))
+            })
+            .collect::<Result<_>>()?;
+        Ok(Self { contract, operands, outputs })
+    }
+
+    /// The raw operands in the order of the contract, with names; and whether they are in the domain.
+    pub(super) fn operands(&self, bits: &[u64]) -> (Vec<(String, i64)>, bool) {
+        let all = self.contract.operands().iter().zip(&self.operands);
+        let raw: Vec<(String, i64)> = all
+            .map(|(operand, &at)| (operand.name.clone(), operand.format.raw(bits[at]) as i64))
+            .collect();
+        let inside = raw.iter().zip(self.contract.operands());
+        let inside = inside
+            .into_iter()
+            .all(|((_, raw), operand)| (operand.domain.0..=operand.domain.1).contains(raw));
+        (raw, inside)
+    }
+
+    /// The largest error, in output units, and its output.
+    pub(super) fn worst(&self, bits: &[u64], results: &[u64]) -> Option<(f64, usize)> {
+        let operands = self.contract.operands();
+        let mut raw = Vec::with_capacity(operands.len());
+        for (operand, &at) in operands.iter().zip(&self.operands) {
+            let value = operand.format.raw(bits[at]) as i64;
+            if !(operand.domain.0..=operand.domain.1).contains(&value) {
+                return None;
+            }
+            raw.push(value);
+        }
+        let (control, colours) = raw.split_at(raw.len() - self.outputs.len());
+        let f = self.contract.references(&self.contract.point(control, 0));
+        let mut largest = None;
+        for (&(at, format, unit), &colour) in self.outputs.iter().zip(colours) {
+            let colour = colour as f64 * unit;
+            let value = format.to_f64(format.raw(results[at]));
+            let units = crate::golden::nearer(value, f.map(|f| f * colour));
+            if largest.is_none_or(|(most, _)| units > most) {
+                largest = Some((units, at));
+            }
+        }
+        largest
+    }
+}

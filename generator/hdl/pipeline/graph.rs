@@ -1,0 +1,470 @@
+//! The unrolled computation: an acyclic graph of values, each made once.
+//!
+//! A node is what one net carries in one clock of the computation. Equal nodes are one node, constants
+//! fold, and wiring that changes nothing disappears, so that what remains is what a point needs.
+//! Operands of an [`Op`] are nodes here, not nets of a design.
+
+use std::collections::HashMap;
+use std::panic::Location;
+
+use super::value::evaluate;
+use crate::fixed::{Format, mask};
+use crate::hdl::netlist::{NetId, Op, RomId};
+
+/// The smallest and the largest raw value.
+pub type Interval = (i128, i128);
+
+/// Where a value comes from.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub enum Cell {
+    /// An operand, by its position among those of the design.
+    Operand(usize),
+    /// What nothing has determined: a register before its first load, by its name.
+    Unknown(String),
+    /// A bit pattern.
+    Constant(u64),
+    /// The word that a ROM has at an address.
+    Read {
+        /// Of the sequential design.
+        rom: RomId,
+        /// The node with the address.
+        address: NetId,
+    },
+    /// A combinational cell; its operands are nodes.
+    Op(Op),
+}
+
+/// What a reader is told of a value.
+#[derive(Clone, Debug)]
+pub struct Label {
+    /// The net or register of the sequential design that carries it.
+    pub name: String,
+    /// One line, as in the sequential design.
+    pub doc: String,
+    /// The number of the block in the source's figure.
+    pub block: Option<u16>,
+    /// Named by the author of the description.
+    pub named: bool,
+    /// Where the description says so.
+    pub location: &'static Location<'static>,
+}
+
+/// A value.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// What makes it.
+    pub cell: Cell,
+    /// Its width, sign and point.
+    pub format: Format,
+    /// The raw values that it can have.
+    pub range: Interval,
+    /// Its name and place.
+    pub label: Label,
+    /// The microinstruction that needs it first, as a position in [`super::unroll::Unrolled::steps`].
+    pub step: usize,
+    /// A register of the sequential design takes it.
+    pub held: bool,
+}
+
+/// All values of a computation. A node stands after its operands.
+#[derive(Clone, Debug, Default)]
+pub struct Graph {
+    /// The nodes, by number.
+    pub nodes: Vec<Node>,
+    known: HashMap<(Cell, u32, bool), NetId>,
+    /// The microinstruction that new nodes belong to.
+    pub step: usize,
+}
+
+impl Graph {
+    /// The node of this number.
+    pub fn node(&self, id: NetId) -> &Node {
+        &self.nodes[id.index()]
+    }
+
+    /// Bits of a node.
+    pub fn width(&self, id: NetId) -> u32 {
+        self.node(id).format.width()
+    }
+
+    /// The bit pattern of a constant.
+    pub fn constant_of(&self, id: NetId) -> Option<u64> {
+        match self.node(id).cell {
+            Cell::Constant(bits) => Some(bits),
+            _ => None,
+        }
+    }
+
+    /// Every node that these need, themselves too, in order.
+    pub fn cone(&self, roots: impl IntoIterator<Item = NetId>) -> Vec<NetId> {
+        let mut live = vec![false; self.nodes.len()];
+        for root in roots {
+            live[root.index()] = true;
+        }
+        for at in (0..self.nodes.len()).rev() {
+            if live[at] {
+                for operand in self.nodes[at].cell.operands() {
+                    live[operand.index()] = true;
+                }
+            }
+        }
+        (0..self.nodes.len()).filter(|&at| live[at]).map(|at| NetId(at as u32)).collect()
+    }
+
+    /// The node, which from now on has the values of `range` alone.
+    pub fn refine(&mut self, id: NetId, range: Interval) -> NetId {
+        let node = &mut self.nodes[id.index()];
+        let both = (node.range.0.max(range.0), node.range.1.min(range.1));
+        // Of a path that is never taken, the intersection can be empty.
+        if both.0 <= both.1 {
+            node.range = both;
+        }
+        id
+    }
+
+    /// The value is what a register takes: it is known by the register's name from now on.
+    pub fn name_after(&mut self, id: NetId, register: &Label) {
+        let node = &mut self.nodes[id.index()];
+        if !matches!(node.cell, Cell::Constant(_)) && !node.held {
+            node.label = register.clone();
+            node.held = true;
+        }
+    }
+
+    /// A constant.
+    pub fn constant(&mut self, bits: u64, format: Format, label: &Label) -> NetId {
+        let bits = bits & mask(format.width());
+        let raw = format.raw(bits);
+        self.insert(Cell::Constant(bits), format, (raw, raw), label)
+    }
+
+    /// The word of a ROM. `words` are its contents.
+    pub fn read(
+        &mut self,
+        rom: RomId,
+        address: NetId,
+        words: &[u64],
+        format: Format,
+        label: &Label,
+    ) -> NetId {
+        if let Some(at) = self.constant_of(address) {
+            let word = words.get(at as usize).copied().unwrap_or(0);
+            return self.constant(word, format, label);
+        }
+        let (low, high) = self.node(address).range;
+        let from = usize::try_from(low).unwrap_or(0).min(words.len().saturating_sub(1));
+        let to = usize::try_from(high).map_or(words.len(), |high| words.len().min(high + 1));
+        let raws = words[from..to.max(from + 1)].iter().map(|&word| format.raw(word));
+        let range = raws.fold(None, |range: Option<Interval>, raw| {
+            Some(range.map_or((raw, raw), |(low, high)| (low.min(raw), high.max(raw))))
+        });
+        self.insert(Cell::Read { rom, address }, format, range.unwrap_or((0, 0)), label)
+    }
+
+    /// The leaf for an operand or an unknown.
+    pub fn leaf(&mut self, cell: Cell, format: Format, range: Interval, label: &Label) -> NetId {
+        self.insert(cell, format, range, label)
+    }
+
+    pub(super) fn insert(
+        &mut self,
+        cell: Cell,
+        format: Format,
+        range: Interval,
+        label: &Label,
+    ) -> NetId {
+        let key = (cell.clone(), format.width(), format.signed);
+        if let Some(&id) = self.known.get(&key) {
+            let node = &mut self.nodes[id.index()];
+            if label.named && !node.label.named {
+                node.label = label.clone();
+            }
+            return self.refine(id, range);
+        }
+        let id = NetId(self.nodes.len() as u32);
+        let (label, step) = (label.clone(), self.step);
+        self.nodes.push(Node { cell, format, range, label, step, held: false });
+        self.known.insert(key, id);
+        id
+    }
+
+    /// The bits of `id` from the lowest on as a number of this width and sign.
+    pub fn resize(&mut self, id: NetId, width: u32, signed: bool) -> NetId {
+        let node = self.node(id);
+        let (format, label) = (node.format, Label { named: false, ..node.label.clone() });
+        let frac = format.frac;
+        let wanted = Format { signed, int: width as i32 - frac - i32::from(signed), frac };
+        match width.cmp(&format.width()) {
+            std::cmp::Ordering::Less => self.op(Op::Slice { of: id, low: 0 }, wanted, &label),
+            std::cmp::Ordering::Equal => self.op(Op::Relabel(id), wanted, &label),
+            std::cmp::Ordering::Greater => self.op(Op::Extend(id), wanted, &label),
+        }
+    }
+
+    /// A cell, folded as far as it can be.
+    pub fn op(&mut self, op: Op, format: Format, label: &Label) -> NetId {
+        if let Some(id) = self.fold(&op, format, label) {
+            let node = &mut self.nodes[id.index()];
+            let plain = !matches!(node.cell, Cell::Constant(_) | Cell::Operand(_));
+            if plain && label.named && !node.label.named {
+                node.label = label.clone();
+            }
+            return id;
+        }
+        let range = self.range_of(&op, format);
+        if range.0 == range.1 {
+            return self.constant(format.bits(range.0), format, label);
+        }
+        self.insert(Cell::Op(op), format, range, label)
+    }
+
+    /// A node that already is what the cell would give, or one that is less.
+    fn fold(&mut self, op: &Op, format: Format, label: &Label) -> Option<NetId> {
+        let operands = op.operands();
+        let known: Option<Vec<u64>> = operands.iter().map(|&id| self.constant_of(id)).collect();
+        if let Some(values) = known {
+            let formats: Vec<Format> = operands.iter().map(|&id| self.node(id).format).collect();
+            let bits = evaluate(op, format, &values, &formats);
+            return Some(self.constant(bits, format, label));
+        }
+        let width = format.width();
+        let same = |graph: &Self, id: NetId| {
+            let other = graph.node(id).format;
+            other.width() == width && other.signed == format.signed
+        };
+        match op {
+            Op::Relabel(a) if same(self, *a) => Some(*a),
+            Op::Relabel(a) => match self.node(*a).cell {
+                Cell::Op(Op::Relabel(b)) => Some(self.op(Op::Relabel(b), format, label)),
+                _ => None,
+            },
+            Op::Extend(a) => {
+                let inner = self.node(*a);
+                let Cell::Op(Op::Extend(b)) = inner.cell else { return None };
+                let b_signed = self.node(b).format.signed;
+                (b_signed == inner.format.signed || !b_signed)
+                    .then(|| self.op(Op::Extend(b), format, label))
+            }
+            Op::Slice { of, low } => self.fold_slice(*of, *low, format, label),
+            Op::Concat(parts) => match &parts[..] {
+                [only] => Some(self.op(Op::Relabel(*only), format, label)),
+                _ => None,
+            },
+            Op::Not(a) => match self.node(*a).cell {
+                Cell::Op(Op::Not(b)) if same(self, b) => Some(b),
+                _ => None,
+            },
+            Op::And(a, b) | Op::Or(a, b) | Op::Xor(a, b) => {
+                let (a, b) = if self.constant_of(*a).is_some() { (*b, *a) } else { (*a, *b) };
+                let ones = mask(width);
+                match (op, self.constant_of(b)) {
+                    (Op::And(..), Some(0)) => Some(self.constant(0, format, label)),
+                    (Op::Or(..), Some(bits)) if bits == ones => {
+                        Some(self.constant(ones, format, label))
+                    }
+                    (Op::And(..), Some(bits)) if bits == ones && same(self, a) => Some(a),
+                    (Op::Or(..) | Op::Xor(..), Some(0)) if same(self, a) => Some(a),
+                    (Op::Xor(..), Some(bits)) if bits == ones => {
+                        Some(self.op(Op::Not(a), format, label))
+                    }
+                    (Op::And(..) | Op::Or(..), None) if a == b && same(self, a) => Some(a),
+                    _ => None,
+                }
+            }
+            Op::Add { a, b, carry } => {
+                let carry = carry.is_none_or(|carry| self.constant_of(carry) == Some(0));
+                match (self.constant_of(*a), self.constant_of(*b)) {
+                    (Some(0), _) if carry && same(self, *b) => Some(*b),
+                    (_, Some(0)) if carry && same(self, *a) => Some(*a),
+                    _ => None,
+                }
+            }
+            Op::Sub(a, b) => (self.constant_of(*b) == Some(0) && same(self, *a)).then_some(*a),
+            Op::Mul(a, b) => self.fold_product(*a, *b, format, label),
+            Op::Any(a) => {
+                let (low, high) = self.node(*a).range;
+                if low > 0 || high < 0 {
+                    return Some(self.constant(1, format, label));
+                }
+                match self.node(*a).cell {
+                    Cell::Op(Op::Extend(b)) => Some(self.op(Op::Any(b), format, label)),
+                    _ if self.width(*a) == 1 => Some(self.op(Op::Relabel(*a), format, label)),
+                    _ => None,
+                }
+            }
+            Op::All(a) if self.width(*a) == 1 => Some(self.op(Op::Relabel(*a), format, label)),
+            Op::Equal(..) | Op::Less(..) | Op::All(_) => None,
+            Op::Mux { select, inputs } => {
+                if let Some(value) = self.constant_of(*select) {
+                    let input = inputs[(value as usize).min(inputs.len() - 1)];
+                    return Some(self.op(Op::Relabel(input), format, label));
+                }
+                if inputs.iter().all(|input| *input == inputs[0]) {
+                    return Some(self.op(Op::Relabel(inputs[0]), format, label));
+                }
+                let bits: Vec<_> = inputs.iter().map(|&input| self.constant_of(input)).collect();
+                match bits[..] {
+                    [Some(0), Some(1)] if width == 1 => {
+                        Some(self.op(Op::Relabel(*select), format, label))
+                    }
+                    [Some(1), Some(0)] if width == 1 => {
+                        Some(self.op(Op::Not(*select), format, label))
+                    }
+                    _ => None,
+                }
+            }
+        }
+    }
+
+    fn fold_slice(&mut self, of: NetId, low: u32, format: Format, label: &Label) -> Option<NetId> {
+        let width = format.width();
+        if low == 0 && width == self.width(of) {
+            return Some(self.op(Op::Relabel(of), format, label));
+        }
+        let again = |graph: &mut Self, of: NetId, low: u32| {
+            Some(graph.op(Op::Slice { of, low }, format, label))
+        };
+        match self.node(of).cell.clone() {
+            Cell::Op(Op::Slice { of, low: inner }) => again(self, of, low + inner),
+            Cell::Op(Op::Relabel(a)) => again(self, a, low),
+            Cell::Op(Op::Extend(a)) => {
+                let inner = self.node(a).format;
+                if low + width <= inner.width() {
+                    return again(self, a, low);
+                }
+                if low == 0 {
+                    return Some(self.op(Op::Extend(a), format, label));
+                }
+                (low >= inner.width() && !inner.signed).then(|| self.constant(0, format, label))
+            }
+            Cell::Op(Op::Concat(parts)) => {
+                // From the lowest part up: the bits of each that are wanted.
+                let (mut from, mut wanted) = (0, Vec::new());
+                for part in parts.into_iter().rev() {
+                    let end = from + self.width(part);
+                    let (first, last) = (low.max(from), (low + width).min(end));
+                    if first < last {
+                        wanted.push((part, first - from, last - first));
+                    }
+                    from = end;
+                }
+                if let [(part, low, _)] = wanted[..] {
+                    return again(self, part, low);
+                }
+                let label = Label { named: false, ..self.node(of).label.clone() };
+                let pieces = wanted.into_iter().rev().map(|(of, low, width)| {
+                    let format = Format::unsigned(width as i32, 0);
+                    self.op(Op::Slice { of, low }, format, &label)
+                });
+                let pieces = pieces.collect();
+                Some(self.op(Op::Concat(pieces), format, &label))
+            }
+            _ => None,
+        }
+    }
+
+    /// The product of what the operands' values need, no wider, and unsigned where that serves.
+    fn fold_product(&mut self, a: NetId, b: NetId, format: Format, label: &Label) -> Option<NetId> {
+        let ranges = [self.node(a).range, self.node(b).range];
+        let signed = ranges.iter().any(|range| range.0 < 0);
+        let [wa, wb] = ranges.map(|range| bits_for(range, signed));
+        if [(a, wa), (b, wb)]
+            .iter()
+            .all(|&(id, width)| self.width(id) == width && self.node(id).format.signed == signed)
+            && format.width() == wa + wb
+        {
+            return None;
+        }
+        let (a, b) = (self.resize(a, wa, signed), self.resize(b, wb, signed));
+        let int = (wa + wb) as i32 - format.frac - i32::from(signed);
+        let exact = Format { signed, int, frac: format.frac };
+        let product = self.op(Op::Mul(a, b), exact, label);
+        Some(self.resize(product, format.width(), format.signed))
+    }
+
+    /// What the cell can give when its operands have their ranges.
+    fn range_of(&self, op: &Op, format: Format) -> Interval {
+        let all = format.range();
+        let of = |id: NetId| self.node(id).range;
+        let hull = |a: Interval, b: Interval| (a.0.min(b.0), a.1.max(b.1));
+        let fits = |range: Interval| {
+            if format.holds(range.0) && format.holds(range.1) { range } else { all }
+        };
+        match op {
+            Op::Relabel(a) | Op::Extend(a) => fits(of(*a)),
+            Op::Slice { of: a, low } => match of(*a) {
+                (least, most) if least >= 0 => fits((least >> low, most >> low)),
+                (least, most) if *low == 0 => fits((least, most)),
+                _ => all,
+            },
+            Op::Concat(parts) => {
+                let joined = parts.iter().try_fold((0, 0), |sum: Interval, part| {
+                    let ((low, high), width) = (of(*part), self.width(*part));
+                    (low >= 0).then_some(((sum.0 << width) + low, (sum.1 << width) + high))
+                });
+                joined.map_or(all, fits)
+            }
+            Op::Add { a, b, carry } => {
+                let (a, b, carry) = (of(*a), of(*b), carry.map_or((0, 0), of));
+                fits((a.0 + b.0 + carry.0, a.1 + b.1 + carry.1))
+            }
+            Op::Sub(a, b) => {
+                let (a, b) = (of(*a), of(*b));
+                fits((a.0 - b.1, a.1 - b.0))
+            }
+            Op::Mul(a, b) => {
+                let (x, y) = (of(*a), of(*b));
+                let corners = [x.0 * y.0, x.0 * y.1, x.1 * y.0, x.1 * y.1];
+                let low = corners.into_iter().fold(corners[0], i128::min);
+                let high = corners.into_iter().fold(corners[0], i128::max);
+                fits(if a == b { (low.max(0), high) } else { (low, high) })
+            }
+            Op::Mux { select, inputs } => {
+                let (low, high) = of(*select);
+                let last = inputs.len() as i128 - 1;
+                let reached = low.clamp(0, last) as usize..=high.clamp(0, last) as usize;
+                let ranges = inputs[reached].iter().map(|&input| of(input));
+                ranges.reduce(hull).map_or(all, fits)
+            }
+            Op::Less(a, b) => {
+                let (a, b) = (of(*a), of(*b));
+                (i128::from(a.1 < b.0), i128::from(a.0 < b.1))
+            }
+            Op::Equal(a, b) => {
+                let (a, b) = (of(*a), of(*b));
+                (0, i128::from(a.0 <= b.1 && b.0 <= a.1))
+            }
+            Op::And(a, b) => match (of(*a), of(*b)) {
+                (a, b) if a.0 >= 0 && b.0 >= 0 => fits((0, a.1.min(b.1))),
+                _ => all,
+            },
+            Op::Not(_) | Op::Or(..) | Op::Xor(..) | Op::Any(_) | Op::All(_) => all,
+        }
+    }
+}
+
+impl Cell {
+    /// The nodes that it takes.
+    pub fn operands(&self) -> Vec<NetId> {
+        match self {
+            Self::Op(op) => op.operands(),
+            Self::Read { address, .. } => vec![*address],
+            Self::Operand(_) | Self::Unknown(_) | Self::Constant(_) => Vec::new(),
+        }
+    }
+
+    /// Whether it is bits under another name: wires alone.
+    pub fn is_wiring(&self) -> bool {
+        matches!(
+            self,
+            Self::Op(Op::Relabel(_) | Op::Extend(_) | Op::Slice { .. } | Op::Concat(_))
+                | Self::Constant(_)
+        )
+    }
+}
+
+/// How many bits a number of this range needs.
+fn bits_for(range: Interval, signed: bool) -> u32 {
+    let bits = |raw: i128| 128 - if raw < 0 { !raw } else { raw }.leading_zeros();
+    (bits(range.0).max(bits(range.1)) + u32::from(signed)).max(1)
+}

@@ -1,0 +1,274 @@
+//! Which stage computes what: a system of difference constraints, solved for the fewest register bits.
+//!
+//! Every node has a number, its stage. It stands no earlier than its operands, a stage later where a block
+//! memory lies between, and a stage later than any node from which the way through logic takes longer than
+//! the clock (Cong and Zhang, "An efficient and versatile scheduling algorithm based on SDC formulation",
+//! 2006). A value is held for as many boundaries as there are to its last use, a register bit for each
+//! bit and boundary. Constraints are differences of two variables, so the linear program has integers for
+//! a solution.
+
+use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
+
+use super::graph::{Cell, Graph};
+use super::target::Target;
+use crate::hdl::netlist::NetId;
+
+/// When each value is computed.
+#[derive(Clone, Debug)]
+pub struct Schedule {
+    /// For each node of the graph; of no meaning for constants and for what nothing needs.
+    pub stage: Vec<usize>,
+    /// Boundaries with registers, from the operands to the results.
+    pub latency: usize,
+    /// Nanoseconds of a clock.
+    pub period: f64,
+    /// Nanoseconds of logic in each stage, without those of the registers around it.
+    pub logic: Vec<f64>,
+}
+
+/// What a clock cannot be met for.
+#[derive(Clone, Debug)]
+pub struct Unreachable {
+    /// The node that takes the longest.
+    pub limiting: NetId,
+    /// The shortest period that it allows.
+    pub period: f64,
+}
+
+/// Nodes, edges and delays: what a schedule has to respect.
+pub struct Problems<'a> {
+    graph: &'a Graph,
+    target: &'a Target,
+    /// What is scheduled, in order.
+    live: Vec<NetId>,
+    results: &'a [NetId],
+    /// For each node, the live ones that take it, without those that are constants.
+    users: Vec<Vec<NetId>>,
+    delay: Vec<f64>,
+    block: Vec<bool>,
+}
+
+/// A node stands at least so many stages after another.
+type Difference = (NetId, NetId, usize);
+
+impl<'a> Problems<'a> {
+    /// For the nodes that `results` need.
+    pub fn new(graph: &'a Graph, target: &'a Target, results: &'a [NetId]) -> Self {
+        let live: Vec<NetId> = graph
+            .cone(results.iter().copied())
+            .into_iter()
+            .filter(|&id| graph.constant_of(id).is_none())
+            .collect();
+        let mut users = vec![Vec::new(); graph.nodes.len()];
+        for &id in &live {
+            let mut operands = graph.node(id).cell.operands();
+            operands.sort_unstable();
+            operands.dedup();
+            for operand in operands {
+                if graph.constant_of(operand).is_none() {
+                    users[operand.index()].push(id);
+                }
+            }
+        }
+        let nodes = || (0..graph.nodes.len()).map(|at| NetId(at as u32));
+        let delay = nodes().map(|id| target.delay(graph, id)).collect();
+        let block = nodes().map(|id| target.is_block(graph, id)).collect();
+        Self { graph, target, live, results, users, delay, block }
+    }
+
+    /// The shortest period that one operation alone allows, and the operation.
+    pub fn fastest(&self) -> Option<Unreachable> {
+        let delay = |id: &NetId| self.delay[id.index()];
+        let limiting = *self.live.iter().max_by(|a, b| delay(a).total_cmp(&delay(b)))?;
+        Some(Unreachable { limiting, period: delay(&limiting) + self.target.register })
+    }
+
+    /// The schedule with the fewest register bits for a period in nanoseconds, in as few stages as it
+    /// can be.
+    ///
+    /// # Errors
+    /// An operation takes longer than the period.
+    pub fn for_period(&self, period: f64) -> Result<Schedule, Unreachable> {
+        match self.fastest() {
+            Some(unreachable) if unreachable.period > period + 1e-9 => return Err(unreachable),
+            _ => {}
+        }
+        let differences = self.differences(period);
+        let latency = self.latency(&differences);
+        Ok(self.solve(&differences, latency, period))
+    }
+
+    /// The schedule of so many stages with the shortest period. With more than there are of use the
+    /// period is that of the slowest operation.
+    pub fn for_stages(&self, stages: usize) -> Schedule {
+        let fastest = self.fastest().map_or(0.0, |it| it.period);
+        let fits = |period: f64| self.latency(&self.differences(period)) <= stages;
+        let mut high = self.target.register + self.delay.iter().sum::<f64>() + 1.0;
+        let mut low = fastest;
+        if fits(fastest) {
+            high = fastest;
+        }
+        // To a picosecond.
+        while high - low > 0.001 {
+            let middle = f64::midpoint(low, high);
+            if fits(middle) {
+                high = middle;
+            } else {
+                low = middle;
+            }
+        }
+        let differences = self.differences(high);
+        self.solve(&differences, stages.max(self.latency(&differences)), high)
+    }
+
+    /// The most stages that shorten the clock.
+    pub fn most_stages(&self) -> usize {
+        let period = self.fastest().map_or(0.0, |it| it.period);
+        self.latency(&self.differences(period))
+    }
+
+    /// How many boundaries lie between the operands of `user` and `user`.
+    fn apart(&self, user: NetId) -> usize {
+        usize::from(self.block[user.index()])
+    }
+
+    fn differences(&self, period: f64) -> Vec<Difference> {
+        let most = period - self.target.register + 1e-9;
+        let mut differences = Vec::new();
+        let mut longest = vec![0.0f64; self.graph.nodes.len()];
+        let mut reached = vec![NetId(u32::MAX); self.graph.nodes.len()];
+        for &from in &self.live {
+            for &user in &self.users[from.index()] {
+                differences.push((from, user, self.apart(user)));
+            }
+            // Forward through logic, as far as the clock goes.
+            let mut pending = std::collections::BTreeSet::from([from]);
+            longest[from.index()] = self.delay[from.index()];
+            reached[from.index()] = from;
+            while let Some(at) = pending.pop_first() {
+                for &user in &self.users[at.index()] {
+                    if self.block[user.index()] {
+                        continue;
+                    }
+                    let through = longest[at.index()] + self.delay[user.index()];
+                    if through > most {
+                        differences.push((from, user, 1));
+                    } else if reached[user.index()] != from || longest[user.index()] < through {
+                        reached[user.index()] = from;
+                        longest[user.index()] = through;
+                        pending.insert(user);
+                    }
+                }
+            }
+        }
+        differences.sort_unstable();
+        differences.dedup_by(|next, kept| {
+            let same = (next.0, next.1) == (kept.0, kept.1);
+            if same {
+                kept.2 = kept.2.max(next.2);
+            }
+            same
+        });
+        differences
+    }
+
+    /// The fewest boundaries: the longest chain of differences, and one behind the results.
+    fn latency(&self, differences: &[Difference]) -> usize {
+        let earliest = self.earliest(differences);
+        let results = self.results.iter().filter(|id| self.graph.constant_of(**id).is_none());
+        results.map(|id| earliest[id.index()] + 1).max().unwrap_or(1)
+    }
+
+    /// Differences are sorted by their first node, and a node stands after its operands.
+    fn earliest(&self, differences: &[Difference]) -> Vec<usize> {
+        let mut earliest = vec![0; self.graph.nodes.len()];
+        for &(from, to, apart) in differences {
+            earliest[to.index()] = earliest[to.index()].max(earliest[from.index()] + apart);
+        }
+        earliest
+    }
+
+    fn solve(&self, differences: &[Difference], latency: usize, period: f64) -> Schedule {
+        let mut problem = Problem::new(OptimizationDirection::Minimize);
+        let last = latency as f64;
+        let stage: Vec<_> = self
+            .graph
+            .nodes
+            .iter()
+            .map(|node| {
+                let most = if matches!(node.cell, Cell::Operand(_)) { 0.0 } else { last - 1.0 };
+                problem.add_var(0.0, (0.0, most))
+            })
+            .collect();
+        for &(from, to, apart) in differences {
+            let (from, to) = (stage[from.index()], stage[to.index()]);
+            problem.add_constraint([(to, 1.0), (from, -1.0)], ComparisonOp::Ge, apart as f64);
+        }
+        for &id in &self.live {
+            let bits = f64::from(self.graph.width(id));
+            let held = problem.add_var(bits, (0.0, last));
+            for &user in &self.users[id.index()] {
+                let terms = [(held, 1.0), (stage[user.index()], -1.0), (stage[id.index()], 1.0)];
+                problem.add_constraint(terms, ComparisonOp::Ge, -(self.apart(user) as f64));
+            }
+            if self.results.contains(&id) {
+                let terms = [(held, 1.0), (stage[id.index()], 1.0)];
+                problem.add_constraint(terms, ComparisonOp::Ge, last);
+            }
+        }
+        let earliest = self.earliest(differences);
+        let stage: Vec<usize> = match problem.solve() {
+            Ok(SolveOutcome::Solution(solution)) => {
+                stage.iter().map(|&it| solution.var_value(it).round() as usize).collect()
+            }
+            // The earliest stages are a solution; the solver has none only for reasons of its own.
+            _ => earliest,
+        };
+        let logic = self.logic(&stage, latency);
+        Schedule { stage, latency, period, logic }
+    }
+
+    /// The longest way through the logic of each stage.
+    fn logic(&self, stage: &[usize], latency: usize) -> Vec<f64> {
+        let mut arrival = vec![0.0f64; self.graph.nodes.len()];
+        let mut longest = vec![0.0f64; latency];
+        for &id in &self.live {
+            let at = stage[id.index()];
+            let operands = self.graph.node(id).cell.operands();
+            let before = operands
+                .into_iter()
+                .filter(|operand| !self.block[id.index()] && stage[operand.index()] == at)
+                .filter(|operand| self.graph.constant_of(*operand).is_none())
+                .map(|operand| arrival[operand.index()])
+                .fold(0.0, f64::max);
+            arrival[id.index()] = before + self.delay[id.index()];
+            longest[at] = longest[at].max(arrival[id.index()]);
+        }
+        longest
+    }
+
+    /// What is scheduled.
+    pub fn live(&self) -> &[NetId] {
+        &self.live
+    }
+
+    /// For each node, the boundary up to which it is held: the number of the last stage that takes it.
+    pub fn last_use(&self, schedule: &Schedule) -> Vec<usize> {
+        let mut last = schedule.stage.clone();
+        for &id in &self.live {
+            for &user in &self.users[id.index()] {
+                let at = schedule.stage[user.index()] - self.apart(user);
+                last[id.index()] = last[id.index()].max(at);
+            }
+            if self.results.contains(&id) {
+                last[id.index()] = schedule.latency;
+            }
+        }
+        last
+    }
+
+    /// Whether a node is read from a block memory.
+    pub fn is_block(&self, id: NetId) -> bool {
+        self.block[id.index()]
+    }
+}

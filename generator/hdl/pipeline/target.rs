@@ -1,0 +1,138 @@
+//! What operations take on a target, and what its multipliers are.
+//!
+//! The figures are nanoseconds, measured between registers by `benches/pipeline/delays.py`, which prints
+//! a table as this one; the command stands there. Routing is in them, for a device that is nearly empty.
+
+use super::graph::{Cell, Graph, Node};
+use crate::hdl::netlist::{NetId, Op};
+
+/// The delays and the multipliers of a family of devices.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Target {
+    /// As the key `pipeline.target` names it.
+    pub name: &'static str,
+    /// What it stands for, in one line.
+    pub about: &'static str,
+    /// The widest operands of a multiplier, unsigned, the wider one first.
+    pub multiplier: (u32, u32),
+    /// From the clock to the output of a register, to the input of the next and its setup.
+    pub register: f64,
+    /// What the environment takes of the clock before an operand is there.
+    pub input: f64,
+    /// A level of look-up tables, and the way to the next.
+    pub logic: f64,
+    /// The start and the end of a carry chain.
+    pub carry: f64,
+    /// A bit of a carry chain.
+    pub carry_bit: f64,
+    /// A multiplier.
+    pub product: f64,
+    /// From the clock to the output of a block memory, beyond that of a register.
+    pub block: f64,
+    /// ROMs of so many bits are block memories.
+    pub block_bits: u64,
+}
+
+/// All targets.
+pub const TARGETS: [Target; 4] = [
+    Target {
+        name: "ecp5",
+        about: "Lattice ECP5, speed grade 6",
+        multiplier: (18, 18),
+        register: 1.4,
+        input: 2.0,
+        logic: 1.0,
+        carry: 1.3,
+        carry_bit: 0.06,
+        product: 5.6,
+        block: 5.4,
+        block_bits: 4096,
+    },
+    Target {
+        name: "ice40",
+        about: "Lattice iCE40 UP5K",
+        multiplier: (16, 16),
+        register: 3.6,
+        input: 4.0,
+        logic: 3.2,
+        carry: 3.6,
+        carry_bit: 0.28,
+        product: 14.0,
+        block: 4.0,
+        block_bits: 2048,
+    },
+    Target {
+        name: "xilinx7",
+        about: "AMD 7 series, speed grade -1",
+        multiplier: (24, 17),
+        register: 1.2,
+        input: 2.0,
+        logic: 0.8,
+        carry: 1.0,
+        carry_bit: 0.03,
+        product: 3.9,
+        block: 2.5,
+        block_bits: 4096,
+    },
+    Target {
+        name: "generic",
+        about: "any device: a gate is one unit of about a nanosecond",
+        multiplier: (18, 18),
+        register: 1.5,
+        input: 2.0,
+        logic: 1.0,
+        carry: 1.5,
+        carry_bit: 0.05,
+        product: 6.0,
+        block: 4.0,
+        block_bits: 4096,
+    },
+];
+
+impl Target {
+    /// The target of this name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        TARGETS.iter().find(|target| target.name == name)
+    }
+
+    /// Nanoseconds from the operands of a node to its value.
+    pub fn delay(&self, graph: &Graph, id: NetId) -> f64 {
+        let levels = |inputs: u32| f64::from(inputs.max(2).ilog2().div_ceil(2).max(1));
+        let chain = |width: u32| self.carry + self.carry_bit * f64::from(width);
+        let Node { cell, .. } = graph.node(id);
+        match cell {
+            Cell::Operand(_) => self.input,
+            Cell::Constant(_) | Cell::Unknown(_) => 0.0,
+            Cell::Read { address, .. } => {
+                if self.is_block(graph, id) {
+                    self.block
+                } else {
+                    self.logic * levels(graph.width(*address).saturating_sub(2).max(1) * 2)
+                }
+            }
+            Cell::Op(op) => match op {
+                Op::Relabel(_) | Op::Extend(_) | Op::Slice { .. } | Op::Concat(_) | Op::Not(_) => {
+                    0.0
+                }
+                Op::And(..) | Op::Or(..) | Op::Xor(..) => self.logic,
+                Op::Add { a, .. } | Op::Sub(a, _) | Op::Less(a, _) => chain(graph.width(*a)),
+                Op::Mul(..) => self.product,
+                Op::Equal(a, _) => self.logic * levels(2 * graph.width(*a)),
+                Op::Any(a) | Op::All(a) => self.logic * levels(graph.width(*a)),
+                Op::Mux { inputs, .. } => self.logic * levels(inputs.len() as u32),
+            },
+        }
+    }
+
+    /// Whether a node is a read of a block memory, which takes a clock.
+    pub fn is_block(&self, graph: &Graph, id: NetId) -> bool {
+        match graph.node(id).cell {
+            Cell::Read { address, .. } => {
+                let words = graph.node(address).range.1 + 1;
+                u64::try_from(words)
+                    .is_ok_and(|words| words * u64::from(graph.width(id)) >= self.block_bits)
+            }
+            _ => false,
+        }
+    }
+}

@@ -1,0 +1,473 @@
+//! The microprogram executed on values that are not known yet.
+//!
+//! Every clock of one computation is gone through, from the one that takes `start` to the one in which
+//! the results are on the outputs. Fields of the control word are constants then, muxes under them
+//! disappear, and what a register takes is a new value. A synchronous ROM and a register without an
+//! enable follow their inputs by a clock here too.
+//!
+//! A condition that is a constant decides where control goes. One that depends on an operand is
+//! followed both ways: a loop is executed as often as it can be, each turn under the conditions of
+//! those before, and a jump ahead is executed with and without what it skips. Where the ways meet, each
+//! register is chosen by the condition.
+
+use std::collections::HashMap;
+
+use super::graph::{Cell, Graph, Label};
+use super::possible;
+use crate::fixed::Format;
+use crate::hdl::dsl::rules::{Diagnostic, Diagnostics};
+use crate::hdl::netlist::{
+    Design, Driver, Net, NetId, Op, RegId, RegisterKind, Role, RomId, Sequence,
+};
+
+/// More clocks than any microprogram takes that is worth a pipeline.
+const MOST_CLOCKS: usize = 4096;
+
+/// What one computation of a design is.
+#[derive(Debug)]
+pub struct Unrolled {
+    /// All values.
+    pub graph: Graph,
+    /// The operands, as ports of the design.
+    pub operands: Vec<NetId>,
+    /// Each result with its value, by its port in the design.
+    pub results: Vec<(NetId, NetId)>,
+    /// The microinstructions in the order of execution.
+    pub steps: Vec<Step>,
+}
+
+/// A microinstruction at a clock of the computation.
+#[derive(Clone, Debug)]
+pub struct Step {
+    /// Its place in the microprogram.
+    pub word: usize,
+    /// How often it was executed before.
+    pub visit: usize,
+    /// What the architectural registers hold while it is executed, as far as that is determined.
+    pub registers: Vec<(RegId, NetId)>,
+}
+
+/// The state between two clocks.
+#[derive(Clone)]
+struct State {
+    registers: Vec<NetId>,
+    /// Words of synchronous ROMs; of others nothing that is used.
+    roms: Vec<NetId>,
+}
+
+/// Where an execution stands.
+struct At {
+    state: State,
+    word: usize,
+}
+
+struct Executor<'a> {
+    design: &'a Design,
+    unrolled: Unrolled,
+    visits: Vec<usize>,
+    /// Set when the results are on the outputs.
+    shown: Option<Vec<(NetId, NetId)>>,
+}
+
+/// Executes the microprogram of a design, which [`crate::hdl::dsl::rules`] has accepted.
+///
+/// # Errors
+/// A microprogram that has no fixed bound, waits for `start` on the way or gives several results; a
+/// result that depends on what an earlier computation has left.
+pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
+    run(design).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
+}
+
+fn run(design: &Design) -> Result<Unrolled, Diagnostic> {
+    let operands: Vec<NetId> = design
+        .ports
+        .iter()
+        .filter(|port| matches!(port.role, Role::Operand { .. }))
+        .map(|port| port.net)
+        .collect();
+    let mut executor = Executor {
+        design,
+        visits: vec![0; design.control.words.len()],
+        unrolled: Unrolled {
+            graph: Graph::default(),
+            operands,
+            results: Vec::new(),
+            steps: Vec::new(),
+        },
+        shown: None,
+    };
+    let state = executor.power_up();
+    let state = executor.start(&state);
+    executor.follow(At { state, word: 0 }, None)?;
+    let Some(results) = executor.shown.take() else {
+        let place = design.control.words.last().map_or(design.nets[0].location, |it| it.location);
+        return Err(Diagnostic::new(
+            "no microinstruction sets `valid`: a pipeline needs to know when the results are there"
+                .to_owned(),
+            place,
+        ));
+    };
+    executor.determined(&results)?;
+    executor.unrolled.results = results;
+    Ok(executor.unrolled)
+}
+
+impl Executor<'_> {
+    fn power_up(&mut self) -> State {
+        let design = self.design;
+        let graph = &mut self.unrolled.graph;
+        let mut unknown = |net: &Net| {
+            let cell = Cell::Unknown(net.name.clone());
+            graph.leaf(cell, net.format, net.format.range(), &label(net))
+        };
+        State {
+            registers: design.registers.iter().map(|it| unknown(design.net(it.q))).collect(),
+            roms: design.roms.iter().map(|rom| unknown(design.net(rom.data))).collect(),
+        }
+    }
+
+    /// The clock that takes `start`, with all operands.
+    fn start(&mut self, state: &State) -> State {
+        Clock::new(self, state, 0, true).edge()
+    }
+
+    /// Executes from `at` on until the results are shown or `stop` is about to be executed; returns the
+    /// state there.
+    fn follow(&mut self, mut at: At, stop: Option<usize>) -> Result<Option<State>, Diagnostic> {
+        let design = self.design;
+        loop {
+            if stop == Some(at.word) {
+                return Ok(Some(at.state));
+            }
+            let word = &design.control.words[at.word];
+            let (after, condition) = self.execute(&at)?;
+            if self.shown.is_some() {
+                return Ok(None);
+            }
+            match word.sequence {
+                Sequence::Next => at = At { state: after, word: at.word + 1 },
+                Sequence::LoopWhile { to, .. } => {
+                    let condition = condition.expect("a loop has a condition");
+                    match self.unrolled.graph.constant_of(condition) {
+                        Some(taken) => {
+                            let word = if taken == 1 { to } else { at.word + 1 };
+                            at = At { state: after, word };
+                        }
+                        None if to <= at.word => {
+                            let free = at.state.registers.clone();
+                            let state = self.turns(after, condition, (to, at.word), &free)?;
+                            at = At { state, word: at.word + 1 };
+                        }
+                        None => {
+                            let body = At { state: after.clone(), word: at.word + 1 };
+                            let Some(executed) = self.follow(body, Some(to))? else {
+                                return Err(self.cannot(
+                                    at.word,
+                                    "is skipped by some points, and shows results",
+                                ));
+                            };
+                            let state = self.either(condition, &executed, &after);
+                            at = At { state, word: to };
+                        }
+                    }
+                }
+                Sequence::WaitStart => {
+                    return Err(
+                        self.cannot(at.word, "waits for `start` in the middle of a computation")
+                    );
+                }
+                Sequence::End => {
+                    return Err(
+                        self.cannot(at.word, "ends the microprogram before `valid` was set")
+                    );
+                }
+            }
+        }
+    }
+
+    /// Every turn but the first of the loop from `to` to `last`, of which `condition` says whether there
+    /// is one; `state` is that after the first. The loop is bounded whatever the registers `free`, with
+    /// which it begins, hold.
+    fn turns(
+        &mut self,
+        mut state: State,
+        mut condition: NetId,
+        (to, last): (usize, usize),
+        free: &[NetId],
+    ) -> Result<State, Diagnostic> {
+        loop {
+            match possible::ever(&self.unrolled.graph, condition, free) {
+                Some(false) => return Ok(state),
+                Some(true) => {}
+                None => {
+                    return Err(self.cannot(
+                        last,
+                        "goes on by a condition for which no bound is found: it depends on more than 16 bits",
+                    ));
+                }
+            }
+            let at = At { state: state.clone(), word: to };
+            let Some(before) = self.follow(at, Some(last))? else {
+                return Err(self.cannot(last, "is executed under a condition, and shows results"));
+            };
+            let (after, again) = self.execute(&At { state: before, word: last })?;
+            let again = again.expect("a loop has a condition");
+            state = self.either(condition, &after, &state);
+            let label = self.unrolled.graph.node(again).label.clone();
+            condition = self.unrolled.graph.op(Op::And(condition, again), Format::BIT, &label);
+        }
+    }
+
+    /// One microinstruction: the state after it, and the condition of a loop.
+    fn execute(&mut self, at: &At) -> Result<(State, Option<NetId>), Diagnostic> {
+        let design = self.design;
+        if self.unrolled.steps.len() == MOST_CLOCKS {
+            return Err(self.cannot(at.word, "is part of a computation of more than 4096 clocks"));
+        }
+        let architectural =
+            |kind| matches!(kind, RegisterKind::Architectural | RegisterKind::Operand);
+        let registers = design.registers.iter().enumerate();
+        let registers = registers
+            .filter(|(_, register)| architectural(register.kind))
+            .map(|(number, _)| (RegId(number as u32), at.state.registers[number]))
+            .collect();
+        let visit = self.visits[at.word];
+        self.visits[at.word] += 1;
+        self.unrolled.graph.step = self.unrolled.steps.len();
+        self.unrolled.steps.push(Step { word: at.word, visit, registers });
+        let mut clock = Clock::new(self, &at.state, at.word, false);
+        if clock.shows()? {
+            let results = clock.results()?;
+            let state = at.state.clone();
+            self.shown = Some(results);
+            return Ok((state, None));
+        }
+        let condition = match design.control.words[at.word].sequence {
+            Sequence::LoopWhile { condition, .. } => Some(clock.value(condition)),
+            _ => None,
+        };
+        Ok((clock.edge(), condition))
+    }
+
+    /// Each register as it is in `yes` where the condition holds, and else as in `no`.
+    fn either(&mut self, condition: NetId, yes: &State, no: &State) -> State {
+        let design = self.design;
+        let graph = &mut self.unrolled.graph;
+        let mut choose = |(&yes, &no): (&NetId, &NetId), net: &Net| {
+            if yes == no {
+                return yes;
+            }
+            let mux = Op::Mux { select: condition, inputs: vec![no, yes] };
+            graph.op(mux, net.format, &label(net))
+        };
+        let registers = yes.registers.iter().zip(&no.registers);
+        let roms = yes.roms.iter().zip(&no.roms);
+        State {
+            registers: registers
+                .zip(&design.registers)
+                .map(|(pair, register)| choose(pair, design.net(register.q)))
+                .collect(),
+            roms: roms
+                .zip(&design.roms)
+                .map(|(pair, rom)| choose(pair, design.net(rom.data)))
+                .collect(),
+        }
+    }
+
+    fn cannot(&self, word: usize, why: &str) -> Diagnostic {
+        let word = &self.design.control.words[word];
+        Diagnostic::new(
+            format!(
+                "`{}` cannot be a pipeline: the microinstruction `{}` {why}",
+                self.design.name, word.name
+            ),
+            word.location,
+        )
+    }
+
+    /// No result depends on what an earlier computation has left.
+    fn determined(&self, results: &[(NetId, NetId)]) -> Result<(), Diagnostic> {
+        let graph = &self.unrolled.graph;
+        for &(port, value) in results {
+            for id in graph.cone([value]) {
+                if let Cell::Unknown(register) = &graph.node(id).cell {
+                    return Err(Diagnostic::new(
+                        format!(
+                            "`{}` cannot be a pipeline: `{}` depends on what `{register}` held before the computation",
+                            self.design.name,
+                            self.design.net(port).name
+                        ),
+                        graph.node(id).label.location,
+                    ));
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The nets of one clock.
+struct Clock<'e, 'a> {
+    executor: &'e mut Executor<'a>,
+    state: &'e State,
+    word: usize,
+    /// The clock that takes `start`.
+    first: bool,
+    values: HashMap<NetId, NetId>,
+}
+
+impl<'e, 'a> Clock<'e, 'a> {
+    fn new(executor: &'e mut Executor<'a>, state: &'e State, word: usize, first: bool) -> Self {
+        Self { executor, state, word, first, values: HashMap::new() }
+    }
+
+    /// Whether `valid` is high.
+    fn shows(&mut self) -> Result<bool, Diagnostic> {
+        let Some(port) = self.executor.design.port(|role| role == Role::Valid) else {
+            return Ok(false);
+        };
+        let net = port.net;
+        let valid = self.value(net);
+        match self.executor.unrolled.graph.constant_of(valid) {
+            Some(bit) => Ok(bit == 1),
+            None => Err(self.executor.cannot(
+                self.word,
+                "has `valid` follow a signal: a computation with several results is not unrolled",
+            )),
+        }
+    }
+
+    fn results(&mut self) -> Result<Vec<(NetId, NetId)>, Diagnostic> {
+        let ports: Vec<NetId> = self
+            .executor
+            .design
+            .ports
+            .iter()
+            .filter(|port| matches!(port.role, Role::Result | Role::Status))
+            .map(|port| port.net)
+            .collect();
+        Ok(ports.into_iter().map(|port| (port, self.value(port))).collect())
+    }
+
+    /// The value of a net.
+    fn value(&mut self, id: NetId) -> NetId {
+        if let Some(&value) = self.values.get(&id) {
+            return value;
+        }
+        let design = self.executor.design;
+        let net = design.net(id);
+        let label = label(net);
+        let value = match &net.driver {
+            Driver::Constant(bits) => self.constant(*bits, net.format, &label),
+            Driver::Input => self.input(id, net, &label),
+            Driver::Field(field) => {
+                let bits = design.control.words[self.word].values[field.index()];
+                self.constant(bits, net.format, &label)
+            }
+            Driver::Register(register) if *register == design.control.run => {
+                self.constant(u64::from(!self.first), net.format, &label)
+            }
+            Driver::Register(register) if *register == design.control.address => {
+                self.constant(self.word as u64, net.format, &label)
+            }
+            Driver::Register(register) => self.state.registers[register.index()],
+            Driver::Rom(rom) if design.rom(*rom).synchronous => self.state.roms[rom.index()],
+            Driver::Rom(rom) => self.read(*rom),
+            Driver::Op(op) => {
+                let mut op = op.clone();
+                // A mux under a field needs one of its inputs alone.
+                if let Op::Mux { select, inputs } = &op {
+                    let select = self.value(*select);
+                    if let Some(chosen) = self.executor.unrolled.graph.constant_of(select) {
+                        op = Op::Relabel(inputs[(chosen as usize).min(inputs.len() - 1)]);
+                    }
+                }
+                for operand in op.operands_mut() {
+                    *operand = self.value(*operand);
+                }
+                self.executor.unrolled.graph.op(op, net.format, &label)
+            }
+            Driver::Undriven => unreachable!("a checked design has no undriven net"),
+        };
+        self.values.insert(id, value);
+        value
+    }
+
+    fn constant(&mut self, bits: u64, format: Format, label: &Label) -> NetId {
+        self.executor.unrolled.graph.constant(bits, format, label)
+    }
+
+    fn input(&mut self, id: NetId, net: &Net, label: &Label) -> NetId {
+        let design = self.executor.design;
+        let role = design.ports.iter().find(|port| port.net == id).map(|port| port.role);
+        match role {
+            Some(Role::Start | Role::Strobe) => {
+                self.constant(u64::from(self.first), net.format, label)
+            }
+            Some(Role::Reset) => self.constant(1, net.format, label),
+            _ => {
+                let operands = &self.executor.unrolled.operands;
+                let at = operands.iter().position(|&operand| operand == id);
+                let cell = match at {
+                    Some(at) if self.first => Cell::Operand(at),
+                    _ => Cell::Unknown(net.name.clone()),
+                };
+                self.executor.unrolled.graph.leaf(cell, net.format, net.range, label)
+            }
+        }
+    }
+
+    fn read(&mut self, rom: RomId) -> NetId {
+        let design = self.executor.design;
+        let address = self.value(design.rom(rom).address);
+        let net = design.net(design.rom(rom).data);
+        let words = &design.rom(rom).words;
+        self.executor.unrolled.graph.read(rom, address, words, net.format, &label(net))
+    }
+
+    /// The rising edge: what registers and synchronous ROMs hold after it.
+    fn edge(&mut self) -> State {
+        let design = self.executor.design;
+        let mut after = self.state.clone();
+        for (number, register) in design.registers.iter().enumerate() {
+            if register.kind == RegisterKind::Sequencer {
+                continue;
+            }
+            let enable = register.enable.map(|enable| self.value(enable));
+            let fixed = enable.map_or(Some(1), |it| self.executor.unrolled.graph.constant_of(it));
+            if fixed == Some(0) {
+                continue;
+            }
+            let data = self.value(register.data.expect("a checked design has no register without"));
+            let net = design.net(register.q);
+            let graph = &mut self.executor.unrolled.graph;
+            let mut held = graph.op(Op::Relabel(data), net.format, &label(net));
+            if let (Some(select), None) = (enable, fixed) {
+                let inputs = vec![self.state.registers[number], held];
+                held = graph.op(Op::Mux { select, inputs }, net.format, &label(net));
+            }
+            after.registers[number] = if register.kind == RegisterKind::Internal {
+                held
+            } else {
+                graph.name_after(held, &label(net));
+                graph.refine(held, net.range)
+            };
+        }
+        for (number, rom) in design.roms.iter().enumerate() {
+            if rom.synchronous {
+                after.roms[number] = self.read(RomId(number as u32));
+            }
+        }
+        after
+    }
+}
+
+fn label(net: &Net) -> Label {
+    Label {
+        name: net.name.clone(),
+        doc: net.doc.clone(),
+        block: net.block,
+        named: net.named,
+        location: net.location,
+    }
+}

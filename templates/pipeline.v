@@ -1,0 +1,42 @@
+<%- for line in header %>${ line }$
+<% endfor %>
+`default_nettype none
+
+module ${ name }$<% if !parameters.is_empty() %> #(
+<%- for line in parameters %>
+    ${ line }$
+<%- endfor %>
+)<% endif %> (
+<%- for line in ports %>
+${ line }$
+<%- endfor %>
+);
+<%- if !constants.is_empty() %>
+
+    // Constants
+<%- for line in constants %>
+${ line }$
+<%- endfor %>
+<%- endif %>
+<%- for stage in stages %>
+<% for line in stage.title %>
+${ line }$
+<%- endfor %>
+<%- for line in stage.registers %>
+${ line }$
+<%- endfor %>
+<%- let items = &stage.items %>
+<%- let groups = &stage.groups %>
+<%- include "items.v" %>
+<%- include "groups.v" %>
+<%- endfor %>
+<%- if !unused.is_empty() %>
+
+    // Bits that nothing needs, among them those that narrowing drops.
+<%- for line in unused %>
+${ line }$
+<%- endfor %>
+<%- endif %>
+endmodule
+
+`default_nettype wire
