@@ -55,7 +55,10 @@ fn every_configuration_has_its_page() {
         is_accessible(&path, &document);
         wires_are_clear(&path, &document);
         has_the_blocks_of_the_netlist(&path, &document, &unit);
-        has_the_clocks_of_the_manifest(&path, &made.wavedrom, &unit);
+        // Studies are not in the main job, which writes manifests.
+        if !path.starts_with("configs/studies/") {
+            has_the_clocks_of_the_manifest(&path, &made.wavedrom, &unit);
+        }
         has_every_word(&path, &document, &unit);
         assert!(is_sealed(made.page.as_bytes(), Seal::Markup), "{path}");
     }
@@ -225,7 +228,7 @@ fn drawn(document: &Document) -> BTreeSet<u16> {
         let words = text.split(' ').map(str::to_owned);
         // Control lines may be several; a block has its number before its name.
         let count = match class {
-            "small" => usize::MAX,
+            "turn" => usize::MAX,
             "tick small" => 0,
             _ => 1,
         };

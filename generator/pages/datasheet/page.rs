@@ -15,14 +15,10 @@ use crate::evidence::hardware::FamilyUsage;
 use crate::hdl::netlist::Design;
 use crate::package::{self, Seal, Timing};
 use crate::pages::account::{self, PageInputs, blocks, short};
-use crate::pages::drawing::Drawing;
 use crate::pages::figure::{Figure, figures, scientific};
 
 /// The clock at which rates are told, in MHz: what a small FPGA reaches.
 const CLOCK: f64 = 25.0;
-
-/// What stands beside a drawing in the widest figure: margins of page and figure, and a scroll bar.
-const MARGINS: i32 = 130;
 
 #[derive(Template)]
 #[template(path = "datasheet.html")]
@@ -34,10 +30,7 @@ struct Page<'a> {
     source: String,
     notes: Vec<String>,
     glance: Vec<(&'static str, String)>,
-    /// A page that is so wide shows the diagram without scrolling.
-    fits: i32,
-    diagram: &'a Drawing,
-    diagram_svg: String,
+    diagram: String,
     numbering: &'static str,
     formats: String,
     ports: TableView,
@@ -103,7 +96,6 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
     };
     let charts: Vec<(&Chart, &str)> = measured.curves.charts.iter().map(|it| (it, "")).collect();
     let wavedrom = measured.waves.wavedrom()?;
-    let drawing = diagram::drawing(design);
     let highlight = &measured.highlight;
     let page = Page {
         version: env!("CARGO_PKG_VERSION"),
@@ -113,9 +105,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         source: html(&about.source),
         notes: about.notes.iter().map(|note| html(note)).collect(),
         glance: glance(subject, measured),
-        diagram_svg: drawing.svg()?,
-        fits: drawing.width + MARGINS,
-        diagram: &drawing,
+        diagram: diagram::drawing(design).svg()?,
         numbering: account::numbering(design),
         formats: html(account::FORMATS),
         ports: TableView::new("Ports", &account::ports(design)),

@@ -2,14 +2,29 @@
 
 use crate::pages::account::{Align, Table};
 
+/// The width of a phone, in characters of a table; a wider one is shown there a row below the other.
+const NARROW: usize = 36;
+
 /// A table as the page prints it.
 pub struct TableView {
     /// What a screen reader says of it.
     pub label: &'static str,
+    /// Whether a narrow page shows each row as lines of its own.
+    pub stacks: bool,
     /// Class and heading of each column.
     pub columns: Vec<(&'static str, String)>,
-    /// Class and contents of each cell.
-    pub rows: Vec<Vec<(&'static str, String)>>,
+    /// The cells of each row.
+    pub rows: Vec<Vec<CellView>>,
+}
+
+/// A cell of a table.
+pub struct CellView {
+    /// Its class.
+    pub class: &'static str,
+    /// The heading of its column, as plain text, for a narrow page that has no room for columns.
+    pub label: String,
+    /// What it says, as HTML.
+    pub text: String,
 }
 
 impl TableView {
@@ -19,21 +34,29 @@ impl TableView {
             Align::Left => "",
             Align::Right => "number",
         };
-        let classes: Vec<_> = table.columns.iter().map(|column| class(column.align)).collect();
+        let columns = table.columns.iter();
+        let widest = |at: usize| {
+            let cells = table.rows.iter().map(|row| row[at].chars().count());
+            cells.max().unwrap_or(0) + 2
+        };
         Self {
             label,
-            columns: table
-                .columns
-                .iter()
-                .zip(&classes)
-                .map(|(column, &class)| (class, html(&column.heading)))
+            stacks: (0..table.columns.len()).map(widest).sum::<usize>() > NARROW,
+            columns: columns
+                .clone()
+                .map(|column| (class(column.align), html(&column.heading)))
                 .collect(),
             rows: table
                 .rows
                 .iter()
                 .map(|row| {
-                    let cells = row.iter().zip(&classes);
-                    cells.map(|(cell, &class)| (class, html(cell))).collect()
+                    let cells = row.iter().zip(columns.clone());
+                    let cells = cells.map(|(cell, column)| CellView {
+                        class: class(column.align),
+                        label: column.heading.replace('`', ""),
+                        text: html(cell),
+                    });
+                    cells.collect()
                 })
                 .collect(),
         }
@@ -65,6 +88,20 @@ pub fn html(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_wider_than_a_phone_stacks() {
+        let mut table = Table::new(&[("`key`", Align::Left), ("units", Align::Right)]);
+        table.row(["`a`", "1.5"].map(str::to_owned));
+        assert!(!TableView::new("narrow", &table).stacks);
+        table.row(["`b`", "a sentence of more than thirty signs"].map(str::to_owned));
+        let view = TableView::new("wide", &table);
+        assert!(view.stacks);
+        let cell = &view.rows[1][1];
+        assert_eq!((cell.class, cell.label.as_str()), ("number", "units"));
+        assert_eq!(view.columns[0].1, "<code>key</code>");
+        assert_eq!(view.rows[1][0].label, "key");
+    }
 
     #[test]
     fn names_are_code_and_signs_are_signs() {

@@ -1,6 +1,8 @@
 //! The timing diagram: a waveform as a drawing.
 
-use super::waves::{Lane, Shape, Waves};
+use std::ops::Range;
+
+use super::waves::{Lane, MICROINSTRUCTION, Shape, Waves};
 use crate::pages::drawing::{Drawing, Item, text_width};
 
 /// Of the type.
@@ -24,104 +26,124 @@ const SLANT: i32 = 3;
 /// For values, beside what they say.
 const MARGIN: i32 = 10;
 
-/// Draws a waveform.
+/// How wide the drawing may be: what a page shows without scrolling.
+const ROOM: i32 = 1120;
+
+/// Between strips of a waveform that is wider.
+const APART: i32 = 22;
+
+/// Draws a waveform, in as many strips as it takes.
 pub fn drawing(waves: &Waves, description: String) -> Drawing {
-    let label = |lane: &Lane| match lane.number {
-        Some(number) => format!("{} ({number})", lane.name),
-        None => lane.name.clone(),
-    };
     let widest = waves.lanes.iter().map(|lane| text_width(&label(lane), SIZE));
     let left = widest.max().unwrap_or(0) + 16;
-    let grid = Grid::new(waves, left);
+    let count = waves.clocks.len();
+    let [named, cut] = clock_widths(waves);
+    let strips = count.div_ceil(((ROOM - left) / cut).max(1) as usize).max(1);
+    let clocks = count.div_ceil(strips).max(1);
+    let clock = named.min(((ROOM - left) / clocks as i32).max(cut));
     let height = HEAD + PITCH * waves.lanes.len() as i32 + 4;
     let mut items = Vec::new();
-    for (at, clock) in waves.clocks.iter().enumerate() {
-        let (x, end) = (grid.x(at), grid.x(at + 1));
-        items.push(Item::path("grid", format!("M{x} {HEAD}V{height}")));
-        items.push(Item::text("tick", (x + end) / 2, HEAD - 9, clock.to_string()));
-    }
-    let end = grid.x(waves.clocks.len());
-    items.push(Item::path("grid", format!("M{end} {HEAD}V{height}")));
-    for (row, lane) in waves.lanes.iter().enumerate() {
-        let top = HEAD + PITCH * row as i32 + (PITCH - SWING) / 2;
-        items.push(Item::text("label", left - 8, top + SWING - 4, label(lane)));
-        match lane.shape {
-            Shape::Clock => items.push(Item::path("wave", grid.clock(top))),
-            Shape::Bit => items.push(Item::path("wave", grid.bit(lane, top))),
-            Shape::Bus => grid.bus(lane, top, &mut items),
-        }
-    }
-    for at in grid.gaps() {
-        let x = grid.x(at);
-        items.push(Item::path(
-            "gap",
-            format!("M{} {HEAD}V{height}M{} {HEAD}V{height}", x - 2, x + 2),
-        ));
+    for strip in 0..strips {
+        let places = strip * clocks..count.min((strip + 1) * clocks);
+        let top = (height + APART) * strip as i32;
+        Grid { waves, places, left, top, clock }.draw(height, &mut items);
     }
     Drawing {
         id: "timing-diagram".to_owned(),
         title: format!("Timing of {}", waves.name),
         description,
-        width: end + 8,
-        height,
+        width: left + clock * clocks as i32 + 8,
+        height: (height + APART) * strips as i32 - APART,
         items,
     }
 }
 
-/// Where the clocks are.
+fn label(lane: &Lane) -> String {
+    match lane.number {
+        Some(number) => format!("{} ({number})", lane.name),
+        None => lane.name.clone(),
+    }
+}
+
+/// How wide a clock should be, within reason: for all that is said in it, and where names of microinstructions may be
+/// cut.
+fn clock_widths(waves: &Waves) -> [i32; 2] {
+    let wanted = |lanes: &mut dyn Iterator<Item = &Lane>| {
+        let widths = lanes.filter(|lane| lane.shape == Shape::Bus).flat_map(|lane| {
+            let segments = segments(lane, 0..lane.values.len()).into_iter();
+            segments.map(|(from, to)| {
+                let text = lane.values[from].as_deref().unwrap_or_default();
+                (text_width(text, SIZE) + MARGIN) / (to - from) as i32
+            })
+        });
+        widths.max().unwrap_or(0).clamp(*CLOCK.start(), *CLOCK.end())
+    };
+    let mut values = waves.lanes.iter().filter(|lane| lane.name != MICROINSTRUCTION);
+    [wanted(&mut waves.lanes.iter()), wanted(&mut values)]
+}
+
+/// The stretches of some places in which a value stays, as half-open ranges.
+fn segments(lane: &Lane, places: Range<usize>) -> Vec<(usize, usize)> {
+    let mut segments: Vec<(usize, usize)> = Vec::new();
+    for at in places {
+        match segments.last_mut() {
+            Some((from, to)) if lane.values[*from] == lane.values[at] => *to = at + 1,
+            _ => segments.push((at, at + 1)),
+        }
+    }
+    segments
+}
+
+/// A strip: where its clocks are.
 struct Grid<'a> {
     waves: &'a Waves,
+    places: Range<usize>,
     left: i32,
+    top: i32,
     clock: i32,
 }
 
-impl<'a> Grid<'a> {
-    /// Wide enough for what the values say, within reason.
-    fn new(waves: &'a Waves, left: i32) -> Self {
-        let mut grid = Self { waves, left, clock: 0 };
-        let wanted = waves
-            .lanes
-            .iter()
-            .filter(|lane| lane.shape == Shape::Bus)
-            .flat_map(|lane| {
-                let segments = grid.segments(lane).into_iter();
-                segments.map(|(from, to)| {
-                    let text = lane.values[from].as_deref().unwrap_or_default();
-                    (text_width(text, SIZE) + MARGIN) / (to - from) as i32
-                })
-            })
-            .max();
-        grid.clock = wanted.unwrap_or(0).clamp(*CLOCK.start(), *CLOCK.end());
-        grid
+impl Grid<'_> {
+    fn draw(&self, height: i32, items: &mut Vec<Item>) {
+        let (head, bottom) = (self.top + HEAD, self.top + height);
+        let line = |x: i32| format!("M{x} {head}V{bottom}");
+        for at in self.places.clone() {
+            let (x, end) = (self.x(at), self.x(at + 1));
+            items.push(Item::path("grid", line(x)));
+            let number = self.waves.clocks[at].to_string();
+            items.push(Item::text("tick", (x + end) / 2, head - 9, number));
+        }
+        items.push(Item::path("grid", line(self.x(self.places.end))));
+        for (row, lane) in self.waves.lanes.iter().enumerate() {
+            let top = head + PITCH * row as i32 + (PITCH - SWING) / 2;
+            items.push(Item::text("label", self.left - 8, top + SWING - 4, label(lane)));
+            match lane.shape {
+                Shape::Clock => items.push(Item::path("wave", self.clock(top))),
+                Shape::Bit => items.push(Item::path("wave", self.bit(lane, top))),
+                Shape::Bus => self.bus(lane, top, items),
+            }
+        }
+        for at in self.gaps() {
+            let x = self.x(at);
+            items.push(Item::path("gap", line(x - 2) + &line(x + 2)));
+        }
     }
 
     /// The edge that begins a clock, by its place among those shown.
     fn x(&self, at: usize) -> i32 {
-        self.left + self.clock * at as i32
+        self.left + self.clock * (at - self.places.start) as i32
     }
 
     /// The places before which clocks are left out.
     fn gaps(&self) -> impl Iterator<Item = usize> + '_ {
-        let pairs = self.waves.clocks.windows(2).enumerate();
-        pairs.filter(|(_, pair)| pair[1] != pair[0] + 1).map(|(at, _)| at + 1)
-    }
-
-    /// The stretches in which a value stays, as half-open ranges of places.
-    fn segments(&self, lane: &Lane) -> Vec<(usize, usize)> {
-        let mut segments: Vec<(usize, usize)> = Vec::new();
-        for at in 0..lane.values.len() {
-            match segments.last_mut() {
-                Some((from, to)) if lane.values[*from] == lane.values[at] => *to = at + 1,
-                _ => segments.push((at, at + 1)),
-            }
-        }
-        segments
+        let clocks = &self.waves.clocks;
+        self.places.clone().filter(|&at| at > 0 && clocks[at] != clocks[at - 1] + 1)
     }
 
     fn clock(&self, top: i32) -> String {
         let low = top + SWING;
-        let mut d = format!("M{} {low}", self.x(0));
-        for at in 0..self.waves.clocks.len() {
+        let mut d = format!("M{} {low}", self.left);
+        for at in self.places.clone() {
             let (x, middle) = (self.x(at), self.x(at) + self.clock / 2);
             d += &format!("V{top}H{middle}V{low}H{}", x + self.clock);
         }
@@ -130,13 +152,14 @@ impl<'a> Grid<'a> {
 
     fn bit(&self, lane: &Lane, top: i32) -> String {
         let mut d = String::new();
-        for (from, to) in self.segments(lane) {
+        for (from, to) in segments(lane, self.places.clone()) {
             let high = lane.values[from].as_deref() == Some("1");
             let y = if high { top } else { top + SWING };
             let x = self.x(from);
-            d += &match from {
-                0 => format!("M{x} {y}"),
-                _ => format!("L{} {y}", x + SLANT),
+            d += &if from == self.places.start {
+                format!("M{x} {y}")
+            } else {
+                format!("L{} {y}", x + SLANT)
             };
             d += &format!("H{}", self.x(to));
         }
@@ -145,7 +168,7 @@ impl<'a> Grid<'a> {
 
     fn bus(&self, lane: &Lane, top: i32, items: &mut Vec<Item>) {
         let (middle, low) = (top + SWING / 2, top + SWING);
-        for (from, to) in self.segments(lane) {
+        for (from, to) in segments(lane, self.places.clone()) {
             let (x, end) = (self.x(from), self.x(to));
             let frame = format!(
                 "M{x} {middle}L{} {top}H{}L{end} {middle}L{} {low}H{}Z",

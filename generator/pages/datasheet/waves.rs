@@ -19,6 +19,9 @@ const HEAD: usize = 24;
 /// Clocks that are shown of its end.
 const TAIL: usize = 8;
 
+/// The name of the lane that says which microinstruction is executed.
+pub const MICROINSTRUCTION: &str = "word";
+
 /// A computation, clock by clock.
 pub struct Waves {
     /// The name of the module.
@@ -207,7 +210,7 @@ fn word_lane(design: &Design, words: &[u64], busy: &[u64]) -> Lane {
         None => word.to_string(),
     };
     Lane {
-        name: "word".to_owned(),
+        name: MICROINSTRUCTION.to_owned(),
         number: None,
         shape: Shape::Bus,
         values: words

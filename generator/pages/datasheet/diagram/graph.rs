@@ -33,9 +33,9 @@ pub struct Node {
 /// How a box is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// A port on the left.
+    /// A port at the top.
     Input,
-    /// A port on the right.
+    /// A port at the bottom.
     Output,
     /// The control unit.
     Control,
@@ -189,7 +189,7 @@ impl<'a> Builder<'a> {
                 form: Form::Block(block.kind),
                 number: block.number,
                 name: block.name.to_owned(),
-                caption: format!("{kind} · {}", block.format),
+                caption: caption(&block),
                 control: self.turned_by(&block),
                 title: titled(&format!("{} ({kind})", block.name), &block.format, &block.doc),
             });
@@ -224,6 +224,14 @@ impl<'a> Builder<'a> {
             true => field.name.clone(),
             false => lines.join(" "),
         }
+    }
+}
+
+/// What a block is made of, and its format; that a register takes an operand is to be seen from the port above it.
+fn caption(block: &Block) -> String {
+    match block.kind {
+        Kind::Operand => format!("{} · {}", Kind::Register, block.format),
+        kind => format!("{kind} · {}", block.format),
     }
 }
 

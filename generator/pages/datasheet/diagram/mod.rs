@@ -1,4 +1,7 @@
-//! The block diagram: the blocks of the netlist, laid out in columns from the inputs to the outputs.
+//! The block diagram: the blocks of the netlist, laid out in ranks from the inputs to the outputs.
+//!
+//! `place` and `route` lay it out from left to right. The page shows it turned, from top to bottom: a datapath has more
+//! ranks than blocks in one, so that this is the form that fits a page, on a screen and on paper.
 
 mod graph;
 mod place;
@@ -15,20 +18,26 @@ use route::{Body, LANE, Net, Routes};
 /// Of the type.
 const SIZE: f64 = 11.0;
 
-/// A box with two lines of text.
-const HEIGHT: f64 = 40.0;
+/// Of a line of text in a box.
+const LINE: i32 = 14;
 
-/// A box with one.
-const LOW: f64 = 24.0;
+/// Above and below the text in a box.
+const PADDING: i32 = 6;
+
+/// A caption that is longer, in characters, takes two lines.
+const LONG: usize = 17;
 
 /// The least distance of pins.
 const PIN: f64 = 9.0;
 
-/// What control lines take above a box.
-const STUB: f64 = 18.0;
+/// The arrow of the control lines beside a box.
+const STUB: f64 = 14.0;
 
 /// Beside the text in a box.
 const MARGIN: i32 = 10;
+
+/// The point of a port.
+const NECK: i32 = 8;
 
 /// Around the drawing.
 const BORDER: i32 = 12;
@@ -41,10 +50,14 @@ pub fn drawing(design: &Design) -> Drawing {
     let sizes: Vec<Sizes> =
         (0..graph.boxes.len()).map(|at| Sizes::new(&graph, at, lanes[at].len())).collect();
     let heights: Vec<f64> = sizes.iter().map(Sizes::all).collect();
-    let placement = Placement::new(&graph, &heights, back);
-    let bodies: Vec<Body> =
+    let placement = Placement::new(&graph, &heights, &back);
+    let mut bodies: Vec<Body> =
         sizes.iter().zip(&placement.middle).map(|(sizes, middle)| sizes.body(*middle)).collect();
-    let routes = route::routes(&graph, &placement, &bodies, &lanes);
+    let mut routes = route::routes(&graph, &placement, &bodies, &lanes);
+    // Wires around the topmost box run above it.
+    let above = routes.top().min(0.0);
+    routes.lower(-above);
+    bodies.iter_mut().for_each(|body| body.lower(-above));
     let mut items = Vec::new();
     for (at, net) in routes.nets.iter().enumerate() {
         draw_net(net, &graph.boxes[at], &mut items);
@@ -60,19 +73,19 @@ pub fn drawing(design: &Design) -> Drawing {
         id: "block-diagram".to_owned(),
         title: format!("Blocks of {}", design.name),
         description: format!(
-            "{} blocks and the control unit between {} inputs on the left and {} outputs on the right. The table of blocks \
+            "{} blocks and the control unit between {} inputs at the top and {} outputs at the bottom. The table of blocks \
              says what each of them takes.",
             count(|form| matches!(form, Form::Block(_))),
             count(|form| form == Form::Input),
             count(|form| form == Form::Output),
         ),
-        width: coordinate(routes.width) + BORDER,
-        height: coordinate(bottom(&bodies, &routes)) + BORDER,
+        width: coordinate(bottom(&bodies, &routes)) + BORDER,
+        height: coordinate(routes.width) + BORDER,
         items,
     }
 }
 
-/// What a box takes from top to bottom, and from left to right.
+/// What a box takes in the layout, which sees the page turned: its height there is the width on the page.
 struct Sizes {
     lanes: f64,
     stub: f64,
@@ -84,20 +97,14 @@ impl Sizes {
     fn new(graph: &Graph, at: usize, lanes: usize) -> Self {
         let one = &graph.boxes[at];
         let pins = graph.wires.iter().filter(|wire| wire.to == at).count();
-        let height = match one.form {
-            Form::Input | Form::Output => LOW,
-            _ => HEIGHT,
-        };
-        let texts = match one.form {
-            Form::Input | Form::Output => vec![head(one) + " " + &one.caption],
-            _ => vec![head(one), one.caption.clone(), format!(" {}", one.control)],
-        };
-        let widest = texts.iter().map(|text| text_width(text, SIZE)).max();
+        let lines = lines(one);
+        let widest = lines.iter().map(|(_, text)| text_width(text, SIZE)).max();
+        let neck = if is_port(one) { NECK } else { 0 };
         Self {
             lanes: LANE * lanes as f64,
             stub: if one.control.is_empty() { 0.0 } else { STUB },
-            height: height.max(PIN * (pins + 1) as f64),
-            width: f64::from(widest.unwrap_or(0) + 2 * MARGIN),
+            height: f64::from(widest.unwrap_or(0) + 2 * MARGIN).max(PIN * (pins + 1) as f64),
+            width: f64::from(LINE * lines.len() as i32 + 2 * PADDING + neck),
         }
     }
 
@@ -112,12 +119,28 @@ impl Sizes {
     }
 }
 
-/// The first line of a box.
-fn head(one: &Node) -> String {
-    match one.number {
+fn is_port(one: &Node) -> bool {
+    matches!(one.form, Form::Input | Form::Output)
+}
+
+/// The text of a box, with the class of each line; the control lines that turn it are the last.
+fn lines(one: &Node) -> Vec<(&'static str, String)> {
+    let head = match one.number {
         Some(number) => format!("{number} {}", one.name),
         None => one.name.clone(),
+    };
+    let class = if is_port(one) { "tick" } else { "tick name" };
+    let mut lines = vec![(class, head)];
+    match one.caption.split_once(" · ") {
+        Some((kind, format)) if one.caption.chars().count() > LONG => {
+            lines.extend([kind, format].map(|line| ("tick small", line.to_owned())));
+        }
+        _ => lines.push(("tick small", one.caption.clone())),
     }
+    if !one.control.is_empty() {
+        lines.push(("turn", one.control.clone()));
+    }
+    lines
 }
 
 fn bottom(bodies: &[Body], routes: &Routes) -> f64 {
@@ -132,8 +155,9 @@ fn coordinate(value: f64) -> i32 {
     value.round() as i32 + BORDER
 }
 
+/// A place of the layout on the page, which shows it turned.
 fn point((x, y): (f64, f64)) -> String {
-    format!("{} {}", coordinate(x), coordinate(y))
+    format!("{} {}", coordinate(y), coordinate(x))
 }
 
 fn draw_net(net: &Net, driver: &Node, items: &mut Vec<Item>) {
@@ -144,7 +168,7 @@ fn draw_net(net: &Net, driver: &Node, items: &mut Vec<Item>) {
     let pieces = net.pieces.iter();
     let lines = pieces.map(|piece| format!("M{}L{}", point(piece.from), point(piece.to)));
     items.push(Item::path("wire", lines.collect::<String>()));
-    let arrows = net.pins.iter().map(|&pin| format!("M{}l-6 -3v6Z", point(pin)));
+    let arrows = net.pins.iter().map(|&pin| format!("M{}l-3 -6h6Z", point(pin)));
     items.push(Item::path("arrow", arrows.collect::<String>()));
     if !net.junctions.is_empty() {
         let dots = net.junctions.iter();
@@ -155,32 +179,24 @@ fn draw_net(net: &Net, driver: &Node, items: &mut Vec<Item>) {
 }
 
 fn draw_box(one: &Node, left: f64, body: &Body, items: &mut Vec<Item>) {
-    let (x, y) = (coordinate(left), coordinate(body.upper));
-    let (width, height) = (body.width.round() as i32, (body.lower - body.upper).round() as i32);
+    let (x, y) = (coordinate(body.upper), coordinate(left));
+    let (width, height) = ((body.lower - body.upper).round() as i32, body.width.round() as i32);
     items.push(Item::Open { class: "block", title: one.title.clone() });
     items.push(Item::path(class(one.form), outline(one.form, x, y, width, height)));
     if matches!(one.form, Form::Block(Kind::Register | Kind::Operand)) {
         // The mark of the clock.
-        let edge = y + height;
-        items.push(Item::path("notch", format!("M{} {edge}l4 -6l4 6", x + 4)));
+        let (right, edge) = (x + width, y + height);
+        items.push(Item::path("notch", format!("M{right} {}l-6 -4l6 -4", edge - 3)));
     }
-    let middle = x + width / 2;
-    let centre = y + height / 2;
-    match one.form {
-        Form::Input | Form::Output => {
-            let text = head(one) + " " + &one.caption;
-            items.push(Item::text("tick", middle, centre + 4, text));
+    let mut base = y + PADDING - 3;
+    for (class, text) in lines(one) {
+        base += LINE;
+        if class == "turn" {
+            let (middle, stub) = (base - 4, STUB as i32);
+            items.push(Item::path("control wire", format!("M{} {middle}h{stub}", x - stub)));
+            items.push(Item::path("control arrow", format!("M{x} {middle}l-6 -3v6Z")));
         }
-        _ => {
-            items.push(Item::text("tick name", middle, centre - 3, head(one)));
-            items.push(Item::text("tick small", middle, centre + 12, one.caption.clone()));
-        }
-    }
-    if !one.control.is_empty() {
-        let x = x + 8;
-        items.push(Item::path("wire", format!("M{x} {}v{STUB}", y - STUB as i32)));
-        items.push(Item::path("arrow", format!("M{x} {y}l-3 -6h6Z")));
-        items.push(Item::text("small", x + 6, y - 7, one.control.clone()));
+        items.push(Item::text(class, x + width / 2, base, text));
     }
     items.push(Item::Close);
 }
@@ -197,17 +213,17 @@ fn class(form: Form) -> &'static str {
     }
 }
 
-/// Ports point in the direction of the signal; muxes narrow toward their output.
+/// Ports point in the direction of the signal, down the page; muxes narrow toward their output.
 fn outline(form: Form, x: i32, y: i32, width: i32, height: i32) -> String {
-    let (right, bottom, middle) = (x + width, y + height, y + height / 2);
+    let (right, bottom, middle) = (x + width, y + height, x + width / 2);
     match form {
         Form::Input | Form::Output => {
-            let neck = right - 8;
-            format!("M{x} {y}H{neck}L{right} {middle}L{neck} {bottom}H{x}Z")
+            let neck = bottom - NECK;
+            format!("M{x} {y}H{right}V{neck}L{middle} {bottom}L{x} {neck}Z")
         }
         Form::Block(Kind::Mux(_)) => {
-            let (upper, lower) = (y + 5, bottom - 5);
-            format!("M{x} {y}L{right} {upper}V{lower}L{x} {bottom}Z")
+            let (left, right, wide) = (x + 6, right - 6, right);
+            format!("M{x} {y}H{wide}L{right} {bottom}H{left}Z")
         }
         _ => format!("M{x} {y}H{right}V{bottom}H{x}Z"),
     }

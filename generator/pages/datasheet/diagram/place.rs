@@ -1,25 +1,26 @@
 //! Where boxes stand: columns from left to right, by the layered layout of the `dagre` library.
 
 use dagre::graph::{Graph as Layered, GraphOptions};
-use dagre::{EdgeLabel, LayoutOptions, NodeLabel, RankDir, layout};
+use dagre::{EdgeLabel, LayoutOptions, NodeLabel, RankDir, Ranker, layout};
 
 use super::graph::{Form, Graph};
 use crate::pages::account::blocks::Kind;
 
 /// Between boxes of a column.
-const BOXES: f64 = 18.0;
+const BOXES: f64 = 12.0;
 
 /// Between wires that pass a column.
-const WIRES: f64 = 10.0;
+const WIRES: f64 = 8.0;
 
 /// How much a wire between a port and what it leads to counts when columns are chosen.
 const PORT: i32 = 4;
 
-/// How much it counts that ports stand at the ends.
-const END: i32 = 20;
+/// How much it counts that outputs stand at the end. Inputs stand where they are taken, so that no wire to a late one
+/// has to pass by everything else.
+const LAST: i32 = 20;
 
-/// The ends of the diagram, to which ports are tied.
-const ENDS: [&str; 2] = ["inputs", "outputs"];
+/// The end of the diagram, to which the outputs of the datapath are tied.
+const END: &str = "outputs";
 
 /// Where everything is, from above; columns are numbered from the left.
 pub struct Placement {
@@ -36,23 +37,43 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// Places boxes that take so much height, with wires that lead back as [`back`] says.
-    pub fn new(graph: &Graph, heights: &[f64], back: Vec<bool>) -> Self {
+    /// Places boxes that take so much height, with wires that lead back as [`back`] says; of a few layouts the one that
+    /// takes the least height, which is the width of the page.
+    pub fn new(graph: &Graph, heights: &[f64], back: &[bool]) -> Self {
+        let rankers = [Ranker::NetworkSimplex, Ranker::LongestPath];
+        let variants = rankers.into_iter().flat_map(|it| [(it, false), (it, true)]);
+        let placements =
+            variants.map(|(ranker, last)| Self::variant(graph, heights, back, ranker, last));
+        let narrowest = placements.min_by(|a, b| a.height(heights).total_cmp(&b.height(heights)));
+        narrowest.expect("there are four")
+    }
+
+    /// From the top of the highest box to the bottom of the lowest.
+    fn height(&self, heights: &[f64]) -> f64 {
+        let boxes = || self.middle.iter().zip(heights);
+        let top = boxes().map(|(middle, height)| middle - height / 2.0).fold(f64::MAX, f64::min);
+        boxes().map(|(middle, height)| middle + height / 2.0).fold(0.0, f64::max) - top
+    }
+
+    /// A layout by one way to rank boxes, with the outputs of the handshake at the end or where there is room.
+    fn variant(
+        graph: &Graph,
+        heights: &[f64],
+        back: &[bool],
+        ranker: Ranker,
+        handshake: bool,
+    ) -> Self {
         let mut layered: Layered<NodeLabel, EdgeLabel> =
             Layered::with_options(GraphOptions { multigraph: true, ..GraphOptions::default() });
         let node = |height| NodeLabel { width: 1.0, height, ..NodeLabel::default() };
-        for end in ENDS {
-            layered.set_node(end, Some(node(1.0)));
-        }
+        layered.set_node(END, Some(node(1.0)));
         for (at, &height) in heights.iter().enumerate() {
             layered.set_node(at.to_string(), Some(node(height)));
-            let edge = EdgeLabel { weight: END, ..EdgeLabel::default() };
-            let (from, to) = match graph.boxes[at].form {
-                Form::Input => (ENDS[0].to_owned(), at.to_string()),
-                Form::Output => (at.to_string(), ENDS[1].to_owned()),
-                _ => continue,
-            };
-            layered.set_edge(from, to, Some(edge), None);
+            let edge = EdgeLabel { weight: LAST, ..EdgeLabel::default() };
+            if graph.boxes[at].form == Form::Output && (handshake || !driven_by_control(graph, at))
+            {
+                layered.set_edge(at.to_string(), END.to_owned(), Some(edge), None);
+            }
         }
         let is_port = |at: usize| matches!(graph.boxes[at].form, Form::Input | Form::Output);
         let ends = |wire: usize| {
@@ -76,6 +97,7 @@ impl Placement {
             rankdir: RankDir::LR,
             nodesep: BOXES,
             edgesep: WIRES,
+            ranker,
             ..LayoutOptions::default()
         };
         layout(&mut layered, Some(options));
@@ -107,9 +129,15 @@ impl Placement {
             middle: places.iter().map(|place| place.1).collect(),
             columns: xs.len(),
             passes: passes.collect(),
-            back,
+            back: back.to_vec(),
         }
     }
+}
+
+/// Whether an output is the control unit's.
+fn driven_by_control(graph: &Graph, output: usize) -> bool {
+    let mut drivers = graph.wires.iter().filter(|wire| wire.to == output);
+    drivers.any(|wire| graph.boxes[wire.from].form == Form::Control)
 }
 
 /// Which wires lead back: of each loop the one into the mux that chooses among the most, where it has one.

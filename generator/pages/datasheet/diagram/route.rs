@@ -31,6 +31,15 @@ pub struct Body {
     pub width: f64,
 }
 
+impl Body {
+    /// Moves it down.
+    pub fn lower(&mut self, by: f64) {
+        for edge in [&mut self.top, &mut self.upper, &mut self.lower] {
+            *edge += by;
+        }
+    }
+}
+
 /// A straight piece, horizontal or vertical.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piece {
@@ -59,6 +68,24 @@ pub struct Routes {
     pub nets: Vec<Net>,
     /// From left to right.
     pub width: f64,
+}
+
+impl Routes {
+    /// The topmost place of a wire.
+    pub fn top(&self) -> f64 {
+        let pieces = self.nets.iter().flat_map(|net| &net.pieces);
+        pieces.map(|piece| piece.from.1.min(piece.to.1)).fold(f64::MAX, f64::min)
+    }
+
+    /// Moves all wires down.
+    pub fn lower(&mut self, by: f64) {
+        for net in &mut self.nets {
+            let pieces = net.pieces.iter_mut().flat_map(|piece| [&mut piece.from, &mut piece.to]);
+            for (_, y) in pieces.chain(&mut net.junctions).chain(&mut net.pins) {
+                *y += by;
+            }
+        }
+    }
 }
 
 /// The boxes around which wires lead back, with the nets that do; each takes a [`LANE`].
