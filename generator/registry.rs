@@ -1,10 +1,10 @@
 //! What a device is to the command line: keys, description, golden model, contract.
 
+use crate::base::diagnostic::Diagnostics;
 use crate::config::{Config, Schema};
 use crate::devices;
 use crate::golden::{self, Contract, Model};
 use crate::hdl::dsl::Designer;
-use crate::hdl::dsl::rules::Diagnostics;
 use crate::hdl::netlist::Design;
 use crate::hdl::pipeline;
 

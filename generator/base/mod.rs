@@ -1,5 +1,6 @@
 //! What everything else is written with.
 
+pub mod diagnostic;
 pub mod fixed;
 pub mod identifier;
 pub mod keywords;

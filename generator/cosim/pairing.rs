@@ -10,7 +10,7 @@ use super::stimulus::Stimulus;
 use super::stream::Stream;
 use crate::base::fixed::{Format, MAX_WIDTH, exp2};
 use crate::golden::{Contract, Model, Operand, nearer};
-use crate::hdl::netlist::{Design, NetId, RegisterKind, Role};
+use crate::hdl::netlist::{Design, NetId, RegisterKind};
 
 /// A design and its golden model, paired by the names of ports and registers.
 pub(super) struct Pairing<'a> {
@@ -99,9 +99,13 @@ impl<'a> Pairing<'a> {
             })
             .collect::<Result<Vec<_>>>()?;
         let position = |net: NetId| compared.iter().position(|&other| other == net);
-        let role = |wanted: fn(Role) -> bool| position(design.port(wanted)?.net);
-        let busy = role(|role| role == Role::Busy).context("the design has no output `busy`")?;
-        let valid = role(|role| role == Role::Valid).context("the design has no output `valid`")?;
+        let handshake = design.handshake()?;
+        let predicted = |net: NetId| {
+            position(net).with_context(|| {
+                format!("the golden model does not predict `{}`", design.net(net).name)
+            })
+        };
+        let (busy, valid) = (predicted(handshake.busy)?, predicted(handshake.valid)?);
         let colours = contract.operands().iter().filter(|it| it.colour);
         ensure!(
             colours.clone().count() == contract.outputs().len(),

@@ -6,7 +6,7 @@ use anyhow::{Context, Result, ensure};
 use super::Random;
 use crate::base::fixed::Format;
 use crate::golden::{Contract, Operand};
-use crate::hdl::netlist::{self, Design, NetId, Role};
+use crate::hdl::netlist::{self, Design, Handshake, NetId, Role};
 use crate::hdl::sim::Simulator;
 use crate::package::{Computation, Quantity, Shown, Timing, WorkedExample};
 
@@ -267,11 +267,7 @@ fn run(
     if design.pipeline.is_some() {
         return through(design, contract, operands, watch, &mut simulator);
     }
-    let output =
-        |wanted: fn(Role) -> bool| design.port(wanted).map(|port| port.net).context("no handshake");
-    let valid = output(|role| role == Role::Valid)?;
-    let done = output(|role| role == Role::Done)?;
-    let busy = output(|role| role == Role::Busy)?;
+    let Handshake { valid, done, busy, .. } = design.handshake()?;
     let input = |name: &str| {
         let at = design.inputs().position(|port| design.net(port.net).name == name);
         at.with_context(|| format!("no input `{name}`"))

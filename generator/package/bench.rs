@@ -129,7 +129,7 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
         };
         let output = Output { name: port_name(port), select };
         match port.role {
-            Role::Valid | Role::Busy | Role::Done | Role::InReady => handshake.push(output),
+            role if role.is_status() => handshake.push(output),
             _ => results.push(output),
         }
     }

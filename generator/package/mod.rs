@@ -209,8 +209,7 @@ pub struct Vectors {
 /// Every file of a design.
 ///
 /// # Errors
-/// A design that `check` would have refused (a loop, an undriven net, a name twice or in the way of
-/// `clk`); vectors that do not fit the ports.
+/// The mistakes that [`Design::verify_structure`] finds; a net named `clk`; vectors that do not fit the ports.
 pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     ensure!(design.find("clk").is_none(), "`clk` is the clock; no other net can have that name");
     let plan = Plan::new(design)?;

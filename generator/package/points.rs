@@ -1,9 +1,9 @@
 //! The bench that computes a list of points: operands from a file, results to a file.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use askama::Template;
 
-use crate::hdl::netlist::{Design, Port, Role};
+use crate::hdl::netlist::{Design, NetId, Port, Role};
 use crate::hdl::verilog::rows::{Row, separated};
 use crate::hdl::verilog::text::Names;
 
@@ -67,10 +67,8 @@ struct Variables {
 /// A design without the common handshake, or without operands or results.
 pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     let port_name = |port: &Port| design.net(port.net).name.clone();
-    let one = |wanted: Role, what: &str| {
-        let port = design.port(|role| role == wanted).map(port_name);
-        port.with_context(|| format!("`{}` has no port `{what}`", design.name))
-    };
+    let handshake = design.handshake()?;
+    let name_of = |net: NetId| design.net(net).name.clone();
     let mut names = Names::new(design.ports.iter().map(|port| design.net(port.net).name.as_str()));
     names.fresh("clk");
     let variables = Variables {
@@ -118,10 +116,10 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
                 .map(|name| format!(".{name}({name})"))
                 .collect(),
         ),
-        reset: one(Role::Reset, "rst_n")?,
-        start: one(Role::Start, "start")?,
-        busy: one(Role::Busy, "busy")?,
-        valid: one(Role::Valid, "valid")?,
+        reset: name_of(handshake.reset),
+        start: name_of(handshake.start),
+        busy: name_of(handshake.busy),
+        valid: name_of(handshake.valid),
         scan: line(operands.len()),
         print: line(results.len()),
         operands: operands.clone(),

@@ -76,7 +76,10 @@ fn the_line_of_a_mistake_is_that_of_the_description() {
     d.microprogram([step("idle", []), step("end", [end()])]);
     let found = d.finish().unwrap_err();
     assert_eq!(found.0[0].location.line(), line);
-    assert!(found.to_string().contains(&format!("--> tests/diagnostics.rs:{line}:")), "{found}");
+    assert!(
+        found.to_string().contains(&format!("--> tests/quick/diagnostics.rs:{line}:")),
+        "{found}"
+    );
 }
 
 #[test]

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use super::{Engine, Points};
 use crate::base::fixed::Format;
 use crate::golden::Contract;
-use crate::hdl::netlist::{Design, NetId, Role};
+use crate::hdl::netlist::{Design, Handshake, NetId};
 use crate::hdl::sim::Simulator;
 
 /// Instances that one thread clocks together.
@@ -76,10 +76,6 @@ impl Team {
             let place = simulator.input(name);
             place.with_context(|| format!("`{}` has no input `{name}`", design.name))
         };
-        let output = |wanted: Role| {
-            let port = design.port(|role| role == wanted).map(|port| port.net);
-            port.with_context(|| format!("`{}` has no output for {wanted:?}", design.name))
-        };
         let operands = contract
             .operands()
             .iter()
@@ -98,7 +94,7 @@ impl Team {
             })
             .collect::<Result<_>>()?;
         let (reset, start) = (input("rst_n")?, input("start")?);
-        let (valid, busy) = (output(Role::Valid)?, output(Role::Busy)?);
+        let Handshake { valid, busy, .. } = design.handshake()?;
         simulator.clock()?;
         simulator.set_lanes(reset, [1; LANES]);
         Ok(Self { simulator, start, operands, results, valid, busy })

@@ -3,7 +3,7 @@
 //! The formats of what a shared multiplier multiplies differ from word to word, so its operand muxes
 //! carry bits, not values: a [`Bus`] is as wide as its widest input. The product means something only
 //! together with the selection, and [`SharedProduct::of`] gives it back its format: exact, with its
-//! range, for one selection or for several that agree in their point. [`crate::hdl::dsl::rules`] then proves for
+//! range, for one selection or for several that agree in their point. [`Designer::finish`] then proves for
 //! every word that a register which takes such a view is loaded under a selection that it is for.
 
 use std::cmp::Ordering;

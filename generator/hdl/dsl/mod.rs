@@ -36,7 +36,7 @@ mod bus;
 mod narrow;
 mod program;
 mod registers;
-pub mod rules;
+mod rules;
 mod signal;
 
 use std::cell::RefCell;
@@ -52,15 +52,12 @@ pub use signal::{Mux, Signal};
 
 pub use crate::hdl::netlist::About;
 
+use crate::base::diagnostic::{Diagnostic, Diagnostics, SourceLocation};
 use crate::base::fixed::{Format, MAX_POINT, MAX_WIDTH};
-use crate::hdl::dsl::rules::{Diagnostic, Diagnostics};
 use crate::hdl::netlist::{
     Control, Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, Port,
     Register as NetRegister, RegisterKind, Role, Rom as NetRom, RomId, Unit,
 };
-
-/// Where a description says something.
-pub(crate) type Place = &'static Location<'static>;
 
 /// Builds a [`Design`]; see the [module documentation](self).
 pub struct Designer {
@@ -310,6 +307,9 @@ impl Designer {
         }
         let Inner { design, views, mut diagnostics, .. } = self.inner.into_inner();
         if diagnostics.is_empty() {
+            diagnostics = design.verify();
+        }
+        if diagnostics.is_empty() {
             diagnostics = rules::check(&design, &views);
         }
         if diagnostics.is_empty() { Ok(design) } else { Err(Diagnostics(diagnostics)) }
@@ -364,7 +364,7 @@ impl Designer {
     }
 
     /// What `act` adds stands at `place`, wherever in the builder it is made: its names may be at fault.
-    pub(crate) fn placed<T>(&self, place: Place, act: impl FnOnce() -> T) -> T {
+    pub(crate) fn placed<T>(&self, place: SourceLocation, act: impl FnOnce() -> T) -> T {
         let own = self.with(|inner| (inner.design.nets.len(), inner.design.roms.len()));
         let made = act();
         self.with(|Inner { design, .. }| {
@@ -504,7 +504,11 @@ impl Designer {
     }
 
     #[track_caller]
-    pub(crate) fn error_at<const N: usize>(&self, message: String, notes: [(&str, Place); N]) {
+    pub(crate) fn error_at<const N: usize>(
+        &self,
+        message: String,
+        notes: [(&str, SourceLocation); N],
+    ) {
         let mut diagnostic = Diagnostic::new(message, Location::caller());
         for (note, place) in notes {
             diagnostic = diagnostic.note(note.to_owned(), place);

@@ -2,9 +2,9 @@
 
 use std::panic::Location;
 
-use super::{Designer, Place, Signal};
+use super::{Designer, Signal};
+use crate::base::diagnostic::{Diagnostic, SourceLocation};
 use crate::base::fixed::Format;
-use crate::hdl::dsl::rules::Diagnostic;
 use crate::hdl::netlist::microcode;
 use crate::hdl::netlist::{
     Control, Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role, Rom as NetRom, RomId,
@@ -15,7 +15,7 @@ use crate::hdl::netlist::{
 #[derive(Clone)]
 pub struct Setting {
     kind: Kind,
-    location: Place,
+    location: SourceLocation,
 }
 
 #[derive(Clone)]
@@ -39,7 +39,12 @@ enum Kind {
 }
 
 impl Setting {
-    pub(crate) fn field(field: FieldId, value: u64, what: String, location: Place) -> Self {
+    pub(crate) fn field(
+        field: FieldId,
+        value: u64,
+        what: String,
+        location: SourceLocation,
+    ) -> Self {
         let kind = Kind::Field { field, value, what };
         Self { kind, location }
     }
@@ -139,7 +144,7 @@ pub fn end() -> Setting {
 pub struct Step {
     name: String,
     settings: Vec<Setting>,
-    location: Place,
+    location: SourceLocation,
 }
 
 /// A word with a name and what it turns. Muxes that are not mentioned pass on their first input;
@@ -156,7 +161,7 @@ pub fn step(name: &str, settings: impl IntoIterator<Item = Setting>) -> Step {
 /// A microprogram as it was written.
 pub struct Program {
     pub(crate) steps: Vec<Step>,
-    pub(crate) location: Place,
+    pub(crate) location: SourceLocation,
 }
 
 /// The fields that the sequencer uses, as far as the program needs them.
@@ -233,7 +238,7 @@ fn distinct(loops: &[(NetId, usize)]) -> (Vec<NetId>, Vec<usize>) {
 }
 
 fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
-    let mut found: Option<(Sequence, Place)> = None;
+    let mut found: Option<(Sequence, SourceLocation)> = None;
     for setting in &step.settings {
         let sequence = match &setting.kind {
             Kind::Next => Sequence::Next,
@@ -313,7 +318,7 @@ fn words(
                 }
             }
         }
-        let mut set: Vec<Option<(u64, &str, Place)>> = vec![None; kinds.len()];
+        let mut set: Vec<Option<(u64, &str, SourceLocation)>> = vec![None; kinds.len()];
         for setting in &step.settings {
             let (field, value, what) = match &setting.kind {
                 Kind::Field { field, value, what } => (*field, *value, what.as_str()),

@@ -5,20 +5,30 @@
 //! a field of the control word, or a combinational [`Op`]. There is one clock; registers and
 //! synchronous ROMs change on its rising edge and nothing else holds state.
 //!
-//! Invariants that [`crate::hdl::dsl::rules`] establishes and everything downstream relies on:
+//! Invariants that [`Design::verify`] establishes and everything downstream relies on:
 //!
 //! * operands have the widths that the [`Op`] documents; nothing is extended or cut implicitly;
 //! * the combinational part is acyclic ([`Design::levelise`] gives an evaluation order);
 //! * names are distinct, legal Verilog identifiers, and no net is wider than 64 bits;
 //! * a value never leaves the interval of its net, and the interval fits the format.
 
+mod cell;
+mod control;
+mod dump;
+pub mod eval;
+mod handshake;
 pub mod microcode;
+mod pipeline;
 pub mod termination;
+mod verify;
 
-use std::fmt::{self, Write as _};
-use std::panic::Location;
-
+use crate::base::diagnostic::SourceLocation;
 use crate::base::fixed::Format;
+pub use cell::Op;
+pub use control::{Control, Field, FieldKind, Sequence, Word};
+pub use eval::Interpreter;
+pub use handshake::Handshake;
+pub use pipeline::{Checkpoint, Pipeline, Stage};
 pub use termination::latest_done;
 
 macro_rules! id {
@@ -83,13 +93,13 @@ pub struct Net {
     /// The module that the net is in.
     pub unit: Unit,
     /// Where in the description it was written.
-    pub location: &'static Location<'static>,
+    pub location: SourceLocation,
 }
 
 /// What drives a net.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Driver {
-    /// Nothing yet: an error that [`crate::hdl::dsl::rules`] reports.
+    /// Nothing yet: an error that [`Design::verify`] reports.
     Undriven,
     /// An input port.
     Input,
@@ -105,141 +115,12 @@ pub enum Driver {
     Op(Op),
 }
 
-/// A combinational cell. Widths are those of the nets; "same width" includes the result.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub enum Op {
-    /// The operand's bits under another name or format; same width.
-    Relabel(NetId),
-    /// The operand with copies of its sign bit (signed operand) or zeros (unsigned) above it; the
-    /// result is wider.
-    Extend(NetId),
-    /// The bits of the operand from `low` up, as many as the result is wide.
-    Slice {
-        /// The operand.
-        of: NetId,
-        /// The lowest bit taken.
-        low: u32,
-    },
-    /// The operands side by side, the first in the top bits; the result is as wide as all together.
-    Concat(Vec<NetId>),
-    /// Every bit inverted; same width.
-    Not(NetId),
-    /// Bitwise and; same width.
-    And(NetId, NetId),
-    /// Bitwise or; same width.
-    Or(NetId, NetId),
-    /// Bitwise exclusive or; same width.
-    Xor(NetId, NetId),
-    /// Sum modulo 2^width; operands and result of the same width, the carry one bit.
-    Add {
-        /// First operand.
-        a: NetId,
-        /// Second operand.
-        b: NetId,
-        /// Carry in.
-        carry: Option<NetId>,
-    },
-    /// Difference `a − b` modulo 2^width; same width.
-    Sub(NetId, NetId),
-    /// The whole product; operands both signed or both unsigned, the result as wide as both together.
-    Mul(NetId, NetId),
-    /// 1 when the operands, of one width, are equal; the result is one bit.
-    Equal(NetId, NetId),
-    /// 1 when `a < b`; operands of one width, both signed or both unsigned; the result is one bit.
-    Less(NetId, NetId),
-    /// 1 when any bit of the operand is 1; the result is one bit.
-    Any(NetId),
-    /// 1 when every bit of the operand is 1; the result is one bit.
-    All(NetId),
-    /// Input number `select`; inputs of the result's width. Beyond the last input: the last input.
-    Mux {
-        /// As wide as the number of inputs needs.
-        select: NetId,
-        /// Two or more.
-        inputs: Vec<NetId>,
-    },
-}
-
-impl Op {
-    /// Every operand, in order of writing.
-    pub fn operands(&self) -> Vec<NetId> {
-        match self {
-            Self::Relabel(a) | Self::Extend(a) | Self::Not(a) | Self::Any(a) | Self::All(a) => {
-                vec![*a]
-            }
-            Self::Slice { of, .. } => vec![*of],
-            Self::Concat(parts) => parts.clone(),
-            Self::And(a, b)
-            | Self::Or(a, b)
-            | Self::Xor(a, b)
-            | Self::Sub(a, b)
-            | Self::Mul(a, b)
-            | Self::Equal(a, b)
-            | Self::Less(a, b) => vec![*a, *b],
-            Self::Add { a, b, carry } => {
-                [Some(*a), Some(*b), *carry].into_iter().flatten().collect()
-            }
-            Self::Mux { select, inputs } => {
-                [*select].into_iter().chain(inputs.iter().copied()).collect()
-            }
-        }
-    }
-
-    /// Every operand, in order of writing, to be replaced by others.
-    pub fn operands_mut(&mut self) -> Vec<&mut NetId> {
-        match self {
-            Self::Relabel(a)
-            | Self::Extend(a)
-            | Self::Not(a)
-            | Self::Any(a)
-            | Self::All(a)
-            | Self::Slice { of: a, .. } => vec![a],
-            Self::Concat(parts) => parts.iter_mut().collect(),
-            Self::And(a, b)
-            | Self::Or(a, b)
-            | Self::Xor(a, b)
-            | Self::Sub(a, b)
-            | Self::Mul(a, b)
-            | Self::Equal(a, b)
-            | Self::Less(a, b) => vec![a, b],
-            Self::Add { a, b, carry } => {
-                [Some(a), Some(b), carry.as_mut()].into_iter().flatten().collect()
-            }
-            Self::Mux { select, inputs } => {
-                std::iter::once(select).chain(inputs.iter_mut()).collect()
-            }
-        }
-    }
-
-    /// The name of the cell in dumps and diagrams.
-    pub fn mnemonic(&self) -> &'static str {
-        match self {
-            Self::Relabel(_) => "relabel",
-            Self::Extend(_) => "extend",
-            Self::Slice { .. } => "slice",
-            Self::Concat(_) => "concat",
-            Self::Not(_) => "not",
-            Self::And(..) => "and",
-            Self::Or(..) => "or",
-            Self::Xor(..) => "xor",
-            Self::Add { .. } => "add",
-            Self::Sub(..) => "sub",
-            Self::Mul(..) => "mul",
-            Self::Equal(..) => "equal",
-            Self::Less(..) => "less",
-            Self::Any(_) => "any",
-            Self::All(_) => "all",
-            Self::Mux { .. } => "mux",
-        }
-    }
-}
-
 /// A register: takes `data` on a rising edge when `enable` is 1 or absent.
 #[derive(Clone, Debug)]
 pub struct Register {
     /// The net that it drives; the register has its name, format, block number and location.
     pub q: NetId,
-    /// What it takes; `None` is an error that [`crate::hdl::dsl::rules`] reports.
+    /// What it takes; `None` is an error that [`Design::verify`] reports.
     pub data: Option<NetId>,
     /// One bit.
     pub enable: Option<NetId>,
@@ -287,7 +168,7 @@ pub struct Rom {
     /// The number of the block in the source's figure.
     pub block: Option<u16>,
     /// Where in the description it was written.
-    pub location: &'static Location<'static>,
+    pub location: SourceLocation,
 }
 
 /// A port of the top module, other than `clk`.
@@ -352,140 +233,6 @@ impl Role {
                 | Self::OutReady
         )
     }
-}
-
-/// The control unit: an address counter, a run flag and a ROM of words.
-///
-/// Idle, the address is 0 and `run` is 0. `start` sets `run`; from then on every clock executes the
-/// word at the address and moves on as the word's [`Sequence`] says.
-#[derive(Clone, Debug)]
-pub struct Control {
-    /// Most significant first, as in the ROM word.
-    pub fields: Vec<Field>,
-    /// One for each address, from 0.
-    pub words: Vec<Word>,
-    /// The control ROM.
-    pub rom: RomId,
-    /// The counter that addresses it.
-    pub address: RegId,
-    /// 1 while a program runs.
-    pub run: RegId,
-}
-
-/// A field of the control word.
-#[derive(Clone, Debug)]
-pub struct Field {
-    /// A legal Verilog identifier.
-    pub name: String,
-    /// The net that it drives in the datapath or the sequencer.
-    pub net: NetId,
-    /// What it turns.
-    pub kind: FieldKind,
-    /// The numbers of its lines in the source's figure, most significant first, or empty.
-    pub lines: Vec<u16>,
-}
-
-/// What a field of the control word turns.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum FieldKind {
-    /// Select lines of muxes; the names of the choices, by value.
-    Select(Vec<String>),
-    /// The enable of registers.
-    Enable,
-    /// An output of the device.
-    Flag,
-    /// Used by the sequencer itself.
-    Sequence,
-}
-
-/// A word of the microprogram.
-#[derive(Clone, Debug)]
-pub struct Word {
-    /// What it does.
-    pub name: String,
-    /// The value of each field, in the order of [`Control::fields`].
-    pub values: Vec<u64>,
-    /// Where control goes from here.
-    pub sequence: Sequence,
-    /// Where in the description it was written.
-    pub location: &'static Location<'static>,
-}
-
-/// Where control goes after a word.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Sequence {
-    /// To the next word.
-    Next,
-    /// Stays until `start` is high, then to the next word. The device is not busy here.
-    WaitStart,
-    /// To word `to`, back or ahead, while `condition` is 1, else to the next word.
-    LoopWhile {
-        /// One bit of the datapath.
-        condition: NetId,
-        /// A word number.
-        to: usize,
-    },
-    /// To idle.
-    End,
-}
-
-impl Control {
-    /// That of a pipeline: no microinstruction, and so neither fields nor a sequencer.
-    pub fn none() -> Self {
-        Self {
-            fields: Vec::new(),
-            words: Vec::new(),
-            rom: RomId(u32::MAX),
-            address: RegId(u32::MAX),
-            run: RegId(u32::MAX),
-        }
-    }
-}
-
-/// What a design is that takes a point every clock.
-#[derive(Clone, Debug)]
-pub struct Pipeline {
-    /// Whose delays the stages keep, by the name of the target.
-    pub target: String,
-    /// The clock that they keep.
-    pub clock_mhz: f64,
-    /// The environment can hold the results back by `out_ready`.
-    pub stall: bool,
-    /// Bits that travel with a point.
-    pub side: u32,
-    /// From the operands on. Results are behind the registers of the last: there are as many stages as
-    /// clocks from a point to its results.
-    pub stages: Vec<Stage>,
-    /// For each net its stage. A register of stage k holds what stage k - 1 made.
-    pub stage_of: Vec<usize>,
-    /// The nets that say which stage has a point, and when points move.
-    pub handshake: Vec<NetId>,
-    /// Where values are to be seen that the sequential design has in registers.
-    pub checkpoints: Vec<Checkpoint>,
-}
-
-/// The logic between two rows of registers.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Stage {
-    /// The microinstructions of the sequential design that compute what it computes.
-    pub microinstructions: Vec<String>,
-    /// Nanoseconds that the longest way through it takes on the target.
-    pub logic_ns: f64,
-    /// Bits of the registers that end it.
-    pub register_bits: u32,
-}
-
-/// A value of a pipeline that a register of the sequential design has in some microinstruction.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Checkpoint {
-    /// The register, by name.
-    pub register: String,
-    /// The microinstruction while which it has the value, by its place in the microprogram.
-    pub word: usize,
-    /// How often this was executed before in the same computation.
-    pub visit: usize,
-    /// The net with the value, in its stage.
-    pub net: NetId,
 }
 
 /// What the header of the emitted Verilog, the manifest and the documentation say of a device.
@@ -634,83 +381,8 @@ impl Design {
         Ok(order)
     }
 
-    /// The number of the lowest bit of each field in the control word.
-    pub fn field_positions(&self) -> Vec<u32> {
-        let mut low = self.width(self.rom(self.control.rom).data);
-        self.control
-            .fields
-            .iter()
-            .map(|field| {
-                low -= self.width(field.net);
-                low
-            })
-            .collect()
-    }
-
     /// The bits in all ROMs.
     pub fn rom_bits(&self) -> u64 {
         self.roms.iter().map(|rom| rom.words.len() as u64 * u64::from(self.width(rom.data))).sum()
-    }
-}
-
-/// The netlist as text: one line a net, in order of declaration. Snapshots use it.
-impl fmt::Display for Design {
-    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
-        let name = |id: NetId| self.net(id).name.as_str();
-        writeln!(f, "design {}", self.name)?;
-        for port in &self.ports {
-            let direction = if port.role.is_input() { "input" } else { "output" };
-            writeln!(f, "{direction} {} {:?}", name(port.net), port.role)?;
-        }
-        for net in &self.nets {
-            let (low, high) = net.range;
-            write!(f, "{}: {} [{low}, {high}]", net.name, net.format)?;
-            if let Some(block) = net.block {
-                write!(f, " #{block}")?;
-            }
-            match &net.driver {
-                Driver::Undriven => f.write_str(" undriven")?,
-                Driver::Input => f.write_str(" input")?,
-                Driver::Constant(bits) => write!(f, " = {bits}")?,
-                Driver::Rom(rom) => {
-                    let rom = self.rom(*rom);
-                    let edge = if rom.synchronous { " on the clock" } else { "" };
-                    write!(
-                        f,
-                        " = rom {}[{}]{edge}, {} words",
-                        rom.name,
-                        name(rom.address),
-                        rom.words.len()
-                    )?;
-                }
-                Driver::Field(field) => {
-                    write!(f, " = field {}", self.control.fields[field.index()].name)?
-                }
-                Driver::Register(id) => {
-                    let register = self.register(*id);
-                    write!(f, " <= {}", register.data.map_or("nothing", name))?;
-                    if let Some(enable) = register.enable {
-                        write!(f, " when {}", name(enable))?;
-                    }
-                    if let Some(reset) = register.reset {
-                        write!(f, " reset {reset}")?;
-                    }
-                }
-                Driver::Op(op) => {
-                    write!(f, " = {}", op.mnemonic())?;
-                    for operand in op.operands() {
-                        write!(f, " {}", name(operand))?;
-                    }
-                    if let Op::Slice { low, .. } = op {
-                        write!(f, " from {low}")?;
-                    }
-                }
-            }
-            f.write_char('\n')?;
-        }
-        for (at, word) in self.control.words.iter().enumerate() {
-            writeln!(f, "word {at} {:?} {:?} {:?}", word.name, word.values, word.sequence)?;
-        }
-        Ok(())
     }
 }

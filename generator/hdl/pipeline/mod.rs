@@ -14,8 +14,8 @@ mod target;
 mod unroll;
 mod value;
 
+use crate::base::diagnostic::{Diagnostic, Diagnostics};
 use crate::config::Config;
-use crate::hdl::dsl::rules::{Diagnostic, Diagnostics};
 use crate::hdl::netlist::Design;
 
 pub use target::{TARGETS, Target};

@@ -1,6 +1,6 @@
 //! From the compiler's one bank of slots to the two of a [`Program`].
 
-use crate::hdl::sim::compile::{Compiler, Ordered};
+use crate::hdl::sim::compiler::{Compiler, Ordered};
 use crate::hdl::sim::program::{
     Bank, InputPort, Instruction, Place, Program, ReadEdge, RegisterEdge, Segment, Slot, Sources,
     Step,

@@ -1,53 +1,22 @@
 //! From cells to instructions.
 
-use anyhow::{Context, Result, bail, ensure};
-
 use crate::base::fixed::{MAX_WIDTH, mask};
 use crate::hdl::netlist::{NetId, Op};
-use crate::hdl::sim::compile::Compiler;
-use crate::hdl::sim::program::{Instruction, Slot};
+use crate::hdl::sim::compiler::Compiler;
+use crate::hdl::sim::program::{Instruction, Slot, drop_of};
 
 impl Compiler<'_> {
     /// The slot with the result of a cell, whose operands have been compiled.
-    ///
-    /// # Errors
-    /// The cell breaks the rules of [`Op`].
-    pub(super) fn op(&mut self, op: &Op, id: NetId) -> Result<Slot> {
+    pub(super) fn op(&mut self, op: &Op, id: NetId) -> Slot {
         let design = self.design;
         let width = design.width(id);
         let slot = |net: NetId| self.of_net[net.index()];
-        let wide = |net: NetId, wanted: u32| {
-            ensure!(
-                design.width(net) == wanted,
-                "operand `{}` is {} bits wide, not {wanted}",
-                design.net(net).name,
-                design.width(net)
-            );
-            Ok(())
-        };
-        let result_wide = |wanted: u32| {
-            ensure!(width == wanted, "it is {width} bits wide, not {wanted}");
-            Ok(())
-        };
         let signed = |net: NetId| design.net(net).format.signed;
-        let same_sign = |a: NetId, b: NetId| {
-            ensure!(
-                signed(a) == signed(b),
-                "one of `{}` and `{}` is signed, the other is not",
-                design.net(a).name,
-                design.net(b).name
-            );
-            Ok(signed(a))
-        };
         let drop = drop_of(width);
-        Ok(match op {
-            Op::Relabel(a) => {
-                wide(*a, width)?;
-                slot(*a)
-            }
+        match op {
+            Op::Relabel(a) => slot(*a),
             Op::Extend(of) => {
                 let narrow = design.width(*of);
-                ensure!(narrow <= width, "the operand is wider");
                 let (a, from) = (slot(*of), drop_of(narrow));
                 // A pattern is masked to its width, so zeros are above it already.
                 if narrow == width || !signed(*of) {
@@ -56,19 +25,13 @@ impl Compiler<'_> {
                     self.emit(&[a], |to| Instruction::SignExtend { to, a, from, drop })
                 }
             }
-            Op::Slice { of, low } => self.slice(*of, *low, width)?,
-            Op::Concat(parts) => {
-                result_wide(parts.iter().map(|part| design.width(*part)).sum())?;
-                self.concat(parts)
-            }
+            Op::Slice { of, low } => self.slice(*of, *low, width),
+            Op::Concat(parts) => self.concat(parts),
             Op::Not(of) => {
-                wide(*of, width)?;
                 let (a, b) = (slot(*of), self.constant(mask(width)));
                 self.emit(&[a, b], |to| Instruction::Xor { to, a, b })
             }
             Op::And(a, b) | Op::Or(a, b) | Op::Xor(a, b) | Op::Sub(a, b) => {
-                wide(*a, width)?;
-                wide(*b, width)?;
                 let (a, b) = (slot(*a), slot(*b));
                 self.emit(&[a, b], |to| match op {
                     Op::And(..) => Instruction::And { to, a, b },
@@ -78,13 +41,10 @@ impl Compiler<'_> {
                 })
             }
             Op::Add { a, b, carry } => {
-                wide(*a, width)?;
-                wide(*b, width)?;
                 let (a, b) = (slot(*a), slot(*b));
                 match carry {
                     None => self.add(a, b, drop),
                     Some(carry) => {
-                        wide(*carry, 1)?;
                         let carry = slot(*carry);
                         self.emit(&[a, b, carry], |to| Instruction::AddCarry {
                             to,
@@ -97,8 +57,7 @@ impl Compiler<'_> {
                 }
             }
             Op::Mul(a, b) => {
-                result_wide(design.width(*a) + design.width(*b))?;
-                let signed = same_sign(*a, *b)?;
+                let signed = signed(*a);
                 let (drop_a, drop_b) = (drop_of(design.width(*a)), drop_of(design.width(*b)));
                 let (a, b) = (slot(*a), slot(*b));
                 self.emit(&[a, b], |to| match signed {
@@ -107,11 +66,9 @@ impl Compiler<'_> {
                 })
             }
             Op::Equal(a, b) | Op::Less(a, b) => {
-                result_wide(1)?;
-                wide(*b, design.width(*a))?;
                 let drop = drop_of(design.width(*a));
                 let less = matches!(op, Op::Less(..));
-                let signed = less && same_sign(*a, *b)?;
+                let signed = less && signed(*a);
                 let (a, b) = (slot(*a), slot(*b));
                 self.emit(&[a, b], |to| match (less, signed) {
                     (false, _) => Instruction::Equal { to, a, b },
@@ -120,7 +77,6 @@ impl Compiler<'_> {
                 })
             }
             Op::Any(of) | Op::All(of) => {
-                result_wide(1)?;
                 let a = slot(*of);
                 if design.width(*of) == 1 {
                     a
@@ -133,38 +89,30 @@ impl Compiler<'_> {
                 }
             }
             Op::Mux { select, inputs } => {
-                for input in inputs {
-                    wide(*input, width)?;
-                }
                 let inputs: Vec<_> = inputs.iter().map(|net| slot(*net)).collect();
-                self.mux(slot(*select), &inputs)?
+                self.mux(slot(*select), &inputs)
             }
-        })
+        }
     }
 
     /// `width` bits of `of` from `low` up.
-    pub(super) fn slice(&mut self, of: NetId, low: u32, width: u32) -> Result<Slot> {
+    pub(super) fn slice(&mut self, of: NetId, low: u32, width: u32) -> Slot {
         let whole = self.design.width(of);
-        ensure!(
-            low.checked_add(width).is_some_and(|top| top <= whole),
-            "{width} bits from bit {low} are not within the {whole} of `{}`",
-            self.design.net(of).name
-        );
         if width == whole {
-            return Ok(self.of_net[of.index()]);
+            return self.of_net[of.index()];
         }
         let (a, inner_low, inner_drop) = self.sliced(self.of_net[of.index()]);
         // Where the operand is a slice with zeros above it, the new slice may reach into these.
         let left = (64 - inner_drop).saturating_sub(low as u8);
         if left == 0 {
-            return Ok(self.constant(0));
+            return self.constant(0);
         }
         let (low, drop) = (inner_low + low as u8, drop_of(width).max(64 - left));
         // Beyond what the operand holds there are only the zeros that extend it.
         if u32::from(low) >= self.held(a) {
-            return Ok(self.constant(0));
+            return self.constant(0);
         }
-        Ok(self.emit(&[a], |to| Instruction::Slice { to, a, low, drop }))
+        self.emit(&[a], |to| Instruction::Slice { to, a, low, drop })
     }
 
     /// The width of what a slot holds: that of the narrowest net in it, of which the others are extensions.
@@ -242,30 +190,23 @@ impl Compiler<'_> {
         }
     }
 
-    fn mux(&mut self, select: Slot, inputs: &[Slot]) -> Result<Slot> {
-        let [.., last] = inputs else {
-            bail!("the mux has no inputs");
-        };
+    fn mux(&mut self, select: Slot, inputs: &[Slot]) -> Slot {
+        let last = inputs.last().unwrap_or(&select);
         if let Some(value) = self.known_value(select) {
             let chosen = usize::try_from(value).ok().and_then(|at| inputs.get(at));
-            return Ok(*chosen.unwrap_or(last));
+            return *chosen.unwrap_or(last);
         }
         if inputs.iter().all(|input| input == last) {
-            return Ok(*last);
+            return *last;
         }
         let mut operands = vec![select];
         operands.extend(inputs);
         if let [a, b] = *inputs {
-            return Ok(self.choose(select, a, b));
+            return self.choose(select, a, b);
         }
-        let first = u32::try_from(self.choices.len()).context("too many muxes")?;
+        let first = self.choices.len() as u32;
         let last = first + (inputs.len() - 1) as u32;
         self.choices.extend(inputs);
-        Ok(self.emit(&operands, |to| Instruction::Mux { to, select, first, last }))
+        self.emit(&operands, |to| Instruction::Mux { to, select, first, last })
     }
-}
-
-/// How much narrower than 64 bits a width is.
-pub(super) fn drop_of(width: u32) -> u8 {
-    (MAX_WIDTH - width) as u8
 }

@@ -14,10 +14,10 @@
 mod banks;
 mod circuit;
 mod compile;
+mod compiler;
 mod lower;
 mod machine;
 mod program;
-mod references;
 #[cfg(test)]
 mod tests;
 mod vcd;

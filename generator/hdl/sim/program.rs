@@ -1,4 +1,4 @@
-//! The simulation program: what a [`Design`] is compiled to.
+//! The simulation program: what a design is compiled to.
 //!
 //! All values live in *slots*, bit patterns masked to their width. A clock has two phases. *Settling*
 //! runs the steps in order; each computes one slot from earlier ones. The *edge* writes the
@@ -16,10 +16,8 @@
 //! Instructions that depend on the same sources form a segment, and settling skips segments whose
 //! sources have not changed.
 
-use anyhow::Result;
-
-use crate::hdl::netlist::{Design, NetId};
-use crate::hdl::sim::compile;
+use crate::base::fixed::MAX_WIDTH;
+use crate::hdl::netlist::NetId;
 
 /// The number of a slot within its bank.
 pub(super) type Slot = u32;
@@ -205,7 +203,7 @@ pub(super) struct Bank {
     pub initial: Vec<u64>,
 }
 
-/// A compiled [`Design`]. Machines share it; it holds no state.
+/// A compiled [`Design`](crate::hdl::netlist::Design). Machines share it; it holds no state.
 #[derive(Debug)]
 pub struct Program {
     /// In an order in which each stands after those that compute its operands.
@@ -223,15 +221,6 @@ pub struct Program {
 }
 
 impl Program {
-    /// Compiles a design that [`crate::hdl::dsl::rules`] has accepted.
-    ///
-    /// # Errors
-    /// A net, named with the place where it was written, that breaks an invariant of
-    /// [`crate::hdl::netlist`] on which simulation relies: no driver, a combinational loop, wrong widths.
-    pub fn new(design: &Design) -> Result<Self> {
-        compile::compile(design)
-    }
-
     /// The number of steps that settle the design after a clock edge.
     pub fn steps(&self) -> usize {
         self.steps.len()
@@ -250,4 +239,9 @@ impl Program {
         let place = self.places[net.index()];
         place.unwrap_or_else(|| panic!("{net:?} is unnamed and not simulated"))
     }
+}
+
+/// How much narrower than 64 bits a width is.
+pub(super) fn drop_of(width: u32) -> u8 {
+    (MAX_WIDTH - width) as u8
 }

@@ -6,9 +6,10 @@
 
 use std::collections::BTreeMap;
 
-use anyhow::{Context as _, Result, bail};
+use anyhow::{Result, ensure};
 
 use super::bits::{Bits, Piece};
+use crate::base::diagnostic::Diagnostics;
 use crate::base::fixed::mask;
 use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId, Role, RomId, Unit};
 
@@ -56,31 +57,14 @@ impl<'a> Plan<'a> {
     /// Decides.
     ///
     /// # Errors
-    /// A design that `check` would have refused: a loop, an undriven net, a register without data, a
-    /// reset without a port for it.
+    /// The mistakes that [`Design::verify_structure`] finds.
     pub fn new(design: &'a Design) -> Result<Self> {
-        for net in &design.nets {
-            if net.driver == Driver::Undriven {
-                bail!("nothing drives `{}`, described at {}", net.name, net.location);
-            }
-        }
-        for register in &design.registers {
-            if register.data.is_none() {
-                bail!("register `{}` takes no data", design.net(register.q).name);
-            }
-        }
-        let order = design.levelise().map_err(|around| {
-            let names: Vec<_> = around.iter().map(|net| design.net(*net).name.as_str()).collect();
-            anyhow::anyhow!("a combinational loop: {}", names.join(" -> "))
-        })?;
-        let reset = if design.registers.iter().any(|register| register.reset.is_some()) {
-            let port = design
-                .port(|role| role == Role::Reset)
-                .context("a register is reset, but no port is the reset")?;
-            Some(port.net)
-        } else {
-            None
-        };
+        let mistakes = design.verify_structure();
+        ensure!(mistakes.is_empty(), Diagnostics(mistakes));
+        let order = design.levelise().unwrap_or_default();
+        let resets = design.registers.iter().any(|register| register.reset.is_some());
+        let reset = design.port(|role| role == Role::Reset).map(|port| port.net);
+        let reset = reset.filter(|_| resets);
         let mut plan = Self {
             design,
             forms: vec![Form::Declared; design.nets.len()],

@@ -9,7 +9,6 @@
 mod cut;
 mod interval;
 mod known;
-mod lanes;
 mod sound;
 mod window;
 

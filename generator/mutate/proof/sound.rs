@@ -2,7 +2,7 @@
 
 use super::interval;
 use super::known::{self, Known};
-use crate::hdl::netlist::{Design, Driver, NetId, Op, Register, Sequence};
+use crate::hdl::netlist::{Design, Driver, NetId, Op, Register};
 
 /// What is known in each word, whatever the inputs are.
 pub(super) struct Sound<'a> {
@@ -112,18 +112,11 @@ impl<'a> Sound<'a> {
     }
 }
 
-/// The words that may follow a word. Reset leads to word 0 from any, and word 0 is also that of a device
-/// that waits.
+/// The words that may follow a word, reset included, which leads to word 0 from any.
 fn following(design: &Design, word: usize) -> Vec<usize> {
-    let mut following = vec![0];
     let last = design.control.words.len() - 1;
-    let next = (word + 1).min(last);
-    match design.control.words[word].sequence {
-        Sequence::Next => following.push(next),
-        Sequence::WaitStart => following.extend([word, next]),
-        Sequence::LoopWhile { to, .. } => following.extend([to, next]),
-        Sequence::End => {}
-    }
+    let mut following = vec![0];
+    following.extend(design.control.successors(word).into_iter().map(|to| to.min(last)));
     following.sort_unstable();
     following.dedup();
     following

@@ -10,9 +10,14 @@ use std::sync::OnceLock;
 use super::cut::smallest_cut;
 use super::interval::{self, Interval};
 use super::known::Known;
-use super::lanes::{self, LANES, Lanes};
-use crate::hdl::netlist::{Design, Driver, NetId, Op, RomId};
+use crate::hdl::netlist::{Design, Driver, NetId, Op, RomId, eval};
 use crate::mutate::fault::Site;
+
+/// Values that are evaluated together.
+const LANES: usize = 512;
+
+/// A net in all lanes.
+type Lanes = [u64; LANES];
 
 /// At most so many combinations are tried, as a power of two.
 const BITS: u32 = 22;
@@ -248,7 +253,7 @@ impl<'a> Windows<'a> {
         };
         match driver {
             Driver::Constant(bits) => [*bits; LANES],
-            Driver::Op(op) => lanes::cell(self.design, op, self.design.width(net), &of),
+            Driver::Op(op) => eval::cell(self.design, op, self.design.width(net), &of),
             // A source is in the cut, and has its values.
             _ => *of(net),
         }

@@ -1,12 +1,12 @@
 //! The waveform of one computation, from the built-in simulator: lanes of values, and WaveDrom's JSON of them.
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use serde_json::{Value, json};
 
 use crate::base::fixed::Format;
 use crate::core::Unit;
 use crate::cosim::trial;
-use crate::hdl::netlist::{Design, Driver, NetId, RegisterKind, Role};
+use crate::hdl::netlist::{Design, Driver, Handshake, NetId, RegisterKind, Role};
 use crate::package::sealed_json;
 use crate::pages::account::short;
 
@@ -78,13 +78,7 @@ impl Waves {
     /// A device that never ends.
     pub fn record(unit: &Unit) -> Result<Self> {
         let design = &unit.design;
-        let handshake = |wanted: Role| {
-            let port = design.port(|role| role == wanted);
-            port.map(|port| port.net).context("no handshake")
-        };
-        let [start, busy, valid, done] =
-            [Role::Start, Role::Busy, Role::Valid, Role::Done].map(handshake);
-        let (start, busy, valid, done) = (start?, busy?, valid?, done?);
+        let Handshake { start, busy, valid, done, .. } = design.handshake()?;
         let address = design.register(design.control.address).q;
         let probes = probes(design, [start, busy, valid, done]);
         let mut nets: Vec<NetId> = probes.iter().map(|probe| probe.net).collect();

@@ -1,8 +1,8 @@
 //! Descriptions drawn at random: calls of the builder, right ones and wrong ones.
 
+use glint::base::diagnostic::Diagnostics;
 use glint::dsl::{Designer, Register, Setting, Signal, end, jump_if, loop_while, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
-use glint::hdl::dsl::rules::Diagnostics;
 use glint::hdl::netlist::Design;
 use proptest::collection::vec;
 use proptest::prelude::*;

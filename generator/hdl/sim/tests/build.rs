@@ -104,7 +104,7 @@ impl Build {
             synchronous,
             enable: None,
             shares: None,
-            words: words.to_vec(),
+            words: words.iter().map(|word| word & mask(format.width())).collect(),
             doc: Vec::new(),
             comments: Vec::new(),
             block: None,

@@ -28,13 +28,13 @@ fn assert_says(message: String, words: &[&str]) {
 #[test]
 fn drivers() {
     let message = refusal(|b, _| b.net("open", BYTE, Driver::Undriven));
-    assert_says(message, &["`open`", "no driver", "errors.rs"]);
+    assert_says(message, &["`open`", "nothing drives", "errors.rs"]);
     let message = refusal(|b, _| b.net("stray", BYTE, Driver::Input));
     assert_says(message, &["`stray`", "not among the ports"]);
     let message = refusal(|b, a| b.design.ports.push(b.design.ports[a.index()].clone()));
     assert_says(message, &["`a`", "twice"]);
     let message = refusal(|b, _| b.register("idle", BYTE));
-    assert_says(message, &["`idle`", "takes nothing"]);
+    assert_says(message, &["`idle`", "nothing drives the data input"]);
     let message = refusal(|b, a| {
         let p = b.op("p", BYTE, Op::Not(a));
         let q = b.op("q", BYTE, Op::Not(p));
@@ -46,11 +46,11 @@ fn drivers() {
 #[test]
 fn widths_and_signs() {
     let message = refusal(|b, a| b.op("sum", Format::unsigned(9, 0), Op::Not(a)));
-    assert_says(message, &["`sum`", "`a`", "8 bits", "not 9"]);
+    assert_says(message, &["`sum` (u9.0)", "`a` (u8.0)", "the widths must be equal"]);
     let message = refusal(|b, a| b.op("part", BYTE, Op::Slice { of: a, low: 1 }));
-    assert_says(message, &["`part`", "bit 1"]);
+    assert_says(message, &["`part`", "the bits are not all there"]);
     let message = refusal(|b, a| b.op("both", BYTE, Op::Concat(vec![a, a])));
-    assert_says(message, &["`both`", "16"]);
+    assert_says(message, &["`both`", "add up"]);
     let message = refusal(|b, a| {
         let signed = b.op("signed", SIGNED, Op::Relabel(a));
         b.op("product", Format::unsigned(16, 0), Op::Mul(a, signed));
@@ -64,7 +64,7 @@ fn widths_and_signs() {
         let select = b.rst_n;
         b.op("empty", BYTE, Op::Mux { select, inputs: vec![] });
     });
-    assert_says(message, &["`empty`", "no inputs"]);
+    assert_says(message, &["`empty`", "two inputs or more"]);
     let message = refusal(|b, a| {
         b.rom("word", BYTE, a, false, &[]);
         b.field("wide", 9);
@@ -86,5 +86,5 @@ fn references() {
         b.of(q).data = Some(a);
         b.of(q).reset = Some(0);
     });
-    assert_says(message, &["`q`", "reset"]);
+    assert_says(message, &["`q`", "no port is the reset"]);
 }

@@ -134,7 +134,7 @@ impl<'a> Builder<'a> {
     fn outputs(&mut self, control: usize) {
         for port in self.design.outputs() {
             let at = self.port(port.net, Form::Output);
-            let handshake = matches!(port.role, Role::Valid | Role::Busy | Role::Done);
+            let handshake = port.role.is_status();
             let sources = match &self.design.net(port.net).driver {
                 Driver::Op(op) if !handshake => self.blocks.sources(op.operands()),
                 _ => Vec::new(),

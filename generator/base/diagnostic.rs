@@ -1,0 +1,57 @@
+//! Mistakes in a description, each with the line of the Rust source.
+
+use std::fmt;
+use std::panic::Location;
+
+/// Where a description says something.
+pub type SourceLocation = &'static Location<'static>;
+
+/// A mistake in a description.
+#[derive(Clone, Debug)]
+pub struct Diagnostic {
+    /// What is wrong, with the names of the signals.
+    pub message: String,
+    /// Where in the Rust source.
+    pub location: SourceLocation,
+    /// Other places that take part.
+    pub notes: Vec<(String, SourceLocation)>,
+}
+
+impl Diagnostic {
+    pub(crate) fn new(message: String, location: SourceLocation) -> Self {
+        Self { message, location, notes: Vec::new() }
+    }
+
+    pub(crate) fn note(mut self, note: String, location: SourceLocation) -> Self {
+        self.notes.push((note, location));
+        self
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        write!(f, "error: {}\n  --> {}", self.message, self.location)?;
+        for (note, location) in &self.notes {
+            write!(f, "\n  note: {note}: {location}")?;
+        }
+        Ok(())
+    }
+}
+
+/// All mistakes of a description.
+#[derive(Clone, Debug)]
+pub struct Diagnostics(pub Vec<Diagnostic>);
+
+impl fmt::Display for Diagnostics {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        for (at, diagnostic) in self.0.iter().enumerate() {
+            if at > 0 {
+                f.write_str("\n")?;
+            }
+            write!(f, "{diagnostic}")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Diagnostics {}

@@ -1,0 +1,134 @@
+//! The control unit: fields, words, and where control goes.
+
+use super::{Design, NetId, RegId, RomId};
+use crate::base::diagnostic::SourceLocation;
+
+/// The control unit: an address counter, a run flag and a ROM of words.
+///
+/// Idle, the address is 0 and `run` is 0. `start` sets `run`; from then on every clock executes the
+/// word at the address and moves on as the word's [`Sequence`] says.
+#[derive(Clone, Debug)]
+pub struct Control {
+    /// Most significant first, as in the ROM word.
+    pub fields: Vec<Field>,
+    /// One for each address, from 0.
+    pub words: Vec<Word>,
+    /// The control ROM.
+    pub rom: RomId,
+    /// The counter that addresses it.
+    pub address: RegId,
+    /// 1 while a program runs.
+    pub run: RegId,
+}
+
+/// A field of the control word.
+#[derive(Clone, Debug)]
+pub struct Field {
+    /// A legal Verilog identifier.
+    pub name: String,
+    /// The net that it drives in the datapath or the sequencer.
+    pub net: NetId,
+    /// What it turns.
+    pub kind: FieldKind,
+    /// The numbers of its lines in the source's figure, most significant first, or empty.
+    pub lines: Vec<u16>,
+}
+
+/// What a field of the control word turns.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FieldKind {
+    /// Select lines of muxes; the names of the choices, by value.
+    Select(Vec<String>),
+    /// The enable of registers.
+    Enable,
+    /// An output of the device.
+    Flag,
+    /// Used by the sequencer itself.
+    Sequence,
+}
+
+/// A word of the microprogram.
+#[derive(Clone, Debug)]
+pub struct Word {
+    /// What it does.
+    pub name: String,
+    /// The value of each field, in the order of [`Control::fields`].
+    pub values: Vec<u64>,
+    /// Where control goes from here.
+    pub sequence: Sequence,
+    /// Where in the description it was written.
+    pub location: SourceLocation,
+}
+
+/// Where control goes after a word.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Sequence {
+    /// To the next word.
+    Next,
+    /// Stays until `start` is high, then to the next word. The device is not busy here.
+    WaitStart,
+    /// To word `to`, back or ahead, while `condition` is 1, else to the next word.
+    LoopWhile {
+        /// One bit of the datapath.
+        condition: NetId,
+        /// A word number.
+        to: usize,
+    },
+    /// To idle.
+    End,
+}
+
+impl Control {
+    /// That of a pipeline: no microinstruction, and so neither fields nor a sequencer.
+    pub fn none() -> Self {
+        Self {
+            fields: Vec::new(),
+            words: Vec::new(),
+            rom: RomId(u32::MAX),
+            address: RegId(u32::MAX),
+            run: RegId(u32::MAX),
+        }
+    }
+
+    /// The words that can follow word `at`, in ascending order; the number of words itself where the last
+    /// one does not end. Idle, the device stays in word 0.
+    pub fn successors(&self, at: usize) -> Vec<usize> {
+        let next = at + 1;
+        let mut successors = match self.words[at].sequence {
+            Sequence::Next => vec![next],
+            Sequence::WaitStart => vec![at, next],
+            Sequence::LoopWhile { to, .. } => vec![to.min(next), to.max(next)],
+            Sequence::End => vec![0],
+        };
+        if at == 0 && successors[0] != 0 {
+            successors.insert(0, 0);
+        }
+        successors.dedup();
+        successors
+    }
+
+    /// The words from which control comes to word `at` in `clocks` clocks, in ascending order.
+    pub fn predecessors(&self, at: usize, clocks: u32) -> Vec<usize> {
+        let leads = |from: usize, after: &[usize]| {
+            self.successors(from).iter().any(|to| after.contains(to))
+        };
+        (0..clocks).fold(vec![at], |after, _| {
+            (0..self.words.len()).filter(|&from| leads(from, &after)).collect()
+        })
+    }
+}
+
+impl Design {
+    /// The number of the lowest bit of each field in the control word.
+    pub fn field_positions(&self) -> Vec<u32> {
+        let mut low = self.width(self.rom(self.control.rom).data);
+        self.control
+            .fields
+            .iter()
+            .map(|field| {
+                low -= self.width(field.net);
+                low
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,165 @@
+//! What a netlist computes: each cell as [`Op`] documents it, and a whole design clock by clock.
+//!
+//! This is the meaning of a netlist, written for reading. The simulator, which is written for speed, shares
+//! nothing with it and is held against it.
+
+use super::{Design, Driver, NetId, Op, RomId};
+use crate::base::fixed::mask;
+
+fn one<const N: usize>(a: &[u64; N], cell: impl Fn(u64) -> u64) -> [u64; N] {
+    std::array::from_fn(|lane| cell(a[lane]))
+}
+
+fn two<const N: usize>(a: &[u64; N], b: &[u64; N], cell: impl Fn(u64, u64) -> u64) -> [u64; N] {
+    std::array::from_fn(|lane| cell(a[lane], b[lane]))
+}
+
+/// The bits of a signed net of this width, as a number.
+fn signed(width: u32) -> impl Fn(u64) -> i64 {
+    let drop = 64 - width;
+    move |bits| (bits << drop) as i64 >> drop
+}
+
+/// The result of a cell `width` bits wide as [`Op`] documents it, for `N` independent sets of operands. `of`
+/// gives the bit patterns of an operand.
+pub fn cell<'a, const N: usize>(
+    design: &Design,
+    op: &Op,
+    width: u32,
+    of: &impl Fn(NetId) -> &'a [u64; N],
+) -> [u64; N] {
+    let all = mask(width);
+    let is_signed = |net: NetId| design.net(net).format.signed;
+    match op {
+        Op::Relabel(a) => *of(*a),
+        Op::Extend(a) if is_signed(*a) => {
+            let number = signed(design.width(*a));
+            one(of(*a), |a| number(a) as u64 & all)
+        }
+        Op::Extend(a) => *of(*a),
+        Op::Slice { of: a, low } => one(of(*a), |a| a >> low & all),
+        Op::Concat(parts) => parts.iter().fold([0; N], |sum, part| {
+            let width = design.width(*part);
+            two(&sum, of(*part), |sum, part| sum.checked_shl(width).unwrap_or(0) | part)
+        }),
+        Op::Not(a) => one(of(*a), |a| !a & all),
+        Op::And(a, b) => two(of(*a), of(*b), |a, b| a & b),
+        Op::Or(a, b) => two(of(*a), of(*b), |a, b| a | b),
+        Op::Xor(a, b) => two(of(*a), of(*b), |a, b| a ^ b),
+        Op::Add { a, b, carry } => {
+            let sum = two(of(*a), of(*b), |a, b| a.wrapping_add(b));
+            let carry = carry.map_or(&[0; N], of);
+            two(&sum, carry, |sum, carry| sum.wrapping_add(carry) & all)
+        }
+        Op::Sub(a, b) => two(of(*a), of(*b), |a, b| a.wrapping_sub(b) & all),
+        Op::Mul(a, b) if is_signed(*a) => {
+            let (x, y) = (signed(design.width(*a)), signed(design.width(*b)));
+            two(of(*a), of(*b), |a, b| x(a).wrapping_mul(y(b)) as u64 & all)
+        }
+        Op::Mul(a, b) => two(of(*a), of(*b), |a, b| a.wrapping_mul(b) & all),
+        Op::Equal(a, b) => two(of(*a), of(*b), |a, b| u64::from(a == b)),
+        Op::Less(a, b) if is_signed(*a) => {
+            let number = signed(design.width(*a));
+            two(of(*a), of(*b), |a, b| u64::from(number(a) < number(b)))
+        }
+        Op::Less(a, b) => two(of(*a), of(*b), |a, b| u64::from(a < b)),
+        Op::Any(a) => one(of(*a), |a| u64::from(a != 0)),
+        Op::All(a) => {
+            let whole = mask(design.width(*a));
+            one(of(*a), |a| u64::from(a == whole))
+        }
+        Op::Mux { select, inputs } => {
+            let last = inputs.len() - 1;
+            let mut out = *of(inputs[last]);
+            for (at, input) in inputs[..last].iter().enumerate() {
+                let taken =
+                    two(
+                        of(*select),
+                        of(*input),
+                        |select, input| {
+                            if select == at as u64 { input } else { 0 }
+                        },
+                    );
+                let kept =
+                    two(of(*select), &out, |select, out| if select == at as u64 { 0 } else { out });
+                out = two(&taken, &kept, |a, b| a | b);
+            }
+            out
+        }
+    }
+}
+
+/// A design with its state, evaluated net by net.
+pub struct Interpreter<'a> {
+    design: &'a Design,
+    order: Vec<NetId>,
+    values: Vec<[u64; 1]>,
+}
+
+impl<'a> Interpreter<'a> {
+    /// At power-up: inputs, registers and the outputs of synchronous ROMs are 0.
+    ///
+    /// # Errors
+    /// A combinational loop, as the nets along it.
+    pub fn new(design: &'a Design) -> Result<Self, Vec<NetId>> {
+        Ok(Self { design, order: design.levelise()?, values: vec![[0]; design.nets.len()] })
+    }
+
+    /// Applies the bit patterns of all input ports, in port order, and evaluates every net.
+    pub fn settle(&mut self, inputs: &[u64]) {
+        let design = self.design;
+        for (port, &bits) in design.inputs().zip(inputs) {
+            self.values[port.net.index()] = [bits & mask(design.width(port.net))];
+        }
+        let positions = design.field_positions();
+        for &id in &self.order {
+            let width = design.width(id);
+            let bits = match &design.net(id).driver {
+                Driver::Constant(bits) => *bits,
+                Driver::Field(field) => {
+                    let word = self.value(design.rom(design.control.rom).data);
+                    word >> positions[field.index()]
+                }
+                Driver::Rom(rom) if !design.rom(*rom).synchronous => self.read(*rom),
+                Driver::Op(op) => cell(design, op, width, &|net| &self.values[net.index()])[0],
+                Driver::Undriven | Driver::Input | Driver::Register(_) | Driver::Rom(_) => continue,
+            };
+            self.values[id.index()] = [bits & mask(width)];
+        }
+    }
+
+    /// The rising edge after [`Interpreter::settle`]: registers and synchronous ROMs take their new values.
+    pub fn edge(&mut self) {
+        let design = self.design;
+        let reset = design.port(|role| role == super::Role::Reset);
+        let reset = reset.is_some_and(|port| self.value(port.net) == 0);
+        let mut next = Vec::new();
+        for register in &design.registers {
+            let enabled = register.enable.is_none_or(|enable| self.value(enable) == 1);
+            match (register.reset, register.data) {
+                (Some(bits), _) if reset => next.push((register.q, bits)),
+                (_, Some(data)) if enabled => next.push((register.q, self.value(data))),
+                _ => {}
+            }
+        }
+        for (at, rom) in design.roms.iter().enumerate() {
+            if rom.synchronous && rom.enable.is_none_or(|enable| self.value(enable) == 1) {
+                next.push((rom.data, self.read(RomId(at as u32))));
+            }
+        }
+        for (net, bits) in next {
+            self.values[net.index()] = [bits & mask(design.width(net))];
+        }
+    }
+
+    /// The bit pattern of a net. Those of cells belong to the latest [`Interpreter::settle`].
+    pub fn value(&self, net: NetId) -> u64 {
+        self.values[net.index()][0]
+    }
+
+    /// The word that a ROM's address selects; 0 beyond its contents.
+    fn read(&self, rom: RomId) -> u64 {
+        let rom = self.design.rom(rom);
+        rom.words.get(self.value(rom.address) as usize).copied().unwrap_or(0)
+    }
+}

@@ -1,0 +1,47 @@
+//! The ports that every device with a microprogram has.
+
+use anyhow::{Context, Result};
+
+use super::{Design, NetId, Role};
+
+/// The nets of the handshake.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Handshake {
+    /// The input `rst_n`.
+    pub reset: NetId,
+    /// The input `start`.
+    pub start: NetId,
+    /// The output `valid`.
+    pub valid: NetId,
+    /// The output `busy`.
+    pub busy: NetId,
+    /// The output `done`.
+    pub done: NetId,
+}
+
+impl Role {
+    /// Whether the port is an output of the handshake.
+    pub fn is_status(self) -> bool {
+        matches!(self, Self::Valid | Self::Busy | Self::Done | Self::InReady)
+    }
+}
+
+impl Design {
+    /// The ports of the handshake.
+    ///
+    /// # Errors
+    /// The design lacks one of them.
+    pub fn handshake(&self) -> Result<Handshake> {
+        let net = |role: Role, name: &str| {
+            let port = self.port(|other| other == role).map(|port| port.net);
+            port.with_context(|| format!("`{}` has no port `{name}`", self.name))
+        };
+        Ok(Handshake {
+            reset: net(Role::Reset, "rst_n")?,
+            start: net(Role::Start, "start")?,
+            valid: net(Role::Valid, "valid")?,
+            busy: net(Role::Busy, "busy")?,
+            done: net(Role::Done, "done")?,
+        })
+    }
+}

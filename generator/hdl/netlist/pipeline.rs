@@ -1,0 +1,49 @@
+//! What a design says of itself that is a pipeline.
+
+use super::NetId;
+
+/// What a design is that takes a point every clock.
+#[derive(Clone, Debug)]
+pub struct Pipeline {
+    /// Whose delays the stages keep, by the name of the target.
+    pub target: String,
+    /// The clock that they keep.
+    pub clock_mhz: f64,
+    /// The environment can hold the results back by `out_ready`.
+    pub stall: bool,
+    /// Bits that travel with a point.
+    pub side: u32,
+    /// From the operands on. Results are behind the registers of the last: there are as many stages as
+    /// clocks from a point to its results.
+    pub stages: Vec<Stage>,
+    /// For each net its stage. A register of stage k holds what stage k - 1 made.
+    pub stage_of: Vec<usize>,
+    /// The nets that say which stage has a point, and when points move.
+    pub handshake: Vec<NetId>,
+    /// Where values are to be seen that the sequential design has in registers.
+    pub checkpoints: Vec<Checkpoint>,
+}
+
+/// The logic between two rows of registers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stage {
+    /// The microinstructions of the sequential design that compute what it computes.
+    pub microinstructions: Vec<String>,
+    /// Nanoseconds that the longest way through it takes on the target.
+    pub logic_ns: f64,
+    /// Bits of the registers that end it.
+    pub register_bits: u32,
+}
+
+/// A value of a pipeline that a register of the sequential design has in some microinstruction.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Checkpoint {
+    /// The register, by name.
+    pub register: String,
+    /// The microinstruction while which it has the value, by its place in the microprogram.
+    pub word: usize,
+    /// How often this was executed before in the same computation.
+    pub visit: usize,
+    /// The net with the value, in its stage.
+    pub net: NetId,
+}

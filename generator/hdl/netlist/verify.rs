@@ -1,0 +1,337 @@
+//! The rules that every [`Design`] keeps, whoever made it.
+//!
+//! rust_hdl's own `check_all` finds open pins and writes to inputs. These find the rest.
+
+use std::collections::HashMap;
+
+use super::{Design, Driver, FieldKind, NetId, Op, Role, Sequence};
+use crate::base::diagnostic::{Diagnostic, SourceLocation};
+use crate::base::fixed::{MAX_WIDTH, mask};
+use crate::base::identifier;
+
+impl Design {
+    /// Every mistake: one in the names, in the structure or in the microprogram.
+    pub fn verify(&self) -> Vec<Diagnostic> {
+        let mut found = self.verify_structure();
+        self.names(&mut found);
+        if found.is_empty() {
+            self.microprogram(&mut found);
+        }
+        found
+    }
+
+    /// The mistakes that keep a design from meaning anything: what is referred to and does not exist, nets
+    /// without a driver or with two, widths that do not match, combinational loops. Names and the
+    /// microprogram are not looked at.
+    pub fn verify_structure(&self) -> Vec<Diagnostic> {
+        let mut found = Vec::new();
+        // Nothing later may index what is not there, or ask for a width that is none.
+        self.references(&mut found);
+        if !found.is_empty() {
+            return found;
+        }
+        self.drivers(&mut found);
+        self.widths(&mut found);
+        self.roms(&mut found);
+        if found.is_empty() {
+            self.loops(&mut found);
+        }
+        found
+    }
+
+    fn references(&self, found: &mut Vec<Diagnostic>) {
+        let mut missing = |index: usize, count: usize, what: &str, location: SourceLocation| {
+            if index >= count {
+                let message = format!("{what} {index} is referred to, but there are {count}");
+                found.push(Diagnostic::new(message, location));
+            }
+        };
+        let nets = self.nets.len();
+        let fields = self.control.fields.len();
+        for net in &self.nets {
+            let at = net.location;
+            match &net.driver {
+                Driver::Register(id) => missing(id.index(), self.registers.len(), "register", at),
+                Driver::Rom(id) => missing(id.index(), self.roms.len(), "ROM", at),
+                Driver::Field(id) => missing(id.index(), fields, "field", at),
+                Driver::Op(op) => {
+                    op.operands().iter().for_each(|net| missing(net.index(), nets, "net", at));
+                }
+                Driver::Undriven | Driver::Input | Driver::Constant(_) => {}
+            }
+        }
+        // What is no net has no place of its own in the description.
+        let Some(first) = self.nets.first().map(|net| net.location) else { return };
+        let registers = self.registers.iter();
+        let of_registers = registers.flat_map(|it| [Some(it.q), it.data, it.enable]).flatten();
+        let roms = self.roms.iter();
+        let of_roms = roms.flat_map(|it| [Some(it.address), Some(it.data), it.enable]).flatten();
+        let of_ports = self.ports.iter().map(|port| port.net);
+        let of_fields = self.control.fields.iter().map(|field| field.net);
+        for net in of_registers.chain(of_roms).chain(of_ports).chain(of_fields) {
+            missing(net.index(), nets, "net", first);
+        }
+        for rom in self.roms.iter().filter_map(|rom| rom.shares) {
+            missing(rom.index(), self.roms.len(), "ROM", first);
+        }
+        if fields > 0 {
+            missing(self.control.rom.index(), self.roms.len(), "ROM", first);
+        }
+        for net in &self.nets {
+            let format = net.format;
+            let width =
+                i64::from(format.int) + i64::from(format.frac) + i64::from(u8::from(format.signed));
+            if !(1..=i64::from(MAX_WIDTH)).contains(&width) {
+                let message =
+                    format!("`{}` is {width} bits wide; {MAX_WIDTH} is the most", net.name);
+                found.push(Diagnostic::new(message, net.location));
+            }
+        }
+    }
+
+    fn names(&self, found: &mut Vec<Diagnostic>) {
+        let mut seen: HashMap<&str, SourceLocation> = HashMap::new();
+        let nets = self.nets.iter().map(|net| (net.name.as_str(), net.location));
+        let roms = self.roms.iter().map(|rom| (rom.name.as_str(), rom.location));
+        for (name, location) in nets.chain(roms) {
+            if name == "clk" {
+                let message = "`clk` is the clock of every design; choose another name";
+                found.push(Diagnostic::new(message.to_owned(), location));
+            } else if let Err(why) = identifier::check(name) {
+                let message = format!("`{name}` cannot be a Verilog name: {why}");
+                found.push(Diagnostic::new(message, location));
+            }
+            if let Some(first) = seen.insert(name, location) {
+                let message = format!("the name `{name}` is used twice");
+                let diagnostic = Diagnostic::new(message, location);
+                found.push(diagnostic.note("the first".to_owned(), first));
+            }
+        }
+        if let Err(why) = identifier::check(&self.name)
+            && let Some(net) = self.nets.first()
+        {
+            let message = format!("`{}` cannot be the name of a Verilog module: {why}", self.name);
+            found.push(Diagnostic::new(message, net.location));
+        }
+    }
+
+    fn drivers(&self, found: &mut Vec<Diagnostic>) {
+        let inputs: Vec<NetId> = self.inputs().map(|port| port.net).collect();
+        for (id, net) in self.iter() {
+            let ports = inputs.iter().filter(|&&input| input == id).count();
+            let wrong = match &net.driver {
+                Driver::Undriven => Some(format!("nothing drives `{}`", net.name)),
+                Driver::Register(of) if self.register(*of).q != id => {
+                    Some(format!("the register of `{}` drives another net", net.name))
+                }
+                Driver::Rom(of) if self.rom(*of).data != id => {
+                    Some(format!("the ROM of `{}` drives another net", net.name))
+                }
+                Driver::Field(of) if self.control.fields[of.index()].net != id => {
+                    Some(format!("the field of `{}` drives another net", net.name))
+                }
+                Driver::Input if ports == 1 => None,
+                Driver::Input if ports == 0 => {
+                    Some(format!("`{}` is an input, but not among the ports", net.name))
+                }
+                _ if ports > 0 => {
+                    Some(format!("`{}` is not an input port, or is one twice", net.name))
+                }
+                _ => None,
+            };
+            found.extend(wrong.map(|message| Diagnostic::new(message, net.location)));
+        }
+        let has_reset = self.port(|role| role == Role::Reset).is_some();
+        for register in &self.registers {
+            let net = self.net(register.q);
+            if register.data.is_none() {
+                let message = format!("nothing drives the data input of register `{}`", net.name);
+                found.push(Diagnostic::new(message, net.location));
+            }
+            if register.reset.is_some() && !has_reset {
+                let message = format!("`{}` is reset, but no port is the reset", net.name);
+                found.push(Diagnostic::new(message, net.location));
+            }
+        }
+    }
+
+    fn loops(&self, found: &mut Vec<Diagnostic>) {
+        if let Err(path) = self.levelise() {
+            let mut names: Vec<&str> =
+                path.iter().rev().map(|&id| self.net(id).name.as_str()).collect();
+            names.extend(names.first().copied());
+            let message = format!("combinational loop: `{}`", names.join("` -> `"));
+            found.push(Diagnostic::new(message, self.net(path[0]).location));
+        }
+    }
+
+    fn widths(&self, found: &mut Vec<Diagnostic>) {
+        for (id, net) in self.iter() {
+            let (low, high) = net.range;
+            if low > high || !net.format.holds(low) || !net.format.holds(high) {
+                let message = format!(
+                    "`{}` is {}, but takes values from {low} to {high} ulp",
+                    net.name, net.format
+                );
+                found.push(Diagnostic::new(message, net.location));
+            }
+            if let Driver::Op(op) = &net.driver
+                && let Err(why) = self.cell(id, op)
+            {
+                let operands: Vec<String> = op
+                    .operands()
+                    .iter()
+                    .map(|&operand| self.net(operand))
+                    .map(|operand| format!("`{}` ({})", operand.name, operand.format))
+                    .collect();
+                let message = format!(
+                    "`{}` ({}) = {} of {}: {why}",
+                    net.name,
+                    net.format,
+                    op.mnemonic(),
+                    operands.join(", ")
+                );
+                found.push(Diagnostic::new(message, net.location));
+            }
+        }
+        for register in &self.registers {
+            let net = self.net(register.q);
+            if register.data.is_some_and(|data| self.width(data) != self.width(register.q)) {
+                let message = format!("register `{}` and its data differ in width", net.name);
+                found.push(Diagnostic::new(message, net.location));
+            }
+            if register.enable.is_some_and(|enable| self.width(enable) != 1) {
+                let message = format!("the enable of register `{}` is not one bit", net.name);
+                found.push(Diagnostic::new(message, net.location));
+            }
+        }
+    }
+
+    /// The widths that an [`Op`] asks for.
+    fn cell(&self, id: NetId, op: &Op) -> Result<(), &'static str> {
+        let width = |id: NetId| self.width(id);
+        let signed = |id: NetId| self.net(id).format.signed;
+        let own = width(id);
+        let same = |operands: &[NetId]| operands.iter().all(|&operand| width(operand) == own);
+        let ok = |holds: bool, why: &'static str| if holds { Ok(()) } else { Err(why) };
+        const EQUAL: &str = "the widths must be equal";
+        const BIT: &str = "the result is one bit";
+        match op {
+            Op::Relabel(a) | Op::Not(a) => ok(same(&[*a]), EQUAL),
+            Op::Extend(a) => ok(width(*a) < own, "the result must be wider"),
+            Op::Slice { of, low } => ok(
+                low.checked_add(own).is_some_and(|top| top <= width(*of)),
+                "the bits are not all there",
+            ),
+            Op::Concat(parts) => ok(
+                parts.iter().map(|&part| width(part)).sum::<u32>() == own,
+                "the widths must add up",
+            ),
+            Op::And(a, b) | Op::Or(a, b) | Op::Xor(a, b) | Op::Sub(a, b) => {
+                ok(same(&[*a, *b]), EQUAL)
+            }
+            Op::Add { a, b, carry } => {
+                ok(carry.is_none_or(|carry| width(carry) == 1), "the carry is one bit")?;
+                ok(same(&[*a, *b]), EQUAL)
+            }
+            Op::Mul(a, b) => {
+                ok(signed(*a) == signed(*b), "one operand is signed, the other is not")?;
+                ok(width(*a) + width(*b) == own, "the product is as wide as both together")
+            }
+            Op::Equal(a, b) => {
+                ok(width(*a) == width(*b), EQUAL)?;
+                ok(own == 1, BIT)
+            }
+            Op::Less(a, b) => {
+                ok(width(*a) == width(*b), EQUAL)?;
+                ok(signed(*a) == signed(*b), "one operand is signed, the other is not")?;
+                ok(own == 1, BIT)
+            }
+            Op::Any(_) | Op::All(_) => ok(own == 1, BIT),
+            Op::Mux { select, inputs } => {
+                ok(inputs.len() >= 2, "a mux has two inputs or more")?;
+                let needed = usize::BITS - (inputs.len() - 1).leading_zeros();
+                ok(width(*select) >= needed, "the select lines are too few")?;
+                ok(same(inputs), EQUAL)
+            }
+        }
+    }
+
+    fn roms(&self, found: &mut Vec<Diagnostic>) {
+        for rom in &self.roms {
+            let width = self.width(rom.data);
+            if let Some(at) = rom.words.iter().position(|&word| word & !mask(width) != 0) {
+                let message = format!("ROM `{}`: word {at} does not fit {width} bits", rom.name);
+                found.push(Diagnostic::new(message, rom.location));
+            }
+            if rom.enable.is_some_and(|enable| self.width(enable) != 1) {
+                let message = format!("the enable of ROM `{}` is not one bit", rom.name);
+                found.push(Diagnostic::new(message, rom.location));
+            }
+            let (comments, words) = (rom.comments.len(), rom.words.len());
+            if comments != 0 && comments != words {
+                let message = format!("ROM `{}`: {comments} comments for {words} words", rom.name);
+                found.push(Diagnostic::new(message, rom.location));
+            }
+        }
+        let fields = self.control.fields.iter();
+        let wide: u32 = fields.map(|field| self.width(field.net)).sum();
+        if wide > 0 {
+            let rom = self.rom(self.control.rom);
+            let word = self.width(rom.data);
+            if wide > word {
+                let message = format!("the fields take {wide} bits of a control word of {word}");
+                found.push(Diagnostic::new(message, rom.location));
+            }
+        }
+    }
+
+    fn microprogram(&self, found: &mut Vec<Diagnostic>) {
+        let control = &self.control;
+        let words = &control.words;
+        let mut reached = vec![false; words.len()];
+        let mut pending = vec![0];
+        while let Some(at) = pending.pop() {
+            let Some(reached) = reached.get_mut(at) else {
+                if let Some(last) = words.last() {
+                    let message = format!("the last word, `{}`, does not end", last.name);
+                    found.push(Diagnostic::new(message, last.location));
+                }
+                continue;
+            };
+            if !std::mem::replace(reached, true) {
+                pending.extend(control.successors(at));
+            }
+        }
+        for (word, reached) in words.iter().zip(reached) {
+            if !reached {
+                let message = format!("word `{}` cannot be reached", word.name);
+                found.push(Diagnostic::new(message, word.location));
+            }
+        }
+        if let Some(idle) = words.first() {
+            if idle.sequence != Sequence::Next {
+                let message = format!(
+                    "word `{}` is where the device waits for start; it goes on to the next",
+                    idle.name
+                );
+                found.push(Diagnostic::new(message, idle.location));
+            }
+            for (field, value) in control.fields.iter().zip(&idle.values) {
+                if *value != 0 && matches!(field.kind, FieldKind::Enable | FieldKind::Flag) {
+                    let message = format!(
+                        "word `{}` turns `{}`, but the device also waits for start in it",
+                        idle.name, field.name
+                    );
+                    found.push(Diagnostic::new(message, idle.location));
+                }
+            }
+        }
+        for (at, field) in control.fields.iter().enumerate() {
+            if field.kind == FieldKind::Enable && words.iter().all(|word| word.values[at] == 0) {
+                let message = format!("no word turns `{}`", field.name);
+                found.push(Diagnostic::new(message, self.net(field.net).location));
+            }
+        }
+    }
+}

@@ -1,0 +1,183 @@
+//! What the parts of the compiler share: slots, instructions, and what is known of them.
+
+use std::collections::{BTreeMap, HashMap};
+
+use crate::base::fixed::mask;
+use crate::hdl::netlist::Design;
+use crate::hdl::sim::machine::execute;
+use crate::hdl::sim::program::{InputPort, Instruction, Slot, Sources, Span};
+
+/// Sources below this number change from outside settling and share numbers when they are many;
+/// from here on each is a field of the control word, numbered in order of evaluation.
+const FIRST_FIELD: u32 = 40;
+
+/// An instruction and what orders it.
+pub(super) struct Ordered {
+    pub(super) sources: Sources,
+    pub(super) to: Slot,
+    /// All that it reads, the inputs of a mux too.
+    pub(super) operands: Vec<Slot>,
+    pub(super) instruction: Instruction,
+}
+
+/// To it there is one bank of slots, 64 bits wide; `banks` divides it.
+pub(super) struct Compiler<'a> {
+    pub(super) design: &'a Design,
+    /// For each slot: the [`Sources`] it depends on within one clock; none for constants.
+    pub(super) sources: Vec<Sources>,
+    /// How many sources there are so far.
+    numbered: u32,
+    /// The next source for a field.
+    pub(super) next_field: u32,
+    /// For each slot; the only lane is that of the folded constants.
+    pub(super) initial: Vec<[u64; 1]>,
+    constants: BTreeMap<u64, Slot>,
+    /// Instructions already there, written to slot 0, and the slots that have their results.
+    known: HashMap<Instruction, Slot>,
+    /// The instruction that writes a slot, unless it is a field.
+    made_by: HashMap<Slot, Instruction>,
+    /// In an order of evaluation.
+    pub(super) steps: Vec<Ordered>,
+    pub(super) choices: Vec<Slot>,
+    pub(super) words: Vec<u64>,
+    pub(super) roms: Vec<Span>,
+    /// For each net; `Slot::MAX` until the net has been compiled.
+    pub(super) of_net: Vec<Slot>,
+    pub(super) inputs: Vec<InputPort>,
+    /// For each field of the control word, the number of its lowest bit.
+    pub(super) fields: Vec<u32>,
+}
+
+impl<'a> Compiler<'a> {
+    /// The slots of the input ports and the contents of the ROMs; no net is compiled yet.
+    pub(super) fn new(design: &'a Design) -> Self {
+        let mut compiler = Self {
+            design,
+            sources: Vec::new(),
+            numbered: 0,
+            next_field: FIRST_FIELD,
+            initial: Vec::new(),
+            constants: BTreeMap::new(),
+            known: HashMap::new(),
+            made_by: HashMap::new(),
+            steps: Vec::new(),
+            choices: Vec::new(),
+            words: Vec::new(),
+            roms: Vec::new(),
+            of_net: vec![Slot::MAX; design.nets.len()],
+            inputs: Vec::new(),
+            fields: Vec::new(),
+        };
+        for port in design.inputs() {
+            let slot = compiler.source();
+            compiler.of_net[port.net.index()] = slot;
+            compiler.inputs.push(InputPort {
+                at: compiler.inputs.len() as u32,
+                slot,
+                source: compiler.sources[slot as usize],
+                mask: mask(design.width(port.net)),
+            });
+        }
+        for rom in &design.roms {
+            let mask = mask(design.width(rom.data));
+            let (start, len) = (compiler.words.len() as u32, rom.words.len() as u32);
+            compiler.roms.push(Span { start, len });
+            compiler.words.extend(rom.words.iter().map(|word| word & mask));
+        }
+        if !design.control.fields.is_empty() {
+            compiler.fields = design.field_positions();
+        }
+        compiler
+    }
+
+    pub(super) fn fresh(&mut self, sources: Sources) -> Slot {
+        self.sources.push(sources);
+        self.initial.push([0]);
+        (self.sources.len() - 1) as Slot
+    }
+
+    /// A slot that changes from outside settling.
+    pub(super) fn source(&mut self) -> Slot {
+        let sources = 1 << (self.numbered % FIRST_FIELD);
+        self.numbered += 1;
+        self.fresh(sources)
+    }
+
+    pub(super) fn constant(&mut self, bits: u64) -> Slot {
+        if let Some(slot) = self.constants.get(&bits) {
+            return *slot;
+        }
+        let slot = self.fresh(0);
+        self.initial[slot as usize] = [bits];
+        self.constants.insert(bits, slot);
+        slot
+    }
+
+    /// The value of a slot that is known already.
+    pub(super) fn known_value(&self, slot: Slot) -> Option<u64> {
+        let constant = self.sources[slot as usize] == 0;
+        constant.then(|| self.initial[slot as usize][0])
+    }
+
+    /// The slot with the result of an instruction, which `make` builds for a given destination.
+    pub(super) fn emit(&mut self, operands: &[Slot], make: impl Fn(Slot) -> Instruction) -> Slot {
+        if let Some(slot) = self.known.get(&make(0)) {
+            return *slot;
+        }
+        let sources = self.sources_of(operands);
+        let to = self.fresh(sources);
+        if sources == 0 {
+            execute(make(to), &self.choices, &self.words, &mut self.initial);
+            let [bits] = self.initial.pop().unwrap_or_default();
+            self.sources.pop();
+            return self.constant(bits);
+        }
+        self.push(to, operands, make(to));
+        self.known.insert(make(0), to);
+        self.made_by.insert(to, make(to));
+        to
+    }
+
+    pub(super) fn push(&mut self, to: Slot, operands: &[Slot], instruction: Instruction) {
+        self.steps.push(Ordered {
+            sources: self.sources_of(operands),
+            to,
+            operands: operands.to_vec(),
+            instruction,
+        });
+    }
+
+    fn sources_of(&self, operands: &[Slot]) -> Sources {
+        let sources = operands.iter().map(|slot| self.sources[*slot as usize]);
+        sources.fold(0, |all, sources| all | sources)
+    }
+
+    /// The slot, the lowest bit and the width, as a `drop`, of which a slot is a slice; itself when
+    /// it is none. Instructions that can cut use it, and the slice is often not needed then.
+    pub(super) fn sliced(&self, slot: Slot) -> (Slot, u8, u8) {
+        match self.made_by.get(&slot) {
+            Some(Instruction::Slice { a, low, drop, .. }) => (*a, *low, *drop),
+            _ => (slot, 0, 0),
+        }
+    }
+
+    /// The slot, the lowest bit and the width, as a `drop`, of which a slot says whether any bit is 1.
+    pub(super) fn any(&self, slot: Slot) -> Option<(Slot, u8, u8)> {
+        match self.made_by.get(&slot) {
+            Some(Instruction::Any { a, low, drop, .. }) => Some((*a, *low, *drop)),
+            _ => None,
+        }
+    }
+
+    /// What a slot is the placement of: base, slot, lowest bit, width as a `drop`, and shift. A slice is
+    /// one on `zero`.
+    pub(super) fn placed(&self, slot: Slot, zero: Slot) -> Option<(Slot, Slot, u8, u8, u8)> {
+        match *self.made_by.get(&slot)? {
+            Instruction::Place { base, a, low, drop, shift, .. } => {
+                Some((base, a, low, drop, shift))
+            }
+            Instruction::Slice { a, low, drop, .. } => Some((zero, a, low, drop, 0)),
+            _ => None,
+        }
+    }
+}
