@@ -15,6 +15,7 @@ mod manifest;
 mod memory;
 mod points;
 pub(crate) mod seal;
+mod software;
 mod window;
 
 use anyhow::{Result, ensure};
