@@ -10,7 +10,9 @@ use crate::cosim::exhaustive::{Clocks, Job};
 use crate::cosim::{Lockstep, trial};
 use crate::golden::Contract;
 use crate::hdl::netlist::Design;
-use crate::package::{self, Accuracy, EmitInputs, OutputFile, Timing, Vectors, WorkedExample};
+use crate::package::{
+    self, Accuracy, EmitInputs, OutputFile, Surroundings, Timing, Vectors, WorkedExample,
+};
 use crate::pages::{self, PageInputs};
 use crate::registry::Device;
 use crate::tools;
@@ -134,6 +136,7 @@ impl Unit {
             accuracy: Some(Accuracy::new(self.contract.as_ref())),
             computations: trial::computations(&self.design, self.contract.as_ref())?,
             vectors: Some(vectors),
+            around: Surroundings::new(&self.config),
         };
         package::emit(&self.design, &inputs)
     }

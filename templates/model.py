@@ -26,9 +26,8 @@ RESULTS = np.dtype([
 
 def load(directory=None):
     """The compiled model in a directory, by default that of this file."""
-    directory = pathlib.Path(directory or __file__ if directory else __file__).resolve()
-    directory = directory if directory.is_dir() else directory.parent
-    return ctypes.CDLL(str(directory / "${ name }$_model.so"))
+    place = pathlib.Path(directory) if directory else pathlib.Path(__file__).resolve().parent
+    return ctypes.CDLL(str(place / "${ name }$_model.so"))
 <% if line %>
 
 class Operands(ctypes.Structure):
@@ -36,7 +35,7 @@ class Operands(ctypes.Structure):
 
     _fields_ = [
 <%- for field in operands %>
-        ("${ field.name }$", ctypes.c_${ field.kind }$),
+        ("${ field.name }$", ctypes.${ field.ctype() }$),
 <%- endfor %>
     ]
 

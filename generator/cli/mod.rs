@@ -55,8 +55,8 @@ Exit codes: 0 everything holds; 1 something does not hold or could not be done; 
 enum Command {
     /// Write Verilog, ROM contents, manifest, FuseSoC core and test bench
     ///
-    /// Each configuration gets the directories `rtl_out/<name>/` and `testbench/<name>/`. They are replaced
-    /// as a whole or not at all. Files that Glint did not write, or that were edited since, are left alone
+    /// Each configuration gets the directories `rtl_out/<name>/` and `testbench/<name>/`, and with
+    /// `package.software` also `software/<name>/`. They are replaced as a whole or not at all. Files that Glint did not write, or that were edited since, are left alone
     /// unless --force is given.
     #[command(after_help = "\
 Examples:

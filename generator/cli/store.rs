@@ -120,8 +120,8 @@ pub fn differs(out: &Path, file: &OutputFile) -> Result<bool> {
 }
 
 /// The directories of a configuration.
-fn directories(out: &Path, name: &str) -> [PathBuf; 2] {
-    ["rtl_out", "testbench"].map(|top| out.join(top).join(name))
+fn directories(out: &Path, name: &str) -> [PathBuf; 3] {
+    ["rtl_out", "testbench", "software"].map(|top| out.join(top).join(name))
 }
 
 /// What stands in the directories of a configuration now, sorted.
@@ -241,20 +241,21 @@ fn swap_each(
     let aside = staging.join("old");
     let (new, old) = (directories(staging, name), directories(&aside, name));
     for ((place, new), old) in directories(out, name).into_iter().zip(new).zip(old) {
-        if !new.exists() {
-            continue;
-        }
-        create_parent(&place)?;
-        create_parent(&old)?;
         if fs::symlink_metadata(&place).is_ok() {
+            create_parent(&old)?;
             moves.rename(&place, &old)?;
         }
-        moves.rename(&new, &place)?;
+        // A directory that the configuration no longer asks for goes.
+        if new.exists() {
+            create_parent(&place)?;
+            moves.rename(&new, &place)?;
+        }
     }
     for path in foreign {
         let old = aside.join(path.strip_prefix(out).unwrap_or(path));
-        // Not where something new stands, or where the directory as a whole stayed.
+        // Not where something new stands.
         if fs::symlink_metadata(path).is_err() {
+            create_parent(path)?;
             moves.rename(&old, path)?;
         }
     }

@@ -47,6 +47,8 @@ pub struct Files<'a> {
     pub cores: &'a [String],
     /// The bench and its vectors, or nothing.
     pub testbench: &'a [String],
+    /// The model in C, or nothing.
+    pub software: &'a [String],
 }
 
 /// The manifest as text, with the digests of all `others`.
@@ -75,12 +77,7 @@ pub fn contents(
         control: design.pipeline.is_none().then(|| control(design)),
         pipeline: design.pipeline.as_ref().map(pipeline),
         roms: facts::roms(design, naming),
-        files: json!({
-            "rtl": files.rtl,
-            "memories": files.memories,
-            "cores": files.cores,
-            "testbench": files.testbench,
-        }),
+        files: listed(files),
         sha256: others
             .iter()
             .map(|file| (file.path.clone(), json!(digest(file.contents.as_bytes()))))
@@ -99,6 +96,19 @@ pub fn contents(
         computations: inputs.computations.iter().map(computation).collect::<Result<_>>()?,
     };
     Ok(serde_json::to_string_pretty(&manifest)? + "\n")
+}
+
+fn listed(files: &Files) -> Value {
+    let mut listed = json!({
+        "rtl": files.rtl,
+        "memories": files.memories,
+        "cores": files.cores,
+        "testbench": files.testbench,
+    });
+    if !files.software.is_empty() {
+        listed["software"] = json!(files.software);
+    }
+    listed
 }
 
 fn accuracy(accuracy: &Accuracy) -> Value {

@@ -16,6 +16,7 @@ mod memory;
 mod points;
 pub(crate) mod seal;
 mod software;
+mod surroundings;
 mod window;
 
 use anyhow::{Result, ensure};
@@ -35,6 +36,7 @@ pub use cocotb::driver;
 pub use instance::instance;
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE, points_bench};
 pub use seal::{Seal, is_sealed, sealed, sealed_json};
+pub use surroundings::Surroundings;
 pub use window::{WINDOW_FILE, window};
 
 /// A file to be written.
@@ -78,6 +80,8 @@ pub struct EmitInputs {
     pub computations: Vec<Computation>,
     /// Stimulus and expected outputs; without them there is no bench.
     pub vectors: Option<Vectors>,
+    /// What is put around the core.
+    pub around: Surroundings,
 }
 
 /// Clocks between the events of the handshake; `None` where they depend on the data.
@@ -249,6 +253,9 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         }
     }
 
+    let software =
+        if inputs.around.software { software::files(design, inputs)? } else { Vec::new() };
+
     let (rtl_names, memory_names) = (names_of(&rtl), names_of(&memories));
     let mut cores = vec![format!("{name}.core")];
     let mut bench_names = names_of(&testbench);
@@ -258,6 +265,7 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         memories: &memory_names,
         cores: &cores,
         testbench: &bench_names,
+        software: &names_of(&software),
     };
     let has_bench = !testbench.is_empty();
     let core = fusesoc::device(name, &design.about.title, &rtl_names, &memory_names, has_bench)?;
@@ -267,12 +275,12 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         .chain([(format!("{name}.core"), core)])
         .map(|(file, contents)| OutputFile { path: format!("rtl_out/{name}/{file}"), contents })
         .collect();
-    all.extend(
-        testbench.into_iter().map(|(file, contents)| OutputFile {
-            path: format!("testbench/{name}/{file}"),
+    for (folder, files) in [("testbench", testbench), ("software", software)] {
+        all.extend(files.into_iter().map(|(file, contents)| OutputFile {
+            path: format!("{folder}/{name}/{file}"),
             contents,
-        }),
-    );
+        }));
+    }
     // The manifest vouches for every other file.
     let contents = manifest::contents(design, inputs, &naming, &files, &all)?;
     all.push(OutputFile { path: format!("rtl_out/{name}/{name}.json"), contents });

@@ -53,6 +53,19 @@ pub fn configuration(path: &str) -> Unit {
     Unit::new(device, config).unwrap_or_else(|error| panic!("{path}: {error:?}"))
 }
 
+/// The configuration of that path with more TOML at its end.
+///
+/// # Panics
+/// It is wrong.
+pub fn configuration_with(path: &str, more: &str) -> Unit {
+    let registry = Registry::catalogue();
+    let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let config = config::parse(path, &format!("{text}{more}"), &registry.schemas())
+        .unwrap_or_else(|problems| panic!("{problems}"));
+    let device = *registry.device(&config.device).expect("a device");
+    Unit::new(device, config).unwrap_or_else(|error| panic!("{path}: {error:?}"))
+}
+
 /// A valid configuration drawn at random, as TOML for messages, and its unit.
 ///
 /// # Panics

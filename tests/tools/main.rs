@@ -16,5 +16,6 @@ mod gate_level;
 mod mutants;
 mod random_configurations;
 mod random_netlists;
+mod software;
 mod synthesis;
 mod verilog;

@@ -7,8 +7,8 @@ use std::collections::HashMap;
 
 use anyhow::{Result, ensure};
 
-use crate::fixed::{Format, mask};
-use crate::netlist::{Driver, NetId, Op, RegId, RomId};
+use crate::base::fixed::{Format, mask};
+use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId, RomId};
 
 /// What makes a value. The operands of an [`Op`] are numbers of values here.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -104,6 +104,12 @@ impl Graph {
     /// A product of more than 64 bits.
     pub fn op(&mut self, op: Op, format: Format) -> Result<NetId> {
         ensure!(format.width() <= 64, "a value of more than 64 bits");
+        let wiring = match &op {
+            Op::Slice { of, low } => Some(self.slice(*of, *low, format.width())),
+            Op::Concat(parts) => Some(self.concat(parts)),
+            _ => None,
+        };
+        let op = wiring.map_or(op, Op::Relabel);
         if let Some(same) = self.alias(&op, format) {
             return Ok(same);
         }
@@ -115,12 +121,80 @@ impl Graph {
         Ok(self.make(Node::Op(op), format))
     }
 
+    /// Bits of a value, looked up where they come from: what was shifted out of a register leaves no trace.
+    fn slice(&mut self, of: NetId, low: u32, width: u32) -> NetId {
+        let whole = self.width(of);
+        if width == whole {
+            return of;
+        }
+        match self.value(of).node.clone() {
+            Node::Constant(bits) => self.constant(bits >> low, unsigned(width)),
+            Node::Op(Op::Slice { of, low: inner }) => self.slice(of, inner + low, width),
+            Node::Op(Op::Relabel(of)) => self.slice(of, low, width),
+            Node::Op(Op::Extend(of)) if low + width <= self.width(of) => self.slice(of, low, width),
+            Node::Op(Op::Concat(parts)) => {
+                let mut above = whole;
+                let mut pieces = Vec::new();
+                for part in parts {
+                    let top = above;
+                    above -= self.width(part);
+                    let (from, to) = (above.max(low), top.min(low + width));
+                    if from < to {
+                        pieces.push(self.slice(part, from - above, to - from));
+                    }
+                }
+                self.concat(&pieces)
+            }
+            _ => self.make(Node::Op(Op::Slice { of, low }), unsigned(width)),
+        }
+    }
+
+    /// Values side by side; neighbouring bits of one value and neighbouring constants become one.
+    fn concat(&mut self, parts: &[NetId]) -> NetId {
+        let mut flat: Vec<NetId> = Vec::new();
+        for part in parts {
+            let inner = match &self.value(*part).node {
+                Node::Op(Op::Concat(inner)) => inner.clone(),
+                _ => vec![*part],
+            };
+            for piece in inner {
+                let joined = flat.last().and_then(|above| self.joined(*above, piece));
+                match joined {
+                    Some(joined) => *flat.last_mut().expect("a piece above") = joined,
+                    None => flat.push(piece),
+                }
+            }
+        }
+        let width: u32 = flat.iter().map(|piece| self.width(*piece)).sum();
+        match flat[..] {
+            [only] => only,
+            _ => self.make(Node::Op(Op::Concat(flat)), unsigned(width)),
+        }
+    }
+
+    fn joined(&mut self, above: NetId, below: NetId) -> Option<NetId> {
+        let (high, low) = (self.value(above), self.value(below));
+        let (high_width, low_width) = (high.format.width(), low.format.width());
+        match (&high.node, &low.node) {
+            (Node::Constant(high), Node::Constant(low)) => {
+                let bits = high << low_width | low;
+                Some(self.constant(bits, unsigned(high_width + low_width)))
+            }
+            (
+                &Node::Op(Op::Slice { of, low: at }),
+                &Node::Op(Op::Slice { of: same, low: below }),
+            ) if of == same && at == below + low_width => {
+                Some(self.slice(of, below, high_width + low_width))
+            }
+            _ => None,
+        }
+    }
+
     /// The operand that an operation only passes on.
     fn alias(&mut self, op: &Op, format: Format) -> Option<NetId> {
         let zeros = |graph: &Self, id: &NetId| graph.constant_of(*id) == Some(0);
-        let ones = |graph: &Self, id: &NetId| {
-            graph.constant_of(*id) == Some(mask(graph.width(*id)))
-        };
+        let ones =
+            |graph: &Self, id: &NetId| graph.constant_of(*id) == Some(mask(graph.width(*id)));
         let passed = match op {
             Op::Relabel(of) | Op::Extend(of) if self.width(*of) == format.width() => *of,
             Op::Any(of) | Op::All(of) if self.width(*of) == 1 => *of,
@@ -158,7 +232,7 @@ impl Graph {
             Op::Slice { low, .. } => bits[0] >> low,
             Op::Concat(parts) => {
                 let parts = parts.iter().zip(bits);
-                parts.fold(0, |high, (part, bits)| {
+                parts.fold(0_u64, |high, (part, bits)| {
                     high.checked_shl(self.width(*part)).unwrap_or(0) | bits
                 })
             }
@@ -201,7 +275,7 @@ impl Graph {
     /// A loop; a net without a driver.
     pub fn clock(
         &mut self,
-        design: &crate::netlist::Design,
+        design: &Design,
         order: &[NetId],
         state: &State,
         input: impl Fn(&mut Self, NetId) -> NetId,
@@ -244,12 +318,7 @@ impl Graph {
     ///
     /// # Errors
     /// A register that takes nothing.
-    pub fn after(
-        &mut self,
-        design: &crate::netlist::Design,
-        state: &State,
-        clock: &Clock,
-    ) -> Result<State> {
+    pub fn after(&mut self, design: &Design, state: &State, clock: &Clock) -> Result<State> {
         let mut after = state.clone();
         for (at, register) in design.registers.iter().enumerate() {
             let Some(data) = register.data else {
@@ -279,7 +348,7 @@ impl Graph {
         Ok(after)
     }
 
-    fn read(&mut self, design: &crate::netlist::Design, rom: RomId, address: NetId) -> NetId {
+    fn read(&mut self, design: &Design, rom: RomId, address: NetId) -> NetId {
         let (words, format) = (&design.rom(rom).words, design.net(design.rom(rom).data).format);
         match self.constant_of(address) {
             Some(at) => self.constant(words.get(at as usize).copied().unwrap_or(0), format),
@@ -310,5 +379,52 @@ impl Graph {
             Node::Rom(_, address) => vec![*address],
             Node::Constant(_) | Node::Input(_) | Node::State(_) | Node::Read(_) => Vec::new(),
         }
+    }
+}
+
+fn unsigned(width: u32) -> Format {
+    Format::unsigned(width as i32, 0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_shifted_out_leaves_no_trace() {
+        let mut graph = Graph::default();
+        let old = graph.make(Node::State(RegId(0)), unsigned(2));
+        let bits: Vec<NetId> =
+            (0..2).map(|at| graph.make(Node::Input(NetId(at)), unsigned(1))).collect();
+        let mut register = old;
+        for bit in &bits {
+            let kept = graph.op(Op::Slice { of: register, low: 0 }, unsigned(1)).unwrap();
+            register = graph.op(Op::Concat(vec![kept, *bit]), unsigned(2)).unwrap();
+        }
+        let expected = graph.op(Op::Concat(bits), unsigned(2)).unwrap();
+        assert_eq!(register, expected);
+        assert!(!graph.needed(&[register])[old.index()]);
+    }
+
+    #[test]
+    fn neighbours_become_one() {
+        let mut graph = Graph::default();
+        let whole = graph.make(Node::Input(NetId(0)), unsigned(8));
+        let high = graph.op(Op::Slice { of: whole, low: 3 }, unsigned(5)).unwrap();
+        let low = graph.op(Op::Slice { of: whole, low: 0 }, unsigned(3)).unwrap();
+        assert_eq!(graph.op(Op::Concat(vec![high, low]), unsigned(8)).unwrap(), whole);
+    }
+
+    #[test]
+    fn constants_are_folded_with_their_signs() {
+        let mut graph = Graph::default();
+        let signed = |width: i32| Format::signed(width - 1, 0);
+        let (a, b) = (graph.constant(0b1101, signed(4)), graph.constant(0b0110, signed(4)));
+        let product = graph.op(Op::Mul(a, b), signed(8)).unwrap();
+        assert_eq!(graph.constant_of(product), Some(0b1110_1110), "-3 * 6");
+        let less = graph.op(Op::Less(a, b), Format::BIT).unwrap();
+        assert_eq!(graph.constant_of(less), Some(1));
+        let wider = graph.op(Op::Extend(a), signed(6)).unwrap();
+        assert_eq!(graph.constant_of(wider), Some(0b11_1101));
     }
 }

@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use anyhow::{Context, Result};
 use askama::Template;
 
-use super::graph::Node;
+use super::graph::{Graph, Node, State};
 use super::print::{Line, Printer, comment, field, literal, pattern_type, read_name, taken};
 use super::unroll::{Stepped, stepped, straight};
-use crate::emit::text::{Names, ascii, constant_name, statement};
-use crate::emit::{EmitInputs, render};
-use crate::fixed::{Format, mask};
-use crate::netlist::{Design, NetId, Port, RegId, Role, RomId};
+use crate::base::fixed::{Format, mask};
+use crate::hdl::netlist::{Design, NetId, Port, RegId, Role, RomId};
+use crate::hdl::verilog::text::{Names, ascii, constant_name, statement};
+use crate::package::{EmitInputs, render};
 
 /// An operand or a result in C.
 struct Field {
@@ -107,18 +107,23 @@ impl Field {
 
     /// The weight of the lowest bit's inverse, as a C double: 2^F exactly.
     fn scale(&self) -> String {
-        format!("{:?}", crate::fixed::exp2(self.format.frac))
+        format!("{:?}", crate::base::fixed::exp2(self.format.frac))
     }
 
     /// The lowest bit, as a C double: 2^-F exactly.
     fn unit(&self) -> String {
-        format!("{:?}", crate::fixed::exp2(-self.format.frac))
+        format!("{:?}", crate::base::fixed::exp2(-self.format.frac))
     }
 
     /// The limits as doubles.
     fn limits(&self) -> (String, String) {
         let (low, high) = self.format.range();
         (format!("{:?}", low as f64), format!("{:?}", high as f64))
+    }
+
+    /// The field of a structure in ctypes.
+    fn ctype(&self) -> String {
+        format!("c_{}", self.kind.trim_end_matches("_t"))
     }
 
     /// The field of a structure in NumPy.
@@ -141,17 +146,20 @@ pub fn files(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String
     let name = design.name.as_str();
     let line = inputs.accuracy.as_ref().is_some_and(|accuracy| accuracy.length.is_some());
     let about = &design.about;
-    let operands =
-        || design.inputs().filter(|port| matches!(port.role, Role::Operand { .. })).map(|port| Field::new(design, port)).collect::<Vec<_>>();
+    let operands = || {
+        design
+            .inputs()
+            .filter(|port| matches!(port.role, Role::Operand { .. }))
+            .map(|port| Field::new(design, port))
+            .collect::<Vec<_>>()
+    };
     let results = || result_ports(design).map(|port| Field::new(design, port)).collect::<Vec<_>>();
     let names = table_names(design);
     let (body, read) = match line {
         true => of_line(design, &names),
         false => of_point(design, &names),
     }
-    .with_context(|| {
-        format!("`{name}` has no model in C (package.software); leave the key out")
-    })?;
+    .with_context(|| format!("`{name}` has no model in C (package.software); leave the key out"))?;
     let regenerate = inputs.config.as_str();
     let header = Header {
         name,
@@ -279,8 +287,7 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
     }
     body.push("    size_t count = 0;".to_owned());
     body.push("    for (;;) {".to_owned());
-    let (printer, lines) =
-        Printer::new(&each, design, tables, states.clone(), &mut names, &wanted);
+    let (printer, lines) = Printer::new(&each, design, tables, states.clone(), &mut names, &wanted);
     body.extend(lines.iter().flat_map(|line| statement(8, &line.text)));
     body.push(format!("        if ({} != 0u) {{", printer.text(valid)));
     body.push("            if (count < capacity) {".to_owned());
@@ -294,7 +301,7 @@ fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId
     body.push(format!("        if ({} != 0u) {{", printer.text(done)));
     body.push("            return count;".to_owned());
     body.push("        }".to_owned());
-    body.extend(clocked(design, &printer, &registers, &reads, &states, &next));
+    body.extend(clocked(design, &printer, &registers, &reads, &states, &next, &mut names));
     body.push("    }".to_owned());
     let mut read = roms(&each, &wanted);
     read.extend(roms(&first, &starts));
@@ -308,28 +315,34 @@ fn clocked(
     registers: &[RegId],
     reads: &[RomId],
     states: &BTreeMap<RegId, String>,
-    next: &super::graph::State,
+    next: &State,
+    names: &mut Names,
 ) -> Vec<String> {
-    let mut lines = Vec::new();
-    let mut moves: Vec<(String, String, u32)> = Vec::new();
-    for id in registers {
+    let registers = registers.iter().map(|id| {
         let width = design.width(design.register(*id).q);
-        moves.push((states[id].clone(), printer.text(next.registers[id.index()]), width));
-    }
-    for id in reads {
+        (states[id].clone(), next.registers[id.index()], width)
+    });
+    let reads = reads.iter().map(|id| {
         let width = design.width(design.rom(*id).data);
-        let name = read_name(design, id.index());
-        moves.push((name, printer.text(next.reads[id.index()]), width));
+        (read_name(design, id.index()), next.reads[id.index()], width)
+    });
+    let mut lines = vec![format!("        {}", comment("the rising edge"))];
+    let mut moves = Vec::new();
+    for (name, value, width) in registers.chain(reads) {
+        let mut text = printer.text(value);
+        if text == name {
+            continue;
+        }
+        // What is computed from the state has to be computed before any of it changes.
+        if !printer.is_settled(value) {
+            let next = names.fresh(&format!("next_{name}"));
+            let kind = pattern_type(width);
+            lines.extend(statement(8, &format!("const {kind} {next} = {text};")));
+            text = next;
+        }
+        moves.push(format!("        {name} = {text};"));
     }
-    moves.retain(|(name, value, _)| name != value);
-    lines.push(format!("        {}", comment("the rising edge")));
-    for (name, value, width) in &moves {
-        let kind = pattern_type(*width);
-        lines.extend(statement(8, &format!("const {kind} next_{name} = {value};")));
-    }
-    for (name, ..) in &moves {
-        lines.push(format!("        {name} = next_{name};"));
-    }
+    lines.extend(moves);
     lines
 }
 
@@ -354,7 +367,7 @@ fn assigned(design: &Design, port: &Port, pattern: &str) -> String {
     let kind = Field::new(design, port).kind;
     let width = net.format.width();
     let value = match net.format.signed {
-        false => format!("({kind})({pattern})"),
+        false => pattern.to_owned(),
         true if width == 32 || width == 64 => format!("({kind})({pattern})"),
         true => {
             let sign = literal(1 << (width - 1), width);
@@ -364,7 +377,7 @@ fn assigned(design: &Design, port: &Port, pattern: &str) -> String {
     format!("{} = {value};", field(&net.name))
 }
 
-fn roms(graph: &super::graph::Graph, wanted: &[NetId]) -> Vec<RomId> {
+fn roms(graph: &Graph, wanted: &[NetId]) -> Vec<RomId> {
     let needed = graph.needed(wanted);
     let values = graph.values.iter().zip(needed).filter(|(_, needed)| *needed);
     values
@@ -398,14 +411,18 @@ fn tables(design: &Design, names: &[String], read: &[RomId]) -> Vec<String> {
         let what = rom.doc.join(" ");
         lines.push(comment(&format!("ROM {}: {what}", rom.name)));
         lines.push(format!("static const {kind} {}[{}] = {{", names[at], rom.words.len()));
-        let words: Vec<String> =
-            rom.words.iter().map(|word| format!("{},", literal(word & mask(width), width))).collect();
-        lines.extend(statement(4, &words.join(" ")).into_iter().map(|line| {
-            format!("    {}", line.trim_start())
-        }));
+        let words: Vec<String> = rom
+            .words
+            .iter()
+            .map(|word| format!("{},", literal(word & mask(width), width)))
+            .collect();
+        lines.extend(
+            statement(4, &words.join(" "))
+                .into_iter()
+                .map(|line| format!("    {}", line.trim_start())),
+        );
         lines.push("};".to_owned());
         lines.push(String::new());
     }
     lines
 }
-

@@ -6,9 +6,9 @@
 use std::collections::BTreeMap;
 
 use super::graph::{Graph, Node};
-use crate::emit::text::{Names, ascii};
-use crate::fixed::mask;
-use crate::netlist::{Design, NetId, Op, RegId};
+use crate::base::fixed::mask;
+use crate::hdl::netlist::{Design, NetId, Op, RegId};
+use crate::hdl::verilog::text::{Names, ascii};
 
 /// The words of C99 and the names that the model's own text uses.
 const TAKEN: &str = "
@@ -103,7 +103,10 @@ impl<'a> Printer<'a> {
         let mut lines = Vec::new();
         for id in ids {
             let value = graph.value(id);
-            let local = match value.node {
+            let local = match &value.node {
+                // Another name for the same bits.
+                Node::Op(Op::Relabel(_)) => false,
+                Node::Op(Op::Extend(of)) if !graph.value(*of).format.signed => false,
                 Node::Op(_) | Node::Rom(..) => uses[id.index()] > 1 || !value.name.is_empty(),
                 Node::Input(_) => true,
                 Node::Constant(_) | Node::State(_) | Node::Read(_) => false,
@@ -126,6 +129,11 @@ impl<'a> Printer<'a> {
             printer.locals.insert(id, name);
         }
         (printer, lines)
+    }
+
+    /// Whether a value stands for itself, whatever becomes of the state.
+    pub fn is_settled(&self, id: NetId) -> bool {
+        self.locals.contains_key(&id) || self.graph.constant_of(id).is_some()
     }
 
     /// A value that the statements have computed.
@@ -208,9 +216,15 @@ impl<'a> Printer<'a> {
             Node::Constant(bits) => Text(literal(*bits, width), true),
             Node::Input(port) => {
                 let net = self.design.net(*port);
-                let kind = pattern_type(width);
-                let text = format!("({kind})operands.{}", field(&net.name));
-                Text(self.masked(text, width).0, false)
+                let field = field(&net.name);
+                let text = match net.format.signed {
+                    true => format!("({})operands.{field}", pattern_type(width)),
+                    false => format!("operands.{field}"),
+                };
+                match width {
+                    32 | 64 => Text(text, true),
+                    _ => Text(format!("{text} & {}", literal(mask(width), width)), false),
+                }
             }
             Node::State(register) => {
                 let name = self.states.get(register).cloned();

@@ -7,9 +7,9 @@
 use anyhow::{Context, Result, bail, ensure};
 
 use super::graph::{Clock, Graph, Node, State};
-use crate::emit::termination;
-use crate::fixed::{Format, mask};
-use crate::netlist::{Design, NetId, Op, RegId, Role, RomId, Sequence};
+use crate::base::fixed::{Format, mask};
+use crate::hdl::netlist::termination;
+use crate::hdl::netlist::{Design, NetId, Op, RegId, Role, RomId, Sequence};
 
 /// More values than any core has that somebody would call as a function.
 const MOST_VALUES: usize = 200_000;

@@ -1,0 +1,299 @@
+//! The model in C: it compiles without a word, and computes what the golden model computes.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+use glint::core::Unit;
+use glint::golden::{Contract, Operand};
+use glint::hdl::netlist::Role;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
+use rayon::prelude::*;
+
+use crate::common::sample::sampled;
+use crate::common::tools::{LIMIT, tool};
+use crate::common::units::{Emitted, configuration_with};
+
+/// Points that are compared of each configuration.
+const POINTS: usize = 1_000_000;
+
+/// Intervals of a line, at most, so that there are many lines.
+const LONGEST: i64 = 300;
+
+/// Configurations of which the test runs by default.
+const SAMPLE: usize = 2;
+
+const SOFTWARE: &str = "\n[package]\nsoftware = true\n";
+
+const DEFAULTS: [&str; 10] = [
+    "blinn",
+    "cosine_power",
+    "cosine_squared",
+    "gauss",
+    "lyon",
+    "quad_cosine",
+    "quadratic",
+    "rough",
+    "schlick",
+    "threshold",
+];
+
+/// As a driver's author would have it, and stricter.
+const FLAGS: [&str; 8] = [
+    "-std=c99",
+    "-O2",
+    "-Wall",
+    "-Wextra",
+    "-Wpedantic",
+    "-Wconversion",
+    "-Werror",
+    "-fsanitize=undefined",
+];
+
+#[test]
+fn the_model_is_the_golden_model_at_random_points() {
+    sampled("models in C", DEFAULTS, SAMPLE).into_par_iter().for_each(|name| {
+        let model = Model::new(&format!("configs/{name}.toml"));
+        let mut random = ChaCha8Rng::seed_from_u64(1);
+        let contract = model.unit.contract.as_ref();
+        let mut operands = Vec::new();
+        let mut count = 0;
+        while count < POINTS {
+            let drawn = draw(contract, &mut random);
+            count += results_of(contract, &drawn);
+            operands.push(drawn);
+        }
+        model.assert_equal(&operands);
+    });
+}
+
+#[test]
+fn the_model_is_the_golden_model_at_every_combination() {
+    sampled("reduced models in C", DEFAULTS, SAMPLE).into_par_iter().for_each(|name| {
+        let model = Model::new(&format!("configs/reduced/{name}.toml"));
+        let contract = model.unit.contract.as_ref();
+        let mut operands = vec![Vec::new()];
+        for operand in contract.operands() {
+            let (low, high) = operand.domain;
+            operands = operands
+                .into_iter()
+                .flat_map(|head: Vec<i64>| {
+                    (low..=high).map(move |raw| head.iter().copied().chain([raw]).collect())
+                })
+                .collect();
+        }
+        model.assert_equal(&operands);
+    });
+}
+
+#[test]
+fn a_faulty_model_is_noticed() {
+    let model = Model::new("configs/reduced/cosine_power.toml");
+    let path = model.place.path().join("cosine_power_reduced_model.c");
+    let text = fs::read_to_string(&path).expect("the model");
+    let wrong = text.replacen("results.red_out = ", "results.red_out = 1u ^ ", 1);
+    assert_ne!(text, wrong);
+    fs::write(path, wrong).expect("written");
+    let operands = vec![vec![40, 3, 1, 0, 1], vec![60, 2, 1, 1, 1], vec![55, 5, 1, 1, 0]];
+    assert_ne!(model.run(&operands), model.expected(&operands));
+}
+
+#[test]
+fn values_become_operands_as_formats_say() {
+    let model = Model::new("configs/quad_cosine.toml");
+    let values = [-1e30, -3.7, -2.0, -1.5, -0.25, -1e-9, 0.0, 1e-8, 0.75, 1.0, 1.999, 2.0, 7e7];
+    let name = &model.unit.config.name;
+    let mut text = format!("#include <stdio.h>\n#include \"{name}_model.h\"\nint main(void) {{\n");
+    let mut expected = String::new();
+    for operand in model.unit.contract.operands() {
+        for value in values {
+            let call = format!("{name}_{}_from({value:?})", operand.name);
+            writeln!(text, "printf(\"%lld\\n\", (long long){call});").expect("text");
+            writeln!(expected, "{}", operand.format.quantise(value)).expect("text");
+        }
+        // Not a number is the least, as in the formats.
+        let call = format!("{name}_{}_from(0.0 / 0.0)", operand.name);
+        writeln!(text, "printf(\"%lld\\n\", (long long){call});").expect("text");
+        writeln!(expected, "{}", operand.format.min_raw()).expect("text");
+    }
+    text += "return 0; }\n";
+    let place = model.place.path();
+    fs::write(place.join("conversions.c"), text).expect("written");
+    let _ = fs::remove_file(place.join("conversions"));
+    let compile = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-o", "conversions", "conversions.c"];
+    tool("cc").run_to_success(compile, place, LIMIT).unwrap_or_else(|error| panic!("{error:#}"));
+    let printed = run_program(&place.join("conversions"), place);
+    assert_eq!(printed, expected);
+}
+
+#[test]
+fn the_example_in_python_computes_the_manifests_example() {
+    ["quad_cosine", "rough"].par_iter().for_each(|name| {
+        let model = Model::new(&format!("configs/{name}.toml"));
+        let place = model.place.path();
+        let text = fs::read_to_string(place.join(format!("{name}_model.py"))).expect("the example");
+        let library = format!("{name}_model.so");
+        let source = format!("{name}_model.c");
+        let compile = ["-std=c99", "-O2", "-shared", "-fPIC", "-o", &library, &source];
+        assert!(text.contains(&format!("$ cc {}\n", compile.join(" "))), "{text}");
+        let compiled = tool("cc").run_to_success(compile, place, LIMIT);
+        compiled.unwrap_or_else(|error| panic!("{error:#}"));
+        let printed = tool("python").run_to_success([format!("{name}_model.py")], place, LIMIT);
+        let printed = printed.unwrap_or_else(|error| panic!("{error:#}"));
+        let example = model.unit.example().expect("an example");
+        let first: Vec<String> = example.outputs.iter().map(|it| it.raw.to_string()).collect();
+        assert_eq!(printed.lines().next(), Some(first.join(" ").as_str()), "{printed}");
+    });
+}
+
+/// A configuration with its model in C in a directory.
+struct Model {
+    unit: Unit,
+    place: tempfile::TempDir,
+}
+
+impl Model {
+    fn new(config: &str) -> Self {
+        let unit = configuration_with(config, SOFTWARE);
+        let place = tempfile::tempdir().expect("a directory");
+        let emitted = Emitted::new(&unit, 1, 1);
+        let software = emitted.files.iter().filter(|file| file.path.starts_with("software/"));
+        for file in software {
+            fs::write(place.path().join(file.name()), &file.contents).expect("written");
+        }
+        Self { unit, place }
+    }
+
+    fn is_line(&self) -> bool {
+        self.unit.contract.length().is_some()
+    }
+
+    fn assert_equal(&self, operands: &[Vec<i64>]) {
+        let (found, expected) = (self.run(operands), self.expected(operands));
+        assert_eq!(found.len(), expected.len(), "{}: results", self.unit.config.name);
+        let differs = found.iter().zip(&expected).position(|(found, expected)| found != expected);
+        if let Some(at) = differs {
+            let outputs = self.unit.contract.outputs().len();
+            panic!(
+                "{}: result {} is {}, not {}",
+                self.unit.config.name,
+                at / outputs,
+                found[at],
+                expected[at]
+            );
+        }
+    }
+
+    /// What the golden model says, result by result.
+    fn expected(&self, operands: &[Vec<i64>]) -> Vec<i64> {
+        let contract = self.unit.contract.as_ref();
+        let control = contract.operands().iter().filter(|operand| !operand.colour).count();
+        let of_point = |operands: &Vec<i64>| {
+            let (control, colours) = operands.split_at(control);
+            let mut results = Vec::new();
+            for index in 0..results_of(contract, operands) {
+                let f = contract.f(&contract.point(control, index as u64));
+                results.extend(colours.iter().map(|colour| contract.colour(f, *colour)));
+            }
+            results
+        };
+        operands.par_iter().flat_map_iter(of_point).collect()
+    }
+
+    /// What the model in C says.
+    fn run(&self, operands: &[Vec<i64>]) -> Vec<i64> {
+        let (name, place) = (&self.unit.config.name, self.place.path());
+        fs::write(place.join("driver.c"), self.driver()).expect("written");
+        let model = format!("{name}_model.c");
+        let arguments = FLAGS.into_iter().chain(["-fno-sanitize-recover=all", "-o", "driver"]);
+        let arguments: Vec<&str> = arguments.chain(["driver.c", &model]).collect();
+        let compiled = tool("cc").run_to_success(&arguments, place, LIMIT);
+        let compiled = compiled.unwrap_or_else(|error| panic!("{error:#}"));
+        assert_eq!(compiled, "", "{name}: words of the compiler");
+        let bytes: Vec<u8> = operands.iter().flatten().flat_map(|raw| raw.to_le_bytes()).collect();
+        fs::write(place.join("operands"), bytes).expect("written");
+        run_program(&place.join("driver"), place);
+        let bytes = fs::read(place.join("results")).expect("results");
+        let raw = |bytes: &[u8]| i64::from_le_bytes(bytes.try_into().expect("eight bytes"));
+        bytes.chunks_exact(8).map(raw).collect()
+    }
+
+    /// A program that reads operands and writes results, 64 bits each in the contract's order.
+    fn driver(&self) -> String {
+        let (name, contract) = (&self.unit.config.name, self.unit.contract.as_ref());
+        let ports = self.unit.design.inputs();
+        let count = ports.filter(|port| matches!(port.role, Role::Operand { .. })).count();
+        assert_eq!(count, contract.operands().len(), "{name}: every operand is the contract's");
+        let mut text = format!(
+            "#include <stdio.h>\n#include \"{name}_model.h\"\n\
+             static {name}_results points[1 << 16];\n\
+             int main(void) {{\n\
+             FILE *in = fopen(\"operands\", \"rb\"), *out = fopen(\"results\", \"wb\");\n\
+             int64_t raw[{count}];\n\
+             while (fread(raw, sizeof raw, 1, in) == 1) {{\n\
+             {name}_operands operands;\n"
+        );
+        for (at, operand) in contract.operands().iter().enumerate() {
+            let kind = match (operand.format.signed, operand.format.width() <= 32) {
+                (true, true) => "int32_t",
+                (true, false) => "int64_t",
+                (false, true) => "uint32_t",
+                (false, false) => "uint64_t",
+            };
+            writeln!(text, "operands.{} = ({kind})raw[{at}];", operand.name).expect("text");
+        }
+        text += &match self.is_line() {
+            true => format!("size_t count = {name}_model(operands, points, 1 << 16);\n"),
+            false => format!("size_t count = 1;\npoints[0] = {name}_model(operands);\n"),
+        };
+        text += "for (size_t at = 0; at < count; ++at) {\nint64_t result;\n";
+        for output in contract.outputs() {
+            writeln!(text, "result = (int64_t)points[at].{output};").expect("text");
+            text += "fwrite(&result, sizeof result, 1, out);\n";
+        }
+        text + "}\n}\nreturn fclose(out);\n}\n"
+    }
+}
+
+fn run_program(program: &Path, place: &Path) -> String {
+    let program = program.to_str().expect("a path").to_owned();
+    let printed = tool("env").run_to_success([program], place, LIMIT);
+    printed.unwrap_or_else(|error| panic!("{error:#}"))
+}
+
+/// How many results a computation has.
+fn results_of(contract: &dyn Contract, operands: &[i64]) -> usize {
+    let length = contract.length().map(|name| {
+        let at = contract.operands().iter().position(|operand| operand.name == name);
+        operands[at.expect("the length is an operand")] as usize + 1
+    });
+    length.unwrap_or(1)
+}
+
+/// Operands of the domain. Half of them are drawn so that f is spread over 0 … 1, as far as the device has an
+/// angle and an exponent.
+fn draw(contract: &dyn Contract, random: &mut ChaCha8Rng) -> Vec<i64> {
+    let mut any = |operand: &Operand| {
+        let (low, high) = operand.domain;
+        let high =
+            if Some(operand.name.as_str()) == contract.length() { high.min(LONGEST) } else { high };
+        low + (random.next_u64() % (high - low + 1) as u64) as i64
+    };
+    let mut operands: Vec<i64> = contract.operands().iter().map(&mut any).collect();
+    let mut unit = || (f64::from(random.next_u32()) + 0.5) / f64::from(u32::MAX);
+    if unit() < 0.5 {
+        let n = libm::floor(libm::pow(1000.0, unit()));
+        let f = unit();
+        let gamma = libm::acos(libm::pow(f, 1.0 / n));
+        if let Some(control) = contract.at(gamma, n) {
+            for (at, raw) in control.into_iter().enumerate() {
+                // The others keep what was drawn.
+                if raw != 0 && Some(contract.operands()[at].name.as_str()) != contract.length() {
+                    operands[at] = raw;
+                }
+            }
+        }
+    }
+    operands
+}
