@@ -72,6 +72,15 @@ impl Unit {
         package::digest(format!("{}\n{text}", env!("CARGO_PKG_VERSION")).as_bytes())
     }
 
+    /// Tells what a proof of the accuracy contract depends on from others: the device and its keys, but not the
+    /// module's name. SHA-256 in hexadecimal.
+    pub fn contract_digest(&self) -> String {
+        let mut anonymous = self.config.clone();
+        anonymous.name.clear();
+        anonymous.strict = false;
+        emit::digest(anonymous.to_toml(&(self.device.schema)()).as_bytes())
+    }
+
     /// Golden model and built-in simulator, side by side.
     ///
     /// # Errors

@@ -288,7 +288,9 @@ Examples:
     /// shown, by which leg, over which domain, with which tools, and what is left open. Both are the same whenever they are
     /// made with the same tools, but for the page's last section: how long each leg took, which `DIR/<name>.timings.json` has too.
     /// The exit code is 0 only if every leg that covers the configuration, and that --without-tools does not leave out,
-    /// was run and holds: a tool that is missing leaves the verification incomplete.
+    /// was run and holds: a tool that is missing leaves the verification incomplete. So does a proof of the accuracy
+    /// contract that takes more than some seconds, unless --full makes it or its record is in --proofs: that is found
+    /// by the configuration's digest and checked again in part.
     #[command(after_help = "\
 Examples:
   glint verify my_core.toml                       every leg, in a minute or two
@@ -307,6 +309,9 @@ Examples:
         /// Where the files go
         #[arg(long, value_name = "DIR", default_value = "verification")]
         out: PathBuf,
+        /// Where records of `cosim --exhaustive --json` are, which stand for a long proof of the accuracy contract
+        #[arg(long, value_name = "DIR", default_value = "proofs")]
+        proofs: PathBuf,
         /// Seconds after which a run of an outside tool is given up
         #[arg(long, value_name = "SECONDS", default_value_t = 3600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
         time_limit: u64,
@@ -463,11 +468,12 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             };
             commands::report(registry, output, &request)
         }
-        Some(Command::Verify { configs, full, without_tools, out, time_limit }) => {
+        Some(Command::Verify { configs, full, without_tools, out, proofs, time_limit }) => {
             let request = commands::VerifyRequest {
                 full,
                 without_tools,
                 out,
+                proofs,
                 time_limit: std::time::Duration::from_secs(time_limit),
             };
             commands::verify(registry, output, &configs.configs, &request)

@@ -96,7 +96,10 @@ fn about() -> About {
              the word holds 128 right angles either way; what a host can set up reaches 3*sqrt(n/2), that is 68 for n \
              = 1000. Beyond, the word wraps around, in model and hardware alike."
                 .to_owned(),
-            "The default has 22 fraction bits of the angle: over the longest line, of 4095 intervals, the host's roundings of delta_zeta and              zeta_start add up to at most 2^11 ulps. The formula falls by at most 1.58 in a right angle, so that an              amplitude of 255 drifts by at most 255 * 1.58 * 2^(11 - 22) = 0.20 units; with the contract's 0.82 and              half a unit for the rounding of the amplitude, 1.52 from the host's unrounded numbers."
+            "The default has 22 fraction bits of the angle: over the longest line, of 4095 intervals, the host's roundings of delta_zeta and \
+             zeta_start add up to at most 2^11 ulps. The formula falls by at most 1.58 in a right angle, so that an \
+             amplitude of 255 drifts by at most 255 * 1.58 * 2^(11 - 22) = 0.20 units; with the contract's 0.82 and \
+             half a unit for the rounding of the amplitude, 1.52 from the host's unrounded numbers."
                 .to_owned(),
             "The seed does not draw the prototype. Its accumulator is taken to be that of the claimed device, and \
              bears its block numbers: registers 1 to 3, counter 5, adder 6, mux 7, register 8, ROM 12, multiplier 13."

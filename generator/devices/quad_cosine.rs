@@ -201,7 +201,11 @@ fn about() -> About {
              of 0 makes one point: the word that adds is left out, as the patent's borrow from an empty counter \
              leaves it out."
                 .to_owned(),
-            "The default has 26 fraction bits of the angle: over the longest line, of 4095 intervals, the host's roundings of delta_zeta and              zeta_start add up to at most 2^11 ulps. The formula falls by at most 30.6 in a right angle (n = 1000), so              that an amplitude of 255 drifts by at most 255 * 30.6 * 2^(11 - 26) = 0.24 units. With the contract's 0.93              and half a unit for the rounding of the amplitude itself this is 1.67 units from the host's unrounded              numbers. The accumulator adds exactly, and only multiplier 11 drops bits."
+            "The default has 26 fraction bits of the angle: over the longest line, of 4095 intervals, the host's roundings of delta_zeta and \
+             zeta_start add up to at most 2^11 ulps. The formula falls by at most 30.6 in a right angle (n = 1000), so \
+             that an amplitude of 255 drifts by at most 255 * 30.6 * 2^(11 - 26) = 0.24 units. With the contract's 0.93 \
+             and half a unit for the rounding of the amplitude itself this is 1.67 units from the host's unrounded \
+             numbers. The accumulator adds exactly, and only multiplier 11 drops bits."
                 .to_owned(),
             "The root sqrt(n/k) is applied by multiplier 11 alone; the seed's formulas (13) and (16) apply it to the \
              operands a second time. Output 28 is busy, high from start to end, as trigger 39 drives it."

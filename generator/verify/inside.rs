@@ -7,7 +7,8 @@ use anyhow::Result;
 use super::{Finding, Leg, Subject, Verdict};
 use crate::base::text::{counted, grouped};
 use crate::core::{TEST_POINTS, TEST_SEED};
-use crate::cosim::exhaustive::{Job, Proof, Shard, State};
+use crate::cosim::exhaustive::{Job, Proof, Record as Recorded, Shard, State};
+use crate::golden::{Contract, Sweep};
 use crate::mutate::{self, Faults, Score};
 
 /// Results that lock-step compares, and with full effort.
@@ -15,6 +16,9 @@ const POINTS: [u64; 2] = [TEST_POINTS, 100 * TEST_POINTS];
 
 /// Without full effort a proof has no more evaluations than some seconds allow.
 const EVALUATIONS: u64 = 1 << 28;
+
+/// Of a recorded proof, about so many evaluations of `f` are made again.
+const AGAIN: u64 = 1 << 24;
 
 /// The description, as it was built.
 pub const DESIGN: Leg = Leg {
@@ -94,8 +98,8 @@ pub const CONTRACT: Leg = Leg {
     question: "Is no output further from the formula in f64 than the stated bound, for any operands?",
     tools: &[],
     steps: |subject| match evaluations(subject) {
-        all if is_covered(subject, all) => all,
-        _ => 1,
+        all if is_short(subject, all) => all,
+        _ => Recorded::steps(subject.unit.contract.as_ref(), AGAIN),
     },
     run: |subject, _, progress| contract(subject, progress),
 };
@@ -105,16 +109,20 @@ fn evaluations(subject: &Subject<'_>) -> u64 {
     job.f.count() + job.colours.count()
 }
 
-fn is_covered(subject: &Subject<'_>, evaluations: u64) -> bool {
+fn is_short(subject: &Subject<'_>, evaluations: u64) -> bool {
     subject.effort.full || evaluations <= EVALUATIONS
 }
 
+/// The whole proof; or, where it is long, its record, checked again in part.
 fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
     let contract = subject.unit.contract.as_ref();
     let all = evaluations(subject);
-    if !is_covered(subject, all) {
-        let why = format!("It has {} evaluations; --full does them.", grouped(all));
-        return Ok(Finding::without(Verdict::NotCovered, why));
+    if !is_short(subject, all) {
+        let digest = subject.unit.contract_digest();
+        return Ok(match Recorded::find(subject.proofs, &digest, contract)? {
+            Some(record) => recorded(&record, contract, progress),
+            None => without_record(subject, all),
+        });
     }
     let job = Job::new(contract);
     let mut state = State::new("", Shard::WHOLE);
@@ -122,13 +130,8 @@ fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
     debug_assert!(whole.is_continue(), "nothing stops it");
     let proof = Proof::new(contract, state.f.peak, state.colours.peak);
     Ok(Finding::new(
-        Verdict::Proved,
-        format!(
-            "{} evaluations of f and {} colour products: {}",
-            grouped(job.f.count()),
-            grouped(job.colours.count()),
-            job.f.sweep().words(),
-        ),
+        of_sweep(job.f.sweep()),
+        domain(&job),
         format!(
             "f is off by {:.3} units at most, a colour multiplier by {:.3}, together {:.3} of a stated {:.3}.",
             proof.f_units,
@@ -139,6 +142,56 @@ fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
         proof.faults,
     )
     .open(job.f.sweep().omits.clone()))
+}
+
+/// A sweep that leaves something out proves nothing.
+fn of_sweep(sweep: &Sweep) -> Verdict {
+    match sweep.omits.is_empty() {
+        true => Verdict::Proved,
+        false => Verdict::Passed,
+    }
+}
+
+fn domain(job: &Job<'_>) -> String {
+    format!(
+        "{} evaluations of f and {} colour products: {}",
+        grouped(job.f.count()),
+        grouped(job.colours.count()),
+        job.f.sweep().words(),
+    )
+}
+
+fn recorded(
+    record: &Recorded,
+    contract: &dyn Contract,
+    progress: &(dyn Fn(u64) + Sync),
+) -> Finding {
+    let job = Job::new(contract);
+    let (again, faults) = record.recheck(contract, AGAIN, progress);
+    let path = record.path.display().to_string().replace('\\', "/");
+    let words = format!(
+        "By the record `{path}`: f is off by {:.3} units at most, together with a colour multiplier {:.3} of a \
+         stated {:.3}. Of it, {} evaluations of f, spread evenly, the one with the largest error and all colour \
+         products were made again.",
+        record.f.units,
+        record.together,
+        contract.bound().units,
+        grouped(again),
+    );
+    let verdict = of_sweep(job.f.sweep());
+    let finding = Finding::new(verdict, domain(&job), words, faults);
+    Finding { record: Some(path), ..finding }.open(job.f.sweep().omits.clone())
+}
+
+fn without_record(subject: &Subject<'_>, evaluations: u64) -> Finding {
+    let without_tools = if subject.effort.without_tools { " --without-tools" } else { "" };
+    let why = format!(
+        "It has {} evaluations, and in `{}` there is no record of them for this configuration.",
+        grouped(evaluations),
+        subject.proofs.display(),
+    );
+    let command = format!("glint verify {} --full{without_tools}", subject.path);
+    Finding { complete_with: Some(command), ..Finding::without(Verdict::NotRun, why) }
 }
 
 /// Every combination of operands.

@@ -12,6 +12,7 @@ pub mod page;
 #[cfg(test)]
 mod tests;
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::Result;
@@ -28,6 +29,8 @@ pub struct Subject<'a> {
     pub unit: &'a Unit,
     /// How much is done.
     pub effort: Effort,
+    /// Where records of `cosim --exhaustive --json` are.
+    pub proofs: &'a Path,
 }
 
 /// How much a verification does.
@@ -35,12 +38,14 @@ pub struct Subject<'a> {
 pub struct Effort {
     /// Everything, however long it takes.
     pub full: bool,
+    /// Only what needs no tool outside Glint.
+    pub without_tools: bool,
     /// After which a run of an outside tool is given up.
     pub time_limit: Duration,
 }
 
 /// What a leg says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
     /// It holds for everything in the domain.
@@ -49,9 +54,10 @@ pub enum Verdict {
     Passed,
     /// It does not hold.
     Failed,
-    /// The leg says nothing of this configuration, or not with this effort; why is said.
+    /// The leg says nothing of this configuration, or was left out on purpose; why is said.
     NotCovered,
-    /// The leg could not be run: a tool is missing.
+    /// The leg could not be run: a tool is missing, or it takes more than this effort allows.
+    #[default]
     NotRun,
 }
 
@@ -69,7 +75,7 @@ impl Verdict {
 }
 
 /// What a leg found.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Finding {
     /// What it says.
     pub verdict: Verdict,
@@ -77,8 +83,14 @@ pub struct Finding {
     pub domain: String,
     /// The outcome in a sentence or two.
     pub words: String,
-    /// What the leg leaves open; may be empty.
+    /// What the leg leaves undecided; may be empty.
     pub open: String,
+    /// The record that stands for a part of the work, by its file.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub record: Option<String>,
+    /// The command that completes what was not run.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub complete_with: Option<String>,
     /// What does not hold, each with its reproducer.
     pub faults: Vec<String>,
 }
@@ -90,14 +102,14 @@ impl Finding {
             verdict: if faults.is_empty() { verdict } else { Verdict::Failed },
             domain,
             words,
-            open: String::new(),
             faults,
+            ..Self::default()
         }
     }
 
     /// Of a leg that says nothing here.
     fn without(verdict: Verdict, why: String) -> Self {
-        Self { verdict, domain: String::new(), words: why, open: String::new(), faults: Vec::new() }
+        Self { verdict, words: why, ..Self::default() }
     }
 
     fn open(self, open: impl Into<String>) -> Self {

@@ -3,21 +3,23 @@
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::path::Path;
 
 use crate::common::units::{configuration, configurations};
 use glint::core::Unit;
+use glint::cosim::exhaustive::Record;
 use glint::package::{Seal, is_sealed};
-use glint::pages::datasheet::{Datasheet, Proof, Subject, datasheet};
+use glint::pages::datasheet::{Datasheet, Subject, datasheet};
 use roxmltree::{Document, Node, ParsingOptions};
 use serde_json::Value;
 
 fn make(path: &str, unit: &Unit) -> Datasheet {
-    let record = fs::read_to_string(format!("proofs/{}.json", unit.config.name));
-    let proof = record.ok().map(|text| Proof::parse(&text, unit));
+    let digest = unit.contract_digest();
+    let proof = Record::find(Path::new("proofs"), &digest, unit.contract.as_ref());
     let subject = Subject {
         unit,
         path,
-        proof: proof.transpose().unwrap_or_else(|error| panic!("{path}: {error:?}")),
+        proof: proof.unwrap_or_else(|error| panic!("{path}: {error:?}")),
         synthesis: None,
     };
     datasheet(&subject, &|| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"))

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use crate::common::units::configuration;
+use crate::common::units::{configuration, configurations};
 use glint::registry::Registry;
 
 /// The modules of the default configurations.
@@ -12,6 +12,15 @@ fn names() -> Vec<String> {
     let catalogue = Registry::catalogue();
     let devices = catalogue.devices().iter();
     devices.map(|device| device.name.replace('-', "_")).collect()
+}
+
+#[test]
+fn notes_have_no_runs_of_blanks() {
+    for (path, unit) in configurations() {
+        for note in &unit.design.about.notes {
+            assert!(!note.contains("  ") && !note.contains('\n'), "{path}: {note}");
+        }
+    }
 }
 
 #[test]

@@ -60,6 +60,7 @@ fn the_records_hold_today() {
         let contract = unit.contract.as_ref();
         let places = Places::of_f(contract);
         let stale = format!("the record of {path} is not of today's program");
+        assert_eq!(record["configuration"], json!(unit.contract_digest()), "{stale}");
         assert_eq!(record["evaluations"], json!(places.count()), "{stale}");
         assert_eq!(record["bound"], json!(contract.bound().units), "{stale}");
         assert_eq!(record["holds"], json!(true));

@@ -1,8 +1,6 @@
 //! `datasheet`.
 
-use std::fs;
-use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
@@ -13,9 +11,9 @@ use super::{Loaded, load};
 use crate::cli::failure::Usage;
 use crate::cli::store::{self, Written};
 use crate::cli::{Configs, Output, progress, tables};
-use crate::core::Unit;
+use crate::cosim::exhaustive::Record;
 use crate::package::Seal;
-use crate::pages::datasheet::{self, Proof, Subject};
+use crate::pages::datasheet::{self, Subject};
 use crate::registry::Registry;
 use crate::tools::Tool;
 
@@ -27,7 +25,7 @@ pub struct DatasheetArguments {
     /// A directory, or for one configuration a file that ends in .html
     #[arg(long, value_name = "DIR|FILE.html", default_value = "datasheets")]
     out: PathBuf,
-    /// Where records of `cosim --exhaustive --json` are, as `<name>.json`
+    /// Where records of `cosim --exhaustive --json` are; that of the configuration is found by its digest
     #[arg(long, value_name = "DIR", default_value = "proofs")]
     proofs: PathBuf,
     /// Write the timing diagram for WaveDrom too, beside the page
@@ -62,7 +60,8 @@ pub fn datasheet(
     // Before the work: whether everything can be written, and which records there are.
     let mut proofs = Vec::new();
     for one in &loaded {
-        proofs.push(proof(&request.proofs, &one.unit)?);
+        let (unit, contract) = (&one.unit, one.unit.contract.as_ref());
+        proofs.push(Record::find(&request.proofs, &unit.contract_digest(), contract)?);
         store::may_write(&path(request, one, single), Seal::Markup, request.force)?;
     }
     let mut notes = Vec::new();
@@ -110,18 +109,6 @@ fn path(request: &DatasheetArguments, one: &Loaded, single: bool) -> PathBuf {
     match single {
         true => request.out.clone(),
         false => request.out.join(format!("{}.html", one.unit.config.name)),
-    }
-}
-
-/// The record of a configuration's exhaustive check, if there is one.
-fn proof(directory: &Path, unit: &Unit) -> Result<Option<Proof>> {
-    let path = directory.join(format!("{}.json", unit.config.name));
-    match fs::read_to_string(&path) {
-        Ok(text) => Proof::parse(&text, unit)
-            .map(Some)
-            .with_context(|| format!("the record `{}` cannot be used", path.display())),
-        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(error).with_context(|| format!("cannot read `{}`", path.display())),
     }
 }
 

@@ -20,6 +20,8 @@ pub struct VerifyRequest {
     pub without_tools: bool,
     /// Where the files go.
     pub out: PathBuf,
+    /// Where records of exhaustive checks are.
+    pub proofs: PathBuf,
     /// After which a run of an outside tool is given up.
     pub time_limit: Duration,
 }
@@ -75,12 +77,8 @@ pub fn verify(
             list.push(json!({ "written": written, "record": record }));
             continue;
         }
-        tables::print_line(&format!(
-            "{}: {}. Written: {}",
-            one.path,
-            record.conclusion.words(),
-            written.join(", ")
-        ));
+        print_conclusion(one, &record);
+        tables::print_line(&format!("  written: {}", written.join(", ")));
     }
     if output.json {
         tables::print_json(&json!({ "ok": verified, "configurations": list }));
@@ -94,8 +92,12 @@ fn one_configuration(
     request: &VerifyRequest,
 ) -> Result<(Record, Vec<Timing>)> {
     one.contract()?;
-    let effort = Effort { full: request.full, time_limit: request.time_limit };
-    let subject = Subject { path: &one.path, unit: &one.unit, effort };
+    let effort = Effort {
+        full: request.full,
+        without_tools: request.without_tools,
+        time_limit: request.time_limit,
+    };
+    let subject = Subject { path: &one.path, unit: &one.unit, effort, proofs: &request.proofs };
     let mut answers: Vec<Answer> = Vec::new();
     for leg in LEGS {
         if leg.is_outside() && request.without_tools {
@@ -114,7 +116,28 @@ fn one_configuration(
     Ok((Record::new(&subject, answers), timings))
 }
 
-/// A leg in a line or two, as soon as it has ended.
+/// What all legs say together: what was left out, what could not be run, and the command that completes it.
+fn print_conclusion(one: &Loaded, record: &Record) {
+    let with = |verdict| record.legs.iter().filter(move |it| it.finding.verdict == verdict);
+    let titles: Vec<&str> = with(Verdict::NotRun).map(|answer| answer.title).collect();
+    let words = record.conclusion.words();
+    tables::print_line(&match record.conclusion {
+        Conclusion::Incomplete => {
+            format!("{}: {words}; not run: {}", one.path, titles.join(", "))
+        }
+        _ => format!("{}: {words}", one.path),
+    });
+    for command in with(Verdict::NotRun).filter_map(|it| it.finding.complete_with.as_ref()) {
+        tables::print_line(&format!("  complete it with: {command}"));
+    }
+    match with(Verdict::NotCovered).count() {
+        0 => (),
+        1 => tables::print_line("  1 leg above says nothing of it"),
+        count => tables::print_line(&format!("  {count} legs above say nothing of it")),
+    }
+}
+
+/// A leg in a few lines, as soon as it has ended.
 fn print(one: &Loaded, answer: &Answer) {
     let finding = &answer.finding;
     let domain = match finding.domain.is_empty() {
@@ -133,5 +156,8 @@ fn print(one: &Loaded, answer: &Answer) {
     }
     for fault in &finding.faults {
         tables::print_line(&format!("  FAILS: {fault}"));
+    }
+    if !finding.open.is_empty() {
+        tables::print_line(&format!("  not covered: {}", finding.open));
     }
 }

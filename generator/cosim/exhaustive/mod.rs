@@ -8,6 +8,7 @@
 mod clocks;
 mod job;
 mod places;
+mod record;
 
 #[cfg(test)]
 mod tests;
@@ -15,6 +16,7 @@ mod tests;
 pub use clocks::{Clocks, Difference, MOST_BITS, Steps};
 pub use job::{Job, Progress, Shard, State};
 pub use places::{Peak, Places};
+pub use record::Record;
 
 use crate::golden::Contract;
 

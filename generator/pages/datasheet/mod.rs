@@ -5,16 +5,14 @@
 mod diagram;
 mod microprogram;
 mod page;
-mod record;
 mod table;
 mod timing;
 mod waves;
 
 use anyhow::Result;
 
-pub use record::Proof;
-
 use crate::core::{Through, Unit};
+use crate::cosim::exhaustive::Record;
 use crate::evidence::curves::{self, DeviceCurves};
 use crate::evidence::hardware::{self, FamilyUsage, Synthesis};
 use crate::package::{Timing, WorkedExample};
@@ -37,7 +35,7 @@ pub struct Subject<'a> {
     /// As the command line names it, `configs/<name>.toml`.
     pub path: &'a str,
     /// The record of its exhaustive check, where there is one.
-    pub proof: Option<Proof>,
+    pub proof: Option<Record>,
     /// What is to synthesise it; without it the page says how to.
     pub synthesis: Option<Synthesis<'a>>,
 }

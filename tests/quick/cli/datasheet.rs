@@ -97,8 +97,6 @@ fn wrong_requests() {
     missing.refused(1, &["missing.toml"]);
     datasheet(&place, &["--out", "taken"]).refused(1, &["taken"]);
     datasheet(&place, &["--out", "taken/deeper"]).refused(1, &["taken"]);
-    place.write("proofs/core.json", "{}");
-    datasheet(&place, &[]).refused(1, &["proofs/core.json", "cannot be used"]);
     assert!(!names(&place).iter().any(|name| name.ends_with(".html")));
 }
 
@@ -106,15 +104,22 @@ fn wrong_requests() {
 fn a_record_must_be_of_the_configuration() {
     let place = place();
     let record = include_str!("../../../proofs/cosine_power.json");
-    place.write("records/core.json", record);
+    place.write("records/any_name.json", record);
+    place.write("records/beside.json", "{}");
     let run = datasheet(&place, &["--proofs", "records"]);
     assert_eq!(run.code, 0, "{run:?}");
     let page = place.read("datasheets/core.html");
     // 1 048 577 cosines and 1000 exponents.
     assert!(page.contains("1\u{202f}048\u{202f}577\u{202f}000 evaluations"));
     place.write("core.toml", "device = \"cosine-power\"\npower = 2\n");
+    let run = datasheet(&place, &["--proofs", "records", "--force"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(place.read("datasheets/core.html").contains("There is no record of such a check"));
+    // Of this configuration, but what it was made with had another bound.
+    place.write("core.toml", "device = \"cosine-power\"\n");
+    place.write("records/any_name.json", record.replace("\"bound\": 0.6", "\"bound\": 0.5"));
     let run = datasheet(&place, &["--proofs", "records"]);
-    run.refused(1, &["records/core.json", "it is of another configuration"]);
+    run.refused(1, &["records/any_name.json", "another version of Glint", "--exhaustive --json"]);
 }
 
 #[cfg(unix)]

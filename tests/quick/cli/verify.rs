@@ -3,7 +3,7 @@
 
 use serde_json::Value;
 
-use crate::place::{Place, Run};
+use crate::place::{COSINE_POWER, Place, Run};
 
 const WITHOUT_TOOLS: [&str; 3] = ["verify", "core.toml", "--without-tools"];
 
@@ -91,6 +91,63 @@ fn a_missing_tool_leaves_it_incomplete() {
     let verdicts = verdicts(&found);
     assert!(verdicts.contains(&("lockstep", "passed")), "{verdicts:?}");
     assert!(verdicts.contains(&("icarus", "not-run")), "{verdicts:?}");
+}
+
+/// Of a device at full width: its contract takes a thousand million evaluations.
+fn wide() -> Place {
+    Place::with("core.toml", COSINE_POWER)
+}
+
+#[test]
+fn a_contract_that_was_not_swept_is_not_verified() {
+    let place = wide();
+    let run = place.glint(WITHOUT_TOOLS);
+    assert_eq!(run.code, 1, "{run:?}");
+    for part in [
+        "Golden model against the formula: not run",
+        "core.toml: incomplete; not run: Golden model against the formula",
+        "complete it with: glint verify core.toml --full --without-tools",
+    ] {
+        assert!(run.out.contains(part), "{}", run.out);
+    }
+    let found = record(&place, "verification/core.json");
+    assert_eq!(found["conclusion"], "incomplete");
+    assert!(verdicts(&found).contains(&("contract", "not-run")), "{found}");
+}
+
+#[test]
+fn a_record_stands_for_the_sweep_of_a_contract() {
+    let place = wide();
+    let proof = include_str!("../../../proofs/cosine_power.json");
+    place.write("proofs/under_any_name.json", proof);
+    let run = place.glint(WITHOUT_TOOLS);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.out.contains("By the record `proofs/under_any_name.json`"), "{}", run.out);
+    let found = record(&place, "verification/core.json");
+    let legs = found["legs"].as_array().expect("legs");
+    let contract = legs.iter().find(|leg| leg["leg"] == "contract").expect("a leg");
+    assert_eq!(contract["verdict"], "proved");
+    assert_eq!(contract["record"], "proofs/under_any_name.json");
+
+    // The error at the place that it names is another than it says.
+    let error = "\"error\": 0.000";
+    assert!(proof.contains(error));
+    place.write("proofs/under_any_name.json", proof.replacen(error, "\"error\": 0.0000", 1));
+    let run = place.glint(WITHOUT_TOOLS);
+    assert_eq!(run.code, 1, "{run:?}");
+    assert!(run.out.contains("FAILS: the error of f at its recorded place is "), "{}", run.out);
+    assert!(run.out.contains("core.toml: FAILED"), "{}", run.out);
+}
+
+#[test]
+fn a_sweep_that_samples_is_passed_and_not_proved() {
+    let place = Place::with("core.toml", "device = \"rough\"\n");
+    place.write("proofs/rough.json", include_str!("../../../proofs/rough.json"));
+    let run = place.glint(WITHOUT_TOOLS);
+    assert!(run.out.contains("Golden model against the formula: passed"), "{}", run.out);
+    assert!(run.out.contains("not covered: values of cos_dgamma between the settings"), "{run:?}");
+    let found = record(&place, "verification/core.json");
+    assert!(verdicts(&found).contains(&("contract", "passed")), "{found}");
 }
 
 #[cfg(unix)]

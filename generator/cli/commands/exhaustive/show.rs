@@ -134,6 +134,7 @@ fn as_json(
     let mut value = json!({
         "config": one.path,
         "device": one.unit.device.name,
+        "configuration": one.unit.contract_digest(),
         "axes": axes,
         "not_covered": places.sweep().omits,
         "evaluations": places.count(),

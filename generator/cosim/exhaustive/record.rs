@@ -1,0 +1,176 @@
+//! The record of an exhaustive check, as `glint cosim --exhaustive --json` writes it: found by what it was
+//! made of, and checked again in part.
+
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use serde::Deserialize;
+
+use super::{Peak, Places, Proof};
+use crate::golden::{Axis, Contract, Values};
+
+/// How near a recorded figure must come to that of today.
+const SAME: f64 = 1e-9;
+
+/// What a check found.
+#[derive(Clone, Debug, Deserialize)]
+pub struct Record {
+    /// Tells what was checked: [`crate::core::Unit::contract_digest`].
+    #[serde(default)]
+    configuration: String,
+    axes: Vec<RecordedAxis>,
+    bound: f64,
+    /// Evaluations of f.
+    pub evaluations: u64,
+    /// Words f times colours.
+    pub colour_products: u64,
+    /// The largest error of f.
+    pub f: RecordedPeak,
+    /// The largest error of a colour multiplier, in output units.
+    colour_units: f64,
+    /// The largest error of an output that the check allows for, in output units.
+    pub together: f64,
+    /// Whether the bound held everywhere.
+    pub holds: bool,
+    /// The file that it stands in.
+    #[serde(skip)]
+    pub path: PathBuf,
+}
+
+/// The largest error of f.
+#[derive(Clone, Copy, Debug, Deserialize)]
+pub struct RecordedPeak {
+    /// Absolute.
+    pub error: f64,
+    /// In output units, for the largest colour.
+    pub units: f64,
+    /// Where it is.
+    place: u64,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+struct RecordedAxis {
+    name: String,
+    from: Option<i64>,
+    to: Option<i64>,
+    #[serde(default)]
+    values: Vec<i64>,
+}
+
+impl RecordedAxis {
+    fn is(&self, axis: &Axis) -> bool {
+        self.name == axis.name
+            && match &axis.values {
+                Values::Range(low, high) => (self.from, self.to) == (Some(*low), Some(*high)),
+                Values::List(values) => self.values == *values,
+            }
+    }
+}
+
+#[derive(Deserialize)]
+struct Report {
+    configurations: Vec<Record>,
+}
+
+impl Record {
+    /// The record of a configuration, among all in a directory; `None` where there is none, and where there is no
+    /// such directory. Files that are no records are left alone.
+    ///
+    /// # Errors
+    /// The directory or a file in it cannot be read; the record's sweep or bound are not those of the contract.
+    pub fn find(directory: &Path, digest: &str, contract: &dyn Contract) -> Result<Option<Self>> {
+        let entries = match fs::read_dir(directory) {
+            Ok(entries) => entries,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(error) => {
+                return Err(error)
+                    .with_context(|| format!("cannot read `{}`", directory.display()));
+            }
+        };
+        let mut paths = entries
+            .map(|entry| entry.map(|entry| entry.path()))
+            .collect::<Result<Vec<_>, _>>()
+            .with_context(|| format!("cannot read `{}`", directory.display()))?;
+        paths.retain(|path| path.extension().is_some_and(|it| it == "json") && path.is_file());
+        paths.sort();
+        for path in paths {
+            let bytes =
+                fs::read(&path).with_context(|| format!("cannot read `{}`", path.display()))?;
+            let Ok(report) = serde_json::from_slice::<Report>(&bytes) else {
+                continue;
+            };
+            let found = report.configurations.into_iter().find(|it| it.configuration == digest);
+            if let Some(found) = found {
+                let found = Self { path, ..found };
+                found.is_of(contract)?;
+                return Ok(Some(found));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Refuses a record whose sweep or bound are not those of the contract.
+    fn is_of(&self, contract: &dyn Contract) -> Result<()> {
+        let sweep = contract.sweep();
+        let same_axes = self.axes.len() == sweep.axes.len()
+            && self.axes.iter().zip(&sweep.axes).all(|(found, axis)| found.is(axis));
+        let same_bound = (self.bound - contract.bound().units).abs() < SAME;
+        anyhow::ensure!(
+            same_axes && same_bound,
+            "the record `{}` is of another version of Glint: its sweep or its bound is not today's; \
+             `glint cosim --exhaustive --json` makes a new one",
+            self.path.display()
+        );
+        Ok(())
+    }
+
+    /// How many evaluations [`Record::recheck`] makes if it is to make about `places` of `f`.
+    pub fn steps(contract: &dyn Contract, places: u64) -> u64 {
+        let (f, colours) = (Places::of_f(contract), Places::of_colours(contract));
+        f.visits(part(&f, places).into_iter()) + colours.count()
+    }
+
+    /// Checks a part of the places again, about `places` spread evenly over all, the place of the largest error,
+    /// and all products with colours; says how many evaluations of `f` these were, and what is not as recorded.
+    pub fn recheck(
+        &self,
+        contract: &dyn Contract,
+        places: u64,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> (u64, Vec<String>) {
+        let (f, colours) = (Places::of_f(contract), Places::of_colours(contract));
+        let mut faults = Vec::new();
+        let path = self.path.display();
+        let mut differs = |what: &str, found: f64, recorded: f64| {
+            faults.push(format!("{what} is {found:e}, and {recorded:e} in the record `{path}`"));
+        };
+        let at_peak = if self.f.place < f.count() { f.error(self.f.place) } else { 0.0 };
+        if (at_peak - self.f.error).abs() > SAME {
+            differs("the error of f at its recorded place", at_peak, self.f.error);
+        }
+        let blocks = part(&f, places);
+        let visits = f.visits(blocks.iter().copied());
+        let again = f.check(blocks, progress);
+        if again.error > self.f.error + SAME {
+            differs("the error of f at a place that was checked again", again.error, self.f.error);
+        }
+        let colour = colours.check(0..colours.blocks(), progress);
+        if (colour.error - self.colour_units).abs() > SAME {
+            differs("the error of a colour multiplier", colour.error, self.colour_units);
+        }
+        let peak = Peak { error: self.f.error, place: self.f.place };
+        faults.extend(Proof::new(contract, peak, colour).faults);
+        if !self.holds {
+            faults.push(format!("the record `{path}` says that the bound does not hold"));
+        }
+        (visits + 1, faults)
+    }
+}
+
+/// Blocks that have about `count` places, spread evenly.
+fn part(places: &Places<'_>, count: u64) -> Vec<u64> {
+    let stride = (places.count() / count).max(1);
+    (0..places.blocks()).step_by(stride as usize).collect()
+}
