@@ -8,6 +8,7 @@ use crate::config::Config;
 use crate::cosim::batch::{Engine, Golden, RustHdl, Verilog};
 use crate::cosim::exhaustive::{Clocks, Job};
 use crate::cosim::{Lockstep, trial};
+use crate::evidence::advice::{Advice, advise};
 use crate::golden::Contract;
 use crate::hdl::netlist::Design;
 use crate::package::{
@@ -72,13 +73,23 @@ impl Unit {
         package::digest(format!("{}\n{text}", env!("CARGO_PKG_VERSION")).as_bytes())
     }
 
-    /// Tells what a proof of the accuracy contract depends on from others: the device and its keys, but not the
-    /// module's name. SHA-256 in hexadecimal.
+    /// Tells what a proof of the accuracy contract depends on from others: the device, and its own keys that are not at
+    /// their defaults. A key that comes later, at its default, leaves the digest as it is. SHA-256 in hexadecimal.
     pub fn contract_digest(&self) -> String {
-        let mut anonymous = self.config.clone();
-        anonymous.name.clear();
-        anonymous.strict = false;
-        emit::digest(anonymous.to_toml(&(self.device.schema)()).as_bytes())
+        let schema = (self.device.schema)();
+        let mut text = format!("device = {}\n", self.device.name);
+        for key in &schema.keys {
+            let value = self.config.value(key.name);
+            if *value != key.default && self.config.applies(&schema, key.name) {
+                text += &format!("{} = {}\n", key.name, value.toml());
+            }
+        }
+        package::digest(text.as_bytes())
+    }
+
+    /// The change of one key that would bring the error bound down most.
+    pub fn advice(&self) -> Option<Advice> {
+        advise(&self.device, &self.config, &self.contract.bound())
     }
 
     /// Golden model and built-in simulator, side by side.
@@ -169,6 +180,7 @@ impl Unit {
             config: &self.config,
             schema: &(self.device.schema)(),
             contract: self.contract.as_ref(),
+            advice: self.advice(),
             timing: &self.timing()?,
             example: &self.example()?,
         };

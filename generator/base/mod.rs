@@ -3,5 +3,6 @@
 pub mod diagnostic;
 pub mod fixed;
 pub mod identifier;
+pub mod input;
 pub mod keywords;
 pub mod text;

@@ -29,6 +29,9 @@ use crate::registry::Registry;
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
+    /// Of the main job: say of each configuration what was compared, and where the largest error is
+    #[arg(long)]
+    details: bool,
     #[command(flatten)]
     output: Output,
 }
@@ -89,7 +92,7 @@ Examples:
         #[command(flatten)]
         configs: Configs,
         /// Results to check of each configuration [default: 100000, or 200 with an external simulator]
-        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+        #[arg(long, value_name = "N", value_parser = count)]
         points: Option<u64>,
         /// Seed of the stimulus
         #[arg(long, value_name = "S", default_value_t = TEST_SEED)]
@@ -163,6 +166,7 @@ Examples:
 Examples:
   glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
   glint eval my_core.toml cos_gamma=#1038090     a raw integer, as the port takes it
+  glint eval my_core.toml --batch points.csv     a row of results for each row of operands
   glint eval my_core.toml --json                 the middle of the domain, for scripts")]
     Eval {
         /// A configuration
@@ -171,6 +175,10 @@ Examples:
         /// taken from the middle of its domain, colours from the top
         #[arg(value_name = "OPERAND=VALUE")]
         operands: Vec<String>,
+        /// Many points: CSV with the names of operands in its first row, - for standard input; the results are CSV,
+        /// or with --json a list. Operands of the command line hold for all rows
+        #[arg(long, value_name = "FILE.csv")]
+        batch: Option<PathBuf>,
     },
     /// Print a page of documentation, in Markdown
     ///
@@ -361,6 +369,22 @@ enum Simulator {
     Verilator,
 }
 
+/// A number of things, at least one: `1000000`, `1_000_000` or `1e6`.
+fn count(text: &str) -> Result<u64, String> {
+    let wanted = || "a whole number from 1 on is wanted, as 1000000 or 1e6".to_owned();
+    let number = match text.split_once(['e', 'E']) {
+        None => text.replace('_', "").parse().ok(),
+        Some((digits, zeros)) => {
+            let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));
+            let zeros: u32 = zeros.parse().map_err(|_| wanted())?;
+            let shift = zeros.checked_sub(fraction.len() as u32).ok_or_else(wanted)?;
+            let digits: Option<u64> = format!("{whole}{fraction}").parse().ok();
+            digits.zip(10u64.checked_pow(shift)).and_then(|(digits, by)| digits.checked_mul(by))
+        }
+    };
+    number.filter(|number| *number > 0).ok_or_else(wanted)
+}
+
 /// Runs the command line of this process with the devices of `registry`.
 pub fn run(registry: &Registry) -> ExitCode {
     run_from(registry, std::env::args_os())
@@ -386,7 +410,7 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
     };
     let output = cli.output;
     let done = match cli.command {
-        None => commands::everything(registry, output),
+        None => commands::everything(registry, output, cli.details),
         Some(Command::Generate { configs, out, check, force }) => {
             commands::generate(registry, output, &configs.configs, &out, check, force)
         }
@@ -426,8 +450,8 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             };
             commands::mutate(registry, output, &configs.configs, &request)
         }
-        Some(Command::Eval { config, operands }) => {
-            commands::eval(registry, output, &config, &operands)
+        Some(Command::Eval { config, operands, batch }) => {
+            commands::eval(registry, output, &config, &operands, batch.as_deref())
         }
         Some(Command::Describe { configs, out, force }) => {
             commands::describe(registry, output, &configs.configs, out.as_deref(), force)

@@ -1,8 +1,25 @@
 //! Progress bars on long work.
 
-use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::fmt::Write;
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 
 use super::Output;
+
+/// The narrowest terminal on which the counts stand beside the bar.
+const WIDE: usize = 100;
+
+/// The bar alone, at most and at least.
+const LONGEST: usize = 30;
+const SHORTEST: usize = 5;
+
+/// Everything else of a line: what is done, brackets, share or counts, rate, remaining time, blanks.
+const BESIDE: usize = 44;
+const BESIDE_WIDE: usize = 76;
+
+/// Where nothing says how wide the terminal is.
+const USUAL: u16 = 80;
 
 /// A bar over `total` steps; hidden when output is for scripts, on request, or without a terminal.
 pub fn bar(output: Output, total: u64, what: &str) -> ProgressBar {
@@ -12,12 +29,150 @@ pub fn bar(output: Output, total: u64, what: &str) -> ProgressBar {
         // Draws nothing when standard error is not a terminal.
         ProgressDrawTarget::stderr()
     };
-    let bar = ProgressBar::with_draw_target(Some(total), target);
-    if let Ok(style) =
-        ProgressStyle::with_template("{msg:24} [{bar:30}] {human_pos}/{human_len} {per_sec} {eta}")
-    {
-        bar.set_style(style.progress_chars("=> "));
+    let width = console::Term::stderr().size_checked().map_or(USUAL, |(_, width)| width);
+    styled(ProgressBar::with_draw_target(Some(total), target), usize::from(width), what)
+}
+
+/// The bar with a line that fits into `width`.
+fn styled(bar: ProgressBar, width: usize, what: &str) -> ProgressBar {
+    if let Ok(style) = ProgressStyle::with_template(&template(width)) {
+        let rate = |state: &ProgressState, out: &mut dyn Write| {
+            let _ = write!(out, "{}/s", rounded(state.per_sec()));
+        };
+        let left = |state: &ProgressState, out: &mut dyn Write| {
+            let left = remaining(state.elapsed(), state.pos(), state.len().unwrap_or(0));
+            let _ = write!(out, "{}", left.unwrap_or_default());
+        };
+        bar.set_style(style.progress_chars("=> ").with_key("rate", rate).with_key("left", left));
     }
     bar.set_message(what.to_owned());
     bar
+}
+
+fn template(width: usize) -> String {
+    let room = |beside: usize| width.saturating_sub(beside).clamp(SHORTEST, LONGEST);
+    if width >= WIDE {
+        let bar = room(BESIDE_WIDE);
+        format!("{{msg:24!}} [{{bar:{bar}}}] {{human_pos}}/{{human_len}} {{rate}} {{left}}")
+    } else {
+        let bar = room(BESIDE);
+        format!("{{msg:20!}} [{{bar:{bar}}}] {{percent:>3}} % {{rate}} {{left}}")
+    }
+}
+
+/// Three digits, with k, M or G: as much as a rate is worth.
+fn rounded(number: f64) -> String {
+    let units = [(1e9, "G"), (1e6, "M"), (1e3, "k")];
+    let found = units.into_iter().find(|(size, _)| number >= *size);
+    let (number, unit) = found.map_or((number, ""), |(size, unit)| (number / size, unit));
+    let decimals = match number {
+        100.0.. => 0,
+        10.0.. => 1,
+        _ => 2,
+    };
+    format!("{number:.decimals$}{unit}")
+}
+
+/// The time that is left at the pace so far; nothing before the first step, when nobody knows.
+fn remaining(elapsed: Duration, done: u64, all: u64) -> Option<String> {
+    if done == 0 || done >= all {
+        return None;
+    }
+    let seconds = elapsed.as_secs_f64() * (all - done) as f64 / done as f64;
+    let seconds = seconds.ceil() as u64;
+    Some(match seconds {
+        ..60 => format!("{seconds} s"),
+        60..3600 => format!("{} min {} s", seconds / 60, seconds % 60),
+        _ => format!("{} h {} min", seconds / 3600, seconds % 3600 / 60),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io;
+    use std::sync::{Arc, Mutex};
+
+    use indicatif::TermLike;
+
+    use super::*;
+
+    #[test]
+    fn rates_have_three_digits() {
+        for (number, text) in [
+            (0.12345, "0.12"),
+            (3.0, "3.00"),
+            (12.3456, "12.3"),
+            (870.4321, "870"),
+            (1234.5678, "1.23k"),
+            (3_456_789.0, "3.46M"),
+            (12_345_678_901.0, "12.3G"),
+        ] {
+            assert_eq!(rounded(number), text);
+        }
+    }
+
+    #[test]
+    fn what_is_left_is_told_from_the_first_step_to_the_last() {
+        let after = |seconds, done| remaining(Duration::from_secs_f64(seconds), done, 40);
+        assert_eq!(after(3.0, 0), None);
+        assert_eq!(after(2.0, 10).as_deref(), Some("6 s"));
+        // Never 0 s while there is something to do.
+        assert_eq!(after(0.001, 39).as_deref(), Some("1 s"));
+        assert_eq!(after(100.0, 10).as_deref(), Some("5 min 0 s"));
+        assert_eq!(after(7200.0, 20).as_deref(), Some("2 h 0 min"));
+        assert_eq!(after(9.0, 40), None);
+    }
+
+    /// A terminal that remembers what was written on it.
+    #[derive(Clone, Debug)]
+    struct Paper(u16, Arc<Mutex<Vec<String>>>);
+
+    impl TermLike for Paper {
+        fn width(&self) -> u16 {
+            self.0
+        }
+        fn move_cursor_up(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn move_cursor_down(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn move_cursor_right(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn move_cursor_left(&self, _: usize) -> io::Result<()> {
+            Ok(())
+        }
+        fn write_line(&self, text: &str) -> io::Result<()> {
+            self.write_str(text)
+        }
+        fn write_str(&self, text: &str) -> io::Result<()> {
+            self.1.lock().expect("one thread").push(text.trim_end().to_owned());
+            Ok(())
+        }
+        fn clear_line(&self) -> io::Result<()> {
+            Ok(())
+        }
+        fn flush(&self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn a_line_fits_the_terminal() {
+        for width in [50, 60, 80, 99, 100, 120, 200] {
+            let lines = Arc::new(Mutex::new(Vec::new()));
+            let paper = Box::new(Paper(u16::try_from(width).expect("narrow"), lines.clone()));
+            let target = ProgressDrawTarget::term_like(paper);
+            let bar = ProgressBar::with_draw_target(Some(123_456_789_012), target);
+            // So wide that it would be cut: a line that is too long shows its whole length.
+            let bar = styled(bar, width, "Golden model against simulation, every operand");
+            bar.set_position(98_765_432_109);
+            bar.tick();
+            let lines = lines.lock().expect("one thread");
+            let line = lines.iter().find(|line| line.contains('[')).expect("a line");
+            assert!(line.chars().count() <= width, "{width}: {line}");
+            assert!(line.contains("/s"), "{width}: {line}");
+        }
+    }
 }

@@ -4,27 +4,175 @@ use std::io::{self, ErrorKind, Write};
 use std::sync::OnceLock;
 
 use anyhow::{Result, bail};
-use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, Table, Width, presets};
 use serde_json::Value;
 
-/// Prints rows under headings; columns named in `right` are aligned to the right.
-pub fn print(headings: &[&str], right: &[&str], rows: impl IntoIterator<Item = Vec<String>>) {
+/// What stands beside the text of each cell: blanks and a bar.
+const FRAME: usize = 3;
+
+/// A column of a table.
+#[derive(Clone, Copy)]
+pub struct Column<'a> {
+    heading: &'a str,
+    /// Of numbers: aligned to the right, and never broken.
+    number: bool,
+    /// Columns go, those of the largest number first, where there is no room for all; those of 0 stay.
+    dispensable: u8,
+}
+
+impl<'a> Column<'a> {
+    /// A column of words, which may be broken into lines between words.
+    pub const fn words(heading: &'a str) -> Self {
+        Self { heading, number: false, dispensable: 0 }
+    }
+
+    /// A column of numbers.
+    pub const fn numbers(heading: &'a str) -> Self {
+        Self { heading, number: true, dispensable: 0 }
+    }
+
+    /// The same, which goes where there is no room, before those of a smaller number.
+    #[must_use]
+    pub const fn dispensable(self, order: u8) -> Self {
+        Self { dispensable: order, ..self }
+    }
+}
+
+/// Prints rows under headings, no wider than the terminal: columns that can be spared go, and where that is
+/// not enough, the cells of a row stand below each other.
+pub fn print(columns: &[Column<'_>], rows: impl IntoIterator<Item = Vec<String>>) {
+    let rows: Vec<Vec<String>> = rows.into_iter().collect();
+    print_line(&text(columns, &rows, width()));
+}
+
+/// How wide a line may be: what `COLUMNS` says, or the terminal; without either, as wide as it likes.
+fn width() -> Option<usize> {
+    let said = std::env::var("COLUMNS").ok().and_then(|text| text.parse().ok());
+    let terminal = || Some(usize::from(console::Term::stdout().size_checked()?.1));
+    said.or_else(terminal).filter(|width| *width > 0)
+}
+
+fn text(columns: &[Column<'_>], rows: &[Vec<String>], room: Option<usize>) -> String {
+    let mut shown: Vec<usize> = (0..columns.len()).collect();
+    loop {
+        if let Some(widths) = fit(columns, rows, &shown, room) {
+            let mut text = drawn(columns, rows, &shown, &widths);
+            let gone = (0..columns.len()).filter(|at| !shown.contains(at));
+            let mut gone: Vec<&str> = gone.map(|at| columns[at].heading).collect();
+            gone.dedup();
+            if !gone.is_empty() {
+                let note = format!("(no room for {}; --json has all)", gone.join(", "));
+                text = format!("{text}\n{}", folded(&note, room));
+            }
+            return text;
+        }
+        let spared = (0..shown.len()).max_by_key(|&at| columns[shown[at]].dispensable);
+        match spared.filter(|&at| columns[shown[at]].dispensable > 0) {
+            Some(at) => drop(shown.remove(at)),
+            None => return stacked(columns, rows, room),
+        }
+    }
+}
+
+/// The widths of the columns shown, if the table has room; numbers and words stay whole.
+fn fit(
+    columns: &[Column<'_>],
+    rows: &[Vec<String>],
+    shown: &[usize],
+    room: Option<usize>,
+) -> Option<Vec<usize>> {
+    let cells = |at: usize| rows.iter().map(move |row| row[at].as_str());
+    let widest = |at: usize| cells(at).map(length).max().unwrap_or(0);
+    let longest_word = |text: &str| text.split(' ').map(length).max().unwrap_or(0);
+    let heading = |at: usize| longest_word(columns[at].heading);
+    let least = |&at: &usize| match columns[at].number {
+        true => widest(at).max(heading(at)),
+        false => cells(at).map(longest_word).max().unwrap_or(0).max(heading(at)),
+    };
+    let most = |&at: &usize| widest(at).max(length(columns[at].heading));
+    let least: Vec<usize> = shown.iter().map(least).collect();
+    let mut widths: Vec<usize> = shown.iter().map(most).collect();
+    let Some(room) = room else {
+        return Some(widths);
+    };
+    let frame = FRAME * shown.len() + 1;
+    if least.iter().sum::<usize>() + frame > room {
+        return None;
+    }
+    // The column that has most to give gives first.
+    while widths.iter().sum::<usize>() + frame > room {
+        let at = (0..widths.len()).max_by_key(|&at| widths[at] - least[at])?;
+        widths[at] -= 1;
+    }
+    Some(widths)
+}
+
+fn length(text: &str) -> usize {
+    console::measure_text_width(text)
+}
+
+fn drawn(
+    columns: &[Column<'_>],
+    rows: &[Vec<String>],
+    shown: &[usize],
+    widths: &[usize],
+) -> String {
     let mut table = Table::new();
     table
         .load_style(presets::ASCII_MARKDOWN)
         .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_header(headings);
+        .set_width(u16::MAX)
+        .set_header(shown.iter().map(|&at| columns[at].heading));
     for row in rows {
-        table.add_row(row);
+        table.add_row(shown.iter().map(|&at| &row[at]));
     }
-    for (at, heading) in headings.iter().enumerate() {
-        if right.contains(heading)
-            && let Some(column) = table.column_mut(at)
-        {
+    for ((place, &at), &width) in shown.iter().enumerate().zip(widths) {
+        let Some(column) = table.column_mut(place) else {
+            continue;
+        };
+        let width = u16::try_from(width + FRAME - 1).unwrap_or(u16::MAX);
+        column.set_constraint(ColumnConstraint::Absolute(Width::Fixed(width)));
+        if columns[at].number {
             column.set_cell_alignment(CellAlignment::Right);
         }
     }
-    print_line(&table.to_string());
+    table.to_string()
+}
+
+/// Each row as a paragraph: its first cell, and the others below it with their headings.
+fn stacked(columns: &[Column<'_>], rows: &[Vec<String>], room: Option<usize>) -> String {
+    let row = |row: &Vec<String>| {
+        let mut lines = vec![format!("{}:", row[0])];
+        for (column, cell) in columns.iter().zip(row).skip(1) {
+            lines.push(folded(&format!("  {}: {cell}", column.heading), room));
+        }
+        lines.join("\n")
+    };
+    rows.iter().map(row).collect::<Vec<_>>().join("\n")
+}
+
+/// A line, broken between words where it is wider than there is room; what goes on is indented.
+fn folded(line: &str, room: Option<usize>) -> String {
+    let Some(room) = room else {
+        return line.to_owned();
+    };
+    let indent = line.len() - line.trim_start().len() + 2;
+    let mut text = String::new();
+    let mut at = 0;
+    for (number, word) in line.split(' ').enumerate() {
+        if number > 0 && at + 1 + length(word) > room && at > indent {
+            text += &format!("\n{}{word}", " ".repeat(indent));
+            at = indent + length(word);
+            continue;
+        }
+        if number > 0 {
+            text.push(' ');
+            at += 1;
+        }
+        text += word;
+        at += length(word);
+    }
+    text
 }
 
 /// Prints a JSON value, indented.
@@ -52,5 +200,59 @@ pub fn finish() -> Result<()> {
     match FAILURE.get() {
         Some(error) => bail!("cannot write standard output: {error}"),
         None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const COLUMNS: [Column<'_>; 4] = [
+        Column::words("device"),
+        Column::numbers("clocks, all of them").dispensable(1),
+        Column::numbers("points").dispensable(2),
+        Column::words("what it computes"),
+    ];
+
+    fn rows() -> Vec<Vec<String>> {
+        let row = ["rough", "1 305 235", "100 000", "a rough surface's highlight"];
+        vec![row.map(str::to_owned).to_vec()]
+    }
+
+    /// The most that a line takes; numbers are whole.
+    fn widest(text: &str) -> usize {
+        text.lines().map(length).max().expect("a line")
+    }
+
+    #[test]
+    fn a_table_takes_what_room_there_is() {
+        for room in 36..100 {
+            let text = text(&COLUMNS, &rows(), Some(room));
+            assert!(widest(&text) <= room, "{room}:\n{text}");
+            for (column, number) in [("points", "100 000"), ("clocks", "1 305 235")] {
+                let said = text.contains(number) || text.contains("no room for");
+                assert!(said, "{column} at {room}:\n{text}");
+            }
+        }
+        let all = text(&COLUMNS, &rows(), None);
+        assert_eq!(all.lines().count(), 3, "{all}");
+    }
+
+    #[test]
+    fn the_least_important_column_goes_first_and_is_named() {
+        let text = text(&COLUMNS, &rows(), Some(50));
+        assert!(text.contains("(no room for points; --json"), "{text}");
+        assert!(text.contains("1 305 235"), "{text}");
+    }
+
+    #[test]
+    fn without_room_for_a_table_rows_are_stacked() {
+        let columns = COLUMNS.map(|column| column.dispensable(0));
+        let text = text(&columns, &rows(), Some(40));
+        assert_eq!(
+            text,
+            "rough:\n  clocks, all of them: 1 305 235\n  points: 100 000\n  \
+             what it computes: a rough surface's\n    highlight"
+        );
     }
 }

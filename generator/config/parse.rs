@@ -10,6 +10,7 @@ use toml::de::{DeTable, DeValue, Error};
 use super::module_name;
 use super::nearest::{listed, nearest};
 use super::problems::Problems;
+use super::read::STANDARD_INPUT;
 use super::schema::{Key, Kind, Schema, Value};
 use super::validate::{Draft, Fault, keys_of, out_of_range, quoted, shown};
 use super::values::Config;
@@ -154,6 +155,12 @@ impl Reader<'_> {
 
     fn name(&mut self, document: &DeTable, file_name: &str) -> String {
         match document.get("name") {
+            None if file_name == STANDARD_INPUT => {
+                let message = "the module has no name: standard input has none to take it from";
+                let remedy = "add `name = \"…\"`, the name of the Verilog module".to_owned();
+                self.problems.push("name", message, remedy);
+                String::new()
+            }
             None => {
                 let stem = Path::new(file_name).file_stem().unwrap_or_default();
                 let name = stem.to_string_lossy().replace('-', "_");

@@ -1,6 +1,5 @@
 //! Reading a configuration file from disk.
 
-use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
 
@@ -9,17 +8,24 @@ use super::parse::parse;
 use super::problems::Problems;
 use super::schema::Schema;
 use super::values::Config;
+use crate::base::input;
 
 /// Far beyond any configuration, and far below what would exhaust the memory.
 const LARGEST: u64 = 1 << 16;
 
-/// Reads a configuration file.
+/// What problems call standard input.
+pub(super) const STANDARD_INPUT: &str = "standard input";
+
+/// Reads a configuration file, or standard input where the path is `-`.
 ///
 /// # Errors
 /// All problems of the file at once: that it cannot be read, that it is not text, or what
 /// [`parse`] finds.
 pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
-    let file_name = path.display().to_string();
+    let file_name = match path == Path::new(input::STDIN) {
+        true => STANDARD_INPUT.to_owned(),
+        false => path.display().to_string(),
+    };
     let bytes = contents(path).map_err(|(message, remedy)| {
         let mut problems = Problems::of_file(&file_name, "");
         problems.push("", message, remedy);
@@ -46,13 +52,16 @@ pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
 
 /// The bytes of a file, or message and remedy.
 fn contents(path: &Path) -> Result<Vec<u8>, (String, String)> {
-    if path.is_dir() {
-        let remedy = "give the path of a TOML file".to_owned();
-        return Err(("this is a directory".to_owned(), remedy));
-    }
     let mut bytes = Vec::new();
-    let read = File::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes));
+    let read = input::open(path).and_then(|file| file.take(LARGEST + 1).read_to_end(&mut bytes));
     match read {
+        Err(error) if error.kind() == io::ErrorKind::IsADirectory => {
+            Err(("this is a directory".to_owned(), "give the path of a TOML file".to_owned()))
+        }
+        Err(error) if error.kind() == io::ErrorKind::InvalidInput => {
+            let remedy = "give the path of a TOML file, or - for standard input".to_owned();
+            Err(("this is a pipe or a device, not a file".to_owned(), remedy))
+        }
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             let remedy = match neighbour(path) {
                 Some(neighbour) => format!("did you mean `{neighbour}`?"),

@@ -11,7 +11,7 @@ use std::io::Write;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use anyhow::{Result, ensure};
+use anyhow::{Result, bail};
 use rayon::prelude::*;
 
 use super::alone::Alone;
@@ -285,8 +285,13 @@ impl<'a> Sequential<'a> {
                 vectors.known_from = vectors.expected.len();
             }
         }
-        let mismatch = &alone.seen().mismatch;
-        ensure!(mismatch.is_none(), "golden model and simulation differ: {mismatch:?}");
+        if let Some(mismatch) = &alone.seen().mismatch {
+            bail!(
+                "golden model and simulation differ (seed {}, after clock {}): {mismatch}",
+                mismatch.seed,
+                mismatch.clock
+            );
+        }
         Ok(vectors)
     }
 

@@ -132,9 +132,11 @@ fn computation(
         let simulated: Vec<i64> = nets.iter().zip(bits).map(raw).collect();
         ensure!(
             right == simulated,
-            "golden model and simulation of `{}` do not agree on result {index} of {operands:?}: \
-             {right:?} and {simulated:?}",
-            design.name
+            "golden model and simulation of `{}` do not agree on result {index} of {}: {} and {}",
+            design.name,
+            listed(contract.operands().iter().map(|it| it.name.as_str()), &operands),
+            listed(contract.outputs().iter().map(String::as_str), &right),
+            listed(contract.outputs().iter().map(String::as_str), &simulated),
         );
         shown.push(Shown { clock: *clock, outputs: right });
     }
@@ -143,6 +145,12 @@ fn computation(
         results: shown,
         operands,
     })
+}
+
+/// `red=#255 green=#0`: raw values with their names.
+fn listed<'a>(names: impl Iterator<Item = &'a str>, raw: &[i64]) -> String {
+    let each: Vec<String> = names.zip(raw).map(|(name, raw)| format!("{name}=#{raw}")).collect();
+    each.join(" ")
 }
 
 /// The clocks of one computation, from `start` to the next, and the results that it shows.

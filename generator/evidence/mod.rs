@@ -1,5 +1,6 @@
 //! Everything that the report shows, measured when it is made; `report.json` is this.
 
+pub mod advice;
 pub mod benchmark;
 pub mod chart;
 pub mod claims;

@@ -50,5 +50,6 @@ fn a_fault_in_the_design_fails_the_lockstep() {
     {
         assert!(lockstep.faults[0].contains(part), "{:?}", lockstep.faults);
     }
-    assert_eq!(finding(&record, "contract").verdict, Verdict::Proved);
+    // Its sweep leaves values of cos_dgamma out.
+    assert_eq!(finding(&record, "contract").verdict, Verdict::Passed);
 }

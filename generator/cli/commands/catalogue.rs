@@ -7,6 +7,7 @@ use serde_json::json;
 
 use super::{CONFIGS, paths};
 use crate::cli::failure::Usage;
+use crate::cli::tables::Column;
 use crate::cli::{Output, tables};
 use crate::config;
 use crate::registry::Registry;
@@ -31,7 +32,7 @@ pub fn list(registry: &Registry, output: Output) -> Result<bool> {
         .devices()
         .iter()
         .map(|device| vec![device.name.to_owned(), device.summary.to_owned()]);
-    tables::print(&["device", "what it computes"], &[], rows);
+    tables::print(&[Column::words("device"), Column::words("what it computes")], rows);
     for config in configs {
         tables::print_line(&config);
     }

@@ -7,8 +7,9 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::mismatch::Reproducer;
-use super::{Loaded, cosim, generate, load};
+use super::{CONFIGS, FAILS, HOLDS, Loaded, OUTSIDE, cosim, generate, load, verdict};
 use crate::base::text;
+use crate::cli::tables::Column;
 use crate::cli::{Output, progress, tables};
 use crate::core::{TEST_POINTS, TEST_SEED};
 use crate::cosim::Outcome;
@@ -25,8 +26,8 @@ struct Finding {
     faults: Vec<String>,
 }
 
-/// The main job.
-pub fn everything(registry: &Registry, output: Output) -> Result<bool> {
+/// The main job. With `details` it says of each configuration where the largest error is.
+pub fn everything(registry: &Registry, output: Output, details: bool) -> Result<bool> {
     let loaded = load(registry, &[])?;
     for one in &loaded {
         one.contract()?;
@@ -48,7 +49,7 @@ pub fn everything(registry: &Registry, output: Output) -> Result<bool> {
         tables::print_json(&json!({ "ok": holds, "configurations": list }));
         return Ok(holds);
     }
-    print(&loaded, &findings)?;
+    print(&loaded, &findings, details)?;
     Ok(holds)
 }
 
@@ -60,67 +61,80 @@ fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<Finding> {
     Ok(Finding { timing: one.unit.timing()?, bound, outcome, faults })
 }
 
-fn print(loaded: &[Loaded], findings: &[Finding]) -> Result<()> {
-    let headings = [
-        "device",
-        "configuration",
-        "clocks/point",
-        "points",
-        "clocks",
-        "registers",
-        "outputs",
-        "ROM bits",
-        "bound",
-        "largest error",
-        "verdict",
-    ];
-    let rows = loaded.iter().zip(findings).map(|(one, finding)| {
-        let clocks = finding.timing.clocks_per_point();
-        vec![
-            one.unit.device.name.to_owned(),
-            one.path.clone(),
-            clocks.map_or_else(|| "varies".to_owned(), |clocks| clocks.to_string()),
-            text::grouped(finding.outcome.points),
-            text::grouped(finding.outcome.clocks),
-            finding.outcome.registers.to_string(),
-            finding.outcome.outputs.to_string(),
-            text::grouped(one.unit.design.rom_bits()),
-            format!("{:.3}", finding.bound.units),
-            finding
-                .outcome
-                .worst
-                .as_ref()
-                .map_or_else(|| "-".to_owned(), |worst| format!("{:.3}", worst.units)),
-            if finding.faults.is_empty() { "holds" } else { "FAILS" }.to_owned(),
-        ]
-    });
-    let numbers = [
-        "clocks/point",
-        "points",
-        "clocks",
-        "registers",
-        "outputs",
-        "ROM bits",
-        "bound",
-        "largest error",
-    ];
-    tables::print(&headings, &numbers, rows);
-    tables::print_line(
-        "Registers and outputs are compared with the golden model on every clock. Errors are in output units, against the formula in f64. The largest error is at:",
-    );
+/// The columns of the table, which is the last thing on the screen but for the line that counts.
+const COLUMNS: [Column<'_>; 10] = [
+    Column::words("configuration"),
+    Column::words("device").dispensable(6),
+    Column::numbers("clocks/point").dispensable(2),
+    Column::numbers("points").dispensable(4),
+    Column::numbers("clocks").dispensable(7),
+    Column::numbers("registers, outputs").dispensable(8),
+    Column::numbers("ROM bits").dispensable(3),
+    Column::numbers("bound").dispensable(1),
+    Column::numbers("largest error"),
+    Column::words("verdict"),
+];
+
+fn print(loaded: &[Loaded], findings: &[Finding], details: bool) -> Result<()> {
     for (one, finding) in loaded.iter().zip(findings) {
-        if let Some(worst) = &finding.outcome.worst {
-            tables::print_line(&format!("  {}: {}", one.path, cosim::place(one, worst)));
+        if let Some(worst) = finding.outcome.worst.as_ref().filter(|_| details) {
+            tables::print_line(&format!(
+                "{}: {} registers and {} outputs equal the golden model on each of {} clocks; the largest error is at {}",
+                one.path,
+                finding.outcome.registers,
+                finding.outcome.outputs,
+                text::grouped(finding.outcome.clocks),
+                cosim::place(one, worst)
+            ));
         }
         for fault in &finding.faults {
-            tables::print_line(&format!("  {}: FAILS: {fault}", one.path));
+            tables::print_line(&format!("{}: FAILS: {fault}", one.path));
         }
         if let Some(mismatch) = &finding.outcome.mismatch {
             let where_to_look = Reproducer::of_run(one, mismatch)?.text(mismatch);
-            tables::print_line(&format!("  {}: {where_to_look}", one.path));
+            tables::print_line(&format!("{}: {where_to_look}", one.path));
         }
     }
+    let rows = loaded.iter().zip(findings).map(|(one, finding)| {
+        let clocks = finding.timing.clocks_per_point();
+        let worst = finding.outcome.worst.as_ref();
+        vec![
+            short(&one.path).to_owned(),
+            one.unit.device.name.to_owned(),
+            clocks.map_or_else(|| "varies".to_owned(), |clocks| clocks.to_string()),
+            text::grouped(finding.outcome.points),
+            text::grouped(finding.outcome.clocks),
+            format!("{}, {}", finding.outcome.registers, finding.outcome.outputs),
+            text::grouped(one.unit.design.rom_bits()),
+            format!("{:.3}", finding.bound.units),
+            worst.map_or_else(|| "-".to_owned(), |worst| format!("{:.3}", worst.units)),
+            verdict(&finding.bound, &finding.faults).to_owned(),
+        ]
+    });
+    tables::print(&COLUMNS, rows);
+    tables::print_line(&counts(findings));
     Ok(())
+}
+
+/// The name that tells a configuration in `configs/` from the others there.
+fn short(path: &str) -> &str {
+    let name = path.strip_prefix(CONFIGS).and_then(|name| name.strip_prefix('/'));
+    name.and_then(|name| name.strip_suffix(".toml")).unwrap_or(path)
+}
+
+/// How many hold, how many are outside the contract, how many fail.
+fn counts(findings: &[Finding]) -> String {
+    let verdicts = findings.iter().map(|finding| verdict(&finding.bound, &finding.faults));
+    let count = |wanted| verdicts.clone().filter(|verdict| *verdict == wanted).count();
+    let mut parts = vec![format!("{} of {} hold", count(HOLDS), findings.len())];
+    let (outside, fail) = (count(OUTSIDE), count(FAILS));
+    if outside > 0 {
+        parts.push(format!("{outside} outside the accuracy contract, within their own bound"));
+    }
+    if fail > 0 {
+        parts.push(format!("{fail} FAIL"));
+    }
+    format!("{}.", parts.join("; "))
 }
 
 fn as_json(one: &Loaded, finding: &Finding) -> Result<Value> {

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::mismatch::{self, Reproducer};
-use super::{Loaded, load};
+use super::{Loaded, load, verdict};
 use crate::base::text;
 use crate::cli::failure::Usage;
 use crate::cli::{Output, Simulator, progress, tables};
@@ -82,7 +82,7 @@ fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result
             text::grouped(outcome.clocks),
             outcome.registers,
             outcome.outputs,
-            if faults.is_empty() { "holds" } else { "FAILS" },
+            verdict(&bound, &faults),
         ));
         if let Some(worst) = &outcome.worst {
             tables::print_line(&format!(
@@ -160,6 +160,7 @@ pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, faults: &[String]
         })),
         "rom_bits": one.unit.design.rom_bits(),
         "holds": faults.is_empty(),
+        "verdict": verdict(bound, faults),
         "faults": faults,
         "mismatch": mismatch.transpose()?,
     }))

@@ -2,7 +2,7 @@
 
 mod show;
 
-use std::fs;
+use std::io::Read;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -12,6 +12,7 @@ use indicatif::HumanDuration;
 use serde_json::json;
 
 use super::load;
+use crate::base::{input, text};
 use crate::cli::failure::Usage;
 use crate::cli::{Output, progress, staged, tables};
 use crate::cosim::exhaustive::{Job, Shard, State};
@@ -103,13 +104,14 @@ pub fn merge(
 
 /// The state that a file holds, if there is one.
 fn read(path: &Path) -> Result<Option<State>> {
-    let text = match fs::read_to_string(path) {
-        Ok(text) => text,
+    let mut text = String::new();
+    match input::open(path).and_then(|mut file| file.read_to_string(&mut text)) {
+        Ok(_) => {}
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
         Err(error) => {
             return Err(error).with_context(|| format!("cannot read `{}`", path.display()));
         }
-    };
+    }
     let state =
         serde_json::from_str(&text).map_err(|error| anyhow!("{error}")).with_context(|| {
             format!("`{}` does not hold the state of a proof; name another file", path.display())
@@ -161,6 +163,6 @@ fn announce_duration(job: &Job<'_>, state: &State) -> Result<()> {
         0 => "less than a second".to_owned(),
         seconds => format!("about {}", HumanDuration(Duration::from_secs(seconds))),
     };
-    tables::print_line(&format!("  {duration} on {threads} threads"));
+    tables::print_line(&format!("  {duration} on {}", text::counted(threads, "thread")));
     Ok(())
 }

@@ -33,9 +33,11 @@ pub use render::{RenderArguments, render};
 pub use report::{ReportRequest, report};
 pub use verify::{VerifyRequest, verify};
 
-use super::failure::{self, Several};
+use super::failure::{self, Several, Usage};
+use crate::base::input;
 use crate::config;
 use crate::core::Unit;
+use crate::golden::Bound;
 use crate::registry::Registry;
 
 /// Where configurations are when none are named.
@@ -74,6 +76,9 @@ fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
 ///
 /// The problems of all files are reported, not only those of the first.
 fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
+    if named.iter().filter(|path| path.as_path() == Path::new(input::STDIN)).count() > 1 {
+        bail!(Usage("standard input, `-`, is read once: name it once".to_owned()));
+    }
     let schemas = registry.schemas();
     let mut loaded: Vec<Loaded> = Vec::new();
     let mut failed: Vec<anyhow::Error> = Vec::new();
@@ -108,19 +113,38 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
     Ok(Loaded { path: name, unit })
 }
 
+/// The verdict on a configuration whose outputs are right, within a bound that keeps the accuracy contract.
+const HOLDS: &str = "holds";
+
+/// The verdict on one whose outputs are right, within a bound that does not.
+const OUTSIDE: &str = "outside the contract";
+
+/// The verdict on one with faults.
+const FAILS: &str = "FAILS";
+
+/// What is said of a configuration with this bound, and these faults.
+fn verdict(bound: &Bound, faults: &[String]) -> &'static str {
+    match (faults.is_empty(), bound.units < 1.0) {
+        (true, true) => HOLDS,
+        (true, false) => OUTSIDE,
+        (false, _) => FAILS,
+    }
+}
+
 impl Loaded {
     /// Warns when the configuration misses the accuracy contract; refuses it when it is strict.
     fn contract(&self) -> Result<()> {
         let bound = self.unit.contract.bound();
         if bound.units >= 1.0 {
-            let key = bound
-                .limiting()
-                .map(|term| {
-                    format!("; `{}` ({}) limits it: {:.3} units", term.key, term.what, term.units)
-                })
-                .unwrap_or_default();
+            let limit = bound.limiting().map_or_else(String::new, |term| {
+                format!("; most of it, {:.3}, is of `{}` ({})", term.units, term.key, term.what)
+            });
+            let advice = match self.unit.advice() {
+                Some(advice) => format!("; {advice}"),
+                None => "; no single key that it depends on brings it down".to_owned(),
+            };
             let message = format!(
-                "{}: outside the accuracy contract: the error bound is {:.3} units, not below 1{key}",
+                "{}: outside the accuracy contract: the error bound is {:.3} units, not below 1{limit}{advice}",
                 self.path, bound.units
             );
             if self.unit.config.strict {

@@ -12,6 +12,7 @@ use super::mismatch::{self, first_clock, traced};
 use super::{Loaded, load};
 use crate::cli::failure::Usage;
 use crate::cli::own_file::OwnFile;
+use crate::cli::tables::Column;
 use crate::cli::{Output, progress, tables};
 use crate::cosim::Lockstep;
 use crate::mutate::{
@@ -253,8 +254,15 @@ fn print(scored: &Scored) {
     };
     let kinds = score.kinds.iter().map(|(kind, tally)| row(kind.to_string(), tally));
     let all = row("all".to_owned(), &score.all);
-    let headings = ["fault", "planted", "caught", "aimed", "equivalent", "open"];
-    tables::print(&headings, &headings[1..], kinds.chain([all]));
+    let columns = [
+        Column::words("fault"),
+        Column::numbers("planted"),
+        Column::numbers("caught"),
+        Column::numbers("aimed"),
+        Column::numbers("equivalent"),
+        Column::numbers("open"),
+    ];
+    tables::print(&columns, kinds.chain([all]));
     print_open(&score.open);
     if let Some(verilog) = &scored.verilog {
         tables::print_line(&format!(

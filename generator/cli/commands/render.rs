@@ -1,6 +1,5 @@
 //! `render`.
 
-use std::fs::{self, File};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -10,7 +9,7 @@ use clap::{Args, ValueEnum};
 use serde_json::json;
 
 use super::load_one;
-use crate::base::text;
+use crate::base::{input, text};
 use crate::cli::destination::Destination;
 use crate::cli::failure::{self, Usage};
 use crate::cli::{Output, progress, tables};
@@ -262,11 +261,8 @@ fn scene(arguments: &RenderArguments, coarse: bool) -> Result<Scene> {
 
 /// A whole file, within reason.
 fn read(path: &Path) -> Result<Vec<u8>> {
-    if fs::metadata(path).is_ok_and(|found| found.is_dir()) {
-        bail!("it is a directory");
-    }
     let mut bytes = Vec::new();
-    File::open(path)?.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
+    input::open(path)?.take(LARGEST_FILE + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > LARGEST_FILE {
         bail!("it has more than {LARGEST_FILE} bytes");
     }

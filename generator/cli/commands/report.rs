@@ -8,6 +8,7 @@ use anyhow::{Context, Result};
 use serde_json::json;
 
 use crate::cli::own_file::OwnFile;
+use crate::cli::tables::Column;
 use crate::cli::{Output, progress, tables};
 use crate::evidence;
 use crate::evidence::benchmark;
@@ -82,7 +83,7 @@ pub fn report(registry: &Registry, output: Output, request: &ReportRequest) -> R
             claim.verdict.words().to_owned(),
         ]
     });
-    tables::print(&["claim", "the seed", "ours", "verdict"], &[], rows);
+    tables::print(&["claim", "the seed", "ours", "verdict"].map(Column::words), rows);
     let count = |verdict| {
         let claims = evidence.claims.iter();
         claims.filter(|claim| claim.verdict == verdict).count()

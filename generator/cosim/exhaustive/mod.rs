@@ -59,6 +59,20 @@ impl Proof {
         proof
     }
 
+    /// What the proof shows: "proved" only if no control operands were left out, and only of a bound that keeps the
+    /// contract.
+    pub fn verdict(&self, contract: &dyn Contract) -> &'static str {
+        if !self.faults.is_empty() {
+            "FAILS"
+        } else if contract.bound().units >= 1.0 {
+            "within its bound, outside the contract"
+        } else if contract.sweep().omits.is_empty() {
+            "proved"
+        } else {
+            "passed, not proved"
+        }
+    }
+
     /// The most by which an output can be off, in its units.
     pub fn together(&self) -> f64 {
         self.f_units + self.colours.error

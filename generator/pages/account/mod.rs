@@ -7,6 +7,7 @@ mod table;
 
 use crate::base::fixed::Format;
 use crate::config::{Config, Key, Schema, Value, shared_keys};
+use crate::evidence::advice::Advice;
 use crate::golden::{Bound, Contract, Values};
 use crate::hdl::netlist::Design;
 use crate::hdl::verilog::naming::Naming;
@@ -27,6 +28,8 @@ pub struct PageInputs<'a> {
     pub schema: &'a Schema,
     /// The accuracy contract.
     pub contract: &'a dyn Contract,
+    /// The key that would bring the bound down most.
+    pub advice: Option<Advice>,
     /// Clocks.
     pub timing: &'a Timing,
     /// One computation with all its numbers.
@@ -55,14 +58,12 @@ pub fn format_text(format: Format) -> String {
     }
 }
 
-/// The key that the bound depends on most, in a sentence; nothing when there is none.
-pub fn limit(bound: &Bound) -> String {
-    bound.limiting().map_or_else(String::new, |term| {
-        format!(
-            "The key to change first is `{}`: {}, {:.3} units.",
-            term.key, term.what, term.units
-        )
-    })
+/// The key that would bring the bound down most, in a sentence; nothing when there is none.
+pub fn limit(inputs: &PageInputs) -> String {
+    inputs
+        .advice
+        .as_ref()
+        .map_or_else(String::new, |advice| format!("The key that helps most: {advice}."))
 }
 
 /// The bound, in sentences.

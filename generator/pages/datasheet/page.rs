@@ -91,6 +91,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         config: &unit.config,
         schema: &schema,
         contract,
+        advice: unit.advice(),
         timing: &measured.timing,
         example: &measured.example,
     };
@@ -122,7 +123,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         wavedrom,
         accuracy: html(&account::accuracy(&bound)),
         terms: TableView::new("Terms of the bound", &account::terms(&bound)),
-        limit: html(&account::limit(&bound)),
+        limit: html(&account::limit(&inputs)),
         sweep: html(&account::proof(&inputs)),
         proof: subject.proof.as_ref().map(|proof| ProofView {
             holds: proof.holds,

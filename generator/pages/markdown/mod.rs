@@ -60,7 +60,7 @@ pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
         clocks: table(&account::clocks(inputs.timing)),
         accuracy: account::accuracy(&bound),
         terms: table(&account::terms(&bound)),
-        limit: prose(&account::limit(&bound)),
+        limit: prose(&account::limit(inputs)),
         proof: prose(&account::proof(inputs)),
         domain: table(&account::domain(inputs.contract)),
         remarks: inputs

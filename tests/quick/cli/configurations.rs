@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::json;
 
-use crate::place::{COSINE_POWER, Place};
+use crate::place::{COSINE_POWER, Place, Run};
 
 /// What `generate` says of a file; nothing is generated.
 #[track_caller]
@@ -35,6 +35,35 @@ fn files_that_cannot_be_read() {
     place
         .glint(["generate", "empty.toml"])
         .refused(1, &["the file is empty", "devices: quad-cosine, cosine-squared, lyon, rough"]);
+}
+
+/// Neither ends, for all that is known.
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_no_configurations() {
+    let place = Place::new();
+    crate::place::shell("mkfifo \"$1\"", &place.at("pipe.toml"), "".as_ref());
+    for path in ["pipe.toml", "/dev/zero"] {
+        let run = place.glint(["cosim", path]);
+        run.refused(1, &["this is a pipe or a device, not a file", "- for standard input"]);
+    }
+}
+
+#[test]
+fn a_configuration_may_come_from_standard_input() {
+    let place = Place::with("core.toml", format!("{COSINE_POWER}name = \"piped\"\n"));
+    let with = |file: &str, arguments: &[&str]| {
+        let input = fs::File::open(place.at(file)).expect("a file");
+        Run::of(place.command().args(arguments).stdin(input).output())
+    };
+    let run = with("core.toml", &["generate", "-"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(place.at("rtl_out/piped/piped.v").exists());
+    place.write("nameless.toml", COSINE_POWER);
+    let run = with("nameless.toml", &["generate", "-"]);
+    run.refused(1, &["the module has no name", "--> standard input", "add `name = \"…\"`"]);
+    let run = with("core.toml", &["generate", "-", "-"]);
+    run.refused(2, &["standard input, `-`, is read once"]);
 }
 
 #[cfg(unix)]

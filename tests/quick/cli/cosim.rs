@@ -221,7 +221,7 @@ fn exhaustive() {
         text.contains("1 799 evaluations of f (cos_gamma = 0 to 256 x exponent = 1 to 7)"),
         "{text}"
     );
-    assert!(text.contains(": holds\n"), "{text}");
+    assert!(text.contains(": proved\n"), "{text}");
     assert!(
         text.contains("every register and output at every clock for 262 144 combinations of 18"),
         "{text}"

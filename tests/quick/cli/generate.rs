@@ -1,6 +1,6 @@
 //! `generate` and the main job, when all is well and when foreign files stand in the way.
 
-use crate::place::{COSINE_POWER, Place};
+use crate::place::{COSINE_POWER, Place, Run};
 
 const FILES: [&str; 2] = ["rtl_out/core/core.v", "testbench/core/core_tb.v"];
 
@@ -92,11 +92,31 @@ fn the_main_job_generates_and_checks_everything() {
     place.write("configs/two.toml", format!("{COSINE_POWER}power = 2\n"));
     place.write("configs/notes.txt", "no configuration");
     place.write("configs/studies/three.toml", COSINE_POWER);
-    let table = place.done([] as [&str; 0]);
-    for config in ["configs/one.toml", "configs/two.toml"] {
-        let row = table.lines().find(|line| line.contains(config)).expect("a row");
-        assert!(row.contains("100 000") && row.contains("holds"), "{row}");
+    // A bound of 1.5 units: outside the contract, and right within it.
+    place.write(
+        "configs/wide.toml",
+        format!("{COSINE_POWER}output.rounding = \"truncate\"\nintensity.fraction = 9\n"),
+    );
+    let run = place.glint([] as [&str; 0]);
+    assert_eq!(run.code, 0, "{run:?}");
+    let row = |name: &str| {
+        let name = format!("| {name} ");
+        run.out.lines().find(|line| line.starts_with(&name)).expect("a row")
+    };
+    for config in ["one", "two"] {
+        assert!(row(config).contains("100 000") && row(config).contains(" holds "), "{run:?}");
     }
+    assert!(row("wide").contains(" outside the contract "), "{run:?}");
+    let advice = "configs/wide.toml: outside the accuracy contract";
+    assert!(run.err.contains(advice) && run.err.contains(" would bring the bound to "), "{run:?}");
+    // The table and the line that counts are the last on the screen.
+    let count = "2 of 3 hold; 1 outside the accuracy contract, within their own bound.";
+    let mut last = run.out.lines().rev();
+    assert_eq!(last.next(), Some(count));
+    assert!(last.next().expect("the table").starts_with("| wide "), "{run:?}");
+    let details = place.done(["--details"]);
+    assert!(details.contains("configs/one.toml: ") && details.contains("the largest error is at"));
+    std::fs::remove_file(place.at("configs/wide.toml")).expect("removed");
     assert!(place.at("rtl_out/one/one.v").exists() && place.at("testbench/two/two_tb.v").exists());
     let run = place.glint(["--json"]);
     assert_eq!(run.code, 0, "{run:?}");
@@ -105,6 +125,29 @@ fn the_main_job_generates_and_checks_everything() {
     assert_eq!(value["configurations"][1]["config"], "configs/two.toml");
     assert_eq!(value["configurations"][1]["points"], 100_000);
     assert_eq!(value["configurations"][1]["faults"], serde_json::json!([]));
+}
+
+/// At 60 columns no line is longer, and no number is broken.
+#[test]
+fn tables_fit_the_terminal() {
+    let place = Place::with("configs/a_name_of_thirty_characters_.toml", COSINE_POWER);
+    for (arguments, number) in [
+        (&[][..], "0.621"),
+        (&["compare", "--no-synthesis"], "0.00954"),
+        (&["eval", "configs/a_name_of_thirty_characters_.toml"], "524288"),
+        (&["list"], ""),
+    ] {
+        for columns in ["80", "60"] {
+            let mut command = place.command();
+            let run = Run::of(command.args(arguments).env("COLUMNS", columns).output());
+            let most: usize = columns.parse().expect("a number");
+            let rows = run.out.lines().filter(|line| line.starts_with('|'));
+            for row in rows {
+                assert!(row.chars().count() <= most, "{columns}: {row}");
+            }
+            assert!(run.out.contains(number), "{arguments:?} at {columns}: {}", run.out);
+        }
+    }
 }
 
 #[test]

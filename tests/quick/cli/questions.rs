@@ -51,7 +51,62 @@ fn a_point_is_evaluated_for_scripts() {
 fn a_point_outside_the_domain_is_marked() {
     let run = eval(&["exponent=0"]);
     assert_eq!(run.code, 0);
-    assert!(run.out.contains("outside the domain"), "{}", run.out);
+    let first = run.out.lines().next().expect("a line");
+    assert_eq!(
+        first,
+        "Outside the domain for which the contract is stated: exponent = 0 is not in 1 to 1000."
+    );
+}
+
+#[test]
+fn points_are_evaluated_in_batch() {
+    let place = Place::with("core.toml", SQUARE);
+    // (n/2·(c − 1) + 1)² at n = 2 is c².
+    let points = "cos_gamma, exponent ,red\n0.5,2,200\n#1048576,2,#100\n0.25,2,\n";
+    place.write("points.csv", points);
+    let table = place.done(["eval", "core.toml", "--batch", "points.csv", "green=0", "blue=64"]);
+    let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(
+        rows[0].join(","),
+        "cos_gamma,exponent,red,green,blue,f,red_out,green_out,blue_out,formula_f,formula_red_out,\
+         formula_green_out,formula_blue_out,inside_the_domain"
+    );
+    assert_eq!(rows[1][..5], ["0.5", "2", "200", "0", "64"]);
+    assert_eq!(rows[1][6..9], ["50", "0", "16"]);
+    assert_eq!(rows[1][9..], ["0.25", "50", "0", "16", "true"]);
+    assert_eq!(rows[2][9..], ["1", "100", "0", "64", "true"]);
+    // What is empty is taken from the top: a sixteenth of 255.
+    assert_eq!((rows[3][2], rows[3][6], rows.len()), ("255", "16", 4));
+    let json = ["eval", "core.toml", "--batch", "points.csv", "--json"];
+    let told: Value = serde_json::from_str(&place.done(json)).expect("JSON");
+    assert_eq!(told["points"][0]["outputs"]["red_out"], 50);
+    assert_eq!(told["points"][0]["operands"]["cos_gamma"], 524_288);
+    // From standard input the same.
+    let input = std::fs::File::open(place.at("points.csv")).expect("a file");
+    let mut command = place.command();
+    command.args(["eval", "core.toml", "--batch", "-", "green=0", "blue=64"]).stdin(input);
+    assert_eq!(Run::of(command.output()).out, table);
+}
+
+#[test]
+fn a_batch_that_is_wrong_is_refused_with_its_line() {
+    let place = Place::with("core.toml", SQUARE);
+    for (text, message) in [
+        ("cos_gama\n1\n", "there is no operand `cos_gama`; did you mean `cos_gamma`?"),
+        ("red,red\n1,1\n", "operand `red` is given twice"),
+        ("red,green\n1,2\n1.5,2\n", "`points.csv`, line 3: operand `red`: 1.5 is not an integer"),
+        ("red,green\n1\n", "cannot read `points.csv`"),
+        ("red\n", "has no row of operands"),
+    ] {
+        place.write("points.csv", text);
+        place.glint(["eval", "core.toml", "--batch", "points.csv"]).refused(1, &[message]);
+    }
+    let twice = ["eval", "core.toml", "red=1", "--batch", "points.csv"];
+    place.write("points.csv", "red\n1\n");
+    place.glint(twice).refused(1, &["operand `red` is given twice"]);
+    place
+        .glint(["eval", "core.toml", "--batch", "none.csv"])
+        .refused(1, &["cannot read `none.csv`"]);
 }
 
 #[test]
@@ -72,6 +127,7 @@ fn operands_that_are_wrong_usage() {
         (&["red=bright"], "operand `red`: `bright` is not a number"),
         (&["red=nan"], "`nan` is not a finite number"),
         (&["red=1e999"], "`1e999` is not a finite number"),
+        (&["red=1.5"], "operand `red`: 1.5 is not an integer, and u8.0 holds integers"),
         (&["red="], "operand `red`: `` is not a number"),
         (&["red"], "`red` is not operand=value, as in cos_gamma=0.99"),
     ] {

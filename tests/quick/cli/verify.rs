@@ -141,13 +141,15 @@ fn a_record_stands_for_the_sweep_of_a_contract() {
 
 #[test]
 fn a_sweep_that_samples_is_passed_and_not_proved() {
-    let place = Place::with("core.toml", "device = \"rough\"\n");
-    place.write("proofs/rough.json", include_str!("../../../proofs/rough.json"));
+    let place = Place::with("core.toml", include_str!("../../../configs/reduced/rough.toml"));
     let run = place.glint(WITHOUT_TOOLS);
     assert!(run.out.contains("Golden model against the formula: passed"), "{}", run.out);
     assert!(run.out.contains("not covered: values of cos_dgamma between the settings"), "{run:?}");
-    let found = record(&place, "verification/core.json");
+    let found = record(&place, "verification/rough_reduced.json");
     assert!(verdicts(&found).contains(&("contract", "passed")), "{found}");
+    let run = place.glint(["cosim", "core.toml", "--exhaustive"]);
+    assert!(run.out.contains(": passed, not proved"), "{}", run.out);
+    assert!(run.out.contains("undecided: values of cos_dgamma between the settings"), "{run:?}");
 }
 
 #[cfg(unix)]

@@ -4,8 +4,10 @@ use serde_json::{Value, json};
 
 use super::{CompareRequest, Entry};
 use crate::base::text;
+use crate::cli::tables::Column;
 use crate::cli::{Output, failure, tables};
 use crate::evidence::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, Multiplier, Spread};
+use crate::golden::contract;
 use crate::tools::synthesis::{FAMILIES, Usage};
 
 /// Prints everything in the form that was asked for.
@@ -32,12 +34,39 @@ pub fn show(
     }
     print_errors(request, entries);
     print_hardware(entries);
-    for note in notes {
+    for note in entries.iter().filter_map(at_rest).chain(notes.iter().cloned()) {
         tables::print_line(&format!("Note: {note}."));
     }
     for fault in faults {
         tables::print_line(&format!("FAILS: {fault}"));
     }
+}
+
+/// Over what the errors of a device are, that has more operands than the angle and n; none of others.
+fn at_rest(entry: &Entry) -> Option<String> {
+    let contract = entry.unit.contract.as_ref();
+    let control = contract.operands().iter().filter(|operand| !operand.colour);
+    let is_other = |name: &str| ![contract::COSINE, contract::EXPONENT].contains(&name);
+    if !contract.operands().iter().any(|operand| operand.name == contract::COSINE) {
+        return None;
+    }
+    // Any angle and exponent: the others do not depend on them.
+    let point = (1..=1000).find_map(|n| contract.at(0.1, f64::from(n)))?;
+    let others: Vec<String> = control
+        .zip(point)
+        .filter(|(operand, _)| is_other(&operand.name))
+        .map(|(operand, raw)| {
+            format!("{} = {}", operand.name, operand.format.to_f64(i128::from(raw)))
+        })
+        .collect();
+    (!others.is_empty()).then(|| {
+        format!(
+            "the errors of {} are those at {}; over all operands the fixed point of f is off by at most {:.1e}, its bound",
+            entry.label,
+            others.join(", "),
+            contract.bound().f
+        )
+    })
 }
 
 /// The errors of an accuracy with their names, the whole first.
@@ -56,17 +85,17 @@ fn print_errors(request: &CompareRequest, entries: &[Entry]) {
         request.exponent,
         1.0 / f64::from(ANGLES_PER_DEGREE)
     ));
-    let headings = [
-        "device",
-        "largest",
-        "mean",
-        "formula, largest",
-        "mean",
-        "operands, largest",
-        "mean",
-        "fixed point, largest",
-        "mean",
-        "bound, units",
+    let columns = [
+        Column::words("device"),
+        Column::numbers("largest"),
+        Column::numbers("mean").dispensable(3),
+        Column::numbers("formula, largest"),
+        Column::numbers("mean").dispensable(6),
+        Column::numbers("operands, largest").dispensable(1),
+        Column::numbers("mean").dispensable(5),
+        Column::numbers("fixed point, largest"),
+        Column::numbers("mean").dispensable(4),
+        Column::numbers("bound, units").dispensable(2),
     ];
     let rows = entries.iter().map(|entry| {
         let mut row = vec![entry.label.clone()];
@@ -82,7 +111,7 @@ fn print_errors(request: &CompareRequest, entries: &[Entry]) {
         row.push(format!("{:.3}", entry.unit.contract.bound().units));
         row
     });
-    tables::print(&headings, &headings[1..], rows);
+    tables::print(&columns, rows);
     tables::print_line(
         "The error at an angle is the sum of three: of the formula, in f64 at the quantised operands; of cos gamma \
          as the operands denote it; and of the fixed point, f against the formula. The bound is on an output, \
@@ -121,13 +150,13 @@ fn print_hardware(entries: &[Entry]) {
         }
         row
     });
-    let headings: Vec<&str> = headings.iter().map(String::as_str).collect();
-    let right: Vec<&str> = headings
-        .iter()
-        .copied()
-        .filter(|&heading| heading != "device" && heading != "multipliers")
-        .collect();
-    tables::print(&headings, &right, rows);
+    let columns = headings.iter().map(|heading| match heading.as_str() {
+        "device" => Column::words("device"),
+        "multipliers" => Column::words("multipliers").dispensable(1),
+        heading => Column::numbers(heading),
+    });
+    let columns: Vec<Column<'_>> = columns.collect();
+    tables::print(&columns, rows);
     tables::print_line(
         "ROM bits count the control ROM. Clocks are from start to start, per point of the longest line where a \
          start shows several.",

@@ -94,10 +94,12 @@ fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &State) {
         .zip(job.f.place(proof.f.place))
         .map(|(axis, value)| format!("{}={value}", axis.name))
         .collect();
-    let verdict = match (proof.faults.is_empty(), state.shard == Shard::WHOLE) {
-        (true, true) => "holds",
-        (true, false) => "holds so far; `glint merge` joins the shards",
-        (false, _) => "FAILS",
+    let verdict = match state.shard == Shard::WHOLE {
+        true => proof.verdict(one.unit.contract.as_ref()).to_owned(),
+        false if proof.faults.is_empty() => {
+            "holds so far; `glint merge` joins the shards".to_owned()
+        }
+        false => "FAILS".to_owned(),
     };
     tables::print_line(&format!(
         "  f is off by {:.3e} at most, {:.3} units, at raw {}; a colour multiplier by {:.3}; together {:.3} (bound {:.3}): {verdict}",
@@ -110,6 +112,9 @@ fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &State) {
     ));
     for fault in &proof.faults {
         tables::print_line(&format!("  FAILS: {fault}"));
+    }
+    if !job.f.sweep().omits.is_empty() {
+        tables::print_line(&format!("  undecided: {}", job.f.sweep().omits));
     }
 }
 
@@ -149,6 +154,7 @@ fn as_json(
         "together": proof.together(),
         "bound": one.unit.contract.bound().units,
         "holds": proof.faults.is_empty(),
+        "verdict": proof.verdict(one.unit.contract.as_ref()),
         "faults": proof.faults,
     });
     if let Some(clocks) = &job.clocks {

@@ -1,0 +1,137 @@
+//! Many points: operands from CSV, results as CSV.
+
+use std::io;
+use std::path::Path;
+
+use anyhow::{Context, Result, anyhow, bail, ensure};
+use csv::{ReaderBuilder, Trim, Writer};
+use serde_json::{Map, Value, json};
+
+use super::{formula, operands, outside};
+use crate::base::input;
+use crate::cli::commands::Loaded;
+use crate::cli::{Output, tables};
+
+/// The result of a row.
+struct Row {
+    operands: Vec<i64>,
+    f: i64,
+    outputs: Vec<i64>,
+    exact_f: f64,
+    exact: Vec<f64>,
+    inside: bool,
+}
+
+/// Computes every row of a CSV file with the golden model's arithmetic and in f64. `given` holds for all rows.
+pub fn batch(output: Output, one: &Loaded, given: &[Option<i64>], path: &Path) -> Result<bool> {
+    let shown = path.display();
+    let file = input::open(path).with_context(|| format!("cannot read `{shown}`"))?;
+    let mut reader = ReaderBuilder::new().trim(Trim::All).comment(Some(b'#')).from_reader(file);
+    let headings = reader.headers().with_context(|| format!("cannot read `{shown}`"))?.clone();
+    let columns =
+        columns(one, given, headings.iter()).with_context(|| format!("`{shown}`, first row"))?;
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record.with_context(|| format!("cannot read `{shown}`"))?;
+        let line = record.position().map_or(0, csv::Position::line);
+        let row = row(one, given, &columns, &record);
+        rows.push(row.map_err(|fault| anyhow!("`{shown}`, line {line}: {fault}"))?);
+    }
+    ensure!(!rows.is_empty(), "`{shown}` has no row of operands below the row with their names");
+    match output.json {
+        true => print_json(one, &rows),
+        false => print_csv(one, &rows)?,
+    }
+    Ok(true)
+}
+
+/// The operand of each column.
+fn columns<'a>(
+    one: &Loaded,
+    given: &[Option<i64>],
+    headings: impl Iterator<Item = &'a str>,
+) -> Result<Vec<usize>> {
+    let known = one.unit.contract.operands();
+    let mut columns: Vec<usize> = Vec::new();
+    for heading in headings {
+        let at = operands::position(known, heading).map_err(|fault| anyhow!("{fault}"))?;
+        if columns.contains(&at) || given[at].is_some() {
+            bail!("operand `{heading}` is given twice");
+        }
+        columns.push(at);
+    }
+    Ok(columns)
+}
+
+fn row(
+    one: &Loaded,
+    given: &[Option<i64>],
+    columns: &[usize],
+    record: &csv::StringRecord,
+) -> Result<Row, String> {
+    let contract = one.unit.contract.as_ref();
+    let known = contract.operands();
+    let mut given = given.to_vec();
+    for (&at, text) in columns.iter().zip(record) {
+        // An empty cell leaves the operand to its default.
+        if !text.is_empty() {
+            given[at] = Some(operands::named_value(&known[at], text)?);
+        }
+    }
+    let raw = operands::completed(known, &given);
+    let control = known.iter().filter(|operand| !operand.colour).count();
+    let f = contract.f(&contract.point(&raw[..control], 0));
+    let outputs = raw[control..].iter().map(|&colour| contract.colour(f, colour)).collect();
+    let (exact_f, exact) = formula(contract, &raw);
+    let inside = outside(known, &raw).is_empty();
+    Ok(Row { operands: raw, f, outputs, exact_f, exact, inside })
+}
+
+fn print_csv(one: &Loaded, rows: &[Row]) -> Result<()> {
+    let contract = one.unit.contract.as_ref();
+    let mut writer = Writer::from_writer(Vec::new());
+    let mut headings: Vec<String> =
+        contract.operands().iter().map(|operand| operand.name.clone()).collect();
+    headings.push("f".to_owned());
+    headings.extend(contract.outputs().iter().cloned());
+    headings.push("formula_f".to_owned());
+    headings.extend(contract.outputs().iter().map(|name| format!("formula_{name}")));
+    headings.push("inside_the_domain".to_owned());
+    writer.write_record(&headings)?;
+    for row in rows {
+        let operands = contract.operands().iter().zip(&row.operands);
+        let mut cells: Vec<String> = operands
+            .map(|(operand, &raw)| operand.format.to_f64(i128::from(raw)).to_string())
+            .collect();
+        cells.push(contract.f_format().to_f64(i128::from(row.f)).to_string());
+        cells.extend(row.outputs.iter().map(i64::to_string));
+        cells.push(row.exact_f.to_string());
+        cells.extend(row.exact.iter().map(f64::to_string));
+        cells.push(row.inside.to_string());
+        writer.write_record(&cells)?;
+    }
+    let bytes = writer.into_inner().map_err(|error| io::Error::other(error.to_string()))?;
+    tables::print_line(String::from_utf8_lossy(&bytes).trim_end());
+    Ok(())
+}
+
+fn print_json(one: &Loaded, rows: &[Row]) {
+    let contract = one.unit.contract.as_ref();
+    let points = rows.iter().map(|row| {
+        let operands = contract.operands().iter().zip(&row.operands);
+        let operands: Map<String, Value> =
+            operands.map(|(operand, raw)| (operand.name.clone(), json!(raw))).collect();
+        let outputs = contract.outputs().iter().zip(&row.outputs);
+        let outputs: Map<String, Value> =
+            outputs.map(|(name, raw)| (name.clone(), json!(raw))).collect();
+        json!({
+            "operands": operands,
+            "inside_the_domain": row.inside,
+            "f": row.f,
+            "outputs": outputs,
+            "formula": { "f": row.exact_f, "outputs": row.exact },
+        })
+    });
+    let points: Vec<Value> = points.collect();
+    tables::print_json(&json!({ "config": one.path, "points": points }));
+}

@@ -1,0 +1,79 @@
+//! Operands as the user writes them: `0.99` is a value, `#1038090` a raw integer.
+
+use crate::config;
+use crate::golden::Operand;
+
+/// The raw operands that `name=value` settings give.
+pub fn given(operands: &[Operand], settings: &[String]) -> Result<Vec<Option<i64>>, String> {
+    let mut raw: Vec<Option<i64>> = vec![None; operands.len()];
+    for setting in settings {
+        let (name, text) = setting
+            .split_once('=')
+            .ok_or_else(|| format!("`{setting}` is not operand=value, as in cos_gamma=0.99"))?;
+        let at = position(operands, name)?;
+        if raw[at].is_some() {
+            return Err(format!("operand `{name}` is given twice"));
+        }
+        raw[at] = Some(named_value(&operands[at], text)?);
+    }
+    Ok(raw)
+}
+
+/// The place of an operand.
+pub fn position(operands: &[Operand], name: &str) -> Result<usize, String> {
+    operands.iter().position(|operand| operand.name == name).ok_or_else(|| {
+        let names: Vec<&str> = operands.iter().map(|operand| operand.name.as_str()).collect();
+        let near = config::nearest(name, names.iter().copied())
+            .map_or_else(|| ".".to_owned(), |near| format!("; did you mean `{near}`?"));
+        format!("there is no operand `{name}`{near} The operands are: {}", names.join(", "))
+    })
+}
+
+/// All operands: what is not given comes from the middle of its domain, colours from the top.
+pub fn completed(operands: &[Operand], given: &[Option<i64>]) -> Vec<i64> {
+    let each = operands.iter().zip(given).map(|(operand, raw)| {
+        let (low, high) = operand.domain;
+        raw.unwrap_or(if operand.colour { high } else { low.midpoint(high) })
+    });
+    each.collect()
+}
+
+/// The raw value that a text gives to an operand; what is wrong with it names the operand.
+pub fn named_value(operand: &Operand, text: &str) -> Result<i64, String> {
+    value(operand, text).map_err(|fault| format!("operand `{}`: {fault}", operand.name))
+}
+
+fn value(operand: &Operand, text: &str) -> Result<i64, String> {
+    let format = operand.format;
+    let raw = if let Some(integer) = text.strip_prefix('#') {
+        let raw: i128 = integer
+            .parse()
+            .map_err(|_| format!("`{text}` is not a raw integer, as in #1038090"))?;
+        if !format.holds(raw) {
+            return Err(format!(
+                "raw integer {raw} is beyond {format}: {} to {}",
+                format.min_raw(),
+                format.max_raw()
+            ));
+        }
+        raw
+    } else {
+        let value: f64 = text.parse().map_err(|_| format!("`{text}` is not a number"))?;
+        if !value.is_finite() {
+            return Err(format!("`{text}` is not a finite number"));
+        }
+        // It saturates: what is further off than a rounding does not fit.
+        let raw = format.quantise(value);
+        if (format.to_f64(raw) - value).abs() >= format.to_f64(1) {
+            let (least, most) = (format.to_f64(format.min_raw()), format.to_f64(format.max_raw()));
+            return Err(format!("{value} is beyond {format}: {least} to {most}"));
+        }
+        // A fraction is rounded to the nearest that the format has; who writes one for an integer means another
+        // operand, or another scale.
+        if format.frac == 0 && value.fract() != 0.0 {
+            return Err(format!("{value} is not an integer, and {format} holds integers"));
+        }
+        raw
+    };
+    i64::try_from(raw).map_err(|_| format!("{raw} has more than 63 bits"))
+}
