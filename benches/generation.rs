@@ -7,7 +7,7 @@ use std::hint::black_box;
 use anyhow::{Context, Result, anyhow};
 use criterion::{Criterion, criterion_group, criterion_main};
 use glint::config;
-use glint::core::{BENCH_POINTS, BENCH_SEED, Unit};
+use glint::core::Unit;
 use glint::package::OutputFile;
 use glint::registry::Registry;
 
@@ -20,7 +20,7 @@ fn generate(registry: &Registry, path: &str, text: &str) -> Result<Vec<OutputFil
     let device = registry.device(&config.device).context("a device")?;
     let unit = Unit::new(*device, config)?;
     black_box(unit.contract.bound());
-    unit.files(path, unit.vectors(BENCH_POINTS, BENCH_SEED)?)
+    unit.files(path, unit.shipped_vectors()?)
 }
 
 fn both(registry: &Registry, texts: &[(&str, String)]) -> Result<Vec<Vec<OutputFile>>> {

@@ -7,7 +7,7 @@ use anyhow::{Context, Result};
 use crate::config::Config;
 use crate::cosim::batch::{Engine, Golden, RustHdl, Verilog};
 use crate::cosim::exhaustive::{Clocks, Job};
-use crate::cosim::{Lockstep, trial};
+use crate::cosim::{Lockstep, directed, trial};
 use crate::evidence::advice::{Advice, advise};
 use crate::golden::Contract;
 use crate::hdl::netlist::Design;
@@ -25,10 +25,17 @@ pub const TEST_POINTS: u64 = 100_000;
 /// The seed of the default test.
 pub const TEST_SEED: u64 = 1;
 
-/// Results in the stimulus of a committed bench.
-pub const BENCH_POINTS: u64 = 24;
+/// Computations at random at the beginning of the shipped bench, with all that the handshake allows; of lines so
+/// many times [`BENCH_LINE`] results.
+const BENCH_POINTS: u64 = 64;
 
-/// The seed of the stimulus of a committed bench.
+/// The results of a line there, at most.
+const BENCH_LINE: i64 = 6;
+
+/// Points of the shipped bench of a pipeline, which takes one a clock.
+const PIPELINE_POINTS: u64 = 2000;
+
+/// The seed of the stimulus of benches.
 pub const BENCH_SEED: u64 = 1;
 
 /// What computes with a device.
@@ -141,7 +148,22 @@ impl Unit {
     /// # Errors
     /// They do not agree.
     pub fn vectors(&self, points: u64, seed: u64) -> Result<Vectors> {
-        self.lockstep(seed)?.record(points)
+        self.lockstep(seed)?.record(points, &[])
+    }
+
+    /// Stimulus and expected outputs of the shipped bench: some computations at random, which show the handshake,
+    /// and directed ones, which show the datapath and its tables.
+    ///
+    /// # Errors
+    /// Those of [`Unit::vectors`].
+    pub fn shipped_vectors(&self) -> Result<Vectors> {
+        if self.design.pipeline.is_some() {
+            return self.vectors(PIPELINE_POINTS, BENCH_SEED);
+        }
+        let directed = directed::computations(&self.design, self.contract.as_ref())?;
+        let lockstep = self.lockstep(BENCH_SEED)?.with_lines_of(BENCH_LINE);
+        let results = if self.contract.length().is_some() { BENCH_LINE as u64 } else { 1 };
+        lockstep.record(BENCH_POINTS * results, &directed)
     }
 
     /// Every file of the configuration, which the command line knows as `config`.

@@ -2,6 +2,7 @@
 
 use anyhow::Result;
 
+use super::combinations::Combinations;
 use super::pairing::Pairing;
 use super::stream::{Course, Seen, Stream};
 use crate::hdl::sim::Simulator;
@@ -27,6 +28,11 @@ impl<'a> Alone<'a> {
     /// Whether it has all its points, or something differs.
     pub(super) fn ended(&self) -> bool {
         self.stream.ended()
+    }
+
+    /// Goes on with combinations, as the device stands.
+    pub(super) fn follow(&mut self, combinations: Combinations) {
+        self.stream.follow(combinations);
     }
 
     /// What it has shown so far.

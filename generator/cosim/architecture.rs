@@ -47,6 +47,15 @@ impl<'a> Lockstep<'a> {
         })
     }
 
+    /// The same with lines of no more than so many results.
+    #[must_use]
+    pub fn with_lines_of(self, results: i64) -> Self {
+        Self(match self.0 {
+            Core(core) => Core(core.with_lines_of(results)),
+            pipeline @ Pipe(_) => pipeline,
+        })
+    }
+
     /// Runs until `points` results were seen or something differs, on all threads of rayon's pool.
     ///
     /// `progress` is told now and then how many points there are more.
@@ -90,13 +99,14 @@ impl<'a> Lockstep<'a> {
     }
 
     /// Stimulus and expected outputs for a bench: the inputs of every clock of one stream of `points`
-    /// results, and the outputs before its edge.
+    /// results, and the outputs before its edge; then those of computations with these raw operands, in the order of
+    /// the contract, one after another (not of a pipeline, which has no computation of its own).
     ///
     /// # Errors
     /// Golden model and simulation differ; a design that cannot be simulated, or does not settle.
-    pub fn record(&self, points: u64) -> Result<Vectors> {
+    pub fn record(&self, points: u64, computations: &[Vec<i64>]) -> Result<Vectors> {
         match &self.0 {
-            Core(core) => core.record(points),
+            Core(core) => core.record(points, computations),
             Pipe(pipe) => pipe.record(points),
         }
     }

@@ -21,6 +21,8 @@ pub(super) struct Ports {
     start: usize,
     inputs: usize,
     operands: Vec<Port>,
+    /// The bit patterns at the first places, where they are given; those of the others are made of the place.
+    listed: Vec<Vec<u64>>,
 }
 
 /// An operand among the inputs.
@@ -39,7 +41,13 @@ impl Ports {
     pub(super) fn new(design: &Design) -> Self {
         let inputs: Vec<NetId> = design.inputs().map(|port| port.net).collect();
         let position = |net| inputs.iter().position(|&input| input == net).unwrap_or(0);
-        let mut ports = Self { reset: 0, start: 0, inputs: inputs.len(), operands: Vec::new() };
+        let mut ports = Self {
+            reset: 0,
+            start: 0,
+            inputs: inputs.len(),
+            operands: Vec::new(),
+            listed: Vec::new(),
+        };
         for port in design.inputs() {
             let data = position(port.net);
             match port.role {
@@ -56,6 +64,17 @@ impl Ports {
             }
         }
         ports
+    }
+
+    /// Gives the places raw values of operands, in the order of these names.
+    pub(super) fn list<'n>(&mut self, names: impl Iterator<Item = &'n str>, list: &[Vec<i64>]) {
+        let names: Vec<&str> = names.collect();
+        let pattern = |port: &Port, values: &Vec<i64>| {
+            let at = names.iter().position(|name| *name == port.name);
+            at.map_or(0, |at| values[at] as u64 & mask(port.width))
+        };
+        let patterns = |values| self.operands.iter().map(|port| pattern(port, values)).collect();
+        self.listed = list.iter().map(patterns).collect();
     }
 
     /// Holds operands at raw values: all combinations are of the others alone.
@@ -77,7 +96,11 @@ impl Ports {
     /// The bit patterns of the operands at a place, in the order of the ports.
     fn at(&self, place: u64) -> impl Iterator<Item = (&Port, u64)> {
         let mut bits = place.wrapping_mul(SCATTER);
-        self.operands.iter().map(move |port| {
+        let listed = usize::try_from(place).ok().and_then(|place| self.listed.get(place));
+        self.operands.iter().enumerate().map(move |(number, port)| {
+            if let Some(listed) = listed {
+                return (port, listed[number]);
+            }
             if let Some(pattern) = port.held {
                 return (port, pattern);
             }

@@ -15,8 +15,9 @@ use anyhow::{Result, bail};
 use rayon::prelude::*;
 
 use super::alone::Alone;
+use super::histogram::Histogram;
 use super::pairing::Pairing;
-use super::stimulus::Random;
+use super::random::Random;
 use super::stream::{Course, Seen};
 use super::together::Together;
 use crate::golden::{Bound, Contract, Model};
@@ -53,6 +54,8 @@ pub struct Outcome {
     pub outputs: usize,
     /// The largest error of an output against the formula in f64.
     pub worst: Option<Worst>,
+    /// How the results are spread over the values of `f`.
+    pub histogram: Histogram,
     /// The first difference, at which the run ended.
     pub mismatch: Option<Mismatch>,
 }
@@ -219,6 +222,7 @@ impl<'a> Sequential<'a> {
         for seen in streams {
             outcome.points += seen.points;
             outcome.clocks += seen.clocks;
+            outcome.histogram.merge(&seen.histogram);
             let units = |worst: &Option<Worst>| worst.as_ref().map_or(-1.0, |worst| worst.units);
             if units(&seen.worst) > units(&outcome.worst) {
                 outcome.worst = seen.worst;
@@ -267,14 +271,30 @@ impl<'a> Sequential<'a> {
             .collect()
     }
 
-    /// Stimulus and expected outputs for a bench: the inputs of every clock of one stream of `points`
-    /// results, and the outputs before its edge.
+    /// See [`Lockstep::record`](super::Lockstep::record).
     ///
     /// # Errors
     /// Golden model and simulation differ; a design that cannot be simulated, or does not settle.
-    pub fn record(&self, points: u64) -> Result<Vectors> {
+    pub fn record(&self, points: u64, computations: &[Vec<i64>]) -> Result<Vectors> {
         let mut alone = self.alone(points)?;
         let mut vectors = Vectors::default();
+        self.add(&mut vectors, &mut alone)?;
+        if !computations.is_empty() {
+            alone.follow(self.pairing.listed(computations));
+            self.add(&mut vectors, &mut alone)?;
+        }
+        Ok(vectors)
+    }
+
+    /// The same with lines of no more than so many results.
+    #[must_use]
+    pub fn with_lines_of(mut self, results: i64) -> Self {
+        self.pairing.shorten(results);
+        self
+    }
+
+    /// The clocks of a stream to its end.
+    fn add(&self, vectors: &mut Vectors, alone: &mut Alone<'_>) -> Result<()> {
         while !alone.ended() {
             let outputs = self.pairing.outputs.iter();
             let outputs = outputs.map(|&net| alone.simulator.value(net)).collect();
@@ -292,7 +312,7 @@ impl<'a> Sequential<'a> {
                 mismatch.clock
             );
         }
-        Ok(vectors)
+        Ok(())
     }
 
     /// As [`Sequential::run`], in one stream, of which `file` takes the waveform from clock `from` on.

@@ -6,10 +6,11 @@ use anyhow::{Context, Result, anyhow, ensure};
 
 use super::combinations::{Combinations, Ports};
 use super::lockstep::{Mismatch, Worst};
+use super::points::Points;
 use super::stimulus::Stimulus;
-use super::stream::Stream;
+use super::stream::{Seen, Stream};
 use crate::base::fixed::{Format, MAX_WIDTH, exp2};
-use crate::golden::{Contract, Model, Operand, nearer};
+use crate::golden::{Contract, Model, nearer};
 use crate::hdl::netlist::{Design, NetId, RegisterKind};
 
 /// A design and its golden model, paired by the names of ports and registers.
@@ -29,10 +30,9 @@ pub(super) struct Pairing<'a> {
     /// The address of the microprogram.
     pub(super) address: NetId,
     pub(super) ports: Arc<Ports>,
-    /// The operands of the contract, as positions in the stimulus.
-    operands: Vec<usize>,
-    /// The same, with the domains that the stimulus draws from.
-    drawn: Vec<Operand>,
+    pub(super) points: Points<'a>,
+    /// Inputs from power-up on; every stream runs a copy of them with a seed of its own.
+    pub(super) stimulus: Stimulus,
     /// Of each result: itself, and the unit of the colour operand that it is made of.
     results: Vec<(Quantity, f64)>,
 }
@@ -89,15 +89,8 @@ impl<'a> Pairing<'a> {
             ensure!(compared.contains(id), "the golden model does not predict `{name}`");
         }
         let order = (!order.iter().copied().eq(0..inputs.len())).then_some(order);
-        let stimulus = Stimulus::new(design, contract.operands(), 0);
-        let operands = contract
-            .operands()
-            .iter()
-            .map(|operand| {
-                let at = stimulus.position(&operand.name);
-                at.with_context(|| format!("the contract speaks of operand `{}`", operand.name))
-            })
-            .collect::<Result<Vec<_>>>()?;
+        let points = Points::new(contract);
+        let stimulus = Stimulus::new(design, &points, 0)?;
         let position = |net: NetId| compared.iter().position(|&other| other == net);
         let handshake = design.handshake()?;
         let predicted = |net: NetId| {
@@ -136,8 +129,8 @@ impl<'a> Pairing<'a> {
             valid,
             ports: Arc::new(Ports::new(design)),
             address: design.register(design.control.address).q,
-            operands,
-            drawn: contract.operands().to_vec(),
+            points,
+            stimulus,
             results,
         })
     }
@@ -146,8 +139,7 @@ impl<'a> Pairing<'a> {
     /// anything else.
     pub(super) fn holding(mut self, held: &[(String, i64)]) -> Self {
         for (name, raw) in held {
-            let drawn = self.drawn.iter_mut().filter(|it| it.name == *name);
-            drawn.for_each(|operand| operand.domain = (*raw, *raw));
+            self.points.hold(name, *raw);
         }
         let mut ports = Ports::new(self.design);
         ports.hold(held);
@@ -155,13 +147,19 @@ impl<'a> Pairing<'a> {
         self
     }
 
-    /// The inputs of a seed.
-    pub(super) fn stimulus(&self, seed: u64) -> Stimulus {
-        let stimulus = Stimulus::new(self.design, &self.drawn, seed);
-        match self.contract.length() {
-            Some(length) => stimulus.with_length(length),
-            None => stimulus,
+    /// Draws no lines of more than so many results.
+    pub(super) fn shorten(&mut self, results: i64) {
+        if let Some(length) = self.contract.length() {
+            self.points.limit(length, results - 1);
         }
+    }
+
+    /// Computations with these raw operands, in the order of the contract.
+    pub(super) fn listed(&self, computations: &[Vec<i64>]) -> Combinations {
+        let mut ports = Ports::new(self.design);
+        let names = self.contract.operands().iter().map(|operand| operand.name.as_str());
+        ports.list(names, computations);
+        Combinations::new(Arc::new(ports), 0, computations.len() as u64)
     }
 
     /// The combinations of operands at so many places, from the first on.
@@ -206,27 +204,22 @@ impl<'a> Pairing<'a> {
         })
     }
 
-    /// The operands of the computation that runs, raw, in the order of the contract; whether they are in
-    /// the domain.
-    pub(super) fn operands(&self, stimulus: &Stimulus, raw: &mut Vec<i64>) -> bool {
-        raw.clear();
-        raw.extend(self.operands.iter().map(|&at| stimulus.accepted(at)));
-        let operands = self.contract.operands().iter();
-        operands.zip(raw).all(|(operand, raw)| (operand.domain.0..=operand.domain.1).contains(raw))
+    /// Whether raw operands, in the order of the contract, are in its domain.
+    pub(super) fn inside(&self, operands: &[i64]) -> bool {
+        let pairs = self.contract.operands().iter().zip(operands);
+        let mut pairs =
+            pairs.map(|(operand, raw)| (operand.domain.0..=operand.domain.1).contains(raw));
+        pairs.all(|inside| inside)
     }
 
-    /// The largest error of the results among these values, number `index` of the computation with these
-    /// operands, if it is beyond `units`.
-    pub(super) fn worse(
-        &self,
-        units: f64,
-        operands: &[i64],
-        index: u64,
-        values: &[u64],
-    ) -> Option<Worst> {
+    /// Takes note of the results among these values, number `index` of the computation with these operands of the
+    /// domain: of the word `f`, and of the largest error.
+    pub(super) fn measure(&self, seen: &mut Seen, operands: &[i64], index: u64, values: &[u64]) {
         let (control, colours) = operands.split_at(operands.len() - self.results.len());
-        let f = self.contract.references(&self.contract.point(control, index));
-        let mut largest = (units, None);
+        let point = self.contract.point(control, index);
+        seen.histogram.add(self.contract.f_format(), self.contract.f(&point));
+        let f = self.contract.references(&point);
+        let mut largest = (seen.worst.as_ref().map_or(-1.0, |worst| worst.units), None);
         for ((result, unit), &colour) in self.results.iter().zip(colours) {
             let colour = colour as f64 * unit;
             let units = nearer(result.value(values[result.at]), f.map(|f| f * colour));
@@ -234,13 +227,15 @@ impl<'a> Pairing<'a> {
                 largest = (units, Some(result.at));
             }
         }
-        let (units, at) = largest;
+        let (units, Some(at)) = largest else {
+            return;
+        };
         let names = self.contract.operands().iter().map(|it| it.name.clone());
-        Some(Worst {
+        seen.worst = Some(Worst {
             units,
-            output: self.model.signals()[at?].clone(),
+            output: self.model.signals()[at].clone(),
             operands: names.zip(operands.iter().copied()).collect(),
-        })
+        });
     }
 }
 

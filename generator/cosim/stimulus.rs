@@ -9,102 +9,26 @@
 //! resets come often in the middle of a computation of ten clocks, and still let most of one of thousands
 //! come to its end.
 
-use crate::base::fixed::mask;
-use crate::golden::Operand;
+use anyhow::{Result, ensure};
+
+use super::points::Points;
+use super::random::Random;
+use crate::base::fixed::{Format, mask};
 use crate::hdl::netlist::{Design, NetId, Role};
-
-/// A small deterministic generator (SplitMix64): the same numbers on every machine, and fast enough
-/// not to matter beside the simulation.
-#[derive(Clone, Debug)]
-pub struct Random(u64);
-
-impl Random {
-    /// The sequence of a seed.
-    pub fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    /// The next 64 bits.
-    pub fn bits(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// An integer from 0 to `below - 1`.
-    pub fn below(&mut self, below: u64) -> u64 {
-        ((u128::from(self.bits()) * u128::from(below)) >> 64) as u64
-    }
-
-    /// True once in `times`.
-    pub fn once_in(&mut self, times: u64) -> bool {
-        self.below(times) == 0
-    }
-
-    /// An integer from `low` to `high`.
-    pub fn within(&mut self, low: i64, high: i64) -> i64 {
-        let span = high.wrapping_sub(low).wrapping_add(1) as u64;
-        if span == 0 { self.bits() as i64 } else { low.wrapping_add(self.below(span) as i64) }
-    }
-
-    /// A raw value from `low` to `high`: often one of its ends or close to one (or to 0, which is as good as an
-    /// end).
-    pub fn of_domain(&mut self, domain: (i64, i64)) -> i64 {
-        let choice = self.below(16);
-        self.near_an_end(choice, domain)
-    }
-
-    /// A bit pattern for an operand: mostly of its domain, as [`Random::of_domain`] draws it, at times any.
-    pub fn pattern(&mut self, operand: &Operand) -> u64 {
-        let raw = match self.below(16) {
-            ANYTHING => self.bits() as i64,
-            choice => self.near_an_end(choice, operand.domain),
-        };
-        raw as u64 & mask(operand.format.width())
-    }
-
-    /// By one of 16 choices: an end, close to one, anywhere.
-    fn near_an_end(&mut self, choice: u64, (low, high): (i64, i64)) -> i64 {
-        match choice {
-            0 => low,
-            1 => high,
-            // Off by a random power of two: from the upper end, from the lower, from 0 where that is between
-            // (an angle, the component of a vector).
-            3..=13 if choice <= 8 || low < 0 && high > 0 => {
-                let reach = high.abs_diff(low);
-                let bits = self.below(u64::from(64 - reach.max(1).leading_zeros()) + 1);
-                let off = self.below(1 << bits.min(62)).min(reach) as i64;
-                match choice {
-                    3 | 4 => high.wrapping_sub(off),
-                    _ if low >= 0 || high <= 0 => low.wrapping_add(off),
-                    _ if choice.is_multiple_of(2) => off.min(high),
-                    _ => (-off).max(low),
-                }
-            }
-            _ => self.within(low, high),
-        }
-    }
-}
-
-/// The choice of 16 that a stimulus takes for any bit pattern at all.
-const ANYTHING: u64 = 2;
 
 /// Resets come within 2⁰, 2¹, … clocks after a start, in equal parts up to this many powers: as long as
 /// the longest line.
 const RESET_MAGNITUDES: u64 = 13;
 
 /// An operand as the stimulus drives it.
+#[derive(Clone, Copy)]
 struct Driven {
     /// Positions of data and strobe among the inputs.
     data: usize,
     strobe: usize,
-    operand: Operand,
-    /// Of its width.
-    mask: u64,
-    /// The raw value that the register was last given while the device could take it.
-    accepted: i64,
+    format: Format,
+    /// Its position among those of the points; one that they do not have takes any bit pattern.
+    at: Option<usize>,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -120,25 +44,29 @@ enum Phase {
 }
 
 /// The inputs of a device, clock by clock.
+#[derive(Clone)]
 pub struct Stimulus {
     random: Random,
     operands: Vec<Driven>,
-    /// The operand that says how many results a computation has.
-    length: Option<usize>,
     reset: usize,
     start: usize,
     phase: Phase,
     inputs: Vec<u64>,
+    /// The raw operands of the next point, in the order of the points.
+    next: Vec<i64>,
+    /// The raw values that the registers were last given while the device could take them.
+    accepted: Vec<i64>,
     /// Whether a reset has come between the start of the current computation and now.
     disturbed: bool,
     first: bool,
 }
 
 impl Stimulus {
-    /// The inputs of `design` in the order of its ports; `operands` give the domains.
+    /// The inputs of `design` in the order of its ports; the operands are those of `points`.
     ///
-    /// Operands of the design that `operands` does not mention take any bit pattern.
-    pub fn new(design: &Design, operands: &[Operand], seed: u64) -> Self {
+    /// # Errors
+    /// An operand of `points` that the design does not have.
+    pub fn new(design: &Design, points: &Points, seed: u64) -> Result<Self> {
         let names: Vec<&str> =
             design.inputs().map(|port| design.net(port.net).name.as_str()).collect();
         let position = |net: NetId| {
@@ -148,59 +76,50 @@ impl Stimulus {
         let mut driven = Vec::new();
         let (mut reset, mut start) = (0, 0);
         for port in design.inputs() {
-            let net = design.net(port.net);
             match port.role {
                 Role::Reset => reset = position(port.net),
                 Role::Start => start = position(port.net),
                 Role::Operand { strobe } => {
-                    let known = operands.iter().find(|operand| operand.name == net.name);
-                    let operand = known.cloned().unwrap_or_else(|| Operand {
-                        name: net.name.clone(),
-                        format: net.format,
-                        domain: (net.format.min_raw() as i64, net.format.max_raw() as i64),
-                        colour: false,
-                        doc: String::new(),
-                    });
+                    let net = design.net(port.net);
+                    let mut known = points.operands().iter();
                     driven.push(Driven {
                         data: position(port.net),
                         strobe: position(strobe),
-                        mask: mask(operand.format.width()),
-                        operand,
-                        accepted: 0,
+                        format: net.format,
+                        at: known.position(|operand| operand.name == net.name),
                     });
                 }
                 _ => {}
             }
         }
-        Self {
+        for (at, operand) in points.operands().iter().enumerate() {
+            let found = driven.iter().any(|driven| driven.at == Some(at));
+            ensure!(found, "the contract speaks of operand `{}`", operand.name);
+        }
+        Ok(Self {
             random: Random::new(seed),
             operands: driven,
-            length: None,
             reset,
             start,
             phase: Phase::Reset(2),
             inputs: vec![0; names.len()],
+            next: vec![0; points.operands().len()],
+            accepted: vec![0; points.operands().len()],
             disturbed: false,
             first: true,
-        }
+        })
     }
 
-    /// Operand `name` says how many results a computation has: it is drawn small more often than not, so that
-    /// long computations do not crowd out all others.
+    /// From power-up under another seed.
     #[must_use]
-    pub fn with_length(mut self, name: &str) -> Self {
-        self.length = self.position(name);
+    pub fn seeded(mut self, seed: u64) -> Self {
+        self.random = Random::new(seed);
         self
     }
 
-    /// The position of an operand among those of the design, for [`Stimulus::accepted`].
-    pub fn position(&self, name: &str) -> Option<usize> {
-        self.operands.iter().position(|driven| driven.operand.name == name)
-    }
-
-    /// The raw value that was last written to an operand while the device could take it.
-    pub fn accepted(&self, position: usize) -> i64 {
-        self.operands[position].accepted
+    /// The raw values that were last written while the device could take them, in the order of the points.
+    pub fn accepted(&self) -> &[i64] {
+        &self.accepted
     }
 
     /// Whether the computation that runs was started by this stimulus and not reset since.
@@ -209,7 +128,7 @@ impl Stimulus {
     }
 
     /// The inputs of the next clock, given `busy` as it stands before the edge.
-    pub fn next(&mut self, busy: bool) -> &[u64] {
+    pub fn next(&mut self, busy: bool, points: &Points) -> &[u64] {
         self.inputs.fill(0);
         self.inputs[self.reset] = 1;
         match self.phase {
@@ -217,9 +136,10 @@ impl Stimulus {
                 self.inputs[self.reset] = 0;
                 self.disturbed = true;
                 if !self.first {
-                    self.noise(busy);
+                    self.noise(busy, points);
                 }
-                self.phase = if left > 0 { Phase::Reset(left - 1) } else { self.next_point() };
+                self.phase =
+                    if left > 0 { Phase::Reset(left - 1) } else { self.next_point(points) };
             }
             Phase::Writing(left) => self.write(left),
             Phase::Starting(idle) => {
@@ -229,7 +149,7 @@ impl Stimulus {
                     self.phase = Phase::Starting(idle - 1);
                 }
             }
-            Phase::Running(reset) => self.run(busy, reset),
+            Phase::Running(reset) => self.run(busy, reset, points),
         }
         self.accept(busy);
         &self.inputs
@@ -254,10 +174,10 @@ impl Stimulus {
 
     /// A clock after `start`: until the device has ended, now and then something that it must ignore,
     /// or a reset.
-    fn run(&mut self, busy: bool, reset: Option<u64>) {
+    fn run(&mut self, busy: bool, reset: Option<u64>, points: &Points) {
         if busy {
             if self.random.once_in(6) {
-                self.noise(true);
+                self.noise(true, points);
             }
             self.phase = Phase::Running(reset.map(|clocks| clocks.saturating_sub(1)));
             if reset == Some(0) {
@@ -268,7 +188,7 @@ impl Stimulus {
             return;
         }
         // Ended, and the device takes operands again in this very clock.
-        self.phase = self.next_point();
+        self.phase = self.next_point(points);
         match self.phase {
             Phase::Writing(left) => self.write(left),
             Phase::Starting(0) => self.begin(),
@@ -278,18 +198,29 @@ impl Stimulus {
     }
 
     /// What to do for the next point.
-    fn next_point(&mut self) -> Phase {
+    fn next_point(&mut self, points: &Points) -> Phase {
         let all = (1u64 << self.operands.len()) - 1;
-        if self.first {
-            return Phase::Writing(all);
-        }
-        match self.random.below(8) {
-            // The same operands once more.
-            0 => Phase::Starting(self.random.below(4) as u32),
-            // Some of them.
-            1 | 2 => Phase::Writing(self.random.bits() & all),
-            _ => Phase::Writing(all),
-        }
+        let written = if self.first {
+            all
+        } else {
+            match self.random.below(8) {
+                // The same operands once more.
+                0 => return Phase::Starting(self.random.below(4) as u32),
+                // Some of them.
+                1 | 2 => self.random.bits() & all,
+                _ => all,
+            }
+        };
+        let places = self.operands.iter().enumerate();
+        let drawn = places.filter(|(at, _)| written >> at & 1 == 1);
+        let free = drawn.filter_map(|(_, driven)| driven.at).fold(0, |free, at| free | 1 << at);
+        self.next.copy_from_slice(&self.accepted);
+        points.draw(&mut self.random, &mut self.next, free);
+        // What leads to the peak is written too.
+        let moved =
+            |driven: &Driven| driven.at.is_some_and(|at| self.next[at] != self.accepted[at]);
+        let moved = self.operands.iter().enumerate().filter(|(_, driven)| moved(driven));
+        Phase::Writing(moved.fold(written, |written, (at, _)| written | 1 << at))
     }
 
     /// Writes of the operands in `left`: one, or all at once, perhaps together with `start`.
@@ -299,11 +230,13 @@ impl Stimulus {
             1 => left & self.random.bits(),
             _ => left,
         };
-        for at in 0..self.operands.len() {
+        for (at, driven) in self.operands.iter().enumerate() {
             if now >> at & 1 == 1 {
-                let bits = self.value(at);
-                let driven = &self.operands[at];
-                self.inputs[driven.data] = bits;
+                let bits = match driven.at {
+                    Some(at) => self.next[at] as u64,
+                    None => self.random.bits(),
+                };
+                self.inputs[driven.data] = bits & mask(driven.format.width());
                 self.inputs[driven.strobe] = 1;
             }
         }
@@ -323,34 +256,20 @@ impl Stimulus {
     }
 
     /// Strobes, data and `start` at random: ignored while busy.
-    fn noise(&mut self, busy: bool) {
-        for at in 0..self.operands.len() {
-            let bits = self.value(at);
-            let strobe = self.random.once_in(3);
-            let driven = &self.operands[at];
-            self.inputs[driven.data] = bits;
-            self.inputs[driven.strobe] = u64::from(strobe);
+    fn noise(&mut self, busy: bool, points: &Points) {
+        let random = &mut self.random;
+        for driven in &self.operands {
+            let bits = match driven.at {
+                Some(at) if random.once_in(8) => points.any(random, at) as u64,
+                Some(at) => points.one(random, at) as u64,
+                None => random.bits(),
+            };
+            self.inputs[driven.data] = bits & mask(driven.format.width());
+            self.inputs[driven.strobe] = u64::from(random.once_in(3));
         }
         if busy {
             self.inputs[self.start] = u64::from(self.random.once_in(2));
         }
-    }
-
-    /// A bit pattern for an operand: mostly of its domain, often at its ends or close to one (or to 0, which
-    /// is as good as an end), sometimes anything.
-    fn value(&mut self, at: usize) -> u64 {
-        let Driven { operand, mask, .. } = &self.operands[at];
-        let (low, high) = operand.domain;
-        let reach = high.abs_diff(low).max(1);
-        if self.length == Some(at) && !self.random.once_in(16) {
-            // Of a random magnitude, small ones first: the smaller of two draws.
-            let magnitudes = u64::from(64 - reach.leading_zeros()) + 1;
-            let bits = self.random.below(magnitudes);
-            let bits = bits.min(self.random.below(magnitudes));
-            let above = self.random.below(1 << bits.min(62)).min(reach);
-            return low.wrapping_add(above as i64) as u64 & mask;
-        }
-        self.random.pattern(&self.operands[at].operand)
     }
 
     /// Notes what the registers take at this edge.
@@ -358,9 +277,11 @@ impl Stimulus {
         if busy {
             return;
         }
-        for driven in &mut self.operands {
-            if self.inputs[driven.strobe] == 1 {
-                driven.accepted = driven.operand.format.raw(self.inputs[driven.data]) as i64;
+        for driven in &self.operands {
+            if let Some(at) = driven.at
+                && self.inputs[driven.strobe] == 1
+            {
+                self.accepted[at] = driven.format.raw(self.inputs[driven.data]) as i64;
             }
         }
     }
@@ -368,6 +289,7 @@ impl Stimulus {
 
 #[cfg(test)]
 mod tests {
+    use super::super::points::tests::Pulse;
     use super::*;
     use crate::base::fixed::Format;
     use crate::hdl::dsl::{Designer, end, step, valid};
@@ -383,20 +305,6 @@ mod tests {
         d.finish().unwrap()
     }
 
-    #[test]
-    fn what_is_drawn_of_a_domain_is_in_it() {
-        let mut random = Random::new(5);
-        for (low, high) in [(0, 0), (7, 7), (0, 1), (-3, -2), (-4, 9), (i64::MIN, i64::MAX)] {
-            let mut ends = [false; 2];
-            for _ in 0..500 {
-                let raw = random.of_domain((low, high));
-                assert!((low..=high).contains(&raw), "{raw} of {low}..={high}");
-                ends = [ends[0] || raw == low, ends[1] || raw == high];
-            }
-            assert_eq!(ends, [true; 2], "{low}..={high}");
-        }
-    }
-
     /// What happened to computations of some length.
     #[derive(Debug, Default)]
     struct Events {
@@ -408,13 +316,15 @@ mod tests {
     }
 
     fn events(length: u32, clocks: u32) -> Events {
-        let mut stimulus = Stimulus::new(&design(), &[], 1);
+        let pulse = Pulse::single(false);
+        let points = Points::new(&pulse);
+        let mut stimulus = Stimulus::new(&design(), &points, 1).unwrap();
         let (reset, start, strobe) = (stimulus.reset, stimulus.start, stimulus.operands[0].strobe);
         let mut left = 0;
         let mut events = Events::default();
         for _ in 0..clocks {
             let busy = left > 0;
-            let inputs = stimulus.next(busy);
+            let inputs = stimulus.next(busy, &points);
             let (reset, start) = (inputs[reset] == 0, inputs[start] == 1);
             let strobe = inputs[strobe] == 1;
             events.written += u32::from(busy && strobe);
@@ -449,16 +359,5 @@ mod tests {
         let events = events(4100, 4_000_000);
         assert!(events.complete > 800, "{events:?}");
         assert!(events.reset > 30 && events.reset < 150, "{events:?}");
-    }
-
-    #[test]
-    fn lengths_are_small_and_at_times_the_largest() {
-        let mut stimulus = Stimulus::new(&design(), &[], 1).with_length("x");
-        let drawn: Vec<u64> = (0..10_000).map(|_| stimulus.value(0)).collect();
-        let count = |wanted: fn(u64) -> bool| drawn.iter().filter(|&&x| wanted(x)).count();
-        assert!(count(|x| x == 0) > 1_000);
-        assert!(count(|x| x < 64) > 6_000);
-        assert!(count(|x| x > 2_000) > 200);
-        assert!(count(|x| x == 4095) > 20);
     }
 }

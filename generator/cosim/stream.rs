@@ -3,6 +3,7 @@
 use std::mem;
 
 use super::combinations::Combinations;
+use super::histogram::Histogram;
 use super::lockstep::{Mismatch, Worst};
 use super::pairing::Pairing;
 use super::stimulus::Stimulus;
@@ -14,6 +15,7 @@ pub(super) struct Seen {
     pub(super) points: u64,
     pub(super) clocks: u64,
     pub(super) worst: Option<Worst>,
+    pub(super) histogram: Histogram,
     pub(super) mismatch: Option<Mismatch>,
 }
 
@@ -52,7 +54,7 @@ impl Stream {
     pub(super) fn new(pairing: &Pairing, course: Course, busy: bool) -> Self {
         let source = match course {
             Course::Random { seed, points } => {
-                Source::Random { stimulus: pairing.stimulus(seed), seed, points }
+                Source::Random { stimulus: pairing.stimulus.clone().seeded(seed), seed, points }
             }
             Course::Combinations { first, count } => {
                 Source::Combinations(pairing.combinations(first, count))
@@ -76,6 +78,11 @@ impl Stream {
                 Source::Random { points, .. } => self.seen.points >= *points,
                 Source::Combinations(combinations) => !self.busy && combinations.all_started(),
             }
+    }
+
+    /// Goes on with combinations, as the device stands.
+    pub(super) fn follow(&mut self, combinations: Combinations) {
+        self.source = Source::Combinations(combinations);
     }
 
     /// What it goes through, for another to go the same way.
@@ -106,7 +113,7 @@ impl Stream {
     #[inline]
     pub(super) fn clock(&mut self, pairing: &Pairing) -> &[u64] {
         let inputs = match &mut self.source {
-            Source::Random { stimulus, .. } => stimulus.next(self.busy),
+            Source::Random { stimulus, .. } => stimulus.next(self.busy, &pairing.points),
             Source::Combinations(combinations) => combinations.next(self.busy),
         };
         match &pairing.order {
@@ -147,15 +154,14 @@ impl Stream {
             return;
         };
         if self.index == 0 {
-            self.inside = pairing.operands(stimulus, &mut self.operands);
+            self.operands.clear();
+            self.operands.extend(stimulus.accepted());
+            self.inside = pairing.inside(&self.operands);
         }
         if self.inside {
-            let worst = &mut self.seen.worst;
-            let units = worst.as_ref().map_or(-1.0, |worst| worst.units);
-            let worse = pairing.worse(units, &self.operands, self.index, values);
-            if worse.is_some() {
-                *worst = worse;
-            }
+            pairing.measure(&mut self.seen, &self.operands, self.index, values);
+        } else {
+            self.seen.histogram.add_outside();
         }
         self.index += 1;
     }

@@ -3,7 +3,7 @@
 
 use anyhow::{Context, Result, ensure};
 
-use super::Random;
+use super::{Points, Random};
 use crate::base::fixed::Format;
 use crate::golden::{Contract, Operand};
 use crate::hdl::netlist::{self, Design, Handshake, NetId, Role};
@@ -16,7 +16,7 @@ const LIMIT: u32 = 1 << 16;
 /// Computations in a list, the first of them the corners of the domain.
 const COMPUTATIONS: usize = 40;
 
-/// The most results of a computation in a list, unless it is a corner of the domain: a line is short.
+/// The longest line of a computation in a list, in intervals.
 const SHORT: i64 = 9;
 
 /// What one computation showed.
@@ -96,22 +96,13 @@ fn corners(contract: &dyn Contract) -> [Vec<i64>; 3] {
 /// Those of [`timing`]; golden model and simulation do not agree.
 pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Computation>> {
     let mut random = Random::new(1);
-    let mut points = Vec::from(corners(contract));
-    points.resize_with(COMPUTATIONS, || {
-        let operands = contract.operands().iter();
-        let draw = operands.map(|operand| random.of_domain(operand.domain));
-        draw.collect()
-    });
-    let length = contract.length().and_then(|name| {
-        let mut operands = contract.operands().iter();
-        operands.position(|operand| operand.name == name)
-    });
-    if let Some(at) = length {
-        for point in &mut points {
-            point[at] = point[at].min(random.within(0, SHORT));
-        }
+    let mut points = Points::new(contract);
+    if let Some(length) = contract.length() {
+        points.limit(length, SHORT);
     }
-    points.into_iter().map(|operands| computation(design, contract, operands)).collect()
+    let mut list = Vec::from(corners(contract).map(|corner| points.clamped(corner)));
+    list.resize_with(COMPUTATIONS, || points.of_domain(&mut random));
+    list.into_iter().map(|operands| computation(design, contract, operands)).collect()
 }
 
 fn computation(

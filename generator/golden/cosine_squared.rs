@@ -155,6 +155,11 @@ impl Reflectance for Arithmetic {
         vec![control[0], angle, control[2]]
     }
 
+    fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
+        let (angle, length) = (first[1], first[2]);
+        vec![line::interval(angle, last[1], length, first[0]), angle, length]
+    }
+
     /// A line of one point, its angle stretched by `√(n/2)` as the host does it. What the operand denotes is
     /// an angle and n together, so no cosine is told of it.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {

@@ -202,6 +202,18 @@ pub trait Reflectance: Send + Sync {
         control.to_vec()
     }
 
+    /// As [`Contract::peak`].
+    fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
+        let _ = control;
+        None
+    }
+
+    /// As [`Contract::line`].
+    fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
+        let _ = last;
+        first.to_vec()
+    }
+
     /// As [`Contract::length`].
     fn length(&self) -> Option<&str> {
         None
@@ -304,6 +316,14 @@ impl Contract for Highlight {
 
     fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
         self.reflectance.point(control, index)
+    }
+
+    fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
+        self.reflectance.peak(control)
+    }
+
+    fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
+        self.reflectance.line(first, last)
     }
 
     fn length(&self) -> Option<&str> {

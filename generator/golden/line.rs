@@ -93,6 +93,11 @@ pub fn angle_at(format: Format, start: i64, delta: i64, index: u64) -> i64 {
     format.narrow(sum, format.frac, Rounding::Truncate, Overflow::Wrap) as i64
 }
 
+/// The step of a line of `length` intervals from an angle to another; of none that given.
+pub fn interval(first: i64, last: i64, length: i64, given: i64) -> i64 {
+    if length == 0 { given } else { (last - first) / length }
+}
+
 /// The angle of the point `index` of a line, in right angles, as an expression of Python.
 pub fn angle_expression(format: Format) -> String {
     let turn = exp2(format.width() as i32 - format.frac);

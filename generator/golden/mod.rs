@@ -137,6 +137,26 @@ pub trait Contract: Send + Sync {
         control.to_vec()
     }
 
+    /// Where the formula is largest: these control operands with those changed that lead there (a cosine to 1, an
+    /// angle or a vector to 0). Points for tests are drawn between there and anywhere, by the value of the formula;
+    /// it should not rise on the straight way from there to `control`.
+    ///
+    /// `None`: the operands with a fraction are each taken to an end of their domain or to 0, to those where the
+    /// formula turns out to be largest. A device whose peak lies elsewhere says so here.
+    fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
+        let _ = control;
+        None
+    }
+
+    /// The control operands of a computation of several results that goes from the point `first` to the point
+    /// `last`, as far as `first` says how many there are: the inverse of [`Contract::point`].
+    ///
+    /// A device with one result per `start` shows `first`.
+    fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
+        let _ = last;
+        first.to_vec()
+    }
+
     /// The operand that says how many results a computation has, when one does.
     fn length(&self) -> Option<&str> {
         None

@@ -13,6 +13,7 @@ mod plant;
 mod proof;
 mod run;
 mod score;
+mod shipped;
 #[cfg(test)]
 mod tests;
 mod verilog;
@@ -20,4 +21,5 @@ mod verilog;
 pub use fault::{Bit, Fault, Faults, Kind, Site};
 pub use run::{Difference, Found, How, Leg, Verdict, run};
 pub use score::{Score, TOLERATED, Tally, TextScore};
+pub use shipped::notices;
 pub use verilog::{POINTS as BENCH_POINTS, Text, TextFault, TextVerdict};

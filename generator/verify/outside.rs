@@ -8,7 +8,7 @@ use tempfile::TempDir;
 
 use super::{Finding, Leg, Subject, Verdict};
 use crate::base::text::grouped;
-use crate::core::{BENCH_POINTS, BENCH_SEED};
+use crate::core::BENCH_SEED;
 use crate::package;
 use crate::tools::gates;
 use crate::tools::synthesis::{FAMILIES, Family, synthesise};
@@ -198,7 +198,7 @@ pub const COCOTB: Leg = Leg {
 /// Everything that is emitted, in a directory of its own.
 fn place(subject: &Subject<'_>) -> Result<TempDir> {
     let place = tempfile::tempdir().context("cannot make a directory for what is emitted")?;
-    let vectors = subject.unit.vectors(BENCH_POINTS, BENCH_SEED)?;
+    let vectors = subject.unit.shipped_vectors()?;
     let files = subject.unit.files(subject.path, vectors)?;
     for file in files.iter().chain([&package::driver()]) {
         let path = place.path().join(&file.path);

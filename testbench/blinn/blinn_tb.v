@@ -16,8 +16,8 @@ module blinn_tb #(
     parameter STIMULUS_FILE = "blinn_stimulus.mem",
     parameter EXPECTED_FILE = "blinn_expected.mem"
 );
-    localparam CLOCKS     = 220;
-    localparam KNOWN_FROM = 10;  // results are compared from this clock on
+    localparam CLOCKS     = 1946;
+    localparam KNOWN_FROM = 11;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 
     reg [61:0] stimulus [0:CLOCKS-1];

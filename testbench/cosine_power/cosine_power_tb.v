@@ -16,8 +16,8 @@ module cosine_power_tb #(
     parameter STIMULUS_FILE = "cosine_power_stimulus.mem",
     parameter EXPECTED_FILE = "cosine_power_expected.mem"
 );
-    localparam CLOCKS     = 226;
-    localparam KNOWN_FROM = 11;  // results are compared from this clock on
+    localparam CLOCKS     = 1068;
+    localparam KNOWN_FROM = 12;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 
     reg [61:0] stimulus [0:CLOCKS-1];

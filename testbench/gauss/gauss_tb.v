@@ -16,8 +16,8 @@ module gauss_tb #(
     parameter STIMULUS_FILE = "gauss_stimulus.mem",
     parameter EXPECTED_FILE = "gauss_expected.mem"
 );
-    localparam CLOCKS     = 220;
-    localparam KNOWN_FROM = 10;  // results are compared from this clock on
+    localparam CLOCKS     = 1855;
+    localparam KNOWN_FROM = 11;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 
     reg [61:0] stimulus [0:CLOCKS-1];

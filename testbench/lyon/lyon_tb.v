@@ -16,8 +16,8 @@ module lyon_tb #(
     parameter STIMULUS_FILE = "lyon_stimulus.mem",
     parameter EXPECTED_FILE = "lyon_expected.mem"
 );
-    localparam CLOCKS     = 360;
-    localparam KNOWN_FROM = 14;  // results are compared from this clock on
+    localparam CLOCKS     = 1633;
+    localparam KNOWN_FROM = 22;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 
     reg [90:0] stimulus [0:CLOCKS-1];

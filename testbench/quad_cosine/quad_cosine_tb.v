@@ -16,8 +16,8 @@ module quad_cosine_tb #(
     parameter STIMULUS_FILE = "quad_cosine_stimulus.mem",
     parameter EXPECTED_FILE = "quad_cosine_expected.mem"
 );
-    localparam CLOCKS     = 36;
-    localparam KNOWN_FROM = 7;  // results are compared from this clock on
+    localparam CLOCKS     = 13380;
+    localparam KNOWN_FROM = 8;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 
     reg [92:0] stimulus [0:CLOCKS-1];

@@ -16,8 +16,8 @@ module rough_tb #(
     parameter STIMULUS_FILE = "rough_stimulus.mem",
     parameter EXPECTED_FILE = "rough_expected.mem"
 );
-    localparam CLOCKS     = 310;
-    localparam KNOWN_FROM = 13;  // results are compared from this clock on
+    localparam CLOCKS     = 3678;
+    localparam KNOWN_FROM = 19;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 
     reg [85:0] stimulus [0:CLOCKS-1];

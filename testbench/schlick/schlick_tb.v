@@ -16,8 +16,8 @@ module schlick_tb #(
     parameter STIMULUS_FILE = "schlick_stimulus.mem",
     parameter EXPECTED_FILE = "schlick_expected.mem"
 );
-    localparam CLOCKS     = 372;
-    localparam KNOWN_FROM = 17;  // results are compared from this clock on
+    localparam CLOCKS     = 1648;
+    localparam KNOWN_FROM = 18;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 
     reg [61:0] stimulus [0:CLOCKS-1];

@@ -16,8 +16,8 @@ module schlick_wide_tb #(
     parameter STIMULUS_FILE = "schlick_wide_stimulus.mem",
     parameter EXPECTED_FILE = "schlick_wide_expected.mem"
 );
-    localparam CLOCKS     = 468;
-    localparam KNOWN_FROM = 21;  // results are compared from this clock on
+    localparam CLOCKS     = 1980;
+    localparam KNOWN_FROM = 22;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 
     reg [73:0] stimulus [0:CLOCKS-1];

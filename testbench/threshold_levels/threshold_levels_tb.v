@@ -16,8 +16,8 @@ module threshold_levels_tb #(
     parameter STIMULUS_FILE = "threshold_levels_stimulus.mem",
     parameter EXPECTED_FILE = "threshold_levels_expected.mem"
 );
-    localparam CLOCKS     = 162;
-    localparam KNOWN_FROM = 8;  // results are compared from this clock on
+    localparam CLOCKS     = 5559;
+    localparam KNOWN_FROM = 9;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 
     reg [61:0] stimulus [0:CLOCKS-1];

@@ -21,6 +21,7 @@ mod pages;
 mod proofs;
 mod rough_microprogram;
 mod shared_products;
+mod spread;
 mod streams;
 
 use cli::{place, refusals};

@@ -9,7 +9,6 @@ use serde_json::json;
 use super::{Loaded, load};
 use crate::cli::store::{self, Written};
 use crate::cli::{Output, progress, tables};
-use crate::core::{BENCH_POINTS, BENCH_SEED};
 use crate::package::{self, OutputFile, Seal};
 use crate::registry::Registry;
 
@@ -73,7 +72,7 @@ pub fn all_files(output: Output, loaded: &[Loaded]) -> Result<Vec<Vec<OutputFile
 
 /// Every file of a configuration, with its bench.
 fn files(one: &Loaded) -> Result<Vec<OutputFile>> {
-    let vectors = one.unit.vectors(BENCH_POINTS, BENCH_SEED);
+    let vectors = one.unit.shipped_vectors();
     let vectors = vectors.with_context(|| format!("`{}`", one.path))?;
     one.unit.files(&one.path, vectors).with_context(|| format!("`{}`", one.path))
 }

@@ -5,8 +5,10 @@ use anyhow::Result;
 use super::Setup;
 use super::reference::{Expected, Reference};
 use crate::base::fixed::mask;
+use crate::cosim::histogram::Histogram;
 use crate::cosim::lockstep::Worst;
-use crate::cosim::stimulus::Random;
+use crate::cosim::random::Random;
+use crate::golden::Operand;
 use crate::golden::pipeline::Occupancy;
 
 /// How eager a side of the handshake is: it is ready once in so many clocks.
@@ -43,6 +45,7 @@ pub(super) struct Lane {
     pub(super) points: u64,
     pub(super) clocks: u64,
     pub(super) worst: Option<Worst>,
+    pub(super) histogram: Histogram,
     pub(super) out_ready: bool,
 }
 
@@ -62,6 +65,7 @@ impl Lane {
             points: 0,
             clocks: 0,
             worst: None,
+            histogram: Histogram::default(),
             out_ready: true,
         })
     }
@@ -89,8 +93,7 @@ impl Lane {
             self.offered = None;
         }
         if self.offered.is_none() && self.random.once_in(self.pace.0) {
-            let operands: Vec<u64> =
-                setup.operands.iter().map(|operand| self.random.pattern(operand)).collect();
+            let operands = self.draw(setup);
             let expected = self.reference.point(&operands)?;
             let side = self.random.bits() & mask(setup.side.max(1));
             self.offered = Some(Point { operands, side, expected });
@@ -121,8 +124,23 @@ impl Lane {
         Ok(())
     }
 
+    /// Bit patterns for the operands of a point.
+    fn draw(&mut self, setup: &Setup<'_>) -> Vec<u64> {
+        let mut raw = vec![0; setup.points.operands().len()];
+        setup.points.draw(&mut self.random, &mut raw, u64::MAX);
+        let bits = |operand: &Operand| {
+            let mut known = setup.points.operands().iter();
+            match known.position(|it| it.name == operand.name) {
+                Some(at) => raw[at] as u64 & mask(operand.format.width()),
+                None => self.random.pattern(operand),
+            }
+        };
+        setup.operands.iter().map(bits).collect()
+    }
+
     /// The error of a result against the formula.
     fn judge(&mut self, setup: &Setup<'_>, point: &Point) {
+        setup.formula.count(&point.operands, &mut self.histogram);
         let Some((units, at)) = setup.formula.worst(&point.operands, &point.expected.results)
         else {
             return;

@@ -15,8 +15,10 @@ use std::io::Write;
 use anyhow::{Context, Result, ensure};
 use rayon::prelude::*;
 
+use super::histogram::Histogram;
 use super::lockstep::{LANES, Mismatch, Outcome, Worst};
-use super::stimulus::Random;
+use super::points::Points;
+use super::random::Random;
 use crate::golden::{Contract, Model, Operand};
 use crate::hdl::netlist::{Design, NetId, Pipeline, Role};
 use crate::hdl::sim::Simulator;
@@ -51,6 +53,7 @@ pub(super) struct Setup<'a> {
     positions: Vec<usize>,
     /// The operands, with the domains that are drawn from.
     operands: Vec<Operand>,
+    points: Points<'a>,
     results: Vec<NetId>,
     out_valid: NetId,
     in_ready: Option<NetId>,
@@ -113,6 +116,7 @@ impl<'a> Pipelined<'a> {
             side_in: at(Role::SideIn),
             positions,
             operands,
+            points: Points::new(contract),
             results,
             out_valid: out(Role::Valid).context("the pipeline has no output `out_valid`")?,
             in_ready: out(Role::InReady),
@@ -128,6 +132,7 @@ impl<'a> Pipelined<'a> {
         for (name, raw) in held {
             let drawn = self.setup.operands.iter_mut().filter(|it| it.name == *name);
             drawn.for_each(|operand| operand.domain = (*raw, *raw));
+            self.setup.points.hold(name, *raw);
         }
         self
     }
@@ -271,6 +276,7 @@ impl<'a> Pipelined<'a> {
         for seen in streams {
             outcome.points += seen.points;
             outcome.clocks += seen.clocks;
+            outcome.histogram.merge(&seen.histogram);
             let units = |worst: &Option<Worst>| worst.as_ref().map_or(-1.0, |worst| worst.units);
             if units(&seen.worst) > units(&outcome.worst) {
                 outcome.worst = seen.worst;
@@ -294,6 +300,7 @@ struct Seen {
     points: u64,
     clocks: u64,
     worst: Option<Worst>,
+    histogram: Histogram,
     mismatch: Option<Mismatch>,
 }
 
@@ -383,6 +390,7 @@ impl<const L: usize> Group<L> {
                 points: lane.points,
                 clocks: lane.clocks,
                 worst: lane.worst.take(),
+                histogram: std::mem::take(&mut lane.histogram),
                 mismatch: mismatch.take(),
             })
             .collect()

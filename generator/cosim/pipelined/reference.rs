@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Result, anyhow};
 
+use crate::cosim::histogram::Histogram;
 use crate::golden::{Contract, Model};
 use crate::hdl::netlist::{Design, NetId, Pipeline, Role};
 
@@ -189,6 +190,17 @@ impl<'a> Formula<'a> {
             .into_iter()
             .all(|((_, raw), operand)| (operand.domain.0..=operand.domain.1).contains(raw));
         (raw, inside)
+    }
+
+    /// Counts the word `f` of a point.
+    pub(super) fn count(&self, bits: &[u64], histogram: &mut Histogram) {
+        let (raw, inside) = self.operands(bits);
+        if !inside {
+            return histogram.add_outside();
+        }
+        let control: Vec<i64> =
+            raw[..raw.len() - self.outputs.len()].iter().map(|(_, raw)| *raw).collect();
+        histogram.add(self.contract.f_format(), self.contract.f(&self.contract.point(&control, 0)));
     }
 
     /// The largest error, in output units, and its output.

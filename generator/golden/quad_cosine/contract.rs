@@ -73,6 +73,11 @@ impl Reflectance for Arithmetic {
         vec![control[0], angle, control[2], control[3]]
     }
 
+    fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
+        let (angle, length) = (first[1], first[3]);
+        vec![line::interval(angle, last[1], length, first[0]), angle, first[2], length]
+    }
+
     /// A line of one point.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let angle = line::raw_angle(&operands[1], gamma);

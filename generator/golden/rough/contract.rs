@@ -95,6 +95,12 @@ impl Reflectance for Arithmetic {
         shared::operands_at(operands, gamma, n, &no_deviation)
     }
 
+    /// Where γ is dγ; where dγ is added to it, both are 0.
+    fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
+        let deviation = if control[3] == 1 { control[1] } else { self.params.largest_cosine() };
+        Some(vec![deviation, deviation, control[2], control[3]])
+    }
+
     /// Every cos γ and every n, with some settings of dγ of the domain, of both signs.
     fn sweep(&self) -> Option<Sweep> {
         let (low, high) = self.params.cos_dgamma_domain();

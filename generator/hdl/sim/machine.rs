@@ -40,6 +40,16 @@ impl<const LANES: usize> Machine<LANES> {
         &self.program
     }
 
+    /// Inverts bits of a word of a ROM: a fault, which the same call takes back. Words are numbered through all ROMs, in
+    /// the order of the design.
+    ///
+    /// # Panics
+    /// When there is no such word.
+    pub fn invert(&mut self, word: usize, bits: u64) {
+        Arc::make_mut(&mut self.program).words[word] ^= bits;
+        self.changed = Sources::MAX;
+    }
+
     /// A rising edge, if there is one; then the inputs change, if there are new ones; then all nets are
     /// brought up to date. Whether anything that starts a change has changed.
     ///

@@ -193,7 +193,7 @@ pub(super) struct RegisterEdge {
 }
 
 /// One of the two banks: what happens to its slots outside settling.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Bank {
     pub inputs: Vec<InputPort>,
     /// To be performed before `registers`; no operand of either is written by an earlier one.
@@ -204,7 +204,7 @@ pub(super) struct Bank {
 }
 
 /// A compiled [`Design`](crate::hdl::netlist::Design). Machines share it; it holds no state.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Program {
     /// In an order in which each stands after those that compute its operands.
     pub(super) steps: Vec<Step>,

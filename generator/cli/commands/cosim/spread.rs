@@ -1,0 +1,25 @@
+//! How the points of a run are spread over the values of `f`.
+
+use serde_json::{Value, json};
+
+use crate::cli::tables;
+use crate::cosim::{CLASSES, Histogram};
+
+/// Prints the share of the points in each class.
+pub fn print(histogram: &Histogram) {
+    let counts = histogram.counts();
+    let all = counts.iter().sum::<u64>().max(1) as f64;
+    let cell = |text: String| format!("{text:>8}");
+    let classes: String = CLASSES.map(|class| cell(class.to_owned())).concat();
+    let shares = counts.map(|count| cell(format!("{:.1} %", 100.0 * count as f64 / all)));
+    tables::print_line(&format!("  f     {classes}"));
+    tables::print_line(&format!("  points{}", shares.concat()));
+}
+
+/// The same as counts.
+pub fn as_json(histogram: &Histogram) -> Value {
+    let classes = CLASSES.iter().zip(histogram.counts());
+    let classes: Vec<Value> =
+        classes.map(|(class, points)| json!({ "f": class, "points": points })).collect();
+    json!({ "classes": classes, "share_between_0_and_1": histogram.share_inside() })
+}

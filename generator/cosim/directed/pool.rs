@@ -1,0 +1,84 @@
+//! Computations to choose from.
+
+use crate::cosim::{Points, Random};
+use crate::golden::Contract;
+
+/// Points that are drawn as those of the default test are.
+const DRAWN: usize = 1024;
+
+/// Points drawn evenly, with the other operands such that they are seen: they read words far from the peak.
+const SHOWN: usize = 1536;
+
+/// Every value of an operand without a fraction is a point, and the edges of the highlight there, if it has no more
+/// values than this.
+const MOST_VALUES: u64 = 4096;
+
+/// The longest line, in intervals.
+const LONGEST: i64 = 1023;
+
+/// Where the formula is seen best.
+const VALUE: f64 = 0.6;
+
+/// Computations to choose from.
+pub struct Pool {
+    /// Those that are watched in all that they do.
+    pub drawn: Vec<Vec<i64>>,
+    /// Those that read words.
+    pub readers: Vec<Vec<i64>>,
+}
+
+/// The pool for a contract; a function of it alone.
+pub fn pool(contract: &dyn Contract) -> Pool {
+    let mut random = Random::new(1);
+    let mut points = Points::new(contract);
+    if let Some(length) = contract.length() {
+        points.limit(length, LONGEST);
+    }
+    let count = points.operands().len();
+    let mut drawn = vec![vec![0; count]; DRAWN];
+    let mut readers = Vec::new();
+    for values in &mut drawn {
+        points.draw(&mut random, values, u64::MAX);
+    }
+    let control = points.operands().iter().filter(|operand| !operand.colour).count();
+    let bright = |values: &mut [i64]| {
+        for (value, operand) in values.iter_mut().zip(points.operands()).skip(control) {
+            *value = operand.domain.1;
+        }
+    };
+    if contract.length().is_none() {
+        for _ in 0..SHOWN {
+            let mut values = points.evenly(&mut random);
+            bright(&mut values);
+            points.show(&mut values[..control]);
+            readers.push(values);
+        }
+    }
+    for at in 0..control {
+        let operand = &points.operands()[at];
+        let (low, high) = operand.domain;
+        let is_length = contract.length() == Some(operand.name.as_str());
+        if operand.format.frac > 0 || is_length || low.abs_diff(high) >= MOST_VALUES {
+            continue;
+        }
+        for value in low..=high {
+            let mut values = points.evenly(&mut random);
+            bright(&mut values);
+            values[at] = value;
+            if let Some(length) = points.length() {
+                values[length] = random.within(0, 2);
+            }
+            for edge in points.edge(&values[..control]).into_iter().flatten() {
+                readers.push([&edge, &values[control..]].concat());
+            }
+            points.to_value(&mut values[..control], VALUE);
+            readers.push(values);
+        }
+    }
+    // Together in the lanes of a simulator run those that are of a length.
+    if let Some(length) = points.length() {
+        drawn.sort_by_key(|values| values[length]);
+        readers.sort_by_key(|values| values[length]);
+    }
+    Pool { drawn, readers }
+}

@@ -1,0 +1,141 @@
+//! Computations side by side in the lanes of a machine.
+
+use anyhow::{Context, Result, bail};
+
+use crate::base::fixed::mask;
+use crate::golden::Contract;
+use crate::hdl::netlist::{Design, NetId, Role};
+use crate::hdl::sim::Machine;
+
+/// Computations that run together.
+pub const LANES: usize = 32;
+
+/// More clocks than any computation takes.
+const LIMIT: u32 = 1 << 16;
+
+/// A set of lanes.
+pub type Lanes = u32;
+
+/// What a computation shows.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Shown {
+    /// Clocks from `start` to the next.
+    pub clocks: u32,
+    /// The result outputs whenever `valid` is high, with the clock.
+    pub results: Vec<(u32, Vec<u64>)>,
+}
+
+/// A design whose lanes each run one computation at a time: all operands are written in the clock of `start`, and
+/// while it runs their ports show the complement.
+pub struct SideBySide {
+    pub machine: Machine<LANES>,
+    inputs: Vec<[u64; LANES]>,
+    start: usize,
+    /// Data, strobe and width of each operand, in the order of the contract.
+    operands: Vec<(usize, usize, u64)>,
+    valid: NetId,
+    busy: NetId,
+    results: Vec<NetId>,
+}
+
+impl SideBySide {
+    /// After reset.
+    ///
+    /// # Errors
+    /// A contract and a design that do not belong together.
+    pub fn new(
+        design: &Design,
+        contract: &dyn Contract,
+        mut machine: Machine<LANES>,
+    ) -> Result<Self> {
+        let ports: Vec<NetId> = design.inputs().map(|port| port.net).collect();
+        let position =
+            |net: NetId| ports.iter().position(|&port| port == net).context("no such input");
+        let named = |name: &str| design.find(name).with_context(|| format!("no port `{name}`"));
+        let one = |wanted: Role| {
+            design.port(|role| role == wanted).map(|port| port.net).context("no handshake")
+        };
+        let operand = |name: &str| {
+            let port = design.inputs().find(|port| design.net(port.net).name == name);
+            let port = port.with_context(|| format!("no operand `{name}`"))?;
+            let Role::Operand { strobe } = port.role else {
+                bail!("`{name}` is no operand");
+            };
+            Ok((position(port.net)?, position(strobe)?, mask(design.width(port.net))))
+        };
+        let operands: Vec<_> =
+            contract.operands().iter().map(|it| operand(&it.name)).collect::<Result<_>>()?;
+        let (reset, start) = (position(one(Role::Reset)?)?, position(one(Role::Start)?)?);
+        let mut inputs = vec![[0; LANES]; ports.len()];
+        machine.update(false, Some(&inputs));
+        machine.update(true, None);
+        inputs[reset] = [1; LANES];
+        Ok(Self {
+            machine,
+            inputs,
+            start,
+            operands,
+            valid: one(Role::Valid)?,
+            busy: one(Role::Busy)?,
+            results: contract.outputs().iter().map(|name| named(name)).collect::<Result<_>>()?,
+        })
+    }
+
+    /// Runs computations with these raw operands to their ends, as many as there are lanes or fewer. `see` is shown
+    /// every clock before its edge, with the lanes that are busy.
+    ///
+    /// # Errors
+    /// One that does not end.
+    pub fn run<'c>(
+        &mut self,
+        computations: impl IntoIterator<Item = &'c [i64]>,
+        mut see: impl FnMut(&Machine<LANES>, Lanes),
+    ) -> Result<Vec<Shown>> {
+        let mut shown = Vec::new();
+        for (lane, computation) in computations.into_iter().enumerate() {
+            for (&(data, strobe, mask), &raw) in self.operands.iter().zip(computation) {
+                self.inputs[data][lane] = raw as u64 & mask;
+                self.inputs[strobe][lane] = 1;
+            }
+            self.inputs[self.start][lane] = 1;
+            shown.push(Shown::default());
+        }
+        self.clock();
+        for &(data, strobe, mask) in &self.operands {
+            self.inputs[data].iter_mut().for_each(|bits| *bits ^= mask);
+            self.inputs[strobe] = [0; LANES];
+        }
+        self.inputs[self.start] = [0; LANES];
+        for clock in 1..LIMIT {
+            self.machine.update(false, Some(&self.inputs));
+            let bits = |net| lanes(self.machine.lanes(net));
+            let (busy, valid) = (bits(self.busy), bits(self.valid));
+            let ended = |(lane, shown): (usize, &Shown)| shown.clocks > 0 || busy >> lane & 1 == 0;
+            for (lane, shown) in shown.iter_mut().enumerate().filter(|(_, shown)| shown.clocks == 0)
+            {
+                if busy >> lane & 1 == 0 {
+                    shown.clocks = clock;
+                } else if valid >> lane & 1 == 1 {
+                    let outputs = self.results.iter().map(|&net| self.machine.lane(net, lane));
+                    shown.results.push((clock, outputs.collect()));
+                }
+            }
+            if shown.iter().enumerate().all(ended) {
+                return Ok(shown);
+            }
+            see(&self.machine, busy);
+            self.machine.update(true, None);
+        }
+        bail!("a computation does not end within {LIMIT} clocks")
+    }
+
+    fn clock(&mut self) {
+        self.machine.update(false, Some(&self.inputs));
+        self.machine.update(true, None);
+    }
+}
+
+/// The lanes in which a net of one bit is 1.
+fn lanes(bits: [u64; LANES]) -> Lanes {
+    bits.iter().enumerate().fold(0, |set, (lane, &bit)| set | (bit as Lanes & 1) << lane)
+}

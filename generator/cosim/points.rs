@@ -1,0 +1,488 @@
+//! Which operands computations are given.
+//!
+//! Of all operands of a domain most leave `f` at 0 and some at 1: a highlight is narrow. Three of four points are
+//! therefore drawn *by the value of the formula*: the control operands are drawn, and moved along the straight line
+//! from the peak of `f` to where the formula has a value that is drawn too, half of the time evenly, half by
+//! decades. One in eight of these is taken to the very step at which the formula crosses that value, or leaves 0. The
+//! others are corners of the domain, evenly drawn, or any bits at all.
+
+use crate::base::fixed::exp2;
+use crate::golden::{Contract, Operand};
+
+use super::random::Random;
+
+/// A point is of one of so many kinds: 0 has any bits, 1 and 2 are corners of the domain, 3 is drawn evenly; the
+/// others are drawn by the value of the formula.
+const KINDS: i64 = 16;
+
+/// A line that is not drawn by the value of the formula is no longer than this, all but one in so many: long ones
+/// would crowd out all other points.
+const SHORT: i64 = 12;
+const LONG: u64 = 64;
+
+/// Halvings of the way from the peak by which a value is met: within some hundredths.
+const HALVINGS: u32 = 10;
+
+/// A value of the formula that shows, and neither of its ends.
+const MIDDLE: f64 = 0.6;
+
+/// Halvings of the way at most to where the formula is below its peak at all.
+const OCTAVES: u32 = 32;
+
+/// Settings of the other operands by which the peak is looked for, and the most operands that are moved for it.
+const SETTINGS: u32 = 8;
+const MOVED: usize = 6;
+
+/// What operands a point is given.
+pub struct Points<'a> {
+    contract: &'a dyn Contract,
+    /// With the domains that are drawn from: those of the contract, but of operands that are held.
+    operands: Vec<Operand>,
+    /// The first so many determine `f`.
+    control: usize,
+    /// The operand that says how many results a computation has.
+    length: Option<usize>,
+    /// Where `f` is largest, of the control operands that lead there; for contracts that do not say.
+    peak: Vec<Option<i64>>,
+}
+
+impl<'a> Points<'a> {
+    /// Points for a contract.
+    pub fn new(contract: &'a dyn Contract) -> Self {
+        let operands = contract.operands().to_vec();
+        let length = contract.length();
+        let length = operands.iter().position(|operand| Some(operand.name.as_str()) == length);
+        let control = operands.iter().filter(|operand| !operand.colour).count();
+        let mut points = Self { contract, control, length, peak: vec![None; control], operands };
+        points.peak = points.search();
+        points
+    }
+
+    /// Holds an operand at a raw value: seldom is anything else drawn for it.
+    pub fn hold(&mut self, name: &str, raw: i64) {
+        let held = self.operands.iter_mut().filter(|operand| operand.name == name);
+        held.for_each(|operand| operand.domain = (raw, raw));
+    }
+
+    /// Draws no more than `most` for an operand.
+    pub fn limit(&mut self, name: &str, most: i64) {
+        for operand in self.operands.iter_mut().filter(|operand| operand.name == name) {
+            operand.domain.1 = operand.domain.1.min(most).max(operand.domain.0);
+        }
+    }
+
+    /// Values, or what is nearest to them of what is drawn.
+    pub fn clamped(&self, values: Vec<i64>) -> Vec<i64> {
+        let pairs = values.into_iter().zip(&self.operands);
+        pairs.map(|(raw, operand)| raw.clamp(operand.domain.0, operand.domain.1)).collect()
+    }
+
+    /// The operands, in the order in which values are passed.
+    pub fn operands(&self) -> &[Operand] {
+        &self.operands
+    }
+
+    /// Draws new raw values for the operands whose bit is set in `free`. Of the others those change too that lead to
+    /// the peak.
+    pub fn draw(&self, random: &mut Random, values: &mut [i64], free: u64) {
+        let kind = random.within(0, KINDS - 1);
+        self.draw_kind(random, values, free, kind);
+    }
+
+    /// New raw values for all operands, of the domain.
+    pub fn of_domain(&self, random: &mut Random) -> Vec<i64> {
+        let mut values = vec![0; self.operands.len()];
+        let kind = random.within(1, KINDS - 1);
+        self.draw_kind(random, &mut values, u64::MAX, kind);
+        values
+    }
+
+    /// Raw values for all operands, each drawn evenly from its domain.
+    pub fn evenly(&self, random: &mut Random) -> Vec<i64> {
+        self.operands.iter().map(|it| random.within(it.domain.0, it.domain.1)).collect()
+    }
+
+    /// The position of the operand that says how many results a computation has.
+    pub fn length(&self) -> Option<usize> {
+        self.length
+    }
+
+    fn draw_kind(&self, random: &mut Random, values: &mut [i64], free: u64, kind: i64) {
+        for at in (0..values.len()).filter(|at| free >> at & 1 == 1) {
+            let domain = self.operands[at].domain;
+            values[at] = match kind {
+                0 => self.any(random, at),
+                1 | 2 => self.one(random, at),
+                3 => random.within(domain.0, domain.1),
+                // A colour shows what f is.
+                _ if at >= self.control && random.once_in(2) => {
+                    domain.1 - random.within(0, (domain.1 - domain.0) / 8)
+                }
+                _ if self.length == Some(at) || random.once_in(2) => self.one(random, at),
+                _ => random.within(domain.0, domain.1),
+            };
+        }
+        if kind > 3 {
+            self.spread(random, &mut values[..self.control]);
+        } else if let Some(length) = self.length
+            && !random.once_in(LONG)
+        {
+            let (low, high) = self.operands[length].domain;
+            values[length] = random.within(low, high.min(low.saturating_add(SHORT)));
+        }
+    }
+
+    /// A raw value for one operand, drawn on its own: often an end of the domain or close to one, and of a length a
+    /// short one more often than not, so that long computations do not crowd out all others.
+    pub fn one(&self, random: &mut Random, at: usize) -> i64 {
+        let (low, high) = self.operands[at].domain;
+        if self.length != Some(at) || random.once_in(16) {
+            return random.of_domain((low, high));
+        }
+        let reach = high.abs_diff(low);
+        let lengths = [random.magnitude(reach), random.magnitude(reach)];
+        low.wrapping_add(lengths[0].min(lengths[1]) as i64)
+    }
+
+    /// A raw value for one operand: half of the time any bit pattern of its format.
+    pub fn any(&self, random: &mut Random, at: usize) -> i64 {
+        let format = self.operands[at].format;
+        match random.once_in(2) {
+            true => random.within(format.min_raw() as i64, format.max_raw() as i64),
+            false => self.one(random, at),
+        }
+    }
+
+    /// Moves control operands to where the formula has a value; of a line, its ends.
+    fn spread(&self, random: &mut Random, control: &mut [i64]) {
+        let Some(length) = self.length else {
+            self.aim(random, control);
+            return;
+        };
+        let mut last = control.to_vec();
+        for (at, value) in last.iter_mut().enumerate() {
+            if at != length && self.peak[at].is_some() {
+                *value = self.one(random, at);
+            }
+        }
+        self.aim(random, &mut last);
+        self.aim(random, control);
+        let line = self.contract.line(control, &last);
+        for ((value, end), operand) in control.iter_mut().zip(line).zip(&self.operands) {
+            *value = end.clamp(operand.domain.0, operand.domain.1);
+        }
+    }
+
+    /// Moves control operands toward the peak, to where the formula has a value that is drawn.
+    fn aim(&self, random: &mut Random, far: &mut [i64]) {
+        let Some(way) = self.way(far) else { return };
+        let (top, bottom) = (way.top, way.bottom);
+        let exact = random.once_in(8);
+        let target = match random.below(4) {
+            0 if exact => bottom + f64::MIN_POSITIVE,
+            0 | 1 => bottom + (top - bottom) * random.unit(),
+            _ => {
+                let least = bottom.max(exp2(-self.contract.f_format().frac)).min(top);
+                least * libm::pow(top / least, random.unit())
+            }
+        };
+        let [inner, outer] = way.crossing(self.contract, target, exact);
+        let scale = if exact && random.once_in(2) { outer } else { inner };
+        far.copy_from_slice(&way.at(scale));
+    }
+
+    /// The last control operands on the way from the peak to these for which the formula is above what it is at its
+    /// foot (0, say), and the first for which it is not.
+    pub fn edge(&self, control: &[i64]) -> Option<[Vec<i64>; 2]> {
+        let way = self.way(control)?;
+        let target = way.bottom + f64::MIN_POSITIVE;
+        Some(way.crossing(self.contract, target, true).map(|scale| way.at(scale)))
+    }
+
+    /// Moves control operands toward the peak, to about a value of the formula.
+    pub fn to_value(&self, control: &mut [i64], value: f64) {
+        if let Some(way) = self.way(control) {
+            let [inner, _] = way.crossing(self.contract, value, false);
+            control.copy_from_slice(&way.at(inner));
+        }
+    }
+
+    /// Takes the control operands that do not lead to the peak to the ends of their domains for which the formula is
+    /// nearest to its middle, so that it is seen.
+    pub fn show(&self, control: &mut [i64]) {
+        let rest =
+            (0..self.control).filter(|&at| self.peak[at].is_none() && self.length != Some(at));
+        for at in rest {
+            let (low, high) = self.operands[at].domain;
+            let dim = |raw: &i64| {
+                let mut there = control.to_vec();
+                there[at] = *raw;
+                (self.contract.reference(&self.contract.point(&there, 0)) - MIDDLE).abs()
+            };
+            let choices = [control[at], low, high];
+            let best = choices.into_iter().min_by(|a, b| dim(a).total_cmp(&dim(b)));
+            control[at] = best.unwrap_or(control[at]);
+        }
+    }
+
+    /// The way from the peak to control operands, or to a place on it that is below the peak.
+    fn way(&self, far: &[i64]) -> Option<Way> {
+        let peak = self.peak(far);
+        let value = |control: &[i64]| self.contract.reference(&self.contract.point(control, 0));
+        let top = value(&peak);
+        let mut far = far.to_vec();
+        for _ in 0..OCTAVES {
+            let bottom = value(&far);
+            if bottom < top {
+                return Some(Way { peak, far, top, bottom });
+            }
+            // As large as at the peak: it is nearer that the formula falls, if anywhere.
+            far.iter_mut().zip(&peak).for_each(|(far, &peak)| *far = between(peak, *far, 0.5));
+        }
+        None
+    }
+
+    /// The peak to which operands are moved; operands that are held stay.
+    fn peak(&self, control: &[i64]) -> Vec<i64> {
+        let said = self.contract.peak(control).unwrap_or_else(|| {
+            let found = self.peak.iter().zip(control);
+            found.map(|(peak, &value)| peak.unwrap_or(value)).collect()
+        });
+        self.clamped(said)
+    }
+
+    /// Looks for the peak among the ends of the domain, and 0: of the operands with a fraction (a cosine, an angle,
+    /// the components of a vector), or of all if none has one.
+    fn search(&self) -> Vec<Option<i64>> {
+        let control = &self.operands[..self.control];
+        let moves = |at: &usize| self.length != Some(*at);
+        let fractions = (0..control.len()).filter(moves).filter(|&at| control[at].format.frac > 0);
+        let mut moved: Vec<usize> = fractions.take(MOVED).collect();
+        if moved.is_empty() {
+            moved = (0..control.len()).filter(moves).take(MOVED).collect();
+        }
+        let candidates: Vec<[i64; 3]> = moved
+            .iter()
+            .map(|&at| {
+                let (low, high) = control[at].domain;
+                [0.clamp(low, high), high, low]
+            })
+            .collect();
+        let mut random = Random::new(1);
+        let settings: Vec<Vec<i64>> = (0..SETTINGS)
+            .map(|_| (0..control.len()).map(|at| self.one(&mut random, at)).collect())
+            .collect();
+        let mut best = (f64::NEG_INFINITY, Vec::new());
+        for combination in 0..3usize.pow(moved.len() as u32) {
+            let digits = (0..moved.len()).map(|digit| combination / 3usize.pow(digit as u32) % 3);
+            let peak: Vec<i64> = candidates
+                .iter()
+                .zip(digits)
+                .map(|(candidates, digit)| candidates[digit])
+                .collect();
+            let mut sum = 0.0;
+            for setting in &settings {
+                let mut at = setting.clone();
+                moved.iter().zip(&peak).for_each(|(&moved, &raw)| at[moved] = raw);
+                sum += self.contract.reference(&at);
+            }
+            if sum > best.0 {
+                best = (sum, peak);
+            }
+        }
+        let mut found = vec![None; control.len()];
+        moved.into_iter().zip(best.1).for_each(|(at, raw)| found[at] = Some(raw));
+        found
+    }
+}
+
+/// A straight way along which the formula falls.
+struct Way {
+    peak: Vec<i64>,
+    far: Vec<i64>,
+    /// The formula at its ends.
+    top: f64,
+    bottom: f64,
+}
+
+impl Way {
+    fn at(&self, scale: f64) -> Vec<i64> {
+        let ends = self.peak.iter().zip(&self.far);
+        ends.map(|(&peak, &far)| between(peak, far, scale)).collect()
+    }
+
+    /// Where the formula crosses a value: just above it, and below; to the very step if that is wanted.
+    fn crossing(&self, contract: &dyn Contract, target: f64, exact: bool) -> [f64; 2] {
+        let mut at = self.far.clone();
+        let mut reaches = |scale: f64| {
+            for ((at, &peak), &far) in at.iter_mut().zip(&self.peak).zip(&self.far) {
+                *at = between(peak, far, scale);
+            }
+            contract.reference(&contract.point(&at, 0)) >= target
+        };
+        // The formula falls within a narrow part of the way: by octaves.
+        let spans = self.peak.iter().zip(&self.far).map(|(peak, far)| peak.abs_diff(*far));
+        let span = spans.max().unwrap_or(1);
+        let (mut inner, mut outer) = (f64::from(64 - span.leading_zeros()) + 1.0, 0.0);
+        for _ in 0..HALVINGS {
+            let middle = f64::midpoint(inner, outer);
+            match reaches(libm::exp2(-middle)) {
+                true => inner = middle,
+                false => outer = middle,
+            }
+        }
+        let (mut inner, mut outer) = (libm::exp2(-inner), libm::exp2(-outer));
+        while exact && (outer - inner) * span as f64 > 0.5 {
+            let middle = f64::midpoint(inner, outer);
+            match reaches(middle) {
+                true => inner = middle,
+                false => outer = middle,
+            }
+        }
+        [inner, outer]
+    }
+}
+
+/// So far on the way from `peak` to `far`.
+fn between(peak: i64, far: i64, scale: f64) -> i64 {
+    peak.saturating_add(((far as f64 - peak as f64) * scale) as i64)
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::base::fixed::Format;
+    use crate::golden::Bound;
+
+    /// A pulse that knows no angle and no exponent: `f` is 1 where `x` is `at`, and 0 from 4 away.
+    pub struct Pulse {
+        operands: Vec<Operand>,
+        /// Whether it says where it is largest.
+        says: bool,
+        length: Option<&'static str>,
+    }
+
+    impl Pulse {
+        const HALF: f64 = 4.0;
+
+        fn new(says: bool) -> Self {
+            let operand = |name: &str, high| Operand {
+                name: name.to_owned(),
+                format: Format::unsigned(20, 0),
+                domain: (0, high),
+                colour: false,
+                doc: String::new(),
+            };
+            Self { operands: vec![operand("x", 1 << 20), operand("at", 1000)], says, length: None }
+        }
+
+        /// With one operand, `x` of 12 bits; it is a length if it is said to be.
+        pub fn single(length: bool) -> Self {
+            let mut pulse = Self::new(false);
+            pulse.operands.truncate(1);
+            pulse.operands[0].format = Format::unsigned(12, 0);
+            pulse.operands[0].domain = (0, 4095);
+            pulse.length = length.then_some("x");
+            pulse
+        }
+    }
+
+    impl Contract for Pulse {
+        fn operands(&self) -> &[Operand] {
+            &self.operands
+        }
+
+        fn outputs(&self) -> &[String] {
+            &[]
+        }
+
+        fn f_format(&self) -> Format {
+            Format::unsigned(0, 10)
+        }
+
+        fn f(&self, control: &[i64]) -> i64 {
+            (self.reference(control) * 1023.0) as i64
+        }
+
+        fn colour(&self, f: i64, _: i64) -> i64 {
+            f
+        }
+
+        fn reference(&self, control: &[i64]) -> f64 {
+            let at = control.get(1).copied().unwrap_or_default();
+            (1.0 - (control[0] as f64 - at as f64).abs() / Self::HALF).max(0.0)
+        }
+
+        fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
+            self.says.then(|| vec![control[1], control[1]])
+        }
+
+        fn length(&self) -> Option<&str> {
+            self.length
+        }
+
+        fn bound(&self) -> Bound {
+            Bound { f: 0.0, units: 0.0, terms: Vec::new() }
+        }
+    }
+
+    /// The share of points with `f` between 0 and 1.
+    fn share(pulse: &Pulse) -> f64 {
+        let points = Points::new(pulse);
+        let mut random = Random::new(7);
+        let mut values = vec![0; 2];
+        let inside = (0..4000).filter(|_| {
+            points.draw(&mut random, &mut values, 0b11);
+            let f = pulse.reference(&values);
+            0.0 < f && f < 1.0
+        });
+        inside.count() as f64 / 4000.0
+    }
+
+    #[test]
+    fn a_device_of_any_formula_says_where_it_is_largest() {
+        // Of the operands drawn on their own one in 130 000 is within the pulse, but for those near 0.
+        assert!(share(&Pulse::new(true)) > 0.6);
+        // Moved to where both are 0, x passes through the pulse there.
+        assert!(share(&Pulse::new(false)) > 0.4);
+    }
+
+    #[test]
+    fn operands_that_are_not_free_stay_where_they_are() {
+        let pulse = Pulse::new(true);
+        let points = Points::new(&pulse);
+        let mut random = Random::new(3);
+        for _ in 0..200 {
+            let mut values = vec![123, 456];
+            points.draw(&mut random, &mut values, 0b01);
+            assert_eq!(values[1], 456);
+        }
+    }
+
+    #[test]
+    fn what_is_held_is_seldom_moved() {
+        let pulse = Pulse::new(true);
+        let mut points = Points::new(&pulse);
+        points.hold("x", 500);
+        let mut random = Random::new(3);
+        let mut values = vec![0; 2];
+        let moved = (0..1600).filter(|_| {
+            points.draw(&mut random, &mut values, 0b11);
+            values[0] != 500
+        });
+        assert!(moved.count() < 100);
+    }
+
+    #[test]
+    fn lengths_are_small_and_at_times_the_largest() {
+        let pulse = Pulse::single(true);
+        let points = Points::new(&pulse);
+        let mut random = Random::new(1);
+        let drawn: Vec<i64> = (0..10_000).map(|_| points.one(&mut random, 0)).collect();
+        let count = |wanted: fn(i64) -> bool| drawn.iter().filter(|&&x| wanted(x)).count();
+        assert!(count(|x| x == 0) > 1_000);
+        assert!(count(|x| x < 64) > 6_000);
+        assert!(count(|x| x > 2_000) > 200);
+        assert!(count(|x| x == 4095) > 20);
+    }
+}

@@ -1,0 +1,44 @@
+//! The points of tests lie where the function does.
+
+use crate::common::units::configurations;
+use glint::cosim::{Points, Random};
+use rayon::prelude::*;
+
+/// Results of each configuration; those of lines, of which some are thousands of points long, vary most.
+const POINTS: u64 = 30_000;
+
+/// Draws of a list of computations.
+const DRAWN: u64 = 4000;
+
+/// Of the results of co-simulation at least so many are neither 0 nor just below 1.
+const SHARE: f64 = 0.6;
+
+#[test]
+fn most_points_have_f_between_0_and_1() {
+    configurations().into_par_iter().for_each(|(path, unit)| {
+        let lockstep = unit.lockstep(3).unwrap_or_else(|error| panic!("{path}: {error:?}"));
+        let outcome =
+            lockstep.run(POINTS, &|_| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"));
+        let histogram = outcome.histogram;
+        assert_eq!(histogram.counts().iter().sum::<u64>(), outcome.points, "{path}");
+        assert!(histogram.share_inside() >= SHARE, "{path}: {histogram:?}");
+    });
+}
+
+/// By the formula, and not by the device's word; so too for what is drawn for the manifest.
+#[test]
+fn most_operands_that_are_drawn_have_a_formula_between_0_and_1() {
+    for (path, unit) in configurations() {
+        let contract = unit.contract.as_ref();
+        let points = Points::new(contract);
+        let mut random = Random::new(5);
+        let control = contract.operands().iter().filter(|operand| !operand.colour).count();
+        let inside = (0..DRAWN).filter(|_| {
+            let drawn = points.of_domain(&mut random);
+            let f = contract.reference(&contract.point(&drawn[..control], 0));
+            f > 0.0 && f < 1.0
+        });
+        let share = inside.count() as f64 / DRAWN as f64;
+        assert!(share >= SHARE, "{path}: {share}");
+    }
+}
