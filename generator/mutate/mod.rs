@@ -11,6 +11,7 @@ mod formal;
 mod operators;
 mod plant;
 mod proof;
+mod reach;
 mod run;
 mod score;
 mod shipped;
@@ -19,6 +20,7 @@ mod tests;
 mod verilog;
 
 pub use fault::{Bit, Fault, Faults, Kind, Site};
+pub use reach::unreached;
 pub use run::{Difference, Found, How, Leg, Verdict, run};
 pub use score::{Score, TOLERATED, Tally, TextScore};
 pub use shipped::notices;

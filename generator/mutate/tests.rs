@@ -5,9 +5,9 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::proof::Prover;
-use super::{Faults, plant};
+use super::{Fault, Faults, Kind, plant, unreached};
 use crate::config;
-use crate::core::Unit;
+use crate::core::{TEST_SEED, Unit};
 use crate::cosim::Lockstep;
 use crate::registry::Registry;
 
@@ -50,4 +50,27 @@ fn no_proof_of_what_shows() {
         noticed += of_each.iter().filter(|(_, shows)| *shows).count();
     }
     assert!(proved > 100 && noticed > 1000, "{proved}, {noticed}");
+}
+
+/// The default test cannot notice what it never comes to, and comes to nearly everything.
+#[test]
+fn what_is_never_reached_is_never_noticed() {
+    let unit = unit("configs/reduced/schlick.toml");
+    let faults = Faults::of(&unit.design);
+    let faults: Vec<&Fault> = faults.iter().collect();
+    let unreached = unreached(&unit, &faults).unwrap();
+    assert!(unreached.len() * 4 < faults.len(), "{} of {}", unreached.len(), faults.len());
+    for fault in &unreached {
+        let mutant = fault.planted(&unit.design);
+        let model = (unit.device.model)(&unit.config);
+        let contract = unit.contract.as_ref();
+        let lockstep = Lockstep::new(&mutant, model, contract, TEST_SEED).unwrap();
+        assert_eq!(lockstep.run(2_000, &|_| ()).unwrap().mismatch, None, "{}", fault.id);
+    }
+    // A bit that is inverted shows wherever it is looked at.
+    assert!(unreached.iter().all(|fault| fault.kind != Kind::Inverted));
+    // The signal that says that the device runs is 0 and is 1.
+    let stuck = |fault: &&&Fault| fault.id.starts_with("run[0]:stuck");
+    assert!(faults.iter().any(|fault| stuck(&fault)), "no such fault");
+    assert_eq!(unreached.iter().filter(stuck).count(), 0);
 }

@@ -9,7 +9,7 @@ use crate::base::text::{counted, grouped};
 use crate::core::{TEST_POINTS, TEST_SEED};
 use crate::cosim::exhaustive::{Job, Proof, Record as Recorded, Shard, State};
 use crate::golden::{Contract, Sweep};
-use crate::mutate::{self, Faults, Score};
+use crate::mutate::{self, Fault, Faults, Score};
 
 /// Results that lock-step compares, and with full effort.
 const POINTS: [u64; 2] = [TEST_POINTS, 100 * TEST_POINTS];
@@ -237,24 +237,40 @@ pub const MUTATION: Leg = Leg {
         let score = Score::of(&found);
         let all = &score.all;
         let (caught, equivalent) = (all.all_caught(), all.all_equivalent());
-        let open = named(&score.open);
-        let faults = match score.holds() {
-            true => Vec::new(),
-            false => vec![format!("more than 1 % are open: {open}")],
-        };
-        Ok(Finding::new(
-            Verdict::Passed,
-            counted(all.planted, "fault"),
-            format!(
-                "{caught} are caught, {equivalent} are proved to change nothing that is compared, {} are open ({:.2} %).",
-                all.open,
-                100.0 * all.share_open()
-            ),
-            faults,
-        )
-        .open(open))
+        let undecided = named(&score.open);
+        let domain = counted(all.planted, "fault");
+        let words = format!(
+            "{caught} are caught, {equivalent} are proved to change nothing that is compared, {} are open ({:.2} %).",
+            all.open,
+            100.0 * all.share_open()
+        );
+        if score.holds() {
+            let finding = Finding::new(Verdict::Passed, domain, words, Vec::new());
+            return Ok(finding.open(undecided));
+        }
+        // The fault-free design passes the same test: that too little is noticed speaks of the test.
+        let unnoticed = found.iter().filter(|found| found.verdict == mutate::Verdict::Open);
+        let unnoticed: Vec<&Fault> = unnoticed.map(|found| &found.fault).collect();
+        let unreached = mutate::unreached(subject.unit, &unnoticed)?;
+        let ids: Vec<String> = unreached.iter().map(|fault| fault.id.clone()).collect();
+        let words = format!(
+            "{words} More than 1 %: the test is too weak to say much; it shows nothing against the core. {}{MORE_STIMULUS}",
+            match ids.is_empty() {
+                true => String::new(),
+                false => format!(
+                    "To {} of them its stimulus never comes: {}. ",
+                    ids.len(),
+                    named(&ids)
+                ),
+            }
+        );
+        Ok(Finding::new(Verdict::Undecided, domain, words, Vec::new()).open(undecided))
     },
 };
+
+/// How a user adds stimulus.
+const MORE_STIMULUS: &str = "To add stimulus, widen the keys of `domain`, or have the device's contract say where the formula is largest \
+     (`Contract::peak`); `glint mutate --only ID` shows what becomes of one fault.";
 
 /// The most faults that are named.
 const NAMED: usize = 20;

@@ -56,6 +56,8 @@ pub enum Verdict {
     Failed,
     /// The leg says nothing of this configuration, or was left out on purpose; why is said.
     NotCovered,
+    /// It was run, and its test is too weak to say that it holds.
+    Undecided,
     /// The leg could not be run: a tool is missing, or it takes more than this effort allows.
     #[default]
     NotRun,
@@ -69,6 +71,7 @@ impl Verdict {
             Self::Passed => "passed",
             Self::Failed => "FAILED",
             Self::NotCovered => "not covered",
+            Self::Undecided => "undecided",
             Self::NotRun => "not run",
         }
     }
@@ -244,7 +247,7 @@ pub struct Timing {
 pub enum Conclusion {
     /// Every leg that covers the configuration was run, and all of them hold.
     Verified,
-    /// Nothing failed, but a leg could not be run.
+    /// Nothing failed, but a leg could not be run, or decides nothing.
     Incomplete,
     /// Something does not hold.
     Failed,
@@ -254,7 +257,7 @@ impl Conclusion {
     /// Of some answers.
     pub fn of(answers: &[Answer]) -> Self {
         let any = |verdict| answers.iter().any(|it| it.finding.verdict == verdict);
-        match (any(Verdict::Failed), any(Verdict::NotRun)) {
+        match (any(Verdict::Failed), any(Verdict::NotRun) || any(Verdict::Undecided)) {
             (true, _) => Self::Failed,
             (false, true) => Self::Incomplete,
             (false, false) => Self::Verified,

@@ -35,7 +35,7 @@ pub fn page(record: &Record, timings: &[Timing]) -> Result<String> {
         (class(verdict), verdict.words(), count)
     };
     let all =
-        [Verdict::Proved, Verdict::Passed, Verdict::Failed, Verdict::NotCovered, Verdict::NotRun];
+        [Verdict::Proved, Verdict::Passed, Verdict::Failed, Verdict::NotCovered, Verdict::Undecided, Verdict::NotRun];
     let legs = record.legs.iter();
     let page = Page {
         marker: MARKER,
@@ -67,6 +67,7 @@ fn class(verdict: Verdict) -> &'static str {
         Verdict::Passed => "passed",
         Verdict::Failed => "failed",
         Verdict::NotCovered => "not-covered",
+        Verdict::Undecided => "undecided",
         Verdict::NotRun => "not-run",
     }
 }

@@ -119,11 +119,17 @@ fn one_configuration(
 /// What all legs say together: what was left out, what could not be run, and the command that completes it.
 fn print_conclusion(one: &Loaded, record: &Record) {
     let with = |verdict| record.legs.iter().filter(move |it| it.finding.verdict == verdict);
-    let titles: Vec<&str> = with(Verdict::NotRun).map(|answer| answer.title).collect();
+    let titles = |verdict| with(verdict).map(|answer| answer.title).collect::<Vec<_>>().join(", ");
     let words = record.conclusion.words();
     tables::print_line(&match record.conclusion {
         Conclusion::Incomplete => {
-            format!("{}: {words}; not run: {}", one.path, titles.join(", "))
+            let mut line = format!("{}: {words}", one.path);
+            for verdict in [Verdict::NotRun, Verdict::Undecided] {
+                if with(verdict).count() > 0 {
+                    line += &format!("; {}: {}", verdict.words(), titles(verdict));
+                }
+            }
+            line
         }
         _ => format!("{}: {words}", one.path),
     });

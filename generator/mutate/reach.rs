@@ -1,0 +1,62 @@
+//! Which faults a test cannot notice because it never comes to them: that speaks of the stimulus, and not of the
+//! design.
+
+use anyhow::Result;
+
+use super::coverage::Coverage;
+use super::fault::{Bit, Fault, Site};
+use crate::core::{TEST_POINTS, TEST_SEED, Unit};
+use crate::hdl::netlist::NetId;
+use crate::hdl::sim::Simulator;
+
+/// Which values the bits of some nets have had.
+struct Watch<'a> {
+    nets: &'a [NetId],
+    /// For each net the bits that were 0, and those that were 1.
+    seen: Vec<[u64; 2]>,
+}
+
+impl Watch<'_> {
+    fn note(&mut self, _: u64, simulator: &Simulator) {
+        for (&net, [zero, one]) in self.nets.iter().zip(&mut self.seen) {
+            let bits = simulator.value(net);
+            *zero |= !bits;
+            *one |= bits;
+        }
+    }
+}
+
+/// Those of the faults that the default test never comes to: a bit that is stuck at the value that it has anyway, words
+/// of tables that are never read. Whether it comes to a fault of another kind is not told.
+///
+/// # Errors
+/// A design that cannot be simulated.
+pub fn unreached<'f>(unit: &Unit, faults: &[&'f Fault]) -> Result<Vec<&'f Fault>> {
+    let lockstep = unit.lockstep(TEST_SEED)?;
+    let nets = faults.iter().filter_map(|fault| match fault.site {
+        Site::Bit(net, ..) => Some(net),
+        _ => None,
+    });
+    let nets: Vec<NetId> = nets.collect();
+    let begin = |_| Watch { nets: &nets, seen: vec![[0; 2]; nets.len()] };
+    let streams = lockstep.watch(TEST_POINTS, begin, Watch::note)?;
+    let had = |net: NetId, value: usize, bit: u32| {
+        let at = nets.iter().position(|&other| other == net);
+        let mut seen = streams.iter().filter_map(|stream| Some(stream.seen[at?][value]));
+        seen.any(|bits| bits >> bit & 1 == 1)
+    };
+    let reads_words = faults.iter().any(|fault| matches!(fault.site, Site::Words(..)));
+    let coverage = match reads_words {
+        true => Some(Coverage::of(&unit.design, &lockstep, TEST_POINTS)?),
+        false => None,
+    };
+    let is_unreached = |fault: &Fault| match &fault.site {
+        Site::Bit(net, bit, Bit::Stuck0) => !had(*net, 1, *bit),
+        Site::Bit(net, bit, Bit::Stuck1) => !had(*net, 0, *bit),
+        Site::Words(rom, words) => coverage
+            .as_ref()
+            .is_some_and(|it| words.iter().all(|(word, _)| it.places(*rom, *word).is_empty())),
+        _ => false,
+    };
+    Ok(faults.iter().copied().filter(|fault| is_unreached(fault)).collect())
+}
