@@ -257,11 +257,8 @@ pub const MUTATION: Leg = Leg {
             "{words} More than 1 %: the test is too weak to say much; it shows nothing against the core. {}{MORE_STIMULUS}",
             match ids.is_empty() {
                 true => String::new(),
-                false => format!(
-                    "To {} of them its stimulus never comes: {}. ",
-                    ids.len(),
-                    named(&ids)
-                ),
+                false =>
+                    format!("To {} of them its stimulus never comes: {}. ", ids.len(), named(&ids)),
             }
         );
         Ok(Finding::new(Verdict::Undecided, domain, words, Vec::new()).open(undecided))

@@ -34,8 +34,14 @@ pub fn page(record: &Record, timings: &[Timing]) -> Result<String> {
         let count = legs.filter(|it| it.finding.verdict == verdict).count();
         (class(verdict), verdict.words(), count)
     };
-    let all =
-        [Verdict::Proved, Verdict::Passed, Verdict::Failed, Verdict::NotCovered, Verdict::Undecided, Verdict::NotRun];
+    let all = [
+        Verdict::Proved,
+        Verdict::Passed,
+        Verdict::Failed,
+        Verdict::NotCovered,
+        Verdict::Undecided,
+        Verdict::NotRun,
+    ];
     let legs = record.legs.iter();
     let page = Page {
         marker: MARKER,

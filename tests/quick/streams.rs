@@ -104,6 +104,21 @@ fn what_differs_can_be_had_again_with_its_waveform() {
     assert!(times >= 20, "{times}");
 }
 
+/// For people: no structures of Rust.
+#[test]
+fn what_differs_is_told_in_words() {
+    let unit = unit("rough");
+    let mut wrong = unit.design.clone();
+    let sine = wrong.roms.iter_mut().find(|rom| rom.name.contains("sine"));
+    sine.expect("a sine").words.reverse();
+    let told = lockstep(&unit, &wrong, 5).record(200, &[]).expect_err("it differs").to_string();
+    for part in ["(seed 5, after clock ", "in the simulated hardware and 0x", "in the golden model"]
+    {
+        assert!(told.contains(part), "{told}");
+    }
+    assert!(!told.contains('{') && !told.contains("Some("), "{told}");
+}
+
 fn code(scope: &vcd::Scope, name: &str) -> Option<vcd::IdCode> {
     scope.children.iter().find_map(|item| match item {
         vcd::ScopeItem::Var(var) if var.reference == name => Some(var.code),

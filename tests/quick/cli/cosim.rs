@@ -7,7 +7,7 @@ use std::io::BufReader;
 use serde_json::Value;
 use vcd::{Command, Parser, ScopeItem, Var};
 
-use crate::place::{COSINE_POWER, Place};
+use crate::place::{COSINE_POWER, Place, Run};
 
 const ROUGH: &str = "device = \"rough\"\n";
 
@@ -294,4 +294,30 @@ fn in_parts(text: &str) {
     assert!(error.contains("not of `core.toml` as it stands"), "{error}");
     let error = refused(&["cosim", "core.toml", "--exhaustive", "--resume", "gone/state.json"]);
     assert!(error.contains("gone/state.json"), "{error}");
+}
+
+#[test]
+fn points_are_counted_as_people_write_them() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    for (points, shown) in [("1e2", "100 points"), ("1.5e2", "150 points"), ("2_00", "200 points")]
+    {
+        let text = place.done(["cosim", "core.toml", "--points", points]);
+        assert!(text.contains(shown), "{points}: {text}");
+    }
+    for points in ["0", "0e3", "1.5", "1e-1", "1e99", "ten", ""] {
+        let run = place.glint(["cosim", "core.toml", "--points", points]);
+        run.refused(2, &["a whole number from 1 on is wanted, as 1000000 or 1e6"]);
+    }
+}
+
+#[test]
+fn one_thread_is_a_thread() {
+    let text = "device = \"cosine-power\"\npower = 2\ncosine.fraction = 8\nexponent.bits = 3\ncolour.bits = 2\nintensity.fraction = 8\n";
+    let place = Place::with("core.toml", format!("{text}domain.exponent_max = 7\n"));
+    let mut command = place.command();
+    let command =
+        command.args(["cosim", "core.toml", "--exhaustive"]).env("RAYON_NUM_THREADS", "1");
+    let run = Run::of(command.output());
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.out.contains(" on 1 thread\n"), "{}", run.out);
 }

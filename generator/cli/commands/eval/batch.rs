@@ -26,7 +26,7 @@ struct Row {
 pub fn batch(output: Output, one: &Loaded, given: &[Option<i64>], path: &Path) -> Result<bool> {
     let shown = path.display();
     let file = input::open(path).with_context(|| format!("cannot read `{shown}`"))?;
-    let mut reader = ReaderBuilder::new().trim(Trim::All).comment(Some(b'#')).from_reader(file);
+    let mut reader = ReaderBuilder::new().trim(Trim::All).from_reader(file);
     let headings = reader.headers().with_context(|| format!("cannot read `{shown}`"))?.clone();
     let columns =
         columns(one, given, headings.iter()).with_context(|| format!("`{shown}`, first row"))?;
