@@ -4,6 +4,7 @@ pub mod account;
 pub mod datasheet;
 pub mod drawing;
 pub mod figure;
+mod formula;
 mod markdown;
 pub mod plots;
 pub mod report;

@@ -4,6 +4,7 @@ use anyhow::Result;
 use askama::Template;
 
 use super::figure::{Figure, figures, scientific};
+use super::formula;
 use crate::evidence::Evidence;
 use crate::evidence::benchmark::Benchmark;
 use crate::evidence::chart::Chart;
@@ -21,6 +22,8 @@ pub const MARKER: &str = "<meta name=\"generator\" content=\"glint report\">";
 #[template(path = "report.html")]
 struct Page<'a> {
     marker: &'static str,
+    schlick: String,
+    w: String,
     evidence: &'a Evidence,
     counts: Vec<(&'static str, &'static str, usize)>,
     claims: Vec<ClaimView<'a>>,
@@ -68,6 +71,8 @@ pub fn page(evidence: &Evidence, benchmark: Option<&Benchmark>) -> Result<String
         evidence.plots.iter().map(|plot| (&plot.chart, plot.figure)).collect();
     let page = Page {
         marker: MARKER,
+        schlick: formula::typeset("S(n, gamma) = cos(gamma) / (n - n * cos(gamma) + cos(gamma))"),
+        w: formula::typeset("W(n, gamma) = (n/m * (cos(gamma) - 1) + 1)^m"),
         evidence,
         counts: counts(&evidence.claims),
         claims: evidence.claims.iter().map(claim).collect(),

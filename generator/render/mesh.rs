@@ -9,6 +9,12 @@ use super::vector::Vector;
 /// The most triangles, which keeps their numbers in 32 bits and their memory in gigabytes.
 pub const MOST_TRIANGLES: usize = 20_000_000;
 
+/// The angle, in degrees, beyond which an edge of a mesh without normals is sharp, unless told otherwise.
+pub const CREASE: f64 = 40.0;
+
+/// The angle that leaves no edge sharp.
+pub const SMOOTH: f64 = 180.0;
+
 /// The largest coordinate: areas and their squares are still numbers.
 const FARTHEST: f64 = 1e30;
 
@@ -50,9 +56,9 @@ pub struct RawCorner {
 }
 
 impl Mesh {
-    /// A mesh of what is given. Triangles without area are left out and counted; corners without a normal,
-    /// or with one of length 0, get the mean of the normals of all triangles that meet in their position,
-    /// weighted by area.
+    /// A mesh of what is given. Triangles without area are left out and counted. Corners without a normal, or with one
+    /// of length 0, get the mean normal, weighted by area, of the triangles that meet in their position and hang
+    /// together there by edges of at most `crease` degrees, so that sharper edges stay sharp.
     ///
     /// # Errors
     /// No triangle with an area, or too many; numbers that are not finite, or coordinates beyond 10³⁰.
@@ -61,6 +67,7 @@ impl Mesh {
         mut normals: Vec<Vector>,
         textures: Vec<[f64; 2]>,
         triangles: Vec<[RawCorner; 3]>,
+        crease: f64,
     ) -> Result<Self> {
         finite("vertex", &positions)?;
         finite("normal", &normals)?;
@@ -86,23 +93,30 @@ impl Mesh {
         ensure!(all > 0, "there is no triangle");
         ensure!(!triangles.is_empty(), "all {all} triangles are without area");
         let given: Vec<Option<Vector>> = normals.iter().map(|normal| normal.unit()).collect();
-        let smooth = smooth_normals(&positions, &triangles, area);
-        let first_smooth = normals.len() as u32;
+        let complete = |corner: &RawCorner| {
+            corner.normal.is_some_and(|normal| given[normal as usize].is_some())
+        };
+        let computed = if triangles.iter().flatten().all(complete) {
+            Vec::new()
+        } else {
+            let areas: Vec<Vector> = triangles.iter().map(area).collect();
+            creased_normals(&positions, &triangles, &areas, crease, &mut normals)
+        };
         for (normal, given) in normals.iter_mut().zip(&given) {
             *normal = given.unwrap_or_default();
         }
-        normals.extend(smooth);
-        let corner = |corner: RawCorner| {
+        let corner = |triangle: usize, at: usize| {
+            let corner: RawCorner = triangles[triangle][at];
             let usable = corner.normal.filter(|&at| given[at as usize].is_some());
             Corner {
                 position: corner.position,
-                normal: usable.unwrap_or(first_smooth + corner.position),
+                normal: usable.unwrap_or_else(|| computed[3 * triangle + at]),
                 texture: corner.texture,
             }
         };
         Ok(Self {
             degenerate: all - triangles.len(),
-            triangles: triangles.iter().map(|corners| corners.map(corner)).collect(),
+            triangles: (0..triangles.len()).map(|it| [0, 1, 2].map(|at| corner(it, at))).collect(),
             positions,
             normals,
             textures,
@@ -135,34 +149,88 @@ fn finite(what: &str, vectors: &[Vector]) -> Result<()> {
     }
 }
 
-/// For each position the mean normal of the triangles that meet there, weighted by area. Positions with
-/// the same coordinates are one.
-fn smooth_normals(
-    positions: &[Vector],
-    triangles: &[[RawCorner; 3]],
-    area: impl Fn(&[RawCorner; 3]) -> Vector,
-) -> Vec<Vector> {
+/// The first of the positions with the same coordinates, for each position.
+fn first_of_same(positions: &[Vector]) -> Vec<u32> {
     let mut first = HashMap::with_capacity(positions.len());
-    let same: Vec<u32> = positions
-        .iter()
-        .enumerate()
+    let positions = positions.iter().enumerate();
+    positions
         .map(|(at, position)| {
             // −0.0 is 0.0.
             let key = position.0.map(|component| (component + 0.0).to_bits());
             *first.entry(key).or_insert(at as u32)
         })
-        .collect();
-    let mut sums = vec![Vector::default(); positions.len()];
-    for corners in triangles {
-        let area = area(corners);
-        for corner in corners {
-            let sum = &mut sums[same[corner.position as usize] as usize];
-            *sum = *sum + area;
+        .collect()
+}
+
+/// Appends to `normals` those of all corners, three for each triangle, and returns where each is. `areas` are the
+/// triangles' normals, as long as twice their areas.
+fn creased_normals(
+    positions: &[Vector],
+    triangles: &[[RawCorner; 3]],
+    areas: &[Vector],
+    crease: f64,
+    normals: &mut Vec<Vector>,
+) -> Vec<u32> {
+    let same = first_of_same(positions);
+    let point = |corner: usize| same[triangles[corner / 3][corner % 3].position as usize];
+    // The corners by their point; those of a point are in the order of the triangles.
+    let mut corners: Vec<u32> = (0..3 * triangles.len() as u32).collect();
+    corners.sort_by_key(|&corner| point(corner as usize));
+    let flat = libm::cos(crease.to_radians());
+    let smooth = |a: u32, b: u32| {
+        let [a, b] = [a, b].map(|corner| areas[corner as usize / 3].unit().unwrap_or_default());
+        // To the last bit of a right angle, or of whatever the edge was meant to be.
+        a.dot(b) >= flat - 1e-12
+    };
+    let mut found = vec![0; corners.len()];
+    let (mut edges, mut group) = (Vec::new(), Vec::new());
+    for around in corners.chunk_by(|&a, &b| point(a as usize) == point(b as usize)) {
+        // Each triangle has two edges here, which lead to its two other points.
+        edges.clear();
+        for (at, &corner) in around.iter().enumerate() {
+            let (triangle, own) = (corner as usize / 3 * 3, corner as usize % 3);
+            edges.extend([1, 2].map(|step| (point(triangle + (own + step) % 3), at)));
         }
+        edges.sort_unstable();
+        group.clear();
+        group.extend(0..around.len());
+        for pair in edges.windows(2) {
+            let [(to, a), (other, b)] = [pair[0], pair[1]];
+            if to == other && smooth(around[a], around[b]) {
+                let (a, b) = (root(&mut group, a), root(&mut group, b));
+                group[a.max(b)] = a.min(b);
+            }
+        }
+        let mut sums: Vec<(usize, Vector)> = Vec::new();
+        let mut place = vec![0; around.len()];
+        for (at, &corner) in around.iter().enumerate() {
+            let area = areas[corner as usize / 3];
+            let of = root(&mut group, at);
+            if of == at {
+                place[at] = sums.len();
+                sums.push((corner as usize / 3, area));
+            } else {
+                place[at] = place[of];
+                sums[place[of]].1 = sums[place[of]].1 + area;
+            }
+            found[corner as usize] = (normals.len() + place[at]) as u32;
+        }
+        // Where areas cancel, the first triangle's direction is as good as another.
+        normals.extend(sums.iter().map(|(triangle, sum)| {
+            sum.unit().or_else(|| areas[*triangle].unit()).unwrap_or_default()
+        }));
     }
-    // Where areas cancel, as on both sides of a sheet, any direction is as good as another.
-    let anywhere = Vector::new(0.0, 0.0, 1.0);
-    same.iter().map(|&at| sums[at as usize].unit().unwrap_or(anywhere)).collect()
+    found
+}
+
+/// The representative of a group, to which all on the way are then tied; it is the least of its members.
+fn root(group: &mut [usize], at: usize) -> usize {
+    let mut root = at;
+    while group[root] != root {
+        group[root] = group[group[root]];
+        root = group[root];
+    }
+    root
 }
 
 #[cfg(test)]
@@ -187,7 +255,11 @@ mod tests {
             v(0.0, 0.0, -1.0),
         ];
         let triangles = vec![corners([0, 1, 2]), corners([3, 4, 5]), corners([0, 1, 1])];
-        let mesh = Mesh::new(positions, Vec::new(), Vec::new(), triangles).unwrap();
+        let make = |crease| {
+            let (positions, triangles) = (positions.clone(), triangles.clone());
+            Mesh::new(positions, Vec::new(), Vec::new(), triangles, crease).unwrap()
+        };
+        let mesh = make(90.0);
         assert_eq!((mesh.triangles.len(), mesh.degenerate), (2, 1));
         let normal = mesh.normals[mesh.triangles[0][0].normal as usize];
         let half = std::f64::consts::FRAC_1_SQRT_2;
@@ -195,5 +267,12 @@ mod tests {
         assert!((normal - v(-half, 0.0, half)).length() < 1e-15, "{normal:?}");
         assert_eq!(normal, mesh.normals[mesh.triangles[1][0].normal as usize]);
         assert_eq!(mesh.normals[mesh.triangles[0][1].normal as usize], v(0.0, 0.0, 1.0));
+        // The edge of 90 degrees stays sharp where only flatter ones are smooth.
+        let sharp = make(89.0);
+        for at in 0..3 {
+            let normal =
+                |triangle: usize| sharp.normals[sharp.triangles[triangle][at].normal as usize];
+            assert_eq!((normal(0), normal(1)), (v(0.0, 0.0, 1.0), v(-1.0, 0.0, 0.0)));
+        }
     }
 }

@@ -27,7 +27,7 @@ use rayon::prelude::*;
 
 pub use camera::View;
 pub use height::Relief;
-pub use mesh::Mesh;
+pub use mesh::{CREASE, Mesh};
 pub use operands::{exponents, walks_lines};
 pub use picture::{Difference, Picture};
 pub use scene::{BACKGROUND, BuiltIn, COLOUR, Light, Object, Scene, Shape};
@@ -88,6 +88,21 @@ pub struct Rendered {
     pub beyond: u64,
     /// Beside Blinn's function, if that was wanted.
     pub comparison: Option<Comparison>,
+}
+
+impl Rendered {
+    /// The picture; where Blinn's was wanted, it and their difference stand beside it, each with its caption.
+    pub fn whole(&self, device: &str) -> Picture {
+        let Some(comparison) = &self.comparison else {
+            return self.picture.clone();
+        };
+        let difference = &comparison.difference;
+        Picture::beside(&[
+            &self.picture.captioned(device),
+            &comparison.blinn.captioned("Blinn in f64"),
+            &difference.picture.captioned(&format!("difference × {}", difference.gain)),
+        ])
+    }
 }
 
 /// The device against formulas in f64.

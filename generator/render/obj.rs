@@ -9,17 +9,17 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 use super::mesh::{Mesh, RawCorner};
 use super::vector::Vector;
 
-/// The mesh that a file describes.
+/// The mesh that a file describes; where it has no normals, edges beyond `crease` degrees are sharp.
 ///
 /// # Errors
 /// With the number of the line: a number that is none or not finite, a face with less than three corners or
 /// with one that does not exist. Without it: those of [`Mesh::new`].
-pub fn parse(text: &str) -> Result<Mesh> {
+pub fn parse(text: &str, crease: f64) -> Result<Mesh> {
     let mut read = Reader::default();
     for (number, line) in text.lines().enumerate() {
         read.line(line).with_context(|| format!("line {}", number + 1))?;
     }
-    Mesh::new(read.positions, read.normals, read.textures, read.triangles)
+    Mesh::new(read.positions, read.normals, read.textures, read.triangles, crease)
 }
 
 #[derive(Default)]
@@ -122,19 +122,22 @@ fn index(part: &str, what: &str, count: usize) -> Result<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::render::mesh::CREASE;
 
     const SQUARE: &str =
         "v 0 0 0\nv 1 0 0 1.0\nv 1 1 0 0.5 0.5 0.5\nv 0 1 0 # last\nvn 0 0 2\nvt 0 0\nvt 1\n";
 
     fn message(text: &str) -> String {
-        format!("{:#}", parse(text).unwrap_err())
+        format!("{:#}", parse(text, CREASE).unwrap_err())
     }
 
     #[test]
     fn faces_of_all_kinds() {
-        let mesh =
-            parse(&format!("{SQUARE}o one\nusemtl none\nf 1 2/1 3//1 -1/2/1\r\nl 1 2 3 4\n"))
-                .unwrap();
+        let mesh = parse(
+            &format!("{SQUARE}o one\nusemtl none\nf 1 2/1 3//1 -1/2/1\r\nl 1 2 3 4\n"),
+            CREASE,
+        )
+        .unwrap();
         assert_eq!(mesh.triangles.len(), 2);
         let [a, b, c] = mesh.triangles[0];
         assert_eq!([a.position, b.position, c.position], [0, 1, 2]);

@@ -1,9 +1,22 @@
 //! Pictures of 8 bits a channel, and PNG.
 
 use anyhow::{Context, Result};
+use noto_sans_mono_bitmap::{FontWeight, RasterHeight, get_raster, get_raster_width};
 use png::{BitDepth, ColorType, Compression, Encoder, Filter};
 
 use super::vector::Vector;
+
+/// The type of captions.
+const LETTERS: RasterHeight = RasterHeight::Size16;
+
+/// Above and below a caption, in pixels.
+const AROUND: usize = 3;
+
+/// The ground of a caption.
+const STRIP: [u8; 3] = [24, 26, 30];
+
+/// Its letters.
+const LETTER: [u8; 3] = [232, 233, 235];
 
 /// Pixels in rows from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -23,6 +36,27 @@ impl Picture {
     /// The number of rows.
     pub fn height(&self) -> u32 {
         (self.pixels.len() / self.width as usize) as u32
+    }
+
+    /// The picture over a strip with a caption, in the middle; of one that is too long as much as there is room for.
+    pub fn captioned(&self, caption: &str) -> Self {
+        let letter = get_raster_width(FontWeight::Regular, LETTERS);
+        let width = self.width as usize;
+        let mut strip = vec![STRIP; width * (LETTERS.val() + 2 * AROUND)];
+        let letters: Vec<char> = caption.chars().take(width / letter).collect();
+        let left = (width - letters.len() * letter) / 2;
+        for (at, &letter_of_caption) in letters.iter().enumerate() {
+            let raster = get_raster(letter_of_caption, FontWeight::Regular, LETTERS);
+            for (row, line) in raster.iter().flat_map(|raster| raster.rows().enumerate()) {
+                let from = (AROUND + row) * width + left + at * letter;
+                for (pixel, &ink) in strip[from..].iter_mut().zip(line) {
+                    *pixel = mix(STRIP, LETTER, ink);
+                }
+            }
+        }
+        let mut captioned = self.clone();
+        captioned.pixels.extend(strip);
+        captioned
     }
 
     /// Pictures of one size side by side.
@@ -102,6 +136,16 @@ impl Difference {
     }
 }
 
+/// One colour over another, which covers it by so many 255ths.
+fn mix(ground: [u8; 3], over: [u8; 3], share: u8) -> [u8; 3] {
+    let share = u32::from(share);
+    let channel = |at: usize| {
+        let sum = u32::from(ground[at]) * (255 - share) + u32::from(over[at]) * share;
+        ((sum + 127) / 255) as u8
+    };
+    [channel(0), channel(1), channel(2)]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -126,6 +170,25 @@ mod tests {
     fn pixels_saturate() {
         assert_eq!(pixel(Vector::new(-3.0, 254.5, 900.0)), [0, 255, 255]);
         assert_eq!(pixel(Vector::new(0.49, 127.5, 254.49)), [0, 128, 254]);
+    }
+
+    #[test]
+    fn a_caption_stands_below() {
+        let plain = Picture { width: 40, pixels: vec![[9; 3]; 80] };
+        let captioned = plain.captioned("I");
+        assert_eq!((captioned.width, captioned.height()), (40, 2 + 22));
+        assert_eq!(captioned.pixels[..80], plain.pixels);
+        let lit = |picture: &Picture| -> Vec<usize> {
+            let strip = picture.pixels[80..].iter().enumerate();
+            strip.filter(|(_, pixel)| **pixel != STRIP).map(|(at, _)| at % 40).collect()
+        };
+        // A letter in the middle; a blank leaves the ground.
+        let columns = lit(&captioned);
+        assert!(!columns.is_empty() && columns.iter().all(|column| (14..26).contains(column)));
+        assert_eq!(lit(&plain.captioned(" ")), Vec::<usize>::new());
+        // As much as there is room for.
+        assert_eq!(plain.captioned("IIIIIIIIIIIIIIIII").pixels.len(), captioned.pixels.len());
+        assert_eq!(mix([0, 100, 200], [255, 100, 0], 51), [51, 100, 160]);
     }
 
     #[test]

@@ -342,6 +342,7 @@ mod tests {
             Vec::new(),
             vec![[0.0, 0.0], [1.0, 0.5], [0.0, 1.0]],
             vec![corners],
+            crate::render::mesh::CREASE,
         )
         .unwrap();
         let object = Object { shape: Shape::Mesh(mesh), colour: Vector::default() };

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use anyhow::Result;
 
-use super::mesh::{Mesh, RawCorner};
+use super::mesh::{Mesh, RawCorner, SMOOTH};
 use super::vector::Vector;
 
 /// A torus around the y axis: `major` from the middle to the tube's, `minor` the tube's radius, each way in
@@ -104,7 +104,7 @@ fn grid(steps: [u32; 2], closed: [bool; 2], at: impl Fn(f64, f64) -> Vector) -> 
             triangles.extend([[a, b, c], [a, c, d]].into_iter().filter(differ));
         }
     }
-    Mesh::new(positions, Vec::new(), textures, triangles)
+    Mesh::new(positions, Vec::new(), textures, triangles, SMOOTH)
 }
 
 #[cfg(test)]

@@ -73,7 +73,7 @@ impl Tool {
             .map(|directory| directory.join(&file))
             .find(|path| is_executable(path))
             .map(|path| Self { name: name.to_owned(), path })
-            .ok_or_else(|| anyhow!("`{name}` is not on PATH; `bash tools/install` installs it"))
+            .ok_or_else(|| anyhow!("`{name}` is not on PATH; {}", remedy(name)))
     }
 
     /// The name by which the tool was looked for.
@@ -200,6 +200,18 @@ fn kill_group(child: &mut Child) {
     }
     let _ = child.kill();
     let _ = child.wait();
+}
+
+/// How to install a tool, for those who have no checkout of Glint and for those who have.
+fn remedy(name: &str) -> String {
+    let package = match name {
+        "vvp" => "iverilog",
+        "yosys-smtbmc" => "yosys",
+        name => name,
+    };
+    format!(
+        "install it (Debian, Ubuntu: `apt install {package}`; in a checkout of Glint: `bash tools/install`)"
+    )
 }
 
 fn is_executable(path: &Path) -> bool {

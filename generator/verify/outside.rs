@@ -17,6 +17,9 @@ use crate::tools::{Simulator, lint, prove, run_bench};
 /// Results of a bench, and with full effort.
 const POINTS: [u64; 2] = [200, 20_000];
 
+/// The version of cocotb that the benches in Python are written for.
+const COCOTB_VERSION: &str = "2.1.0";
+
 /// Results of a bench around a netlist.
 const GATE_POINTS: u64 = 40;
 
@@ -170,8 +173,8 @@ pub const COCOTB: Leg = Leg {
             python.run(["-c", "import cocotb; print(cocotb.__version__)"], here, limit)?;
         if !version.status.success() {
             let why = format!(
-                "{} has no cocotb; `bash tools/install` makes an environment that has, target/tools/venv: \
-                 put its bin/ first on PATH",
+                "{0} has no cocotb; `{0} -m pip install cocotb=={COCOTB_VERSION}` installs it. Where Python is managed by the \
+                 system: `python3 -m venv env`, `env/bin/pip install cocotb=={COCOTB_VERSION}`, and env/bin first on PATH",
                 python.path().display()
             );
             return Ok(Finding::without(Verdict::NotRun, why));

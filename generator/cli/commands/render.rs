@@ -17,8 +17,8 @@ use crate::config::Config;
 use crate::core::{self, Unit};
 use crate::registry::Registry;
 use crate::render::{
-    self, BuiltIn, Difference, Light, Material, Mesh, Object, Picture, Relief, Rendered, Scene,
-    Settings, Shape, Vector, View,
+    self, BuiltIn, Difference, Light, Material, Mesh, Object, Relief, Rendered, Scene, Settings,
+    Shape, Vector, View,
 };
 use crate::tools;
 
@@ -48,9 +48,13 @@ pub struct RenderArguments {
     /// What is shown
     #[arg(long, value_enum, default_value_t = ShapeName::Sphere, conflicts_with = "mesh")]
     shape: ShapeName,
-    /// Show the mesh of a Wavefront OBJ file; where it has no normals, smooth ones are computed
+    /// Show the mesh of a Wavefront OBJ file; where it has no normals, they are computed
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
+    /// Of a mesh without normals: edges of more than so many degrees stay sharp; 180 smooths every edge, 0 none but flat
+    /// ones
+    #[arg(long, value_name = "DEGREES", default_value_t = render::CREASE, requires = "mesh", value_parser = crease)]
+    crease: f64,
     /// A height map, a grey PNG file: it perturbs the normals, by dgamma where the device takes that
     #[arg(long, value_name = "FILE")]
     height: Option<PathBuf>,
@@ -154,13 +158,7 @@ pub fn render(registry: &Registry, output: Output, arguments: &RenderArguments) 
         bar.set_position(rows);
     })?;
     bar.finish_and_clear();
-    let picture = match &rendered.comparison {
-        None => rendered.picture.png()?,
-        Some(comparison) => {
-            Picture::beside(&[&rendered.picture, &comparison.blinn, &comparison.difference.picture])
-                .png()?
-        }
-    };
+    let picture = rendered.whole(unit.device.name).png()?;
     let cannot = || format!("cannot write `{}`", arguments.out.display());
     let mut file = destination.file()?;
     file.write_all(&picture).with_context(cannot)?;
@@ -218,7 +216,9 @@ fn scene(arguments: &RenderArguments, coarse: bool) -> Result<Scene> {
                 .map_err(|_| anyhow!("it is not text, which an OBJ file is"))
                 .with_context(cannot)?;
             vec![Object {
-                shape: Shape::Mesh(render::obj::parse(&text).with_context(cannot)?),
+                shape: Shape::Mesh(
+                    render::obj::parse(&text, arguments.crease).with_context(cannot)?,
+                ),
                 colour: arguments.colour.unwrap_or(render::COLOUR),
             }]
         }
@@ -408,6 +408,13 @@ fn share(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(share) if (0.0..=1.0).contains(&share) => Ok(share),
         _ => Err("a share is a number from 0 to 1".to_owned()),
+    }
+}
+
+fn crease(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(degrees) if (0.0..=180.0).contains(&degrees) => Ok(degrees),
+        _ => Err("an angle from 0 to 180 degrees".to_owned()),
     }
 }
 

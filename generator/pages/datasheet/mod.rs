@@ -11,14 +11,14 @@ mod waves;
 
 use anyhow::Result;
 
+pub(super) use table::html;
+
 use crate::core::{Through, Unit};
 use crate::cosim::exhaustive::Record;
 use crate::evidence::curves::{self, DeviceCurves};
 use crate::evidence::hardware::{self, FamilyUsage, Synthesis};
 use crate::package::{Timing, WorkedExample};
-use crate::render::{
-    self, BACKGROUND, BuiltIn, Light, Material, Picture, Rendered, Scene, Settings, View,
-};
+use crate::render::{self, BACKGROUND, BuiltIn, Light, Material, Scene, Settings, View};
 use crate::tools::synthesis::FAMILIES;
 use waves::Waves;
 
@@ -124,15 +124,10 @@ fn highlight(unit: &Unit) -> Result<Highlight> {
         relief: None,
     };
     let mut engine = unit.engine(Through::Golden)?;
-    let Rendered { picture, comparison, .. } =
-        render::render(unit, engine.as_mut(), &scene, &settings, &mut |_| ())?;
-    let mut beside = vec![&picture];
-    if let Some(comparison) = &comparison {
-        beside.extend([&comparison.blinn, &comparison.difference.picture]);
-    }
-    let difference = comparison.as_ref().map(|comparison| &comparison.difference);
+    let rendered = render::render(unit, engine.as_mut(), &scene, &settings, &mut |_| ())?;
+    let difference = rendered.comparison.as_ref().map(|comparison| &comparison.difference);
     Ok(Highlight {
-        png: Picture::beside(&beside).png()?,
+        png: rendered.whole(unit.device.name).png()?,
         exponent,
         psnr: difference.and_then(|difference| difference.psnr),
         largest: difference.map_or(0, |difference| difference.largest),

@@ -16,6 +16,7 @@ use crate::hdl::netlist::Design;
 use crate::package::{self, Seal, Timing};
 use crate::pages::account::{self, PageInputs, blocks, short};
 use crate::pages::figure::{Figure, figures, scientific};
+use crate::pages::formula;
 
 /// The clock at which rates are told, in MHz: what a small FPGA reaches.
 const CLOCK: f64 = 25.0;
@@ -27,6 +28,7 @@ struct Page<'a> {
     design: &'a Design,
     path: &'a str,
     title: String,
+    formula: String,
     source: String,
     notes: Vec<String>,
     glance: Vec<(&'static str, String)>,
@@ -103,6 +105,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         design,
         path: subject.path,
         title: html(&about.title),
+        formula: formula::typeset(&about.formula),
         source: html(&about.source),
         notes: about.notes.iter().map(|note| html(note)).collect(),
         glance: glance(subject, measured),

@@ -229,7 +229,9 @@ fn what_a_device_takes() {
 fn yosys_is_missing() {
     let run = with_yosys(None, &[]);
     assert_eq!((run.code, run.err.as_str()), (0, ""), "{run:?}");
-    assert!(run.out.contains("Note: `yosys` is not on PATH; `bash tools/install` installs it"));
+    assert!(run.out.contains(
+        "Note: `yosys` is not on PATH; install it (Debian, Ubuntu: `apt install yosys`;"
+    ));
     assert!(!run.out.contains("LUT |"), "{}", run.out);
     let value = with_yosys(None, &["--json"]).json();
     assert_eq!(entry(&value, "schlick").get("synthesis"), None);

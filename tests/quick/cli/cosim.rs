@@ -128,7 +128,7 @@ fn with_tools(simulator: &str, programs: &[(&str, &str)], more: &[&str]) -> crat
 #[test]
 fn a_simulator_that_is_missing() {
     for (simulator, program) in [("icarus", "iverilog"), ("verilator", "verilator")] {
-        let message = format!("`{program}` is not on PATH; `bash tools/install` installs it");
+        let message = format!("`{program}` is not on PATH; install it");
         with_tools(simulator, &[], &[]).refused(1, &[&message, "`core.toml`"]);
         let run = with_tools(simulator, &[], &["--json"]);
         assert_eq!((run.code, run.err.as_str()), (1, ""), "{run:?}");

@@ -82,7 +82,9 @@ fn a_missing_tool_leaves_it_incomplete() {
     assert_eq!(run.code, 1, "{run:?}");
     assert!(run.out.contains("core.toml: incomplete"), "{}", run.out);
     assert!(
-        run.out.contains("`iverilog` is not on PATH; `bash tools/install` installs it"),
+        run.out.contains(
+            "`iverilog` is not on PATH; install it (Debian, Ubuntu: `apt install iverilog`"
+        ),
         "{}",
         run.out
     );
