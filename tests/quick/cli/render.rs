@@ -210,7 +210,9 @@ fn comparison_in_numbers() {
     assert_eq!(run.code, 0, "{run:?}");
     let told = run.json();
     let (width, height, pixels) = pixels(&fs::read(place.at("out.png")).expect("a picture"));
-    assert_eq!((width, height), (3 * 48, 36));
+    // Captions stand in 22 rows below the pictures.
+    assert_eq!((width, height), (3 * 48, 36 + 22));
+    assert!(pixels[36 * 144..].iter().any(|pixel| pixel[0] > 200), "no letter");
     // Measured again in the picture.
     let column = |panel: usize, at: usize| pixels[at / 48 * 144 + panel * 48 + at % 48];
     let mut largest = 0;
