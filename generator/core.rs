@@ -8,13 +8,11 @@ use crate::config::Config;
 use crate::cosim::batch::{Engine, Golden, RustHdl, Verilog};
 use crate::cosim::exhaustive::{Clocks, Job};
 use crate::cosim::{Lockstep, directed, trial};
-use crate::evidence::advice::{Advice, advise};
 use crate::golden::Contract;
 use crate::hdl::netlist::Design;
 use crate::package::{
     self, Accuracy, EmitInputs, OutputFile, Surroundings, Timing, Vectors, WorkedExample,
 };
-use crate::pages::{self, PageInputs};
 use crate::registry::Device;
 use crate::tools;
 
@@ -92,11 +90,6 @@ impl Unit {
             }
         }
         package::digest(text.as_bytes())
-    }
-
-    /// The change of one key that would bring the error bound down most.
-    pub fn advice(&self) -> Option<Advice> {
-        advise(&self.device, &self.config, &self.contract.bound())
     }
 
     /// Golden model and built-in simulator, side by side.
@@ -190,23 +183,6 @@ impl Unit {
     pub fn verilog(&self) -> Result<Vec<(String, String)>> {
         let files = package::emit(&self.design, &EmitInputs::default())?;
         Ok(package::sources(files))
-    }
-
-    /// The page of the configuration, which the command line knows as `config`.
-    ///
-    /// # Errors
-    /// A device that does not end.
-    pub fn page(&self, config: &str) -> Result<String> {
-        let inputs = PageInputs {
-            path: config,
-            config: &self.config,
-            schema: &(self.device.schema)(),
-            contract: self.contract.as_ref(),
-            advice: self.advice(),
-            timing: &self.timing()?,
-            example: &self.example()?,
-        };
-        pages::page(&self.design, &inputs)
     }
 
     /// What computes many points of the device; see [`crate::cosim::batch`].

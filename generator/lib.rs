@@ -15,6 +15,7 @@ pub mod evidence;
 pub mod golden;
 pub mod hdl;
 pub mod mutate;
+pub mod observation;
 pub mod package;
 pub mod pages;
 pub mod registry;

@@ -5,6 +5,7 @@
 //! with its place and a remedy. [`commented`] writes the file to start from, and [`sample()`] draws
 //! valid configurations for tests.
 
+mod audit;
 mod module_name;
 mod nearest;
 mod parse;
@@ -22,9 +23,9 @@ pub use parse::parse;
 pub use problems::{Problem, Problems};
 pub use read::read;
 pub use sample::sample;
-pub use schema::{Key, Kind, Schema, Value};
+pub use schema::{Key, Kind, Schema};
 pub use shared::shared_keys;
-pub use values::Config;
+pub use values::{Config, Value};
 pub use write::commented;
 
 /// The keys of every device that a [`Config`] holds in fields of its own, with what they govern.

@@ -1,6 +1,6 @@
 //! Names of Verilog modules: which are legal, and what is wrong with the others.
 
-use super::validate::{Fault, quoted};
+use super::problems::{Fault, quoted};
 use crate::base::keywords::is_keyword;
 
 /// The longest name; the modules and files derived from it append to it.

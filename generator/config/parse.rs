@@ -9,11 +9,10 @@ use toml::de::{DeTable, DeValue, Error};
 
 use super::module_name;
 use super::nearest::{listed, nearest};
-use super::problems::Problems;
-use super::read::STANDARD_INPUT;
-use super::schema::{Key, Kind, Schema, Value};
-use super::validate::{Draft, Fault, keys_of, out_of_range, quoted, shown};
-use super::values::Config;
+use super::problems::{Fault, Problems, STANDARD_INPUT, out_of_range, quoted, shown};
+use super::schema::{Key, Kind, Schema};
+use super::validate::{Draft, keys_of};
+use super::values::{Config, Value};
 
 /// Reads a configuration from its text.
 ///

@@ -21,6 +21,9 @@ pub struct Problems {
     further: usize,
 }
 
+/// What problems call standard input.
+pub(super) const STANDARD_INPUT: &str = "standard input";
+
 /// The most problems that are kept: a file that is no configuration at all has no end of them.
 const LIMIT: usize = 200;
 
@@ -175,3 +178,29 @@ impl fmt::Display for Problems {
 }
 
 impl std::error::Error for Problems {}
+
+/// What is wrong with a value, before it is known where it stands.
+pub(super) struct Fault {
+    /// The entry of a list that it is about.
+    pub entry: Option<usize>,
+    pub message: String,
+    pub remedy: String,
+}
+
+pub(super) fn out_of_range(name: &str, given: impl std::fmt::Display) -> String {
+    format!("`{name}` = {} is out of range", shown(&given.to_string()))
+}
+
+/// A text that may be of any length, fit for a message.
+pub(super) fn shown(text: &str) -> String {
+    const LIMIT: usize = 40;
+    match text.char_indices().nth(LIMIT) {
+        None => text.to_owned(),
+        Some((end, _)) => format!("{}…", &text[..end]),
+    }
+}
+
+/// A string from a file, fit for a message: quoted, control characters escaped.
+pub(super) fn quoted(text: &str) -> String {
+    format!("\"{}\"", shown(&text.escape_debug().to_string()))
+}

@@ -5,16 +5,13 @@ use std::path::Path;
 
 use super::nearest::nearest;
 use super::parse::parse;
-use super::problems::Problems;
+use super::problems::{Problems, STANDARD_INPUT};
 use super::schema::Schema;
 use super::values::Config;
 use crate::base::input;
 
 /// Far beyond any configuration, and far below what would exhaust the memory.
 const LARGEST: u64 = 1 << 16;
-
-/// What problems call standard input.
-pub(super) const STANDARD_INPUT: &str = "standard input";
 
 /// Reads a configuration file, or standard input where the path is `-`.
 ///

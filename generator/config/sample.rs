@@ -4,8 +4,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use super::problems::Problems;
-use super::schema::{Key, Kind, Schema, Value};
-use super::values::Config;
+use super::schema::{Key, Kind, Schema};
+use super::values::{Config, Value};
 
 /// Draws of a whole configuration before the search for a valid one is given up.
 const DRAWS: usize = 1000;

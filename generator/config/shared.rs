@@ -6,7 +6,7 @@
 
 use std::sync::LazyLock;
 
-use super::schema::Key;
+use super::schema::{Key, Schema};
 
 /// The shared keys, in the order in which a written file shows them, after those of the device.
 pub fn shared_keys() -> &'static [Key] {
@@ -81,3 +81,15 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
         ),
     ]
 });
+
+impl Schema {
+    /// The key of this name, the device's own or one of [`shared_keys`].
+    pub fn key(&self, name: &str) -> Option<&Key> {
+        self.all_keys().find(|key| key.name == name)
+    }
+
+    /// The keys of the device, then those that every device shares.
+    pub fn all_keys(&self) -> impl Iterator<Item = &Key> {
+        self.keys.iter().chain(shared_keys())
+    }
+}

@@ -4,17 +4,9 @@ use std::collections::BTreeSet;
 
 use super::module_name;
 use super::nearest::nearest;
-use super::problems::{Problem, Problems};
-use super::schema::{Key, Kind, Schema, Value};
-use super::values::Config;
-
-/// What is wrong with a value, before it is known where it stands.
-pub(super) struct Fault {
-    /// The entry of a list that it is about.
-    pub entry: Option<usize>,
-    pub message: String,
-    pub remedy: String,
-}
+use super::problems::{Fault, Problem, Problems, out_of_range, quoted, shown};
+use super::schema::{Key, Kind, Schema};
+use super::values::{Config, Value};
 
 impl Key {
     /// What is wrong with a value; empty if the key accepts it.
@@ -155,24 +147,6 @@ impl Value {
     }
 }
 
-pub(super) fn out_of_range(name: &str, given: impl std::fmt::Display) -> String {
-    format!("`{name}` = {} is out of range", shown(&given.to_string()))
-}
-
-/// A text that may be of any length, fit for a message.
-pub(super) fn shown(text: &str) -> String {
-    const LIMIT: usize = 40;
-    match text.char_indices().nth(LIMIT) {
-        None => text.to_owned(),
-        Some((end, _)) => format!("{}…", &text[..end]),
-    }
-}
-
-/// A string from a file, fit for a message: quoted, control characters escaped.
-pub(super) fn quoted(text: &str) -> String {
-    format!("\"{}\"", shown(&text.escape_debug().to_string()))
-}
-
 /// A configuration in the making.
 pub(super) struct Draft<'a> {
     /// The values so far; defaults where none was given, or none that is in range.
@@ -259,30 +233,55 @@ fn trials(schema: &Schema, draft: &Draft) -> Vec<Config> {
         .collect()
 }
 
-/// [`Config::from_values`].
-pub(super) fn from_values(
-    schema: &Schema,
-    name: &str,
-    values: Vec<(String, Value)>,
-) -> Result<Config, Problems> {
-    let mut problems = Problems::default();
-    let mut draft = Draft::new(schema, name);
-    if let Some(fault) = module_name::fault(name) {
-        problems.push("name", fault.message, fault.remedy);
-    }
-    for (name, value) in values {
-        let Some(key) = schema.key(&name) else {
-            let message = format!("device `{}` has no key {}", schema.device, quoted(&name));
-            problems.push(&name, message, keys_of(schema, ""));
-            continue;
-        };
-        let faults = key.faults_of(&value);
-        draft.give(key, faults.is_empty().then_some(value));
-        for fault in faults {
-            problems.push(key.name, fault.message, fault.remedy);
+impl Config {
+    /// The defaults of a device.
+    pub fn defaults(schema: &Schema, name: &str) -> Self {
+        Config {
+            name: name.to_owned(),
+            device: schema.device.to_owned(),
+            strict: false,
+            values: schema.all_keys().map(|key| (key.name, key.default.clone())).collect(),
         }
     }
-    draft.finish(schema, problems)
+
+    /// The defaults with some values replaced, under the same rules as a file.
+    ///
+    /// # Errors
+    /// The problems that a file with these values would have, without positions.
+    pub fn from_values(
+        schema: &Schema,
+        name: &str,
+        values: Vec<(String, Value)>,
+    ) -> Result<Self, Problems> {
+        let mut problems = Problems::default();
+        let mut draft = Draft::new(schema, name);
+        if let Some(fault) = module_name::fault(name) {
+            problems.push("name", fault.message, fault.remedy);
+        }
+        for (name, value) in values {
+            let Some(key) = schema.key(&name) else {
+                let message = format!("device `{}` has no key {}", schema.device, quoted(&name));
+                problems.push(&name, message, keys_of(schema, ""));
+                continue;
+            };
+            let faults = key.faults_of(&value);
+            draft.give(key, faults.is_empty().then_some(value));
+            for fault in faults {
+                problems.push(key.name, fault.message, fault.remedy);
+            }
+        }
+        draft.finish(schema, problems)
+    }
+
+    /// Whether the key of this name has an effect with the other values as they are.
+    pub fn applies(&self, schema: &Schema, key: &str) -> bool {
+        match schema.key(key).and_then(|key| key.only_when) {
+            None => true,
+            Some((other, value)) => {
+                self.value(other).bare() == value && self.applies(schema, other)
+            }
+        }
+    }
 }
 
 impl<'a> Draft<'a> {

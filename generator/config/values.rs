@@ -1,7 +1,44 @@
-//! A validated configuration.
+//! Values, and a configuration of them.
 
-use super::problems::Problems;
-use super::schema::{Schema, Value};
+/// The value of a key.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// Of [`super::Kind::Integer`].
+    Integer(i64),
+    /// Of [`super::Kind::Number`].
+    Number(f64),
+    /// Of [`super::Kind::Choice`].
+    Text(String),
+    /// Of [`super::Kind::Flag`].
+    Flag(bool),
+    /// Of [`super::Kind::Integers`].
+    Integers(Vec<i64>),
+}
+
+impl Value {
+    /// The text that [`super::Key::only_when`] compares with: the value without quotes.
+    pub fn bare(&self) -> String {
+        match self {
+            Value::Integer(value) => value.to_string(),
+            // The shortest text that reads back as the same number; `1e300` in place of 300 zeros.
+            Value::Number(value) => format!("{value:?}"),
+            Value::Text(value) => value.clone(),
+            Value::Flag(value) => value.to_string(),
+            Value::Integers(values) => {
+                let values: Vec<String> = values.iter().map(i64::to_string).collect();
+                format!("[{}]", values.join(", "))
+            }
+        }
+    }
+
+    /// The value as TOML: [`Value::bare`], with quotes around a word.
+    pub fn toml(&self) -> String {
+        match self {
+            Value::Text(text) if !is_integer(text) => format!("\"{text}\""),
+            other => other.bare(),
+        }
+    }
+}
 
 /// A configuration whose every value is in range and whose combination the device accepts.
 ///
@@ -15,32 +52,10 @@ pub struct Config {
     /// Whether a configuration outside the accuracy contract is refused rather than warned about.
     pub strict: bool,
     /// In the order of the schema.
-    values: Vec<(&'static str, Value)>,
+    pub(super) values: Vec<(&'static str, Value)>,
 }
 
 impl Config {
-    /// The defaults of a device.
-    pub fn defaults(schema: &Schema, name: &str) -> Self {
-        Config {
-            name: name.to_owned(),
-            device: schema.device.to_owned(),
-            strict: false,
-            values: schema.all_keys().map(|key| (key.name, key.default.clone())).collect(),
-        }
-    }
-
-    /// The defaults with some values replaced, under the same rules as a file.
-    ///
-    /// # Errors
-    /// The problems that a file with these values would have, without positions.
-    pub fn from_values(
-        schema: &Schema,
-        name: &str,
-        values: Vec<(String, Value)>,
-    ) -> Result<Self, Problems> {
-        super::validate::from_values(schema, name, values)
-    }
-
     /// The value of an integer key, or of a choice among integers.
     ///
     /// # Panics
@@ -105,22 +120,6 @@ impl Config {
         self.values.iter().map(|(name, value)| (*name, value))
     }
 
-    /// Whether the key of this name has an effect with the other values as they are.
-    pub fn applies(&self, schema: &Schema, key: &str) -> bool {
-        match schema.key(key).and_then(|key| key.only_when) {
-            None => true,
-            Some((other, value)) => {
-                self.value(other).bare() == value && self.applies(schema, other)
-            }
-        }
-    }
-
-    /// The configuration as a TOML file that reads back as the same: every key of the device that
-    /// applies, and of those that every device shares the ones that differ from their defaults.
-    pub fn to_toml(&self, schema: &Schema) -> String {
-        super::write::plain(schema, self)
-    }
-
     /// The value of a key of any kind.
     ///
     /// # Panics
@@ -142,4 +141,9 @@ impl Config {
     fn wrong_kind(&self, key: &str, asked: &str) -> ! {
         panic!("key `{key}` of device `{}` is {:?}, not {asked}", self.device, self.value(key))
     }
+}
+
+/// Whether a word is an integer as it is displayed: `007` and `+7` are not.
+pub(super) fn is_integer(word: &str) -> bool {
+    word.parse::<i64>().is_ok_and(|value| value.to_string() == word)
 }

@@ -1,8 +1,8 @@
 //! Configurations as TOML text.
 
-use super::schema::{Key, Schema, Value};
+use super::schema::{Key, Schema};
 use super::shared::shared_keys;
-use super::values::Config;
+use super::values::{Config, Value};
 
 /// The widest line of a comment.
 const WIDTH: usize = 90;
@@ -48,9 +48,17 @@ pub fn commented(schema: &Schema, name: &str) -> String {
     text
 }
 
+impl Config {
+    /// The configuration as a TOML file that reads back as the same: every key of the device that
+    /// applies, and of those that every device shares the ones that differ from their defaults.
+    pub fn to_toml(&self, schema: &Schema) -> String {
+        plain(schema, self)
+    }
+}
+
 /// The keys of a configuration that apply, without comments; of those that every device shares, the ones
 /// that differ from their defaults.
-pub(super) fn plain(schema: &Schema, config: &Config) -> String {
+fn plain(schema: &Schema, config: &Config) -> String {
     let mut text = String::new();
     for (key, value) in common(config) {
         text += &format!("{key} = {value}\n");

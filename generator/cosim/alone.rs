@@ -3,8 +3,9 @@
 use anyhow::Result;
 
 use super::combinations::Combinations;
+use super::outcome::{Course, Seen};
 use super::pairing::Pairing;
-use super::stream::{Course, Seen, Stream};
+use super::stream::Stream;
 use crate::hdl::sim::Simulator;
 
 /// One stream in a simulator of its own.
@@ -57,7 +58,7 @@ impl<'a> Alone<'a> {
         }
         self.simulator.clock()?;
         let simulated = |net| self.simulator.value(net);
-        let mismatch = self.pairing.mismatch(&self.stream, word, simulated);
+        let mismatch = self.stream.mismatch(self.pairing, word, simulated);
         if mismatch.is_some() {
             self.stream.seen.mismatch = mismatch;
         } else {

@@ -4,7 +4,8 @@ use std::io::Write;
 
 use anyhow::Result;
 
-use super::lockstep::{Outcome, Sequential};
+use super::lockstep::Sequential;
+use super::outcome::Outcome;
 use super::pipelined::Pipelined;
 use crate::golden::{Contract, Model};
 use crate::hdl::netlist::Design;

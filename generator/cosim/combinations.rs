@@ -7,7 +7,7 @@
 
 use std::sync::Arc;
 
-use super::stream::Course;
+use super::outcome::Course;
 use crate::base::fixed::mask;
 use crate::hdl::netlist::{Design, NetId, Role};
 

@@ -6,7 +6,6 @@
 //! has any influence on what is found. What counts is what streams showed in their order up to the
 //! first that differs.
 
-use std::fmt;
 use std::io::Write;
 use std::ops::Range;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -15,12 +14,11 @@ use anyhow::{Result, bail};
 use rayon::prelude::*;
 
 use super::alone::Alone;
-use super::histogram::Histogram;
+use super::outcome::{Course, Outcome, Seen, Worst};
 use super::pairing::Pairing;
 use super::random::Random;
-use super::stream::{Course, Seen};
 use super::together::Together;
-use crate::golden::{Bound, Contract, Model};
+use crate::golden::{Contract, Model};
 use crate::hdl::netlist::Design;
 use crate::hdl::sim::Simulator;
 use crate::package::Vectors;
@@ -40,86 +38,6 @@ const MANY_POINTS: u64 = 1024;
 
 /// A run of fewer streams is not divided.
 const FEWEST_STREAMS: u64 = 8;
-
-/// What a run showed.
-#[derive(Clone, Debug, Default)]
-pub struct Outcome {
-    /// Results seen.
-    pub points: u64,
-    /// Clocks run, each compared.
-    pub clocks: u64,
-    /// Registers compared on every clock.
-    pub registers: usize,
-    /// Outputs compared on every clock.
-    pub outputs: usize,
-    /// The largest error of an output against the formula in f64.
-    pub worst: Option<Worst>,
-    /// How the results are spread over the values of `f`.
-    pub histogram: Histogram,
-    /// The first difference, at which the run ended.
-    pub mismatch: Option<Mismatch>,
-}
-
-impl Outcome {
-    /// What does not hold, with a contract whose bound this is.
-    pub fn faults(&self, bound: &Bound) -> Vec<String> {
-        let mut faults = Vec::new();
-        if let Some(mismatch) = &self.mismatch {
-            faults.push(format!(
-                "seed {}, after clock {}, {mismatch}",
-                mismatch.seed, mismatch.clock
-            ));
-        }
-        if let Some(worst) = &self.worst
-            && worst.units > bound.units
-        {
-            faults.push(format!(
-                "`{}` is off by {:.4} units, beyond the stated bound of {:.4}",
-                worst.output, worst.units, bound.units
-            ));
-        }
-        faults
-    }
-}
-
-/// The largest error against the formula, and where.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Worst {
-    /// In output units.
-    pub units: f64,
-    /// The output.
-    pub output: String,
-    /// Raw operands, by name.
-    pub operands: Vec<(String, i64)>,
-}
-
-/// A signal on which model and hardware differ.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Mismatch {
-    /// The seed of the stream: a run with it that is not divided, [`Lockstep::trace`](super::Lockstep::trace) say, goes the same
-    /// way from the first clock on. Where combinations are gone through, the place of the one that runs.
-    pub seed: u64,
-    /// Rising edges of the stream so far.
-    pub clock: u64,
-    /// Its name.
-    pub signal: String,
-    /// What the golden model says, a bit pattern.
-    pub golden: u64,
-    /// What the simulated hardware says.
-    pub simulated: u64,
-    /// The word of the microprogram that was executed at the edge.
-    pub word: String,
-}
-
-impl fmt::Display for Mismatch {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "word `{}`: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
-            self.word, self.signal, self.simulated, self.golden
-        )
-    }
-}
 
 /// Golden model and simulator of a design with a microprogram.
 pub(super) struct Sequential<'a> {

@@ -9,6 +9,7 @@ pub mod directed;
 pub mod exhaustive;
 mod histogram;
 mod lockstep;
+mod outcome;
 mod pairing;
 mod pipelined;
 mod points;
@@ -20,7 +21,7 @@ pub mod trial;
 
 pub use architecture::Lockstep;
 pub use histogram::{CLASSES, Histogram};
-pub use lockstep::{Mismatch, Outcome, Worst};
+pub use outcome::{Mismatch, Outcome, Worst};
 pub use points::Points;
 pub use random::Random;
 pub use stimulus::Stimulus;

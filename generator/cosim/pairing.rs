@@ -5,10 +5,9 @@ use std::sync::Arc;
 use anyhow::{Context, Result, anyhow, ensure};
 
 use super::combinations::{Combinations, Ports};
-use super::lockstep::{Mismatch, Worst};
+use super::outcome::{Seen, Worst};
 use super::points::Points;
 use super::stimulus::Stimulus;
-use super::stream::{Seen, Stream};
 use crate::base::fixed::{Format, MAX_WIDTH, exp2};
 use crate::golden::{Contract, Model, nearer};
 use crate::hdl::netlist::{Design, NetId, RegisterKind};
@@ -179,29 +178,6 @@ impl<'a> Pairing<'a> {
     /// How many registers a golden model must predict.
     pub(super) fn registers(&self) -> usize {
         registers(self.design).len()
-    }
-
-    /// The first signal on which simulation and model differ after the latest clock of a stream, if they
-    /// do. `word` was executed at the edge.
-    pub(super) fn mismatch(
-        &self,
-        stream: &Stream,
-        word: u64,
-        simulated: impl Fn(NetId) -> u64,
-    ) -> Option<Mismatch> {
-        let pairs = self.compared.iter().zip(stream.predicted());
-        let differs = |(&net, &golden): (&NetId, &u64)| simulated(net) != golden;
-        let at = pairs.clone().position(differs)?;
-        let words = &self.design.control.words;
-        let word = usize::try_from(word).ok().and_then(|word| words.get(word));
-        Some(Mismatch {
-            seed: stream.seed(),
-            clock: stream.seen.clocks,
-            signal: self.model.signals()[at].clone(),
-            golden: stream.predicted()[at],
-            simulated: simulated(self.compared[at]),
-            word: word.map_or_else(String::new, |word| word.name.clone()),
-        })
     }
 
     /// Whether raw operands, in the order of the contract, are in its domain.

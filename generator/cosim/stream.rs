@@ -3,30 +3,11 @@
 use std::mem;
 
 use super::combinations::Combinations;
-use super::histogram::Histogram;
-use super::lockstep::{Mismatch, Worst};
+use super::outcome::{Course, Mismatch, Seen};
 use super::pairing::Pairing;
 use super::stimulus::Stimulus;
 use crate::golden::Model;
-
-/// What a stream showed.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Seen {
-    pub(super) points: u64,
-    pub(super) clocks: u64,
-    pub(super) worst: Option<Worst>,
-    pub(super) histogram: Histogram,
-    pub(super) mismatch: Option<Mismatch>,
-}
-
-/// What a stream goes through.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Course {
-    /// So many results under the stimulus of a seed.
-    Random { seed: u64, points: u64 },
-    /// The combinations of operands at so many places, from the first on.
-    Combinations { first: u64, count: u64 },
-}
+use crate::hdl::netlist::NetId;
 
 /// What makes the inputs.
 enum Source {
@@ -135,6 +116,29 @@ impl Stream {
     #[inline]
     pub(super) fn predicted(&self) -> &[u64] {
         self.model.values()
+    }
+
+    /// The first signal on which simulation and model differ after the latest clock if they
+    /// do. `word` was executed at the edge.
+    pub(super) fn mismatch(
+        &self,
+        pairing: &Pairing,
+        word: u64,
+        simulated: impl Fn(NetId) -> u64,
+    ) -> Option<Mismatch> {
+        let pairs = pairing.compared.iter().zip(self.predicted());
+        let differs = |(&net, &golden): (&NetId, &u64)| simulated(net) != golden;
+        let at = pairs.clone().position(differs)?;
+        let words = &pairing.design.control.words;
+        let word = usize::try_from(word).ok().and_then(|word| words.get(word));
+        Some(Mismatch {
+            seed: self.seed(),
+            clock: self.seen.clocks,
+            signal: pairing.model.signals()[at].clone(),
+            golden: self.predicted()[at],
+            simulated: simulated(pairing.compared[at]),
+            word: word.map_or_else(String::new, |word| word.name.clone()),
+        })
     }
 
     /// Takes note of a result, if there is one, as predicted.

@@ -3,8 +3,9 @@
 use anyhow::Result;
 
 use super::alone::Alone;
+use super::outcome::{Course, Seen};
 use super::pairing::Pairing;
-use super::stream::{Course, Seen, Stream};
+use super::stream::Stream;
 use crate::hdl::sim::Simulator;
 
 /// Clocks for which each stream in turn is ahead of the simulator. Its model and stimulus then stay in

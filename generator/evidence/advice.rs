@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::config::{Config, Kind, Schema, Value};
+use crate::core::Unit;
 use crate::golden::Bound;
 use crate::registry::Device;
 
@@ -29,6 +30,13 @@ impl fmt::Display for Advice {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { key, from, to, units } = self;
         write!(f, "`{key} = {to}` in place of {from} would bring the bound to {units:.3} units")
+    }
+}
+
+impl Unit {
+    /// The change of one key that would bring the error bound down most.
+    pub fn advice(&self) -> Option<Advice> {
+        advise(&self.device, &self.config, &self.contract.bound())
     }
 }
 

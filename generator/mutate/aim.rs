@@ -7,7 +7,7 @@
 use anyhow::Result;
 
 use super::coverage::{Operands, operand_of};
-use super::run::Difference;
+use super::verdict::Difference;
 use crate::core::Unit;
 use crate::cosim::Lockstep;
 use crate::cosim::exhaustive::Clocks;

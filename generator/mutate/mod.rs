@@ -8,6 +8,7 @@ mod aim;
 mod coverage;
 mod fault;
 mod formal;
+mod kind;
 mod operators;
 mod plant;
 mod proof;
@@ -17,11 +18,14 @@ mod score;
 mod shipped;
 #[cfg(test)]
 mod tests;
+mod verdict;
 mod verilog;
 
-pub use fault::{Bit, Fault, Faults, Kind, Site};
+pub use fault::{Bit, Fault, Faults, Site};
+pub use kind::Kind;
 pub use reach::unreached;
-pub use run::{Difference, Found, How, Leg, Verdict, run};
+pub use run::run;
 pub use score::{Score, TOLERATED, Tally, TextScore};
 pub use shipped::notices;
+pub use verdict::{Difference, Found, How, Leg, Verdict};
 pub use verilog::{POINTS as BENCH_POINTS, Text, TextFault, TextVerdict};

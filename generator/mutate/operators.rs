@@ -1,6 +1,6 @@
 //! What can be wrong with a cell as a whole.
 
-use super::fault::Kind;
+use super::kind::Kind;
 use crate::hdl::netlist::{Design, Driver, NetId, Op};
 
 /// The wrong cells in the place of the one that drives `id`, each with a name and a kind.

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::fault::Kind;
-use super::run::{Found, How, Leg, Verdict};
+use super::kind::Kind;
+use super::verdict::{Found, How, Leg, Verdict};
 use super::verilog::{TextFault, TextVerdict};
 
 /// At most so much of the faults may be open, as a share.

@@ -9,7 +9,7 @@ use askama::Template;
 
 use super::{Computation, EmitInputs, Timing};
 use crate::hdl::netlist::termination::{self, Left};
-use crate::hdl::netlist::{Design, NetId, RegId, RegisterKind, Sequence, Unit};
+use crate::hdl::netlist::{Design, NetId, RegId, Sequence, Unit};
 use crate::hdl::verilog::naming::Naming;
 use crate::hdl::verilog::rows::{Row, separated};
 use crate::hdl::verilog::text::{Names, literal, range};
@@ -112,54 +112,6 @@ pub struct Sources<'a> {
     pub rtl: &'a [String],
     /// ROM contents.
     pub memories: &'a [String],
-}
-
-/// The lines of a unit's section for formal tools.
-pub fn invariants(design: &Design, naming: &Naming, unit: Unit) -> Vec<String> {
-    let mut names = naming.names.clone();
-    let lines = match unit {
-        Unit::Control => control(design),
-        Unit::Datapath => datapath(design, &names.fresh("was_busy")),
-    };
-    lines.into_iter().map(|line| format!("    {line}")).collect()
-}
-
-/// From the first clock on, which has the initial set.
-fn control(design: &Design) -> Vec<String> {
-    let name = |register| design.net(design.register(register).q).name.as_str();
-    let (address, run) = (name(design.control.address), name(design.control.run));
-    let width = design.width(design.register(design.control.address).q);
-    let last = literal(design.control.words.len() as u64 - 1, width);
-    vec![
-        "always @* if (!$initstate) begin".to_owned(),
-        format!("    assert ({address} <= {last});  // no other word is reached"),
-        format!("    if (!{run}) assert ({address} == {});", literal(0, width)),
-        "end".to_owned(),
-    ]
-}
-
-/// Operands are stable while the device is busy.
-fn datapath(design: &Design, was_busy: &str) -> Vec<String> {
-    let operands: Vec<&str> = design
-        .registers
-        .iter()
-        .filter(|register| register.kind == RegisterKind::Operand)
-        .map(|register| design.net(register.q).name.as_str())
-        .collect();
-    if operands.is_empty() {
-        return Vec::new();
-    }
-    let mut lines = vec![
-        format!("reg {was_busy} = 1'b0;"),
-        "always @(posedge clk) begin".to_owned(),
-        format!("    {was_busy} <= !idle;"),
-        format!("    if ({was_busy}) begin"),
-    ];
-    for operand in operands {
-        lines.push(format!("        assert ({operand} == $past({operand}));"));
-    }
-    lines.extend(["    end".to_owned(), "end".to_owned()]);
-    lines
 }
 
 /// Wrapper and script, as names and texts.

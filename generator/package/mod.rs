@@ -21,17 +21,18 @@ mod window;
 
 use anyhow::{Result, ensure};
 use askama::Template;
-use serde::Serialize;
 use sha2::{Digest, Sha256};
 
-use crate::golden::Contract;
-use crate::hdl;
 use crate::hdl::netlist::{Design, RomId, Unit};
+use crate::hdl::verilog::header::Origin;
 use crate::hdl::verilog::interface::Interface;
 use crate::hdl::verilog::naming::Naming;
 use crate::hdl::verilog::plan::Plan;
-use crate::hdl::verilog::{module, top};
+use crate::hdl::verilog::{module, pipeline, top};
 
+pub use crate::observation::{
+    Accuracy, Computation, Quantity, Shown, Timing, Vectors, WorkedExample,
+};
 pub use cocotb::driver;
 pub use instance::instance;
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE, points_bench};
@@ -84,131 +85,10 @@ pub struct EmitInputs {
     pub around: Surroundings,
 }
 
-/// Clocks between the events of the handshake; `None` where they depend on the data.
-///
-/// The clock in which `start` is taken is number 0.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct Timing {
-    /// The number of the first clock in which `valid` is high.
-    pub start_to_valid: Option<u32>,
-    /// Clocks from a result to the next of the same computation, where there are several.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub valid_to_valid: Option<u32>,
-    /// The number of the clock in which `done` is high.
-    pub start_to_done: Option<u32>,
-    /// Where that depends on the data, the number of the latest clock in which `done` can be high, if the
-    /// microprogram has a bound.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub start_to_done_at_most: Option<u32>,
-    /// The number of the first clock in which the next `start` is taken.
-    pub start_to_start: Option<u32>,
-}
-
-impl Timing {
-    /// Clocks from a point to the next without a pause: of a line once it is under way, where a computation
-    /// has several results; of computations back to back elsewhere. `None` where they depend on the data.
-    pub fn clocks_per_point(&self) -> Option<u32> {
-        self.valid_to_valid.or(self.start_to_start)
+impl EmitInputs {
+    fn origin(&self) -> Origin<'_> {
+        Origin { config: &self.config, timing: &self.timing }
     }
-}
-
-/// A computation with all its numbers.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct WorkedExample {
-    /// In the order of the operand ports.
-    pub operands: Vec<Quantity>,
-    /// In the order of the result ports.
-    pub outputs: Vec<Quantity>,
-}
-
-/// What a device promises of its results, as far as a program can use it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Accuracy {
-    /// The operands with the smallest and the largest raw value for which it promises anything.
-    pub domain: Vec<(String, (i64, i64))>,
-    /// The result outputs, each with the operand by which it multiplies f.
-    pub outputs: Vec<(String, String)>,
-    /// The operand that says how many results there are beyond the first, where one does.
-    pub length: Option<String>,
-    /// The values that are right for f, as expressions of Python.
-    pub f: Vec<String>,
-    /// The largest error of an output, in its units.
-    pub bound: f64,
-}
-
-impl Accuracy {
-    /// What a contract says.
-    pub fn new(contract: &dyn Contract) -> Self {
-        let operands = contract.operands();
-        let colours = operands.iter().filter(|operand| operand.colour);
-        let domain = operands.iter();
-        Self {
-            domain: domain.map(|operand| (operand.name.clone(), operand.domain)).collect(),
-            outputs: contract
-                .outputs()
-                .iter()
-                .zip(colours)
-                .map(|(output, colour)| (output.clone(), colour.name.clone()))
-                .collect(),
-            length: contract.length().map(str::to_owned),
-            f: contract.expressions(),
-            bound: contract.bound().units,
-        }
-    }
-}
-
-/// A computation as its handshake shows it. The clock in which `start` is taken is number 0.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Computation {
-    /// Raw, in the order of [`Accuracy::domain`].
-    pub operands: Vec<i64>,
-    /// What is on the outputs whenever `valid` is high.
-    pub results: Vec<Shown>,
-    /// The clock in which `done` is high.
-    pub done: u32,
-}
-
-impl Computation {
-    /// Whether the last result comes with `done`.
-    pub fn ends_with_result(&self) -> bool {
-        let last = self.results.last();
-        last.is_some_and(|result| result.clock == self.done)
-    }
-}
-
-/// A result.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Shown {
-    /// The clock in which `valid` is high.
-    pub clock: u32,
-    /// Raw, in the order of [`Accuracy::outputs`].
-    pub outputs: Vec<i64>,
-}
-
-/// A number on a port.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Quantity {
-    /// The port.
-    pub name: String,
-    /// The integer that its bits denote.
-    pub raw: i128,
-    /// `raw · 2^-F`.
-    pub value: f64,
-}
-
-/// Stimulus and expected outputs, clock by clock.
-///
-/// The inputs of a clock are applied on the falling edge that begins it; its outputs are those just
-/// before the rising edge in its middle, with these inputs applied.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Vectors {
-    /// For each clock the bit patterns of all input ports but `clk`, in port order.
-    pub inputs: Vec<Vec<u64>>,
-    /// For each clock the bit patterns of all output ports, in port order.
-    pub expected: Vec<Vec<u64>>,
-    /// The first clock from which results and status are compared. Handshake outputs are compared from the
-    /// first clock after one with reset.
-    pub known_from: usize,
 }
 
 /// Every file of a design.
@@ -222,7 +102,7 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     let name = &design.name;
     let rtl = match &design.pipeline {
         Some(pipeline) => {
-            let module = hdl::verilog::pipeline::module(&plan, &naming, pipeline, inputs);
+            let module = pipeline::module(&plan, &naming, pipeline, &inputs.origin());
             vec![(format!("{name}.v"), render(&module)?)]
         }
         None => units(&plan, &naming, inputs)?,
@@ -292,10 +172,11 @@ fn units(plan: &Plan, naming: &Naming, inputs: &EmitInputs) -> Result<Vec<(Strin
     let control = Interface::new(plan, Unit::Control);
     let datapath = Interface::new(plan, Unit::Datapath);
     let units = [(Unit::Control, &control), (Unit::Datapath, &datapath)];
-    let top = render(&top::module(plan, naming, units, inputs))?;
+    let origin = inputs.origin();
+    let top = render(&top::module(plan, naming, units, &origin))?;
     let mut rtl = vec![(format!("{}.v", plan.design.name), top)];
     for (unit, interface) in units {
-        let module = module::Builder::new(plan, naming, interface, unit).module(inputs);
+        let module = module::Builder::new(plan, naming, interface, unit).module(&origin);
         rtl.push((format!("{}.v", naming.module(unit)), render(&module)?));
     }
     Ok(rtl)

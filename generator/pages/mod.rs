@@ -11,3 +11,26 @@ pub mod report;
 
 pub use account::PageInputs;
 pub use markdown::page;
+
+use anyhow::Result;
+
+use crate::core::Unit;
+
+impl Unit {
+    /// The page of the configuration, which the command line knows as `config`.
+    ///
+    /// # Errors
+    /// A device that does not end.
+    pub fn page(&self, config: &str) -> Result<String> {
+        let inputs = PageInputs {
+            path: config,
+            config: &self.config,
+            schema: &(self.device.schema)(),
+            contract: self.contract.as_ref(),
+            advice: self.advice(),
+            timing: &self.timing()?,
+            example: &self.example()?,
+        };
+        page(&self.design, &inputs)
+    }
+}

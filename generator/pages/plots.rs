@@ -170,13 +170,13 @@ fn ticks(axis: &Axis) -> Vec<f64> {
     let (low, high) = axis.range;
     match axis.scale {
         Scale::Linear => {
-            let rough = (high - low) / 5.0;
-            let decade = libm::pow(10.0, libm::floor(libm::log10(rough)));
+            let coarse = (high - low) / 5.0;
+            let decade = libm::pow(10.0, libm::floor(libm::log10(coarse)));
             let step = [1.0, 2.0, 2.5, 5.0, 10.0]
                 .into_iter()
                 .map(|factor| factor * decade)
-                .find(|step| *step >= rough * 0.999)
-                .unwrap_or(rough);
+                .find(|step| *step >= coarse * 0.999)
+                .unwrap_or(coarse);
             let (first, last) = (libm::ceil(low / step), libm::floor(high / step + 1e-9));
             (0..=(last - first) as u32).map(|at| (first + f64::from(at)) * step).collect()
         }

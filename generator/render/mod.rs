@@ -99,7 +99,7 @@ impl Rendered {
         let difference = &comparison.difference;
         Picture::beside(&[
             &self.picture.captioned(device),
-            &comparison.blinn.captioned("Blinn in f64"),
+            &comparison.exact.captioned("Blinn in f64"),
             &difference.picture.captioned(&format!("difference × {}", difference.gain)),
         ])
     }
@@ -109,7 +109,7 @@ impl Rendered {
 #[derive(Clone, Debug)]
 pub struct Comparison {
     /// The picture with cosⁿγ.
-    pub blinn: Picture,
+    pub exact: Picture,
     /// Between the two.
     pub difference: Difference,
     /// The largest error of an output against the device's own formula, in output units.
@@ -205,7 +205,7 @@ pub fn render(
         samples,
         width: width as usize,
         picture: Picture::new(width),
-        blinn: Picture::new(width),
+        exact: Picture::new(width),
         shown: Vec::new(),
         points: 0,
         beyond: 0,
@@ -239,7 +239,7 @@ struct Portions<'a> {
     samples: usize,
     width: usize,
     picture: Picture,
-    blinn: Picture,
+    exact: Picture,
     /// Whether there is a thing in the pixel.
     shown: Vec<bool>,
     points: u64,
@@ -262,9 +262,9 @@ impl Portions<'_> {
         self.picture.pixels.extend(device);
         if compare {
             self.units = self.units.max(self.error(&points, &outputs));
-            let exact = rows.iter().flat_map(|row| row.blinn.iter().copied());
-            let blinn = self.pixels(rows, exact.collect());
-            self.blinn.pixels.extend(blinn);
+            let exact = rows.iter().flat_map(|row| row.exact.iter().copied());
+            let exact = self.pixels(rows, exact.collect());
+            self.exact.pixels.extend(exact);
             let samples = self.samples;
             let lines = rows.chunks(samples);
             let shown = lines.flat_map(|lines| {
@@ -372,8 +372,8 @@ impl Portions<'_> {
 
     fn finish(self, compare: bool) -> Rendered {
         let comparison = compare.then(|| Comparison {
-            difference: Difference::new(&self.picture, &self.blinn, &self.shown),
-            blinn: self.blinn,
+            difference: Difference::new(&self.picture, &self.exact, &self.shown),
+            exact: self.exact,
             units: self.units,
         });
         Rendered { picture: self.picture, points: self.points, beyond: self.beyond, comparison }

@@ -63,7 +63,7 @@ pub struct Shaded {
     pub places: Option<Vec<[usize; 3]>>,
     /// For each sample and each of its lights Blinn's cosⁿγ times the light's colour, 0 … 255; empty unless
     /// it is wanted.
-    pub blinn: Vec<Vector>,
+    pub exact: Vec<Vector>,
     /// Points whose dγ is beyond the device's domain.
     pub beyond: usize,
 }
@@ -99,7 +99,7 @@ impl Shader<'_> {
             samples: Vec::with_capacity(hits.len()),
             points: Points::new(self.feed.len()),
             places: self.feed.longest().map(|_| Vec::new()),
-            blinn: Vec::new(),
+            exact: Vec::new(),
             beyond: 0,
         };
         let same = |a: &Hit, b: &Hit| (a.object, a.triangle) == (b.object, b.triangle);
@@ -158,7 +158,7 @@ impl Shader<'_> {
                         point.cos_shaded,
                         f64::from(material.exponent),
                     );
-                    shaded.blinn.push(point.colour * (f * 255.0));
+                    shaded.exact.push(point.colour * (f * 255.0));
                 }
             }
             let base = surface.colour.times(light_sum) * 255.0;

@@ -19,6 +19,7 @@ mod divider;
 mod lines;
 mod pages;
 mod proofs;
+mod rooms;
 mod rough_microprogram;
 mod shared_products;
 mod spread;

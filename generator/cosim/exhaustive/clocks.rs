@@ -15,9 +15,9 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::cosim::alone::Alone;
-use crate::cosim::lockstep::{LANES, Mismatch};
+use crate::cosim::lockstep::LANES;
+use crate::cosim::outcome::{Course, Mismatch};
 use crate::cosim::pairing::Pairing;
-use crate::cosim::stream::Course;
 use crate::cosim::together::Together;
 use crate::golden::{Contract, Model};
 use crate::hdl::netlist::Design;

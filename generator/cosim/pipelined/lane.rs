@@ -6,7 +6,7 @@ use super::Setup;
 use super::reference::{Expected, Reference};
 use crate::base::fixed::mask;
 use crate::cosim::histogram::Histogram;
-use crate::cosim::lockstep::Worst;
+use crate::cosim::outcome::Worst;
 use crate::cosim::random::Random;
 use crate::golden::Operand;
 use crate::golden::pipeline::Occupancy;

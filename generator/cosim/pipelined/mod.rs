@@ -16,7 +16,8 @@ use anyhow::{Context, Result, ensure};
 use rayon::prelude::*;
 
 use super::histogram::Histogram;
-use super::lockstep::{LANES, Mismatch, Outcome, Worst};
+use super::lockstep::LANES;
+use super::outcome::{Mismatch, Outcome, Worst};
 use super::points::Points;
 use super::random::Random;
 use crate::golden::{Contract, Model, Operand};

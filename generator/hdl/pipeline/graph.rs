@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use std::panic::Location;
 
 use super::value::evaluate;
-use crate::fixed::{Format, mask};
+use crate::base::fixed::{Format, mask};
 use crate::hdl::netlist::{NetId, Op, RomId};
 
 /// The smallest and the largest raw value.

@@ -4,7 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::graph::{Cell, Graph};
 use super::value::evaluate;
-use crate::fixed::Format;
+use crate::base::fixed::Format;
 use crate::hdl::netlist::NetId;
 
 /// All combinations of so many bits are tried.
@@ -39,7 +39,7 @@ pub fn ever(graph: &Graph, condition: NetId, free: &[NetId]) -> Option<bool> {
     for number in 0..1u64 << bits {
         let mut rest = number;
         for (&leaf, &width) in leaves.iter().zip(&widths) {
-            values.insert(leaf, rest & crate::fixed::mask(width));
+            values.insert(leaf, rest & crate::base::fixed::mask(width));
             rest >>= width;
         }
         let within = |&id: &NetId| {

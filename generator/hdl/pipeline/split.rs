@@ -7,7 +7,7 @@
 use super::graph::{Cell, Graph, Label};
 use super::target::Target;
 use super::unroll::Unrolled;
-use crate::fixed::Format;
+use crate::base::fixed::Format;
 use crate::hdl::netlist::{NetId, Op};
 
 /// So many bits of an operand are rows in look-up tables.

@@ -6,7 +6,7 @@ use super::graph::{Cell, Graph};
 use super::schedule::{Problems, Schedule};
 use super::unroll::Unrolled;
 use super::{Goal, Options};
-use crate::fixed::Format;
+use crate::base::fixed::Format;
 use crate::hdl::netlist::{
     Checkpoint, Control, Design, Driver, Net, NetId, Op, Pipeline, Port, RegId, Register,
     RegisterKind, Role, Rom, RomId, Stage, Unit,

@@ -15,7 +15,7 @@ use std::collections::HashMap;
 use super::graph::{Cell, Graph, Label};
 use super::possible;
 use crate::base::diagnostic::{Diagnostic, Diagnostics};
-use crate::fixed::Format;
+use crate::base::fixed::Format;
 use crate::hdl::netlist::{
     Design, Driver, Net, NetId, Op, RegId, RegisterKind, Role, RomId, Sequence,
 };

@@ -1,6 +1,6 @@
 //! What a cell gives when its operands are known.
 
-use crate::fixed::{Format, mask};
+use crate::base::fixed::{Format, mask};
 use crate::hdl::netlist::Op;
 
 /// The bit pattern of the result, of operands in the order of [`Op::operands`].

@@ -5,6 +5,7 @@ pub(crate) mod bits;
 pub(crate) mod expression;
 pub(crate) mod header;
 pub(crate) mod interface;
+pub(crate) mod invariants;
 pub(crate) mod module;
 pub(crate) mod naming;
 pub(crate) mod pipeline;

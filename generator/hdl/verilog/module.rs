@@ -3,16 +3,15 @@
 use std::collections::BTreeSet;
 
 use super::expression::Expressions;
-use super::header;
+use super::header::{self, Origin};
 use super::interface::{Interface, unread};
+use super::invariants::invariants;
 use super::naming::{Naming, is_control_rom, remark, rom_label};
 use super::plan::{Form, Plan};
 use super::rows::{Row, separated};
 use super::text::{annotated, comment, literal, range, statement};
 use super::view::{Item, Module, RomItem, Section, Spaced};
 use crate::hdl::netlist::{Driver, NetId, Op, RegId, RomId, Unit};
-use crate::package::EmitInputs;
-use crate::package::formal;
 
 /// Builds one unit.
 pub struct Builder<'a> {
@@ -44,7 +43,7 @@ impl<'a> Builder<'a> {
     }
 
     /// The module.
-    pub fn module(mut self, inputs: &EmitInputs) -> Module {
+    pub fn module(mut self, origin: &Origin) -> Module {
         // Statements first: they tell which constants and choices are to be declared.
         let items = self.items(&|_| true);
         let groups = self.groups(&|_| true);
@@ -52,7 +51,7 @@ impl<'a> Builder<'a> {
         let state = self.state(&|_| true);
         let sections = [("Constants", constants), ("Registers", state)];
         Module {
-            header: header::unit(self.plan.design, self.unit, inputs, self.naming),
+            header: header::unit(self.plan.design, self.unit, origin, self.naming),
             name: self.naming.module(self.unit),
             parameters: parameters(self.naming, &self.interface.roms),
             ports: self.ports(),
@@ -64,7 +63,7 @@ impl<'a> Builder<'a> {
             items,
             groups,
             unused: self.unused(),
-            formal: formal::invariants(self.plan.design, self.naming, self.unit),
+            formal: invariants(self.plan.design, self.naming, self.unit),
         }
     }
 

@@ -1,6 +1,6 @@
 //! The module of a pipeline: the handshake, then a section for every stage.
 
-use super::header;
+use super::header::{self, Origin};
 use super::interface::Interface;
 use super::module::{Builder, parameters};
 use super::naming::Naming;
@@ -8,14 +8,13 @@ use super::plan::Plan;
 use super::text::{ascii, comment};
 use super::view::{PipelineModule, StageSection};
 use crate::hdl::netlist::{Driver, NetId, Pipeline, Unit};
-use crate::package::EmitInputs;
 
 /// The module.
 pub fn module(
     plan: &Plan,
     naming: &Naming,
     pipeline: &Pipeline,
-    inputs: &EmitInputs,
+    origin: &Origin,
 ) -> PipelineModule {
     let design = plan.design;
     let interface = Interface::new(plan, Unit::Datapath);
@@ -51,7 +50,7 @@ pub fn module(
         groups: Vec::new(),
     });
     PipelineModule {
-        header: header::top(design, inputs),
+        header: header::top(design, origin),
         name: design.name.clone(),
         parameters: parameters(naming, &interface.roms),
         ports: builder.ports(),

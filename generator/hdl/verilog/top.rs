@@ -1,6 +1,6 @@
 //! The top module: the two units and the wires between them.
 
-use super::header;
+use super::header::{self, Origin};
 use super::interface::Interface;
 use super::module::parameters;
 use super::naming::Naming;
@@ -8,14 +8,13 @@ use super::plan::Plan;
 use super::rows::{Row, separated};
 use super::view::{Instance, Section, Top};
 use crate::hdl::netlist::Unit;
-use crate::package::EmitInputs;
 
 /// The top module.
 pub fn module(
     plan: &Plan,
     naming: &Naming,
     units: [(Unit, &Interface); 2],
-    inputs: &EmitInputs,
+    origin: &Origin,
 ) -> Top {
     let design = plan.design;
     let mut ports = vec![Row::port("input", "wire", 1, false, "clk", "")];
@@ -38,7 +37,7 @@ pub fn module(
     };
     let roms: Vec<_> = units.iter().flat_map(|(_, interface)| interface.roms.clone()).collect();
     Top {
-        header: header::top(design, inputs),
+        header: header::top(design, origin),
         name: design.name.clone(),
         parameters: parameters(naming, &roms),
         ports: Row::ports(&ports),

@@ -17,7 +17,7 @@ use sound::Sound;
 use window::Windows;
 
 use super::fault::{Bit, Site};
-use super::run::How;
+use super::verdict::How;
 use crate::base::fixed::mask;
 use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId, RegisterKind, RomId};
 

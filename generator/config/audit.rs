@@ -1,0 +1,80 @@
+//! Mistakes in a schema itself.
+
+use super::problems::Problems;
+use super::schema::{Key, Kind, Schema};
+use super::shared::shared_keys;
+use super::values::Config;
+
+impl Schema {
+    /// Mistakes in the schema itself, for a device's own tests: names that repeat, that are not
+    /// plain TOML or that stand for a table and a value at once; defaults outside their range or
+    /// refused by `check`; conditions on keys or values that do not exist.
+    ///
+    /// A schema without mistakes gives an empty list; the reader relies on that.
+    pub fn faults(&self) -> Vec<String> {
+        let mut faults = Vec::new();
+        for (index, key) in self.keys.iter().enumerate() {
+            let name = key.name;
+            if !name.split('.').all(is_plain) {
+                faults.push(format!("`{name}` is not made of plain lower-case words"));
+            }
+            let shared = shared_keys().iter().map(|key| key.name);
+            let mut common = super::COMMON.iter().map(|(common, _)| *common).chain(shared);
+            if common.any(|common| common == name) {
+                faults.push(format!("`{name}` is a key of every device"));
+            }
+            if self.keys[..index].iter().any(|other| other.name == name) {
+                faults.push(format!("`{name}` is declared twice"));
+            }
+            let table = format!("{name}.");
+            if self.all_keys().any(|other| other.name.starts_with(&table)) {
+                faults.push(format!("`{name}` is both a key and a table"));
+            }
+            for fault in key.faults_of(&key.default) {
+                faults.push(format!("default of `{name}`: {}", fault.message));
+            }
+            if key.kind.mixes_integers_and_words() {
+                faults.push(format!("`{name}` is a choice among integers and words"));
+            }
+            if let Some((other, value)) = key.only_when {
+                // Only an earlier key, so that chains of conditions end.
+                match self.keys[..index].iter().find(|key| key.name == other) {
+                    None => faults.push(format!(
+                        "`{name}` depends on `{other}`, which is not declared before it"
+                    )),
+                    Some(other) if !other.can_be(value) => faults.push(format!(
+                        "`{name}` depends on `{}` = {value}, which that can never be",
+                        other.name
+                    )),
+                    Some(_) => {}
+                }
+            }
+        }
+        if faults.is_empty() {
+            let mut problems = Problems::default();
+            (self.check)(&Config::defaults(self, self.device), &mut problems);
+            faults.extend(problems.iter().map(|problem| format!("defaults: {}", problem.message)));
+        }
+        faults
+    }
+}
+
+impl Key {
+    /// Whether some accepted value displays as `bare`.
+    fn can_be(&self, bare: &str) -> bool {
+        match &self.kind {
+            Kind::Choice(options) => options.contains(&bare),
+            Kind::Flag => bare == "true" || bare == "false",
+            Kind::Integer { min, max } => {
+                bare.parse().is_ok_and(|value: i64| (*min..=*max).contains(&value))
+            }
+            // Conditions on fractions and lists would hang on how they are written.
+            Kind::Number { .. } | Kind::Integers { .. } => false,
+        }
+    }
+}
+
+fn is_plain(part: &str) -> bool {
+    part.starts_with(|c: char| c.is_ascii_lowercase())
+        && part.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+}

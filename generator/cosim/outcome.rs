@@ -1,0 +1,105 @@
+//! What runs show: results, errors, and the first difference.
+
+use std::fmt;
+
+use super::histogram::Histogram;
+use crate::golden::Bound;
+
+/// What a run showed.
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
+    /// Results seen.
+    pub points: u64,
+    /// Clocks run, each compared.
+    pub clocks: u64,
+    /// Registers compared on every clock.
+    pub registers: usize,
+    /// Outputs compared on every clock.
+    pub outputs: usize,
+    /// The largest error of an output against the formula in f64.
+    pub worst: Option<Worst>,
+    /// How the results are spread over the values of `f`.
+    pub histogram: Histogram,
+    /// The first difference, at which the run ended.
+    pub mismatch: Option<Mismatch>,
+}
+
+impl Outcome {
+    /// What does not hold, with a contract whose bound this is.
+    pub fn faults(&self, bound: &Bound) -> Vec<String> {
+        let mut faults = Vec::new();
+        if let Some(mismatch) = &self.mismatch {
+            faults.push(format!(
+                "seed {}, after clock {}, {mismatch}",
+                mismatch.seed, mismatch.clock
+            ));
+        }
+        if let Some(worst) = &self.worst
+            && worst.units > bound.units
+        {
+            faults.push(format!(
+                "`{}` is off by {:.4} units, beyond the stated bound of {:.4}",
+                worst.output, worst.units, bound.units
+            ));
+        }
+        faults
+    }
+}
+
+/// The largest error against the formula, and where.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Worst {
+    /// In output units.
+    pub units: f64,
+    /// The output.
+    pub output: String,
+    /// Raw operands, by name.
+    pub operands: Vec<(String, i64)>,
+}
+
+/// A signal on which model and hardware differ.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mismatch {
+    /// The seed of the stream: a run with it that is not divided, [`Lockstep::trace`](super::Lockstep::trace)
+    /// say, goes the same way from the first clock on. Where combinations are gone through, the place of the one that runs.
+    pub seed: u64,
+    /// Rising edges of the stream so far.
+    pub clock: u64,
+    /// Its name.
+    pub signal: String,
+    /// What the golden model says, a bit pattern.
+    pub golden: u64,
+    /// What the simulated hardware says.
+    pub simulated: u64,
+    /// The word of the microprogram that was executed at the edge.
+    pub word: String,
+}
+
+impl fmt::Display for Mismatch {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(
+            f,
+            "word `{}`: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
+            self.word, self.signal, self.simulated, self.golden
+        )
+    }
+}
+
+/// What a stream showed.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Seen {
+    pub(super) points: u64,
+    pub(super) clocks: u64,
+    pub(super) worst: Option<Worst>,
+    pub(super) histogram: Histogram,
+    pub(super) mismatch: Option<Mismatch>,
+}
+
+/// What a stream goes through.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Course {
+    /// So many results under the stimulus of a seed.
+    Random { seed: u64, points: u64 },
+    /// The combinations of operands at so many places, from the first on.
+    Combinations { first: u64, count: u64 },
+}

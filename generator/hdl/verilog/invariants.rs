@@ -1,0 +1,53 @@
+//! What a unit asserts of itself, for formal tools alone: the proof of the handshake stands on it.
+
+use super::naming::Naming;
+use super::text::literal;
+use crate::hdl::netlist::{Design, RegisterKind, Unit};
+
+/// The lines of a unit's section for formal tools.
+pub fn invariants(design: &Design, naming: &Naming, unit: Unit) -> Vec<String> {
+    let mut names = naming.names.clone();
+    let lines = match unit {
+        Unit::Control => control(design),
+        Unit::Datapath => datapath(design, &names.fresh("was_busy")),
+    };
+    lines.into_iter().map(|line| format!("    {line}")).collect()
+}
+
+/// From the first clock on, which has the initial set.
+fn control(design: &Design) -> Vec<String> {
+    let name = |register| design.net(design.register(register).q).name.as_str();
+    let (address, run) = (name(design.control.address), name(design.control.run));
+    let width = design.width(design.register(design.control.address).q);
+    let last = literal(design.control.words.len() as u64 - 1, width);
+    vec![
+        "always @* if (!$initstate) begin".to_owned(),
+        format!("    assert ({address} <= {last});  // no other word is reached"),
+        format!("    if (!{run}) assert ({address} == {});", literal(0, width)),
+        "end".to_owned(),
+    ]
+}
+
+/// Operands are stable while the device is busy.
+fn datapath(design: &Design, was_busy: &str) -> Vec<String> {
+    let operands: Vec<&str> = design
+        .registers
+        .iter()
+        .filter(|register| register.kind == RegisterKind::Operand)
+        .map(|register| design.net(register.q).name.as_str())
+        .collect();
+    if operands.is_empty() {
+        return Vec::new();
+    }
+    let mut lines = vec![
+        format!("reg {was_busy} = 1'b0;"),
+        "always @(posedge clk) begin".to_owned(),
+        format!("    {was_busy} <= !idle;"),
+        format!("    if ({was_busy}) begin"),
+    ];
+    for operand in operands {
+        lines.push(format!("        assert ({operand} == $past({operand}));"));
+    }
+    lines.extend(["    end".to_owned(), "end".to_owned()]);
+    lines
+}

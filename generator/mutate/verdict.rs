@@ -1,0 +1,78 @@
+//! What becomes of a fault.
+
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use super::fault::Fault;
+use crate::cosim::Mismatch;
+
+/// What notices a fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Leg {
+    /// The default test: golden model against built-in simulator.
+    Cosim,
+    /// Operands held where the words at fault are read.
+    Aimed,
+}
+
+/// How a fault was proved equivalent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum How {
+    /// By induction over the words of the microprogram.
+    Induction,
+    /// By every combination of the values around it.
+    Exhaustion,
+    /// By every combination of the operands that are used with the word at fault.
+    Operands,
+}
+
+impl fmt::Display for Leg {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.pad(match self {
+            Self::Cosim => "co-simulation",
+            Self::Aimed => "aimed stimulus",
+        })
+    }
+}
+
+impl fmt::Display for How {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.pad(match self {
+            Self::Induction => "by induction over the microprogram",
+            Self::Exhaustion => "by every combination of the values around it",
+            Self::Operands => "by every combination of the operands that are used with the word",
+        })
+    }
+}
+
+/// What a leg showed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Difference {
+    /// Operands that the stimulus held, by name, at raw values ([`crate::cosim::Lockstep::holding`]).
+    pub held: Vec<(String, i64)>,
+    /// The signal, on a clock.
+    pub mismatch: Mismatch,
+}
+
+/// What became of a mutant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Verdict {
+    /// A leg differs, and where.
+    Caught(Leg, Difference),
+    /// Proved to change nothing that is compared.
+    Equivalent(How),
+    /// Neither caught nor proved equivalent.
+    Open,
+}
+
+/// A fault and what became of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// The fault.
+    pub fault: Fault,
+    /// What became of it.
+    pub verdict: Verdict,
+}
