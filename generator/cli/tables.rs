@@ -240,7 +240,7 @@ mod tests {
 
     #[test]
     fn the_least_important_column_goes_first_and_is_named() {
-        let text = text(&COLUMNS, &rows(), Some(50));
+        let text = text(&COLUMNS, &rows(), Some(40));
         assert!(text.contains("(no room for points; --json"), "{text}");
         assert!(text.contains("1 305 235"), "{text}");
     }
