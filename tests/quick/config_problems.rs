@@ -49,7 +49,7 @@ fn unknown_names_are_answered_with_the_nearest() {
     assert_eq!(
         of_lamp("zzz = 20\n"),
         ["2:1 zzz | device `lamp` has no key `zzz` | keys outside tables: device, name, strict, \
-          arithmetic, power; tables: [cosine], [sine], [domain], [interface], [package]"]
+          arithmetic, power, architecture; tables: [cosine], [sine], [domain], [pipeline], [package]"]
     );
     assert_eq!(
         of_lamp("[cosine]\nzzz = 20\n"),
@@ -80,25 +80,20 @@ fn a_key_below_the_wrong_heading_is_told_where_it_belongs() {
 #[test]
 fn keys_that_every_device_shares_are_read_as_its_own() {
     assert_eq!(
-        of_lamp("[interface]\nstraem = true\nregisters = \"wishbon\"\n"),
+        of_lamp("[package]\nsofware = true\nsoftware = \"yes\"\n"),
         [
-            "3:1 interface.straem | device `lamp` has no key `interface.straem` \
-             | did you mean `interface.stream`?",
-            "4:13 interface.registers | `interface.registers` cannot be \"wishbon\" \
-             | did you mean \"wishbone\"? give \"none\", \"axi-lite\" or \"wishbone\" (default \"none\")",
+            "3:1 package.sofware | device `lamp` has no key `package.sofware` \
+             | did you mean `package.software`?",
+            "4:12 package.software | `package.software` must be true or false, not the string \"yes\" \
+             | give true or false (default false)",
         ]
     );
     assert_eq!(
-        of_lamp("[interface]\nuser_bits = 8\n"),
+        of_lamp("architecture = \"pipelined\"\n[package]\nsoftware = true\n"),
         [
-            "3:13 interface.user_bits | `interface.user_bits` has no effect with interface.stream = false \
-          | remove it, or set interface.stream = true"
+            "4:12 package.software | `package.software` has no effect with architecture = \"pipelined\" \
+          | remove it, or set architecture = \"sequential\""
         ]
-    );
-    assert_eq!(
-        of_lamp("[interface]\nstream = true\nuser_bits = 1025\n"),
-        ["4:13 interface.user_bits | `interface.user_bits` = 1025 is out of range \
-          | give an integer from 1 to 1024 (default 1)"]
     );
 }
 
@@ -492,7 +487,8 @@ fn values_from_a_program_obey_the_same_rules() {
             "0:0 cosine.fraction | `cosine.fraction` = 31 is out of range \
              | give an integer from 4 to 30 (default 20)",
             "0:0 cosine.colour | device `lamp` has no key \"cosine.colour\" | keys outside tables: \
-             device, name, strict, arithmetic, power; tables: [cosine], [sine], [domain], [interface], [package]",
+             device, name, strict, arithmetic, power, architecture; tables: [cosine], [sine], [domain], \
+             [pipeline], [package]",
             "0:0 arithmetic | `arithmetic` must be a string, not the integer 1 \
              | give \"exact\" or \"patent\" (default \"exact\")",
             "0:0 sine.segments | `sine.segments` has no effect with sine.scheme = \"direct\" \

@@ -30,6 +30,10 @@ arithmetic = \"exact\"
 # 2, 4, 8 or 16, default 16.
 power = 16
 
+# A microprogram on one set of arithmetic, or the same unrolled: a point every clock.
+# \"sequential\" or \"pipelined\", default \"sequential\".
+architecture = \"sequential\"
+
 [cosine]
 # Fraction bits of the cosines.
 # An integer from 4 to 30, default 20.
@@ -57,23 +61,32 @@ address = 12
 # A number from 0.5 to 90.0, default 30.0.
 deviation = 30.0
 
-[interface]
-# Write an AXI4-Stream wrapper of the core, <name>_axis.v.
-# True or false, default false.
-stream = false
+[pipeline]
+# Whose delays and multipliers decide what a stage of the pipeline does.
+# \"ecp5\", \"ice40\", \"xilinx7\" or \"generic\", default \"ecp5\"; only with architecture =
+# \"pipelined\".
+# target = \"ecp5\"
 
-# Bits of tuser, the side channel that travels with a point.
-# An integer from 1 to 1024, default 1; only with interface.stream = true.
-# user_bits = 1
+# The clock that every stage keeps, with the fewest registers.
+# A number from 1.0 to 2000.0, default 130.0; only with architecture = \"pipelined\".
+# clock_mhz = 130.0
 
-# Write a register block for the core: <name>_axil.v on AXI4-Lite, <name>_wb.v on
-# Wishbone.
-# \"none\", \"axi-lite\" or \"wishbone\", default \"none\".
-registers = \"none\"
+# So many stages in place of a clock: as fast as they allow. 0 for pipeline.clock_mhz.
+# An integer from 0 to 1000, default 0; only with architecture = \"pipelined\".
+# stages = 0
+
+# Whether out_ready can hold the results back; without it every register moves in every
+# clock.
+# \"ready\" or \"none\", default \"ready\"; only with architecture = \"pipelined\".
+# stall = \"ready\"
+
+# Bits of side_in and side_out, which travel with a point: a pixel's address, say.
+# An integer from 0 to 64, default 0; only with architecture = \"pipelined\".
+# side = 0
 
 [package]
 # Write software/<name>/: a bit-accurate model of the core in C.
-# True or false, default false.
+# True or false, default false; only with architecture = \"sequential\".
 software = false
 ";
     let text = commented(&lamp(), "my_lamp");
@@ -100,15 +113,15 @@ fn tables_and_dotted_keys_are_the_same() {
 
 #[test]
 fn keys_that_every_device_shares() {
-    let text = "device = \"lamp\"\n[interface]\nregisters = \"wishbone\"\n";
+    let text = "device = \"lamp\"\n[package]\nsoftware = true\n";
     let config = parse("x.toml", text, &schemas()).expect("valid");
-    assert_eq!(config.choice("interface.registers"), "wishbone");
-    assert!(!config.flag("interface.stream"));
+    assert!(config.flag("package.software"));
+    assert_eq!(config.choice("architecture"), "sequential");
     let again = parse("x.toml", &config.to_toml(&lamp()), &schemas());
     assert_eq!(again.expect("it reads back"), config);
     // At their defaults they are not written: records of configurations are older than they are.
     let defaults = Config::defaults(&lamp(), "x").to_toml(&lamp());
-    assert!(!defaults.contains("interface"), "{defaults}");
+    assert!(!defaults.contains("package"), "{defaults}");
 }
 
 #[test]
@@ -160,7 +173,7 @@ fn mistakes_in_a_schema_are_found() {
             Key::flag("a.b", false, doc),
             Key::flag("Name", false, doc),
             Key::flag("strict", false, doc),
-            Key::flag("interface.stream", false, doc),
+            Key::flag("package.software", false, doc),
             Key::flag("package", false, doc),
             Key::flag("twice", false, doc),
             Key::flag("twice", false, doc).only_when("later", "true"),
@@ -176,7 +189,7 @@ fn mistakes_in_a_schema_are_found() {
             "default of `a`: `a` = 0 is out of range",
             "`Name` is not made of plain lower-case words",
             "`strict` is a key of every device",
-            "`interface.stream` is a key of every device",
+            "`package.software` is a key of every device",
             "`package` is both a key and a table",
             "`twice` is declared twice",
             "`twice` depends on `later`, which is not declared before it",
