@@ -199,6 +199,18 @@ Examples:
         #[arg(long, requires = "out")]
         force: bool,
     },
+    /// Show the stages of a pipeline
+    ///
+    /// What each stage computes, for which microinstructions, how long the longest way through it takes by the delays
+    /// of the target, what is left of the clock, and the bits of the registers that end it.
+    #[command(after_help = "\
+Examples:
+  glint schedule my_pipeline.toml
+  glint schedule my_pipeline.toml --json")]
+    Schedule {
+        #[command(flatten)]
+        configs: Configs,
+    },
     /// Write a datasheet, one HTML page that needs no network
     ///
     /// A page as a vendor's product guide: figures at a glance, block diagram, ports and formats, a worked
@@ -455,6 +467,9 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
         }
         Some(Command::Describe { configs, out, force }) => {
             commands::describe(registry, output, &configs.configs, out.as_deref(), force)
+        }
+        Some(Command::Schedule { configs }) => {
+            commands::schedule(registry, output, &configs.configs)
         }
         Some(Command::Datasheet(arguments)) => commands::datasheet(registry, output, &arguments),
         Some(Command::Compare {

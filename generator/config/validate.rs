@@ -186,6 +186,15 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
         }
     }
 
+    if draft.config.integer("pipeline.stages") != 0 && draft.given.contains("pipeline.clock_mhz") {
+        problems.push(
+            "pipeline.clock_mhz",
+            "`pipeline.clock_mhz` and `pipeline.stages` both say how fast the pipeline is"
+                .to_owned(),
+            "remove one of them".to_owned(),
+        );
+    }
+
     let mut certain: Option<Vec<Problem>> = None;
     for trial in trials(schema, draft) {
         let mut found = problems.cleared();

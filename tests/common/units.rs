@@ -14,11 +14,20 @@ use glint::registry::{Device, Registry};
 /// Pairs of a plain file name and contents.
 pub type Files = Vec<(String, String)>;
 
-/// The configurations in `configs/` and `configs/studies/`, by path, sorted.
+/// The configurations in `configs/` and `configs/studies/` that have a microprogram, by path, sorted.
 ///
 /// # Panics
 /// There are none, or one of them is wrong.
 pub fn configurations() -> Vec<(String, Unit)> {
+    let sequential = |(_, unit): &(String, Unit)| unit.design.pipeline.is_none();
+    all_configurations().into_iter().filter(sequential).collect()
+}
+
+/// The configurations in `configs/` and `configs/studies/`, pipelines too, by path, sorted.
+///
+/// # Panics
+/// There are none, or one of them is wrong.
+pub fn all_configurations() -> Vec<(String, Unit)> {
     let mut paths: Vec<String> =
         ["configs", "configs/studies"].into_iter().flat_map(configurations_in).collect();
     paths.sort();

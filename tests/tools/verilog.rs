@@ -7,7 +7,7 @@
 use crate::common::bench::{Bench, with_flipped_bit};
 use crate::common::sample::sampled;
 use crate::common::tools::assert_lint_clean;
-use crate::common::units::{Emitted, Files, configuration, configurations, write};
+use crate::common::units::{Emitted, Files, all_configurations, configuration, write};
 use glint::core::Unit;
 use glint::hdl::netlist::{Design, Driver, RomId};
 use glint::hdl::sim::Simulator;
@@ -28,7 +28,7 @@ const COLUMNS: usize = 100;
 
 #[test]
 fn every_configuration_is_clean_verilog() {
-    configurations().par_iter().for_each(|(path, unit)| {
+    all_configurations().par_iter().for_each(|(path, unit)| {
         let emitted = Emitted::new(unit, 4, SEED);
         let place = tempfile::tempdir().expect("a directory");
         write(place.path(), &emitted.rtl());
@@ -60,17 +60,20 @@ fn every_configuration_is_clean_verilog() {
 
 #[test]
 fn every_configuration_passes_in_icarus() {
-    configurations().par_iter().for_each(|(_, unit)| {
+    all_configurations().par_iter().for_each(|(_, unit)| {
         let (emitted, bench) = build(unit, External::Icarus);
         bench.assert_passes();
         notices_every_output(unit, &emitted, &bench);
-        notices_every_rom(unit, &emitted, &bench);
+        // Which word tells is known by the microprogram.
+        if unit.design.pipeline.is_none() {
+            notices_every_rom(unit, &emitted, &bench);
+        }
     });
 }
 
 #[test]
 fn configurations_pass_in_verilator() {
-    sampled("Verilator", configurations(), BUILT).par_iter().for_each(|(_, unit)| {
+    sampled("Verilator", all_configurations(), BUILT).par_iter().for_each(|(_, unit)| {
         let (_, bench) = build(unit, External::Verilator);
         bench.assert_passes();
     });

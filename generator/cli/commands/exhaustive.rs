@@ -11,7 +11,7 @@ use anyhow::{Context, Result, anyhow, bail, ensure};
 use indicatif::HumanDuration;
 use serde_json::json;
 
-use super::load;
+use super::{load, load_sequential};
 use crate::base::{input, text};
 use crate::cli::failure::Usage;
 use crate::cli::{Output, progress, staged, tables};
@@ -38,7 +38,7 @@ pub fn exhaustive(
     configs: &[PathBuf],
     request: &ExhaustiveRequest,
 ) -> Result<bool> {
-    let loaded = load(registry, configs)?;
+    let loaded = load_sequential(registry, configs, "cosim --exhaustive")?;
     if request.resume.is_some() && loaded.len() != 1 {
         bail!(Usage(format!("--resume is for one configuration; here are {}", loaded.len())));
     }

@@ -13,6 +13,7 @@ mod mismatch;
 mod mutate;
 mod render;
 mod report;
+mod schedule;
 mod verify;
 
 use std::path::{Path, PathBuf};
@@ -31,6 +32,7 @@ pub use generate::generate;
 pub use mutate::{MutateRequest, mutate};
 pub use render::{RenderArguments, render};
 pub use report::{ReportRequest, report};
+pub use schedule::schedule;
 pub use verify::{VerifyRequest, verify};
 
 use super::failure::{self, Several, Usage};
@@ -101,6 +103,20 @@ fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
         }
     }
     if failed.is_empty() { Ok(loaded) } else { Err(Several(failed).into()) }
+}
+
+/// As [`load`], for a command that speaks of microprograms: pipelines are left out unless they are named.
+fn load_sequential(registry: &Registry, named: &[PathBuf], command: &str) -> Result<Vec<Loaded>> {
+    let (pipelines, loaded): (Vec<Loaded>, Vec<Loaded>) =
+        load(registry, named)?.into_iter().partition(|one| one.unit.design.pipeline.is_some());
+    match pipelines.first().filter(|_| !named.is_empty()) {
+        None => Ok(loaded),
+        Some(one) => bail!(
+            "`{}`: `glint {command}` is for cores with a microprogram; set architecture = \"sequential\", or see \
+             `glint schedule`",
+            one.path
+        ),
+    }
 }
 
 fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Result<Loaded> {

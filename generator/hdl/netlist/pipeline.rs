@@ -31,6 +31,8 @@ pub struct Stage {
     pub microinstructions: Vec<String>,
     /// Nanoseconds that the longest way through it takes on the target.
     pub logic_ns: f64,
+    /// Nanoseconds of the clock that are left, registers counted.
+    pub slack_ns: f64,
     /// Bits of the registers that end it.
     pub register_bits: u32,
 }

@@ -11,6 +11,8 @@ mod schedule;
 mod split;
 mod stages;
 mod target;
+#[cfg(test)]
+mod tests;
 mod unroll;
 mod value;
 

@@ -11,7 +11,7 @@ use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
 
 use super::graph::{Cell, Graph};
 use super::target::Target;
-use crate::hdl::netlist::NetId;
+use crate::hdl::netlist::{NetId, Op};
 
 /// When each value is computed.
 #[derive(Clone, Debug)]
@@ -51,6 +51,20 @@ pub struct Problems<'a> {
 /// A node stands at least so many stages after another.
 type Difference = (NetId, NetId, usize);
 
+/// Whether a node is another with more bits of its sign, or under another name: made anew wherever it is
+/// used, so that registers hold what it is made of.
+pub fn is_extension(graph: &Graph, id: NetId) -> bool {
+    matches!(graph.node(id).cell, Cell::Op(Op::Extend(_) | Op::Relabel(_)))
+}
+
+/// The node that registers hold for the users of `id`.
+fn held(graph: &Graph, results: &[NetId], mut id: NetId) -> NetId {
+    while is_extension(graph, id) && !results.contains(&id) {
+        id = graph.node(id).cell.operands()[0];
+    }
+    id
+}
+
 impl<'a> Problems<'a> {
     /// For the nodes that `results` need.
     pub fn new(graph: &'a Graph, target: &'a Target, results: &'a [NetId]) -> Self {
@@ -60,8 +74,14 @@ impl<'a> Problems<'a> {
             .filter(|&id| graph.constant_of(id).is_none())
             .collect();
         let mut users = vec![Vec::new(); graph.nodes.len()];
+        let live: Vec<NetId> = live
+            .into_iter()
+            .filter(|&id| results.contains(&id) || !is_extension(graph, id))
+            .collect();
         for &id in &live {
-            let mut operands = graph.node(id).cell.operands();
+            let operands = graph.node(id).cell.operands();
+            let operands = operands.into_iter().map(|operand| held(graph, results, operand));
+            let mut operands: Vec<NetId> = operands.collect();
             operands.sort_unstable();
             operands.dedup();
             for operand in operands {
@@ -79,7 +99,9 @@ impl<'a> Problems<'a> {
     /// The shortest period that one operation alone allows, and the operation.
     pub fn fastest(&self) -> Option<Unreachable> {
         let delay = |id: &NetId| self.delay[id.index()];
-        let limiting = *self.live.iter().max_by(|a, b| delay(a).total_cmp(&delay(b)))?;
+        let operand = |id: &&NetId| matches!(self.graph.node(**id).cell, Cell::Operand(_));
+        let operations = self.live.iter().filter(|id| !operand(id));
+        let limiting = *operations.max_by(|a, b| delay(a).total_cmp(&delay(b)))?;
         Some(Unreachable { limiting, period: delay(&limiting) + self.target.register })
     }
 
@@ -143,7 +165,8 @@ impl<'a> Problems<'a> {
             }
             // Forward through logic, as far as the clock goes.
             let mut pending = std::collections::BTreeSet::from([from]);
-            longest[from.index()] = self.delay[from.index()];
+            // What the environment takes of a clock never makes it unreachable.
+            longest[from.index()] = self.delay[from.index()].min(most);
             reached[from.index()] = from;
             while let Some(at) = pending.pop_first() {
                 for &user in &self.users[at.index()] {
@@ -237,6 +260,7 @@ impl<'a> Problems<'a> {
             let operands = self.graph.node(id).cell.operands();
             let before = operands
                 .into_iter()
+                .map(|operand| held(self.graph, self.results, operand))
                 .filter(|operand| !self.block[id.index()] && stage[operand.index()] == at)
                 .filter(|operand| self.graph.constant_of(*operand).is_none())
                 .map(|operand| arrival[operand.index()])
@@ -245,6 +269,11 @@ impl<'a> Problems<'a> {
             longest[at] = longest[at].max(arrival[id.index()]);
         }
         longest
+    }
+
+    /// What registers take of a clock.
+    pub fn register_ns(&self) -> f64 {
+        self.target.register
     }
 
     /// What is scheduled.

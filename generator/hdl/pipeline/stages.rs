@@ -326,7 +326,7 @@ impl Builder<'_> {
             return net;
         }
         let Cell::Constant(bits) = node.cell else {
-            unreachable!("a schedule holds every value to its last use");
+            return self.extension(id, stage);
         };
         let mut name = node.label.name.clone();
         let mut number = 2;
@@ -338,6 +338,26 @@ impl Builder<'_> {
         self.labelled(net, id);
         self.design.nets[net.index()].named = node.label.named;
         self.values.insert(key, net);
+        net
+    }
+
+    /// What an extension is in a stage, of what registers hold.
+    fn extension(&mut self, id: NetId, stage: usize) -> NetId {
+        let node = self.graph.node(id);
+        let Cell::Op(mut op) = node.cell.clone() else {
+            unreachable!("a schedule holds every value to its last use");
+        };
+        for operand in op.operands_mut() {
+            *operand = self.value(*operand, stage);
+        }
+        let name = self.distinct(&node.label.name);
+        let name = self.names.entry(id).or_insert(name).clone();
+        let name = self.staged(&name, stage);
+        let net = self.net(name, stage, node.format, Driver::Op(op));
+        self.labelled(net, id);
+        // It is wiring: written where it is used.
+        self.design.nets[net.index()].named = false;
+        self.values.insert((id, stage), net);
         net
     }
 
@@ -411,6 +431,9 @@ impl Builder<'_> {
                 Stage {
                     microinstructions,
                     logic_ns: self.schedule.logic[stage],
+                    slack_ns: self.schedule.period
+                        - self.problems.register_ns()
+                        - self.schedule.logic[stage],
                     register_bits: bits.map(|q| self.design.width(q)).sum(),
                 }
             })
@@ -428,6 +451,7 @@ impl Builder<'_> {
                 }
                 let stage = self.schedule.stage[node.index()];
                 if let Some(&net) = self.values.get(&(node, stage))
+                    && self.design.net(net).named
                     && !matches!(self.graph.node(node).cell, Cell::Constant(_))
                 {
                     let register = self.sequential.register(register).q;

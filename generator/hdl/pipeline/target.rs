@@ -1,7 +1,7 @@
 //! What operations take on a target, and what its multipliers are.
 //!
-//! The figures are nanoseconds, measured between registers by `benches/pipeline/delays.py`, which prints
-//! a table as this one; the command stands there. Routing is in them, for a device that is nearly empty.
+//! The figures are nanoseconds with the routing of a nearly empty device. They are estimates, which what
+//! `benches/pipeline/ecp5.py --delays` measures between registers is to replace.
 
 use super::graph::{Cell, Graph, Node};
 use crate::hdl::netlist::{NetId, Op};

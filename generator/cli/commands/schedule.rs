@@ -1,0 +1,115 @@
+//! `schedule`.
+
+use std::path::PathBuf;
+
+use anyhow::{Result, bail};
+use serde_json::{Value, json};
+
+use super::{Loaded, load, paths};
+use crate::cli::tables::Column;
+use crate::cli::{Output, tables};
+use crate::hdl::netlist::{Design, Driver, Net, Pipeline};
+use crate::registry::Registry;
+
+/// `glint schedule`.
+pub fn schedule(registry: &Registry, output: Output, configs: &[PathBuf]) -> Result<bool> {
+    let named = paths(configs)?;
+    let mut list = Vec::new();
+    let mut shown = 0;
+    for one in load(registry, configs)? {
+        let Some(pipeline) = &one.unit.design.pipeline else {
+            if configs.is_empty() {
+                continue;
+            }
+            bail!(
+                "`{}`: the architecture is sequential, and has no stages; set architecture = \"pipelined\"",
+                one.path
+            );
+        };
+        shown += 1;
+        if output.json {
+            list.push(as_json(&one, pipeline));
+        } else {
+            print(&one, pipeline);
+        }
+    }
+    if shown == 0 {
+        bail!("none of {} configurations is pipelined; name one", named.len());
+    }
+    if output.json {
+        tables::print_json(&json!({ "ok": true, "schedules": list }));
+    }
+    Ok(true)
+}
+
+fn print(one: &Loaded, pipeline: &Pipeline) {
+    let period = 1000.0 / pipeline.clock_mhz;
+    let bits: u32 = pipeline.stages.iter().map(|stage| stage.register_bits).sum();
+    tables::print_line(&format!(
+        "{}: {} stages for {:.1} MHz ({period:.2} ns) on {}, {bits} register bits",
+        one.path,
+        pipeline.stages.len(),
+        pipeline.clock_mhz,
+        pipeline.target,
+    ));
+    let rows = pipeline.stages.iter().enumerate().map(|(number, stage)| {
+        vec![
+            number.to_string(),
+            stage.microinstructions.join("; "),
+            computed(&one.unit.design, pipeline, number).join(", "),
+            format!("{:.2}", stage.logic_ns),
+            format!("{:.2}", stage.slack_ns),
+            stage.register_bits.to_string(),
+        ]
+    });
+    let columns = [
+        Column::numbers("stage"),
+        Column::words("microinstructions"),
+        Column::words("computes").dispensable(1),
+        Column::numbers("logic ns"),
+        Column::numbers("slack ns"),
+        Column::numbers("bits"),
+    ];
+    tables::print(&columns, rows);
+}
+
+/// The values that a stage makes, by name.
+fn computed<'a>(design: &'a Design, pipeline: &Pipeline, number: usize) -> Vec<&'a str> {
+    let made = |net: &Net, stage: usize| match net.driver {
+        Driver::Op(_) => stage == number,
+        // The word of a block memory is there a stage after its address.
+        Driver::Rom(rom) => stage == number + usize::from(design.rom(rom).synchronous),
+        _ => false,
+    };
+    let suffix = |name: &'a str| name.rsplit_once("_s").map_or(name, |(value, _)| value);
+    design
+        .iter()
+        .zip(&pipeline.stage_of)
+        .filter(|((id, net), stage)| {
+            net.named && !pipeline.handshake.contains(id) && made(net, **stage)
+        })
+        .map(|((_, net), _)| suffix(&net.name))
+        .collect()
+}
+
+fn as_json(one: &Loaded, pipeline: &Pipeline) -> Value {
+    let stages = pipeline.stages.iter().enumerate().map(|(number, stage)| {
+        json!({
+            "stage": number,
+            "microinstructions": stage.microinstructions,
+            "computes": computed(&one.unit.design, pipeline, number),
+            "logic_ns": stage.logic_ns,
+            "slack_ns": stage.slack_ns,
+            "register_bits": stage.register_bits,
+        })
+    });
+    json!({
+        "config": one.path,
+        "name": one.unit.config.name,
+        "target": pipeline.target,
+        "clock_mhz": pipeline.clock_mhz,
+        "latency": pipeline.stages.len(),
+        "interval": 1,
+        "stages": stages.collect::<Vec<_>>(),
+    })
+}

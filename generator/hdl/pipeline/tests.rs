@@ -1,0 +1,123 @@
+use super::{Goal, Options, Target, pipeline};
+use crate::base::fixed::Format;
+use crate::hdl::blocks::divider::Divider;
+use crate::hdl::dsl::{Designer, end, loop_while, step, valid, wait_for_start};
+use crate::hdl::netlist::Design;
+
+fn options(goal: Goal) -> Options {
+    let target = Target::named("ecp5").expect("a target");
+    Options { target, goal, stall: true, side: 0 }
+}
+
+/// A quotient of 8 bits, a bit a clock.
+fn ratio() -> Design {
+    let d = Designer::new("ratio");
+    let a = d.operand("a", Format::unsigned(8, 0));
+    let b = d.operand("b", Format::unsigned(8, 0));
+    let ratio = Divider::new(&d, "ratio", a.q(), b.q(), 8);
+    d.output("ratio_out", ratio.quotient());
+    d.microprogram([
+        step("operands", []),
+        step("load", ratio.load()),
+        step("bit", ratio.step().into_iter().chain([loop_while(ratio.more(), "bit")])),
+        step("result", [valid(), end()]),
+    ]);
+    d.finish().unwrap()
+}
+
+fn refused(design: &Design, goal: Goal) -> String {
+    let refused = pipeline(design, &options(goal)).expect_err("it cannot be made");
+    refused.to_string()
+}
+
+fn stages(design: &Design, goal: Goal) -> (usize, u32) {
+    let made = pipeline(design, &options(goal)).unwrap_or_else(|wrong| panic!("{wrong}"));
+    let stages = made.pipeline.expect("a pipeline").stages;
+    (stages.len(), stages.iter().map(|stage| stage.register_bits).sum())
+}
+
+#[test]
+fn a_slower_clock_takes_fewer_stages_and_fewer_registers() {
+    let design = ratio();
+    let (fast, slow) =
+        (stages(&design, Goal::ClockMhz(150.0)), stages(&design, Goal::ClockMhz(40.0)));
+    assert!(slow.0 < fast.0 && slow.1 < fast.1, "{slow:?} {fast:?}");
+}
+
+#[test]
+fn so_many_stages_are_made_as_are_asked_for() {
+    for wanted in 1..=6 {
+        assert_eq!(stages(&ratio(), Goal::Stages(wanted)).0, wanted);
+    }
+}
+
+#[test]
+fn a_clock_that_cannot_be_met_names_the_nearest_and_what_limits_it() {
+    let text = refused(&ratio(), Goal::ClockMhz(1500.0));
+    assert!(text.contains("pipeline.clock_mhz = 1500"), "{text}");
+    assert!(text.contains("`ratio_trial") && text.contains("pipeline/tests.rs"), "{text}");
+    // What it proposes can be reached.
+    let nearest = text.split("set pipeline.clock_mhz to ").nth(1).expect("a remedy");
+    let nearest: f64 = nearest.split(' ').next().expect("a number").parse().expect("a number");
+    stages(&ratio(), Goal::ClockMhz(nearest));
+    refused(&ratio(), Goal::ClockMhz(nearest + 0.2));
+}
+
+#[test]
+fn more_stages_than_are_of_use_are_refused_with_the_most() {
+    let text = refused(&ratio(), Goal::Stages(1000));
+    let most = text.split("set pipeline.stages to ").nth(1).expect("a remedy");
+    let most: usize = most.split(' ').next().expect("a number").parse().expect("a number");
+    assert_eq!(stages(&ratio(), Goal::Stages(most)).0, most);
+}
+
+#[test]
+fn a_microprogram_that_waits_on_the_way_cannot_be_unrolled() {
+    let d = Designer::new("pauses");
+    let x = d.operand("x", Format::unsigned(8, 0));
+    let y = d.register("y", x.q().format());
+    y.takes(x.q());
+    d.output("y_out", y.q());
+    d.microprogram([
+        step("operands", []),
+        step("pause", [wait_for_start()]),
+        step("load", [y.load()]),
+        step("result", [valid(), end()]),
+    ]);
+    let text = refused(&d.finish().unwrap(), Goal::ClockMhz(100.0));
+    assert!(text.contains("`pause` waits for `start`"), "{text}");
+    assert!(text.contains("pipeline/tests.rs"), "{text}");
+}
+
+#[test]
+fn a_loop_without_a_bound_cannot_be_unrolled() {
+    let d = Designer::new("endless");
+    let x = d.operand("x", Format::unsigned(20, 0));
+    let turns = d.down_counter("turns", x.q());
+    let more = d.any("more", turns.q());
+    d.output("turns_out", turns.q());
+    d.microprogram([
+        step("operands", []),
+        step("load", [turns.load()]),
+        step("count", [turns.count(), loop_while(more, "count")]),
+        step("result", [valid(), end()]),
+    ]);
+    let text = refused(&d.finish().unwrap(), Goal::ClockMhz(100.0));
+    assert!(text.contains("`count` goes on by a condition for which no bound is found"), "{text}");
+}
+
+#[test]
+fn what_an_earlier_computation_left_cannot_be_a_result() {
+    let d = Designer::new("sums");
+    let x = d.operand("x", Format::unsigned(8, 0));
+    let total = d.register("total", Format::unsigned(8, 0));
+    total.takes(d.add_modulo("sum", total.q(), x.q(), None));
+    d.output("total_out", total.q());
+    d.microprogram([
+        step("operands", []),
+        step("add", [total.load()]),
+        step("result", [valid(), end()]),
+    ]);
+    let text = refused(&d.finish().unwrap(), Goal::ClockMhz(100.0));
+    assert!(text.contains("`total_out` depends on what `total` held before"), "{text}");
+}
