@@ -95,7 +95,10 @@ fn every_configuration_draws() {
         }
         let path = path.to_str().expect("UTF-8");
         let mut pictures = Vec::new();
-        for through in ["golden", "rust-hdl"] {
+        // Pictures are not drawn through the simulation of a pipeline.
+        let pipelined = path.ends_with("_pipelined.toml");
+        let all: &[&str] = if pipelined { &["golden"] } else { &["golden", "rust-hdl"] };
+        for through in all {
             let run = place.glint(render(&[path, "--through", through, "--compare", "--json"]));
             assert_eq!(run.code, 0, "{path}: {run:?}");
             let told = &run.json()["compare"];
@@ -104,7 +107,7 @@ fn every_configuration_draws() {
             assert!(units <= number("bound_in_units"), "{path}: {told}");
             pictures.push(fs::read(place.at("out.png")).expect("a picture"));
         }
-        assert!(pictures[0] == pictures[1], "{path}: golden, rust_hdl");
+        assert!(pictures.iter().all(|it| *it == pictures[0]), "{path}: golden, rust_hdl");
         drawn += 1;
     }
     assert!(drawn > 0, "no configuration");
