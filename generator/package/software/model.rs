@@ -11,7 +11,7 @@ use super::unroll::{Stepped, stepped, straight};
 use crate::base::fixed::{Format, mask};
 use crate::hdl::netlist::{Design, NetId, Port, RegId, Role, RomId};
 use crate::hdl::verilog::text::{Names, ascii, constant_name, statement};
-use crate::package::{EmitInputs, render};
+use crate::package::{EmitInputs, WorkedExample, render};
 
 /// An operand or a result in C.
 struct Field {
@@ -189,12 +189,23 @@ pub fn files(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String
             regenerate,
             operands: operands(),
             results: results(),
-            values: example.operands.iter().map(|quantity| quantity.raw.to_string()).collect(),
+            values: example_values(design, example),
             line,
         };
         files.push((format!("{name}_model.py"), render(&example)?));
     }
     Ok(files)
+}
+
+/// The worked example's raw operands in the order of the ports, which need not be its own.
+fn example_values(design: &Design, example: &WorkedExample) -> Vec<String> {
+    let named = |port: &Port| {
+        let name = &design.net(port.net).name;
+        let quantity = example.operands.iter().find(|quantity| quantity.name == *name);
+        quantity.map_or_else(|| "0".to_owned(), |quantity| quantity.raw.to_string())
+    };
+    let ports = design.inputs().filter(|port| matches!(port.role, Role::Operand { .. }));
+    ports.map(named).collect()
 }
 
 fn result_ports(design: &Design) -> impl Iterator<Item = &Port> {
