@@ -6,7 +6,7 @@ use anyhow::{Context, Result, ensure};
 
 use crate::config::Config;
 use crate::cosim::batch::{Engine, Golden, RustHdl, Verilog};
-use crate::cosim::exhaustive::{Clocks, Job};
+use crate::cosim::exhaustive::{Clocks, Job, Places};
 use crate::cosim::{Lockstep, directed, trial};
 use crate::golden::Contract;
 use crate::hdl::netlist::Design;
@@ -89,6 +89,19 @@ impl Unit {
                 text += &format!("{} = {}\n", key.name, value.toml());
             }
         }
+        package::digest(text.as_bytes())
+    }
+
+    /// Tells what a proof of this configuration goes through and computes from others: the configuration, the
+    /// sources of everything that takes part, and what a spread of places gives, which also notices a
+    /// golden model outside this crate that was changed. The same on every machine.
+    pub fn fingerprint(&self) -> String {
+        let contract = self.contract.as_ref();
+        let seen: Vec<String> = [Places::of_f(contract), Places::of_colours(contract)]
+            .iter()
+            .map(|places| places.glimpse().iter().map(|error| format!("{error:e} ")).collect())
+            .collect();
+        let text = [self.digest(), env!("GLINT_SOURCES").to_owned(), seen.concat()].join("\n");
         package::digest(text.as_bytes())
     }
 

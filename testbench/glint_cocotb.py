@@ -65,7 +65,8 @@ class Manifest:
         self.length: str | None = accuracy.get("length")
         self.bound: float = accuracy["bound"]
         self.computations: list[tuple[Raw, Computation]] = [
-            self._computation(entry) for entry in facts["computations"]
+            self._computation(facts["computations"], point)
+            for point in facts["computations"]["points"]
         ]
         expressions: list[str] = accuracy["f"]
         self._f = [compile(text, f"f of {name}", "eval") for text in expressions]
@@ -75,10 +76,10 @@ class Manifest:
             if any(rom["name"] in code.co_names for code in self._f):
                 self._names[rom["name"]] = self._words(rom)
 
-    def _computation(self, entry: dict[str, Any]) -> tuple[Raw, Computation]:
-        operands = dict(zip(self.domain, entry["operands"], strict=True))
-        results = [dict(zip(self.outputs, row, strict=True)) for row in entry["results"]]
-        return operands, Computation(entry["valid"], results, entry["done"])
+    def _computation(self, table: dict[str, Any], point: dict[str, Any]) -> tuple[Raw, Computation]:
+        operands = dict(zip(table["operands"], point["operands"], strict=True))
+        results = [dict(zip(table["results"], row, strict=True)) for row in point["results"]]
+        return operands, Computation(point["valid"], results, point["done"])
 
     def _words(self, rom: dict[str, Any]) -> list[float]:
         """The words of a ROM of unsigned values; `format` is u<integer bits>.<fraction bits>."""
@@ -381,4 +382,4 @@ def run(name: str) -> None:
     sys.exit(1 if failed or not tests else 0)
 
 
-# sha256 9e6bc659728bc1eeb53b1d868f664968c8a019260b98effcab9ebdbf95921af1
+# sha256 06eb6e36537601e6175b574e7dd6acab805aa17f4fa247bbc063ef72a0475d35

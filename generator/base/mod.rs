@@ -6,3 +6,4 @@ pub mod identifier;
 pub mod input;
 pub mod keywords;
 pub mod text;
+pub mod transient;

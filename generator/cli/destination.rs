@@ -3,10 +3,9 @@
 use std::fs::{self, File, OpenOptions};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
-use tempfile::NamedTempFile;
-
 use super::staged;
+use crate::base::transient;
+use anyhow::{Context, Result};
 
 /// Where a file goes: written beside its place and moved there when it is whole. A pipe or a device is
 /// written itself.
@@ -17,7 +16,7 @@ pub struct Destination {
 
 enum Place {
     Itself(File),
-    Beside(NamedTempFile),
+    Beside(transient::File),
 }
 
 impl Destination {
@@ -54,11 +53,7 @@ impl Destination {
     pub fn commit(self) -> Result<()> {
         match self.place {
             Place::Itself(_) => Ok(()),
-            Place::Beside(staged) => staged
-                .persist(&self.path)
-                .map(drop)
-                .map_err(|error| error.error)
-                .with_context(|| cannot(&self.path)),
+            Place::Beside(staged) => staged.persist(&self.path).with_context(|| cannot(&self.path)),
         }
     }
 }

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use serde_json::{Value, json};
 
+use super::interrupt::Interrupted;
 use crate::config::Problems;
 
 /// A mistake on the command line itself, which only a command can see: exit code 2.
@@ -35,6 +36,9 @@ impl std::error::Error for Several {}
 /// The exit code that stands for an error.
 pub fn exit_code(error: &anyhow::Error) -> ExitCode {
     // Also when a context was put around it.
+    if let Some(interrupted) = error.downcast_ref::<Interrupted>() {
+        return ExitCode::from(interrupted.exit_code());
+    }
     match error.downcast_ref::<Usage>() {
         Some(_) => ExitCode::from(2),
         None => ExitCode::FAILURE,

@@ -3,6 +3,7 @@
 mod commands;
 mod destination;
 mod failure;
+mod interrupt;
 mod own_file;
 mod progress;
 mod staged;
@@ -399,6 +400,9 @@ fn count(text: &str) -> Result<u64, String> {
 
 /// Runs the command line of this process with the devices of `registry`.
 pub fn run(registry: &Registry) -> ExitCode {
+    if let Err(error) = interrupt::listen() {
+        failure::warn(&format!("an interruption may leave temporary files behind: {error}"));
+    }
     run_from(registry, std::env::args_os())
 }
 

@@ -4,13 +4,14 @@ use std::io::Write;
 use std::path::Path;
 
 use anyhow::{Context, Result};
-use tempfile::NamedTempFile;
+
+use crate::base::transient::File;
 
 /// A temporary file in the directory of `path`, to be persisted there.
 ///
 /// # Errors
 /// The directory is missing or not writable.
-pub fn beside(path: &Path) -> Result<NamedTempFile> {
+pub fn beside(path: &Path) -> Result<File> {
     let directory = match path.parent() {
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),
@@ -20,7 +21,8 @@ pub fn beside(path: &Path) -> Result<NamedTempFile> {
     // As any new file: the umask takes away from it.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    builder.tempfile_in(directory).with_context(|| format!("cannot write `{}`", path.display()))
+    File::made(|| builder.tempfile_in(directory))
+        .with_context(|| format!("cannot write `{}`", path.display()))
 }
 
 /// Replaces the file `path` as a whole, or leaves it as it was.
@@ -28,10 +30,11 @@ pub fn beside(path: &Path) -> Result<NamedTempFile> {
 /// # Errors
 /// It cannot be written.
 pub fn replace(path: &Path, contents: &[u8]) -> Result<()> {
-    let mut staged = beside(path)?;
+    let staged = beside(path)?;
     staged
-        .write_all(contents)
-        .and_then(|()| staged.persist(path).map_err(|error| error.error))
+        .reopen()
+        .and_then(|mut file| file.write_all(contents))
+        .and_then(|()| staged.persist(path))
         .with_context(|| format!("cannot write `{}`", path.display()))?;
     Ok(())
 }

@@ -2,19 +2,25 @@
 //!
 //! The directories of a configuration are replaced as a whole: everything is written beside them
 //! first and moved into place when it is complete. What stands there already is replaced only when
-//! the manifest's digests say that Glint wrote it and nobody edited it since.
+//! the manifest's digests say that Glint wrote it and nobody edited it since. What is not Glint's and
+//! not in the way (an editor's swap file, a note) stays.
 
-use std::collections::BTreeMap;
+mod staging;
+mod survey;
+
+#[cfg(test)]
+mod tests;
+
 use std::fs;
-use std::io::{self, ErrorKind};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
-use serde_json::Value;
-use tempfile::TempDir;
 
 use super::staged;
-use crate::package::{OutputFile, Seal, digest, is_sealed};
+use crate::package::{OutputFile, Seal, is_sealed};
+use staging::Staging;
+use survey::Survey;
 
 /// What [`write()`] did with the directories of a configuration, or [`write_sealed`] with a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -25,19 +31,22 @@ pub enum Written {
     Replaced,
 }
 
-/// Writes the files of configuration `name` below `out`.
+/// Writes the files of configuration `name` below `out`. Files that are neither Glint's nor in the way stay
+/// where they are.
 ///
 /// # Errors
-/// Files that Glint did not write, unless `force` (which still keeps those that are not in the way);
-/// a directory that cannot be written. Whatever fails, what was there before is there after.
+/// Files of Glint's that were edited, or others that would be overwritten, unless `force` (which still keeps
+/// those that are not in the way); a directory that cannot be written. Whatever fails, what was there before is
+/// there after.
 pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Result<Written> {
-    if differences(out, name, files)?.is_empty() {
+    staging::recover(out)?;
+    let found = Survey::new(out, name, files)?;
+    if found.different.is_empty() {
         return Ok(Written::Unchanged);
     }
-    let foreign = foreign_files(out, name)?;
-    if !foreign.is_empty() && !force {
+    if !found.edited.is_empty() && !force {
         let list: Vec<String> =
-            foreign.iter().map(|path| format!("  {}", path.display())).collect();
+            found.edited.iter().map(|path| format!("  {}", path.display())).collect();
         bail!(
             "these files were not written by Glint, or were edited since; nothing was changed\n{}\n\
              move them away, choose another --out, or replace them with --force",
@@ -45,10 +54,18 @@ pub fn write(out: &Path, name: &str, files: &[OutputFile], force: bool) -> Resul
         );
     }
     create_directory(out)?;
-    let staging = staging(out)?;
-    stage(staging.path(), files)?;
-    swap(out, staging, name, &foreign)?;
+    let staging = Staging::new(out, files)?;
+    staging.swap(out, name, &[found.edited, found.foreign].concat())?;
     Ok(Written::Replaced)
+}
+
+/// The files below `out` that differ from `files` or are missing, and those of Glint's that are none of `files`
+/// any more.
+///
+/// # Errors
+/// A file that cannot be read.
+pub fn differences(out: &Path, name: &str, files: &[OutputFile]) -> Result<Vec<String>> {
+    Ok(Survey::new(out, name, files)?.different)
 }
 
 /// Writes a single file that vouches for itself.
@@ -82,27 +99,6 @@ pub fn may_write(path: &Path, seal: Seal, force: bool) -> Result<Option<Vec<u8>>
     }
 }
 
-/// The files below `out` that differ from `files`, or are missing, or stand there beside them.
-///
-/// # Errors
-/// A file that cannot be read.
-pub fn differences(out: &Path, name: &str, files: &[OutputFile]) -> Result<Vec<String>> {
-    let mut different = Vec::new();
-    for file in files {
-        if differs(out, file)? {
-            different.push(file.path.clone());
-        }
-    }
-    for path in present(out, name)? {
-        let relative = relative_name(out, &path);
-        if !files.iter().any(|file| file.path == relative) {
-            different.push(relative);
-        }
-    }
-    different.sort();
-    Ok(different)
-}
-
 /// Whether a file below `out` is not as it would be written, or missing.
 ///
 /// # Errors
@@ -111,8 +107,11 @@ pub fn differs(out: &Path, file: &OutputFile) -> Result<bool> {
     let path = out.join(&file.path);
     match fs::read(&path) {
         Ok(found) => Ok(found != file.contents.as_bytes()),
-        // Or a file where a directory should be.
-        Err(error) if [ErrorKind::NotFound, ErrorKind::NotADirectory].contains(&error.kind()) => {
+        // Or a file where a directory should be, or the other way around.
+        Err(error)
+            if [ErrorKind::NotFound, ErrorKind::NotADirectory, ErrorKind::IsADirectory]
+                .contains(&error.kind()) =>
+        {
             Ok(true)
         }
         Err(error) => Err(error).with_context(|| format!("cannot read `{}`", path.display())),
@@ -124,74 +123,11 @@ fn directories(out: &Path, name: &str) -> [PathBuf; 3] {
     ["rtl_out", "testbench", "software"].map(|top| out.join(top).join(name))
 }
 
-/// What stands in the directories of a configuration now, sorted.
-fn present(out: &Path, name: &str) -> Result<Vec<PathBuf>> {
-    let mut found = Vec::new();
-    for directory in directories(out, name) {
-        let entries = match fs::read_dir(&directory) {
-            Ok(entries) => entries,
-            Err(error) if error.kind() == ErrorKind::NotFound => continue,
-            Err(error) if error.kind() == ErrorKind::NotADirectory => {
-                // Unless it is one above that is no directory.
-                if fs::symlink_metadata(&directory).is_ok() {
-                    found.push(directory);
-                }
-                continue;
-            }
-            Err(error) => {
-                return Err(error)
-                    .with_context(|| format!("cannot read `{}`", directory.display()));
-            }
-        };
-        for entry in entries {
-            found.push(
-                entry.with_context(|| format!("cannot read `{}`", directory.display()))?.path(),
-            );
-        }
-    }
-    found.sort();
-    Ok(found)
-}
-
-/// Those of the files that Glint did not write as they are.
-fn foreign_files(out: &Path, name: &str) -> Result<Vec<PathBuf>> {
-    let manifest = out.join("rtl_out").join(name).join(format!("{name}.json"));
-    let digests = read_digests(&manifest);
-    let mut foreign = Vec::new();
-    for path in present(out, name)? {
-        let ours = match &digests {
-            None => false,
-            Some(_) if path == manifest => true,
-            Some(digests) => fs::read(&path).is_ok_and(|contents| {
-                digests.get(&relative_name(out, &path)) == Some(&digest(&contents))
-            }),
-        };
-        if !ours {
-            foreign.push(path);
-        }
-    }
-    Ok(foreign)
-}
-
-/// The digests that a manifest holds; `None` when it is no manifest of Glint's.
-fn read_digests(manifest: &Path) -> Option<BTreeMap<String, String>> {
-    let value: Value = serde_json::from_slice(&fs::read(manifest).ok()?).ok()?;
-    let digests = value.get("sha256")?.as_object()?;
-    digests.iter().map(|(path, digest)| Some((path.clone(), digest.as_str()?.to_owned()))).collect()
-}
-
 /// The path below `out`, with `/`, as [`OutputFile::path`] has it.
 fn relative_name(out: &Path, path: &Path) -> String {
     let relative = path.strip_prefix(out).unwrap_or(path);
     let parts: Vec<_> = relative.iter().map(|part| part.to_string_lossy()).collect();
     parts.join("/")
-}
-
-/// A directory beside what is to be replaced; it goes when it is dropped.
-fn staging(out: &Path) -> Result<TempDir> {
-    tempfile::Builder::new().prefix(".glint-").tempdir_in(out).with_context(|| {
-        format!("cannot write to `{}`; choose another directory with --out", out.display())
-    })
 }
 
 fn create_parent(path: &Path) -> Result<()> {
@@ -204,78 +140,4 @@ fn create_parent(path: &Path) -> Result<()> {
 fn create_directory(path: &Path) -> Result<()> {
     fs::create_dir_all(path)
         .with_context(|| format!("cannot create the directory `{}`", path.display()))
-}
-
-fn stage(staging: &Path, files: &[OutputFile]) -> Result<()> {
-    for file in files {
-        let path = staging.join(&file.path);
-        create_parent(&path)?;
-        fs::write(&path, &file.contents).with_context(|| {
-            format!("cannot write `{}`; what was there before is unchanged", file.path)
-        })?;
-    }
-    Ok(())
-}
-
-/// Moves the old directories out of the way, the new ones into their place, and those of the
-/// `foreign` files back that nothing new replaces. What is left of the old is deleted with `staging`.
-fn swap(out: &Path, staging: TempDir, name: &str, foreign: &[PathBuf]) -> Result<()> {
-    let mut moves = Moves::default();
-    let Err(error) = swap_each(out, staging.path(), name, foreign, &mut moves) else {
-        return Ok(());
-    };
-    if moves.undo().is_err() {
-        let kept = staging.keep();
-        return Err(error).context(format!("what was there before is now in `{}`", kept.display()));
-    }
-    Err(error)
-}
-
-fn swap_each(
-    out: &Path,
-    staging: &Path,
-    name: &str,
-    foreign: &[PathBuf],
-    moves: &mut Moves,
-) -> Result<()> {
-    let aside = staging.join("old");
-    let (new, old) = (directories(staging, name), directories(&aside, name));
-    for ((place, new), old) in directories(out, name).into_iter().zip(new).zip(old) {
-        if fs::symlink_metadata(&place).is_ok() {
-            create_parent(&old)?;
-            moves.rename(&place, &old)?;
-        }
-        // A directory that the configuration no longer asks for goes.
-        if new.exists() {
-            create_parent(&place)?;
-            moves.rename(&new, &place)?;
-        }
-    }
-    for path in foreign {
-        let old = aside.join(path.strip_prefix(out).unwrap_or(path));
-        // Not where something new stands.
-        if fs::symlink_metadata(path).is_err() {
-            create_parent(path)?;
-            moves.rename(&old, path)?;
-        }
-    }
-    Ok(())
-}
-
-/// Renames that can be undone.
-#[derive(Default)]
-struct Moves(Vec<(PathBuf, PathBuf)>);
-
-impl Moves {
-    fn rename(&mut self, from: &Path, to: &Path) -> Result<()> {
-        fs::rename(from, to)
-            .with_context(|| format!("cannot move `{}` to `{}`", from.display(), to.display()))?;
-        self.0.push((from.to_owned(), to.to_owned()));
-        Ok(())
-    }
-
-    /// Takes back what was done, the last first.
-    fn undo(self) -> io::Result<()> {
-        self.0.into_iter().rev().try_for_each(|(from, to)| fs::rename(to, from))
-    }
 }

@@ -24,6 +24,8 @@ struct Trial {
     timing: Timing,
     /// The result outputs whenever `valid` is high.
     results: Vec<(u32, Vec<u64>)>,
+    /// The first clock with a microinstruction whose successor an operand decides.
+    decision: Option<u32>,
 }
 
 impl Trial {
@@ -36,46 +38,48 @@ impl Trial {
     }
 }
 
-/// The clocks between the events of the handshake, where they are the same for all of some operands
-/// from the corners of the domain.
+/// The clocks between the events of the handshake, where the microprogram makes them the same for all operands
+/// that the ports take, inside the domain or not. Clocks from result to result are those of operands from the
+/// corners of the ports.
 ///
 /// # Errors
 /// A device that never ends, or never raises `valid`.
 pub fn timing(design: &Design, contract: &dyn Contract) -> Result<Timing> {
-    let mut common: Option<Timing> = None;
-    let mut distances = Vec::new();
-    for operands in corners(contract) {
-        let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
-        distances.extend(trial.distances());
-        let seen = trial.timing;
-        common = Some(match common {
-            None => seen,
-            Some(before) => {
-                let same = |a: Option<u32>, b: Option<u32>| if a == b { a } else { None };
-                Timing {
-                    start_to_valid: same(before.start_to_valid, seen.start_to_valid),
-                    valid_to_valid: None,
-                    start_to_done: same(before.start_to_done, seen.start_to_done),
-                    start_to_done_at_most: None,
-                    start_to_start: same(before.start_to_start, seen.start_to_start),
-                }
-            }
-        });
-    }
-    distances.dedup();
-    let common = common.unwrap_or_default();
-    let at_most = match common.start_to_done {
-        Some(_) => None,
-        None => netlist::latest_done(design),
+    let trials: Vec<Trial> = port_corners(contract)
+        .iter()
+        .map(|operands| run(design, contract, operands, &mut |_| Ok(())))
+        .collect::<Result<_>>()?;
+    let seen = &trials[0].timing;
+    // What the control word brings about up to this clock, no operand has an influence on.
+    let decision = trials[0].decision;
+    let valid = match (netlist::delay_of_valid(design), seen.start_to_valid) {
+        (Some(delay), Some(clock)) if decision.is_none_or(|at| clock - delay <= at) => Some(clock),
+        _ => None,
     };
+    let fixed = |clock: Option<u32>| clock.filter(|_| decision.is_none());
+    let mut distances: Vec<u32> = trials.iter().flat_map(Trial::distances).collect();
+    distances.dedup();
     Ok(Timing {
-        start_to_done_at_most: at_most,
+        start_to_valid: valid,
         valid_to_valid: match distances[..] {
             [only] => Some(only),
             _ => None,
         },
-        ..common
+        start_to_done: fixed(seen.start_to_done),
+        start_to_done_at_most: decision.and_then(|_| netlist::latest_done(design)),
+        start_to_start: fixed(seen.start_to_start),
     })
+}
+
+/// The lowest operands that the ports take, the highest, and those in the middle.
+fn port_corners(contract: &dyn Contract) -> [Vec<i64>; 3] {
+    let corner = |pick: fn(i128, i128) -> i128| {
+        let operands = contract.operands().iter();
+        let raw =
+            |operand: &Operand| pick(operand.format.min_raw(), operand.format.max_raw()) as i64;
+        operands.map(raw).collect::<Vec<_>>()
+    };
+    [corner(|low, _| low), corner(|_, high| high), corner(i128::midpoint)]
 }
 
 /// The lowest operands of the domain, the highest, and those in the middle.
@@ -285,11 +289,16 @@ fn run(
         simulator.set(input(&format!("{}_write", operand.name))?, 0);
     }
     simulator.set(start, 0);
-    let mut trial = Trial { timing: Timing::default(), results: Vec::new() };
+    let decided = netlist::decided_by_data(design);
+    let address = design.register(design.control.address).q;
+    let mut trial = Trial { timing: Timing::default(), results: Vec::new(), decision: None };
     let nets = results(design, contract);
     // Clock 0 was the one that took `start`.
     for clock in 1..LIMIT {
         watch(&mut simulator)?;
+        if decided.contains(&(simulator.value(address) as usize)) {
+            trial.decision.get_or_insert(clock);
+        }
         if simulator.value(valid) == 1 {
             trial.timing.start_to_valid.get_or_insert(clock);
             let outputs = nets.iter().map(|&net| simulator.value(net));
@@ -345,6 +354,7 @@ fn through(
                     ..Timing::default()
                 },
                 results: vec![(clock, outputs)],
+                decision: None,
             });
         }
         simulator.clock()?;

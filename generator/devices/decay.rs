@@ -156,7 +156,8 @@ pub fn check(config: &Config, operand_bits: i64, problems: &mut Problems) {
 
 fn check_decay(config: &Config, operand_bits: i64, problems: &mut Problems) {
     let segments = config.integers("decay.segments");
-    let rest = operand_bits - 2 * segments.len() as i64;
+    // A factor of four takes two bits; below the last bit there are none.
+    let rest = (operand_bits - 2 * segments.len() as i64).max(0);
     if rest < config.integer("decay.tail") {
         problems.push(
             "decay.segments",
@@ -167,7 +168,7 @@ fn check_decay(config: &Config, operand_bits: i64, problems: &mut Problems) {
         );
     }
     for (range, &prefix) in (0i64..).zip(segments) {
-        let bits = operand_bits - 2 * range;
+        let bits = (operand_bits - 2 * range).max(0);
         if prefix > bits {
             problems.push(
                 "decay.segments",

@@ -17,6 +17,7 @@ use regex::Regex;
 use serde::{Deserialize, Serialize};
 
 use super::formal;
+use crate::base::transient::Directory;
 use crate::core::{TEST_SEED, Unit};
 use crate::tools::{BuiltBench, Simulator, Tool, Waveform};
 
@@ -223,7 +224,7 @@ impl Text {
         let lines = files[fault.file].1.lines().enumerate();
         let lines = lines.map(|(at, line)| if at == fault.line { &fault.text } else { line });
         files[fault.file].1 = lines.fold(String::new(), |text, line| text + line + "\n");
-        let place = tempfile::tempdir().context("cannot make a temporary directory")?;
+        let place = Directory::new().context("cannot make a temporary directory")?;
         let mut arguments = vec!["--lint-only", "-Wall", "--top-module"];
         arguments.push(self.top.trim_end_matches("_tb"));
         for (name, contents) in &files {

@@ -1,6 +1,6 @@
 //! `<name>.json`: the device for programs.
 
-use anyhow::Result;
+use anyhow::{Context, Result};
 use serde::Serialize;
 use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Value, json};
@@ -33,8 +33,19 @@ struct Manifest<'a> {
     example: Option<Value>,
     #[serde(skip_serializing_if = "Option::is_none")]
     accuracy: Option<Value>,
-    #[serde(skip_serializing_if = "<[_]>::is_empty")]
-    computations: Vec<Box<RawValue>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    computations: Option<Computations<'a>>,
+}
+
+/// Computations, and what the numbers of each stand for.
+#[derive(Serialize)]
+struct Computations<'a> {
+    /// The operands of each point, in the order of the ports.
+    operands: Vec<&'a str>,
+    /// The results, in the order of the ports.
+    results: Vec<&'a str>,
+    /// A computation a line.
+    points: Vec<Box<RawValue>>,
 }
 
 /// The files that the manifest lists.
@@ -93,7 +104,7 @@ pub fn contents(
             entry
         }),
         accuracy: inputs.accuracy.as_ref().map(accuracy),
-        computations: inputs.computations.iter().map(computation).collect::<Result<_>>()?,
+        computations: computations(design, inputs)?,
     };
     Ok(serde_json::to_string_pretty(&manifest)? + "\n")
 }
@@ -132,13 +143,61 @@ fn accuracy(accuracy: &Accuracy) -> Value {
     entry
 }
 
-/// In a line, raw values in the order of `accuracy`.
-fn computation(computation: &Computation) -> Result<Box<RawValue>> {
-    let results = computation.results.iter();
-    let valid: Vec<u32> = results.clone().map(|result| result.clock).collect();
-    let results: Vec<_> = results.map(|result| &result.outputs).collect();
+fn computations<'a>(
+    design: &'a Design,
+    inputs: &'a EmitInputs,
+) -> Result<Option<Computations<'a>>> {
+    let Some(accuracy) = inputs.accuracy.as_ref().filter(|_| !inputs.computations.is_empty())
+    else {
+        return Ok(None);
+    };
+    let operands = in_port_order(design, accuracy.domain.iter().map(|(name, _)| name))?;
+    let results = in_port_order(design, accuracy.outputs.iter().map(|(name, _)| name))?;
+    let (operand_at, result_at) = (positions(&operands), positions(&results));
+    let points = inputs
+        .computations
+        .iter()
+        .map(|computation| line(computation, &operand_at, &result_at))
+        .collect::<Result<_>>()?;
+    let names = |ordered: Vec<(usize, &'a str)>| ordered.into_iter().map(|(_, name)| name);
+    Ok(Some(Computations {
+        operands: names(operands).collect(),
+        results: names(results).collect(),
+        points,
+    }))
+}
+
+/// Names of ports in the order of the ports, each with its place among `names`.
+fn in_port_order<'a>(
+    design: &Design,
+    names: impl Iterator<Item = &'a String>,
+) -> Result<Vec<(usize, &'a str)>> {
+    let mut placed = names
+        .enumerate()
+        .map(|(place, name)| {
+            let mut ports = design.ports.iter();
+            let port = ports.position(|port| design.net(port.net).name == *name);
+            Ok((port.with_context(|| format!("no port `{name}`"))?, (place, name.as_str())))
+        })
+        .collect::<Result<Vec<_>>>()?;
+    placed.sort_unstable();
+    Ok(placed.into_iter().map(|(_, named)| named).collect())
+}
+
+fn positions(ordered: &[(usize, &str)]) -> Vec<usize> {
+    ordered.iter().map(|(place, _)| *place).collect()
+}
+
+/// A computation in a line: raw values in the orders of operands and results that are stated.
+fn line(computation: &Computation, operands: &[usize], results: &[usize]) -> Result<Box<RawValue>> {
+    let pick = |order: &[usize], values: &[i64]| -> Vec<i64> {
+        order.iter().map(|&place| values[place]).collect()
+    };
+    let shown = computation.results.iter();
+    let valid: Vec<u32> = shown.clone().map(|result| result.clock).collect();
+    let results: Vec<_> = shown.map(|result| pick(results, &result.outputs)).collect();
     Ok(to_raw_value(&json!({
-        "operands": computation.operands,
+        "operands": pick(operands, &computation.operands),
         "valid": valid,
         "results": results,
         "done": computation.done,

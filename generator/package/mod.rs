@@ -13,6 +13,7 @@ mod fusesoc;
 mod instance;
 mod manifest;
 mod memory;
+pub mod module_names;
 mod points;
 pub(crate) mod seal;
 mod software;
@@ -161,6 +162,7 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
             contents,
         }));
     }
+    module_names::check(&all)?;
     // The manifest vouches for every other file.
     let contents = manifest::contents(design, inputs, &naming, &files, &all)?;
     all.push(OutputFile { path: format!("rtl_out/{name}/{name}.json"), contents });

@@ -8,9 +8,9 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail, ensure};
-use tempfile::TempDir;
 
 use super::{Tool, capture};
+use crate::base::transient::Directory;
 
 /// An event-driven or compiling Verilog simulator.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -85,7 +85,7 @@ pub(super) fn run_bench_in<N: AsRef<str>, C: AsRef<[u8]>>(
 
 /// A bench that was built, in a temporary directory of its own, and that can be run again and again.
 pub struct BuiltBench {
-    place: TempDir,
+    place: Directory,
     simulator: Simulator,
     top: String,
     /// The program to run and its arguments.
@@ -126,10 +126,7 @@ impl BuiltBench {
             }
             Simulator::Verilator => (Tool::find_in("verilator", search)?, None),
         };
-        let place = tempfile::Builder::new()
-            .prefix("glint-bench-")
-            .tempdir()
-            .context("cannot make a temporary directory")?;
+        let place = Directory::new().context("cannot make a temporary directory")?;
         let directory = place.path();
         let sources = write_files(directory, files)?;
 

@@ -1,7 +1,7 @@
 //! External simulators and synthesis tools, run as child processes.
 //!
-//! A [`Tool`] is a program found on a search path. Every run has a time limit, after which its
-//! whole process group is killed. Output is drained to the end but kept only in part, so a tool
+//! A [`Tool`] is a program found on a search path. Every run has a time limit, after which it
+//! is killed with all that it has started. Output is drained to the end but kept only in part, so a tool
 //! that prints without end costs neither memory nor a deadlock. Errors name the tool and quote the
 //! last lines that it wrote.
 //!
@@ -11,12 +11,14 @@ use std::env;
 use std::ffi::OsStr;
 use std::fmt;
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, anyhow, bail};
+
+use crate::base::transient::Child;
 
 mod bench;
 mod capture;
@@ -30,11 +32,11 @@ pub use bench::{BenchOutcome, BuiltBench, Simulator, Waveform, run_bench};
 use capture::Capture;
 pub use difference::{BenchDifference, bench_waveform};
 pub use lint::lint;
-pub use proof::prove;
+pub use proof::{PROOF_LIMITS, prove};
 
 /// What asking for a version may take: the first run of a WebAssembly tool compiles it.
 const VERSION_LIMIT: Duration = Duration::from_secs(600);
-/// How long the output of a killed process group may take to close.
+/// How long the output of killed processes may take to close.
 const CLOSING_LIMIT: Duration = Duration::from_secs(1);
 
 /// A program outside Glint.
@@ -53,6 +55,33 @@ pub struct Run {
     /// the middle is left out, and a line says so.
     pub output: String,
 }
+
+/// What a run may take.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// After which it is killed.
+    pub time: Duration,
+    /// The address space of each of its processes, in bytes. Only Linux keeps to it.
+    pub memory: Option<u64>,
+}
+
+impl From<Duration> for Limits {
+    fn from(time: Duration) -> Self {
+        Self { time, memory: None }
+    }
+}
+
+/// A run that took all that it was given, and therefore says nothing.
+#[derive(Clone, Debug)]
+pub struct LimitReached(String);
+
+impl fmt::Display for LimitReached {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for LimitReached {}
 
 impl Tool {
     /// The tool `name` on `PATH`.
@@ -105,14 +134,15 @@ impl Tool {
     /// everything that writes to its output has too.
     ///
     /// # Errors
-    /// It does not start, or takes longer than `limit`; then it and the processes that it started
-    /// are killed.
+    /// It does not start, or takes longer than its limit; then it and the processes that it started
+    /// are killed, and the error is [`LimitReached`].
     pub fn run<A: AsRef<OsStr>>(
         &self,
         arguments: impl IntoIterator<Item = A>,
         directory: &Path,
-        limit: Duration,
+        limits: impl Into<Limits>,
     ) -> Result<Run> {
+        let Limits { time: limit, memory } = limits.into();
         let (mut reader, writer) = std::io::pipe().context("cannot make a pipe")?;
         let mut command = Command::new(&self.path);
         command
@@ -123,12 +153,16 @@ impl Tool {
             .stdin(Stdio::null())
             .stdout(writer.try_clone().context("cannot make a pipe")?)
             .stderr(writer);
-        // A group of its own, so that the tool's children can be killed with it.
-        #[cfg(unix)]
-        std::os::unix::process::CommandExt::process_group(&mut command, 0);
+        if directory.is_absolute() {
+            // What a tool that is killed leaves of its temporary files goes with the directory.
+            command.env("TMPDIR", directory);
+        }
         let deadline = Instant::now() + limit;
-        let mut child =
-            command.spawn().with_context(|| format!("cannot start `{}`", self.path.display()))?;
+        let mut child = Child::spawn(&mut command)
+            .with_context(|| format!("cannot start `{}`", self.path.display()))?;
+        if let Some(bytes) = memory {
+            limit_memory(child.id(), bytes);
+        }
         // The command holds the writing ends: without this the reader would never see the end.
         drop(command);
 
@@ -146,10 +180,14 @@ impl Tool {
         if let Some(status) = status {
             return Ok(Run { status, output: capture.text() });
         }
-        kill_group(&mut child);
-        // Only a process that left the group can still hold the pipe; its reader is abandoned.
+        child.kill();
+        // Only a process that is nobody's child any more can still hold the pipe; its reader is abandoned.
         let _ = receiver.recv_timeout(CLOSING_LIMIT);
-        bail!("`{}` did not end within {limit:?} and was killed{}", self.name, capture.quote());
+        bail!(LimitReached(format!(
+            "`{}` did not end within {limit:?} and was killed{}",
+            self.name,
+            capture.quote()
+        )));
     }
 
     /// Like [`Tool::run`], for a tool that is expected to succeed; returns its output.
@@ -160,9 +198,9 @@ impl Tool {
         &self,
         arguments: impl IntoIterator<Item = A>,
         directory: &Path,
-        limit: Duration,
+        limits: impl Into<Limits>,
     ) -> Result<String> {
-        let run = self.run(arguments, directory, limit)?;
+        let run = self.run(arguments, directory, limits)?;
         if !run.status.success() {
             bail!("`{}` failed ({}){}", self.name, run.status, capture::quote(&run.output));
         }
@@ -190,17 +228,18 @@ fn wait_until(child: &mut Child, deadline: Instant) -> Option<ExitStatus> {
     }
 }
 
-/// Kills the child and all of its process group, and collects the child.
-fn kill_group(child: &mut Child) {
-    // The child is not collected yet, so its number still names this group and no other. Errors
-    // mean that it has just ended.
-    #[cfg(unix)]
-    if let Some(group) = rustix::process::Pid::from_raw(child.id() as i32) {
-        let _ = rustix::process::kill_process_group(group, rustix::process::Signal::KILL);
-    }
-    let _ = child.kill();
-    let _ = child.wait();
+/// Limits a process and all that it starts from now on.
+#[cfg(target_os = "linux")]
+fn limit_memory(process: u32, bytes: u64) {
+    use rustix::process::{Pid, Resource, Rlimit, prlimit};
+    let limit = Rlimit { current: Some(bytes), maximum: Some(bytes) };
+    // An error means that it has just ended.
+    let _ = prlimit(Pid::from_raw(process as i32), Resource::As, limit);
 }
+
+/// Elsewhere a process cannot be limited from outside.
+#[cfg(not(target_os = "linux"))]
+fn limit_memory(_process: u32, _bytes: u64) {}
 
 /// How to install a tool, for those who have no checkout of Glint and for those who have.
 fn remedy(name: &str) -> String {

@@ -4,16 +4,21 @@ use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result, bail, ensure};
 
-use super::Tool;
+use super::{LimitReached, Limits, Tool, capture};
+
+/// What each command of a proof may take, unless less is asked for.
+pub const PROOF_LIMITS: Limits = Limits { time: Duration::from_secs(300), memory: Some(4 << 30) };
 
 /// Runs the commands that the head of the wrapper `<name>_formal.sv` gives, in the directory that has it and
 /// the files of its device: what users are told to run is what is run.
 ///
 /// # Errors
-/// The proof does not succeed; a tool is missing, or a command takes longer than `limit`.
-pub fn prove(directory: &Path, name: &str, limit: Duration) -> Result<()> {
+/// The proof does not succeed; a tool is missing; a command takes more than its limits, which is
+/// [`LimitReached`] and says nothing about the properties.
+pub fn prove(directory: &Path, name: &str, limits: impl Into<Limits>) -> Result<()> {
+    let limits = limits.into();
     let file = directory.join(format!("{name}_formal.sv"));
     let wrapper =
         fs::read_to_string(&file).with_context(|| format!("cannot read `{}`", file.display()))?;
@@ -30,9 +35,26 @@ pub fn prove(directory: &Path, name: &str, limit: Duration) -> Result<()> {
         file.display()
     );
     for command in commands {
-        Tool::find(command[0])?
-            .run_to_success(&command[1..], directory, limit)
-            .with_context(|| command.join(" "))?;
+        let tool = Tool::find(command[0])?;
+        let run = tool.run(&command[1..], directory, limits).with_context(|| command.join(" "))?;
+        if run.status.success() {
+            continue;
+        }
+        let what = format!("{}{}", command.join(" "), capture::quote(&run.output));
+        match limits.memory.filter(|_| ran_out_of_memory(&run.output)) {
+            Some(bytes) => {
+                bail!(LimitReached(format!("a process took more than {} MB: {what}", bytes >> 20)))
+            }
+            None => bail!("{what}"),
+        }
     }
     Ok(())
+}
+
+/// How Yosys, Python and Z3 say it; a solver that dies of it says nothing, and yosys-smtbmc finds its output at
+/// an end.
+fn ran_out_of_memory(output: &str) -> bool {
+    ["out of memory", "bad_alloc", "MemoryError", "Unexpected EOF response from solver"]
+        .iter()
+        .any(|words| output.contains(words))
 }

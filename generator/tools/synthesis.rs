@@ -6,8 +6,8 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 use serde_json::Value;
-use tempfile::TempDir;
 
+use crate::base::transient::Directory;
 use crate::tools::Tool;
 
 /// Kinds of cells, each with what one of them counts for.
@@ -97,8 +97,8 @@ pub(super) fn run(
     family: &Family,
     command: &str,
     limit: Duration,
-) -> Result<TempDir> {
-    let place = tempfile::tempdir().context("cannot make a directory for synthesis")?;
+) -> Result<Directory> {
+    let place = Directory::new().context("cannot make a directory for synthesis")?;
     for (name, contents) in files {
         fs::write(place.path().join(name), contents)
             .with_context(|| format!("cannot write `{name}` for synthesis"))?;

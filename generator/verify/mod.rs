@@ -58,7 +58,8 @@ pub enum Verdict {
     NotCovered,
     /// It was run, and its test is too weak to say that it holds.
     Undecided,
-    /// The leg could not be run: a tool is missing, or it takes more than this effort allows.
+    /// The leg could not be run to its end: a tool is missing, it reached a limit, or it takes more than this
+    /// effort allows.
     #[default]
     NotRun,
 }

@@ -4,15 +4,15 @@ use std::fs;
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
-use tempfile::TempDir;
 
 use super::{Finding, Leg, Subject, Verdict};
 use crate::base::text::grouped;
+use crate::base::transient::Directory;
 use crate::core::BENCH_SEED;
 use crate::package;
 use crate::tools::gates;
 use crate::tools::synthesis::{FAMILIES, Family, synthesise};
-use crate::tools::{Simulator, lint, prove, run_bench};
+use crate::tools::{LimitReached, Limits, PROOF_LIMITS, Simulator, lint, prove, run_bench};
 
 /// Results of a bench, and with full effort.
 const POINTS: [u64; 2] = [200, 20_000];
@@ -31,7 +31,7 @@ pub const LINT: Leg = Leg {
     tools: &["iverilog", "verilator"],
     steps: |_| 1,
     run: |subject, tools, _| {
-        let place = tempfile::tempdir().context("cannot make a directory for the linters")?;
+        let place = Directory::new().context("cannot make a directory for the linters")?;
         let mut sources = Vec::new();
         for (name, contents) in subject.unit.verilog()? {
             fs::write(place.path().join(&name), contents)
@@ -148,7 +148,13 @@ pub const FORMAL: Leg = Leg {
                     .context("cannot copy what was emitted")?;
             }
         }
-        prove(&flat, name, limit)?;
+        let limits = Limits { time: limit.min(PROOF_LIMITS.time), ..PROOF_LIMITS };
+        if let Err(error) = prove(&flat, name, limits) {
+            return match error.downcast_ref::<LimitReached>() {
+                Some(_) => Ok(Finding::without(Verdict::NotRun, format!("Undecided: {error:#}"))),
+                None => Err(error),
+            };
+        }
         Ok(Finding::new(
             Verdict::Proved,
             "all inputs, any state, any number of clocks".to_owned(),
@@ -199,8 +205,8 @@ pub const COCOTB: Leg = Leg {
 };
 
 /// Everything that is emitted, in a directory of its own.
-fn place(subject: &Subject<'_>) -> Result<TempDir> {
-    let place = tempfile::tempdir().context("cannot make a directory for what is emitted")?;
+fn place(subject: &Subject<'_>) -> Result<Directory> {
+    let place = Directory::new().context("cannot make a directory for what is emitted")?;
     let vectors = subject.unit.shipped_vectors()?;
     let files = subject.unit.files(subject.path, vectors)?;
     for file in files.iter().chain([&package::driver()]) {

@@ -8,6 +8,7 @@ mod common;
 mod accuracy;
 mod analogues;
 mod cli;
+mod clocks;
 mod combinations;
 mod config_device;
 mod config_fuzz;

@@ -4,11 +4,12 @@
 //! The tasks for SymbiYosys have the same commands and the same depth; it is no part of the tools here.
 
 use std::fs;
+use std::time::Duration;
 
 use crate::common::bench::with_flipped_bit;
 use crate::common::tools::LIMIT;
 use crate::common::units::{Emitted, configuration, configurations, write};
-use glint::tools::prove;
+use glint::tools::{LimitReached, Limits, PROOF_LIMITS, prove};
 use rayon::prelude::*;
 
 #[test]
@@ -110,6 +111,31 @@ fn a_wrong_bit_of_sequencing_breaks_the_proof() {
             assert!(proof.is_err(), "{name}: word {word} without bit {bit}");
         });
     });
+}
+
+/// The property says only what holds for every operand that the ports take: here the domain holds a single shift,
+/// and the port takes every one.
+#[test]
+fn a_domain_narrower_than_its_port_is_proved() {
+    let device = *glint::registry::Registry::catalogue().device("lyon").expect("lyon");
+    let text = "device = \"lyon\"\n[domain]\nexponent_min = 100\nexponent_max = 150\n";
+    let config = glint::config::parse("lyon.toml", text, &[(device.schema)()]);
+    let config = config.unwrap_or_else(|problems| panic!("{problems}"));
+    let unit = glint::core::Unit::new(device, config).expect("a design");
+    let (place, name) = emitted(&unit);
+    prove(place.path(), &name, PROOF_LIMITS).unwrap_or_else(|error| panic!("{error:#}"));
+}
+
+#[test]
+fn a_proof_that_takes_too_much_says_so() {
+    let (place, name) = emitted(&configuration("configs/rough.toml"));
+    let time = Limits { time: Duration::from_millis(50), memory: None };
+    // Enough for Yosys and Python, not for the solver.
+    let memory = Limits { time: LIMIT, memory: Some(40 << 20) };
+    for limits in [time, memory] {
+        let error = prove(place.path(), &name, limits).expect_err("a limit");
+        assert!(error.downcast_ref::<LimitReached>().is_some(), "{limits:?}: {error:#}");
+    }
 }
 
 /// The files of a configuration in a directory of their own, and its name.

@@ -7,15 +7,16 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result, anyhow, bail, ensure};
+use anyhow::{Context, Result, bail, ensure};
 use indicatif::HumanDuration;
 use serde_json::json;
 
 use super::{load, load_sequential};
 use crate::base::{input, text};
 use crate::cli::failure::Usage;
+use crate::cli::interrupt::Deferred;
 use crate::cli::{Output, progress, staged, tables};
-use crate::cosim::exhaustive::{Job, Shard, State};
+use crate::cosim::exhaustive::{Job, Shard, State, kept};
 use crate::registry::Registry;
 use show::{announce, report};
 
@@ -46,15 +47,17 @@ pub fn exhaustive(
     let mut holds = true;
     for one in &loaded {
         let job = one.unit.job()?;
-        let mut state = State::new(&one.unit.digest(), request.shard.unwrap_or(Shard::WHOLE));
+        let mut state = State::new(&one.unit.fingerprint(), request.shard.unwrap_or(Shard::WHOLE));
         if let Some(path) = &request.resume
             && let Some(found) = read(path)?
         {
             ensure!(
                 found.digest == state.digest && found.shard == state.shard,
-                "`{}` is of another configuration, shard or version of Glint; name another file",
+                "`{}` is of another configuration, shard or build of Glint; name another file",
                 path.display()
             );
+            job.validate(&found)
+                .with_context(|| format!("`{}` is damaged; name another file", path.display()))?;
             state = found;
         }
         if !output.json {
@@ -86,8 +89,8 @@ pub fn merge(
         .map(|path| read(path)?.with_context(|| format!("there is no `{}`", path.display())))
         .collect::<Result<Vec<_>>>()?;
     ensure!(
-        states.iter().any(|state| state.digest == one.unit.digest()),
-        "these shards are not of `{}` as it stands, or of another version of Glint",
+        states.iter().any(|state| state.digest == one.unit.fingerprint()),
+        "these shards are not of `{}` as it stands, or of another build of Glint",
         one.path
     );
     let merged = job.merge(&states, &names)?;
@@ -112,10 +115,9 @@ fn read(path: &Path) -> Result<Option<State>> {
             return Err(error).with_context(|| format!("cannot read `{}`", path.display()));
         }
     }
-    let state =
-        serde_json::from_str(&text).map_err(|error| anyhow!("{error}")).with_context(|| {
-            format!("`{}` does not hold the state of a proof; name another file", path.display())
-        })?;
+    let state = kept::from_text(&text).with_context(|| {
+        format!("`{}` does not hold the state of a proof; name another file", path.display())
+    })?;
     Ok(Some(state))
 }
 
@@ -123,16 +125,22 @@ fn read(path: &Path) -> Result<Option<State>> {
 fn prove(output: Output, job: &Job<'_>, state: &mut State, file: Option<&Path>) -> Result<()> {
     let save = |state: &State| -> Result<()> {
         match file {
-            Some(path) => staged::replace(path, serde_json::to_string_pretty(state)?.as_bytes()),
+            Some(path) => staged::replace(path, kept::to_text(state)?.as_bytes()),
             None => Ok(()),
         }
     };
     // Nothing is worth computing that cannot be kept.
     save(state)?;
     let bar = progress::bar(output, job.remaining(state), "evaluations");
+    // Only what is kept is worth waiting for.
+    let deferred = file.map(|_| Deferred::begin());
+    let interrupted = || deferred.as_ref().is_some_and(Deferred::noted);
     let mut saved = Instant::now();
     let mut failure = None;
     let end = job.run(state, &|done| bar.inc(done), &mut |state| {
+        if interrupted() {
+            return ControlFlow::Break(());
+        }
         if saved.elapsed() < SAVE {
             return ControlFlow::Continue(());
         }
@@ -146,9 +154,20 @@ fn prove(output: Output, job: &Job<'_>, state: &mut State, file: Option<&Path>) 
         }
     });
     bar.finish_and_clear();
-    match (end?, failure) {
-        (ControlFlow::Break(()), Some(error)) => Err(error),
-        _ => save(state),
+    if let (ControlFlow::Break(()), Some(error)) = (end?, failure) {
+        return Err(error);
+    }
+    save(state)?;
+    let kept = || {
+        let file = file.map_or_else(String::new, |file| file.display().to_string());
+        format!(
+            "{} evaluations are still to do; what is done is in `{file}`, and the same command goes on from there",
+            text::grouped(job.remaining(state))
+        )
+    };
+    match deferred.and_then(|deferred| deferred.end(kept)) {
+        Some(interrupted) => Err(interrupted.into()),
+        None => Ok(()),
     }
 }
 

@@ -58,7 +58,7 @@ pub fn generate(
 /// Every file of each configuration, made in parallel.
 pub fn all_files(output: Output, loaded: &[Loaded]) -> Result<Vec<Vec<OutputFile>>> {
     let bar = progress::bar(output, loaded.len() as u64, "generating");
-    let made = loaded
+    let made: Result<_> = loaded
         .par_iter()
         .map(|one| {
             let files = files(one);
@@ -67,7 +67,10 @@ pub fn all_files(output: Output, loaded: &[Loaded]) -> Result<Vec<Vec<OutputFile
         })
         .collect();
     bar.finish_and_clear();
-    made
+    let made: Vec<Vec<OutputFile>> = made?;
+    let named = loaded.iter().zip(&made).map(|(one, files)| (one.path.as_str(), &files[..]));
+    package::module_names::check_together(named)?;
+    Ok(made)
 }
 
 /// Every file of a configuration, with its bench.

@@ -4,20 +4,28 @@
 //! done is a [`State`], a few numbers that stand in a file; joining the states of all shards gives exactly
 //! what one uninterrupted run gives, because a peak does not depend on the order in which it was found.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::ControlFlow;
 use std::str::FromStr;
 use std::time::Duration;
 
-use anyhow::{Result, ensure};
+use anyhow::{Context, Result, ensure};
 use serde::{Deserialize, Serialize};
 
 use super::clocks::{Clocks, Steps};
 use super::places::{Peak, Places};
+use crate::base::text::grouped;
 use crate::golden::Contract;
 
-/// Blocks between two looks at the state.
-const CHUNK: u64 = 64;
+/// A division into more parts than machines would ever take is a slip of the pen.
+pub const MOST_SHARDS: u64 = 1_000_000;
+
+/// Missing shards that are named.
+const NAMED: usize = 10;
+
+/// Blocks for each thread between two looks at the state: some tenths of a second.
+const CHUNK: u64 = 4;
 
 /// One part of a divided job.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -32,6 +40,11 @@ impl Shard {
     /// The whole job.
     pub const WHOLE: Self = Self { number: 1, of: 1 };
 
+    /// Whether there is such a part.
+    fn is_valid(self) -> bool {
+        (1..=MOST_SHARDS).contains(&self.of) && (1..=self.of).contains(&self.number)
+    }
+
     /// The blocks of the shard, of `blocks` in all.
     fn count(self, blocks: u64) -> u64 {
         (blocks + self.of - self.number) / self.of
@@ -44,7 +57,7 @@ impl Shard {
 
     /// The next blocks of the shard, which has `count`, when so many are done; how many are done then.
     fn chunk(self, done: u64, count: u64) -> (u64, Vec<u64>) {
-        let end = (done + CHUNK).min(count);
+        let end = (done + CHUNK * rayon::current_num_threads() as u64).min(count);
         (end, (done..end).map(|at| self.block(at)).collect())
     }
 }
@@ -62,8 +75,11 @@ impl FromStr for Shard {
         let parts = text.split_once('/');
         let numbers = parts.and_then(|(number, of)| Some((number.parse().ok()?, of.parse().ok()?)));
         match numbers {
-            Some((number, of)) if (1..=of).contains(&number) => Ok(Self { number, of }),
-            _ => Err("a shard is i/N with i from 1 to N, as 3/16".to_owned()),
+            Some((number, of)) if (Self { number, of }).is_valid() => Ok(Self { number, of }),
+            _ => Err(format!(
+                "a shard is i/N with i from 1 to N, as 3/16, and N at most {}",
+                grouped(MOST_SHARDS)
+            )),
         }
     }
 }
@@ -79,8 +95,9 @@ pub struct Progress {
 
 /// How far a shard has come.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct State {
-    /// Tells one configuration (and version of Glint) from another.
+    /// Tells one configuration, and what computes with it, from another.
     pub digest: String,
     /// Which part of the job.
     pub shard: Shard,
@@ -88,8 +105,7 @@ pub struct State {
     pub f: Progress,
     /// The colour products.
     pub colours: Progress,
-    /// The combinations of operands, clock by clock. A state of before there were such has not begun them.
-    #[serde(default)]
+    /// The combinations of operands, clock by clock.
     pub clocks: Steps,
 }
 
@@ -155,6 +171,55 @@ impl<'a> Job<'a> {
             part(&self.colours, state.colours.done),
             self.clocks.as_ref().map_or(0, clocks),
         ]
+    }
+
+    /// Makes sure that a state which comes from outside can be one of this job: its numbers are in range, and the
+    /// largest errors are found again where it says that they are.
+    ///
+    /// # Errors
+    /// What cannot be.
+    pub fn validate(&self, state: &State) -> Result<()> {
+        let shard = state.shard;
+        ensure!(shard.is_valid(), "there is no shard {shard}");
+        for (what, places, progress) in
+            [("f", &self.f, state.f), ("the colours", &self.colours, state.colours)]
+        {
+            let count = shard.count(places.blocks());
+            let Progress { done, peak } = progress;
+            ensure!(done <= count, "of {what}, {done} blocks are done of {count} in all");
+            if done == 0 {
+                ensure!(peak == Peak::NONE, "of {what}, nothing is done, and yet there is a peak");
+                continue;
+            }
+            ensure!(
+                peak.place < places.count(),
+                "of {what}, the largest error is at place {}, and there are {} places",
+                peak.place,
+                places.count()
+            );
+            let block = Places::block_of(peak.place);
+            ensure!(
+                block % shard.of == shard.number - 1 && block / shard.of < done,
+                "of {what}, the largest error is at place {}, which the shard has not done",
+                peak.place
+            );
+            ensure!(
+                places.error(peak.place) == peak.error,
+                "of {what}, the error at place {} is {:e}, not {:e}",
+                peak.place,
+                places.error(peak.place),
+                peak.error
+            );
+        }
+        let count = shard.count(self.blocks_of_clocks());
+        let Steps { done, differs } = state.clocks;
+        ensure!(done <= count, "of the combinations, {done} blocks are done of {count} in all");
+        let combinations = self.clocks.as_ref().map_or(0, Clocks::count);
+        ensure!(
+            differs.is_none_or(|place| place < combinations && done == count),
+            "of the combinations, one is said to differ that was not tried"
+        );
+        Ok(())
     }
 
     /// How long the rest of the shard takes on `threads` threads: a short sample of each part is timed.
@@ -229,11 +294,11 @@ impl<'a> Job<'a> {
         };
         let of = first.shard.of;
         let mut merged = State::new(&first.digest, Shard::WHOLE);
-        let mut seen: Vec<Option<&String>> = vec![None; usize::try_from(of)?];
+        let mut seen: BTreeMap<u64, &String> = BTreeMap::new();
         for (state, name) in states.iter().zip(names) {
             ensure!(
                 state.digest == first.digest,
-                "`{name}` is not of the same configuration and version of Glint as `{}`",
+                "`{name}` is not of the same configuration and build of Glint as `{}`",
                 names[0]
             );
             ensure!(
@@ -243,27 +308,31 @@ impl<'a> Job<'a> {
                 names[0],
                 first.shard
             );
+            self.validate(state).with_context(|| format!("`{name}` is damaged"))?;
             ensure!(
                 self.remaining(state) == 0,
                 "`{name}` is not complete; go on with --shard {} --resume {name}",
                 state.shard
             );
-            let place = &mut seen[usize::try_from(state.shard.number - 1)?];
-            if let Some(other) = place {
+            if let Some(other) = seen.insert(state.shard.number, name) {
                 anyhow::bail!("`{other}` and `{name}` are both shard {}", state.shard);
             }
-            *place = Some(name);
             merged.f.peak = merged.f.peak.join(state.f.peak);
             merged.colours.peak = merged.colours.peak.join(state.colours.peak);
             let differ = merged.clocks.differs.into_iter().chain(state.clocks.differs);
             merged.clocks.differs = differ.min();
         }
-        let missing: Vec<String> = (1u64..)
-            .zip(&seen)
-            .filter(|(_, name)| name.is_none())
-            .map(|(number, _)| Shard { number, of }.to_string())
-            .collect();
-        ensure!(missing.is_empty(), "missing: shard {}", missing.join(", "));
+        let missing = of - seen.len() as u64;
+        if missing > 0 {
+            let absent = (1..=of).filter(|number| !seen.contains_key(number)).take(NAMED);
+            let named: Vec<String> =
+                absent.map(|number| Shard { number, of }.to_string()).collect();
+            let more = match missing.saturating_sub(NAMED as u64) {
+                0 => String::new(),
+                more => format!(" and {} more", grouped(more)),
+            };
+            anyhow::bail!("missing: shard {}{more}", named.join(", "));
+        }
         merged.f.done = self.f.blocks();
         merged.colours.done = self.colours.blocks();
         merged.clocks.done = self.blocks_of_clocks();

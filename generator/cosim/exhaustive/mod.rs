@@ -7,6 +7,7 @@
 
 mod clocks;
 mod job;
+pub mod kept;
 mod places;
 mod record;
 
@@ -14,7 +15,7 @@ mod record;
 mod tests;
 
 pub use clocks::{Clocks, Difference, MOST_BITS, Steps};
-pub use job::{Job, Progress, Shard, State};
+pub use job::{Job, MOST_SHARDS, Progress, Shard, State};
 pub use places::{Peak, Places};
 pub use record::Record;
 

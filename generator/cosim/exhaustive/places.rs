@@ -114,6 +114,12 @@ impl<'a> Places<'a> {
         self.error_at(&self.place(number))
     }
 
+    /// The errors at some places that are spread evenly.
+    pub fn glimpse(&self) -> Vec<f64> {
+        let step = (self.count() / SAMPLE).max(1);
+        (0..self.count()).step_by(step as usize).map(|place| self.error(place)).collect()
+    }
+
     #[inline]
     fn error_at(&self, place: &[i64]) -> f64 {
         match self.measure {
@@ -123,6 +129,11 @@ impl<'a> Places<'a> {
                 (self.contract.colour(place[0], place[1]) as f64 - exact).abs()
             }
         }
+    }
+
+    /// The block that has a place.
+    pub(super) fn block_of(place: u64) -> u64 {
+        place / BLOCK
     }
 
     /// The places of one block.

@@ -124,10 +124,75 @@ fn shards_join_to_the_whole() {
     assert!(refused(&[nothing]).contains("`c` is not complete; go on with --shard 1/3"));
 }
 
+/// As an attacker, or a bad disk, would write them.
+#[test]
+fn what_cannot_be_a_state_is_refused() {
+    let job = Job::new(&Counting);
+    let right = whole();
+    job.validate(&right).unwrap();
+    job.validate(&State::new("digest", Shard { number: 3, of: 9 })).unwrap();
+    type Change = fn(&mut State);
+    let changes: [(Change, &str); 9] = [
+        (|state| state.f.done = 8, "8 blocks are done of 7"),
+        (|state| state.f.done = 0, "nothing is done, and yet"),
+        (|state| state.f.peak = Peak::NONE, "the largest error is at place 18446744073709551615"),
+        (|state| state.f.peak.place = 1_000_000_000_000_000, "there are 900000 places"),
+        (|state| state.f.peak.error = 1.0, "the error at place 700001 is 7.000005e5, not 1e0"),
+        (|state| state.f.peak.place = 5, "the error at place 5 is 5e0"),
+        (|state| state.clocks.done = 1, "1 blocks are done of 0"),
+        (|state| state.clocks.differs = Some(0), "said to differ that was not tried"),
+        (|state| state.shard.of = 1_000_000_000_000, "there is no shard 1/1000000000000"),
+    ];
+    for (change, message) in changes {
+        let mut state = right.clone();
+        change(&mut state);
+        let refused = job.validate(&state).unwrap_err().to_string();
+        assert!(refused.contains(message), "{refused}");
+        let merged = job.merge(&[state], &["part".to_owned()]).unwrap_err();
+        assert!(format!("{merged:#}").contains("`part` is damaged"), "{merged:#}");
+    }
+    // A place of another shard, or of a block that is not done.
+    let mut state = State::new("digest", Shard { number: 1, of: 2 });
+    state.f = Progress { done: 1, peak: Peak { error: f64::from(1 << 17), place: 1 << 17 } };
+    assert!(job.validate(&state).unwrap_err().to_string().contains("has not done"));
+    state.f.peak.place = 2 << 17;
+    assert!(job.validate(&state).unwrap_err().to_string().contains("has not done"));
+}
+
+#[test]
+fn a_file_that_was_changed_is_no_state() {
+    let text = kept::to_text(&whole()).unwrap();
+    assert_eq!(kept::from_text(&text).unwrap(), whole());
+    let changed = [
+        text.replace("700001", "700002"),
+        text.replace("\"done\": 7", "\"done\": 6"),
+        text.replace("digest", "another"),
+        text[..text.len() / 2].to_owned(),
+        text.replace("\"shard\"", "\"more\": 1, \"shard\""),
+        serde_json::to_string(&whole()).unwrap(),
+    ];
+    for changed in changed {
+        assert_ne!(changed, text);
+        assert!(kept::from_text(&changed).is_err(), "{changed}");
+    }
+}
+
+#[test]
+fn missing_shards_of_many_are_counted() {
+    let job = Job::new(&Counting);
+    let mut state = State::new("digest", Shard { number: 900_000, of: MOST_SHARDS });
+    let _ = job.run(&mut state, &|_| (), &mut |_| ControlFlow::Continue(()));
+    let refused = job.merge(&[state], &["part".to_owned()]).unwrap_err().to_string();
+    assert!(refused.starts_with("missing: shard 1/1000000, 2/1000000"), "{refused}");
+    assert!(refused.ends_with("10/1000000 and 999 989 more"), "{refused}");
+}
+
 #[test]
 fn a_shard_is_one_of_so_many() {
     assert_eq!("3/16".parse(), Ok(Shard { number: 3, of: 16 }));
-    for text in ["0/4", "5/4", "1", "a/b", "1/0", "-1/2"] {
+    assert!(format!("1/{MOST_SHARDS}").parse::<Shard>().is_ok());
+    let many = ["1/1000000000000", "1/18446744073709551615", "1/18446744073709551616"];
+    for text in ["0/4", "5/4", "1", "a/b", "1/0", "-1/2"].iter().chain(&many) {
         assert!(text.parse::<Shard>().is_err(), "{text}");
     }
 }

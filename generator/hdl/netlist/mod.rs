@@ -14,6 +14,7 @@
 
 mod cell;
 mod control;
+mod decisions;
 mod dump;
 pub mod eval;
 mod handshake;
@@ -26,6 +27,7 @@ use crate::base::diagnostic::SourceLocation;
 use crate::base::fixed::Format;
 pub use cell::Op;
 pub use control::{Control, Field, FieldKind, Sequence, Word};
+pub use decisions::{decided_by_data, delay_of_valid};
 pub use eval::Interpreter;
 pub use handshake::Handshake;
 pub use pipeline::{Checkpoint, Pipeline, Stage};

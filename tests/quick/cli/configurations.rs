@@ -252,3 +252,17 @@ fn no_configuration_at_all() {
     fs::create_dir(place.at("configs")).unwrap();
     place.glint(["generate"]).refused(1, &["there is no configuration in `configs/`"]);
 }
+
+/// Ranges of two bits each, more than there are bits.
+#[test]
+fn no_count_is_negative() {
+    let segments = "[decay]\nsegments = [2, 2, 2, 2, 2, 2, 2, 2, 2, 2]\n";
+    let text = format!("device = \"blinn\"\n[cosine]\nfraction = 12\n{segments}");
+    let place = Place::with("core.toml", text);
+    let run = place.glint(["generate", "core.toml"]);
+    run.refused(1, &["0 of the 11 bits of 1 - cos", "has 1 bits of 1 - cos"]);
+    let negative = run.err.split_whitespace().find(|word| {
+        word.strip_prefix('-').is_some_and(|count| count.starts_with(|c: char| c.is_ascii_digit()))
+    });
+    assert_eq!(negative, None, "{}", run.err);
+}

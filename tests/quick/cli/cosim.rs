@@ -239,6 +239,18 @@ fn exhaustive() {
     assert!(run.err.contains("--exhaustive"), "{run:?}");
 }
 
+#[test]
+fn a_division_into_more_shards_than_there_can_be() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    for of in ["18446744073709551615", "1000000000000", "1000001"] {
+        let shard = format!("1/{of}");
+        let arguments = ["cosim", "core.toml", "--exhaustive", "--resume", "a.json", "--shard"];
+        let run = place.glint(arguments.iter().chain(&[shard.as_str()]));
+        run.refused(2, &["N at most 1 000 000"]);
+    }
+    assert_eq!(place.files().len(), 1);
+}
+
 /// A job that is killed, resumed, and divided reports what an uninterrupted one does.
 #[test]
 fn exhaustive_in_parts() {
@@ -289,6 +301,14 @@ fn in_parts(text: &str) {
     assert!(error.contains("`core.toml` does not hold the state"), "{error}");
     let error = refused(&["cosim", "core.toml", "--exhaustive", "--resume", "part1.json"]);
     assert!(error.contains("another configuration, shard"), "{error}");
+    // A bit that a disk has turned over.
+    let part = place.read("part1.json");
+    let damaged = part.replacen("\"done\": ", "\"done\": 1", 1);
+    assert_ne!(damaged, part);
+    place.write("part1.json", damaged);
+    let error = refused(&["merge", "core.toml", "part1.json", "part2.json"]);
+    assert!(error.contains("the checksum is wrong"), "{error}");
+    place.write("part1.json", part);
     place.write("core.toml", "device = \"cosine-power\"\npower = 4\n");
     let error = refused(&["merge", "core.toml", "part1.json", "part2.json"]);
     assert!(error.contains("not of `core.toml` as it stands"), "{error}");

@@ -166,27 +166,46 @@ fn an_edited_file_is_not_overwritten() {
     }
 }
 
-#[test]
-fn foreign_files_are_kept() {
-    let place = generated();
-    place.write("rtl_out/core/notes.txt", "mine");
-    place.write("rtl_out/core/deep/er/notes.txt", "mine too");
-    place.write("testbench/core/wave.gtkw", "view");
-    reconfigure(&place);
-    let before = place.files();
-    let run = place.glint(["generate", "core.toml"]);
-    run.refused(1, &["rtl_out/core/notes.txt", "rtl_out/core/deep", "testbench/core/wave.gtkw"]);
-    assert_eq!(place.files(), before);
+/// What systems, editors and people put into a directory is no reason to refuse.
+const FOREIGN: [&str; 5] = [
+    "rtl_out/core/.DS_Store",
+    "rtl_out/core/.core.v.swp",
+    "rtl_out/core/notes.txt",
+    "rtl_out/core/deep/er/notes.txt",
+    "testbench/core/wave.gtkw",
+];
 
-    place.done(["generate", "core.toml", "--force"]);
-    let after = place.files();
-    for name in
-        ["rtl_out/core/notes.txt", "rtl_out/core/deep/er/notes.txt", "testbench/core/wave.gtkw"]
-    {
-        assert_eq!(after.get(name), before.get(name), "{name}");
+#[test]
+fn foreign_files_stay_and_do_not_block() {
+    let place = generated();
+    for name in FOREIGN {
+        place.write(name, "mine");
     }
-    assert_ne!(after["rtl_out/core/core.v"], before["rtl_out/core/core.v"]);
-    place.assert_no_staging();
+    place.done(["generate", "core.toml", "--check"]);
+    assert!(place.done(["generate", "core.toml"]).ends_with("files up to date\n"));
+    for force in [None, Some("--force")] {
+        reconfigure(&place);
+        let before = place.files();
+        place.done(["generate", "core.toml"].into_iter().chain(force));
+        let after = place.files();
+        for name in FOREIGN {
+            assert_eq!(after.get(name), before.get(name), "{name}");
+        }
+        assert_ne!(after["rtl_out/core/core.v"], before["rtl_out/core/core.v"]);
+        place.done(["generate", "core.toml", "--check"]);
+        place.assert_no_staging();
+        place.write("core.toml", COSINE_POWER);
+        place.done(["generate", "core.toml"]);
+    }
+}
+
+#[test]
+fn a_directory_in_the_way_is_named() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    place.write("rtl_out/core/core.v/mine.txt", "mine");
+    let before = place.files();
+    place.glint(["generate", "core.toml"]).refused(1, &["rtl_out/core/core.v", "--force"]);
+    assert_eq!(place.files(), before);
 }
 
 #[test]
@@ -206,4 +225,62 @@ fn a_directory_that_glint_never_wrote() {
     let after = place.files();
     assert_eq!(after["rtl_out/other/other.v"], before["rtl_out/other/other.v"]);
     assert_ne!(after["rtl_out/core/core.v"], before["rtl_out/core/core.v"]);
+}
+
+/// Names that stand for something else in the emitted text: an instance, ports, a memory's parameter, a variable of
+/// the bench, one of the properties.
+#[test]
+fn a_module_named_like_something_inside_is_refused() {
+    let names = ["control", "clk", "start", "red", "CONTROL_FILE", "divisor", "dut", "stimulus"];
+    for name in names {
+        let place = Place::with("core.toml", format!("device = \"schlick\"\nname = \"{name}\"\n"));
+        let run = place.glint(["generate", "core.toml"]);
+        let message = format!("a module cannot be named `{name}`");
+        run.refused(1, &[&message, "set another `name` in the configuration"]);
+        assert_eq!(place.files().len(), 1, "{name}: something was written");
+    }
+}
+
+#[test]
+fn two_configurations_that_make_one_module_are_refused() {
+    for other in ["core_control", "core_datapath", "core_tb", "core_formal"] {
+        let place = Place::with("core.toml", COSINE_POWER);
+        place.write(&format!("{other}.toml"), COSINE_POWER);
+        let run = place.glint(["generate", "core.toml", &format!("{other}.toml")]);
+        let message = format!("both make a module `{other}`");
+        run.refused(1, &[&message, "`core.toml`", "set another `name`"]);
+        assert_eq!(place.files().len(), 2, "{other}: something was written");
+    }
+}
+
+/// The order of the numbers is stated, and it is that of the ports.
+#[test]
+fn computations_name_their_columns_in_the_order_of_the_ports() {
+    for device in ["quad-cosine", "rough", "lyon"] {
+        let place = Place::with("core.toml", format!("device = \"{device}\"\n"));
+        place.done(["generate", "core.toml"]);
+        let manifest: serde_json::Value =
+            serde_json::from_str(&place.read("rtl_out/core/core.json")).expect("JSON");
+        let ports = |role: &str| -> Vec<&str> {
+            let ports = manifest["ports"].as_array().expect("a list").iter();
+            let ports = ports.filter(|port| port["role"] == role);
+            ports.map(|port| port["name"].as_str().expect("a name")).collect()
+        };
+        let computations = &manifest["computations"];
+        let names = |key: &str| -> Vec<&str> {
+            let names = computations[key].as_array().expect("a list").iter();
+            names.map(|name| name.as_str().expect("a name")).collect()
+        };
+        assert_eq!(names("operands"), ports("operand"), "{device}");
+        assert_eq!(names("results"), ports("result"), "{device}");
+        for point in computations["points"].as_array().expect("a list") {
+            // Each number is of its column's domain.
+            let operands = point["operands"].as_array().expect("a list").iter();
+            for (name, raw) in names("operands").into_iter().zip(operands) {
+                let domain = &manifest["accuracy"]["domain"][name];
+                let within = domain["low"].as_i64()..=domain["high"].as_i64();
+                assert!(within.contains(&raw.as_i64()), "{device}: {name} = {raw}");
+            }
+        }
+    }
 }

@@ -8,6 +8,7 @@ mod datasheet;
 mod describe;
 mod fuzz;
 mod generate;
+mod interrupt;
 mod mutate;
 mod output;
 pub mod place;

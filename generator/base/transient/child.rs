@@ -1,0 +1,171 @@
+//! Child processes, which can be killed with all that they have started.
+
+use std::io;
+use std::process::{self, Command, ExitStatus};
+use std::time::Instant;
+
+use super::list;
+
+/// A process of a group of its own. It is killed with its descendants when it is dropped before its end.
+#[derive(Debug)]
+pub struct Child {
+    child: process::Child,
+    ended: bool,
+}
+
+impl Child {
+    /// Starts `command` in a process group of its own.
+    ///
+    /// # Errors
+    /// It does not start.
+    pub fn spawn(command: &mut Command) -> io::Result<Self> {
+        // A terminal's Ctrl-C reaches this process alone, which then ends its children itself.
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(command, 0);
+        let mut list = list();
+        let child = command.spawn()?;
+        list.children.insert(child.id());
+        Ok(Self { child, ended: false })
+    }
+
+    /// The process number.
+    pub fn id(&self) -> u32 {
+        self.child.id()
+    }
+
+    /// How it ended, if it has.
+    ///
+    /// # Errors
+    /// There is no such child.
+    pub fn try_wait(&mut self) -> io::Result<Option<ExitStatus>> {
+        // Its number is free as soon as it is collected: it goes off the list in the same step.
+        let mut list = list();
+        let status = self.child.try_wait()?;
+        if status.is_some() {
+            list.children.remove(&self.child.id());
+            self.ended = true;
+        }
+        Ok(status)
+    }
+
+    /// Kills it and everything that it has started, and collects it.
+    pub fn kill(&mut self) {
+        if self.ended {
+            return;
+        }
+        let mut list = list();
+        kill_tree(self.child.id());
+        // Errors mean that it has just ended.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+        list.children.remove(&self.child.id());
+        self.ended = true;
+    }
+}
+
+impl Drop for Child {
+    fn drop(&mut self) {
+        self.kill();
+    }
+}
+
+/// Kills a child that is not collected yet, its process group, and its descendants in other groups
+/// (yosys-smtbmc runs its solver in a session apart).
+#[cfg(unix)]
+pub fn kill_tree(child: u32) {
+    use rustix::process::{Pid, Signal, kill_process_group};
+    kill_all(|| tree::descendants(child as i32, true));
+    if let Some(group) = Pid::from_raw(child as i32) {
+        let _ = kill_process_group(group, Signal::KILL);
+    }
+}
+
+/// Without process groups there is only the child, which [`Child::kill`] kills.
+#[cfg(not(unix))]
+pub fn kill_tree(_child: u32) {}
+
+/// Kills all descendants of this process, also those whose parents have ended, until none is left alive or
+/// `deadline` has passed.
+#[cfg(unix)]
+pub fn kill_own_descendants(deadline: Instant) {
+    loop {
+        kill_all(|| tree::descendants(process::id() as i32, false));
+        let left = tree::descendants(process::id() as i32, false);
+        if left.is_empty() || Instant::now() >= deadline {
+            return;
+        }
+        std::thread::sleep(super::PAUSE);
+    }
+}
+
+/// See above.
+#[cfg(not(unix))]
+pub fn kill_own_descendants(_deadline: Instant) {}
+
+/// Stops processes before it kills them: one that is stopped starts no other meanwhile.
+#[cfg(unix)]
+fn kill_all(list: impl Fn() -> Vec<i32>) {
+    use rustix::process::{Pid, Signal, kill_process};
+    let send = |process: i32, signal| {
+        // An error means that it has just ended.
+        let _ = Pid::from_raw(process).map(|pid| kill_process(pid, signal));
+    };
+    let mut stopped: Vec<i32> = Vec::new();
+    loop {
+        let new: Vec<i32> = list().into_iter().filter(|pid| !stopped.contains(pid)).collect();
+        if new.is_empty() {
+            break;
+        }
+        new.iter().for_each(|&pid| send(pid, Signal::STOP));
+        stopped.extend(new);
+    }
+    stopped.into_iter().for_each(|pid| send(pid, Signal::KILL));
+}
+
+/// Makes this process the parent of descendants whose own parent has ended, so that they are found. Where the
+/// system cannot do that, only those in the process group of a child are.
+pub fn adopt_orphans() {
+    #[cfg(target_os = "linux")]
+    let _ = rustix::process::set_child_subreaper(Some(rustix::process::getpid()));
+}
+
+/// The processes of the system.
+#[cfg(unix)]
+mod tree {
+    use std::fs;
+
+    struct Process {
+        number: i32,
+        parent: i32,
+    }
+
+    /// The living descendants of `root`, with itself or without. None where there is no `/proc`.
+    pub fn descendants(root: i32, with_root: bool) -> Vec<i32> {
+        let all = all();
+        let mut found = vec![root];
+        let mut at = 0;
+        while let Some(&parent) = found.get(at) {
+            found.extend(all.iter().filter(|one| one.parent == parent).map(|one| one.number));
+            at += 1;
+        }
+        let alive = |number: &i32| all.iter().any(|one| one.number == *number);
+        found.into_iter().skip(usize::from(!with_root)).filter(alive).collect()
+    }
+
+    fn all() -> Vec<Process> {
+        let Ok(entries) = fs::read_dir("/proc") else {
+            return Vec::new();
+        };
+        entries
+            .filter_map(|entry| {
+                let number = entry.ok()?.file_name().to_str()?.parse().ok()?;
+                let text = fs::read_to_string(format!("/proc/{number}/stat")).ok()?;
+                // The name, in parentheses, can contain anything; state and parent follow it.
+                let mut rest = text.rsplit_once(')')?.1.split_whitespace();
+                let state = rest.next()?;
+                let parent = rest.next()?.parse().ok()?;
+                (!matches!(state, "Z" | "X")).then_some(Process { number, parent })
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,84 @@
+//! What exists only while Glint runs: child processes, and temporary files and directories.
+//!
+//! Each stands on a list until it is gone. [`clear`] ends and deletes all of them, for a process that is
+//! interrupted. A child is started, and a temporary path made, under the list's lock: nothing can appear
+//! between the end of the listing and the end of the process.
+
+mod child;
+mod scratch;
+
+#[cfg(all(test, unix))]
+mod tests;
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant};
+
+pub use child::{Child, adopt_orphans};
+pub use scratch::{Directory, File};
+
+/// How long [`clear`] waits for killed processes, and for a directory that something still writes to.
+const CLEARING_LIMIT: Duration = Duration::from_secs(5);
+/// Between two looks.
+const PAUSE: Duration = Duration::from_millis(10);
+
+static LIST: Mutex<List> = Mutex::new(List { children: BTreeSet::new(), paths: BTreeSet::new() });
+static UNDIVIDED: Mutex<()> = Mutex::new(());
+
+struct List {
+    /// Process numbers of children that are not collected yet.
+    children: BTreeSet<u32>,
+    /// Temporary files and directories.
+    paths: BTreeSet<PathBuf>,
+}
+
+fn list() -> MutexGuard<'static, List> {
+    LIST.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Does `work` as a whole: an interruption waits for its end. For renames of which only all or none
+/// leave the user's files in order.
+pub fn undivided<T>(work: impl FnOnce() -> T) -> T {
+    let _guard = UNDIVIDED.lock().unwrap_or_else(PoisonError::into_inner);
+    work()
+}
+
+/// Both locks; while they are held no child starts and no temporary path is made.
+pub struct Cleared {
+    _undivided: MutexGuard<'static, ()>,
+    _list: MutexGuard<'static, List>,
+}
+
+/// Kills all children with everything that they have started, and deletes all temporary files and
+/// directories. Other threads stop at their next child or temporary path until the result is dropped,
+/// which is meant for the end of the process.
+pub fn clear() -> Cleared {
+    let undivided = UNDIVIDED.lock().unwrap_or_else(PoisonError::into_inner);
+    let list = list();
+    for &child in &list.children {
+        child::kill_tree(child);
+    }
+    child::kill_own_descendants(Instant::now() + CLEARING_LIMIT);
+    let deadline = Instant::now() + CLEARING_LIMIT;
+    for path in &list.paths {
+        // A thread of this process may be writing into the directory.
+        while !delete(path) && Instant::now() < deadline {
+            thread::sleep(PAUSE);
+        }
+    }
+    Cleared { _undivided: undivided, _list: list }
+}
+
+/// Whether there is nothing at `path` afterwards.
+fn delete(path: &Path) -> bool {
+    let done = match fs::symlink_metadata(path) {
+        Ok(found) if found.is_dir() => fs::remove_dir_all(path),
+        Ok(_) => fs::remove_file(path),
+        Err(error) => Err(error),
+    };
+    done.map_or_else(|error| error.kind() == ErrorKind::NotFound, |()| true)
+}

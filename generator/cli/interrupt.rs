@@ -1,0 +1,111 @@
+//! What happens on Ctrl-C, and on the other signals that ask a process to end.
+
+use std::fmt;
+use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
+
+/// Set while the first signal is only noted.
+static DEFERRED: AtomicBool = AtomicBool::new(false);
+/// The signal that was noted, or 0.
+static NOTED: AtomicI32 = AtomicI32::new(0);
+
+/// The command was interrupted, and has ended in order.
+#[derive(Debug)]
+pub struct Interrupted {
+    /// The number of the signal.
+    signal: i32,
+    /// What was saved.
+    saved: String,
+}
+
+impl Interrupted {
+    /// As a shell has it.
+    pub fn exit_code(&self) -> u8 {
+        128 + self.signal as u8
+    }
+}
+
+impl fmt::Display for Interrupted {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "interrupted; {}", self.saved)
+    }
+}
+
+impl std::error::Error for Interrupted {}
+
+/// While it lives, the first signal is noted for the command to save what it has; the second ends the process.
+pub struct Deferred(());
+
+impl Deferred {
+    /// From now on.
+    pub fn begin() -> Self {
+        DEFERRED.store(true, Ordering::SeqCst);
+        Self(())
+    }
+
+    /// Whether a signal has come.
+    pub fn noted(&self) -> bool {
+        NOTED.load(Ordering::SeqCst) != 0
+    }
+
+    /// What to end with if a signal has come, once what `saved` says is done.
+    pub fn end(self, saved: impl FnOnce() -> String) -> Option<Interrupted> {
+        match NOTED.load(Ordering::SeqCst) {
+            0 => None,
+            signal => Some(Interrupted { signal, saved: saved() }),
+        }
+    }
+}
+
+impl Drop for Deferred {
+    fn drop(&mut self) {
+        DEFERRED.store(false, Ordering::SeqCst);
+    }
+}
+
+/// From now on a signal ends this process with all that it has started, and deletes its temporary files. A signal
+/// that is ignored, as `nohup` has it, stays ignored.
+///
+/// # Errors
+/// The system refuses.
+#[cfg(unix)]
+pub fn listen() -> std::io::Result<()> {
+    use std::io::Write;
+
+    use crate::base::transient;
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+
+    let ignored = ignored();
+    let signals = [SIGINT, SIGTERM, SIGHUP].into_iter();
+    let signals = signals.filter(|&signal| ignored & (1 << (signal - 1)) == 0);
+    let mut signals = signal_hook::iterator::Signals::new(signals)?;
+    transient::adopt_orphans();
+    std::thread::spawn(move || {
+        for signal in signals.forever() {
+            if DEFERRED.load(Ordering::SeqCst) && NOTED.swap(signal, Ordering::SeqCst) == 0 {
+                continue;
+            }
+            let _cleared = transient::clear();
+            // Not through a lock that a thread which is stopped now may hold; and nobody may be listening.
+            let _ = writeln!(std::io::stderr(), "\nglint: interrupted");
+            std::process::exit(128 + signal);
+        }
+    });
+    Ok(())
+}
+
+/// Elsewhere the system ends the process.
+///
+/// # Errors
+/// None.
+#[cfg(not(unix))]
+pub fn listen() -> std::io::Result<()> {
+    Ok(())
+}
+
+/// The signals that this process was told to ignore, a bit each. Where the system does not say: none.
+#[cfg(unix)]
+fn ignored() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
+}

@@ -1,0 +1,153 @@
+//! What stands in the directories of a configuration, and whose it is.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use serde_json::Value;
+
+use super::{differs, directories, relative_name};
+use crate::package::{OutputFile, digest};
+
+/// What is there, held against what is to be there. All lists are sorted.
+pub struct Survey {
+    /// Names of files that are to be written, replaced, or deleted because Glint wrote them once.
+    pub different: Vec<String>,
+    /// Files of Glint's that somebody edited, and files that would be overwritten.
+    pub edited: Vec<PathBuf>,
+    /// Other files that are not Glint's.
+    pub foreign: Vec<PathBuf>,
+}
+
+impl Survey {
+    /// Of the configuration `name` below `out`, of which `files` are to be there.
+    ///
+    /// # Errors
+    /// A file or a directory that cannot be read.
+    pub fn new(out: &Path, name: &str, files: &[OutputFile]) -> Result<Self> {
+        let manifest = out.join("rtl_out").join(name).join(format!("{name}.json"));
+        let digests = Digests::read(&manifest, out);
+        let mut survey = Self { different: Vec::new(), edited: Vec::new(), foreign: Vec::new() };
+        for file in files {
+            if differs(out, file)? {
+                survey.different.push(file.path.clone());
+            }
+        }
+        for path in present(out, name)? {
+            let relative = relative_name(out, &path);
+            let wanted = files.iter().any(|file| file.path == relative);
+            let below = format!("{relative}/");
+            let in_the_way = files.iter().any(|file| file.path.starts_with(&below));
+            if wanted && !survey.different.contains(&relative) {
+                continue;
+            }
+            match digests.owner(&relative, &path) {
+                Owner::Glint if wanted => {}
+                Owner::Glint => survey.different.push(relative),
+                Owner::Editor => {
+                    survey.edited.push(path);
+                    if !wanted {
+                        survey.different.push(relative);
+                    }
+                }
+                Owner::Other if wanted || in_the_way => survey.edited.push(path),
+                Owner::Other => survey.foreign.push(path),
+            }
+        }
+        // A directory where a file is to be.
+        let directories =
+            files.iter().map(|file| out.join(&file.path)).filter(|path| path.is_dir());
+        survey.edited.extend(directories);
+        survey.edited.sort();
+        survey.different.sort();
+        Ok(survey)
+    }
+}
+
+/// Whose a file is.
+pub enum Owner {
+    /// As Glint wrote it.
+    Glint,
+    /// Glint wrote it, and somebody edited it.
+    Editor,
+    /// Glint never wrote it.
+    Other,
+}
+
+/// The digests that a manifest holds; none when it is no manifest of Glint's.
+pub struct Digests {
+    manifest: String,
+    digests: Option<BTreeMap<String, String>>,
+}
+
+impl Digests {
+    /// Of a manifest below `out`.
+    pub fn read(manifest: &Path, out: &Path) -> Self {
+        Self { manifest: relative_name(out, manifest), digests: parsed(manifest) }
+    }
+
+    /// Whose the file `relative` is, which stands at `path`.
+    pub fn owner(&self, relative: &str, path: &Path) -> Owner {
+        let Some(digests) = &self.digests else {
+            return Owner::Other;
+        };
+        if relative == self.manifest {
+            return Owner::Glint;
+        }
+        match digests.get(relative) {
+            Some(right) if fs::read(path).is_ok_and(|found| digest(&found) == *right) => {
+                Owner::Glint
+            }
+            Some(_) => Owner::Editor,
+            None => Owner::Other,
+        }
+    }
+}
+
+fn parsed(manifest: &Path) -> Option<BTreeMap<String, String>> {
+    let value: Value = serde_json::from_slice(&fs::read(manifest).ok()?).ok()?;
+    let digests = value.get("sha256")?.as_object()?;
+    digests.iter().map(|(path, digest)| Some((path.clone(), digest.as_str()?.to_owned()))).collect()
+}
+
+/// The files in the directories of a configuration, at any depth, sorted.
+fn present(out: &Path, name: &str) -> Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    for directory in directories(out, name) {
+        match fs::read_dir(&directory) {
+            Ok(_) => found.extend(files_below(&directory)?),
+            Err(error) if error.kind() == ErrorKind::NotFound => {}
+            // A file where the directory should be, unless it is one above that is no directory.
+            Err(error) if error.kind() == ErrorKind::NotADirectory => {
+                found.extend(fs::symlink_metadata(&directory).is_ok().then_some(directory));
+            }
+            Err(error) => return Err(error).with_context(|| cannot_read(&directory)),
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// Everything below a directory that is none; links are not followed.
+///
+/// # Errors
+/// A directory that cannot be read.
+pub fn files_below(directory: &Path) -> Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    let mut pending = vec![directory.to_owned()];
+    while let Some(directory) = pending.pop() {
+        for entry in fs::read_dir(&directory).with_context(|| cannot_read(&directory))? {
+            let entry = entry.with_context(|| cannot_read(&directory))?;
+            let kind = entry.file_type().with_context(|| cannot_read(&entry.path()))?;
+            if kind.is_dir() { &mut pending } else { &mut found }.push(entry.path());
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+fn cannot_read(path: &Path) -> String {
+    format!("cannot read `{}`", path.display())
+}

@@ -1,0 +1,38 @@
+//! A state in a file: with a checksum, so that what was cut or changed is noticed.
+
+use anyhow::{Context, Result, ensure};
+use serde::{Deserialize, Serialize};
+
+use super::job::State;
+use crate::package::digest;
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Kept {
+    state: State,
+    /// SHA-256 of the state as JSON without blanks.
+    checksum: String,
+}
+
+fn checksum(state: &State) -> Result<String> {
+    Ok(digest(&serde_json::to_vec(state)?))
+}
+
+/// The text of a file that keeps a state.
+///
+/// # Errors
+/// Numbers that JSON does not have.
+pub fn to_text(state: &State) -> Result<String> {
+    let kept = Kept { state: state.clone(), checksum: checksum(state)? };
+    Ok(serde_json::to_string_pretty(&kept)? + "\n")
+}
+
+/// The state that a file keeps.
+///
+/// # Errors
+/// The text is not such a file's, or was changed since it was written.
+pub fn from_text(text: &str) -> Result<State> {
+    let kept: Kept = serde_json::from_str(text).context("not a file of this version of Glint")?;
+    ensure!(kept.checksum == checksum(&kept.state)?, "the checksum is wrong: it was changed");
+    Ok(kept.state)
+}

@@ -1,0 +1,121 @@
+//! Which clocks the data can move: what operands decide about the course of a microprogram.
+//!
+//! Up to the first microinstruction whose successor an operand decides, every computation executes the same
+//! ones in the same clocks, whatever the operands: by induction over the clocks, since until then the control
+//! word is the same. It is assumed that a register which decides is loaded in each computation before it does.
+
+use super::{Design, Driver, NetId, Role, Sequence};
+
+/// The microinstructions whose successor depends on an operand, by number.
+pub fn decided_by_data(design: &Design) -> Vec<usize> {
+    let words = design.control.words.iter().enumerate();
+    let decided = words.filter(|(_, word)| match word.sequence {
+        Sequence::LoopWhile { condition, .. } => {
+            registers_from_control(design, condition).is_none()
+        }
+        Sequence::Next | Sequence::WaitStart | Sequence::End => false,
+    });
+    decided.map(|(at, _)| at).collect()
+}
+
+/// The registers between the control word and `valid`, on the shortest way; `None` if an operand decides about
+/// `valid`, or there is none.
+pub fn delay_of_valid(design: &Design) -> Option<u32> {
+    let valid = design.port(|role| role == Role::Valid)?;
+    registers_from_control(design, valid.net)
+}
+
+/// The registers between the control word and a net on the shortest way, or all that there are if the control
+/// word has no influence; `None` if an operand has.
+fn registers_from_control(design: &Design, net: NetId) -> Option<u32> {
+    let mut seen = vec![net];
+    let mut front = vec![net];
+    let mut delay = 0;
+    let mut shortest = None;
+    while !front.is_empty() {
+        // Nets behind one more register.
+        let mut behind = Vec::new();
+        while let Some(net) = front.pop() {
+            let mut through = Vec::new();
+            match &design.net(net).driver {
+                Driver::Constant(_) => {}
+                Driver::Field(_) => {
+                    shortest.get_or_insert(delay);
+                }
+                Driver::Op(op) => through = op.operands(),
+                Driver::Register(register) => {
+                    let register = design.register(*register);
+                    behind.extend(register.data.into_iter().chain(register.enable));
+                }
+                Driver::Rom(rom) if *rom == design.control.rom => {
+                    shortest.get_or_insert(delay);
+                }
+                Driver::Rom(rom) => match design.rom(*rom).synchronous {
+                    true => behind.push(design.rom(*rom).address),
+                    false => through.push(design.rom(*rom).address),
+                },
+                Driver::Input => {
+                    let role = design.ports.iter().find(|port| port.net == net);
+                    if !role.is_some_and(|port| is_handshake(port.role)) {
+                        return None;
+                    }
+                }
+                Driver::Undriven => return None,
+            }
+            for net in through {
+                if !seen.contains(&net) {
+                    seen.push(net);
+                    front.push(net);
+                }
+            }
+        }
+        behind.retain(|net| !seen.contains(net));
+        seen.extend(&behind);
+        front = behind;
+        delay += 1;
+    }
+    Some(shortest.unwrap_or(delay))
+}
+
+/// The inputs by which the environment times what the device does.
+fn is_handshake(role: Role) -> bool {
+    matches!(role, Role::Start | Role::Reset | Role::InValid | Role::OutReady)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::fixed::Format;
+    use crate::hdl::dsl::{Designer, Signal, end, loop_while, step};
+
+    /// A counter of three bits, which starts from what is said, and `valid` two clocks after a loop's last turn.
+    fn counted(start: for<'d> fn(&'d Designer, Signal<'d>) -> Signal<'d>) -> Design {
+        let d = Designer::new("counted");
+        let x = d.operand("x", Format::unsigned(3, 0));
+        let turns = d.down_counter("turns", start(&d, x.q()));
+        let more = d.any("more", turns.q());
+        let result = d.register("result", Format::unsigned(3, 0));
+        result.takes(turns.q());
+        d.output("result_out", result.q());
+        d.valid_after(result.loading(), 2);
+        d.microprogram([
+            step("idle", []),
+            step("load", [turns.load()]),
+            step("count", [turns.count(), loop_while(more, "count")]),
+            step("result", [result.load()]),
+            step("wait", []),
+            step("shown", [end()]),
+        ]);
+        d.finish().unwrap_or_else(|error| panic!("{error}"))
+    }
+
+    #[test]
+    fn a_loop_is_the_datas_where_its_counter_starts_from_an_operand() {
+        let from_data = counted(|_, x| x);
+        assert_eq!(decided_by_data(&from_data), [2]);
+        assert_eq!(delay_of_valid(&from_data), Some(2));
+        let constant = counted(|d, _| d.raw_constant("five", 5, Format::unsigned(3, 0)));
+        assert_eq!(decided_by_data(&constant), Vec::<usize>::new());
+        assert_eq!(delay_of_valid(&constant), Some(2));
+    }
+}

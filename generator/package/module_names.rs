@@ -1,0 +1,156 @@
+//! The modules that files define, and whether their names mean anything else in the text.
+//!
+//! Verilog keeps modules apart from what is inside them, but tools do not always: a bench that looks into
+//! instance `control` of a module `control` is not elaborated, and linters warn of a port named like its module.
+
+use std::collections::BTreeMap;
+
+use anyhow::{Result, bail};
+
+use super::OutputFile;
+
+/// Makes sure that the name of every module in some files of one configuration stands for the module alone.
+///
+/// # Errors
+/// A module, and the place where its name is that of something else.
+pub fn check(files: &[OutputFile]) -> Result<()> {
+    let sources: Vec<(&OutputFile, Vec<Token<'_>>)> =
+        verilog(files).map(|file| (file, tokens(&file.contents))).collect();
+    let modules: Vec<&str> = sources.iter().flat_map(|(_, tokens)| defined(tokens)).collect();
+    for (file, tokens) in &sources {
+        for (at, token) in tokens.iter().enumerate() {
+            if modules.contains(&token.text) && !names_module(tokens, at) {
+                bail!(
+                    "a module cannot be named `{name}`: that is the name of something else in the emitted \
+                     Verilog (`{}`, line {}); set another `name` in the configuration, as \"{name}_core\"",
+                    file.path,
+                    token.line,
+                    name = token.text,
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Makes sure that no two configurations define a module of the same name; each comes with what it is called.
+///
+/// # Errors
+/// The module and both configurations.
+pub fn check_together<'a>(
+    configurations: impl IntoIterator<Item = (&'a str, &'a [OutputFile])>,
+) -> Result<()> {
+    let mut found: BTreeMap<String, &str> = BTreeMap::new();
+    for (path, files) in configurations {
+        for file in verilog(files) {
+            for module in defined(&tokens(&file.contents)) {
+                let other = *found.entry(module.to_owned()).or_insert(path);
+                if other != path {
+                    bail!(
+                        "`{other}` and `{path}` both make a module `{module}`; set another `name` in one of them"
+                    );
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+fn verilog(files: &[OutputFile]) -> impl Iterator<Item = &OutputFile> {
+    files.iter().filter(|file| file.path.ends_with(".v") || file.path.ends_with(".sv"))
+}
+
+/// The modules that a text defines.
+fn defined<'a>(tokens: &[Token<'a>]) -> Vec<&'a str> {
+    let pairs = tokens.windows(2).filter(|pair| pair[0].text == "module");
+    pairs.map(|pair| pair[1].text).collect()
+}
+
+/// Whether token `at`, which is the name of a module, stands for the module: where it is defined, and where it is
+/// instantiated.
+fn names_module(tokens: &[Token<'_>], at: usize) -> bool {
+    let text = |at: usize| tokens.get(at).map_or("", |token| token.text);
+    let is_defined = at > 0 && text(at - 1) == "module";
+    let is_instance = is_identifier(text(at + 1)) && text(at + 2) == "(";
+    is_defined || text(at + 1) == "#" || is_instance
+}
+
+struct Token<'a> {
+    text: &'a str,
+    line: usize,
+}
+
+fn is_identifier(text: &str) -> bool {
+    text.starts_with(|first: char| first.is_ascii_alphabetic() || first == '_')
+}
+
+/// Identifiers and other characters, without comments, strings, directives and system tasks.
+fn tokens(text: &str) -> Vec<Token<'_>> {
+    let mut found = Vec::new();
+    for (line, text) in (1..).zip(text.lines()) {
+        let mut rest = text;
+        while let Some(first) = rest.chars().next() {
+            let word = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '$';
+            let length = match first {
+                '/' if rest.starts_with("//") => rest.len(),
+                '"' => rest[1..].find('"').map_or(rest.len(), |end| end + 2),
+                // A number, a directive or a system task goes with what follows it.
+                '\'' | '`' | '$' => 1 + rest[1..].find(|c| !word(c)).unwrap_or(rest.len() - 1),
+                _ if word(first) => rest.find(|c| !word(c)).unwrap_or(rest.len()),
+                _ => first.len_utf8(),
+            };
+            let (token, after) = rest.split_at(length);
+            rest = after;
+            let skipped =
+                token.starts_with("//") || token.starts_with(['"', '\'', '`', '$', ' ', '\t']);
+            if !skipped {
+                found.push(Token { text: token, line });
+            }
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn file(path: &str, contents: &str) -> OutputFile {
+        OutputFile { path: path.to_owned(), contents: contents.to_owned() }
+    }
+
+    #[test]
+    fn a_name_inside_is_found_and_a_mention_is_not() {
+        let core = "// core\nmodule core (\n    input wire start\n);\n    core_control control (.start(start));\nendmodule\n";
+        let bench = "`timescale 1ns / 1ps\nmodule core_tb;\n    core dut (.start(1'b0));\n    initial $display(\"core\");\nendmodule\n";
+        let files = |name: &str| {
+            let renamed = |text: &str| {
+                text.replace("core_control", &format!("{name}_control"))
+                    .replace("module core", &format!("module {name}"))
+                    .replace("    core dut", &format!("    {name} dut"))
+            };
+            [file("core.v", &renamed(core)), file("core_tb.v", &renamed(bench))]
+        };
+        check(&files("core")).unwrap();
+        for (name, place) in [
+            ("start", "`core.v`, line 3"),
+            ("control", "`core.v`, line 5"),
+            ("dut", "`core_tb.v`, line 3"),
+        ] {
+            let refused = check(&files(name)).unwrap_err().to_string();
+            assert!(refused.contains(&format!("`{name}`")) && refused.contains(place), "{refused}");
+        }
+    }
+
+    #[test]
+    fn two_configurations_with_one_module() {
+        let one = [
+            file("core.v", "module core;\nendmodule\n"),
+            file("core_tb.v", "module core_tb;\nendmodule\n"),
+        ];
+        let two = [file("core_tb.v", "module core_tb;\nendmodule\n")];
+        check_together([("a.toml", &one[..])]).unwrap();
+        let refused = check_together([("a.toml", &one[..]), ("b.toml", &two[..])]).unwrap_err();
+        assert!(refused.to_string().contains("`a.toml` and `b.toml` both make a module `core_tb`"));
+    }
+}

@@ -1,0 +1,196 @@
+//! Ctrl-C in the middle of every command that starts tools or takes long: no process stays, no temporary file.
+#![cfg(target_os = "linux")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::process::{Child, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use rustix::process::{Pid, Signal, kill_process};
+
+use crate::place::{COSINE_POWER, Place, Run};
+
+/// The environment variable by which the processes of a run are known; its value is the place.
+const MARK: &str = "GLINT_TEST_PLACE";
+
+const PATIENCE: Duration = Duration::from_secs(300);
+const PAUSE: Duration = Duration::from_millis(20);
+
+/// The program in a place with tools of its own, while it runs.
+struct Running<'a> {
+    place: &'a Place,
+    child: Child,
+    before: BTreeMap<String, Vec<u8>>,
+}
+
+impl<'a> Running<'a> {
+    /// Tools in `tools/` come before those of the system.
+    fn start(place: &'a Place, arguments: &[&str]) -> Self {
+        fs::create_dir_all(place.at("tmp")).expect("a directory");
+        let search = std::env::var_os("PATH").unwrap_or_default();
+        let search = std::iter::once(place.at("tools")).chain(std::env::split_paths(&search));
+        let before = place.files();
+        let child = place
+            .command()
+            .args(arguments)
+            .env("PATH", std::env::join_paths(search).expect("a search path"))
+            .env("TMPDIR", place.at("tmp"))
+            .env(MARK, place.path())
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .expect("the program starts");
+        Self { place, child, before }
+    }
+
+    /// The names of all processes of the run.
+    fn processes(&self) -> Vec<String> {
+        let mark = format!("{MARK}={}", self.place.path().display());
+        let entries = fs::read_dir("/proc").expect("/proc");
+        let names = entries.filter_map(|entry| {
+            let path = entry.ok()?.path();
+            let environment = fs::read(path.join("environ")).ok()?;
+            let mut variables = environment.split(|&byte| byte == 0);
+            let ours = variables.any(|variable| variable == mark.as_bytes());
+            ours.then(|| fs::read_to_string(path.join("comm")).unwrap_or_default())
+        });
+        names.map(|name| name.trim().to_owned()).collect()
+    }
+
+    fn until(&mut self, what: &str, mut is: impl FnMut(&Self) -> bool) {
+        let deadline = Instant::now() + PATIENCE;
+        while !is(self) {
+            let ended = self.child.try_wait().expect("the program");
+            assert!(ended.is_none() && Instant::now() < deadline, "no {what}: {ended:?}");
+            thread::sleep(PAUSE);
+        }
+    }
+
+    fn interrupted_by(self, signal: Signal) -> Run {
+        let number = Pid::from_raw(self.child.id() as i32).expect("a process");
+        kill_process(number, signal).expect("a signal");
+        let begin = Instant::now();
+        // Its output ends only when no process is left that has it.
+        let run = Run::of(self.child.wait_with_output());
+        assert!(begin.elapsed() < Duration::from_secs(30), "it took {:?}", begin.elapsed());
+        assert!(run.err.contains("interrupted"), "{run:?}");
+        run
+    }
+
+    /// Interrupts, and looks for what is left.
+    fn end(self, signal: Signal, code: i32) {
+        let (place, before) = (self.place, self.before.clone());
+        let probe = Running { place, child: dead(), before: BTreeMap::new() };
+        let run = self.interrupted_by(signal);
+        assert_eq!(run.code, code, "{run:?}");
+        let left = probe.processes();
+        assert!(left.is_empty(), "still there: {left:?}");
+        assert_eq!(place.files().keys().collect::<Vec<_>>(), before.keys().collect::<Vec<_>>());
+        let temporary: Vec<_> = fs::read_dir(place.at("tmp")).expect("tmp").collect();
+        assert!(temporary.is_empty(), "{temporary:?}");
+        place.assert_no_staging();
+    }
+}
+
+/// A process that has ended.
+fn dead() -> Child {
+    let mut child = std::process::Command::new("true").spawn().expect("true");
+    child.wait().expect("its end");
+    child
+}
+
+/// A tool that says its version, and otherwise never ends: neither itself, nor a child in its process group, nor
+/// one in a session of its own, as the solver of yosys-smtbmc is.
+const ENDLESS: &str = "case \"$1\" in --version|-V) echo 'Endless 1'; exit;; esac
+echo 'left' > \"${TMPDIR:-/tmp}/left-by-a-tool\"
+sleep 1000 & setsid sleep 1001 & sleep 1002";
+
+fn with_endless(tools: &[&str]) -> Place {
+    let place = Place::with("core.toml", COSINE_POWER);
+    for tool in tools {
+        place.write(&format!("tools/{tool}"), "");
+        place.script(&format!("tools/{tool}"), ENDLESS);
+    }
+    place
+}
+
+#[test]
+#[cfg(feature = "outside-tools")]
+fn the_compiler_of_verilator_ends() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    let mut run = Running::start(&place, &["cosim", "core.toml", "--simulator", "verilator"]);
+    run.until("cc1plus", |run| run.processes().iter().any(|name| name == "cc1plus"));
+    run.end(Signal::INT, 130);
+}
+
+#[test]
+fn every_command_ends_with_its_tools() {
+    let commands: [(&[&str], &str, Signal, i32); 6] = [
+        (&["cosim", "core.toml", "--simulator", "icarus"], "iverilog", Signal::TERM, 143),
+        (&["compare"], "yosys", Signal::HUP, 129),
+        (&["report"], "yosys", Signal::INT, 130),
+        (&["verify", "core.toml"], "verilator", Signal::INT, 130),
+        (&["datasheet", "core.toml"], "yosys", Signal::INT, 130),
+        (
+            &["render", "core.toml", "--through", "verilator", "--out", "a.png"],
+            "verilator",
+            Signal::INT,
+            130,
+        ),
+    ];
+    for (arguments, tool, signal, code) in commands {
+        let place = with_endless(&[tool]);
+        let mut run = Running::start(&place, arguments);
+        run.until("two sleeping children", |run| {
+            run.processes().iter().filter(|name| *name == "sleep").count() >= 3
+        });
+        run.end(signal, code);
+    }
+}
+
+#[test]
+fn what_needs_no_tool_ends_too() {
+    for arguments in [&["mutate", "core.toml"][..], &["cosim", "core.toml", "--exhaustive"]] {
+        let place = Place::with("core.toml", COSINE_POWER);
+        let run = Running::start(&place, arguments);
+        // The signals are listened to from the start of the program on.
+        thread::sleep(Duration::from_millis(700));
+        run.end(Signal::INT, 130);
+    }
+}
+
+/// As `nohup` starts it, and as a shell starts what runs in the background.
+#[test]
+fn an_ignored_signal_stays_ignored() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    let program = env!("CARGO_BIN_EXE_glint");
+    let script = format!("trap '' HUP; (sleep 0.3; kill -HUP $$) & exec '{program}' \"$@\"");
+    let mut shell = std::process::Command::new("sh");
+    shell.current_dir(place.path()).args(["-c", &script, "sh"]);
+    shell.args(["cosim", "core.toml", "--points", "60000"]);
+    let run = Run::of(shell.output());
+    assert_eq!(run.code, 0, "{run:?}");
+}
+
+#[test]
+fn a_proof_keeps_what_is_done() {
+    let config = "device = \"cosine-power\"\n[cosine]\nfraction = 18\n[exponent]\nbits = 8\n[domain]\nexponent_max = 255\n";
+    let place = Place::with("core.toml", config);
+    let arguments = ["cosim", "core.toml", "--exhaustive", "--resume", "state.json"];
+    let mut run = Running::start(&place, &arguments);
+    run.until("state", |run| run.place.at("state.json").exists());
+    thread::sleep(Duration::from_millis(300));
+    let ended = run.interrupted_by(Signal::INT);
+    ended.refused(130, &["evaluations are still to do", "state.json"]);
+    place.assert_no_staging();
+    let state: serde_json::Value = serde_json::from_str(&place.read("state.json")).expect("JSON");
+    let done = state["f"]["done"].as_u64().expect("a number");
+    assert!(done > 0, "nothing was kept: {state}");
+
+    let resumed = place.done(arguments);
+    let whole = place.done(["cosim", "core.toml", "--exhaustive"]);
+    let last = |text: &str| text.lines().last().expect("a line").to_owned();
+    assert_eq!(last(&resumed), last(&whole));
+}

@@ -1,0 +1,112 @@
+//! The clocks that the manifest states, for every operand that the ports take: also for operands outside the
+//! domain, which are not what anything is measured at.
+
+use std::collections::BTreeSet;
+
+use glint::config::{self, Config};
+use glint::core::Unit;
+use glint::cosim::trial;
+use glint::registry::Registry;
+
+use crate::common::units::configurations;
+
+/// Random configurations of `lyon`, whose clocks depend on an operand or not, as a key says.
+const CONFIGURATIONS: u64 = 48;
+
+fn lyon() -> glint::registry::Device {
+    *Registry::catalogue().device("lyon").expect("lyon")
+}
+
+fn parsed(text: &str) -> Config {
+    let schemas = Registry::catalogue().schemas();
+    config::parse("lyon.toml", text, &schemas).unwrap_or_else(|problems| panic!("{problems}"))
+}
+
+/// Clocks from start to start for every value of the port `shift`, or of none, and for the lowest and the highest
+/// of all others.
+fn clocks_of_every_shift(unit: &Unit) -> BTreeSet<u32> {
+    let operands = unit.contract.operands();
+    let shift = operands.iter().find(|operand| operand.name == "shift");
+    let shifts =
+        shift.map_or(0..=0, |shift| shift.format.min_raw() as i64..=shift.format.max_raw() as i64);
+    let mut clocks = BTreeSet::new();
+    for shift in shifts {
+        for high in [false, true] {
+            let raw = |operand: &glint::golden::Operand| match (operand.name.as_str(), high) {
+                ("shift", _) => shift,
+                (_, false) => operand.format.min_raw() as i64,
+                (_, true) => operand.format.max_raw() as i64,
+            };
+            let point: Vec<i64> = operands.iter().map(raw).collect();
+            let (taken, results) =
+                trial::throughput(&unit.design, unit.contract.as_ref(), &point).expect("an end");
+            assert_eq!(results, 1);
+            clocks.insert(taken);
+        }
+    }
+    clocks
+}
+
+#[track_caller]
+fn assert_stated_clocks_are_right(unit: &Unit) {
+    let stated = unit.timing().expect("a timing");
+    let taken = clocks_of_every_shift(unit);
+    let latest = *taken.last().expect("a clock");
+    if taken.len() == 1 {
+        assert_eq!(stated.start_to_start, Some(latest), "{}", unit.config.name);
+        assert_eq!(stated.start_to_done, Some(latest - 1));
+        // The result comes in the last clock.
+        assert_eq!(stated.start_to_valid, Some(latest - 1));
+    } else {
+        let fixed = [stated.start_to_valid, stated.start_to_done, stated.start_to_start];
+        assert_eq!(fixed, [None; 3], "{}: {taken:?}", unit.config.name);
+        assert!(stated.start_to_done_at_most.expect("a bound") >= latest - 1);
+    }
+}
+
+#[test]
+fn random_configurations_of_lyon() {
+    let device = lyon();
+    let mut by_shift = 0;
+    for seed in 0..CONFIGURATIONS {
+        let config = config::sample(&(device.schema)(), seed);
+        let unit = Unit::new(device, config).expect("a design");
+        by_shift += u64::from(unit.design.find("shift").is_some());
+        assert_stated_clocks_are_right(&unit);
+    }
+    assert!((1..CONFIGURATIONS).contains(&by_shift), "{by_shift} by shift");
+}
+
+/// The domain holds one shift; the port takes every one.
+#[test]
+fn a_domain_with_a_single_shift() {
+    let domain = "[domain]\nexponent_min = 100\nexponent_max = 150\n";
+    let unit =
+        Unit::new(lyon(), parsed(&format!("device = \"lyon\"\n{domain}"))).expect("a design");
+    let operand = unit.contract.operands().iter().find(|operand| operand.name == "shift").cloned();
+    let (low, high) = operand.expect("shift").domain;
+    assert_eq!(low, high);
+    assert_stated_clocks_are_right(&unit);
+}
+
+/// What was measured at the domain's corners and is right stays as it was.
+#[test]
+fn shipped_configurations_have_the_clocks_of_their_microprograms() {
+    let expected = [
+        ("blinn", Some(7)),
+        ("cosine_power", Some(8)),
+        ("gauss", Some(7)),
+        ("lyon", None),
+        ("quad_cosine", Some(1)),
+        ("quadratic", Some(5)),
+        ("rough", Some(11)),
+        ("schlick", Some(14)),
+        ("threshold", Some(5)),
+    ];
+    let all = configurations();
+    for (name, clocks) in expected {
+        let path = format!("configs/{name}.toml");
+        let (_, unit) = all.iter().find(|(found, _)| *found == path).expect("a configuration");
+        assert_eq!(unit.timing().expect("a timing").clocks_per_point(), clocks, "{name}");
+    }
+}
