@@ -11,7 +11,8 @@ use crate::cosim::{Lockstep, directed, trial};
 use crate::golden::Contract;
 use crate::hdl::netlist::Design;
 use crate::package::{
-    self, Accuracy, EmitInputs, OutputFile, Surroundings, Timing, Vectors, WorkedExample,
+    self, Accuracy, EmitInputs, LineClocks, OutputFile, Surroundings, Timing, Vectors,
+    WorkedExample,
 };
 use crate::registry::Device;
 use crate::tools;
@@ -146,6 +147,14 @@ impl Unit {
     /// A device that does not end.
     pub fn example(&self) -> Result<WorkedExample> {
         trial::example(&self.design, self.contract.as_ref())
+    }
+
+    /// The clocks of a line in terms of its length, where the device walks lines.
+    ///
+    /// # Errors
+    /// A device that does not end.
+    pub fn line(&self) -> Result<Option<LineClocks>> {
+        trial::line(&self.design, self.contract.as_ref())
     }
 
     /// Stimulus and expected outputs for a bench; the golden model and the built-in simulator agree on

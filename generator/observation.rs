@@ -37,8 +37,48 @@ impl Timing {
 pub struct WorkedExample {
     /// In the order of the operand ports.
     pub operands: Vec<Quantity>,
-    /// In the order of the result ports.
+    /// In the order of the result ports; of several results the first.
     pub outputs: Vec<Quantity>,
+    /// The outputs of every result.
+    pub results: Vec<Vec<Quantity>>,
+}
+
+/// The numbers of the clocks in which a line ends, by the operand that says how long it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LineClocks {
+    /// The name of that operand.
+    pub length: String,
+    /// Of the last clock in which `valid` is high.
+    pub last_valid: Linear,
+    /// Of the clock in which `done` is high.
+    pub done: Linear,
+    /// Of the first clock in which the next `start` is taken.
+    pub next_start: Linear,
+}
+
+/// A constant and a multiple of a length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Linear {
+    /// For the length 0.
+    pub constant: i64,
+    /// For each interval.
+    pub each: i64,
+}
+
+impl Linear {
+    /// For a length.
+    pub fn at(self, length: i64) -> i64 {
+        self.constant + self.each * length
+    }
+
+    /// With the length by its name, as in `4 + length`.
+    pub fn text(self, length: &str) -> String {
+        match self.each {
+            0 => self.constant.to_string(),
+            1 => format!("{} + {length}", self.constant),
+            each => format!("{} + {each} · {length}", self.constant),
+        }
+    }
 }
 
 /// What a device promises of its results, as far as a program can use it.

@@ -8,7 +8,7 @@ use crate::base::fixed::Format;
 use crate::golden::{Contract, Operand};
 use crate::hdl::netlist::{self, Design, Handshake, NetId, Role};
 use crate::hdl::sim::Simulator;
-use crate::package::{Computation, Quantity, Shown, Timing, WorkedExample};
+use crate::package::{Computation, LineClocks, Linear, Quantity, Shown, Timing, WorkedExample};
 
 /// More clocks than any device takes.
 const LIMIT: u32 = 1 << 16;
@@ -18,6 +18,9 @@ const COMPUTATIONS: usize = 40;
 
 /// The longest line of a computation in a list, in intervals.
 const SHORT: i64 = 9;
+
+/// The longest line of which the clocks are measured, beyond the shortest.
+const LONG: i64 = 1000;
 
 /// What one computation showed.
 struct Trial {
@@ -162,8 +165,39 @@ pub fn throughput(
     Ok((clocks, trial.results.len() as u32))
 }
 
-/// A computation with all its numbers: operands of the domain for which f is neither 0 nor 1. Of several
-/// results it shows the first.
+/// The clocks of a line in terms of its length, measured at the shortest lines and a long one; `None` for a device that
+/// walks none, or whose clocks are no constant and a multiple of the length.
+///
+/// # Errors
+/// Those of [`timing`].
+pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClocks>> {
+    let mut operands = example_operands(contract);
+    let name = contract.length();
+    let place = contract.operands().iter().position(|operand| name == Some(operand.name.as_str()));
+    let (Some(name), Some(at)) = (name, place) else { return Ok(None) };
+    let (low, high) = contract.operands()[at].domain;
+    let mut seen: Vec<(i64, [i64; 3])> = Vec::new();
+    for length in [low, low + 1, low + 2, low + 3, high.min(low + LONG)] {
+        operands[at] = length.min(high);
+        let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
+        let (last, _) = trial.results.last().context("it shows no result")?;
+        let done = trial.timing.start_to_done.context("it is never done")?;
+        let next = trial.timing.start_to_start.context("it does not end")?;
+        seen.push((operands[at], [*last, done, next].map(i64::from)));
+    }
+    let [valid, done, next] = [0, 1, 2].map(|event| {
+        let each = seen[1].1[event] - seen[0].1[event];
+        let clocks = Linear { constant: seen[0].1[event] - each * low, each };
+        let holds = seen.iter().all(|(length, at)| clocks.at(*length) == at[event]);
+        holds.then_some(clocks)
+    });
+    let (Some(last_valid), Some(done), Some(next_start)) = (valid, done, next) else {
+        return Ok(None);
+    };
+    Ok(Some(LineClocks { length: name.to_owned(), last_valid, done, next_start }))
+}
+
+/// A computation with all its numbers: operands of the domain for which the first f is neither 0 nor 1.
 ///
 /// # Errors
 /// Those of [`timing`].
@@ -175,8 +209,17 @@ pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample
         raw: i128::from(raw),
         value: format.to_f64(i128::from(raw)),
     };
-    let results = results(design, contract);
-    let (_, first) = trial.results.first().context("it shows no result")?;
+    let nets = results(design, contract);
+    let outputs = |bits: &[u64]| -> Vec<Quantity> {
+        let pairs = nets.iter().zip(bits);
+        pairs
+            .map(|(&net, &bits)| {
+                let net = design.net(net);
+                quantity(&net.name, net.format, net.format.raw(bits) as i64)
+            })
+            .collect()
+    };
+    let results: Vec<Vec<Quantity>> = trial.results.iter().map(|(_, bits)| outputs(bits)).collect();
     Ok(WorkedExample {
         operands: contract
             .operands()
@@ -184,14 +227,8 @@ pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample
             .zip(&operands)
             .map(|(operand, &raw)| quantity(&operand.name, operand.format, raw))
             .collect(),
-        outputs: results
-            .iter()
-            .zip(first)
-            .map(|(&net, &bits)| {
-                let net = design.net(net);
-                quantity(&net.name, net.format, net.format.raw(bits) as i64)
-            })
-            .collect(),
+        outputs: results.first().context("it shows no result")?.clone(),
+        results,
     })
 }
 

@@ -32,7 +32,7 @@ use crate::hdl::verilog::plan::Plan;
 use crate::hdl::verilog::{module, pipeline, top};
 
 pub use crate::observation::{
-    Accuracy, Computation, Quantity, Shown, Timing, Vectors, WorkedExample,
+    Accuracy, Computation, LineClocks, Linear, Quantity, Shown, Timing, Vectors, WorkedExample,
 };
 pub use cocotb::driver;
 pub use instance::instance;

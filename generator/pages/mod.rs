@@ -22,6 +22,7 @@ impl Unit {
     /// # Errors
     /// A device that does not end.
     pub fn page(&self, config: &str) -> Result<String> {
+        let line = self.line()?;
         let inputs = PageInputs {
             path: config,
             config: &self.config,
@@ -30,6 +31,7 @@ impl Unit {
             advice: self.advice(),
             timing: &self.timing()?,
             example: &self.example()?,
+            line: line.as_ref(),
         };
         page(&self.design, &inputs)
     }

@@ -89,3 +89,23 @@ fn the_page_of_rough_reads_as_the_patent() {
     let figure: Vec<u32> = (1..=22).chain([31]).collect();
     assert_eq!(numbers, figure);
 }
+
+#[test]
+fn a_line_has_all_its_points_and_clocks_in_its_length() {
+    for name in ["quad_cosine", "cosine_squared"] {
+        let path = format!("configs/{name}.toml");
+        let page = configuration(&path).page(&path).expect("a page");
+        // A point a clock: register 8 and the synchronous ROM after the first word, done with the last point.
+        for row in [
+            "| `valid` is high, last     | 4 + `length` |",
+            "| `done` is high            | 4 + `length` |",
+            "| the next `start` is taken | 5 + `length` |",
+        ] {
+            assert!(page.contains(row), "{path}: {row}");
+        }
+        assert!(!page.contains("depends on the operands"), "{path}");
+        // The example has 20 intervals.
+        let points = page.matches("`intensity_out`, point ").count();
+        assert_eq!(points, 21, "{path}");
+    }
+}

@@ -12,7 +12,7 @@ use crate::golden::{Bound, Contract, Values};
 use crate::hdl::netlist::Design;
 use crate::hdl::verilog::naming::Naming;
 use crate::package::facts::{self, Sequence};
-use crate::package::{Quantity, Timing, WorkedExample};
+use crate::package::{LineClocks, Linear, Quantity, Timing, WorkedExample};
 pub use table::{Align, Column, Table, code};
 
 /// The heading of the column with the source's numbers.
@@ -34,6 +34,8 @@ pub struct PageInputs<'a> {
     pub timing: &'a Timing,
     /// One computation with all its numbers.
     pub example: &'a WorkedExample,
+    /// Clocks of a line, for a device that walks lines.
+    pub line: Option<&'a LineClocks>,
 }
 
 /// The formats, in a sentence.
@@ -253,18 +255,20 @@ pub fn words(design: &Design) -> Table {
 }
 
 /// When what happens after `start`.
-pub fn clocks(timing: &Timing) -> Table {
+pub fn clocks(timing: &Timing, line: Option<&LineClocks>) -> Table {
     let mut table = Table::new(&[("event", Align::Left), ("clock", Align::Right)]);
-    let events = [
-        ("`valid` is high, first", timing.start_to_valid),
-        ("`done` is high", timing.start_to_done),
-        ("the next `start` is taken", timing.start_to_start),
-    ];
-    for (event, clock) in events {
-        let clock =
-            clock.map_or_else(|| "depends on the operands".to_owned(), |clock| clock.to_string());
-        table.row([event.to_owned(), clock]);
+    let mut row = |event: &str, clock: Option<u32>, of_line: Option<Linear>| {
+        let formula = || line.zip(of_line).map(|(line, clocks)| clocks.text(&code(&line.length)));
+        let clock = clock.map(|clock| clock.to_string()).or_else(formula);
+        table
+            .row([event.to_owned(), clock.unwrap_or_else(|| "depends on the operands".to_owned())]);
+    };
+    row("`valid` is high, first", timing.start_to_valid, None);
+    if let Some(line) = line {
+        row("`valid` is high, last", None, Some(line.last_valid));
     }
+    row("`done` is high", timing.start_to_done, line.map(|line| line.done));
+    row("the next `start` is taken", timing.start_to_start, line.map(|line| line.next_start));
     table
 }
 
@@ -311,20 +315,27 @@ pub fn example(contract: &dyn Contract, example: &WorkedExample) -> Table {
         ("value", Align::Right),
         ("formula in f64", Align::Right),
     ]);
-    let mut row = |quantity: &Quantity, formula: String| {
-        table.row([code(&quantity.name), quantity.raw.to_string(), short(quantity.value), formula]);
+    let mut row = |quantity: &Quantity, formula: String, of: String| {
+        let name = code(&quantity.name) + &of;
+        table.row([name, quantity.raw.to_string(), short(quantity.value), formula]);
     };
     let (mut control, mut colours) = (Vec::new(), Vec::new());
     for (operand, quantity) in contract.operands().iter().zip(&example.operands) {
-        row(quantity, String::new());
+        row(quantity, String::new(), String::new());
         match operand.colour {
             true => colours.push(quantity.value),
             false => control.push(quantity.raw as i64),
         }
     }
-    let f = contract.reference(&contract.point(&control, 0));
-    for (output, colour) in example.outputs.iter().zip(colours) {
-        row(output, short(f * colour));
+    for (index, outputs) in (0..).zip(&example.results) {
+        let f = contract.reference(&contract.point(&control, index));
+        for (output, colour) in outputs.iter().zip(&colours) {
+            let of = match example.results.len() {
+                1 => String::new(),
+                _ => format!(", point {index}"),
+            };
+            row(output, short(f * colour), of);
+        }
     }
     table
 }

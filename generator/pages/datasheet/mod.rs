@@ -17,7 +17,7 @@ use crate::core::{Through, Unit};
 use crate::cosim::exhaustive::Record;
 use crate::evidence::curves::{self, DeviceCurves};
 use crate::evidence::hardware::{self, FamilyUsage, Synthesis};
-use crate::package::{Timing, WorkedExample};
+use crate::package::{LineClocks, Timing, WorkedExample};
 use crate::render::{self, BACKGROUND, BuiltIn, Light, Material, Scene, Settings, View};
 use crate::tools::synthesis::FAMILIES;
 use waves::Waves;
@@ -52,6 +52,7 @@ pub struct Datasheet {
 struct Measured {
     timing: Timing,
     example: WorkedExample,
+    line: Option<LineClocks>,
     waves: Waves,
     curves: DeviceCurves,
     highlight: Highlight,
@@ -98,6 +99,7 @@ pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datashee
     let measured = Measured {
         timing: unit.timing()?,
         example: unit.example()?,
+        line: unit.line()?,
         waves: Waves::record(unit)?,
         curves,
         highlight,

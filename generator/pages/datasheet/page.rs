@@ -96,6 +96,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         advice: unit.advice(),
         timing: &measured.timing,
         example: &measured.example,
+        line: measured.line.as_ref(),
     };
     let charts: Vec<(&Chart, &str)> = measured.curves.charts.iter().map(|it| (it, "")).collect();
     let wavedrom = measured.waves.wavedrom()?;
@@ -119,7 +120,10 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         roms: TableView::new("ROMs", &account::roms(design)),
         fields: TableView::new("Fields of the control word", &account::fields(design)),
         microprogram: Microprogram::new(design),
-        clocks: TableView::new("Clocks", &account::clocks(&measured.timing)),
+        clocks: TableView::new(
+            "Clocks",
+            &account::clocks(&measured.timing, measured.line.as_ref()),
+        ),
         throughput: throughput(&measured.timing),
         timing: timing::drawing(&measured.waves, described(measured)).svg()?,
         wavedrom_link: format!("data:application/json;base64,{}", STANDARD.encode(&wavedrom)),

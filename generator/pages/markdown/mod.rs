@@ -57,7 +57,7 @@ pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
         roms: table(&account::roms(design)),
         fields: table(&account::fields(design)),
         words: table(&account::words(design)),
-        clocks: table(&account::clocks(inputs.timing)),
+        clocks: table(&account::clocks(inputs.timing, inputs.line)),
         accuracy: account::accuracy(&bound),
         terms: table(&account::terms(&bound)),
         limit: prose(&account::limit(inputs)),
