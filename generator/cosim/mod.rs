@@ -14,6 +14,7 @@ mod pairing;
 mod pipelined;
 mod points;
 mod random;
+pub mod search;
 mod stimulus;
 mod stream;
 mod together;

@@ -25,5 +25,6 @@ mod rough_microprogram;
 mod shared_products;
 mod spread;
 mod streams;
+mod worst;
 
 use cli::{place, refusals};

@@ -21,6 +21,7 @@ fn records() -> Vec<Value> {
     let mut paths: Vec<_> = fs::read_dir("proofs")
         .expect("proofs/")
         .map(|entry| entry.expect("a directory entry").path())
+        .filter(|path| path.is_file())
         .collect();
     paths.sort();
     let mut records = Vec::new();

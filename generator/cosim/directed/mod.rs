@@ -4,8 +4,8 @@
 //! random reach neither every word of a table nor both sides of every comparison. Out of a pool of
 //! computations some are chosen, by what they do in the design:
 //!
-//! - for each word of a ROM that any of them reads, one whose results differ when the weakest bit of its upper half is
-//!   inverted; of lines, which read a word a clock, those that read it;
+//! - for each word of a ROM that any of them reads, and every other bit of its upper half, one whose results differ when
+//!   the bit is inverted; of lines, which read a word a clock, those that read it;
 //! - for each bit of each net, each input of a mux, each outcome of a comparison and what else is watched, some
 //!   that do it with bright results, some with dim ones, some in the dark.
 //!
@@ -16,7 +16,7 @@ mod pool;
 mod side_by_side;
 mod words;
 
-use std::collections::BinaryHeap;
+use std::collections::{BinaryHeap, HashSet};
 use std::sync::Arc;
 
 use anyhow::Result;
@@ -32,7 +32,7 @@ use side_by_side::{LANES, Shown, SideBySide};
 const TIMES: u8 = 2;
 
 /// Clocks of all computations together.
-const MOST_CLOCKS: u32 = 12_000;
+const MOST_CLOCKS: u32 = 20_000;
 
 /// A computation of the pool.
 struct Candidate {
@@ -57,7 +57,8 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Vec<
     let mut candidates = Vec::new();
     let pool = pool::pool(contract);
     let watched = pool.drawn.chunks(LANES).map(|batch| (batch, true));
-    let batches = watched.chain(pool.readers.chunks(LANES).map(|batch| (batch, false)));
+    let others = [&pool.readers, &pool.sweeps].into_iter().flat_map(|all| all.chunks(LANES));
+    let batches = watched.chain(others.map(|batch| (batch, false)));
     for (batch, watched) in batches {
         let shown = device.run(batch.iter().map(Vec::as_slice), |machine, busy| match watched {
             true => watch.note(machine, busy),
@@ -74,14 +75,31 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Vec<
         true => Vec::new(),
         false => words::chosen(design, contract, &candidates)?,
     };
+    let sweeping = pool.sweeps.len();
     if line {
         let bright = candidates.iter_mut().filter(|candidate| candidate.class + 1 == CLASSES);
         let first = watch.count() as u32;
         bright.for_each(|it| it.features.extend(it.read.iter().map(|word| first + word)));
+        chosen = sweeps(&candidates[candidates.len() - sweeping..]);
+        chosen.iter_mut().for_each(|at| *at += candidates.len() - sweeping);
     }
     let words: usize = design.roms.iter().map(|rom| rom.words.len()).sum();
     choose(&candidates, watch.count(), watch.count() + words, &mut chosen);
     Ok(chosen.into_iter().map(|at| candidates[at].operands.clone()).collect())
+}
+
+/// Of lines that read table after table, those of which most words are new.
+fn sweeps(lines: &[Candidate]) -> Vec<usize> {
+    let mut read = HashSet::new();
+    let mut chosen = Vec::new();
+    for (at, line) in lines.iter().enumerate() {
+        let news = line.read.iter().filter(|word| !read.contains(*word)).count();
+        if 2 * news > line.shown.clocks as usize {
+            read.extend(line.read.iter().copied());
+            chosen.push(at);
+        }
+    }
+    chosen
 }
 
 /// How bright the brightest result is: 0 in the dark, 1 dim, 2 beyond a sixteenth of what a colour can be.

@@ -13,6 +13,11 @@ const SHOWN: usize = 1536;
 /// values than this.
 const MOST_VALUES: u64 = 4096;
 
+/// Of the operands that choose a table the values above the lowest for which lines go through the highlight, and how
+/// many bits their lengths have.
+const FIRST_VALUES: [i64; 6] = [0, 1, 2, 3, 7, 15];
+const LINE_BITS: std::ops::RangeInclusive<u32> = 8..=12;
+
 /// The longest line, in intervals.
 const LONGEST: i64 = 1023;
 
@@ -25,6 +30,8 @@ pub struct Pool {
     pub drawn: Vec<Vec<i64>>,
     /// Those that read words.
     pub readers: Vec<Vec<i64>>,
+    /// Lines that read a table from its beginning to its end.
+    pub sweeps: Vec<Vec<i64>>,
 }
 
 /// The pool for a contract; a function of it alone.
@@ -37,6 +44,7 @@ pub fn pool(contract: &dyn Contract) -> Pool {
     let count = points.operands().len();
     let mut drawn = vec![vec![0; count]; DRAWN];
     let mut readers = Vec::new();
+    let mut sweeps = Vec::new();
     for values in &mut drawn {
         points.draw(&mut random, values, u64::MAX);
     }
@@ -53,6 +61,9 @@ pub fn pool(contract: &dyn Contract) -> Pool {
             points.show(&mut values[..control]);
             readers.push(values);
         }
+    }
+    if let Some(length) = points.length() {
+        sweeps = lines(contract, &points, length, &bright);
     }
     for at in 0..control {
         let operand = &points.operands()[at];
@@ -80,5 +91,37 @@ pub fn pool(contract: &dyn Contract) -> Pool {
         drawn.sort_by_key(|values| values[length]);
         readers.sort_by_key(|values| values[length]);
     }
-    Pool { drawn, readers }
+    Pool { drawn, readers, sweeps }
+}
+
+/// Lines from the peak to the edge of the highlight, which read the words of a table one after another: for the first
+/// values of each other operand, and for each power of two of intervals.
+fn lines(
+    contract: &dyn Contract,
+    points: &Points,
+    length: usize,
+    bright: &dyn Fn(&mut [i64]),
+) -> Vec<Vec<i64>> {
+    let mut random = Random::new(2);
+    let mut lines = Vec::new();
+    let operands = points.operands();
+    let free =
+        |at: &usize| !operands[*at].colour && *at != length && operands[*at].format.frac <= 0;
+    let others: Vec<usize> = (0..operands.len()).filter(free).collect();
+    for (bits, first) in LINE_BITS.rev().flat_map(|bits| FIRST_VALUES.map(|first| (bits, first))) {
+        let mut values = points.evenly(&mut random);
+        bright(&mut values);
+        for &at in &others {
+            let (low, high) = operands[at].domain;
+            values[at] = (low + first).min(high);
+        }
+        let control = values.len() - contract.outputs().len();
+        let Some([_, edge]) = points.edge(&values[..control]) else { continue };
+        let mut peak = values[..control].to_vec();
+        points.to_value(&mut peak, f64::INFINITY);
+        let most = contract.operands()[length].domain.1;
+        peak[length] = ((1 << bits) - 1).min(most);
+        lines.push([&contract.line(&peak, &edge), &values[control..]].concat());
+    }
+    lines
 }

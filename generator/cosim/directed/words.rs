@@ -12,8 +12,11 @@ use crate::golden::Contract;
 use crate::hdl::netlist::Design;
 use crate::hdl::sim::{Machine, Program};
 
-/// Of the candidates, those that together notice a fault in every word in which any of them does: the lowest bit of
-/// its upper half, which shows least, is inverted while those that read it run.
+/// Of the upper half of a word every other bit is tried: what notices it mostly notices the next, which weighs more.
+const STEP: usize = 2;
+
+/// Of the candidates, those that together notice every fault that any of them does: a bit of the upper half of a word
+/// is inverted while those that read the word run.
 pub fn chosen(
     design: &Design,
     contract: &dyn Contract,
@@ -30,8 +33,11 @@ pub fn chosen(
         if at == design.control.rom.index() {
             continue;
         }
-        let bit = 1 << (design.width(rom.data) / 2);
-        for (&word, readers) in readers.range(words) {
+        let width = design.width(rom.data);
+        let faults = readers.range(words).flat_map(|(word, readers)| {
+            (width / 2..width).step_by(STEP).map(move |bit| (*word, 1 << bit, readers))
+        });
+        for (word, bit, readers) in faults {
             device.machine.invert(word as usize, bit);
             let operands = readers.iter().map(|&at| candidates[at].operands.as_slice());
             let shown = device.run(operands, |_, _| ())?;
