@@ -219,7 +219,7 @@ fn program() {
 fn wrong(directory: &Path, arguments: &str) -> String {
     let program = env::current_exe().expect("this program");
     let mut command = Command::new(program);
-    command.args(["--exact", "program", "--ignored", "--nocapture"]);
+    command.args(["--exact", "combinations::program", "--ignored", "--nocapture"]);
     command.env("GLINT_ARGUMENTS", arguments);
     let Output { status, stdout, stderr } =
         command.current_dir(directory).output().expect("it runs");

@@ -35,7 +35,7 @@ const ROOMS: [(&str, &str); 22] = [
     ("verify", "base golden package tools cosim core mutate"),
     (
         "cli",
-        "base config golden package tools cosim registry core mutate render evidence pages verify",
+        "base config golden hdl/netlist package tools cosim registry core mutate render evidence pages verify",
     ),
 ];
 
