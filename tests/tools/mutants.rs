@@ -137,24 +137,28 @@ fn without_a_fault_nothing_is_noticed() {
     }
 }
 
-/// What the record does not name is noticed by lint or by the bench. Whether a proof of the rest comes to its end
-/// depends on how fast the machine is: nothing is said of it here.
+/// What the record does not name is noticed by lint or by the bench, and what it says is proved equivalent is not. Of
+/// what it leaves open nothing is said here: a better bench may notice it.
 #[test]
 fn faults_of_the_verilog_are_noticed() {
     for (path, unit) in defaults() {
         let record = record(&unit);
-        let named = |list: &str| record["verilog"][list].as_array().into_iter().flatten();
-        let unnoticed: BTreeSet<&str> =
-            named("open").chain(named("equivalent")).filter_map(Value::as_str).collect();
+        let named = |list: &str| -> BTreeSet<&str> {
+            let ids = record["verilog"][list].as_array().into_iter().flatten();
+            ids.filter_map(Value::as_str).collect()
+        };
+        let (open, equivalent) = (named("open"), named("equivalent"));
         let text = Text::of(&unit).unwrap_or_else(|error| panic!("{path}: {error:?}"));
         let faults = text.sample(TEXT_FAULTS);
         assert!(faults.len() >= 20, "{path}: {} faults", faults.len());
         let verdicts =
             text.run(&faults, LIMIT, &|| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"));
         for (fault, verdict) in faults.iter().zip(verdicts) {
-            let noticed = matches!(verdict, TextVerdict::Lint | TextVerdict::Bench);
-            let expected = !unnoticed.contains(fault.id.as_str());
-            assert_eq!(noticed, expected, "{path}: {}: {verdict:?}", fault.id);
+            let id = fault.id.as_str();
+            if !open.contains(id) {
+                let noticed = matches!(verdict, TextVerdict::Lint | TextVerdict::Bench);
+                assert_eq!(noticed, !equivalent.contains(id), "{path}: {id}: {verdict:?}");
+            }
         }
     }
 }
