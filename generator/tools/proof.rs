@@ -51,10 +51,14 @@ pub fn prove(directory: &Path, name: &str, limits: impl Into<Limits>) -> Result<
     Ok(())
 }
 
-/// How Yosys, Python and Z3 say it; a solver that dies of it says nothing, and yosys-smtbmc finds its output at
-/// an end.
+/// How Yosys, Python and Z3 say it; a solver that dies of it says nothing, and yosys-smtbmc finds its pipes closed.
 fn ran_out_of_memory(output: &str) -> bool {
-    ["out of memory", "bad_alloc", "MemoryError", "Unexpected EOF response from solver"]
-        .iter()
-        .any(|words| output.contains(words))
+    const SIGNS: [&str; 5] = [
+        "out of memory",
+        "bad_alloc",
+        "MemoryError",
+        "Unexpected EOF response from solver",
+        "BrokenPipeError",
+    ];
+    SIGNS.iter().any(|words| output.contains(words))
 }

@@ -186,7 +186,7 @@ fn a_proof_keeps_what_is_done() {
     ended.refused(130, &["evaluations are still to do", "state.json"]);
     place.assert_no_staging();
     let state: serde_json::Value = serde_json::from_str(&place.read("state.json")).expect("JSON");
-    let done = state["f"]["done"].as_u64().expect("a number");
+    let done = state["state"]["f"]["done"].as_u64().expect("a number");
     assert!(done > 0, "nothing was kept: {state}");
 
     let resumed = place.done(arguments);
