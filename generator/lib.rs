@@ -6,21 +6,27 @@
 //! one, to be read from top to bottom.
 
 pub mod base;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod config;
 pub mod core;
 pub mod cosim;
 pub mod devices;
+#[cfg(feature = "cli")]
 pub mod evidence;
 pub mod golden;
 pub mod hdl;
+#[cfg(feature = "cli")]
 pub mod mutate;
 pub mod observation;
 pub mod package;
+#[cfg(feature = "cli")]
 pub mod pages;
 pub mod registry;
+#[cfg(feature = "cli")]
 pub mod render;
 pub mod tools;
+#[cfg(feature = "cli")]
 pub mod verify;
 
 pub use base::fixed;

@@ -183,11 +183,6 @@ fn the_first_difference_is_the_same_however_the_work_is_divided() {
         let names: Vec<String> = (1..=of).map(|number| number.to_string()).collect();
         assert_eq!(job.merge(&shards, &names).expect("merged"), whole);
     }
-    // A state of before there were combinations has them to do.
-    let mut text = serde_json::to_value(&whole).expect("a state");
-    text.as_object_mut().expect("an object").remove("clocks");
-    let old: State = serde_json::from_value(text).expect("it can be read");
-    assert_eq!(job.remaining(&old), clocks.count());
 }
 
 /// `quadratic` with a model that is wrong for some combinations.

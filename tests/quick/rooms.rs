@@ -21,7 +21,7 @@ const ROOMS: [(&str, &str); 22] = [
     ("hdl/verilog", "base hdl/netlist observation"),
     ("devices", "base config hdl/netlist hdl/dsl hdl/blocks"),
     ("package", "base config golden hdl/netlist hdl/verilog observation"),
-    ("tools", "package"),
+    ("tools", "base package"),
     ("cosim", "base golden hdl/netlist hdl/sim observation package tools"),
     ("registry", "base config golden hdl/netlist hdl/dsl hdl/pipeline devices"),
     ("core", "config golden hdl/netlist package tools cosim registry"),

@@ -40,9 +40,9 @@ fn wrong_usage() {
     for (arguments, message) in [
         (&["generat"][..], "similar subcommands exist: 'render', 'generate'"),
         (&["cosim", "--point", "3"], "a similar argument exists: '--points'"),
-        (&["cosim", "--points", "0"], "0 is not in 1.."),
+        (&["cosim", "--points", "0"], "a whole number from 1 on is wanted"),
         (&["cosim", "--points", "-1"], "unexpected argument '-1'"),
-        (&["cosim", "--points", "many"], "invalid digit"),
+        (&["cosim", "--points", "many"], "a whole number from 1 on is wanted"),
         (&["cosim", "--simulator", "icaru"], "a similar value exists: 'icarus'"),
         (&["cosim", "--time-limit", "18446744073709551615"], "is not in 1..=1000000"),
         (&["eval"], "required arguments were not provided"),
