@@ -86,7 +86,7 @@ fn wrong_memories_are_noticed() {
         ("rough", "control", 5, 2),
         ("quad_cosine", "cosine", 0, 9),
         ("quadratic", "coefficient", 1, 17),
-        ("threshold", "levels", 1, 14),
+        ("threshold", "levels", 1, 15),
     ];
     faults.par_iter().for_each(|&(name, rom, word, bit)| {
         let wrong = |text: &str| with_flipped_bit(text, word, bit);
