@@ -16,7 +16,9 @@ use glint::core::Unit;
 /// Runs the example as its user does.
 fn run(directory: &Path, arguments: &[&str]) -> Output {
     let mut cargo = Command::new(env!("CARGO"));
-    cargo.args(["run", "--quiet", "--example", "fresnel", "--manifest-path"]);
+    // The features of the test, so that the library is not built once more.
+    cargo.args(["run", "--quiet", "--features", "outside-tools", "--example", "fresnel"]);
+    cargo.arg("--manifest-path");
     cargo.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"));
     if !cfg!(debug_assertions) {
         cargo.arg("--release");
