@@ -1,8 +1,8 @@
 //! The pipelined architecture: one microprogram, a point every clock.
 //!
-//! A design with a microprogram is [unrolled](unroll) into a graph of values, whose products are
-//! [split](split) to the multipliers of a [`Target`]; a [schedule](schedule) gives every value its stage,
-//! and [`stages`] makes a design of it again, without a microprogram: a register wherever a value
+//! A design with a microprogram is unrolled (`unroll`) into a graph of values, whose products are
+//! split (`split`) to the multipliers of a [`Target`]; a schedule (`schedule`) gives every value its stage,
+//! and `stages` makes a design of it again, without a microprogram: a register wherever a value
 //! crosses from a stage to the next. Nothing here knows a device.
 
 mod graph;

@@ -69,7 +69,7 @@ struct Executor<'a> {
     shown: Option<Vec<(NetId, NetId)>>,
 }
 
-/// Executes the microprogram of a design, which [`crate::hdl::dsl::rules`] has accepted.
+/// Executes the microprogram of a design, which the DSL has accepted.
 ///
 /// # Errors
 /// A microprogram that has no fixed bound, waits for `start` on the way or gives several results; a
