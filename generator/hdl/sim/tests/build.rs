@@ -16,7 +16,8 @@ pub struct Build {
 
 impl Build {
     pub fn new() -> Self {
-        let control = Control::none();
+        // Fields are parts of the first ROM.
+        let control = Control { rom: RomId(0), ..Control::none() };
         let mut build = Self {
             design: Design {
                 name: "probe".to_owned(),
