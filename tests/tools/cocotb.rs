@@ -84,7 +84,7 @@ fn every_test_notices_a_fault() {
 fn wrong_memories_are_noticed() {
     let faults = [
         ("rough", "control", 5, 2),
-        ("quad_cosine", "cosine", 0, 9),
+        ("quad_cosine", "root", 236, 9),
         ("quadratic", "coefficient", 1, 17),
         ("threshold", "levels", 1, 15),
     ];
