@@ -91,20 +91,14 @@ impl Engine for Golden<'_> {
     fn compute(&mut self, points: &Points) -> Result<Vec<i64>> {
         let contract = self.0;
         let operands = contract.operands();
-        let control = operands.iter().filter(|operand| !operand.colour).count();
         ensure!(operands.len() == points.operands, "operands of another device");
         let pieces: Vec<Vec<i64>> = (0..points.len().div_ceil(PIECE))
             .into_par_iter()
             .map(|piece| {
-                let mut out = Vec::with_capacity(PIECE * (operands.len() - control));
+                let mut out = Vec::with_capacity(PIECE * contract.outputs().len());
                 for at in piece * PIECE..points.len().min((piece + 1) * PIECE) {
-                    let (setting, colours) = points.operands(at).split_at(control);
                     for index in 0..points.results(at) {
-                        let f = match index {
-                            0 if points.results(at) == 1 => contract.f(setting),
-                            _ => contract.f(&contract.point(setting, index as u64)),
-                        };
-                        out.extend(colours.iter().map(|&colour| contract.colour(f, colour)));
+                        contract.results(points.operands(at), index as u64, &mut out);
                     }
                 }
                 out

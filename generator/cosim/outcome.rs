@@ -93,6 +93,8 @@ pub(super) struct Seen {
     pub(super) worst: Option<Worst>,
     pub(super) histogram: Histogram,
     pub(super) mismatch: Option<Mismatch>,
+    /// What the formula says of the latest result.
+    pub(super) exact: Vec<[f64; 2]>,
 }
 
 /// What a stream goes through.

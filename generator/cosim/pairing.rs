@@ -9,7 +9,7 @@ use super::outcome::{Seen, Worst};
 use super::points::Points;
 use super::stimulus::Stimulus;
 use crate::base::fixed::{Format, MAX_WIDTH, exp2};
-use crate::golden::{Contract, Model, nearer};
+use crate::golden::{Contract, Model, Output, nearer};
 use crate::hdl::netlist::{Design, NetId, RegisterKind};
 
 /// A design and its golden model, paired by the names of ports and registers.
@@ -32,8 +32,8 @@ pub(super) struct Pairing<'a> {
     pub(super) points: Points<'a>,
     /// Inputs from power-up on; every stream runs a copy of them with a seed of its own.
     pub(super) stimulus: Stimulus,
-    /// Of each result: itself, and the unit of the colour operand that it is made of.
-    results: Vec<(Quantity, f64)>,
+    /// In the order of the contract.
+    results: Vec<Quantity>,
 }
 
 /// A net that carries a number.
@@ -98,23 +98,20 @@ impl<'a> Pairing<'a> {
             })
         };
         let (busy, valid) = (predicted(handshake.busy)?, predicted(handshake.valid)?);
-        let colours = contract.operands().iter().filter(|it| it.colour);
-        ensure!(
-            colours.clone().count() == contract.outputs().len(),
-            "the contract has not one colour operand for each output"
-        );
         let results = contract
             .outputs()
             .iter()
-            .zip(colours)
-            .map(|(name, colour)| {
+            .map(|Output { name, format }| {
                 let net = find(name)?;
                 let at = position(net);
                 let at =
                     at.with_context(|| format!("the contract takes `{name}` for an output"))?;
-                let format = design.net(net).format;
-                let unit = exp2(-format.frac);
-                Ok((Quantity { at, format, unit }, exp2(-colour.format.frac)))
+                let real = design.net(net).format;
+                ensure!(
+                    real == *format,
+                    "the contract takes `{name}` for {format}, and it is {real}"
+                );
+                Ok(Quantity { at, format: real, unit: exp2(-real.frac) })
             })
             .collect::<Result<Vec<_>>>()?;
         Ok(Self {
@@ -191,14 +188,15 @@ impl<'a> Pairing<'a> {
     /// Takes note of the results among these values, number `index` of the computation with these operands of the
     /// domain: of the word `f`, and of the largest error.
     pub(super) fn measure(&self, seen: &mut Seen, operands: &[i64], index: u64, values: &[u64]) {
-        let (control, colours) = operands.split_at(operands.len() - self.results.len());
-        let point = self.contract.point(control, index);
-        seen.histogram.add(self.contract.f_format(), self.contract.f(&point));
-        let f = self.contract.references(&point);
+        if let Some(highlight) = self.contract.highlight() {
+            let point = highlight.point(&operands[..highlight.control()], index);
+            seen.histogram.add(highlight.f_format(), highlight.f(&point));
+        }
+        seen.exact.clear();
+        self.contract.exact(operands, index, &mut seen.exact);
         let mut largest = (seen.worst.as_ref().map_or(-1.0, |worst| worst.units), None);
-        for ((result, unit), &colour) in self.results.iter().zip(colours) {
-            let colour = colour as f64 * unit;
-            let units = nearer(result.value(values[result.at]), f.map(|f| f * colour));
+        for (result, &exact) in self.results.iter().zip(&seen.exact) {
+            let units = nearer(result.value(values[result.at]), exact) / result.unit;
             if units > largest.0 {
                 largest = (units, Some(result.at));
             }

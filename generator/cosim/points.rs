@@ -7,7 +7,7 @@
 //! others are corners of the domain, evenly drawn, or any bits at all.
 
 use crate::base::fixed::exp2;
-use crate::golden::{Contract, Operand};
+use crate::golden::{Contract, Highlight, Operand};
 
 use super::random::Random;
 
@@ -35,7 +35,8 @@ const MOVED: usize = 6;
 
 /// What operands a point is given.
 pub struct Points<'a> {
-    contract: &'a dyn Contract,
+    /// Of a device that multiplies by an f: without it there is no value to draw points by.
+    highlight: Option<&'a Highlight>,
     /// With the domains that are drawn from: those of the contract, but of operands that are held.
     operands: Vec<Operand>,
     /// The first so many determine `f`.
@@ -49,12 +50,15 @@ pub struct Points<'a> {
 impl<'a> Points<'a> {
     /// Points for a contract.
     pub fn new(contract: &'a dyn Contract) -> Self {
+        let highlight = contract.highlight();
         let operands = contract.operands().to_vec();
         let length = contract.length();
         let length = operands.iter().position(|operand| Some(operand.name.as_str()) == length);
         let control = operands.iter().filter(|operand| !operand.colour).count();
-        let mut points = Self { contract, control, length, peak: vec![None; control], operands };
-        points.peak = points.search();
+        let mut points = Self { highlight, control, length, peak: vec![None; control], operands };
+        if let Some(highlight) = highlight {
+            points.peak = points.search(highlight);
+        }
         points
     }
 
@@ -155,7 +159,7 @@ impl<'a> Points<'a> {
 
     /// Moves control operands to where the formula has a value; of a line, its ends.
     fn spread(&self, random: &mut Random, control: &mut [i64]) {
-        let Some(length) = self.length else {
+        let Some((length, highlight)) = self.length.zip(self.highlight) else {
             self.aim(random, control);
             return;
         };
@@ -167,7 +171,7 @@ impl<'a> Points<'a> {
         }
         self.aim(random, &mut last);
         self.aim(random, control);
-        let line = self.contract.line(control, &last);
+        let line = highlight.line(control, &last);
         for ((value, end), operand) in control.iter_mut().zip(line).zip(&self.operands) {
             *value = end.clamp(operand.domain.0, operand.domain.1);
         }
@@ -175,18 +179,18 @@ impl<'a> Points<'a> {
 
     /// Moves control operands toward the peak, to where the formula has a value that is drawn.
     fn aim(&self, random: &mut Random, far: &mut [i64]) {
-        let Some(way) = self.way(far) else { return };
+        let Some((way, highlight)) = self.way(far).zip(self.highlight) else { return };
         let (top, bottom) = (way.top, way.bottom);
         let exact = random.once_in(8);
         let target = match random.below(4) {
             0 if exact => bottom + f64::MIN_POSITIVE,
             0 | 1 => bottom + (top - bottom) * random.unit(),
             _ => {
-                let least = bottom.max(exp2(-self.contract.f_format().frac)).min(top);
+                let least = bottom.max(exp2(-highlight.f_format().frac)).min(top);
                 least * libm::pow(top / least, random.unit())
             }
         };
-        let [inner, outer] = way.crossing(self.contract, target, exact);
+        let [inner, outer] = way.crossing(highlight, target, exact);
         let scale = if exact && random.once_in(2) { outer } else { inner };
         far.copy_from_slice(&way.at(scale));
     }
@@ -194,15 +198,15 @@ impl<'a> Points<'a> {
     /// The last control operands on the way from the peak to these for which the formula is above what it is at its
     /// foot (0, say), and the first for which it is not.
     pub fn edge(&self, control: &[i64]) -> Option<[Vec<i64>; 2]> {
-        let way = self.way(control)?;
+        let (way, highlight) = self.way(control).zip(self.highlight)?;
         let target = way.bottom + f64::MIN_POSITIVE;
-        Some(way.crossing(self.contract, target, true).map(|scale| way.at(scale)))
+        Some(way.crossing(highlight, target, true).map(|scale| way.at(scale)))
     }
 
     /// Moves control operands toward the peak, to about a value of the formula.
     pub fn to_value(&self, control: &mut [i64], value: f64) {
-        if let Some(way) = self.way(control) {
-            let [inner, _] = way.crossing(self.contract, value, false);
+        if let Some((way, highlight)) = self.way(control).zip(self.highlight) {
+            let [inner, _] = way.crossing(highlight, value, false);
             control.copy_from_slice(&way.at(inner));
         }
     }
@@ -210,6 +214,7 @@ impl<'a> Points<'a> {
     /// Takes the control operands that do not lead to the peak to the ends of their domains for which the formula is
     /// nearest to its middle, so that it is seen.
     pub fn show(&self, control: &mut [i64]) {
+        let Some(highlight) = self.highlight else { return };
         let rest =
             (0..self.control).filter(|&at| self.peak[at].is_none() && self.length != Some(at));
         for at in rest {
@@ -217,7 +222,7 @@ impl<'a> Points<'a> {
             let dim = |raw: &i64| {
                 let mut there = control.to_vec();
                 there[at] = *raw;
-                (self.contract.reference(&self.contract.point(&there, 0)) - MIDDLE).abs()
+                (highlight.reference(&highlight.point(&there, 0)) - MIDDLE).abs()
             };
             let choices = [control[at], low, high];
             let best = choices.into_iter().min_by(|a, b| dim(a).total_cmp(&dim(b)));
@@ -227,8 +232,9 @@ impl<'a> Points<'a> {
 
     /// The way from the peak to control operands, or to a place on it that is below the peak.
     fn way(&self, far: &[i64]) -> Option<Way> {
-        let peak = self.peak(far);
-        let value = |control: &[i64]| self.contract.reference(&self.contract.point(control, 0));
+        let highlight = self.highlight?;
+        let peak = self.peak(highlight, far);
+        let value = |control: &[i64]| highlight.reference(&highlight.point(control, 0));
         let top = value(&peak);
         let mut far = far.to_vec();
         for _ in 0..OCTAVES {
@@ -243,8 +249,8 @@ impl<'a> Points<'a> {
     }
 
     /// The peak to which operands are moved; operands that are held stay.
-    fn peak(&self, control: &[i64]) -> Vec<i64> {
-        let said = self.contract.peak(control).unwrap_or_else(|| {
+    fn peak(&self, highlight: &Highlight, control: &[i64]) -> Vec<i64> {
+        let said = highlight.peak(control).unwrap_or_else(|| {
             let found = self.peak.iter().zip(control);
             found.map(|(peak, &value)| peak.unwrap_or(value)).collect()
         });
@@ -253,7 +259,7 @@ impl<'a> Points<'a> {
 
     /// Looks for the peak among the ends of the domain, and 0: of the operands with a fraction (a cosine, an angle,
     /// the components of a vector), or of all if none has one.
-    fn search(&self) -> Vec<Option<i64>> {
+    fn search(&self, highlight: &Highlight) -> Vec<Option<i64>> {
         let control = &self.operands[..self.control];
         let moves = |at: &usize| self.length != Some(*at);
         let fractions = (0..control.len()).filter(moves).filter(|&at| control[at].format.frac > 0);
@@ -284,7 +290,7 @@ impl<'a> Points<'a> {
             for setting in &settings {
                 let mut at = setting.clone();
                 moved.iter().zip(&peak).for_each(|(&moved, &raw)| at[moved] = raw);
-                sum += self.contract.reference(&at);
+                sum += highlight.reference(&at);
             }
             if sum > best.0 {
                 best = (sum, peak);
@@ -312,13 +318,13 @@ impl Way {
     }
 
     /// Where the formula crosses a value: just above it, and below; to the very step if that is wanted.
-    fn crossing(&self, contract: &dyn Contract, target: f64, exact: bool) -> [f64; 2] {
+    fn crossing(&self, highlight: &Highlight, target: f64, exact: bool) -> [f64; 2] {
         let mut at = self.far.clone();
         let mut reaches = |scale: f64| {
             for ((at, &peak), &far) in at.iter_mut().zip(&self.peak).zip(&self.far) {
                 *at = between(peak, far, scale);
             }
-            contract.reference(&contract.point(&at, 0)) >= target
+            highlight.reference(&highlight.point(&at, 0)) >= target
         };
         // The formula falls within a narrow part of the way: by octaves.
         let spans = self.peak.iter().zip(&self.far).map(|(peak, far)| peak.abs_diff(*far));
@@ -352,11 +358,11 @@ fn between(peak: i64, far: i64, scale: f64) -> i64 {
 pub(super) mod tests {
     use super::*;
     use crate::base::fixed::Format;
-    use crate::golden::Bound;
+    use crate::golden::contract::{Share, control};
+    use crate::golden::highlight::{Products, Reflectance};
 
     /// A pulse that knows no angle and no exponent: `f` is 1 where `x` is `at`, and 0 from 4 away.
     pub struct Pulse {
-        operands: Vec<Operand>,
         /// Whether it says where it is largest.
         says: bool,
         length: Option<&'static str>,
@@ -365,47 +371,28 @@ pub(super) mod tests {
     impl Pulse {
         const HALF: f64 = 4.0;
 
-        fn new(says: bool) -> Self {
-            let operand = |name: &str, high| Operand {
-                name: name.to_owned(),
-                format: Format::unsigned(20, 0),
-                domain: (0, high),
-                colour: false,
-                doc: String::new(),
+        /// With operands of these bits and largest values.
+        fn contract(self, operands: &[(&str, i32, i64)]) -> Highlight {
+            let operand = |&(name, bits, high): &(&str, i32, i64)| {
+                control(name, Format::unsigned(bits, 0), (0, high), "")
             };
-            Self { operands: vec![operand("x", 1 << 20), operand("at", 1000)], says, length: None }
+            let operands = operands.iter().map(operand).collect();
+            Highlight::new(self, operands, Products::none(Format::unsigned(0, 10)))
+        }
+
+        fn new(says: bool) -> Highlight {
+            Self { says, length: None }.contract(&[("x", 20, 1 << 20), ("at", 20, 1000)])
         }
 
         /// With one operand, `x` of 12 bits; it is a length if it is said to be.
-        pub fn single(length: bool) -> Self {
-            let mut pulse = Self::new(false);
-            pulse.operands.truncate(1);
-            pulse.operands[0].format = Format::unsigned(12, 0);
-            pulse.operands[0].domain = (0, 4095);
-            pulse.length = length.then_some("x");
-            pulse
+        pub fn single(length: bool) -> Highlight {
+            Self { says: false, length: length.then_some("x") }.contract(&[("x", 12, 4095)])
         }
     }
 
-    impl Contract for Pulse {
-        fn operands(&self) -> &[Operand] {
-            &self.operands
-        }
-
-        fn outputs(&self) -> &[String] {
-            &[]
-        }
-
-        fn f_format(&self) -> Format {
-            Format::unsigned(0, 10)
-        }
-
+    impl Reflectance for Pulse {
         fn f(&self, control: &[i64]) -> i64 {
             (self.reference(control) * 1023.0) as i64
-        }
-
-        fn colour(&self, f: i64, _: i64) -> i64 {
-            f
         }
 
         fn reference(&self, control: &[i64]) -> f64 {
@@ -421,13 +408,13 @@ pub(super) mod tests {
             self.length
         }
 
-        fn bound(&self) -> Bound {
-            Bound { f: 0.0, units: 0.0, terms: Vec::new() }
+        fn shares(&self) -> Vec<Share> {
+            Vec::new()
         }
     }
 
     /// The share of points with `f` between 0 and 1.
-    fn share(pulse: &Pulse) -> f64 {
+    fn share(pulse: &Highlight) -> f64 {
         let points = Points::new(pulse);
         let mut random = Random::new(7);
         let mut values = vec![0; 2];

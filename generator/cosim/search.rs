@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::points::Points;
 use super::random::Random;
-use crate::golden::{Contract, nearer};
+use crate::golden::{Contract, Highlight, nearer};
 
 /// Colours of more bits than this are tried at their upper end alone.
 const MOST_COLOURS: i64 = 256;
@@ -26,9 +26,9 @@ pub struct Reached {
 
 /// The largest error that is reached from so many starts, drawn by a seed: the same on any number of threads. `None`
 /// for no start.
-pub fn worst(contract: &dyn Contract, starts: u64, seed: u64) -> Option<Reached> {
-    let points = Points::new(contract);
-    let climber = Climber::new(contract);
+pub fn worst(highlight: &Highlight, starts: u64, seed: u64) -> Option<Reached> {
+    let points = Points::new(highlight);
+    let climber = Climber::new(highlight);
     let reached = (0..starts).into_par_iter().map(|start| {
         let mut random = Random::new(seed ^ start.wrapping_mul(0xd134_2543_de82_ef95));
         let mut control = points.of_domain(&mut random);
@@ -43,16 +43,16 @@ pub fn worst(contract: &dyn Contract, starts: u64, seed: u64) -> Option<Reached>
 }
 
 /// The error of the output for raw operands, in output units.
-pub fn error(contract: &dyn Contract, control: &[i64], colour: i64) -> f64 {
-    let mut operands = contract.operands().iter();
+pub fn error(highlight: &Highlight, control: &[i64], colour: i64) -> f64 {
+    let mut operands = highlight.operands().iter();
     let ulp = operands.find(|it| it.colour).map_or(1.0, |it| it.format.to_f64(1));
-    let point = contract.point(control, 0);
-    let right = contract.references(&point).map(|f| f * colour as f64 * ulp);
-    nearer(contract.colour(contract.f(&point), colour) as f64 * ulp, right)
+    let point = highlight.point(control, 0);
+    let right = highlight.references(&point).map(|f| f * colour as f64 * ulp);
+    nearer(highlight.colour(highlight.f(&point), colour) as f64 * ulp, right)
 }
 
 struct Climber<'a> {
-    contract: &'a dyn Contract,
+    highlight: &'a Highlight,
     /// The domains of the control operands.
     domains: Vec<(i64, i64)>,
     /// Operands that are moved together, with their signs.
@@ -61,8 +61,8 @@ struct Climber<'a> {
 }
 
 impl<'a> Climber<'a> {
-    fn new(contract: &'a dyn Contract) -> Self {
-        let control: Vec<_> = contract.operands().iter().filter(|it| !it.colour).collect();
+    fn new(highlight: &'a Highlight) -> Self {
+        let control: Vec<_> = highlight.operands().iter().filter(|it| !it.colour).collect();
         let mut moves: Vec<Vec<(usize, i64)>> = Vec::new();
         for (a, first) in control.iter().enumerate() {
             moves.extend([vec![(a, 1)], vec![(a, -1)]]);
@@ -73,10 +73,10 @@ impl<'a> Climber<'a> {
                 }
             }
         }
-        let mut colours = contract.operands().iter().filter(|it| it.colour);
+        let mut colours = highlight.operands().iter().filter(|it| it.colour);
         let (low, high) = colours.next().map_or((1, 1), |it| it.domain);
         Self {
-            contract,
+            highlight,
             domains: control.iter().map(|it| it.domain).collect(),
             moves,
             colours: low.max(high - MOST_COLOURS)..=high,
@@ -108,15 +108,15 @@ impl<'a> Climber<'a> {
     }
 
     fn of_f(&self, control: &[i64]) -> f64 {
-        let point = self.contract.point(control, 0);
-        let f = self.contract.f_format().to_f64(i128::from(self.contract.f(&point)));
-        nearer(f, self.contract.references(&point))
+        let point = self.highlight.point(control, 0);
+        let f = self.highlight.f_format().to_f64(i128::from(self.highlight.f(&point)));
+        nearer(f, self.highlight.references(&point))
     }
 
     /// The largest error of an output, and its colour.
     fn of_output(&self, control: &[i64]) -> (f64, i64) {
         let errors =
-            self.colours.clone().map(|colour| (error(self.contract, control, colour), colour));
+            self.colours.clone().map(|colour| (error(self.highlight, control, colour), colour));
         errors.fold((-1.0, 0), |most, next| if next.0 > most.0 { next } else { most })
     }
 }

@@ -119,13 +119,10 @@ fn computation(
 ) -> Result<Computation> {
     let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
     let nets = results(design, contract);
-    let control = operands.len() - contract.outputs().len();
-    let (control, colours) = operands.split_at(control);
     let mut shown = Vec::with_capacity(trial.results.len());
     for (index, (clock, bits)) in trial.results.iter().enumerate() {
-        let f = contract.f(&contract.point(control, index as u64));
-        let right = colours.iter().map(|&colour| contract.colour(f, colour));
-        let right: Vec<i64> = right.collect();
+        let mut right = Vec::new();
+        contract.results(&operands, index as u64, &mut right);
         let raw = |(&net, &bits): (&NetId, &u64)| design.net(net).format.raw(bits) as i64;
         let simulated: Vec<i64> = nets.iter().zip(bits).map(raw).collect();
         ensure!(
@@ -133,8 +130,8 @@ fn computation(
             "golden model and simulation of `{}` do not agree on result {index} of {}: {} and {}",
             design.name,
             listed(contract.operands().iter().map(|it| it.name.as_str()), &operands),
-            listed(contract.outputs().iter().map(String::as_str), &right),
-            listed(contract.outputs().iter().map(String::as_str), &simulated),
+            listed(contract.outputs().iter().map(|output| output.name.as_str()), &right),
+            listed(contract.outputs().iter().map(|output| output.name.as_str()), &simulated),
         );
         shown.push(Shown { clock: *clock, outputs: right });
     }
@@ -197,7 +194,8 @@ pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClock
     Ok(Some(LineClocks { length: name.to_owned(), last_valid, done, next_start }))
 }
 
-/// A computation with all its numbers: operands of the domain for which the first f is neither 0 nor 1.
+/// A computation with all its numbers: operands of the domain for which f, if there is one, is neither 0 nor 1. Of several
+/// results it shows the first.
 ///
 /// # Errors
 /// Those of [`timing`].
@@ -252,7 +250,10 @@ fn example_operands(contract: &dyn Contract) -> Vec<i64> {
             }
         })
         .collect();
-    let control = contract.operands().iter().filter(|operand| !operand.colour).count();
+    let Some(highlight) = contract.highlight() else {
+        return values;
+    };
+    let control = highlight.control();
     for at in (0..control).filter(|&at| contract.operands()[at].format.frac > 0) {
         let (low, high) = contract.operands()[at].domain;
         let typical = values[at];
@@ -263,7 +264,7 @@ fn example_operands(contract: &dyn Contract) -> Vec<i64> {
             } else {
                 high - (high - low) / 256 * step
             };
-            let f = contract.reference(&contract.point(&values[..control], 0));
+            let f = highlight.reference(&highlight.point(&values[..control], 0));
             if (0.4..0.8).contains(&f) {
                 return values;
             }
@@ -274,7 +275,7 @@ fn example_operands(contract: &dyn Contract) -> Vec<i64> {
 }
 
 fn results(design: &Design, contract: &dyn Contract) -> Vec<NetId> {
-    contract.outputs().iter().filter_map(|name| design.find(name)).collect()
+    contract.outputs().iter().filter_map(|output| design.find(&output.name)).collect()
 }
 
 /// What nets carry in each clock of the computation of [`example`], from clock 0, in which `start` is high, to the

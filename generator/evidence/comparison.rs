@@ -5,8 +5,8 @@ use std::fmt;
 use anyhow::Result;
 
 use crate::cosim::trial;
-use crate::golden::Contract;
 use crate::golden::formulas;
+use crate::golden::{Contract, Highlight};
 use crate::hdl::netlist::{Design, Driver, Op};
 
 /// Angles to a degree in the grid from 0 to 90°.
@@ -46,15 +46,15 @@ pub struct Accuracy {
     /// denote.
     pub formula: Spread,
     /// `cosⁿ` of the angle that the quantised operands denote against `cosⁿγ`. 0 where a contract does not
-    /// tell that angle ([`Contract::cosine`]): then the formula's error includes it.
+    /// tell that angle ([`Highlight::cosine`]): then the formula's error includes it.
     pub operands: Spread,
     /// The word f against the formula at the quantised operands.
     pub fixed_point: Spread,
 }
 
 /// What the formula says at the quantised operands: where it jumps, the nearer to `f` of the values that are right.
-pub fn formula(contract: &dyn Contract, control: &[i64], f: f64) -> f64 {
-    let [one, other] = contract.references(control);
+pub fn formula(highlight: &Highlight, control: &[i64], f: f64) -> f64 {
+    let [one, other] = highlight.references(control);
     match (f - other).abs() < (f - one).abs() {
         true => other,
         false => one,
@@ -63,17 +63,19 @@ pub fn formula(contract: &dyn Contract, control: &[i64], f: f64) -> f64 {
 
 /// The errors over the grid of angles; `None` when the operands cannot denote `n`.
 pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
-    let format = contract.f_format();
+    let highlight = contract.highlight()?;
+    let format = highlight.f_format();
     let mut accuracy = Accuracy::default();
     for step in 0..ANGLES {
         let gamma = (f64::from(step) / f64::from(ANGLES_PER_DEGREE)).to_radians();
         // cos 90° is not 0 in f64, which n = 0 would show.
         let cosine = if step == ANGLES - 1 { 0.0 } else { libm::cos(gamma) };
-        let control = contract.at(gamma, n)?;
+        let control = highlight.at(gamma, n)?;
         let exact = formulas::blinn(cosine, n);
-        let denoted = contract.cosine(&control).map_or(exact, |cosine| formulas::blinn(cosine, n));
-        let f = format.to_f64(i128::from(contract.f(&control)));
-        let formula = formula(contract, &control, f);
+        let denoted = highlight.cosine(&control);
+        let denoted = denoted.map_or(exact, |cosine| formulas::blinn(cosine, n));
+        let f = format.to_f64(i128::from(highlight.f(&control)));
+        let formula = formula(highlight, &control, f);
         accuracy.whole.take(f - exact);
         accuracy.formula.take(formula - denoted);
         accuracy.operands.take(denoted - exact);
@@ -88,7 +90,8 @@ pub fn accuracy(contract: &dyn Contract, n: f64) -> Option<Accuracy> {
 /// # Errors
 /// A device that does not end, or shows no point.
 pub fn clocks_per_point(design: &Design, contract: &dyn Contract, n: f64) -> Result<f64> {
-    let point = contract.at(TYPICAL.to_radians(), n).unwrap_or_default();
+    let point = contract.highlight().and_then(|it| it.at(TYPICAL.to_radians(), n));
+    let point = point.unwrap_or_default();
     let operands = contract.operands().iter().enumerate();
     let operands: Vec<i64> = operands
         .map(|(place, operand)| match point.get(place) {
@@ -136,51 +139,27 @@ pub fn multipliers(design: &Design) -> Vec<Multiplier> {
 mod tests {
     use super::*;
     use crate::base::fixed::Format;
-    use crate::golden::{Bound, Operand, contract};
+    use crate::golden::contract::{Share, control};
+    use crate::golden::highlight::{Products, Reflectance};
     use crate::hdl::dsl::{Designer, end, loop_while, step, valid};
 
     /// cosⁿγ itself, but for an eighth too much: one fraction bit of the cosine, eight of f.
-    struct Line(Vec<Operand>, Vec<String>);
+    struct Line;
 
     impl Line {
-        fn new() -> Self {
-            let operand = |name: &str, format, domain| Operand {
-                name: name.to_string(),
-                format,
-                domain,
-                colour: false,
-                doc: String::new(),
-            };
-            Self(
-                vec![
-                    operand("cos_gamma", Format::unsigned(1, 1), (0, 2)),
-                    operand("intervals", Format::unsigned(4, 0), (0, 15)),
-                    operand("exponent", Format::unsigned(4, 0), (1, 15)),
-                ],
-                Vec::new(),
-            )
+        fn contract() -> Highlight {
+            let operands = vec![
+                control("cos_gamma", Format::unsigned(1, 1), (0, 2), ""),
+                control("intervals", Format::unsigned(4, 0), (0, 15), ""),
+                control("exponent", Format::unsigned(4, 0), (1, 15), ""),
+            ];
+            Highlight::new(Self, operands, Products::none(Format::unsigned(1, 8)))
         }
     }
 
-    impl Contract for Line {
-        fn operands(&self) -> &[Operand] {
-            &self.0
-        }
-
-        fn outputs(&self) -> &[String] {
-            &self.1
-        }
-
-        fn f_format(&self) -> Format {
-            Format::unsigned(1, 8)
-        }
-
+    impl Reflectance for Line {
         fn f(&self, control: &[i64]) -> i64 {
             (self.reference(control) * 256.0) as i64 + 32
-        }
-
-        fn colour(&self, f: i64, _: i64) -> i64 {
-            f
         }
 
         fn reference(&self, control: &[i64]) -> f64 {
@@ -191,8 +170,8 @@ mod tests {
             Some("intervals")
         }
 
-        fn bound(&self) -> Bound {
-            contract::bound(&[], 8, 1, crate::base::fixed::Rounding::Nearest)
+        fn shares(&self) -> Vec<Share> {
+            Vec::new()
         }
     }
 
@@ -217,7 +196,7 @@ mod tests {
     #[test]
     fn errors_are_told_apart() {
         // n = 1: c is rounded to halves, f is half of it and an eighth.
-        let found = accuracy(&Line::new(), 1.0).expect("within the domain");
+        let found = accuracy(&Line::contract(), 1.0).expect("within the domain");
         assert_eq!(found.fixed_point, Spread { largest: 0.125, mean: found.fixed_point.mean });
         assert!((found.fixed_point.mean - 0.125).abs() < 1e-12);
         assert_eq!(found.formula.largest, 0.5);
@@ -225,13 +204,13 @@ mod tests {
         assert!((found.operands.largest - 0.25).abs() < 1e-3, "{found:?}");
         // At γ = 0: 1/2 + 1/8 for 1.
         assert_eq!(found.whole.largest, 0.375);
-        assert_eq!(accuracy(&Line::new(), 16.0), None);
+        assert_eq!(accuracy(&Line::contract(), 16.0), None);
     }
 
     #[test]
     fn a_line_counts_by_its_points() {
         // The clock of `start`, words 0 and 1, 16 points, the last word.
-        let clocks = clocks_per_point(&design(), &Line::new(), 3.0).expect("it ends");
+        let clocks = clocks_per_point(&design(), &Line::contract(), 3.0).expect("it ends");
         assert_eq!(clocks, 20.0 / 16.0);
     }
 

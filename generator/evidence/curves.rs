@@ -132,15 +132,16 @@ fn places() -> Vec<f64> {
 /// The signed formula error at each place, and the largest fixed-point error about it; zero beyond 90°,
 /// where nothing is reflected. `None` when the operands cannot denote `n`.
 fn over_angle(contract: &dyn Contract, n: f64) -> Option<Vec<AtAngle>> {
-    let format = contract.f_format();
+    let highlight = contract.highlight()?;
+    let format = highlight.f_format();
     let right = std::f64::consts::FRAC_PI_2;
     let measure = |x: f64| {
         let gamma = (x / n.sqrt()).clamp(0.0, right);
-        let control = contract.at(gamma, n)?;
-        let cosine = contract.cosine(&control);
+        let control = highlight.at(gamma, n)?;
+        let cosine = highlight.cosine(&control);
         let cosine = cosine.unwrap_or_else(|| libm::cos(gamma));
-        let f = format.to_f64(i128::from(contract.f(&control)));
-        let formula = comparison::formula(contract, &control, f);
+        let f = format.to_f64(i128::from(highlight.f(&control)));
+        let formula = comparison::formula(highlight, &control, f);
         Some(AtAngle {
             formula: formula - formulas::blinn(cosine, n),
             fixed_point: (f - formula).abs(),

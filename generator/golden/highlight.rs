@@ -3,7 +3,7 @@
 use super::contract::{self, COSINE, Share};
 use super::frame::{Frame, Slot, State};
 use super::narrow::Narrow;
-use super::{Axis, Bound, Contract, Operand, Sweep, Values, keys, nearer};
+use super::{Bound, Contract, Operand, Output, Sweep, keys, nearer};
 use crate::base::fixed::{Format, Rounding, exp2};
 use crate::config::Config;
 
@@ -107,7 +107,7 @@ pub struct Products {
     rounding: Rounding,
     narrow: Narrow,
     operands: Vec<Operand>,
-    outputs: Vec<String>,
+    outputs: Vec<Output>,
 }
 
 impl Products {
@@ -125,6 +125,11 @@ impl Products {
         let doc = "intensity of the light times the surface's specular coefficient, at the peak";
         let operand = vec![("amplitude", doc.to_owned())];
         Self::new(f, bits, rounding, operand, vec!["intensity_out".to_owned()])
+    }
+
+    /// Nothing: f alone.
+    pub fn none(f: Format) -> Self {
+        Self::new(f, 1, Rounding::Nearest, Vec::new(), Vec::new())
     }
 
     fn new(
@@ -148,14 +153,17 @@ impl Products {
             rounding,
             narrow: Narrow::new(f.frac as u32, format, rounding),
             operands: operands.into_iter().map(operand).collect(),
-            outputs,
+            outputs: outputs.into_iter().map(|name| Output { name, format }).collect(),
         }
     }
 
     /// Their operands and outputs in a clock model.
     pub fn slots(&self, frame: &mut Frame) -> ProductSlots {
         let pairs = self.operands.iter().zip(&self.outputs).map(|(operand, output)| {
-            (frame.operand(&operand.name, operand.format), frame.output(output, operand.format))
+            (
+                frame.operand(&operand.name, operand.format),
+                frame.output(&output.name, output.format),
+            )
         });
         ProductSlots { pairs: pairs.collect(), narrow: self.narrow }
     }
@@ -183,32 +191,49 @@ pub trait Reflectance: Send + Sync {
     /// The raw f that the device computes from the raw control operands.
     fn f(&self, control: &[i64]) -> i64;
 
-    /// As [`Contract::reference`].
+    /// The source's formula in f64, unrounded, at the raw (that is, quantised) control operands.
     fn reference(&self, control: &[i64]) -> f64;
 
-    /// As [`Contract::references`].
+    /// The values that are right for `f` at the raw control operands: the formula's, twice. Where the formula
+    /// jumps and fixed point may come out on its other side, the values on both sides. An error is
+    /// taken from the nearer.
     fn references(&self, control: &[i64]) -> [f64; 2] {
         [self.reference(control); 2]
     }
 
-    /// As [`Contract::expressions`].
+    /// The values of [`Reflectance::references`] as expressions of Python, for benches that have no other second
+    /// opinion; none where nobody wrote them.
+    ///
+    /// They speak of the control operands by name, as values and not raw, of the result's number (from 0) as
+    /// `index`, of the words of a ROM as values by its name, and of `math`'s functions.
     fn expressions(&self) -> Vec<String> {
         Vec::new()
     }
 
-    /// As [`Contract::point`].
+    /// The control operands of the one point that result number `index` (from 0) of a computation shows.
+    ///
+    /// A device with one result per `start` shows the point of its operands. One that walks a line of
+    /// points from one `start` says here where the walk has come to.
     fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
         let _ = index;
         control.to_vec()
     }
 
-    /// As [`Contract::peak`].
+    /// Where the formula is largest: these control operands with those changed that lead there (a cosine to 1, an
+    /// angle or a vector to 0). Points for tests are drawn between there and anywhere, by the value of the formula;
+    /// it should not rise on the straight way from there to `control`.
+    ///
+    /// `None`: the operands with a fraction are each taken to an end of their domain or to 0, to those where the
+    /// formula turns out to be largest. A device whose peak lies elsewhere says so here.
     fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
         let _ = control;
         None
     }
 
-    /// As [`Contract::line`].
+    /// The control operands of a computation of several results that goes from the point `first` to the point
+    /// `last`, as far as `first` says how many there are: the inverse of [`Reflectance::point`].
+    ///
+    /// A device with one result per `start` shows `first`.
     fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
         let _ = last;
         first.to_vec()
@@ -219,24 +244,31 @@ pub trait Reflectance: Send + Sync {
         None
     }
 
-    /// As [`Contract::at`], with the operands of the contract.
+    /// The control operands, as [`Reflectance::f`] takes them, that come nearest to the angle `gamma`, in radians
+    /// from 0 to π/2, and the exponent `n`; `None` where no operands of the domain stand for that exponent.
+    /// `operands` are those of the contract.
+    ///
+    /// By default these are the operands `cos_gamma` and `exponent`, if the device has them; any other is
+    /// as near to 0 as its domain allows. A device with other operands, or for whose operands 0 means
+    /// something, says so here.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         contract::operands_at(operands, gamma, n, &[])
     }
 
-    /// As [`Contract::cosine`], with the operands of the contract.
+    /// The cosine of the angle γ that control operands denote once they are quantised: by default the operand
+    /// `cos_gamma`, if the device has one. `operands` are those of the contract.
     fn cosine(&self, operands: &[Operand], control: &[i64]) -> Option<f64> {
         let (operand, raw) =
             operands.iter().zip(control).find(|(operand, _)| operand.name == COSINE)?;
         Some(operand.format.to_f64(i128::from(*raw)).clamp(0.0, 1.0))
     }
 
-    /// As [`Contract::sweep`]; none for every combination of the control operands.
+    /// What an exhaustive check of `f` goes through; none for every combination of the control operands.
     fn sweep(&self) -> Option<Sweep> {
         None
     }
 
-    /// As [`Contract::sweep_error`]; none where a place of the sweep is a point.
+    /// The error of `f` at a place of the sweep, absolute; none where a place is a point.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let _ = place;
@@ -275,6 +307,70 @@ impl Highlight {
     pub fn of_cosine(reflectance: impl Reflectance + 'static, keys: &Keys) -> Self {
         Self::new(reflectance, keys.operands(), keys.products())
     }
+
+    /// How many operands determine f: the first.
+    pub fn control(&self) -> usize {
+        self.operands.len() - self.products.operands.len()
+    }
+
+    /// The format of f.
+    pub fn f_format(&self) -> Format {
+        self.products.f
+    }
+
+    /// As [`Reflectance::f`].
+    #[inline]
+    pub fn f(&self, control: &[i64]) -> i64 {
+        self.reflectance.f(control)
+    }
+
+    /// The raw output for a raw f and a raw colour operand.
+    #[inline]
+    pub fn colour(&self, f: i64, colour: i64) -> i64 {
+        self.products.narrow.apply(f * colour)
+    }
+
+    /// As [`Reflectance::reference`].
+    #[inline]
+    pub fn reference(&self, control: &[i64]) -> f64 {
+        self.reflectance.reference(control)
+    }
+
+    /// As [`Reflectance::references`].
+    #[inline]
+    pub fn references(&self, control: &[i64]) -> [f64; 2] {
+        self.reflectance.references(control)
+    }
+
+    /// As [`Reflectance::expressions`].
+    pub fn expressions(&self) -> Vec<String> {
+        self.reflectance.expressions()
+    }
+
+    /// As [`Reflectance::point`].
+    pub fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
+        self.reflectance.point(control, index)
+    }
+
+    /// As [`Reflectance::peak`].
+    pub fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
+        self.reflectance.peak(control)
+    }
+
+    /// As [`Reflectance::line`].
+    pub fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
+        self.reflectance.line(first, last)
+    }
+
+    /// As [`Reflectance::at`].
+    pub fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
+        self.reflectance.at(&self.operands, gamma, n)
+    }
+
+    /// As [`Reflectance::cosine`].
+    pub fn cosine(&self, control: &[i64]) -> Option<f64> {
+        self.reflectance.cosine(&self.operands, control)
+    }
 }
 
 impl Contract for Highlight {
@@ -282,74 +378,48 @@ impl Contract for Highlight {
         &self.operands
     }
 
-    fn outputs(&self) -> &[String] {
+    fn outputs(&self) -> &[Output] {
         &self.products.outputs
     }
 
-    fn f_format(&self) -> Format {
-        self.products.f
+    fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>) {
+        let (control, colours) = operands.split_at(self.control());
+        // A computation of one result shows the point of its operands.
+        let f = match self.reflectance.length() {
+            None => self.f(control),
+            Some(_) => self.f(&self.point(control, index)),
+        };
+        raw.extend(colours.iter().map(|&colour| self.colour(f, colour)));
     }
 
-    #[inline]
-    fn f(&self, control: &[i64]) -> i64 {
-        self.reflectance.f(control)
+    fn exact(&self, operands: &[i64], index: u64, values: &mut Vec<[f64; 2]>) {
+        let (control, colours) = operands.split_at(self.control());
+        let f = match self.reflectance.length() {
+            None => self.references(control),
+            Some(_) => self.references(&self.point(control, index)),
+        };
+        let pairs = self.products.operands.iter().zip(colours);
+        values.extend(pairs.map(|(operand, &colour)| {
+            let colour = colour as f64 * exp2(-operand.format.frac);
+            f.map(|f| f * colour)
+        }));
     }
 
-    #[inline]
-    fn colour(&self, f: i64, colour: i64) -> i64 {
-        self.products.narrow.apply(f * colour)
-    }
-
-    #[inline]
-    fn reference(&self, control: &[i64]) -> f64 {
-        self.reflectance.reference(control)
-    }
-
-    #[inline]
-    fn references(&self, control: &[i64]) -> [f64; 2] {
-        self.reflectance.references(control)
-    }
-
-    fn expressions(&self) -> Vec<String> {
-        self.reflectance.expressions()
-    }
-
-    fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
-        self.reflectance.point(control, index)
-    }
-
-    fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
-        self.reflectance.peak(control)
-    }
-
-    fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
-        self.reflectance.line(first, last)
+    fn highlight(&self) -> Option<&Highlight> {
+        Some(self)
     }
 
     fn length(&self) -> Option<&str> {
         self.reflectance.length()
     }
 
-    fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
-        self.reflectance.at(&self.operands, gamma, n)
-    }
-
-    fn cosine(&self, control: &[i64]) -> Option<f64> {
-        self.reflectance.cosine(&self.operands, control)
-    }
-
+    /// Of f alone; every product is checked beside it.
     fn sweep(&self) -> Sweep {
-        let all = || {
-            let control = self.operands.iter().filter(|operand| !operand.colour);
-            let axis = |operand: &Operand| Axis {
-                name: operand.name.clone(),
-                values: Values::Range(operand.domain.0, operand.domain.1),
-            };
-            Sweep { axes: control.map(axis).collect(), omits: String::new() }
-        };
-        self.reflectance.sweep().unwrap_or_else(all)
+        let control = &self.operands[..self.control()];
+        self.reflectance.sweep().unwrap_or_else(|| Sweep::all(control.iter()))
     }
 
+    /// The error of f, absolute.
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> f64 {
         self.reflectance.sweep_error(place).unwrap_or_else(|| {

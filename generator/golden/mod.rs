@@ -30,7 +30,9 @@ pub mod threshold;
 
 use std::fmt;
 
-use crate::base::fixed::Format;
+pub use highlight::Highlight;
+
+use crate::base::fixed::{Format, exp2};
 
 /// A clock-by-clock model of a device.
 ///
@@ -83,78 +85,47 @@ pub struct Operand {
     pub format: Format,
     /// The smallest and largest raw value for which the contract is stated.
     pub domain: (i64, i64),
-    /// A colour operand multiplies `f`; the others determine it.
+    /// A colour operand of a highlight multiplies `f`; the others determine it.
     pub colour: bool,
     /// One line: what it is.
     pub doc: String,
 }
 
-/// The accuracy contract of a device: `|out − K·f| < 1` unit for each colour output.
+/// An output of a device as its accuracy contract sees it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// The output port.
+    pub name: String,
+    /// Its format. Its unit, in which errors are stated, is the last place.
+    pub format: Format,
+}
+
+/// The accuracy contract of a device: each output is within a proven bound of a formula.
 ///
-/// It is factored as the hardware is: control operands determine the word `f`, and each colour
-/// output is `f` times one colour operand.
+/// It may have any number of outputs, with or without a sign. A device that multiplies by a reflectance has
+/// a [`Highlight`] for its contract.
 pub trait Contract: Send + Sync {
-    /// Control operands, then colour operands, in the order in which values are passed.
+    /// The operands, in the order in which values are passed.
     fn operands(&self) -> &[Operand];
 
-    /// The colour outputs, each from the colour operand of the same position.
-    fn outputs(&self) -> &[String];
+    /// The outputs, in the order in which results are given.
+    fn outputs(&self) -> &[Output];
 
-    /// The format of the word `f`.
-    fn f_format(&self) -> Format;
+    /// Appends the raw outputs that the device computes from raw operands: of result number `index` (from 0),
+    /// where a computation has several.
+    fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>);
 
-    /// The word `f` that the device computes from the raw control operands.
-    fn f(&self, control: &[i64]) -> i64;
+    /// Appends, for each output, what the formula says in f64, unrounded, at the raw (that is, quantised) operands,
+    /// twice. Where the formula jumps and fixed point may come out on its other side, these are the values on both
+    /// sides. An error is taken from the nearer.
+    fn exact(&self, operands: &[i64], index: u64, values: &mut Vec<[f64; 2]>);
 
-    /// The raw output for a word `f` and a raw colour operand.
-    fn colour(&self, f: i64, colour: i64) -> i64;
+    /// A proven bound on the error, stated before anything is simulated.
+    fn bound(&self) -> Bound;
 
-    /// The source's formula in f64, unrounded, at the raw (that is, quantised) control operands.
-    fn reference(&self, control: &[i64]) -> f64;
-
-    /// The values that are right for `f` at the raw control operands: the formula's, twice. Where the formula
-    /// jumps and fixed point may come out on its other side, the values on both sides. An error is
-    /// taken from the nearer.
-    fn references(&self, control: &[i64]) -> [f64; 2] {
-        [self.reference(control); 2]
-    }
-
-    /// The values of [`Contract::references`] as expressions of Python, for benches that have no other second
-    /// opinion; none where nobody wrote them.
-    ///
-    /// They speak of the control operands by name, as values and not raw, of the result's number (from 0) as
-    /// `index`, of the words of a ROM as values by its name, and of `math`'s functions.
-    fn expressions(&self) -> Vec<String> {
-        Vec::new()
-    }
-
-    /// The control operands of the one point that result number `index` (from 0) of a computation shows.
-    ///
-    /// A device with one result per `start` shows the point of its operands. One that walks a line of
-    /// points from one `start` says here where the walk has come to.
-    fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
-        let _ = index;
-        control.to_vec()
-    }
-
-    /// Where the formula is largest: these control operands with those changed that lead there (a cosine to 1, an
-    /// angle or a vector to 0). Points for tests are drawn between there and anywhere, by the value of the formula;
-    /// it should not rise on the straight way from there to `control`.
-    ///
-    /// `None`: the operands with a fraction are each taken to an end of their domain or to 0, to those where the
-    /// formula turns out to be largest. A device whose peak lies elsewhere says so here.
-    fn peak(&self, control: &[i64]) -> Option<Vec<i64>> {
-        let _ = control;
+    /// What the contract has beyond this of a device that multiplies by a reflectance.
+    fn highlight(&self) -> Option<&Highlight> {
         None
-    }
-
-    /// The control operands of a computation of several results that goes from the point `first` to the point
-    /// `last`, as far as `first` says how many there are: the inverse of [`Contract::point`].
-    ///
-    /// A device with one result per `start` shows `first`.
-    fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {
-        let _ = last;
-        first.to_vec()
     }
 
     /// The operand that says how many results a computation has, when one does.
@@ -162,50 +133,27 @@ pub trait Contract: Send + Sync {
         None
     }
 
-    /// The control operands, as [`Contract::f`] takes them, that come nearest to the angle `gamma`, in radians
-    /// from 0 to π/2, and the exponent `n`; `None` where no operands of the domain stand for that exponent.
-    ///
-    /// By default these are the operands `cos_gamma` and `exponent`, if the device has them; any other is
-    /// as near to 0 as its domain allows. A device with other operands, or for whose operands 0 means
-    /// something, says so here.
-    fn at(&self, gamma: f64, n: f64) -> Option<Vec<i64>> {
-        contract::operands_at(self.operands(), gamma, n, &[])
-    }
-
-    /// The cosine of the angle γ that control operands denote once they are quantised: by default the operand
-    /// `cos_gamma`, if the device has one.
-    fn cosine(&self, control: &[i64]) -> Option<f64> {
-        let operands = self.operands().iter().zip(control);
-        let (operand, raw) =
-            operands.into_iter().find(|(operand, _)| operand.name == contract::COSINE)?;
-        Some(operand.format.to_f64(i128::from(*raw)).clamp(0.0, 1.0))
-    }
-
-    /// What an exhaustive check of `f` goes through: by default every combination of the control operands.
+    /// What an exhaustive check goes through: by default every combination of the operands.
     fn sweep(&self) -> Sweep {
-        let control = self.operands().iter().filter(|operand| !operand.colour);
-        Sweep {
-            axes: control
-                .map(|operand| Axis {
-                    name: operand.name.clone(),
-                    values: Values::Range(operand.domain.0, operand.domain.1),
-                })
-                .collect(),
-            omits: String::new(),
-        }
+        Sweep::all(self.operands().iter())
     }
 
-    /// The error of `f` at a place of the sweep, absolute: by default a place is a point.
+    /// The error at a place of the sweep: by default a place has the operands, and the error is the largest of an
+    /// output, in units.
     fn sweep_error(&self, place: &[i64]) -> f64 {
-        let f = self.f_format().to_f64(i128::from(self.f(place)));
-        nearer(f, self.references(place))
+        let (mut raw, mut exact) = (Vec::new(), Vec::new());
+        self.results(place, 0, &mut raw);
+        self.exact(place, 0, &mut exact);
+        let outputs = self.outputs().iter().zip(&raw).zip(exact);
+        let errors = outputs.map(|((output, &raw), exact)| {
+            let unit = exp2(-output.format.frac);
+            nearer(raw as f64, exact.map(|value| value / unit))
+        });
+        errors.fold(0.0, f64::max)
     }
-
-    /// A proven bound on the error, stated before anything is simulated.
-    fn bound(&self) -> Bound;
 
     /// What a user of this configuration should know of the formula itself, with figures: where in the
-    /// domain another choice of the same device would come closer to `cosⁿγ`.
+    /// domain another choice of the same device would come closer to what it stands for.
     fn remarks(&self) -> Vec<String> {
         Vec::new()
     }
@@ -217,16 +165,16 @@ pub fn nearer(value: f64, right: [f64; 2]) -> f64 {
     (value - right[0]).abs().min((value - right[1]).abs())
 }
 
-/// The places that an exhaustive check of `f` visits: the product of its axes.
+/// The places that an exhaustive check visits: the product of its axes.
 ///
-/// A device with too many control operands for all combinations names what determines `f` (a word in
+/// A device with too many operands for all combinations names what determines the result, or of a highlight `f` (a word in
 /// between, say, with [`Contract::sweep_error`] taking the worst over what rounds to it), or a list of
 /// settings, and says in `omits` what is left to random points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sweep {
     /// The outermost first.
     pub axes: Vec<Axis>,
-    /// What is not covered, in a sentence; empty when every combination of control operands is.
+    /// What is not covered, in a sentence; empty when every combination of operands is.
     pub omits: String,
 }
 
@@ -249,6 +197,15 @@ pub enum Values {
 }
 
 impl Sweep {
+    /// Every combination of some operands.
+    pub fn all<'a>(operands: impl Iterator<Item = &'a Operand>) -> Self {
+        let axis = |operand: &Operand| Axis {
+            name: operand.name.clone(),
+            values: Values::Range(operand.domain.0, operand.domain.1),
+        };
+        Self { axes: operands.map(axis).collect(), omits: String::new() }
+    }
+
     /// Its axes in a sentence.
     pub fn words(&self) -> String {
         let axes: Vec<String> = self.axes.iter().map(Axis::to_string).collect();
@@ -284,12 +241,12 @@ impl Values {
     }
 }
 
-/// A bound on `|out − K·f|` over the domain, and what it is made of.
+/// A bound on the error of an output over the domain, and what it is made of.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bound {
-    /// On the error of `f`.
+    /// On what a sweep measures: the error of `f` of a highlight, otherwise that of an output, in units.
     pub f: f64,
-    /// On the error of an output, in output units, for the largest colour operand.
+    /// On the error of an output, in its units; of a highlight, for the largest colour operand.
     pub units: f64,
     /// The contributions, in output units, each with the configuration key that governs it. They
     /// add up to `units`.
@@ -308,6 +265,12 @@ pub struct Term {
 }
 
 impl Bound {
+    /// The sum of its terms, of a device that is no highlight.
+    pub fn of(terms: Vec<Term>) -> Self {
+        let units = terms.iter().map(|term| term.units).sum();
+        Self { f: units, units, terms }
+    }
+
     /// The largest contribution: the key to change first.
     pub fn limiting(&self) -> Option<&Term> {
         self.terms.iter().max_by(|a, b| a.units.total_cmp(&b.units))

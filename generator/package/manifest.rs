@@ -130,8 +130,12 @@ fn accuracy(accuracy: &Accuracy) -> Value {
     let domain: serde_json::Map<_, _> = domain
         .map(|(operand, (low, high))| (operand.clone(), json!({ "low": low, "high": high })))
         .collect();
+    let highlight = accuracy.outputs.iter().all(|(_, operand)| operand.is_some());
+    let value = if highlight { "operand * f" } else { "formula" };
     let mut entry = json!({
-        "statement": "|output - operand * f| <= bound in units of the output, for raw operands of the domain",
+        "statement": format!(
+            "|output - {value}| <= bound in units of the output, for raw operands of the domain"
+        ),
         "domain": domain,
         "outputs": outputs,
         "f": accuracy.f,

@@ -122,6 +122,12 @@ pub fn usual_exponent(contract: &dyn Contract) -> u32 {
     EXPONENT.clamp(least, most).max(0) as u32
 }
 
+/// Whether a picture has the operands of a device.
+pub fn draws(unit: &Unit) -> bool {
+    let contract = unit.contract.as_ref();
+    Feed::new(unit.device.name, contract, usual_exponent(contract)).is_ok()
+}
+
 /// Checks what is to be rendered.
 ///
 /// # Errors
@@ -177,12 +183,8 @@ pub fn render(
     let (middle, radius) = scene.extent();
     let aspect = f64::from(width) / f64::from(height);
     let camera = Camera::new(&settings.view, aspect, middle, scene.balls())?;
-    let format = |name: &str| {
-        let net = unit.design.find(name);
-        net.map(|net| unit.design.net(net).format)
-    };
     let contract = unit.contract.as_ref();
-    let feed = Feed::new(unit.device.name, contract, settings.material.exponent, format)?;
+    let feed = Feed::new(unit.device.name, contract, settings.material.exponent)?;
     ensure!(
         feed.longest().is_none() || scene.relief.is_none(),
         "the device `{}` walks lines of points, which a height map cannot perturb",
@@ -331,21 +333,8 @@ impl Portions<'_> {
     /// The largest error of an output against the device's own formula, in output units.
     fn error(&self, points: &Points, outputs: &[i64]) -> f64 {
         let contract = self.unit.contract.as_ref();
-        let operands = contract.operands();
-        let control = operands.iter().filter(|operand| !operand.colour).count();
         let width = contract.outputs().len();
-        // What a unit of an output and of its colour operand stands for.
-        let units: Vec<(f64, f64)> = contract
-            .outputs()
-            .iter()
-            .zip(&operands[control..])
-            .map(|(output, colour)| {
-                let format = self.unit.design.find(output);
-                let format = format.map(|net| self.unit.design.net(net).format);
-                let unit = colour.format.to_f64(1);
-                (format.map_or(unit, |format| format.to_f64(1)), unit)
-            })
-            .collect();
+        let units: Vec<f64> = contract.outputs().iter().map(|it| it.format.to_f64(1)).collect();
         let starts: Vec<usize> = (0..points.len())
             .scan(0, |next, at| {
                 let first = *next;
@@ -354,15 +343,13 @@ impl Portions<'_> {
             })
             .collect();
         let errors = starts.par_iter().enumerate().map(|(at, first)| {
-            let (setting, colours) = points.operands(at).split_at(control);
-            let mut worst: f64 = 0.0;
+            let (mut worst, mut exact) = (0.0f64, Vec::new());
             for index in 0..points.results(at) {
-                let right = contract.references(&contract.point(setting, index as u64));
+                exact.clear();
+                contract.exact(points.operands(at), index as u64, &mut exact);
                 let outputs = &outputs[(first + index) * width..];
-                let each = outputs.iter().zip(colours).zip(&units);
-                for ((&out, &colour), &(out_unit, colour_unit)) in each {
-                    let right = right.map(|f| f * colour as f64 * colour_unit / out_unit);
-                    worst = worst.max(nearer(out as f64, right));
+                for ((&out, right), unit) in outputs.iter().zip(&exact).zip(&units) {
+                    worst = worst.max(nearer(out as f64, right.map(|right| right / unit)));
                 }
             }
             worst

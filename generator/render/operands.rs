@@ -100,16 +100,11 @@ pub fn walks_lines(contract: &dyn Contract) -> bool {
 }
 
 impl Feed {
-    /// For a device of that name; `format` gives the format of an output.
+    /// For a device of that name.
     ///
     /// # Errors
     /// It has operands that are not understood, or not the colours.
-    pub fn new(
-        device: &str,
-        contract: &dyn Contract,
-        exponent: u32,
-        format: impl Fn(&str) -> Option<Format>,
-    ) -> Result<Self> {
+    pub fn new(device: &str, contract: &dyn Contract, exponent: u32) -> Result<Self> {
         let names: &[(&str, Quantity)] = match walks_lines(contract) {
             false => &OF_POINTS,
             true => &OF_LINES,
@@ -153,8 +148,7 @@ impl Feed {
             let at = places.position(|(quantity, ..)| *quantity == wanted);
             // Each output is of the colour operand of the same position.
             let output = at.and_then(|at| at.checked_sub(control));
-            let format =
-                output.and_then(|at| contract.outputs().get(at)).and_then(|name| format(name));
+            let format = output.and_then(|at| contract.outputs().get(at)).map(|it| it.format);
             let (Some(at), Some(output), Some(format)) = (at, output, format) else {
                 bail!("the device `{device}` has no colour operand `{name}` with an output");
             };

@@ -73,13 +73,13 @@ fn assert_outputs_within_bound(
     rng: &mut ChaCha8Rng,
     what: &str,
 ) {
-    let bound = contract.bound();
+    let (bound, highlight) = (contract.bound(), contract.highlight().expect("a highlight"));
     let largest = contract.operands().last().unwrap().domain.1;
     for _ in 0..points {
         let point = random_point(contract, rng);
-        let (f, exact) = (contract.f(&point), contract.references(&point));
+        let (f, exact) = (highlight.f(&point), highlight.references(&point));
         for colour in [largest, rng.next_u32() as i64 & largest] {
-            let out = contract.colour(f, colour) as f64;
+            let out = highlight.colour(f, colour) as f64;
             let error = nearer(out, exact.map(|exact| colour as f64 * exact));
             assert!(
                 error <= bound.units + F64,
@@ -141,7 +141,7 @@ fn blinn_is_as_close_as_it_promises() {
     };
     let best = blinn::contract(&read("configs/blinn.toml"));
     assert!(best.bound().f <= 1.0e-4, "{:?}", best.bound());
-    assert!(best.f_format().frac >= 14);
+    assert!(best.highlight().expect("a highlight").f_format().frac >= 14);
     let small = blinn::contract(&read("configs/blinn_small.toml"));
     let mut rng = ChaCha8Rng::seed_from_u64(3);
     for _ in 0..2_000_000 {

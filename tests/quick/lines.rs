@@ -93,11 +93,11 @@ impl Bench {
 
     /// What the contract expects of a line of `quad-cosine`.
     fn quad_expected(&self, [delta, start, n, length, amplitude]: [i64; 5]) -> Vec<i64> {
-        let contract = &self.unit.contract;
+        let highlight = self.unit.contract.highlight().expect("a highlight");
         (0..=length as u64)
             .map(|index| {
-                let f = contract.f(&contract.point(&[delta, start, n, length], index));
-                contract.colour(f, amplitude)
+                let f = highlight.f(&highlight.point(&[delta, start, n, length], index));
+                highlight.colour(f, amplitude)
             })
             .collect()
     }
@@ -283,11 +283,11 @@ fn drift(
     control: &[i64],
     f: impl Fn(f64) -> f64,
 ) -> f64 {
-    let contract = &unit.contract;
+    let highlight = unit.contract.highlight().expect("a highlight");
     (0..=line.length)
         .map(|index| {
-            let word = contract.f(&contract.point(control, u64::from(index)));
-            let out = contract.colour(word, operands.amplitude) as f64;
+            let word = highlight.f(&highlight.point(control, u64::from(index)));
+            let out = highlight.colour(word, operands.amplitude) as f64;
             (out - line.amplitude * f(line.zeta(index))).abs()
         })
         .fold(0.0, f64::max)

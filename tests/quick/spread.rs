@@ -32,10 +32,10 @@ fn most_operands_that_are_drawn_have_a_formula_between_0_and_1() {
         let contract = unit.contract.as_ref();
         let points = Points::new(contract);
         let mut random = Random::new(5);
-        let control = contract.operands().iter().filter(|operand| !operand.colour).count();
+        let highlight = contract.highlight().expect("a highlight");
         let inside = (0..DRAWN).filter(|_| {
             let drawn = points.of_domain(&mut random);
-            let f = contract.reference(&contract.point(&drawn[..control], 0));
+            let f = highlight.reference(&highlight.point(&drawn[..highlight.control()], 0));
             f > 0.0 && f < 1.0
         });
         let share = inside.count() as f64 / DRAWN as f64;

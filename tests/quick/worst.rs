@@ -19,19 +19,20 @@ fn the_worst_known_error_of_rough_is_what_its_record_says() {
     let sines = ((1.0 - cos_gamma * cos_gamma) * (1.0 - cos_dgamma * cos_dgamma)).sqrt();
     let base = control[2] as f64 / 2.0 * (cos_gamma * cos_dgamma + sines - 1.0) + 1.0;
     let units = (output as f64 - colour as f64 * base * base).abs();
-    assert_eq!(unit.contract.colour(unit.contract.f(&control), colour), output);
+    let highlight = unit.contract.highlight().expect("a highlight");
+    assert_eq!(highlight.colour(highlight.f(&control), colour), output);
     assert!((record["units"].as_f64().expect("a number") - units).abs() < 1e-9, "{units}");
     assert!(units > 0.9428 && units <= unit.contract.bound().units, "{units}");
-    assert!((search::error(unit.contract.as_ref(), &control, colour) - units).abs() < 1e-9);
+    assert!((search::error(highlight, &control, colour) - units).abs() < 1e-9);
 }
 
 /// A short climb comes beyond all that was drawn at random, and to the same place every time.
 #[test]
 fn what_is_climbed_to_is_beyond_what_is_drawn() {
     let unit = configuration("configs/rough.toml");
-    let contract = unit.contract.as_ref();
-    let found = search::worst(contract, 16, 1).expect("starts");
-    assert_eq!(search::worst(contract, 16, 1), Some(found.clone()));
-    assert!(found.units > 0.85 && found.units <= contract.bound().units, "{found:?}");
-    assert_eq!(search::error(contract, &found.control, found.colour), found.units);
+    let highlight = unit.contract.highlight().expect("a highlight");
+    let found = search::worst(highlight, 16, 1).expect("starts");
+    assert_eq!(search::worst(highlight, 16, 1), Some(found.clone()));
+    assert!(found.units > 0.85 && found.units <= unit.contract.bound().units, "{found:?}");
+    assert_eq!(search::error(highlight, &found.control, found.colour), found.units);
 }

@@ -188,13 +188,10 @@ impl Model {
     /// What the golden model says, result by result.
     fn expected(&self, operands: &[Vec<i64>]) -> Vec<i64> {
         let contract = self.unit.contract.as_ref();
-        let control = contract.operands().iter().filter(|operand| !operand.colour).count();
         let of_point = |operands: &Vec<i64>| {
-            let (control, colours) = operands.split_at(control);
             let mut results = Vec::new();
             for index in 0..results_of(contract, operands) {
-                let f = contract.f(&contract.point(control, index as u64));
-                results.extend(colours.iter().map(|colour| contract.colour(f, *colour)));
+                contract.results(operands, index as u64, &mut results);
             }
             results
         };

@@ -93,7 +93,9 @@ fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result
                 place(one, worst)
             ));
         }
-        spread::print(&outcome.histogram);
+        if one.unit.contract.highlight().is_some() {
+            spread::print(&outcome.histogram);
+        }
         for fault in faults {
             tables::print_line(&format!("  FAILS: {fault}"));
         }
@@ -160,7 +162,7 @@ pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, faults: &[String]
             "output": worst.output,
             "operands": worst.operands.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
         })),
-        "f": spread::as_json(&outcome.histogram),
+        "f": one.unit.contract.highlight().map(|_| spread::as_json(&outcome.histogram)),
         "rom_bits": one.unit.design.rom_bits(),
         "holds": faults.is_empty(),
         "verdict": verdict(bound, faults),

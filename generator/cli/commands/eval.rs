@@ -37,14 +37,12 @@ pub fn eval(
     }
 }
 
-/// The formula at raw operands: f, and each output.
-fn formula(contract: &dyn Contract, raw: &[i64]) -> (f64, Vec<f64>) {
-    let operands = contract.operands();
-    let control = operands.iter().filter(|operand| !operand.colour).count();
-    // Of several results, the first.
-    let f = contract.reference(&contract.point(&raw[..control], 0));
-    let colours = operands[control..].iter().zip(&raw[control..]);
-    (f, colours.map(|(operand, &raw)| f * operand.format.to_f64(i128::from(raw))).collect())
+/// The formula at raw operands: f of a highlight, and each output. Of several results, the first.
+fn formula(contract: &dyn Contract, raw: &[i64]) -> (Option<f64>, Vec<f64>) {
+    let f = contract.highlight().map(|it| it.reference(&it.point(&raw[..it.control()], 0)));
+    let mut exact = Vec::new();
+    contract.exact(raw, 0, &mut exact);
+    (f, exact.into_iter().map(|[value, _]| value).collect())
 }
 
 /// The operands that are outside the domain for which the contract is stated, in words.
@@ -102,7 +100,10 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
             "operands": operands,
             "inside_the_domain": outside.is_empty(),
             "signals": signals,
-            "formula": { "f": f, "outputs": exact },
+            "formula": match f {
+                Some(f) => json!({ "f": f, "outputs": exact }),
+                None => json!({ "outputs": exact }),
+            },
         }));
         return Ok(true);
     }
@@ -126,9 +127,10 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
         vec![name.clone(), format, raw.to_string(), value.to_string()]
     });
     print_values("golden, when valid", rows);
-    tables::print_line(&format!("formula in f64: f = {f}"));
-    for (name, exact) in contract.outputs().iter().zip(exact) {
-        tables::print_line(&format!("  {name} = {exact:.6}"));
+    let f = f.map_or_else(String::new, |f| format!(" f = {f}"));
+    tables::print_line(&format!("formula in f64:{f}"));
+    for (output, exact) in contract.outputs().iter().zip(exact) {
+        tables::print_line(&format!("  {} = {exact:.6}", output.name));
     }
     Ok(true)
 }

@@ -87,7 +87,8 @@ impl Team {
         let results = contract
             .outputs()
             .iter()
-            .map(|name| {
+            .map(|output| {
+                let name = &output.name;
                 let net = design.find(name);
                 let net = net.with_context(|| format!("`{}` has no `{name}`", design.name))?;
                 Ok((net, design.net(net).format))

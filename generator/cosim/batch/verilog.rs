@@ -54,7 +54,8 @@ impl Verilog {
         let results = contract
             .outputs()
             .iter()
-            .map(|name| {
+            .map(|output| {
+                let name = &output.name;
                 let at = bench.results.iter().position(|result| result == name);
                 at.zip(format(name))
                     .with_context(|| format!("`{}` has no result `{name}`", design.name))

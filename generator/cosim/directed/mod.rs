@@ -65,7 +65,7 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Vec<
             false => watch.note_words(machine, busy),
         })?;
         for (lane, (operands, shown)) in batch.iter().zip(shown).enumerate() {
-            let class = class(design, contract, &shown);
+            let class = class(contract, &shown);
             let (features, read) = watch.take(lane, class);
             candidates.push(Candidate { operands: operands.clone(), shown, class, features, read });
         }
@@ -103,11 +103,11 @@ fn sweeps(lines: &[Candidate]) -> Vec<usize> {
 }
 
 /// How bright the brightest result is: 0 in the dark, 1 dim, 2 beyond a sixteenth of what a colour can be.
-fn class(design: &Design, contract: &dyn Contract, shown: &Shown) -> usize {
+fn class(contract: &dyn Contract, shown: &Shown) -> usize {
     let mut class = 0;
     for (_, outputs) in &shown.results {
-        for (name, &output) in contract.outputs().iter().zip(outputs) {
-            let most = design.find(name).map_or(0, |net| mask(design.width(net)));
+        for (it, &output) in contract.outputs().iter().zip(outputs) {
+            let most = mask(it.format.width());
             class = class.max(usize::from(output > 0) + usize::from(output > most / 16));
         }
     }

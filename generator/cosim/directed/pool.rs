@@ -1,7 +1,7 @@
 //! Computations to choose from.
 
 use crate::cosim::{Points, Random};
-use crate::golden::Contract;
+use crate::golden::{Contract, Highlight};
 
 /// Points that are drawn as those of the default test are.
 const DRAWN: usize = 1024;
@@ -62,8 +62,8 @@ pub fn pool(contract: &dyn Contract) -> Pool {
             readers.push(values);
         }
     }
-    if let Some(length) = points.length() {
-        sweeps = lines(contract, &points, length, &bright);
+    if let Some((length, highlight)) = points.length().zip(contract.highlight()) {
+        sweeps = lines(highlight, &points, length, &bright);
     }
     for at in 0..control {
         let operand = &points.operands()[at];
@@ -97,7 +97,7 @@ pub fn pool(contract: &dyn Contract) -> Pool {
 /// Lines from the peak to the edge of the highlight, which read the words of a table one after another: for the first
 /// values of each other operand, and for each power of two of intervals.
 fn lines(
-    contract: &dyn Contract,
+    highlight: &Highlight,
     points: &Points,
     length: usize,
     bright: &dyn Fn(&mut [i64]),
@@ -115,13 +115,13 @@ fn lines(
             let (low, high) = operands[at].domain;
             values[at] = (low + first).min(high);
         }
-        let control = values.len() - contract.outputs().len();
+        let control = values.len() - highlight.outputs().len();
         let Some([_, edge]) = points.edge(&values[..control]) else { continue };
         let mut peak = values[..control].to_vec();
         points.to_value(&mut peak, f64::INFINITY);
-        let most = contract.operands()[length].domain.1;
+        let most = highlight.operands()[length].domain.1;
         peak[length] = ((1 << bits) - 1).min(most);
-        lines.push([&contract.line(&peak, &edge), &values[control..]].concat());
+        lines.push([&highlight.line(&peak, &edge), &values[control..]].concat());
     }
     lines
 }

@@ -77,7 +77,7 @@ impl SideBySide {
             operands,
             valid: one(Role::Valid)?,
             busy: one(Role::Busy)?,
-            results: contract.outputs().iter().map(|name| named(name)).collect::<Result<_>>()?,
+            results: contract.outputs().iter().map(|it| named(&it.name)).collect::<Result<_>>()?,
         })
     }
 

@@ -45,8 +45,10 @@ impl Proof {
         let bound = contract.bound();
         let mut proof = Self { f, f_units: f.error * largest, colours, faults: Vec::new() };
         if f.error > bound.f + F64 / largest {
+            let what =
+                if contract.highlight().is_some() { "f is" } else { "an output is, in units," };
             proof.faults.push(format!(
-                "f is off by {:e}, beyond the stated bound of {:e}",
+                "{what} off by {:e}, beyond the stated bound of {:e}",
                 f.error, bound.f
             ));
         }

@@ -38,7 +38,7 @@ impl Peak {
 /// What is measured at a place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Measure {
-    /// The error of `f`, as [`Contract::sweep_error`] has it.
+    /// As [`Contract::sweep_error`] has it: of a highlight the error of `f`.
     F,
     /// What a colour multiplier adds, in output units.
     Colour,
@@ -59,20 +59,19 @@ impl<'a> Places<'a> {
 
     /// Every word `f` with every value of a colour operand (they are all alike).
     pub fn of_colours(contract: &'a dyn Contract) -> Self {
-        let format = contract.f_format();
-        let mut axes = vec![Axis {
-            name: "f".to_owned(),
-            values: Values::Range(format.min_raw() as i64, format.max_raw() as i64),
-        }];
+        let axis = |name: &str, values| Axis { name: name.to_owned(), values };
         let colour = contract.operands().iter().find(|operand| operand.colour);
-        axes.extend(colour.map(|colour| Axis {
-            name: "colour".to_owned(),
-            values: Values::Range(colour.domain.0, colour.domain.1),
-        }));
-        if axes.len() == 1 {
+        let axes = match contract.highlight().zip(colour) {
+            Some((highlight, colour)) => {
+                let f = highlight.f_format();
+                vec![
+                    axis("f", Values::Range(f.min_raw() as i64, f.max_raw() as i64)),
+                    axis("colour", Values::Range(colour.domain.0, colour.domain.1)),
+                ]
+            }
             // Without colours there is no product, and no place.
-            axes[0].values = Values::List(Vec::new());
-        }
+            None => vec![axis("f", Values::List(Vec::new()))],
+        };
         Self { contract, measure: Measure::Colour, sweep: Sweep { axes, omits: String::new() } }
     }
 
@@ -124,10 +123,10 @@ impl<'a> Places<'a> {
     fn error_at(&self, place: &[i64]) -> f64 {
         match self.measure {
             Measure::F => self.contract.sweep_error(place),
-            Measure::Colour => {
-                let exact = (place[0] * place[1]) as f64 * self.contract.f_format().to_f64(1);
-                (self.contract.colour(place[0], place[1]) as f64 - exact).abs()
-            }
+            Measure::Colour => self.contract.highlight().map_or(0.0, |highlight| {
+                let exact = (place[0] * place[1]) as f64 * highlight.f_format().to_f64(1);
+                (highlight.colour(place[0], place[1]) as f64 - exact).abs()
+            }),
         }
     }
 

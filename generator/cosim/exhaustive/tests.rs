@@ -3,31 +3,20 @@
 use std::ops::ControlFlow;
 
 use super::*;
-use crate::base::fixed::Format;
-use crate::golden::{Axis, Bound, Operand, Sweep, Values};
+use crate::golden::{Axis, Bound, Operand, Output, Sweep, Values};
 
-/// f = 0; the "error" numbers the places 0, 1, 2, …, and repeats its largest value.
+/// No outputs; the "error" numbers the places 0, 1, 2, …, and repeats its largest value.
 struct Counting;
 
 impl Contract for Counting {
     fn operands(&self) -> &[Operand] {
         &[]
     }
-    fn outputs(&self) -> &[String] {
+    fn outputs(&self) -> &[Output] {
         &[]
     }
-    fn f_format(&self) -> Format {
-        Format::unsigned(0, 4)
-    }
-    fn f(&self, _: &[i64]) -> i64 {
-        0
-    }
-    fn colour(&self, _: i64, _: i64) -> i64 {
-        0
-    }
-    fn reference(&self, _: &[i64]) -> f64 {
-        0.0
-    }
+    fn results(&self, _: &[i64], _: u64, _: &mut Vec<i64>) {}
+    fn exact(&self, _: &[i64], _: u64, _: &mut Vec<[f64; 2]>) {}
     fn bound(&self) -> Bound {
         Bound { f: 1.0, units: 1.0, terms: Vec::new() }
     }

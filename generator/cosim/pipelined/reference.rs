@@ -135,9 +135,8 @@ pub(super) struct Formula<'a> {
     contract: &'a dyn Contract,
     /// For each operand of the contract its position among those of the pipeline.
     operands: Vec<usize>,
-    /// For each output of the contract its position among the results, the value of its last place, its
-    /// sign and width, and the value of the last place of its colour operand.
-    outputs: Vec<(usize, crate::base::fixed::Format, f64)>,
+    /// For each output of the contract its position among the results, and its format.
+    outputs: Vec<(usize, crate::base::fixed::Format)>,
 }
 
 impl<'a> Formula<'a> {
@@ -163,17 +162,15 @@ impl<'a> Formula<'a> {
                 at.with_context(|| format!("the contract speaks of operand `{}`", operand.name))
             })
             .collect::<Result<_>>()?;
-        let colours = contract.operands().iter().filter(|operand| operand.colour);
         let outputs = contract
             .outputs()
             .iter()
-            .zip(colours)
-            .map(|(output, colour)| {
-                let at = results.iter().position(|&net| name(net) == output);
-                let at =
-                    at.with_context(|| format!("the contract takes `{output}` for an output"))?;
-                let unit = crate::base::fixed::exp2(-colour.format.frac);
-                Ok((at, design.net(results[at]).format, unit))
+            .map(|output| {
+                let at = results.iter().position(|&net| name(net) == output.name);
+                let at = at.with_context(|| {
+                    format!("the contract takes `{}` for an output", output.name)
+                })?;
+                Ok((at, design.net(results[at]).format))
             })
             .collect::<Result<_>>()?;
         Ok(Self { contract, operands, outputs })
@@ -195,12 +192,12 @@ impl<'a> Formula<'a> {
     /// Counts the word `f` of a point.
     pub(super) fn count(&self, bits: &[u64], histogram: &mut Histogram) {
         let (raw, inside) = self.operands(bits);
+        let Some(highlight) = self.contract.highlight() else { return };
         if !inside {
             return histogram.add_outside();
         }
-        let control: Vec<i64> =
-            raw[..raw.len() - self.outputs.len()].iter().map(|(_, raw)| *raw).collect();
-        histogram.add(self.contract.f_format(), self.contract.f(&self.contract.point(&control, 0)));
+        let control: Vec<i64> = raw[..highlight.control()].iter().map(|(_, raw)| *raw).collect();
+        histogram.add(highlight.f_format(), highlight.f(&highlight.point(&control, 0)));
     }
 
     /// The largest error, in output units, and its output.
@@ -214,13 +211,12 @@ impl<'a> Formula<'a> {
             }
             raw.push(value);
         }
-        let (control, colours) = raw.split_at(raw.len() - self.outputs.len());
-        let f = self.contract.references(&self.contract.point(control, 0));
+        let mut exact = Vec::with_capacity(self.outputs.len());
+        self.contract.exact(&raw, 0, &mut exact);
         let mut largest = None;
-        for (&(at, format, unit), &colour) in self.outputs.iter().zip(colours) {
-            let colour = colour as f64 * unit;
+        for (&(at, format), exact) in self.outputs.iter().zip(exact) {
             let value = format.to_f64(format.raw(results[at]));
-            let units = crate::golden::nearer(value, f.map(|f| f * colour));
+            let units = crate::golden::nearer(value, exact) / format.to_f64(1);
             if largest.is_none_or(|(most, _)| units > most) {
                 largest = Some((units, at));
             }

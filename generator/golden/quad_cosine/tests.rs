@@ -1,6 +1,5 @@
 use super::contract::highlight;
 use super::*;
-use crate::golden::Contract;
 
 /// The default with 4 + 4 bits of angle and root, and tables of 8 steps.
 fn small() -> Params {

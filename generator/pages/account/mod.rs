@@ -319,22 +319,20 @@ pub fn example(contract: &dyn Contract, example: &WorkedExample) -> Table {
         let name = code(&quantity.name) + &of;
         table.row([name, quantity.raw.to_string(), short(quantity.value), formula]);
     };
-    let (mut control, mut colours) = (Vec::new(), Vec::new());
-    for (operand, quantity) in contract.operands().iter().zip(&example.operands) {
+    let operands: Vec<i64> = example.operands.iter().map(|it| it.raw as i64).collect();
+    for quantity in &example.operands {
         row(quantity, String::new(), String::new());
-        match operand.colour {
-            true => colours.push(quantity.value),
-            false => control.push(quantity.raw as i64),
-        }
     }
+    let mut exact = Vec::new();
     for (index, outputs) in (0..).zip(&example.results) {
-        let f = contract.reference(&contract.point(&control, index));
-        for (output, colour) in outputs.iter().zip(&colours) {
+        exact.clear();
+        contract.exact(&operands, index, &mut exact);
+        for (output, [exact, _]) in outputs.iter().zip(&exact) {
             let of = match example.results.len() {
                 1 => String::new(),
                 _ => format!(", point {index}"),
             };
-            row(output, short(f * colour), of);
+            row(output, short(*exact), of);
         }
     }
     table

@@ -55,7 +55,8 @@ struct Measured {
     line: Option<LineClocks>,
     waves: Waves,
     curves: DeviceCurves,
-    highlight: Highlight,
+    /// None of a device that a picture has not the operands for.
+    highlight: Option<Highlight>,
     synthesis: Option<(String, Vec<FamilyUsage>)>,
 }
 
@@ -90,7 +91,7 @@ pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datashee
         Ok(Some((synthesis.0.version()?, usage)))
     };
     let pictures = || -> Result<_> {
-        let highlight = highlight(unit)?;
+        let highlight = render::draws(unit).then(|| highlight(unit)).transpose()?;
         done();
         Ok((highlight, curves::configuration(&unit.device, contract, done)))
     };

@@ -54,7 +54,7 @@ struct Page<'a> {
     proof: Option<ProofView>,
     remarks: Vec<String>,
     figures: Vec<Figure<'a>>,
-    highlight: HighlightView,
+    highlight: Option<HighlightView>,
     synthesis: Option<&'a (String, Vec<FamilyUsage>)>,
     instance: String,
     keys: TableView,
@@ -100,7 +100,6 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
     };
     let charts: Vec<(&Chart, &str)> = measured.curves.charts.iter().map(|it| (it, "")).collect();
     let wavedrom = measured.waves.wavedrom()?;
-    let highlight = &measured.highlight;
     let page = Page {
         version: env!("CARGO_PKG_VERSION"),
         design,
@@ -142,7 +141,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         }),
         remarks: contract.remarks().iter().map(|it| html(it)).collect(),
         figures: figures(&charts)?,
-        highlight: HighlightView {
+        highlight: measured.highlight.as_ref().map(|highlight| HighlightView {
             data: STANDARD.encode(&highlight.png),
             exponent: highlight.exponent,
             likeness: match highlight.psnr {
@@ -153,7 +152,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
                 None => "The two are the same".to_owned(),
             },
             gain: highlight.gain,
-        },
+        }),
         synthesis: measured.synthesis.as_ref(),
         instance: package::instance(design)?,
         keys: TableView::new("Keys of the configuration", &account::keys(&schema, &unit.config)),
@@ -175,7 +174,6 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
     let flip_flops: u32 = registers.map(|register| design.width(register.q)).sum();
     let mut glance = vec![
         ("Largest error of an output", format!("{:.3} units, proven", contract.bound().units)),
-        ("Word f", contract.f_format().to_string()),
         ("Outputs", outputs.to_string()),
         ("Clocks, start to valid", clocks(timing.start_to_valid)),
         ("Clocks a point", clocks(timing.clocks_per_point())),
@@ -184,6 +182,9 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
         ("Register bits", flip_flops.to_string()),
         ("Multipliers", multipliers(design)),
     ];
+    if let Some(highlight) = contract.highlight() {
+        glance.insert(1, ("Word f", highlight.f_format().to_string()));
+    }
     if let Some((_, usage)) = &measured.synthesis
         && let Some(usage) = usage.first()
     {

@@ -51,7 +51,7 @@ fn at_rest(entry: &Entry) -> Option<String> {
         return None;
     }
     // Any angle and exponent: the others do not depend on them.
-    let point = (1..=1000).find_map(|n| contract.at(0.1, f64::from(n)))?;
+    let point = (1..=1000).find_map(|n| contract.highlight()?.at(0.1, f64::from(n)))?;
     let others: Vec<String> = control
         .zip(point)
         .filter(|(operand, _)| is_other(&operand.name))

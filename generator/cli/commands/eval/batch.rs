@@ -15,9 +15,9 @@ use crate::cli::{Output, tables};
 /// The result of a row.
 struct Row {
     operands: Vec<i64>,
-    f: i64,
+    f: Option<i64>,
     outputs: Vec<i64>,
-    exact_f: f64,
+    exact_f: Option<f64>,
     exact: Vec<f64>,
     inside: bool,
 }
@@ -79,9 +79,9 @@ fn row(
         }
     }
     let raw = operands::completed(known, &given);
-    let control = known.iter().filter(|operand| !operand.colour).count();
-    let f = contract.f(&contract.point(&raw[..control], 0));
-    let outputs = raw[control..].iter().map(|&colour| contract.colour(f, colour)).collect();
+    let f = contract.highlight().map(|it| it.f(&it.point(&raw[..it.control()], 0)));
+    let mut outputs = Vec::new();
+    contract.results(&raw, 0, &mut outputs);
     let (exact_f, exact) = formula(contract, &raw);
     let inside = outside(known, &raw).is_empty();
     Ok(Row { operands: raw, f, outputs, exact_f, exact, inside })
@@ -92,10 +92,12 @@ fn print_csv(one: &Loaded, rows: &[Row]) -> Result<()> {
     let mut writer = Writer::from_writer(Vec::new());
     let mut headings: Vec<String> =
         contract.operands().iter().map(|operand| operand.name.clone()).collect();
-    headings.push("f".to_owned());
-    headings.extend(contract.outputs().iter().cloned());
-    headings.push("formula_f".to_owned());
-    headings.extend(contract.outputs().iter().map(|name| format!("formula_{name}")));
+    let highlight = contract.highlight();
+    let outputs = || contract.outputs().iter().map(|output| &output.name);
+    headings.extend(highlight.map(|_| "f".to_owned()));
+    headings.extend(outputs().cloned());
+    headings.extend(highlight.map(|_| "formula_f".to_owned()));
+    headings.extend(outputs().map(|name| format!("formula_{name}")));
     headings.push("inside_the_domain".to_owned());
     writer.write_record(&headings)?;
     for row in rows {
@@ -103,9 +105,10 @@ fn print_csv(one: &Loaded, rows: &[Row]) -> Result<()> {
         let mut cells: Vec<String> = operands
             .map(|(operand, &raw)| operand.format.to_f64(i128::from(raw)).to_string())
             .collect();
-        cells.push(contract.f_format().to_f64(i128::from(row.f)).to_string());
+        let f = highlight.zip(row.f);
+        cells.extend(f.map(|(it, f)| it.f_format().to_f64(i128::from(f)).to_string()));
         cells.extend(row.outputs.iter().map(i64::to_string));
-        cells.push(row.exact_f.to_string());
+        cells.extend(row.exact_f.map(|f| f.to_string()));
         cells.extend(row.exact.iter().map(f64::to_string));
         cells.push(row.inside.to_string());
         writer.write_record(&cells)?;
@@ -123,14 +126,18 @@ fn print_json(one: &Loaded, rows: &[Row]) {
             operands.map(|(operand, raw)| (operand.name.clone(), json!(raw))).collect();
         let outputs = contract.outputs().iter().zip(&row.outputs);
         let outputs: Map<String, Value> =
-            outputs.map(|(name, raw)| (name.clone(), json!(raw))).collect();
-        json!({
+            outputs.map(|(output, raw)| (output.name.clone(), json!(raw))).collect();
+        let mut point = json!({
             "operands": operands,
             "inside_the_domain": row.inside,
-            "f": row.f,
             "outputs": outputs,
-            "formula": { "f": row.exact_f, "outputs": row.exact },
-        })
+            "formula": { "outputs": row.exact },
+        });
+        if let (Some(f), Some(exact)) = (row.f, row.exact_f) {
+            point["f"] = json!(f);
+            point["formula"]["f"] = json!(exact);
+        }
+        point
     });
     let points: Vec<Value> = points.collect();
     tables::print_json(&json!({ "config": one.path, "points": points }));
