@@ -1,0 +1,261 @@
+//! The golden model and the contract, from the formula.
+
+use glint::config::Config;
+use glint::fixed::{Format, Rounding, exp2, mask};
+use glint::golden::contract::control;
+use glint::golden::frame::{Datapath, Frame, Slot, State, idle, step};
+use glint::golden::narrow::{Narrow, rounding_error};
+use glint::golden::{Axis, Bound, Contract, Model, Operand, Output, Sweep, Term, Values, keys};
+
+/// The most that the sum of squares can be: each component is at least −2.0.
+const FARTHEST: i64 = 12;
+
+#[derive(Clone)]
+struct Normaliser {
+    fraction: u32,
+    address: u32,
+    inverse: u32,
+    kept: u32,
+    rounding: Rounding,
+    /// 1/√m at the ends of the segments, from m = 1.0 on, raw.
+    ends: Vec<i64>,
+    /// To a result, from a shifted component times an inverse root.
+    rounded: Narrow,
+}
+
+impl Normaliser {
+    fn new(config: &Config) -> Self {
+        let bits = |key| keys::bits(config, key);
+        let (fraction, inverse) = (bits("vector.fraction"), bits("inverse.fraction"));
+        let (address, kept) = (bits("table.address"), bits("output.fraction"));
+        let rounding = keys::rounding(config, "output.rounding");
+        let segments = 1i64 << address;
+        let scale = exp2(inverse as i32);
+        // m goes from 1.0 to 4.0 in steps of 4.0/segments.
+        let end =
+            |at: i64| (scale / (at as f64 * (4.0 / segments as f64)).sqrt() + 0.5).floor() as i64;
+        Self {
+            ends: (segments / 4..=segments).map(end).collect(),
+            rounded: Narrow::new(fraction + 1 + inverse, Format::signed(1, kept as i32), rounding),
+            fraction,
+            address,
+            inverse,
+            kept,
+            rounding,
+        }
+    }
+
+    fn vector(&self) -> Format {
+        Format::signed(1, self.fraction as i32)
+    }
+
+    fn result(&self) -> Format {
+        Format::signed(1, self.kept as i32)
+    }
+
+    /// Bits of the sum of squares.
+    fn width(&self) -> u32 {
+        2 * self.fraction + 4
+    }
+
+    /// Pairs of leading zeros, as many as the shifter counts.
+    fn pairs(&self, sum: i64) -> i64 {
+        match sum {
+            0 => (1 << self.pair_bits()) - 1,
+            _ => i64::from((self.width() - 1 - sum.ilog2()) / 2),
+        }
+    }
+
+    /// Bits of that count.
+    fn pair_bits(&self) -> u32 {
+        (self.width() - 1).ilog2()
+    }
+
+    /// The sum shifted by so many pairs.
+    fn mantissa(&self, sum: i64, pairs: i64) -> i64 {
+        if sum == 0 { 0 } else { sum << (2 * pairs) }
+    }
+
+    /// 1/√m by the chord of the segment.
+    fn inverse_root(&self, mantissa: i64) -> i64 {
+        if mantissa == 0 {
+            return 0;
+        }
+        let below = self.width() - self.address;
+        let at = ((mantissa >> below) - (1 << (self.address - 2))) as usize;
+        let along = below.min(self.inverse - self.address + 2);
+        let rest = (mantissa >> (below - along)) & mask(along) as i64;
+        self.ends[at] - (((self.ends[at] - self.ends[at + 1]) * rest) >> along)
+    }
+
+    /// A component of the unit vector.
+    fn scaled(&self, component: i64, pairs: i64, inverse: i64) -> i64 {
+        let shifted = if component == 0 { 0 } else { component << pairs };
+        self.rounded.apply(shifted * inverse)
+    }
+}
+
+const OPERANDS: [&str; 3] = ["x", "y", "z"];
+const RESULTS: [&str; 3] = ["unit_x", "unit_y", "unit_z"];
+
+struct Device {
+    it: Normaliser,
+    components: [Slot; 3],
+    sum: Slot,
+    mantissa: Slot,
+    shift: Slot,
+    inverse: Slot,
+    units: [Slot; 3],
+    outputs: [Slot; 3],
+}
+
+impl Device {
+    fn square(&self, s: &State, axis: usize) -> i64 {
+        s[self.components[axis]] * s[self.components[axis]]
+    }
+
+    fn scale(&self, s: &mut State, axis: usize) {
+        let component = s[self.components[axis]];
+        s[self.units[axis]] = self.it.scaled(component, s[self.shift], s[self.inverse]);
+    }
+}
+
+impl Datapath for Device {
+    fn outputs(&self, s: &mut State) {
+        for (output, unit) in self.outputs.into_iter().zip(self.units) {
+            s[output] = s[unit];
+        }
+    }
+}
+
+/// The golden model.
+pub fn model(config: &Config) -> Box<dyn Model> {
+    let it = Normaliser::new(config);
+    let mut frame = Frame::default();
+    let device = Device {
+        components: OPERANDS.map(|name| frame.operand(name, it.vector())),
+        sum: frame.register("sum", Format::unsigned(4, 2 * it.fraction as i32)),
+        mantissa: frame.register("mantissa", Format::unsigned(it.width() as i32, 0)),
+        shift: frame.register("shift", Format::unsigned(it.pair_bits() as i32, 0)),
+        inverse: frame.register("inverse", Format::unsigned(1, it.inverse as i32)),
+        units: RESULTS.map(|name| frame.register(name, it.result())),
+        outputs: RESULTS.map(|name| frame.output(&format!("{name}_out"), it.result())),
+        it,
+    };
+    let program = [
+        idle(),
+        step(|d: &Device, s| s[d.sum] = d.square(s, 0)),
+        step(|d: &Device, s| s[d.sum] += d.square(s, 1)),
+        step(|d: &Device, s| s[d.sum] += d.square(s, 2)),
+        step(|d: &Device, s| {
+            s[d.shift] = d.it.pairs(s[d.sum]);
+            s[d.mantissa] = d.it.mantissa(s[d.sum], s[d.shift]);
+        }),
+        // The table reads.
+        idle(),
+        step(|d: &Device, s| s[d.inverse] = d.it.inverse_root(s[d.mantissa])),
+        step(|d: &Device, s| d.scale(s, 0)),
+        step(|d: &Device, s| d.scale(s, 1)),
+        step(|d: &Device, s| d.scale(s, 2)),
+        idle().valid().end(),
+    ];
+    Box::new(frame.model(device, program))
+}
+
+struct UnitVector {
+    it: Normaliser,
+    operands: Vec<Operand>,
+    outputs: Vec<Output>,
+}
+
+/// Which function the device computes, and how far off it may be.
+pub fn contract(config: &Config) -> Box<dyn Contract> {
+    let it = Normaliser::new(config);
+    let (vector, format) = (it.vector(), it.result());
+    let domain = (vector.min_raw() as i64, vector.max_raw() as i64);
+    Box::new(UnitVector {
+        operands: OPERANDS
+            .map(|name| control(name, vector, domain, "component of the vector"))
+            .into(),
+        outputs: RESULTS.map(|name| Output { name: format!("{name}_out"), format }).into(),
+        it,
+    })
+}
+
+impl Contract for UnitVector {
+    fn operands(&self) -> &[Operand] {
+        &self.operands
+    }
+
+    fn outputs(&self) -> &[Output] {
+        &self.outputs
+    }
+
+    fn results(&self, operands: &[i64], _: u64, raw: &mut Vec<i64>) {
+        let sum = operands.iter().map(|component| component * component).sum();
+        let pairs = self.it.pairs(sum);
+        let inverse = self.it.inverse_root(self.it.mantissa(sum, pairs));
+        raw.extend(operands.iter().map(|&component| self.it.scaled(component, pairs, inverse)));
+    }
+
+    fn exact(&self, operands: &[i64], _: u64, values: &mut Vec<[f64; 2]>) {
+        let sum: i64 = operands.iter().map(|component| component * component).sum();
+        let length = (sum.max(1) as f64).sqrt();
+        values.extend(operands.iter().map(|&component| [component as f64 / length; 2]));
+    }
+
+    /// Let m be the mantissa, 1 ≤ m < 4, f = 1/√m and r what stands for it, u the last place of r.
+    ///
+    /// - f is convex, so that a chord lies above it, by at most h²/8·max f″ = h²/8·¾·a^(−5/2) in the segment from
+    ///   a on, of length h.
+    /// - The ends of the chord are rounded: ½u. What is cut of the way along the segment is at most a part
+    ///   2^−(R − A + 2) of a fall of at most h/2 = 2^(1 − A): ½u. The fall is truncated: u. In all 2u.
+    /// - The shifted component x has x² ≤ m, so that the error of the product is at most √m, which is below 2, times
+    ///   that of r: 4u for the rounding, and the chord's times the root of the end of the segment.
+    /// - The product is rounded once. It does not saturate: |x·f| ≤ 1, and the rest is far below 1.
+    ///
+    /// The zero vector has zeros, as the formula has it here.
+    fn bound(&self) -> Bound {
+        let it = &self.it;
+        let segments = exp2(it.address as i32);
+        let h = 4.0 / segments;
+        let chord = (1 << (it.address - 2)..1u32 << it.address)
+            .map(|at| {
+                let a = f64::from(at) * h;
+                h * h / 8.0 * 0.75 * libm::pow(a, -2.5) * (a + h).sqrt()
+            })
+            .fold(0.0, f64::max);
+        let units = exp2(it.kept as i32);
+        let term = |key, what, error| Term { key, what, units: error * units };
+        Bound::of(vec![
+            term("table.address", "straight segments for the inverse root", chord),
+            term(
+                "inverse.fraction",
+                "rounding of the inverse root",
+                4.0 * exp2(-(it.inverse as i32)),
+            ),
+            term(
+                "output.rounding",
+                "rounding of the results",
+                rounding_error(it.fraction + 1 + it.inverse, it.kept, it.rounding),
+            ),
+        ])
+    }
+
+    /// The sum of squares determines the inverse root, and the largest error of any component with it.
+    fn sweep(&self) -> Sweep {
+        let most = FARTHEST << (2 * self.it.fraction);
+        let name = "sum of squares".to_owned();
+        Sweep { axes: vec![Axis { name, values: Values::Range(1, most) }], omits: String::new() }
+    }
+
+    /// Of a component as long as the vector, before it is rounded, and the rounding.
+    fn sweep_error(&self, place: &[i64]) -> f64 {
+        let it = &self.it;
+        let mantissa = it.mantissa(place[0], it.pairs(place[0]));
+        let root = (mantissa as f64 * exp2(-2 * it.fraction as i32 - 2)).sqrt();
+        let inverse = it.inverse_root(mantissa) as f64 * exp2(-(it.inverse as i32));
+        let rounding = rounding_error(it.fraction + 1 + it.inverse, it.kept, it.rounding);
+        ((inverse * root - 1.0).abs() + rounding) * exp2(it.kept as i32)
+    }
+}
