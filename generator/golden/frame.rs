@@ -150,15 +150,20 @@ struct Operand {
     max: i64,
 }
 
+/// What is predicted, with the bits that its net has.
+struct Shown {
+    name: String,
+    output: bool,
+    slot: Slot,
+    mask: u64,
+}
+
 /// What a device's state is made of.
 #[derive(Default)]
 pub struct Frame {
     inputs: Vec<String>,
     operands: Vec<Operand>,
-    /// Names of [`Frame::shown`], and of the handshake's before them.
-    signals: Vec<String>,
-    /// What is predicted, with the bits that its net has.
-    shown: Vec<(Slot, u64)>,
+    shown: Vec<Shown>,
     slots: usize,
     flags: Vec<Slot>,
     valid_delay: u32,
@@ -174,21 +179,20 @@ impl Frame {
         Slot(self.slots - 1)
     }
 
-    fn shown(&mut self, name: String, width: u32) -> Slot {
+    fn shown(&mut self, name: String, format: Format, output: bool) -> Slot {
         let slot = self.hidden();
-        self.signals.push(name);
-        self.shown.push((slot, mask(width)));
+        self.shown.push(Shown { name, output, slot, mask: mask(format.width()) });
         slot
     }
 
     /// A register, of which the low bits that `format` has are shown.
     pub fn register(&mut self, name: &str, format: Format) -> Slot {
-        self.shown(name.to_owned(), format.width())
+        self.shown(name.to_owned(), format, false)
     }
 
     /// An output, which [`Datapath::outputs`] sets.
     pub fn output(&mut self, name: &str, format: Format) -> Slot {
-        self.shown(name.to_owned(), format.width())
+        self.shown(name.to_owned(), format, true)
     }
 
     /// An output of one bit that is 1 in the microinstructions that assert it.
@@ -213,7 +217,7 @@ impl Frame {
     /// An operand whose register moves what it loads into `min ..= max`, raw.
     pub fn clamped(&mut self, name: &str, format: Format, min: i64, max: i64) -> Slot {
         self.inputs.extend([name.to_owned(), format!("{name}_write")]);
-        let slot = self.shown(format!("{name}_reg"), format.width());
+        let slot = self.shown(format!("{name}_reg"), format, false);
         self.operands.push(Operand { slot, format, min, max });
         slot
     }
@@ -230,12 +234,15 @@ impl Frame {
     /// # Panics
     /// If there is no microinstruction.
     pub fn model<D: Datapath>(
-        self,
+        mut self,
         datapath: D,
         program: impl IntoIterator<Item = Microinstruction<D>>,
     ) -> Clocked<D> {
         let program: Vec<_> = program.into_iter().collect();
         assert!(!program.is_empty(), "a device idles in its first microinstruction");
+        // Of signals that differ in one clock the first is reported: one that a user of the device sees.
+        self.shown.sort_by_key(|shown| !shown.output);
+        let signals = self.shown.iter().map(|shown| shown.name.clone()).collect();
         let names = |first: &[&str], then: Vec<String>| {
             first.iter().map(|&name| name.to_owned()).chain(then).collect::<Vec<_>>()
         };
@@ -246,9 +253,9 @@ impl Frame {
             values: vec![0; HANDSHAKE.len() + self.shown.len()].into(),
             fixed: Arc::new(Fixed {
                 inputs: names(&["rst_n", "start"], self.inputs),
-                signals: names(&HANDSHAKE, self.signals),
+                signals: names(&HANDSHAKE, signals),
                 operands: self.operands,
-                shown: self.shown,
+                shown: self.shown.into_iter().map(|shown| (shown.slot, shown.mask)).collect(),
                 flags: self.flags,
                 valid_delay: self.valid_delay,
                 datapath,

@@ -15,6 +15,7 @@ mod config_fuzz;
 mod config_problems;
 mod config_text;
 mod datasheet;
+mod devices;
 mod diagnostics;
 mod divider;
 mod lines;

@@ -1,0 +1,128 @@
+//! Devices of `examples/` that are no highlights: they have several outputs, with a sign, and multiply no colour.
+
+#[allow(dead_code)]
+#[path = "../../examples/dot_product/main.rs"]
+mod dot_product;
+#[allow(dead_code)]
+#[path = "../../examples/normaliser/main.rs"]
+mod normaliser;
+
+use dot_product::DOT_PRODUCT;
+use glint::config::{Config, sample};
+use glint::core::Unit;
+use glint::golden::Contract;
+use glint::registry::Device;
+use normaliser::NORMALISER;
+
+const DEVICES: [Device; 2] = [DOT_PRODUCT, NORMALISER];
+
+fn default(device: Device) -> Unit {
+    let config = Config::defaults(&(device.schema)(), &device.name.replace('-', "_"));
+    Unit::new(device, config).unwrap_or_else(|error| panic!("{error:#}"))
+}
+
+/// The raw results and the error of each in last places, by the formula given.
+fn errors(contract: &dyn Contract, operands: &[i64], formula: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
+    let mut raw = Vec::new();
+    contract.results(operands, 0, &mut raw);
+    let values = contract.operands().iter().zip(operands);
+    let values: Vec<f64> = values.map(|(it, &raw)| it.format.to_f64(raw.into())).collect();
+    let outputs = contract.outputs().iter().zip(&raw).zip(formula(&values));
+    outputs
+        .map(|((output, &raw), exact)| (raw as f64 - exact / output.format.to_f64(1)).abs())
+        .fold(0.0, f64::max)
+}
+
+fn dot(v: &[f64]) -> Vec<f64> {
+    vec![(v[0] * v[3] + v[1] * v[4] + v[2] * v[5]).clamp(0.0, 1.0)]
+}
+
+fn unit(v: &[f64]) -> Vec<f64> {
+    let length = v.iter().map(|it| it * it).sum::<f64>().sqrt();
+    v.iter().map(|it| if length == 0.0 { 0.0 } else { it / length }).collect()
+}
+
+#[test]
+fn schemas_are_sound_and_defaults_are_proven() {
+    for device in DEVICES {
+        assert_eq!((device.schema)().faults(), Vec::<String>::new());
+        let unit = default(device);
+        assert!(unit.contract.highlight().is_none());
+        let bound = unit.contract.bound();
+        assert!(bound.units < 1.0, "{}: {bound:?}", device.name);
+    }
+}
+
+#[test]
+fn random_configurations_agree_on_every_clock() {
+    for device in DEVICES {
+        let schema = (device.schema)();
+        for seed in 0..24 {
+            let config = sample(&schema, seed);
+            let what = config.to_toml(&schema);
+            let unit =
+                Unit::new(device, config).unwrap_or_else(|error| panic!("{what}: {error:#}"));
+            let outcome = unit.lockstep(seed).and_then(|lockstep| lockstep.run(300, &|_| ()));
+            let outcome = outcome.unwrap_or_else(|error| panic!("{what}: {error:#}"));
+            assert!(outcome.mismatch.is_none(), "{what}: {:?}", outcome.mismatch);
+            let worst = outcome.worst.expect("results").units;
+            assert!(worst <= unit.contract.bound().units + 1e-9, "{what}: {worst}");
+        }
+    }
+}
+
+/// All vectors of a grid and of a fine corner, against the formulas written out here.
+#[test]
+fn the_bounds_hold() {
+    let formulas: [fn(&[f64]) -> Vec<f64>; 2] = [dot, unit];
+    for (device, formula) in DEVICES.into_iter().zip(formulas) {
+        let unit = default(device);
+        let contract = unit.contract.as_ref();
+        let bound = contract.bound().units;
+        let mut worst: f64 = 0.0;
+        let mut at = 1u64;
+        for _ in 0..200_000 {
+            let operands: Vec<i64> = contract
+                .operands()
+                .iter()
+                .map(|operand| {
+                    // A linear congruential generator, its magnitude by octaves.
+                    at = at.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+                    let (low, high) = operand.domain;
+                    ((at >> 40) as i64 % (high - low + 1) + low) >> (at >> 33 & 7)
+                })
+                .collect();
+            worst = worst.max(errors(contract, &operands, formula));
+        }
+        assert!(worst <= bound + 1e-9, "{}: {worst} > {bound}", device.name);
+        assert!(worst > bound / 2.0, "{}: {worst} is far below {bound}", device.name);
+    }
+}
+
+#[test]
+fn vectors_by_hand() {
+    let unit = default(NORMALISER);
+    let mut raw = Vec::new();
+    // (0.6, 0, −0.8) has length 1; in 2^-14: 9830.4 and −13107.2. The zero vector stays.
+    for (operands, expected) in [
+        ([9830, 0, -13107], [9830, 0, -13107]),
+        ([3, 0, -4], [9830, 0, -13107]),
+        ([0, 1, 0], [0, 16384, 0]),
+        ([0, 0, 0], [0, 0, 0]),
+    ] {
+        raw.clear();
+        unit.contract.results(&operands, 0, &mut raw);
+        assert_eq!(raw, expected, "{operands:?}");
+    }
+    let unit = default(DOT_PRODUCT);
+    for (operands, expected) in [
+        // (0.5, 0.5, 0)·(1, 0, 0); the other way round it is 0; beyond 1 it is 1.
+        ([8192, 8192, 0, 16384, 0, 0], 8192),
+        ([-8192, 8192, 0, 16384, 0, 0], 0),
+        ([16384, 16384, 0, 16384, 16384, 0], 16384),
+    ] {
+        raw.clear();
+        unit.contract.results(&operands, 0, &mut raw);
+        assert_eq!(raw, [expected], "{operands:?}");
+    }
+}
