@@ -380,7 +380,7 @@ pub(super) mod tests {
             Highlight::new(self, operands, Products::none(Format::unsigned(0, 10)))
         }
 
-        fn new(says: bool) -> Highlight {
+        fn pair(says: bool) -> Highlight {
             Self { says, length: None }.contract(&[("x", 20, 1 << 20), ("at", 20, 1000)])
         }
 
@@ -429,14 +429,14 @@ pub(super) mod tests {
     #[test]
     fn a_device_of_any_formula_says_where_it_is_largest() {
         // Of the operands drawn on their own one in 130 000 is within the pulse, but for those near 0.
-        assert!(share(&Pulse::new(true)) > 0.6);
+        assert!(share(&Pulse::pair(true)) > 0.6);
         // Moved to where both are 0, x passes through the pulse there.
-        assert!(share(&Pulse::new(false)) > 0.4);
+        assert!(share(&Pulse::pair(false)) > 0.4);
     }
 
     #[test]
     fn operands_that_are_not_free_stay_where_they_are() {
-        let pulse = Pulse::new(true);
+        let pulse = Pulse::pair(true);
         let points = Points::new(&pulse);
         let mut random = Random::new(3);
         for _ in 0..200 {
@@ -448,7 +448,7 @@ pub(super) mod tests {
 
     #[test]
     fn what_is_held_is_seldom_moved() {
-        let pulse = Pulse::new(true);
+        let pulse = Pulse::pair(true);
         let mut points = Points::new(&pulse);
         points.hold("x", 500);
         let mut random = Random::new(3);

@@ -246,7 +246,7 @@ impl Model {
         };
         text += "for (size_t at = 0; at < count; ++at) {\nint64_t result;\n";
         for output in contract.outputs() {
-            writeln!(text, "result = (int64_t)points[at].{output};").expect("text");
+            writeln!(text, "result = (int64_t)points[at].{};", output.name).expect("text");
             text += "fwrite(&result, sizeof result, 1, out);\n";
         }
         text + "}\n}\nreturn fclose(out);\n}\n"
@@ -283,7 +283,7 @@ fn draw(contract: &dyn Contract, random: &mut ChaCha8Rng) -> Vec<i64> {
         let n = libm::floor(libm::pow(1000.0, unit()));
         let f = unit();
         let gamma = libm::acos(libm::pow(f, 1.0 / n));
-        if let Some(control) = contract.at(gamma, n) {
+        if let Some(control) = contract.highlight().and_then(|it| it.at(gamma, n)) {
             for (at, raw) in control.into_iter().enumerate() {
                 // The others keep what was drawn.
                 if raw != 0 && Some(contract.operands()[at].name.as_str()) != contract.length() {
