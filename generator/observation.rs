@@ -1,8 +1,10 @@
 //! What is known of a design beyond its netlist: clocks, worked examples, computations with their results.
 
+use std::iter::repeat;
+
 use serde::Serialize;
 
-use crate::golden::Contract;
+use crate::golden::{Contract, Highlight};
 
 /// Clocks between the events of the handshake; `None` where they depend on the data.
 ///
@@ -86,8 +88,8 @@ impl Linear {
 pub struct Accuracy {
     /// The operands with the smallest and the largest raw value for which it promises anything.
     pub domain: Vec<(String, (i64, i64))>,
-    /// The result outputs, each with the operand by which it multiplies f.
-    pub outputs: Vec<(String, String)>,
+    /// The result outputs, each with the operand by which a highlight multiplies f.
+    pub outputs: Vec<(String, Option<String>)>,
     /// The operand that says how many results there are beyond the first, where one does.
     pub length: Option<String>,
     /// The values that are right for f, as expressions of Python.
@@ -101,6 +103,7 @@ impl Accuracy {
     pub fn new(contract: &dyn Contract) -> Self {
         let operands = contract.operands();
         let colours = operands.iter().filter(|operand| operand.colour);
+        let colours = colours.map(|colour| Some(colour.name.clone())).chain(repeat(None));
         let domain = operands.iter();
         Self {
             domain: domain.map(|operand| (operand.name.clone(), operand.domain)).collect(),
@@ -108,10 +111,10 @@ impl Accuracy {
                 .outputs()
                 .iter()
                 .zip(colours)
-                .map(|(output, colour)| (output.clone(), colour.name.clone()))
+                .map(|(output, colour)| (output.name.clone(), colour))
                 .collect(),
             length: contract.length().map(str::to_owned),
-            f: contract.expressions(),
+            f: contract.highlight().map(Highlight::expressions).unwrap_or_default(),
             bound: contract.bound().units,
         }
     }
