@@ -116,7 +116,15 @@ pub fn describe(d: &Designer, config: &Config) {
         .line(51)
         .doc("n/2*(cos(gamma +- dgamma) - 1), then f");
 
-    let sine = sine_rom(d, config, &formats, sine_of.out());
+    // A synchronous ROM is addressed with dgamma while register 19 still takes the sine of gamma, a
+    // microinstruction before line 47 says so: the sine of dgamma is then there when mux 8 selects it.
+    let addressed = if config.flag("sine.synchronous") {
+        d.choose("sine_of", r19.loading(), [sine_of.out(), cos_dgamma])
+            .doc("mux 17, ahead by a microinstruction")
+    } else {
+        sine_of.out()
+    };
+    let sine = sine_rom(d, config, &formats, addressed);
     r19.takes(sine);
     let (adder15, half_n, adder16) = if formats.patent {
         patent_sums(d, r4.q(), r3.q(), [r11, r12, r13])
@@ -125,14 +133,18 @@ pub fn describe(d: &Designer, config: &Config) {
     };
 
     let half_n = half_n.named("half_exponent").doc("n/2, by wiring");
+    // Words 0, 2, 4 and 6 settle the operands of what words 1, 3, 5 and 7 load: they are held, so that the
+    // multiplier shares a clock with none of the adders in front of it.
     let mux8 = d
         .bus("mux8", operand_select, [cos_gamma, sine, adder15, adder16])
         .block(8)
-        .doc("first operand of multiplier 10");
+        .doc("first operand of multiplier 10")
+        .held();
     let mux9 = d
         .bus("mux9", operand_select, [cos_dgamma, r19.q(), half_n, adder16])
         .block(9)
-        .doc("second operand of multiplier 10");
+        .doc("second operand of multiplier 10")
+        .held();
     let product = d
         .shared_mul("multiplier10", &mux8, &mux9)
         .block(10)
@@ -143,11 +155,8 @@ pub fn describe(d: &Designer, config: &Config) {
     r11.takes(d.narrow("cos_cos", cos_cos, r11.format(), rounding_products, overflow));
     let sin_sin = product.of(sine, r19.q());
     r12.takes(d.narrow("sin_sin", sin_sin, r12.format(), rounding_products, overflow));
-    // Words 4 and 6 settle what words 5 and 7 load, so that register 13 may take the product of the word
-    // before: the multiplier then shares a clock with none of the adders in front and behind.
-    let settled = product.held("product_held");
-    let line = settled.of(adder15, half_n);
-    let square = settled.of(adder16, adder16);
+    let line = product.of(adder15, half_n);
+    let square = product.of(adder16, adder16);
     let squares = operand_select
         .out()
         .bit(0)
@@ -293,8 +302,9 @@ fn about(config: &Config) -> About {
         "Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1; the control \
          ROM is its table 1, bit for bit."
             .to_owned(),
-        "Register 13 takes the multiplier's product of the word before, which the patent's settling words \
-         have left the time for."
+        "Muxes 8 and 9 are followed by registers: the multiplier takes what the word before selected, which \
+         the patent's settling words have left the time for; a synchronous ROM 18 is addressed with dgamma a \
+         word before line 47 says so."
             .to_owned(),
         "Writes while busy are ignored. The outputs follow register 13 and the colour registers: they hold \
          from valid until a colour is written or the next computation reaches its word 5."

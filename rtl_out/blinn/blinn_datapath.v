@@ -53,6 +53,9 @@ module blinn_datapath #(
     reg                exp2_bend_offset2_upper;
     reg                exp2_bend_offset3_upper;
     reg         [15:0] exp2_x;                   // u0.16
+    reg         [4:0]  octave_held;              // octave, a clock later: the operands are held
+    reg                octave_any_held;          // octave_any, a clock later: the operands are held
+    reg                facing_held;              // facing, a clock later: the operands are held
     reg         [44:0] curve_word;
     reg         [14:0] exp2_bend_value_word;     // u-4.19
     reg  signed [9:0]  exp2_bend_offset1_word;   // s-10.19
@@ -113,11 +116,11 @@ module blinn_datapath #(
     wire [18:0] curve_slope = curve_word[18:0];  // u-5.24
     wire decay_large = |decay[25:24];
     wire octave_any = |octave;  // cos gamma is below one half
-    wire decay_far = decay_large | octave_any;
+    wire decay_far = decay_large | octave_any_held;
     wire decay_small = ~decay_far;  // the decay is below 1/4, and all its bits count
 
     // the decay, its point by decay_small
-    wire [23:0] factor = decay_small ? decay[23:0] : {octave, decay[25:7]};
+    wire [23:0] factor = decay_small ? decay[23:0] : {octave_held, decay[25:7]};
 
     // first operand of the multiplier
     wire [23:0] first = operand_select ? factor : {5'd0, curve_slope};
@@ -215,7 +218,7 @@ module blinn_datapath #(
     wire level = ~fades;
     wire peak = aligned | level;  // f is 1.0, less an ulp
     wire [15:0] lit = peak ? 16'hffff : exp2_rounded;  // u0.16
-    wire [15:0] reflectance_next = facing ? lit : 16'd0;  // u0.16
+    wire [15:0] reflectance_next = facing_held ? lit : 16'd0;  // u0.16
     assign f_out = reflectance;  // u0.16: the reflectance, for a user's own multipliers
     wire [23:0] red_product = reflectance * red_reg;  // u8.16: an output before it is rounded
     wire [7:0] red_intensity = red_product[23:16] + {7'd0, red_product[15]};
@@ -314,6 +317,9 @@ module blinn_datapath #(
         exp2_bend_offset2_upper <= halvings[6];
         exp2_bend_offset3_upper <= halvings[3];
         exp2_x <= halvings[15:0];
+        octave_held <= octave;
+        octave_any_held <= octave_any;
+        facing_held <= facing;
     end
 
     // Bits that nothing needs, among them those that narrowing drops.

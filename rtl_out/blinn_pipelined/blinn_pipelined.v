@@ -160,8 +160,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 1: segment of the decay addressed by cos gamma; halvings <- n * decay; reflectance <-
-    // 2^-halvings
+    // Stage 1: segment of the decay addressed by cos gamma
     reg  [9:0]  exponent_s2;       // specular exponent n
     reg  [7:0]  red_s2;            // intensity of the light times k_s
     reg  [7:0]  green_s2;          // intensity of the light times k_s
@@ -198,7 +197,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 2: segment of the decay addressed by cos gamma; halvings <- n * decay
+    // Stage 2: segment of the decay addressed by cos gamma
     reg  [9:0]  exponent_s3;  // specular exponent n
     reg  [7:0]  red_s3;       // intensity of the light times k_s
     reg  [7:0]  green_s3;     // intensity of the light times k_s
@@ -307,9 +306,9 @@ module blinn_pipelined #(
     reg  [7:0]  green_s5;        // intensity of the light times k_s
     reg  [7:0]  blue_s5;         // intensity of the light times k_s
     reg  [12:0] curve_rest2_s5;  // u0.13
-    reg  [44:0] curve_word_s5;
     reg  [4:0]  octave_s5;       // leading zeros of cos gamma
     reg         facing_s5;       // the surface faces the half vector
+    reg  [44:0] curve_word_s5;
     reg         aligned_s5;      // cos gamma is 1.0
 
     always @(posedge clk) begin
@@ -319,9 +318,9 @@ module blinn_pipelined #(
             green_s5 <= green_s4;
             blue_s5 <= blue_s4;
             curve_rest2_s5 <= curve_rest2_s4;
-            curve_word_s5 <= curve_word_s4;
             octave_s5 <= octave_s4;
             facing_s5 <= facing_s4;
+            curve_word_s5 <= curve_word_s4;
             aligned_s5 <= aligned_s4;
         end
     end
@@ -331,12 +330,12 @@ module blinn_pipelined #(
     reg  [7:0]  red_s6;               // intensity of the light times k_s
     reg  [7:0]  green_s6;             // intensity of the light times k_s
     reg  [7:0]  blue_s6;              // intensity of the light times k_s
+    reg  [4:0]  octave_s6;            // leading zeros of cos gamma
+    reg         facing_s6;            // the surface faces the half vector
     reg  [25:0] curve_base_s6;        // u0.26
     reg  [30:0] product_upper_s6;
     reg         product_low_bits_s6;
     reg  [11:0] product_carried_s6;
-    reg  [4:0]  octave_s6;            // leading zeros of cos gamma
-    reg         facing_s6;            // the surface faces the half vector
     reg         aligned_s6;           // cos gamma is 1.0
 
     wire [25:0] curve_base_s5 = curve_word_s5[44:19];  // u0.26
@@ -349,25 +348,26 @@ module blinn_pipelined #(
             red_s6 <= red_s5;
             green_s6 <= green_s5;
             blue_s6 <= blue_s5;
+            octave_s6 <= octave_s5;
+            facing_s6 <= facing_s5;
             curve_base_s6 <= curve_base_s5;
             product_upper_s6 <= product_upper_s5;
             product_low_bits_s6 <= product_row_2_s5[0];
             product_carried_s6 <= product_row_2_s5[12:1];
-            octave_s6 <= octave_s5;
-            facing_s6 <= facing_s5;
             aligned_s6 <= aligned_s5;
         end
     end
 
     // Stage 6: decay <- base + slope * rest
-    reg  [9:0]  exponent_s7;   // specular exponent n
-    reg  [7:0]  red_s7;        // intensity of the light times k_s
-    reg  [7:0]  green_s7;      // intensity of the light times k_s
-    reg  [7:0]  blue_s7;       // intensity of the light times k_s
-    reg  [26:0] curve_sum_s7;  // u1.26
-    reg  [4:0]  octave_s7;     // leading zeros of cos gamma
-    reg         facing_s7;     // the surface faces the half vector
-    reg         aligned_s7;    // cos gamma is 1.0
+    reg  [9:0]  exponent_s7;          // specular exponent n
+    reg  [7:0]  red_s7;               // intensity of the light times k_s
+    reg  [7:0]  green_s7;             // intensity of the light times k_s
+    reg  [7:0]  blue_s7;              // intensity of the light times k_s
+    reg  [4:0]  octave_s7;            // leading zeros of cos gamma
+    reg         facing_s7;            // the surface faces the half vector
+    reg         curve_sum_bits_s7;
+    reg  [25:0] curve_sum_inside_s7;  // u0.26
+    reg         aligned_s7;           // cos gamma is 1.0
 
     wire [30:0] product_sum_s6 = product_upper_s6 + {19'd0, product_carried_s6};
 
@@ -382,28 +382,32 @@ module blinn_pipelined #(
             red_s7 <= red_s6;
             green_s7 <= green_s6;
             blue_s7 <= blue_s6;
-            curve_sum_s7 <= curve_sum_s6;
             octave_s7 <= octave_s6;
             facing_s7 <= facing_s6;
+            curve_sum_bits_s7 <= curve_sum_s6[26];
+            curve_sum_inside_s7 <= curve_sum_s6[25:0];
             aligned_s7 <= aligned_s6;
         end
     end
 
-    // Stage 7: decay <- base + slope * rest; halvings <- n * decay
-    reg  [9:0]  exponent_s8;     // specular exponent n
-    reg  [7:0]  red_s8;          // intensity of the light times k_s
-    reg  [7:0]  green_s8;        // intensity of the light times k_s
-    reg  [7:0]  blue_s8;         // intensity of the light times k_s
-    reg         decay_small_s8;  // the decay is below 1/4, and all its bits count
-    reg  [23:0] factor_s8;       // the decay, its point by decay_small
-    reg         facing_s8;       // the surface faces the half vector
-    reg         aligned_s8;      // cos gamma is 1.0
+    // Stage 7: segment of the decay addressed by cos gamma; decay <- base + slope * rest; halvings
+    // <- n * decay
+    reg  [9:0]  exponent_s8;              // specular exponent n
+    reg  [7:0]  red_s8;                   // intensity of the light times k_s
+    reg  [7:0]  green_s8;                 // intensity of the light times k_s
+    reg  [7:0]  blue_s8;                  // intensity of the light times k_s
+    reg         facing_s8;                // the surface faces the half vector
+    reg         decay_small_s8;           // the decay is below 1/4, and all its bits count
+    reg  [17:0] product_upper_bits_2_s8;
+    reg  [5:0]  product_lower_bits_s8;
+    reg         aligned_s8;               // cos gamma is 1.0
+
+    wire octave_any_s7 = |octave_s7;  // cos gamma is below one half
 
     // u0.26: -log2(cos gamma * 2^octave)
-    wire [25:0] decay_s7 = curve_sum_s7[26] ? 26'h3ffffff : curve_sum_s7[25:0];
+    wire [25:0] decay_s7 = curve_sum_bits_s7 ? 26'h3ffffff : curve_sum_inside_s7;
 
     wire decay_large_s7 = |decay_s7[25:24];
-    wire octave_any_s7 = |octave_s7;  // cos gamma is below one half
     wire decay_far_s7 = decay_large_s7 | octave_any_s7;
     wire decay_small_s7 = ~decay_far_s7;  // the decay is below 1/4, and all its bits count
 
@@ -416,35 +420,38 @@ module blinn_pipelined #(
             red_s8 <= red_s7;
             green_s8 <= green_s7;
             blue_s8 <= blue_s7;
-            decay_small_s8 <= decay_small_s7;
-            factor_s8 <= factor_s7;
             facing_s8 <= facing_s7;
+            decay_small_s8 <= decay_small_s7;
+            product_upper_bits_2_s8 <= factor_s7[23:6];
+            product_lower_bits_s8 <= factor_s7[5:0];
             aligned_s8 <= aligned_s7;
         end
     end
 
     // Stage 8: halvings <- n * decay
-    reg  [7:0]  red_s9;              // intensity of the light times k_s
-    reg  [7:0]  green_s9;            // intensity of the light times k_s
-    reg  [7:0]  blue_s9;             // intensity of the light times k_s
-    reg         decay_small_s9;      // the decay is below 1/4, and all its bits count
+    reg  [7:0]  red_s9;                 // intensity of the light times k_s
+    reg  [7:0]  green_s9;               // intensity of the light times k_s
+    reg  [7:0]  blue_s9;                // intensity of the light times k_s
+    reg         facing_s9;              // the surface faces the half vector
+    reg         decay_small_s9;         // the decay is below 1/4, and all its bits count
     reg  [27:0] product_upper_2_s9;
-    reg  [15:0] product_lower_s9;
-    reg         facing_s9;           // the surface faces the half vector
-    reg         aligned_s9;          // cos gamma is 1.0
+    reg  [5:0]  product_low_bits_2_s9;
+    reg  [9:0]  product_carried_2_s9;
+    reg         aligned_s9;             // cos gamma is 1.0
 
-    wire [27:0] product_upper_2_s8 = factor_s8[23:6] * exponent_s8;
-    wire [15:0] product_lower_s8 = factor_s8[5:0] * exponent_s8;
+    wire [27:0] product_upper_2_s8 = product_upper_bits_2_s8 * exponent_s8;
+    wire [15:0] product_lower_s8 = product_lower_bits_s8 * exponent_s8;
 
     always @(posedge clk) begin
         if (advance) begin
             red_s9 <= red_s8;
             green_s9 <= green_s8;
             blue_s9 <= blue_s8;
+            facing_s9 <= facing_s8;
             decay_small_s9 <= decay_small_s8;
             product_upper_2_s9 <= product_upper_2_s8;
-            product_lower_s9 <= product_lower_s8;
-            facing_s9 <= facing_s8;
+            product_low_bits_2_s9 <= product_lower_s8[5:0];
+            product_carried_2_s9 <= product_lower_s8[15:6];
             aligned_s9 <= aligned_s8;
         end
     end
@@ -453,47 +460,49 @@ module blinn_pipelined #(
     reg  [7:0]  red_s10;                   // intensity of the light times k_s
     reg  [7:0]  green_s10;                 // intensity of the light times k_s
     reg  [7:0]  blue_s10;                  // intensity of the light times k_s
+    reg         facing_s10;                // the surface faces the half vector
     reg         decay_small_s10;           // the decay is below 1/4, and all its bits count
     reg  [33:0] product_2_s10;             // its point depends on the operands
     reg         halvings_coarse_over_s10;
-    reg         facing_s10;                // the surface faces the half vector
+    reg         halvings_fine_over_s10;
     reg         aligned_s10;               // cos gamma is 1.0
 
-    wire [27:0] product_sum_2_s9 = product_upper_2_s9 + {18'd0, product_lower_s9[15:6]};
+    wire [27:0] product_sum_2_s9 = product_upper_2_s9 + {18'd0, product_carried_2_s9};
 
     // its point depends on the operands
-    wire [33:0] product_2_s9 = {product_sum_2_s9, product_lower_s9[5:0]};
+    wire [33:0] product_2_s9 = {product_sum_2_s9, product_low_bits_2_s9};
 
     always @(posedge clk) begin
         if (advance) begin
             red_s10 <= red_s9;
             green_s10 <= green_s9;
             blue_s10 <= blue_s9;
+            facing_s10 <= facing_s9;
             decay_small_s10 <= decay_small_s9;
             product_2_s10 <= product_2_s9;
             halvings_coarse_over_s10 <= |product_2_s9[33:24];
-            facing_s10 <= facing_s9;
+            halvings_fine_over_s10 <= |product_2_s9[33:31];
             aligned_s10 <= aligned_s9;
         end
     end
 
     // Stage 10: halvings <- n * decay; tables of 2^-x addressed by the fraction; reflectance <-
     // 2^-halvings
-    reg         [7:0]  red_s11;                      // intensity of the light times k_s
-    reg         [7:0]  green_s11;                    // intensity of the light times k_s
-    reg         [7:0]  blue_s11;                     // intensity of the light times k_s
-    reg         [20:0] halvings_s11;                 // u5.16: n*decay: how often f is half of 1.0
-    reg                exp2_bend_offset1_upper_s11;
-    reg         [14:0] exp2_bend_value_word_s11;     // u-4.19
-    reg  signed [9:0]  exp2_bend_offset1_word_s11;   // s-10.19
-    reg                facing_s11;                   // the surface faces the half vector
-    reg                peak_s11;                     // f is 1.0, less an ulp
+    reg         [7:0]  red_s11;                     // intensity of the light times k_s
+    reg         [7:0]  green_s11;                   // intensity of the light times k_s
+    reg         [7:0]  blue_s11;                    // intensity of the light times k_s
+    reg                facing_s11;                  // the surface faces the half vector
+    reg         [20:0] halvings_s11;                // u5.16: n*decay: how often f is half of 1.0
+    reg         [14:0] exp2_bend_value_word_s11;    // u-4.19
+    reg                peak_s11;                    // f is 1.0, less an ulp
+    // s-10.19: what the field adds, less half an ulp
+    reg  signed [9:0]  exp2_bend_offset1_term_s11;
 
     // u5.16
     wire [20:0] halvings_coarse_s10 = halvings_coarse_over_s10 ? 21'h1fffff : product_2_s10[23:3];
 
     // u5.16
-    wire [20:0] halvings_fine_s10 = (|product_2_s10[33:31]) ? 21'h1fffff : product_2_s10[30:10];
+    wire [20:0] halvings_fine_s10 = halvings_fine_over_s10 ? 21'h1fffff : product_2_s10[30:10];
 
     // u5.16: n*decay: how often f is half of 1.0
     wire [20:0] halvings_s10 = decay_small_s10 ? halvings_fine_s10 : halvings_coarse_s10;
@@ -525,18 +534,22 @@ module blinn_pipelined #(
     wire fades_s10 = |halvings_s10;
     wire level_s10 = ~fades_s10;
     wire peak_s10 = aligned_s10 | level_s10;  // f is 1.0, less an ulp
+    wire signed [9:0] exp2_bend_offset1_opposite_s10 = ~exp2_bend_offset1_word_s10;  // s-10.19
+
+    // s-10.19: what the field adds, less half an ulp
+    wire signed [9:0] exp2_bend_offset1_term_s10 = exp2_bend_offset1_upper_s10 ?
+            exp2_bend_offset1_word_s10 : exp2_bend_offset1_opposite_s10;
 
     always @(posedge clk) begin
         if (advance) begin
             red_s11 <= red_s10;
             green_s11 <= green_s10;
             blue_s11 <= blue_s10;
-            halvings_s11 <= halvings_s10;
-            exp2_bend_offset1_upper_s11 <= exp2_bend_offset1_upper_s10;
-            exp2_bend_value_word_s11 <= exp2_bend_value_word_s10;
-            exp2_bend_offset1_word_s11 <= exp2_bend_offset1_word_s10;
             facing_s11 <= facing_s10;
+            halvings_s11 <= halvings_s10;
+            exp2_bend_value_word_s11 <= exp2_bend_value_word_s10;
             peak_s11 <= peak_s10;
+            exp2_bend_offset1_term_s11 <= exp2_bend_offset1_term_s10;
         end
     end
 
@@ -544,8 +557,8 @@ module blinn_pipelined #(
     reg         [7:0]  red_s12;                     // intensity of the light times k_s
     reg         [7:0]  green_s12;                   // intensity of the light times k_s
     reg         [7:0]  blue_s12;                    // intensity of the light times k_s
-    reg         [15:0] exp2_x_s12;                  // u0.16
     reg                facing_s12;                  // the surface faces the half vector
+    reg         [15:0] exp2_x_s12;                  // u0.16
     reg                peak_s12;                    // f is 1.0, less an ulp
     reg                halvings_bits_2_bits_5_s12;
     reg                halvings_bits_2_bits_4_s12;
@@ -591,12 +604,6 @@ module blinn_pipelined #(
     wire signed [4:0] exp2_bend_offset3_word_s11 =
             exp2_bend_offset3_rom[exp2_bend_offset3_address_s11];
 
-    wire signed [9:0] exp2_bend_offset1_opposite_s11 = ~exp2_bend_offset1_word_s11;  // s-10.19
-
-    // s-10.19: what the field adds, less half an ulp
-    wire signed [9:0] exp2_bend_offset1_term_s11 = exp2_bend_offset1_upper_s11 ?
-            exp2_bend_offset1_word_s11 : exp2_bend_offset1_opposite_s11;
-
     // s-4.19
     wire signed [15:0] exp2_bend_offset1_sum_s11 = {1'b0, exp2_bend_value_word_s11} +
             {{6{exp2_bend_offset1_term_s11[9]}}, exp2_bend_offset1_term_s11};
@@ -622,8 +629,8 @@ module blinn_pipelined #(
             red_s12 <= red_s11;
             green_s12 <= green_s11;
             blue_s12 <= blue_s11;
-            exp2_x_s12 <= exp2_x_s11;
             facing_s12 <= facing_s11;
+            exp2_x_s12 <= exp2_x_s11;
             peak_s12 <= peak_s11;
             halvings_bits_2_bits_5_s12 <= halvings_s11[16];
             halvings_bits_2_bits_4_s12 <= halvings_s11[17];
@@ -800,8 +807,8 @@ module blinn_pipelined #(
 
     // Bits that nothing needs, among them those that narrowing drops.
     wire unused = &{1'b0, octave_by1_s2[19], product_s6[10:0], product_2_s10[2:0],
-            exp2_mantissa_s12[1:0], red_product_s15[14:0], green_product_s15[14:0],
-            blue_product_s15[14:0]};
+            product_2_s10[33:31], exp2_mantissa_s12[1:0], red_product_s15[14:0],
+            green_product_s15[14:0], blue_product_s15[14:0]};
 endmodule
 
 `default_nettype wire

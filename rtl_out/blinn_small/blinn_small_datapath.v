@@ -53,6 +53,9 @@ module blinn_small_datapath #(
     reg                exp2_bend_offset2_upper;
     reg                exp2_bend_offset3_upper;
     reg         [12:0] exp2_x;                   // u0.13
+    reg         [4:0]  octave_held;              // octave, a clock later: the operands are held
+    reg                octave_any_held;          // octave_any, a clock later: the operands are held
+    reg                facing_held;              // facing, a clock later: the operands are held
     reg         [37:0] curve_word;
     reg         [10:0] exp2_bend_value_word;     // u-4.15
     reg  signed [6:0]  exp2_bend_offset1_word;   // s-9.15
@@ -107,11 +110,11 @@ module blinn_small_datapath #(
     wire [15:0] curve_slope = curve_word[15:0];  // u-3.19
     wire decay_large = |decay[21:20];
     wire octave_any = |octave;  // cos gamma is below one half
-    wire decay_far = decay_large | octave_any;
+    wire decay_far = decay_large | octave_any_held;
     wire decay_small = ~decay_far;  // the decay is below 1/4, and all its bits count
 
     // the decay, its point by decay_small
-    wire [20:0] factor = decay_small ? {1'b0, decay[19:0]} : {octave, decay[21:6]};
+    wire [20:0] factor = decay_small ? {1'b0, decay[19:0]} : {octave_held, decay[21:6]};
 
     // first operand of the multiplier
     wire [20:0] first = operand_select ? factor : {5'd0, curve_slope};
@@ -209,7 +212,7 @@ module blinn_small_datapath #(
     wire level = ~fades;
     wire peak = aligned | level;  // f is 1.0, less an ulp
     wire [13:0] lit = peak ? 14'h3fff : exp2_rounded;  // u0.14
-    wire [13:0] reflectance_next = facing ? lit : 14'd0;  // u0.14
+    wire [13:0] reflectance_next = facing_held ? lit : 14'd0;  // u0.14
     assign f_out = reflectance;  // u0.14: the reflectance, for a user's own multipliers
     wire [21:0] red_product = reflectance * red_reg;  // u8.14: an output before it is rounded
     wire [7:0] red_intensity = red_product[21:14] + {7'd0, red_product[13]};
@@ -308,6 +311,9 @@ module blinn_small_datapath #(
         exp2_bend_offset2_upper <= halvings[5];
         exp2_bend_offset3_upper <= halvings[2];
         exp2_x <= halvings[12:0];
+        octave_held <= octave;
+        octave_any_held <= octave_any;
+        facing_held <= facing;
     end
 
     // Bits that nothing needs, among them those that narrowing drops.

@@ -38,13 +38,15 @@ module cosine_power_datapath (
     localparam [1:0] OPERAND_SELECT_POWER = 2'd2;
 
     // Registers
-    reg  [20:0] cos_gamma_reg;  // u1.20: cosine of the angle between normal and half vector
-    reg  [9:0]  exponent_reg;   // specular exponent n
-    reg  [7:0]  red_reg;        // intensity of the light times k_s
-    reg  [7:0]  green_reg;      // intensity of the light times k_s
-    reg  [7:0]  blue_reg;       // intensity of the light times k_s
-    reg  [15:0] accumulator;    // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    reg  [1:0]  remaining;      // squarings to come
+    reg  [20:0] cos_gamma_reg;    // u1.20: cosine of the angle between normal and half vector
+    reg  [9:0]  exponent_reg;     // specular exponent n
+    reg  [7:0]  red_reg;          // intensity of the light times k_s
+    reg  [7:0]  green_reg;        // intensity of the light times k_s
+    reg  [7:0]  blue_reg;         // intensity of the light times k_s
+    reg  [15:0] accumulator;      // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+    reg  [1:0]  remaining;        // squarings to come
+    reg  [20:0] complement_held;  // u1.20: complement, a clock later: the operands are held
+    reg         facing_held;      // facing, a clock later: the operands are held
 
     wire cos_gamma_over = cos_gamma[20];
     wire [20:0] cos_gamma_at_most = cos_gamma_over ? COS_GAMMA_MOST : cos_gamma;  // u1.20
@@ -60,13 +62,13 @@ module cosine_power_datapath (
     wire [9:0] zeta = exponent_reg;  // u6.4: n/m, by wiring
     wire facing = |cos_gamma_reg;  // the surface faces the half vector
     wire [15:0] inverse = ~accumulator;  // u0.16: 1.0 - accumulator, less an ulp
-    wire [15:0] base = facing ? inverse : 16'd0;  // u0.16: base of the power
+    wire [15:0] base = facing_held ? inverse : 16'd0;  // u0.16: base of the power
 
     // first operand of the multiplier
     reg  [20:0] first;
     always @* begin
         case (operand_select)
-            OPERAND_SELECT_DISTANCE: first = complement;
+            OPERAND_SELECT_DISTANCE: first = complement_held;
             OPERAND_SELECT_BASE: first = {5'd0, base};
             OPERAND_SELECT_POWER: first = {5'd0, accumulator};
             default: first = {5'd0, accumulator};
@@ -150,6 +152,11 @@ module cosine_power_datapath (
         if (remaining_enable) begin
             remaining <= remaining_next;
         end
+    end
+
+    always @(posedge clk) begin
+        complement_held <= complement;
+        facing_held <= facing;
     end
 
     // Bits that nothing needs, among them those that narrowing drops.

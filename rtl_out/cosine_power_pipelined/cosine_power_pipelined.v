@@ -98,14 +98,16 @@ module cosine_power_pipelined (
         end
     end
 
-    // Stage 0: operands 1 - cos gamma, n/m; accumulator <- n/m * (1 - cos gamma); accumulator <-
-    // base^2
-    reg  [9:0]  exponent_s1;    // specular exponent n
-    reg  [7:0]  red_s1;         // intensity of the light times k_s
-    reg  [7:0]  green_s1;       // intensity of the light times k_s
-    reg  [7:0]  blue_s1;        // intensity of the light times k_s
-    reg  [20:0] complement_s1;  // u1.20: 1.0 - cos gamma
-    reg         facing_s1;      // the surface faces the half vector
+    // Stage 0: operands 1 - cos gamma, n/m
+    reg  [9:0]  exponent_s1;            // specular exponent n
+    reg  [7:0]  red_s1;                 // intensity of the light times k_s
+    reg  [7:0]  green_s1;               // intensity of the light times k_s
+    reg  [7:0]  blue_s1;                // intensity of the light times k_s
+    reg         facing_s1;              // the surface faces the half vector
+    reg  [17:0] product_upper_bits_s1;
+    reg         product_row_s1;
+    reg         product_row_3_s1;
+    reg         product_row_6_s1;
 
     wire cos_gamma_over_s0 = cos_gamma[20];
 
@@ -121,24 +123,28 @@ module cosine_power_pipelined (
             red_s1 <= red;
             green_s1 <= green;
             blue_s1 <= blue;
-            complement_s1 <= complement_s0;
             facing_s1 <= facing_s0;
+            product_upper_bits_s1 <= complement_s0[20:3];
+            product_row_s1 <= complement_s0[0];
+            product_row_3_s1 <= complement_s0[1];
+            product_row_6_s1 <= complement_s0[2];
         end
     end
 
     // Stage 1: accumulator <- n/m * (1 - cos gamma)
-    reg  [7:0]  red_s2;             // intensity of the light times k_s
-    reg  [7:0]  green_s2;           // intensity of the light times k_s
-    reg  [7:0]  blue_s2;            // intensity of the light times k_s
+    reg  [7:0]  red_s2;               // intensity of the light times k_s
+    reg  [7:0]  green_s2;             // intensity of the light times k_s
+    reg  [7:0]  blue_s2;              // intensity of the light times k_s
+    reg         facing_s2;            // the surface faces the half vector
     reg  [27:0] product_upper_s2;
-    reg  [12:0] product_rows_2_s2;
-    reg         facing_s2;          // the surface faces the half vector
+    reg  [2:0]  product_low_bits_s2;
+    reg  [9:0]  product_carried_s2;
 
-    wire [27:0] product_upper_s1 = complement_s1[20:3] * exponent_s1;
-    wire [9:0] product_row_2_s1 = complement_s1[0] ? exponent_s1 : 10'd0;
-    wire [9:0] product_row_4_s1 = complement_s1[1] ? exponent_s1 : 10'd0;
+    wire [27:0] product_upper_s1 = product_upper_bits_s1 * exponent_s1;
+    wire [9:0] product_row_2_s1 = product_row_s1 ? exponent_s1 : 10'd0;
+    wire [9:0] product_row_4_s1 = product_row_3_s1 ? exponent_s1 : 10'd0;
     wire [11:0] product_rows_s1 = {2'd0, product_row_2_s1} + {1'b0, product_row_4_s1, 1'b0};
-    wire [9:0] product_row_7_s1 = complement_s1[2] ? exponent_s1 : 10'd0;
+    wire [9:0] product_row_7_s1 = product_row_6_s1 ? exponent_s1 : 10'd0;
     wire [12:0] product_rows_2_s1 = {1'b0, product_rows_s1} + {1'b0, product_row_7_s1, 2'd0};
 
     always @(posedge clk) begin
@@ -146,9 +152,10 @@ module cosine_power_pipelined (
             red_s2 <= red_s1;
             green_s2 <= green_s1;
             blue_s2 <= blue_s1;
-            product_upper_s2 <= product_upper_s1;
-            product_rows_2_s2 <= product_rows_2_s1;
             facing_s2 <= facing_s1;
+            product_upper_s2 <= product_upper_s1;
+            product_low_bits_s2 <= product_rows_2_s1[2:0];
+            product_carried_s2 <= product_rows_2_s1[12:3];
         end
     end
 
@@ -158,10 +165,10 @@ module cosine_power_pipelined (
     reg  [7:0]  blue_s3;   // intensity of the light times k_s
     reg  [15:0] base_s3;   // u0.16: base of the power
 
-    wire [27:0] product_sum_s2 = product_upper_s2 + {18'd0, product_rows_2_s2[12:3]};
+    wire [27:0] product_sum_s2 = product_upper_s2 + {18'd0, product_carried_s2};
 
     // the shared product; its point depends on the operands
-    wire [30:0] product_s2 = {product_sum_s2, product_rows_2_s2[2:0]};
+    wire [30:0] product_s2 = {product_sum_s2, product_low_bits_s2};
 
     // u0.16: n/m*(1 - cos gamma), then the powers of W's base
     wire [15:0] accumulator_s2 = (|product_s2[29:24]) ? 16'hffff : product_s2[23:8];

@@ -53,6 +53,7 @@ module gauss_datapath #(
     reg                exp2_bend_offset2_upper;
     reg                exp2_bend_offset3_upper;
     reg         [15:0] exp2_x;                   // u0.16
+    reg                facing_held;              // facing, a clock later: the operands are held
     reg         [44:0] curve_word;
     reg         [14:0] exp2_bend_value_word;     // u-4.19
     reg  signed [9:0]  exp2_bend_offset1_word;   // s-10.19
@@ -192,7 +193,7 @@ module gauss_datapath #(
     wire level = ~fades;
     wire peak = aligned | level;  // f is 1.0, less an ulp
     wire [15:0] lit = peak ? 16'hffff : exp2_rounded;  // u0.16
-    wire [15:0] reflectance_next = facing ? lit : 16'd0;  // u0.16
+    wire [15:0] reflectance_next = facing_held ? lit : 16'd0;  // u0.16
     assign f_out = reflectance;  // u0.16: the reflectance, for a user's own multipliers
     wire [23:0] red_product = reflectance * red_reg;  // u8.16: an output before it is rounded
     wire [7:0] red_intensity = red_product[23:16] + {7'd0, red_product[15]};
@@ -291,6 +292,7 @@ module gauss_datapath #(
         exp2_bend_offset2_upper <= halvings[6];
         exp2_bend_offset3_upper <= halvings[3];
         exp2_x <= halvings[15:0];
+        facing_held <= facing;
     end
 
     // Bits that nothing needs, among them those that narrowing drops.

@@ -152,7 +152,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 1: segment of the decay addressed by cos gamma; reflectance <- 2^-halvings
+    // Stage 1: segment of the decay addressed by cos gamma
     reg  [9:0]  exponent_s2;     // specular exponent n
     reg  [7:0]  red_s2;          // intensity of the light times k_s
     reg  [7:0]  green_s2;        // intensity of the light times k_s
@@ -183,6 +183,7 @@ module gauss_pipelined #(
 
     wire [13:0] curve_rest0_s1 = curve_in_range0_s1 ? distance_s1[13:0] : curve_rest1_s1;  // u0.14
     wire [13:0] curve_rest2_s1 = curve_in_range2_s1 ? curve_rest0_s1 : curve_rest3_s1;  // u0.14
+    wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
 
     wire [6:0] curve_word4_s1 = curve_in_range4_s1 ? {5'd0, distance_s1[11:10]} : {6'd32,
             distance_s1[9]};
@@ -194,7 +195,6 @@ module gauss_pipelined #(
 
     wire [6:0] curve_word0_s1 = curve_in_range0_s1 ? {1'b0, distance_s1[19:14]} : curve_word1_s1;
     wire [6:0] curve_word2_s1 = curve_in_range2_s1 ? curve_word0_s1 : curve_word3_s1;
-    wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
     wire aligned_s1 = cos_gamma_reg_s1[20];  // cos gamma is 1.0
 
     // ROM curve: value at the start of a segment (u0.26), then its rise over the segment in units
@@ -216,18 +216,14 @@ module gauss_pipelined #(
     end
 
     // Stage 2: segment of the decay addressed by cos gamma
-    reg  [9:0]  exponent_s3;            // specular exponent n
-    reg  [7:0]  red_s3;                 // intensity of the light times k_s
-    reg  [7:0]  green_s3;               // intensity of the light times k_s
-    reg  [7:0]  blue_s3;                // intensity of the light times k_s
-    reg  [13:0] curve_rest2_s3;         // u0.14
-    reg  [25:0] curve_base_s3;          // u0.26
-    reg  [17:0] product_upper_bits_s3;
-    reg         product_row_s3;
-    reg         facing_s3;              // the surface faces the half vector
-    reg         aligned_s3;             // cos gamma is 1.0
-
-    wire [25:0] curve_base_s2 = curve_word_s2[44:19];  // u0.26
+    reg  [9:0]  exponent_s3;     // specular exponent n
+    reg  [7:0]  red_s3;          // intensity of the light times k_s
+    reg  [7:0]  green_s3;        // intensity of the light times k_s
+    reg  [7:0]  blue_s3;         // intensity of the light times k_s
+    reg  [13:0] curve_rest2_s3;  // u0.14
+    reg         facing_s3;       // the surface faces the half vector
+    reg  [44:0] curve_word_s3;
+    reg         aligned_s3;      // cos gamma is 1.0
 
     always @(posedge clk) begin
         if (advance) begin
@@ -236,26 +232,27 @@ module gauss_pipelined #(
             green_s3 <= green_s2;
             blue_s3 <= blue_s2;
             curve_rest2_s3 <= curve_rest2_s2;
-            curve_base_s3 <= curve_base_s2;
-            product_upper_bits_s3 <= curve_word_s2[18:1];
-            product_row_s3 <= curve_word_s2[0];
             facing_s3 <= facing_s2;
+            curve_word_s3 <= curve_word_s2;
             aligned_s3 <= aligned_s2;
         end
     end
 
     // Stage 3: decay <- base + slope * rest
-    reg  [9:0]  exponent_s4;       // specular exponent n
-    reg  [7:0]  red_s4;            // intensity of the light times k_s
-    reg  [7:0]  green_s4;          // intensity of the light times k_s
-    reg  [7:0]  blue_s4;           // intensity of the light times k_s
-    reg  [25:0] curve_base_s4;     // u0.26
+    reg  [9:0]  exponent_s4;          // specular exponent n
+    reg  [7:0]  red_s4;               // intensity of the light times k_s
+    reg  [7:0]  green_s4;             // intensity of the light times k_s
+    reg  [7:0]  blue_s4;              // intensity of the light times k_s
+    reg         facing_s4;            // the surface faces the half vector
+    reg  [25:0] curve_base_s4;        // u0.26
     reg  [31:0] product_upper_s4;
-    reg  [13:0] product_row_2_s4;
-    reg         facing_s4;         // the surface faces the half vector
-    reg         aligned_s4;        // cos gamma is 1.0
+    reg         product_low_bits_s4;
+    reg  [12:0] product_carried_s4;
+    reg         aligned_s4;           // cos gamma is 1.0
 
-    wire [31:0] product_upper_s3 = product_upper_bits_s3 * curve_rest2_s3;
+    wire [25:0] curve_base_s3 = curve_word_s3[44:19];  // u0.26
+    wire [31:0] product_upper_s3 = curve_word_s3[18:1] * curve_rest2_s3;
+    wire [13:0] product_row_2_s3 = curve_word_s3[0] ? curve_rest2_s3 : 14'd0;
 
     always @(posedge clk) begin
         if (advance) begin
@@ -263,10 +260,11 @@ module gauss_pipelined #(
             red_s4 <= red_s3;
             green_s4 <= green_s3;
             blue_s4 <= blue_s3;
+            facing_s4 <= facing_s3;
             curve_base_s4 <= curve_base_s3;
             product_upper_s4 <= product_upper_s3;
-            product_row_2_s4 <= product_row_s3 ? curve_rest2_s3 : 14'd0;
-            facing_s4 <= facing_s3;
+            product_low_bits_s4 <= product_row_2_s3[0];
+            product_carried_s4 <= product_row_2_s3[13:1];
             aligned_s4 <= aligned_s3;
         end
     end
@@ -276,14 +274,14 @@ module gauss_pipelined #(
     reg  [7:0]  red_s5;       // intensity of the light times k_s
     reg  [7:0]  green_s5;     // intensity of the light times k_s
     reg  [7:0]  blue_s5;      // intensity of the light times k_s
-    reg  [25:0] decay_s5;     // u0.26: gamma^2/(4 ln 2), half the decay
     reg         facing_s5;    // the surface faces the half vector
+    reg  [25:0] decay_s5;     // u0.26: gamma^2/(4 ln 2), half the decay
     reg         aligned_s5;   // cos gamma is 1.0
 
-    wire [31:0] product_sum_s4 = product_upper_s4 + {19'd0, product_row_2_s4[13:1]};
+    wire [31:0] product_sum_s4 = product_upper_s4 + {19'd0, product_carried_s4};
 
     // its point depends on the operands
-    wire [32:0] product_s4 = {product_sum_s4, product_row_2_s4[0]};
+    wire [32:0] product_s4 = {product_sum_s4, product_low_bits_s4};
 
     // u0.26: gamma^2/(4 ln 2), half the decay
     wire [25:0] decay_s4 = curve_base_s4 + {5'd0, product_s4[32:12]};
@@ -294,22 +292,21 @@ module gauss_pipelined #(
             red_s5 <= red_s4;
             green_s5 <= green_s4;
             blue_s5 <= blue_s4;
-            decay_s5 <= decay_s4;
             facing_s5 <= facing_s4;
+            decay_s5 <= decay_s4;
             aligned_s5 <= aligned_s4;
         end
     end
 
     // Stage 5: halvings <- n * decay
-    reg  [9:0]  exponent_s6;              // specular exponent n
-    reg  [7:0]  red_s6;                   // intensity of the light times k_s
-    reg  [7:0]  green_s6;                 // intensity of the light times k_s
-    reg  [7:0]  blue_s6;                  // intensity of the light times k_s
-    reg         decay_small_s6;           // the decay is below 1/4, and all its bits count
-    reg  [17:0] product_upper_bits_2_s6;
-    reg  [5:0]  product_lower_bits_s6;
-    reg         facing_s6;                // the surface faces the half vector
-    reg         aligned_s6;               // cos gamma is 1.0
+    reg  [9:0]  exponent_s6;     // specular exponent n
+    reg  [7:0]  red_s6;          // intensity of the light times k_s
+    reg  [7:0]  green_s6;        // intensity of the light times k_s
+    reg  [7:0]  blue_s6;         // intensity of the light times k_s
+    reg         facing_s6;       // the surface faces the half vector
+    reg         decay_small_s6;  // the decay is below 1/4, and all its bits count
+    reg  [23:0] factor_s6;       // the decay, its point by decay_small
+    reg         aligned_s6;      // cos gamma is 1.0
 
     wire decay_large_s5 = |decay_s5[25:24];
     wire decay_small_s5 = ~decay_large_s5;  // the decay is below 1/4, and all its bits count
@@ -323,38 +320,35 @@ module gauss_pipelined #(
             red_s6 <= red_s5;
             green_s6 <= green_s5;
             blue_s6 <= blue_s5;
-            decay_small_s6 <= decay_small_s5;
-            product_upper_bits_2_s6 <= factor_s5[23:6];
-            product_lower_bits_s6 <= factor_s5[5:0];
             facing_s6 <= facing_s5;
+            decay_small_s6 <= decay_small_s5;
+            factor_s6 <= factor_s5;
             aligned_s6 <= aligned_s5;
         end
     end
 
     // Stage 6: halvings <- n * decay
-    reg  [7:0]  red_s7;                 // intensity of the light times k_s
-    reg  [7:0]  green_s7;               // intensity of the light times k_s
-    reg  [7:0]  blue_s7;                // intensity of the light times k_s
-    reg         decay_small_s7;         // the decay is below 1/4, and all its bits count
+    reg  [7:0]  red_s7;              // intensity of the light times k_s
+    reg  [7:0]  green_s7;            // intensity of the light times k_s
+    reg  [7:0]  blue_s7;             // intensity of the light times k_s
+    reg         facing_s7;           // the surface faces the half vector
+    reg         decay_small_s7;      // the decay is below 1/4, and all its bits count
     reg  [27:0] product_upper_2_s7;
-    reg  [5:0]  product_low_bits_2_s7;
-    reg  [9:0]  product_carried_2_s7;
-    reg         facing_s7;              // the surface faces the half vector
-    reg         aligned_s7;             // cos gamma is 1.0
+    reg  [15:0] product_lower_s7;
+    reg         aligned_s7;          // cos gamma is 1.0
 
-    wire [27:0] product_upper_2_s6 = product_upper_bits_2_s6 * exponent_s6;
-    wire [15:0] product_lower_s6 = product_lower_bits_s6 * exponent_s6;
+    wire [27:0] product_upper_2_s6 = factor_s6[23:6] * exponent_s6;
+    wire [15:0] product_lower_s6 = factor_s6[5:0] * exponent_s6;
 
     always @(posedge clk) begin
         if (advance) begin
             red_s7 <= red_s6;
             green_s7 <= green_s6;
             blue_s7 <= blue_s6;
+            facing_s7 <= facing_s6;
             decay_small_s7 <= decay_small_s6;
             product_upper_2_s7 <= product_upper_2_s6;
-            product_low_bits_2_s7 <= product_lower_s6[5:0];
-            product_carried_2_s7 <= product_lower_s6[15:6];
-            facing_s7 <= facing_s6;
+            product_lower_s7 <= product_lower_s6;
             aligned_s7 <= aligned_s6;
         end
     end
@@ -363,14 +357,14 @@ module gauss_pipelined #(
     reg  [7:0]  red_s8;       // intensity of the light times k_s
     reg  [7:0]  green_s8;     // intensity of the light times k_s
     reg  [7:0]  blue_s8;      // intensity of the light times k_s
-    reg  [20:0] halvings_s8;  // u5.16: n*decay: how often f is half of 1.0
     reg         facing_s8;    // the surface faces the half vector
+    reg  [20:0] halvings_s8;  // u5.16: n*decay: how often f is half of 1.0
     reg         aligned_s8;   // cos gamma is 1.0
 
-    wire [27:0] product_sum_2_s7 = product_upper_2_s7 + {18'd0, product_carried_2_s7};
+    wire [27:0] product_sum_2_s7 = product_upper_2_s7 + {18'd0, product_lower_s7[15:6]};
 
     // its point depends on the operands
-    wire [33:0] product_2_s7 = {product_sum_2_s7, product_low_bits_2_s7};
+    wire [33:0] product_2_s7 = {product_sum_2_s7, product_lower_s7[5:0]};
 
     // u5.16
     wire [20:0] halvings_coarse_s7 = (|product_2_s7[33:28]) ? 21'h1fffff : product_2_s7[27:7];
@@ -386,8 +380,8 @@ module gauss_pipelined #(
             red_s8 <= red_s7;
             green_s8 <= green_s7;
             blue_s8 <= blue_s7;
-            halvings_s8 <= halvings_s7;
             facing_s8 <= facing_s7;
+            halvings_s8 <= halvings_s7;
             aligned_s8 <= aligned_s7;
         end
     end
@@ -396,8 +390,8 @@ module gauss_pipelined #(
     reg         [7:0]  red_s9;                    // intensity of the light times k_s
     reg         [7:0]  green_s9;                  // intensity of the light times k_s
     reg         [7:0]  blue_s9;                   // intensity of the light times k_s
-    reg         [20:0] halvings_s9;               // u5.16: n*decay: how often f is half of 1.0
     reg                facing_s9;                 // the surface faces the half vector
+    reg         [20:0] halvings_s9;               // u5.16: n*decay: how often f is half of 1.0
     reg                peak_s9;                   // f is 1.0, less an ulp
     reg  signed [15:0] exp2_bend_offset1_sum_s9;  // s-4.19
 
@@ -442,8 +436,8 @@ module gauss_pipelined #(
             red_s9 <= red_s8;
             green_s9 <= green_s8;
             blue_s9 <= blue_s8;
-            halvings_s9 <= halvings_s8;
             facing_s9 <= facing_s8;
+            halvings_s9 <= halvings_s8;
             peak_s9 <= peak_s8;
             exp2_bend_offset1_sum_s9 <= exp2_bend_offset1_sum_s8;
         end
@@ -453,7 +447,6 @@ module gauss_pipelined #(
     reg         [7:0]  red_s10;                     // intensity of the light times k_s
     reg         [7:0]  green_s10;                   // intensity of the light times k_s
     reg         [7:0]  blue_s10;                    // intensity of the light times k_s
-    reg         [15:0] exp2_x_s10;                  // u0.16
     reg                facing_s10;                  // the surface faces the half vector
     reg                peak_s10;                    // f is 1.0, less an ulp
     reg                halvings_bits_2_bits_5_s10;
@@ -461,6 +454,7 @@ module gauss_pipelined #(
     reg                halvings_bits_2_bits_3_s10;
     reg                halvings_bits_2_bits_2_s10;
     reg                halvings_bits_2_bits_s10;
+    reg         [15:0] exp2_inverse_s10;            // u0.16
     reg  signed [15:0] exp2_bend_offset2_sum_s10;   // s-4.19
     // s-15.19: what the field adds, less half an ulp
     reg  signed [4:0]  exp2_bend_offset3_term_s10;
@@ -498,6 +492,7 @@ module gauss_pipelined #(
     wire signed [4:0] exp2_bend_offset3_word_s9 =
             exp2_bend_offset3_rom[exp2_bend_offset3_address_s9];
 
+    wire [15:0] exp2_inverse_s9 = ~exp2_x_s9;  // u0.16
     wire signed [7:0] exp2_bend_offset2_opposite_s9 = ~exp2_bend_offset2_word_s9;  // s-12.19
 
     // s-12.19: what the field adds, less half an ulp
@@ -519,7 +514,6 @@ module gauss_pipelined #(
             red_s10 <= red_s9;
             green_s10 <= green_s9;
             blue_s10 <= blue_s9;
-            exp2_x_s10 <= exp2_x_s9;
             facing_s10 <= facing_s9;
             peak_s10 <= peak_s9;
             halvings_bits_2_bits_5_s10 <= halvings_s9[16];
@@ -527,6 +521,7 @@ module gauss_pipelined #(
             halvings_bits_2_bits_3_s10 <= halvings_s9[18];
             halvings_bits_2_bits_2_s10 <= halvings_s9[19];
             halvings_bits_2_bits_s10 <= halvings_s9[20];
+            exp2_inverse_s10 <= exp2_inverse_s9;
             exp2_bend_offset2_sum_s10 <= exp2_bend_offset2_sum_s9;
             exp2_bend_offset3_term_s10 <= exp2_bend_offset3_term_s9;
         end
@@ -544,8 +539,6 @@ module gauss_pipelined #(
     reg         halvings_bits_2_bits_2_s11;
     reg         halvings_bits_2_bits_s11;
     reg  [16:0] exp2_kept_s11;               // u0.17
-
-    wire [15:0] exp2_inverse_s10 = ~exp2_x_s10;  // u0.16
 
     // s-4.19
     wire signed [15:0] exp2_bend_offset3_sum_s10 = exp2_bend_offset2_sum_s10 +

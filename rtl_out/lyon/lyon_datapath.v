@@ -45,16 +45,22 @@ module lyon_datapath (
     localparam [16:0] ONE = 17'h10000;  // 1.0 in u1.16
 
     // Registers
-    reg  signed [17:0] dx_reg;          // s1.16: x of N - H, normal less half vector
-    reg  signed [17:0] dy_reg;          // s1.16: y of N - H, normal less half vector
-    reg  signed [17:0] dz_reg;          // s1.16: z of N - H, normal less half vector
-    reg         [3:0]  shift_reg;       // log2 of the specular exponent n, rounded
-    reg         [26:0] shift_register;  // u1.26: beta*D^2, once it has shifted
-    reg         [3:0]  remaining;       // shifts, then squarings, to come
-    reg         [7:0]  red_reg;         // intensity of the light times k_s
-    reg         [7:0]  green_reg;       // intensity of the light times k_s
-    reg         [7:0]  blue_reg;        // intensity of the light times k_s
-    reg         [15:0] accumulator;     // u0.16: the powers of the base, in the end f
+    reg  signed [17:0] dx_reg;            // s1.16: x of N - H, normal less half vector
+    reg  signed [17:0] dy_reg;            // s1.16: y of N - H, normal less half vector
+    reg  signed [17:0] dz_reg;            // s1.16: z of N - H, normal less half vector
+    reg         [3:0]  shift_reg;         // log2 of the specular exponent n, rounded
+    reg         [26:0] shift_register;    // u1.26: beta*D^2, once it has shifted
+    reg         [3:0]  remaining;         // shifts, then squarings, to come
+    reg         [7:0]  red_reg;           // intensity of the light times k_s
+    reg         [7:0]  green_reg;         // intensity of the light times k_s
+    reg         [7:0]  blue_reg;          // intensity of the light times k_s
+    reg         [15:0] accumulator;       // u0.16: the powers of the base, in the end f
+    // s3.32: multiplier1, a clock later: the operands are held
+    reg  signed [35:0] multiplier1_held;
+    // s3.32: multiplier2, a clock later: the operands are held
+    reg  signed [35:0] multiplier2_held;
+    // s3.32: multiplier3, a clock later: the operands are held
+    reg  signed [35:0] multiplier3_held;
 
     wire dx_load = dx_write & idle;
     wire dy_load = dy_write & idle;
@@ -64,9 +70,12 @@ module lyon_datapath (
     wire signed [35:0] multiplier3 = dz_reg * dz_reg;  // multiplier 3, s3.32
 
     // adder 1, s4.32
-    wire signed [36:0] adder1 = {multiplier1[35], multiplier1} + {multiplier2[35], multiplier2};
+    wire signed [36:0] adder1 = {multiplier1_held[35], multiplier1_held} + {multiplier2_held[35],
+            multiplier2_held};
 
-    wire signed [36:0] adder2 = adder1 + {multiplier3[35], multiplier3};  // adder 2, s4.32: D^2
+    // adder 2, s4.32: D^2
+    wire signed [36:0] adder2 = adder1 + {multiplier3_held[35], multiplier3_held};
+
     wire [23:0] distance_rounded = adder2[35:12];  // u4.20
     wire shift_load = shift_write & idle;
     wire [3:0] remaining_start = remaining_start_select ? shift_reg : SQUARINGS;  // what is counted
@@ -165,6 +174,12 @@ module lyon_datapath (
         if (accumulator_load) begin
             accumulator <= square;
         end
+    end
+
+    always @(posedge clk) begin
+        multiplier1_held <= multiplier1;
+        multiplier2_held <= multiplier2;
+        multiplier3_held <= multiplier3;
     end
 
     // Bits that nothing needs, among them those that narrowing drops.

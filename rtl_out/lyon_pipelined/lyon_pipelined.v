@@ -146,7 +146,7 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 1: shift_register <- D^2 / (4*power); shift_register <- 2 * shift_register
+    // Stage 1: operands dx, dy, dz; shift_register <- 2 * shift_register
     reg  signed [17:0] dz_s2;             // s1.16: z of N - H, normal less half vector
     reg         [7:0]  red_s2;            // intensity of the light times k_s
     reg         [7:0]  green_s2;          // intensity of the light times k_s
@@ -185,23 +185,25 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 2: shift_register <- D^2 / (4*power); shift_register <- 2 * shift_register
+    // Stage 2: operands dx, dy, dz; shift_register <- D^2 / (4*power); shift_register <- 2 *
+    // shift_register
     reg         [7:0]  red_s3;            // intensity of the light times k_s
     reg         [7:0]  green_s3;          // intensity of the light times k_s
     reg         [7:0]  blue_s3;           // intensity of the light times k_s
-    reg  signed [36:0] adder1_s3;         // register 1, s4.32
     reg  signed [35:0] multiplier3_s3;    // register 3, s3.32
+    reg  signed [36:0] adder1_s3;         // register 1, s4.32
     reg                more_shifts_s3;    // not the last shift
     reg                more_shifts_3_s3;  // not the last shift
     reg                more_shifts_5_s3;  // not the last shift
     reg         [3:0]  remaining_7_s3;    // shifts, then squarings, to come
     reg                more_shifts_7_s3;  // not the last shift
 
+    wire signed [35:0] multiplier3_s2 = dz_s2 * dz_s2;  // multiplier 3, s3.32
+
     // adder 1, s4.32
     wire signed [36:0] adder1_s2 = {multiplier1_s2[35], multiplier1_s2} + {multiplier2_s2[35],
             multiplier2_s2};
 
-    wire signed [35:0] multiplier3_s2 = dz_s2 * dz_s2;  // multiplier 3, s3.32
     wire more_shifts_4_s2 = |remaining_3_s2;  // not the last shift
 
     // shifts, then squarings, to come
@@ -226,8 +228,8 @@ module lyon_pipelined (
             red_s3 <= red_s2;
             green_s3 <= green_s2;
             blue_s3 <= blue_s2;
-            adder1_s3 <= adder1_s2;
             multiplier3_s3 <= multiplier3_s2;
+            adder1_s3 <= adder1_s2;
             more_shifts_s3 <= more_shifts_s2;
             more_shifts_3_s3 <= more_shifts_3_s2;
             more_shifts_5_s3 <= more_shifts_5_s2;
@@ -244,8 +246,8 @@ module lyon_pipelined (
     reg         more_shifts_5_s4;     // not the last shift
     reg         more_shifts_7_s4;     // not the last shift
     reg         more_shifts_9_s4;     // not the last shift
+    reg         more_shifts_10_s4;    // not the last shift
     reg  [3:0]  remaining_11_s4;      // shifts, then squarings, to come
-    reg         more_shifts_11_s4;    // not the last shift
 
     // adder 2, s4.32: D^2
     wire signed [36:0] adder2_s3 = adder1_s3 + {multiplier3_s3[35], multiplier3_s3};
@@ -284,8 +286,6 @@ module lyon_pipelined (
     // shifts, then squarings, to come
     wire [3:0] remaining_11_s3 = more_shifts_9_s3 ? remaining_10_s3 : remaining_9_s3;
 
-    wire more_shifts_11_s3 = more_shifts_9_s3 & more_shifts_10_s3;  // not the last shift
-
     always @(posedge clk) begin
         if (advance) begin
             red_s4 <= red_s3;
@@ -295,8 +295,8 @@ module lyon_pipelined (
             more_shifts_5_s4 <= more_shifts_5_s3;
             more_shifts_7_s4 <= more_shifts_7_s3;
             more_shifts_9_s4 <= more_shifts_9_s3;
+            more_shifts_10_s4 <= more_shifts_10_s3;
             remaining_11_s4 <= remaining_11_s3;
-            more_shifts_11_s4 <= more_shifts_11_s3;
         end
     end
 
@@ -332,6 +332,7 @@ module lyon_pipelined (
     wire [26:0] shift_register_12_s4 = more_shifts_9_s4 ? shift_register_11_s4 :
             shift_register_10_s4;
 
+    wire more_shifts_11_s4 = more_shifts_9_s4 & more_shifts_10_s4;  // not the last shift
     wire more_shifts_12_s4 = |remaining_11_s4;  // not the last shift
 
     // shifts, then squarings, to come

@@ -40,6 +40,8 @@ module quadratic_datapath #(
     reg         [7:0]  blue_reg;          // register 5: intensity of the light times k_s
     reg  signed [17:0] difference;        // s-2.19: c^2 - c, from -0.25 to 0
     reg         [15:0] intensity;         // u0.16: the reflectance f
+    // u2.40: multiplier5, a clock later: the operands are held
+    reg         [41:0] multiplier5_held;
     reg         [17:0] coefficient_word;  // u10.8
 
     wire exponent_load = exponent_write & idle;
@@ -54,7 +56,9 @@ module quadratic_datapath #(
     // s1.40: -c, less an ulp of the square
     wire signed [41:0] inverters = ~{1'b0, cos_gamma_reg, 20'd0};
 
-    wire signed [41:0] adder1 = multiplier5 + inverters + {41'd0, 1'b1};  // adder 1, s1.40: c^2 - c
+    // adder 1, s1.40: c^2 - c
+    wire signed [41:0] adder1 = multiplier5_held + inverters + {41'd0, 1'b1};
+
     wire signed [17:0] adder1_rounded = adder1[38:21];  // s-2.19
 
     // multiplier 1, s9.27
@@ -129,6 +133,10 @@ module quadratic_datapath #(
         if (intensity_load) begin
             intensity <= clamped;
         end
+    end
+
+    always @(posedge clk) begin
+        multiplier5_held <= multiplier5;
     end
 
     // Bits that nothing needs, among them those that narrowing drops.

@@ -133,17 +133,18 @@ module quadratic_pipelined #(
         end
     end
 
-    // Stage 1: difference <- c^2 - c
-    reg  [9:0]  exponent_s2;                  // register 1: specular exponent n
+    // Stage 1: operands; ROM(n) addressed
+    reg  [9:0]  exponent_s2;                    // register 1: specular exponent n
     // register 2, u1.20: c, the cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s2;
-    reg  [7:0]  red_s2;                       // register 3: intensity of the light times k_s
-    reg  [7:0]  green_s2;                     // register 4: intensity of the light times k_s
-    reg  [7:0]  blue_s2;                      // register 5: intensity of the light times k_s
-    reg  [35:0] multiplier5_upper_upper_s2;   // register 5
-    reg         multiplier5_upper_row_6_s2;   // register 5
-    reg  [20:0] multiplier5_upper_rows_2_s2;  // register 5
-    reg  [22:0] multiplier5_rows_s2;          // register 5
+    reg  [7:0]  red_s2;                         // register 3: intensity of the light times k_s
+    reg  [7:0]  green_s2;                       // register 4: intensity of the light times k_s
+    reg  [7:0]  blue_s2;                        // register 5: intensity of the light times k_s
+    reg  [35:0] multiplier5_upper_upper_s2;     // register 5
+    reg         multiplier5_upper_row_6_s2;     // register 5
+    reg  [2:0]  multiplier5_upper_low_bits_s2;  // register 5
+    reg  [17:0] multiplier5_upper_carried_s2;   // register 5
+    reg  [22:0] multiplier5_rows_s2;            // register 5
 
     // multiplier 5
     wire [35:0] multiplier5_upper_upper_s1 = cos_gamma_reg_s1[20:3] * cos_gamma_reg_s1[20:3];
@@ -181,12 +182,13 @@ module quadratic_pipelined #(
             blue_s2 <= blue_s1;
             multiplier5_upper_upper_s2 <= multiplier5_upper_upper_s1;
             multiplier5_upper_row_6_s2 <= cos_gamma_reg_s1[2];
-            multiplier5_upper_rows_2_s2 <= multiplier5_upper_rows_2_s1;
+            multiplier5_upper_low_bits_s2 <= multiplier5_upper_rows_2_s1[2:0];
+            multiplier5_upper_carried_s2 <= multiplier5_upper_rows_2_s1[20:3];
             multiplier5_rows_s2 <= multiplier5_rows_s1;
         end
     end
 
-    // Stage 2: difference <- c^2 - c
+    // Stage 2: operands; ROM(n) addressed
     reg  [9:0]  exponent_s3;            // register 1: specular exponent n
     // register 2, u1.20: c, the cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s3;
@@ -198,10 +200,10 @@ module quadratic_pipelined #(
 
     // adder 5
     wire [35:0] multiplier5_upper_sum_s2 = multiplier5_upper_upper_s2 + {18'd0,
-            multiplier5_upper_rows_2_s2[20:3]};
+            multiplier5_upper_carried_s2};
 
     // block 5
-    wire [38:0] multiplier5_upper_s2 = {multiplier5_upper_sum_s2, multiplier5_upper_rows_2_s2[2:0]};
+    wire [38:0] multiplier5_upper_s2 = {multiplier5_upper_sum_s2, multiplier5_upper_low_bits_s2};
 
     // mux 5
     wire [20:0] multiplier5_row_4_s2 = multiplier5_upper_row_6_s2 ? cos_gamma_reg_s2 : 21'd0;
@@ -222,18 +224,20 @@ module quadratic_pipelined #(
         end
     end
 
-    // Stage 3: difference <- c^2 - c
+    // Stage 3: operands; ROM(n) addressed
     // register 2, u1.20: c, the cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s4;
-    reg  [7:0]  red_s4;                   // register 3: intensity of the light times k_s
-    reg  [7:0]  green_s4;                 // register 4: intensity of the light times k_s
-    reg  [7:0]  blue_s4;                  // register 5: intensity of the light times k_s
-    reg  [2:0]  multiplier5_low_bits_s4;  // register 5
-    reg  [38:0] multiplier5_sum_s4;       // register 5
-    reg  [17:0] coefficient_word_s4;      // u10.8
+    reg  [7:0]  red_s4;               // register 3: intensity of the light times k_s
+    reg  [7:0]  green_s4;             // register 4: intensity of the light times k_s
+    reg  [7:0]  blue_s4;              // register 5: intensity of the light times k_s
+    reg  [41:0] multiplier5_s4;       // register 5, u2.40: c^2
+    reg  [17:0] coefficient_word_s4;  // u10.8
 
     // adder 5
     wire [38:0] multiplier5_sum_s3 = multiplier5_upper_s3 + {18'd0, multiplier5_rows_2_s3[23:3]};
+
+    // block 5, u2.40: c^2
+    wire [41:0] multiplier5_s3 = {multiplier5_sum_s3, multiplier5_rows_2_s3[2:0]};
 
     // ROM coefficient: a(n), minimax, for an exponent n (the address)
     reg [17:0] coefficient_rom [0:1023];
@@ -246,8 +250,7 @@ module quadratic_pipelined #(
             red_s4 <= red_s3;
             green_s4 <= green_s3;
             blue_s4 <= blue_s3;
-            multiplier5_low_bits_s4 <= multiplier5_rows_2_s3[2:0];
-            multiplier5_sum_s4 <= multiplier5_sum_s3;
+            multiplier5_s4 <= multiplier5_s3;
         end
     end
 
@@ -259,9 +262,6 @@ module quadratic_pipelined #(
     reg         [7:0]  blue_s5;              // register 5: intensity of the light times k_s
     reg         [17:0] coefficient_word_s5;  // u10.8
     reg  signed [17:0] difference_s5;        // s-2.19: c^2 - c, from -0.25 to 0
-
-    // block 5, u2.40: c^2
-    wire [41:0] multiplier5_s4 = {multiplier5_sum_s4, multiplier5_low_bits_s4};
 
     // s1.40: -c, less an ulp of the square
     wire signed [41:0] inverters_s4 = ~{1'b0, cos_gamma_reg_s4, 20'd0};
@@ -285,19 +285,15 @@ module quadratic_pipelined #(
     // Stage 5: intensity <- c + a(n) * difference, not below 0
     // register 2, u1.20: c, the cosine of the angle between normal and half vector
     reg         [20:0] cos_gamma_reg_s6;
-    reg         [7:0]  red_s6;                   // register 3: intensity of the light times k_s
-    reg         [7:0]  green_s6;                 // register 4: intensity of the light times k_s
-    reg         [7:0]  blue_s6;                  // register 5: intensity of the light times k_s
-    reg  signed [35:0] multiplier1_upper_s6;     // register 1, s35.0
-    reg                multiplier1_low_bits_s6;  // register 1
-    reg  signed [16:0] multiplier1_carried_s6;   // register 1, s16.0
+    reg         [7:0]  red_s6;                // register 3: intensity of the light times k_s
+    reg         [7:0]  green_s6;              // register 4: intensity of the light times k_s
+    reg         [7:0]  blue_s6;               // register 5: intensity of the light times k_s
+    reg  signed [35:0] multiplier1_upper_s6;  // register 1, s35.0
+    reg  signed [17:0] multiplier1_row_2_s6;  // register 1, s17.0
 
     // multiplier 1, s35.0
     wire signed [35:0] multiplier1_upper_s5 = $signed({1'b0, coefficient_word_s5[17:1]}) *
             difference_s5;
-
-    // mux 1, s17.0
-    wire signed [17:0] multiplier1_row_2_s5 = coefficient_word_s5[0] ? difference_s5 : 18'd0;
 
     always @(posedge clk) begin
         if (advance) begin
@@ -306,8 +302,7 @@ module quadratic_pipelined #(
             green_s6 <= green_s5;
             blue_s6 <= blue_s5;
             multiplier1_upper_s6 <= multiplier1_upper_s5;
-            multiplier1_low_bits_s6 <= multiplier1_row_2_s5[0];
-            multiplier1_carried_s6 <= multiplier1_row_2_s5[17:1];
+            multiplier1_row_2_s6 <= coefficient_word_s5[0] ? difference_s5 : 18'd0;
         end
     end
 
@@ -320,11 +315,11 @@ module quadratic_pipelined #(
     reg  signed [35:0] multiplier1_low_s7;  // s8.27
 
     // adder 1, s35.0
-    wire signed [35:0] multiplier1_sum_s6 = multiplier1_upper_s6 +
-            {{19{multiplier1_carried_s6[16]}}, multiplier1_carried_s6};
+    wire signed [35:0] multiplier1_sum_s6 = multiplier1_upper_s6 + {{19{multiplier1_row_2_s6[17]}},
+            multiplier1_row_2_s6[17:1]};
 
     // block 1, s9.27
-    wire signed [36:0] multiplier1_s6 = {multiplier1_sum_s6, multiplier1_low_bits_s6};
+    wire signed [36:0] multiplier1_s6 = {multiplier1_sum_s6, multiplier1_row_2_s6[0]};
 
     always @(posedge clk) begin
         if (advance) begin

@@ -28,8 +28,9 @@
 // Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1; the control
 // ROM is its table 1, bit for bit.
 //
-// Register 13 takes the multiplier's product of the word before, which the patent's settling words
-// have left the time for.
+// Muxes 8 and 9 are followed by registers: the multiplier takes what the word before selected,
+// which the patent's settling words have left the time for; a synchronous ROM 18 is addressed with
+// dgamma a word before line 47 says so.
 //
 // Writes while busy are ignored. The outputs follow register 13 and the colour registers: they hold
 // from valid until a colour is written or the next computation reaches its word 5.

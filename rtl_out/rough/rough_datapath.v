@@ -69,8 +69,9 @@ module rough_datapath #(
     // register 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
     reg  signed [16:0] reg13_result;
     reg         [13:0] sine_rest_held;       // u0.14
-    reg         [44:0] product_held;         // the product of the word before
-    reg         [9:0]  product_held_excess;
+    reg  signed [23:0] mux8_held;            // s23.0: what the microinstruction before selected
+    reg         [21:0] mux9_held;            // what the microinstruction before selected
+    reg                facing_held;          // facing, a clock later: the operands are held
     reg         [34:0] sine_word;
 
     wire cos_gamma_over = cos_gamma[20];
@@ -88,7 +89,10 @@ module rough_datapath #(
     // mux 17, u1.20: the cosine whose sine is looked up
     wire [20:0] mux17 = mux17_select ? cos_dgamma_reg : cos_gamma_reg;
 
-    wire [20:0] complement = ONE - mux17;  // u1.20: 1.0 - cos
+    // u1.20: mux 17, ahead by a microinstruction
+    wire [20:0] sine_of = reg19_sin_gamma_load ? cos_dgamma_reg : mux17;
+
+    wire [20:0] complement = ONE - sine_of;  // u1.20: 1.0 - cos
     wire sine_in_range0 = |complement[20:18];  // u is in range 0 or in one above
     wire [8:0] sine_word0 = sine_in_range0 ? {3'd6, complement[19:14]} : {1'b0, complement[17:10]};
     wire [13:0] sine_rest0 = sine_in_range0 ? complement[13:0] : {complement[9:0], 4'd0};  // u0.14
@@ -173,19 +177,19 @@ module rough_datapath #(
     end
 
     // multiplier 10: the shared product; its point depends on the operands
-    wire [44:0] multiplier10 = mux8[22:0] * mux9;
+    wire [44:0] multiplier10 = mux8_held[22:0] * mux9_held;
 
     // what the product of a negative operand is too large by, above its sign
-    wire [9:0] multiplier10_excess = mux8[23] ? mux9[9:0] : 10'd0;
+    wire [9:0] multiplier10_excess = mux8_held[23] ? mux9_held[9:0] : 10'd0;
 
     wire [22:0] cos_cos = multiplier10[40:18];  // u1.22
     wire [21:0] sin_sin = multiplier10[43:22];  // u0.22
-    wire [10:0] product_held_upper = product_held[33:23] - {1'b0, product_held_excess};
+    wire [10:0] multiplier10_upper = multiplier10[33:23] - {1'b0, multiplier10_excess};
     wire squares = operand_select[0];  // V2: which of its two products register 13 takes
 
     // s10.32: n/2 * adder 15, or the square of adder 16
-    wire signed [42:0] line_or_square = squares ? {9'd0, product_held[33:0]} : {product_held_upper,
-            product_held[22:0], 9'd0};
+    wire signed [42:0] line_or_square = squares ? {9'd0, multiplier10[33:0]} : {multiplier10_upper,
+            multiplier10[22:0], 9'd0};
 
     // s0.16
     wire signed [16:0] result_limited = (~line_or_square[42] & (|line_or_square[41:32])) ?
@@ -196,7 +200,7 @@ module rough_datapath #(
             result_limited;
 
     wire facing = |cos_gamma_reg;  // the surface faces the half vector
-    wire signed [16:0] facing_result = facing ? result : MINUS_ONE;  // s0.16
+    wire signed [16:0] facing_result = facing_held ? result : MINUS_ONE;  // s0.16
 
     // u0.16: the reflectance, once register 13 holds the square
     wire [15:0] f = reg13_result[15:0];
@@ -291,13 +295,14 @@ module rough_datapath #(
 
     always @(posedge clk) begin
         sine_rest_held <= sine_rest4;
-        product_held <= multiplier10;
-        product_held_excess <= multiplier10_excess;
+        mux8_held <= mux8;
+        mux9_held <= mux9;
+        facing_held <= facing;
     end
 
     // Bits that nothing needs, among them those that narrowing drops.
-    wire unused = &{1'b0, sine_rise[9:0], product_held[44:34], line_or_square[15:0],
-            red_product[14:0], green_product[14:0], blue_product[14:0]};
+    wire unused = &{1'b0, sine_rise[9:0], multiplier10[44], line_or_square[15:0], red_product[14:0],
+            green_product[14:0], blue_product[14:0]};
 
 `ifdef FORMAL
     reg was_busy = 1'b0;

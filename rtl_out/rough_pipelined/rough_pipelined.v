@@ -29,8 +29,9 @@
 // Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1; the control
 // ROM is its table 1, bit for bit.
 //
-// Register 13 takes the multiplier's product of the word before, which the patent's settling words
-// have left the time for.
+// Muxes 8 and 9 are followed by registers: the multiplier takes what the word before selected,
+// which the patent's settling words have left the time for; a synchronous ROM 18 is addressed with
+// dgamma a word before line 47 says so.
 //
 // Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.
 //
@@ -67,7 +68,6 @@ module rough_pipelined #(
     localparam [20:0] COS_GAMMA_MOST = 21'h100000;  // 1.0 in u1.20
     localparam [22:0] ONE = 23'h400000;  // 1.0 in u1.22
     localparam [22:0] ONE_2_SAME = 23'h400000;  // -1.0 in s0.22
-    localparam [9:0] multiplier10_excess = 10'd0;
     localparam [16:0] RESULT_MOST = 17'hffff;  // 0.9999847412109375 in s0.16
     localparam [16:0] MINUS_ONE = 17'h10000;  // -1.0 in s0.16
     localparam [16:0] ONE_2 = 17'h10000;  // 1.0 in u1.16
@@ -138,8 +138,8 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 0: operands cos gamma, cos dgamma; sine of gamma addressed; operands sin dgamma, sin
-    // gamma
+    // Stage 0: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma; 11 <- cos
+    // gamma * cos dgamma
     // register 1, u1.20: cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s1;
     // register 2, u1.20: cosine of the angle by which the normal is perturbed
@@ -180,8 +180,8 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 1: operands cos gamma, cos dgamma; sine of gamma addressed; operands sin dgamma, sin
-    // gamma; 13 <- n/2 * (cos(gamma +- dgamma) - 1)
+    // Stage 1: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma; 11 <- cos
+    // gamma * cos dgamma
     reg  [9:0]  exponent_s2;                     // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s2;
@@ -189,13 +189,13 @@ module rough_pipelined #(
     reg  [7:0]  green_s2;                        // register 6: intensity of the light times k_s
     reg  [7:0]  blue_s2;                         // register 7: intensity of the light times k_s
     reg  [13:0] sine_rest4_s2;                   // u0.14
+    reg         facing_s2;                       // the surface faces the half vector
     reg  [35:0] multiplier10_upper_upper_s2;     // register 10
     reg  [2:0]  multiplier10_upper_low_bits_s2;  // register 10
     reg  [17:0] multiplier10_upper_carried_s2;   // register 10
     reg  [22:0] multiplier10_rows_s2;            // register 10
     reg  [20:0] multiplier10_row_7_s2;           // register 10
     reg  [13:0] sine_rest4_2_s2;                 // u0.14
-    reg         facing_s2;                       // the surface faces the half vector
     reg  [34:0] sine_word_s2;
     reg  [34:0] sine_word_2_s2;
 
@@ -234,6 +234,28 @@ module rough_pipelined #(
 
     wire [13:0] sine_rest1_s1 = sine_in_range1_s1 ? sine_rest0_s1 : sine_rest2_s1;  // u0.14
     wire [13:0] sine_rest4_s1 = sine_in_range4_s1 ? sine_rest1_s1 : sine_rest6_s1;  // u0.14
+    wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
+
+    wire [9:0] sine_word8_s1 = sine_in_range8_s1 ? {8'd144, complement_s1[3:2]} : {8'd145,
+            complement_s1[1:0]};
+
+    wire [9:0] sine_word7_s1 = sine_in_range7_s1 ? {7'd71, complement_s1[5:3]} : sine_word8_s1;
+
+    wire [9:0] sine_word5_s1 = sine_in_range5_s1 ? {6'd34, complement_s1[9:6]} : {7'd70,
+            complement_s1[7:5]};
+
+    wire [9:0] sine_word6_s1 = sine_in_range6_s1 ? sine_word5_s1 : sine_word7_s1;
+
+    wire [9:0] sine_word3_s1 = sine_in_range3_s1 ? {4'd7, complement_s1[13:8]} : {5'd16,
+            complement_s1[11:7]};
+
+    wire [9:0] sine_word2_s1 = sine_in_range2_s1 ? {3'd2, complement_s1[15:9]} : sine_word3_s1;
+
+    wire [8:0] sine_word0_s1 = sine_in_range0_s1 ? {3'd6, complement_s1[19:14]} : {1'b0,
+            complement_s1[17:10]};
+
+    wire [9:0] sine_word1_s1 = sine_in_range1_s1 ? {1'b0, sine_word0_s1} : sine_word2_s1;
+    wire [9:0] sine_word4_s1 = sine_in_range4_s1 ? sine_word1_s1 : sine_word6_s1;
 
     // multiplier 10
     wire [35:0] multiplier10_upper_upper_s1 = cos_dgamma_reg_s1[20:3] * cos_gamma_reg_s1[20:3];
@@ -262,26 +284,6 @@ module rough_pipelined #(
     wire [22:0] multiplier10_rows_s1 = {2'd0, multiplier10_row_2_s1} + {1'b0, multiplier10_row_4_s1,
             1'b0};
 
-    wire [9:0] sine_word8_s1 = sine_in_range8_s1 ? {8'd144, complement_s1[3:2]} : {8'd145,
-            complement_s1[1:0]};
-
-    wire [9:0] sine_word7_s1 = sine_in_range7_s1 ? {7'd71, complement_s1[5:3]} : sine_word8_s1;
-
-    wire [9:0] sine_word5_s1 = sine_in_range5_s1 ? {6'd34, complement_s1[9:6]} : {7'd70,
-            complement_s1[7:5]};
-
-    wire [9:0] sine_word6_s1 = sine_in_range6_s1 ? sine_word5_s1 : sine_word7_s1;
-
-    wire [9:0] sine_word3_s1 = sine_in_range3_s1 ? {4'd7, complement_s1[13:8]} : {5'd16,
-            complement_s1[11:7]};
-
-    wire [9:0] sine_word2_s1 = sine_in_range2_s1 ? {3'd2, complement_s1[15:9]} : sine_word3_s1;
-
-    wire [8:0] sine_word0_s1 = sine_in_range0_s1 ? {3'd6, complement_s1[19:14]} : {1'b0,
-            complement_s1[17:10]};
-
-    wire [9:0] sine_word1_s1 = sine_in_range1_s1 ? {1'b0, sine_word0_s1} : sine_word2_s1;
-    wire [9:0] sine_word4_s1 = sine_in_range4_s1 ? sine_word1_s1 : sine_word6_s1;
     wire sine_in_range4_2_s1 = |complement_2_s1[20:10];  // u is in range 4 or in one above
     wire sine_in_range6_2_s1 = |complement_2_s1[20:6];  // u is in range 6 or in one above
     wire sine_in_range7_2_s1 = |complement_2_s1[20:4];  // u is in range 7 or in one above
@@ -344,7 +346,6 @@ module rough_pipelined #(
 
     wire [9:0] sine_word1_2_s1 = sine_in_range1_2_s1 ? {1'b0, sine_word0_2_s1} : sine_word2_2_s1;
     wire [9:0] sine_word4_2_s1 = sine_in_range4_2_s1 ? sine_word1_2_s1 : sine_word6_2_s1;
-    wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
 
     // ROM 18: value at the start of a segment (u0.22), then its rise over the segment in units of
     // 2^-18 (13 bits)
@@ -364,37 +365,42 @@ module rough_pipelined #(
             green_s2 <= green_s1;
             blue_s2 <= blue_s1;
             sine_rest4_s2 <= sine_rest4_s1;
+            facing_s2 <= facing_s1;
             multiplier10_upper_upper_s2 <= multiplier10_upper_upper_s1;
             multiplier10_upper_low_bits_s2 <= multiplier10_upper_rows_2_s1[2:0];
             multiplier10_upper_carried_s2 <= multiplier10_upper_rows_2_s1[20:3];
             multiplier10_rows_s2 <= multiplier10_rows_s1;
             multiplier10_row_7_s2 <= cos_gamma_reg_s1[2] ? cos_dgamma_reg_s1 : 21'd0;
             sine_rest4_2_s2 <= sine_rest4_2_s1;
-            facing_s2 <= facing_s1;
         end
     end
 
-    // Stage 2: operands cos gamma, cos dgamma; sine of gamma addressed; operands sin dgamma, sin
-    // gamma
-    reg  [9:0]  exponent_s3;                     // register 3: specular exponent n
+    // Stage 2: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma; 11 <- cos
+    // gamma * cos dgamma
+    reg  [9:0]  exponent_s3;             // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s3;
-    reg  [7:0]  red_s3;                          // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s3;                        // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s3;                         // register 7: intensity of the light times k_s
-    reg  [13:0] sine_rest4_s3;                   // u0.14
-    reg  [2:0]  multiplier10_upper_low_bits_s3;  // register 10
-    reg  [35:0] multiplier10_upper_sum_s3;       // register 10
-    reg  [2:0]  multiplier10_low_bits_s3;        // register 10
-    reg  [20:0] multiplier10_carried_s3;         // register 10
-    reg  [34:0] sine_word_s3;
-    reg  [13:0] sine_rest4_2_s3;                 // u0.14
+    reg  [7:0]  red_s3;                  // register 5: intensity of the light times k_s
+    reg  [7:0]  green_s3;                // register 6: intensity of the light times k_s
+    reg  [7:0]  blue_s3;                 // register 7: intensity of the light times k_s
+    reg  [13:0] sine_rest4_s3;           // u0.14
+    reg         facing_s3;               // the surface faces the half vector
+    reg  [21:0] sine_base_s3;            // u0.22
+    reg  [12:0] sine_slope_s3;           // u-5.18
+    reg  [38:0] multiplier10_upper_s3;   // register 10
+    reg  [23:0] multiplier10_rows_2_s3;  // register 10
+    reg  [13:0] sine_rest4_2_s3;         // u0.14
     reg  [34:0] sine_word_2_s3;
-    reg         facing_s3;                       // the surface faces the half vector
+
+    wire [21:0] sine_base_s2 = sine_word_s2[34:13];  // u0.22
+    wire [12:0] sine_slope_s2 = sine_word_s2[12:0];  // u-5.18
 
     // adder 10
     wire [35:0] multiplier10_upper_sum_s2 = multiplier10_upper_upper_s2 + {18'd0,
             multiplier10_upper_carried_s2};
+
+    // block 10
+    wire [38:0] multiplier10_upper_s2 = {multiplier10_upper_sum_s2, multiplier10_upper_low_bits_s2};
 
     // adder 10
     wire [23:0] multiplier10_rows_2_s2 = {1'b0, multiplier10_rows_s2} + {1'b0,
@@ -408,44 +414,37 @@ module rough_pipelined #(
             green_s3 <= green_s2;
             blue_s3 <= blue_s2;
             sine_rest4_s3 <= sine_rest4_s2;
-            multiplier10_upper_low_bits_s3 <= multiplier10_upper_low_bits_s2;
-            multiplier10_upper_sum_s3 <= multiplier10_upper_sum_s2;
-            multiplier10_low_bits_s3 <= multiplier10_rows_2_s2[2:0];
-            multiplier10_carried_s3 <= multiplier10_rows_2_s2[23:3];
-            sine_word_s3 <= sine_word_s2;
+            facing_s3 <= facing_s2;
+            sine_base_s3 <= sine_base_s2;
+            sine_slope_s3 <= sine_slope_s2;
+            multiplier10_upper_s3 <= multiplier10_upper_s2;
+            multiplier10_rows_2_s3 <= multiplier10_rows_2_s2;
             sine_rest4_2_s3 <= sine_rest4_2_s2;
             sine_word_2_s3 <= sine_word_2_s2;
-            facing_s3 <= facing_s2;
         end
     end
 
-    // Stage 3: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma; 11 <- cos
-    // gamma * cos dgamma; 12 <- sin gamma * sin dgamma
+    // Stage 3: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin gamma
     reg  [9:0]  exponent_s4;          // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s4;
     reg  [7:0]  red_s4;               // register 5: intensity of the light times k_s
     reg  [7:0]  green_s4;             // register 6: intensity of the light times k_s
     reg  [7:0]  blue_s4;              // register 7: intensity of the light times k_s
+    reg         facing_s4;            // the surface faces the half vector
     reg  [21:0] sine_base_s4;         // u0.22
     reg  [16:0] sine_rise_kept_s4;    // u-5.22
     reg  [22:0] reg11_cos_cos_s4;     // register 11, u1.22: cos gamma * cos dgamma
     reg  [21:0] sine_base_2_s4;       // u0.22
     reg  [16:0] sine_rise_kept_2_s4;  // u-5.22
-    reg         facing_s4;            // the surface faces the half vector
 
-    // block 10
-    wire [38:0] multiplier10_upper_s3 = {multiplier10_upper_sum_s3, multiplier10_upper_low_bits_s3};
+    wire [26:0] sine_rise_s3 = sine_slope_s3 * sine_rest4_s3;  // u-5.32
 
     // adder 10
-    wire [38:0] multiplier10_sum_s3 = multiplier10_upper_s3 + {18'd0, multiplier10_carried_s3};
+    wire [38:0] multiplier10_sum_s3 = multiplier10_upper_s3 + {18'd0, multiplier10_rows_2_s3[23:3]};
 
     // block 10: the shared product; its point depends on the operands
-    wire [41:0] multiplier10_s3 = {multiplier10_sum_s3, multiplier10_low_bits_s3};
-
-    wire [21:0] sine_base_s3 = sine_word_s3[34:13];  // u0.22
-    wire [12:0] sine_slope_s3 = sine_word_s3[12:0];  // u-5.18
-    wire [26:0] sine_rise_s3 = sine_slope_s3 * sine_rest4_s3;  // u-5.32
+    wire [41:0] multiplier10_s3 = {multiplier10_sum_s3, multiplier10_rows_2_s3[2:0]};
 
     // block 11, u1.22: cos gamma * cos dgamma
     wire [22:0] reg11_cos_cos_s3 = multiplier10_s3[40:18];
@@ -461,26 +460,26 @@ module rough_pipelined #(
             red_s4 <= red_s3;
             green_s4 <= green_s3;
             blue_s4 <= blue_s3;
+            facing_s4 <= facing_s3;
             sine_base_s4 <= sine_base_s3;
             sine_rise_kept_s4 <= sine_rise_s3[26:10];
             reg11_cos_cos_s4 <= reg11_cos_cos_s3;
             sine_base_2_s4 <= sine_base_2_s3;
             sine_rise_kept_2_s4 <= sine_rise_2_s3[26:10];
-            facing_s4 <= facing_s3;
         end
     end
 
-    // Stage 4: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; 12 <- sin gamma * sin dgamma
+    // Stage 4: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin gamma
     reg  [9:0]  exponent_s5;         // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s5;
     reg  [7:0]  red_s5;              // register 5: intensity of the light times k_s
     reg  [7:0]  green_s5;            // register 6: intensity of the light times k_s
     reg  [7:0]  blue_s5;             // register 7: intensity of the light times k_s
+    reg         facing_s5;           // the surface faces the half vector
     reg  [21:0] reg19_sin_gamma_s5;  // register 19, u0.22: sin gamma
     reg  [22:0] reg11_cos_cos_s5;    // register 11, u1.22: cos gamma * cos dgamma
     reg  [21:0] sine_value_s5;       // u0.22: sine of the addressed cosine
-    reg         facing_s5;           // the surface faces the half vector
 
     wire [22:0] sine_sum_s4 = {1'b0, sine_base_s4} + {6'd0, sine_rise_kept_s4};  // u1.22
 
@@ -499,10 +498,10 @@ module rough_pipelined #(
             red_s5 <= red_s4;
             green_s5 <= green_s4;
             blue_s5 <= blue_s4;
+            facing_s5 <= facing_s4;
             reg19_sin_gamma_s5 <= reg19_sin_gamma_s4;
             reg11_cos_cos_s5 <= reg11_cos_cos_s4;
             sine_value_s5 <= sine_value_s4;
-            facing_s5 <= facing_s4;
         end
     end
 
@@ -513,6 +512,7 @@ module rough_pipelined #(
     reg  [7:0]  red_s6;                         // register 5: intensity of the light times k_s
     reg  [7:0]  green_s6;                       // register 6: intensity of the light times k_s
     reg  [7:0]  blue_s6;                        // register 7: intensity of the light times k_s
+    reg         facing_s6;                      // the surface faces the half vector
     reg  [22:0] reg11_cos_cos_s6;               // register 11, u1.22: cos gamma * cos dgamma
     reg  [35:0] multiplier10_upper_upper_2_s6;  // register 10
     reg  [20:0] multiplier10_upper_rows_4_s6;   // register 10
@@ -520,27 +520,26 @@ module rough_pipelined #(
     reg  [23:0] multiplier10_rows_3_s6;         // register 10
     reg  [21:0] multiplier10_row_15_s6;         // register 10
     reg  [21:0] multiplier10_row_18_s6;         // register 10
-    reg         facing_s6;                      // the surface faces the half vector
 
     // multiplier 10
     wire [35:0] multiplier10_upper_upper_2_s5 = reg19_sin_gamma_s5[21:4] * sine_value_s5[21:4];
 
     // mux 10
-    wire [17:0] multiplier10_upper_row_13_s5 = reg19_sin_gamma_s5[0] ? sine_value_s5[21:4] : 18'd0;
+    wire [17:0] multiplier10_upper_row_10_s5 = reg19_sin_gamma_s5[0] ? sine_value_s5[21:4] : 18'd0;
 
     // mux 10
-    wire [17:0] multiplier10_upper_row_14_s5 = reg19_sin_gamma_s5[1] ? sine_value_s5[21:4] : 18'd0;
+    wire [17:0] multiplier10_upper_row_12_s5 = reg19_sin_gamma_s5[1] ? sine_value_s5[21:4] : 18'd0;
 
     // adder 10
-    wire [19:0] multiplier10_upper_rows_3_s5 = {2'd0, multiplier10_upper_row_13_s5} + {1'b0,
-            multiplier10_upper_row_14_s5, 1'b0};
+    wire [19:0] multiplier10_upper_rows_3_s5 = {2'd0, multiplier10_upper_row_10_s5} + {1'b0,
+            multiplier10_upper_row_12_s5, 1'b0};
 
     // mux 10
-    wire [17:0] multiplier10_upper_row_16_s5 = reg19_sin_gamma_s5[2] ? sine_value_s5[21:4] : 18'd0;
+    wire [17:0] multiplier10_upper_row_15_s5 = reg19_sin_gamma_s5[2] ? sine_value_s5[21:4] : 18'd0;
 
     // adder 10
     wire [20:0] multiplier10_upper_rows_4_s5 = {1'b0, multiplier10_upper_rows_3_s5} + {1'b0,
-            multiplier10_upper_row_16_s5, 2'd0};
+            multiplier10_upper_row_15_s5, 2'd0};
 
     wire [21:0] multiplier10_row_10_s5 = sine_value_s5[0] ? reg19_sin_gamma_s5 : 22'd0;  // mux 10
     wire [21:0] multiplier10_row_12_s5 = sine_value_s5[1] ? reg19_sin_gamma_s5 : 22'd0;  // mux 10
@@ -556,6 +555,7 @@ module rough_pipelined #(
             red_s6 <= red_s5;
             green_s6 <= green_s5;
             blue_s6 <= blue_s5;
+            facing_s6 <= facing_s5;
             reg11_cos_cos_s6 <= reg11_cos_cos_s5;
             multiplier10_upper_upper_2_s6 <= multiplier10_upper_upper_2_s5;
             multiplier10_upper_rows_4_s6 <= multiplier10_upper_rows_4_s5;
@@ -563,7 +563,6 @@ module rough_pipelined #(
             multiplier10_rows_3_s6 <= multiplier10_rows_3_s5;
             multiplier10_row_15_s6 <= sine_value_s5[2] ? reg19_sin_gamma_s5 : 22'd0;
             multiplier10_row_18_s6 <= sine_value_s5[3] ? reg19_sin_gamma_s5 : 22'd0;
-            facing_s6 <= facing_s5;
         end
     end
 
@@ -574,11 +573,11 @@ module rough_pipelined #(
     reg  [7:0]  red_s7;                      // register 5: intensity of the light times k_s
     reg  [7:0]  green_s7;                    // register 6: intensity of the light times k_s
     reg  [7:0]  blue_s7;                     // register 7: intensity of the light times k_s
+    reg         facing_s7;                   // the surface faces the half vector
     reg  [22:0] reg11_cos_cos_s7;            // register 11, u1.22: cos gamma * cos dgamma
     reg  [39:0] multiplier10_upper_2_s7;     // register 10
     reg  [3:0]  multiplier10_low_bits_2_s7;  // register 10
     reg  [21:0] multiplier10_carried_2_s7;   // register 10
-    reg         facing_s7;                   // the surface faces the half vector
 
     // adder 10
     wire [21:0] multiplier10_upper_rows_5_s6 = {1'b0, multiplier10_upper_rows_4_s6} + {1'b0,
@@ -607,11 +606,11 @@ module rough_pipelined #(
             red_s7 <= red_s6;
             green_s7 <= green_s6;
             blue_s7 <= blue_s6;
+            facing_s7 <= facing_s6;
             reg11_cos_cos_s7 <= reg11_cos_cos_s6;
             multiplier10_upper_2_s7 <= multiplier10_upper_2_s6;
             multiplier10_low_bits_2_s7 <= multiplier10_rows_5_s6[3:0];
             multiplier10_carried_2_s7 <= multiplier10_rows_5_s6[25:4];
-            facing_s7 <= facing_s6;
         end
     end
 
@@ -622,9 +621,9 @@ module rough_pipelined #(
     reg  [7:0]  red_s8;              // register 5: intensity of the light times k_s
     reg  [7:0]  green_s8;            // register 6: intensity of the light times k_s
     reg  [7:0]  blue_s8;             // register 7: intensity of the light times k_s
+    reg         facing_s8;           // the surface faces the half vector
     reg  [22:0] reg11_cos_cos_s8;    // register 11, u1.22: cos gamma * cos dgamma
     reg  [21:0] reg12_sin_sin_s8;    // register 12, u0.22: sin gamma * sin dgamma
-    reg         facing_s8;           // the surface faces the half vector
 
     // adder 10
     wire [39:0] multiplier10_sum_2_s7 = multiplier10_upper_2_s7 + {18'd0,
@@ -643,9 +642,9 @@ module rough_pipelined #(
             red_s8 <= red_s7;
             green_s8 <= green_s7;
             blue_s8 <= blue_s7;
+            facing_s8 <= facing_s7;
             reg11_cos_cos_s8 <= reg11_cos_cos_s7;
             reg12_sin_sin_s8 <= reg12_sin_sin_s7;
-            facing_s8 <= facing_s7;
         end
     end
 
@@ -654,10 +653,10 @@ module rough_pipelined #(
     reg         [7:0]  red_s9;            // register 5: intensity of the light times k_s
     reg         [7:0]  green_s9;          // register 6: intensity of the light times k_s
     reg         [7:0]  blue_s9;           // register 7: intensity of the light times k_s
+    reg                facing_s9;         // the surface faces the half vector
     reg         [22:0] reg11_cos_cos_s9;  // register 11, u1.22: cos gamma * cos dgamma
     reg  signed [23:0] mux14_s9;          // register 14, s1.22: what adder 15 adds to register 11
     reg                subtracts_s9;      // carry-in of adder 15
-    reg                facing_s9;         // the surface faces the half vector
 
     // u1.22: register 12 + 1.0, by wiring
     wire [22:0] raised12_s8 = {1'b0, reg12_sin_sin_s8} + ONE;
@@ -679,10 +678,10 @@ module rough_pipelined #(
             red_s9 <= red_s8;
             green_s9 <= green_s8;
             blue_s9 <= blue_s8;
+            facing_s9 <= facing_s8;
             reg11_cos_cos_s9 <= reg11_cos_cos_s8;
             mux14_s9 <= mux14_s8;
             subtracts_s9 <= subtracts_s8;
-            facing_s9 <= facing_s8;
         end
     end
 
@@ -691,8 +690,8 @@ module rough_pipelined #(
     reg         [7:0]  red_s10;       // register 5: intensity of the light times k_s
     reg         [7:0]  green_s10;     // register 6: intensity of the light times k_s
     reg         [7:0]  blue_s10;      // register 7: intensity of the light times k_s
-    reg  signed [23:0] adder15_s10;   // register 15, s1.22: cos(gamma +- dgamma) - 1.0
     reg                facing_s10;    // the surface faces the half vector
+    reg  signed [23:0] adder15_s10;   // register 15, s1.22: cos(gamma +- dgamma) - 1.0
 
     // adder 15, s1.22: cos(gamma +- dgamma) - 1.0
     wire signed [23:0] adder15_s9 = {1'b0, reg11_cos_cos_s9} + mux14_s9 + {23'd0, subtracts_s9};
@@ -703,46 +702,46 @@ module rough_pipelined #(
             red_s10 <= red_s9;
             green_s10 <= green_s9;
             blue_s10 <= blue_s9;
-            adder15_s10 <= adder15_s9;
             facing_s10 <= facing_s9;
+            adder15_s10 <= adder15_s9;
         end
     end
 
-    // Stage 10: operands adder 15, n/2
+    // Stage 10: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
     reg  [7:0]  red_s11;                   // register 5: intensity of the light times k_s
     reg  [7:0]  green_s11;                 // register 6: intensity of the light times k_s
     reg  [7:0]  blue_s11;                  // register 7: intensity of the light times k_s
+    reg         facing_s11;                // the surface faces the half vector
     reg  [27:0] multiplier10_upper_3_s11;  // register 10
     reg  [14:0] multiplier10_lower_s11;    // register 10
     // what the product of a negative operand is too large by, above its sign
     reg  [9:0]  multiplier10_excess_s11;
-    reg         facing_s11;                // the surface faces the half vector
 
     wire [27:0] multiplier10_upper_3_s10 = adder15_s10[22:5] * exponent_s10;  // multiplier 10
     wire [14:0] multiplier10_lower_s10 = adder15_s10[4:0] * exponent_s10;  // multiplier 10
 
     // what the product of a negative operand is too large by, above its sign
-    wire [9:0] multiplier10_excess_s10 = adder15_s10[23] ? exponent_s10 : multiplier10_excess;
+    wire [9:0] multiplier10_excess_s10 = adder15_s10[23] ? exponent_s10 : 10'd0;
 
     always @(posedge clk) begin
         if (advance) begin
             red_s11 <= red_s10;
             green_s11 <= green_s10;
             blue_s11 <= blue_s10;
+            facing_s11 <= facing_s10;
             multiplier10_upper_3_s11 <= multiplier10_upper_3_s10;
             multiplier10_lower_s11 <= multiplier10_lower_s10;
             multiplier10_excess_s11 <= multiplier10_excess_s10;
-            facing_s11 <= facing_s10;
         end
     end
 
-    // Stage 11: operands adder 15, n/2; 13 <- n/2 * (cos(gamma +- dgamma) - 1)
-    reg  [7:0]  red_s12;                 // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s12;               // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s12;                // register 7: intensity of the light times k_s
-    reg         facing_s12;              // the surface faces the half vector
-    reg  [10:0] product_held_upper_s12;
-    reg  [15:0] product_held_view_s12;
+    // Stage 11: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
+    reg  [7:0]  red_s12;                   // register 5: intensity of the light times k_s
+    reg  [7:0]  green_s12;                 // register 6: intensity of the light times k_s
+    reg  [7:0]  blue_s12;                  // register 7: intensity of the light times k_s
+    reg         facing_s12;                // the surface faces the half vector
+    reg  [10:0] multiplier10_upper_4_s12;
+    reg  [15:0] multiplier10_view_3_s12;
 
     // adder 10
     wire [27:0] multiplier10_sum_3_s11 = multiplier10_upper_3_s11 + {18'd0,
@@ -757,9 +756,9 @@ module rough_pipelined #(
             green_s12 <= green_s11;
             blue_s12 <= blue_s11;
             facing_s12 <= facing_s11;
-            product_held_upper_s12 <= {1'b0, multiplier10_3_s11[32:23]} - {1'b0,
+            multiplier10_upper_4_s12 <= {1'b0, multiplier10_3_s11[32:23]} - {1'b0,
                     multiplier10_excess_s11};
-            product_held_view_s12 <= multiplier10_3_s11[22:7];
+            multiplier10_view_3_s12 <= multiplier10_3_s11[22:7];
         end
     end
 
@@ -772,13 +771,13 @@ module rough_pipelined #(
     reg  signed [16:0] reg13_result_s13;
 
     // s0.16
-    wire signed [16:0] result_limited_s12 = (~product_held_upper_s12[10] &
-            (|product_held_upper_s12[9:0])) ? RESULT_MOST : {product_held_upper_s12[0],
-            product_held_view_s12};
+    wire signed [16:0] result_limited_s12 = (~multiplier10_upper_4_s12[10] &
+            (|multiplier10_upper_4_s12[9:0])) ? RESULT_MOST : {multiplier10_upper_4_s12[0],
+            multiplier10_view_3_s12};
 
     // s0.16
-    wire signed [16:0] result_s12 = (product_held_upper_s12[10] & ~(&product_held_upper_s12[9:0])) ?
-            MINUS_ONE : result_limited_s12;
+    wire signed [16:0] result_s12 = (multiplier10_upper_4_s12[10] &
+            ~(&multiplier10_upper_4_s12[9:0])) ? MINUS_ONE : result_limited_s12;
 
     // mux 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
     wire signed [16:0] reg13_result_s12 = facing_s12 ? result_s12 : MINUS_ONE;
@@ -812,7 +811,7 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 14: operands adder 16, adder 16
+    // Stage 14: 13 <- (... + 1)^2
     // register 5: intensity of the light times k_s
     reg         [7:0]  red_s15;
     // register 6: intensity of the light times k_s
@@ -914,7 +913,7 @@ module rough_pipelined #(
     assign blue_out = blue_intensity_s18;  // output 42: intensity on the output
 
     // Bits that nothing needs, among them those that narrowing drops.
-    wire unused = &{1'b0, multiplier10_s3[17:0], multiplier10_s3[41], sine_rise_s3[9:0],
+    wire unused = &{1'b0, sine_rise_s3[9:0], multiplier10_s3[17:0], multiplier10_s3[41],
             sine_rise_2_s3[9:0], multiplier10_2_s7[21:0], multiplier10_3_s11[6:0],
             multiplier10_4_s14[15:0], reg13_result_2_s15[16], red_product_s16[14:0],
             green_product_s16[14:0], blue_product_s16[14:0]};

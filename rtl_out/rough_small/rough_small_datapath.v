@@ -69,8 +69,9 @@ module rough_small_datapath #(
     // register 13, s0.14: n/2*(cos(gamma +- dgamma) - 1), then f
     reg  signed [14:0] reg13_result;
     reg         [11:0] sine_rest_held;       // u0.12
-    reg         [40:0] product_held;         // the product of the word before
-    reg         [7:0]  product_held_excess;
+    reg  signed [21:0] mux8_held;            // s21.0: what the microinstruction before selected
+    reg         [19:0] mux9_held;            // what the microinstruction before selected
+    reg                facing_held;          // facing, a clock later: the operands are held
     reg         [31:0] sine_word;
 
     wire cos_gamma_over = cos_gamma[18];
@@ -88,7 +89,10 @@ module rough_small_datapath #(
     // mux 17, u1.18: the cosine whose sine is looked up
     wire [18:0] mux17 = mux17_select ? cos_dgamma_reg : cos_gamma_reg;
 
-    wire [18:0] complement = ONE - mux17;  // u1.18: 1.0 - cos
+    // u1.18: mux 17, ahead by a microinstruction
+    wire [18:0] sine_of = reg19_sin_gamma_load ? cos_dgamma_reg : mux17;
+
+    wire [18:0] complement = ONE - sine_of;  // u1.18: 1.0 - cos
     wire sine_in_range0 = |complement[18:16];  // u is in range 0 or in one above
     wire [7:0] sine_word0 = sine_in_range0 ? {2'd2, complement[17:12]} : {1'b0, complement[15:9]};
     wire [11:0] sine_rest0 = sine_in_range0 ? complement[11:0] : {complement[8:0], 3'd0};  // u0.12
@@ -167,19 +171,19 @@ module rough_small_datapath #(
     end
 
     // multiplier 10: the shared product; its point depends on the operands
-    wire [40:0] multiplier10 = mux8[20:0] * mux9;
+    wire [40:0] multiplier10 = mux8_held[20:0] * mux9_held;
 
     // what the product of a negative operand is too large by, above its sign
-    wire [7:0] multiplier10_excess = mux8[21] ? mux9[7:0] : 8'd0;
+    wire [7:0] multiplier10_excess = mux8_held[21] ? mux9_held[7:0] : 8'd0;
 
     wire [20:0] cos_cos = multiplier10[36:16];  // u1.20
     wire [19:0] sin_sin = multiplier10[39:20];  // u0.20
-    wire [8:0] product_held_upper = product_held[29:21] - {1'b0, product_held_excess};
+    wire [8:0] multiplier10_upper = multiplier10[29:21] - {1'b0, multiplier10_excess};
     wire squares = operand_select[0];  // V2: which of its two products register 13 takes
 
     // s8.28: n/2 * adder 15, or the square of adder 16
-    wire signed [36:0] line_or_square = squares ? {7'd0, product_held[29:0]} : {product_held_upper,
-            product_held[20:0], 7'd0};
+    wire signed [36:0] line_or_square = squares ? {7'd0, multiplier10[29:0]} : {multiplier10_upper,
+            multiplier10[20:0], 7'd0};
 
     // s0.14
     wire signed [14:0] result_limited = (~line_or_square[36] & (|line_or_square[35:28])) ?
@@ -190,7 +194,7 @@ module rough_small_datapath #(
             result_limited;
 
     wire facing = |cos_gamma_reg;  // the surface faces the half vector
-    wire signed [14:0] facing_result = facing ? result : MINUS_ONE;  // s0.14
+    wire signed [14:0] facing_result = facing_held ? result : MINUS_ONE;  // s0.14
 
     // u0.14: the reflectance, once register 13 holds the square
     wire [13:0] f = reg13_result[13:0];
@@ -285,13 +289,14 @@ module rough_small_datapath #(
 
     always @(posedge clk) begin
         sine_rest_held <= sine_rest3;
-        product_held <= multiplier10;
-        product_held_excess <= multiplier10_excess;
+        mux8_held <= mux8;
+        mux9_held <= mux9;
+        facing_held <= facing;
     end
 
     // Bits that nothing needs, among them those that narrowing drops.
-    wire unused = &{1'b0, sine_rise[8:0], product_held[40:30], line_or_square[13:0],
-            red_product[12:0], green_product[12:0], blue_product[12:0]};
+    wire unused = &{1'b0, sine_rise[8:0], multiplier10[40], line_or_square[13:0], red_product[12:0],
+            green_product[12:0], blue_product[12:0]};
 
 `ifdef FORMAL
     reg was_busy = 1'b0;

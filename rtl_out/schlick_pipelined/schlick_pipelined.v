@@ -117,16 +117,13 @@ module schlick_pipelined (
         end
     end
 
-    // Stage 0: operands cos gamma, n; cos gamma by n*(1 - cos gamma) + cos gamma
-    reg  [20:0] cos_gamma_reg_s1;      // u1.20: cosine of the angle between normal and half vector
-    reg  [9:0]  exponent_s1;           // specular exponent n
-    reg  [7:0]  red_s1;                // intensity of the light times k_s
-    reg  [7:0]  green_s1;              // intensity of the light times k_s
-    reg  [7:0]  blue_s1;               // intensity of the light times k_s
-    reg  [17:0] scaled_upper_bits_s1;
-    reg         scaled_row_s1;
-    reg         scaled_row_3_s1;
-    reg         scaled_row_6_s1;
+    // Stage 0: operands cos gamma, n
+    reg  [20:0] cos_gamma_reg_s1;  // u1.20: cosine of the angle between normal and half vector
+    reg  [9:0]  exponent_s1;       // specular exponent n
+    reg  [7:0]  red_s1;            // intensity of the light times k_s
+    reg  [7:0]  green_s1;          // intensity of the light times k_s
+    reg  [7:0]  blue_s1;           // intensity of the light times k_s
+    reg  [20:0] complement_s1;     // u1.20: 1.0 - cos gamma
 
     wire cos_gamma_over_s0 = cos_gamma[20];
 
@@ -142,10 +139,7 @@ module schlick_pipelined (
             red_s1 <= red;
             green_s1 <= green;
             blue_s1 <= blue;
-            scaled_upper_bits_s1 <= complement_s0[20:3];
-            scaled_row_s1 <= complement_s0[0];
-            scaled_row_3_s1 <= complement_s0[1];
-            scaled_row_6_s1 <= complement_s0[2];
+            complement_s1 <= complement_s0;
         end
     end
 
@@ -158,11 +152,11 @@ module schlick_pipelined (
     reg  [2:0]  scaled_low_bits_s2;
     reg  [9:0]  scaled_carried_s2;
 
-    wire [27:0] scaled_upper_s1 = scaled_upper_bits_s1 * exponent_s1;
-    wire [9:0] scaled_row_2_s1 = scaled_row_s1 ? exponent_s1 : 10'd0;
-    wire [9:0] scaled_row_4_s1 = scaled_row_3_s1 ? exponent_s1 : 10'd0;
+    wire [27:0] scaled_upper_s1 = complement_s1[20:3] * exponent_s1;
+    wire [9:0] scaled_row_2_s1 = complement_s1[0] ? exponent_s1 : 10'd0;
+    wire [9:0] scaled_row_4_s1 = complement_s1[1] ? exponent_s1 : 10'd0;
     wire [11:0] scaled_rows_s1 = {2'd0, scaled_row_2_s1} + {1'b0, scaled_row_4_s1, 1'b0};
-    wire [9:0] scaled_row_7_s1 = scaled_row_6_s1 ? exponent_s1 : 10'd0;
+    wire [9:0] scaled_row_7_s1 = complement_s1[2] ? exponent_s1 : 10'd0;
     wire [12:0] scaled_rows_2_s1 = {1'b0, scaled_rows_s1} + {1'b0, scaled_row_7_s1, 2'd0};
 
     always @(posedge clk) begin
@@ -415,10 +409,9 @@ module schlick_pipelined (
     reg  [7:0]  green_s10;                 // intensity of the light times k_s
     reg  [7:0]  blue_s10;                  // intensity of the light times k_s
     reg  [29:0] quotient_divisor_s10;      // u10.20: the divisor
-    reg         quotient_bit_7_s10;        // the divisor fits: the next bit of the quotient
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
     reg  [29:0] quotient_remainder_7_s10;
-    reg  [5:0]  quotient_5_s10;            // the quotient, which bits enter at the bottom
+    reg  [6:0]  quotient_6_s10;            // the quotient, which bits enter at the bottom
 
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_7_s9 = {1'b0, quotient_remainder_6_s9, 1'b0} - {2'd0,
@@ -440,9 +433,8 @@ module schlick_pipelined (
             green_s10 <= green_s9;
             blue_s10 <= blue_s9;
             quotient_divisor_s10 <= quotient_divisor_s9;
-            quotient_bit_7_s10 <= quotient_bit_7_s9;
             quotient_remainder_7_s10 <= quotient_remainder_7_s9;
-            quotient_5_s10 <= quotient_5_s9;
+            quotient_6_s10 <= {quotient_5_s9, quotient_bit_7_s9};
         end
     end
 
@@ -476,7 +468,7 @@ module schlick_pipelined (
             blue_s11 <= blue_s10;
             quotient_divisor_s11 <= quotient_divisor_s10;
             quotient_remainder_8_s11 <= quotient_remainder_8_s10;
-            quotient_7_s11 <= {quotient_5_s10, quotient_bit_7_s10, quotient_bit_8_s10};
+            quotient_7_s11 <= {quotient_6_s10, quotient_bit_8_s10};
         end
     end
 

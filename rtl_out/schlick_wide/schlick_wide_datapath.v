@@ -47,6 +47,7 @@ module schlick_wide_datapath (
     reg  [29:0] quotient_remainder;
     reg  [13:0] quotient;            // u0.14: the quotient, which bits enter at the bottom
     reg  [3:0]  quotient_remaining;  // bits to come after the next
+    reg  [20:0] complement_held;     // u1.20: complement, a clock later: the operands are held
 
     wire cos_gamma_over = cos_gamma[20];
     wire [20:0] cos_gamma_at_most = cos_gamma_over ? COS_GAMMA_MOST : cos_gamma;  // u1.20
@@ -56,7 +57,7 @@ module schlick_wide_datapath (
     wire green_load = green_write & idle;
     wire blue_load = blue_write & idle;
     wire [20:0] complement = ONE - cos_gamma_reg;  // u1.20: 1.0 - cos gamma
-    wire [30:0] scaled = complement * exponent_reg;  // u11.20: n*(1 - cos gamma)
+    wire [30:0] scaled = complement_held * exponent_reg;  // u11.20: n*(1 - cos gamma)
     wire facing = |cos_gamma_reg;  // the surface faces the half vector
     wire dark = ~facing;  // an ulp for the divisor, which n = 0 would leave at 0
     wire [30:0] denominator = scaled + {10'd0, cos_gamma_reg} + {30'd0, dark};  // u11.20
@@ -146,6 +147,10 @@ module schlick_wide_datapath (
         if (quotient_remaining_enable) begin
             quotient_remaining <= quotient_remaining_next;
         end
+    end
+
+    always @(posedge clk) begin
+        complement_held <= complement;
     end
 
     // Bits that nothing needs, among them those that narrowing drops.

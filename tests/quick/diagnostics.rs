@@ -246,9 +246,9 @@ fn products_held_from_another_selection() {
         let a = d.operand("a", BYTE);
         let b = d.operand("b", BYTE);
         let select = d.select("operands", &["a", "b"]);
-        let first = d.bus("first", select, [a.q(), b.q()]);
-        let second = d.bus("second", select, [a.q(), b.q()]);
-        let product = d.shared_mul("product", &first, &second).held("product_held");
+        let first = d.bus("first", select, [a.q(), b.q()]).held();
+        let second = d.bus("second", select, [a.q(), b.q()]).held();
+        let product = d.shared_mul("product", &first, &second);
         let y = d.register("y", Format::unsigned(0, 16));
         // The lines that choose between two products are themselves lines of a word.
         let squares = [product.of(a.q(), a.q()), product.of(b.q(), b.q())];

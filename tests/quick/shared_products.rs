@@ -18,12 +18,12 @@ fn device(a_first: bool, held: bool) -> Design {
         .map(|(name, format)| d.operand(name, format).q());
     let select = d.select("operands", &["signed", "unsigned"]);
     let (first, second) = if a_first { (a, b) } else { (b, a) };
-    let left = d.bus("left", select, [first, c]);
-    let right = d.bus("right", select, [second, e]);
-    let mut product = d.shared_mul("product", &left, &right);
+    let mut left = d.bus("left", select, [first, c]);
+    let mut right = d.bus("right", select, [second, e]);
     if held {
-        product = product.held("product_held");
+        (left, right) = (left.held(), right.held());
     }
+    let product = d.shared_mul("product", &left, &right);
     let signed = product.of(first, second);
     let of_signed = d.register("of_signed", signed.format());
     of_signed.takes(signed);

@@ -21,6 +21,8 @@ pub struct Bus<'d> {
     field: FieldId,
     out: Signal<'d>,
     inputs: Vec<Signal<'d>>,
+    /// Registers behind the mux.
+    delay: u32,
 }
 
 impl Designer {
@@ -49,7 +51,7 @@ impl Designer {
             .collect();
         let op = Op::Mux { select: self.field_net(select.field()).id(), inputs: carried };
         let out = self.signal(self.add_net(name, format, (low, high), Driver::Op(op), true));
-        Bus { designer: self, name: name.to_owned(), field: select.field(), out, inputs }
+        Bus { designer: self, name: name.to_owned(), field: select.field(), out, inputs, delay: 0 }
     }
 
     /// The product of two buses under the same select lines.
@@ -65,9 +67,10 @@ impl Designer {
         first: &Bus<'d>,
         second: &Bus<'d>,
     ) -> SharedProduct<'d> {
-        if first.field != second.field || first.inputs.len() != second.inputs.len() {
+        let (alike, other) = ((first.field, first.delay), (second.field, second.delay));
+        if alike != other || first.inputs.len() != second.inputs.len() {
             self.error(format!(
-                "multiplier `{name}`: `{}` and `{}` must have as many inputs under the same select lines",
+                "multiplier `{name}`: `{}` and `{}` must have as many inputs under the same select lines, both held or neither",
                 first.name, second.name
             ));
         }
@@ -79,7 +82,7 @@ impl Designer {
         SharedProduct {
             out,
             excess,
-            delay: 0,
+            delay: first.delay,
             field: first.field,
             pairs: first.inputs.iter().copied().zip(second.inputs.iter().copied()).collect(),
         }
@@ -124,6 +127,19 @@ impl<'d> Bus<'d> {
         Setting::pick_of(self.designer, self.field, &self.name, input, &self.inputs)
     }
 
+    /// The operand that the microinstruction before selected, in a register `<name>_held` behind the mux.
+    ///
+    /// For a program that settles the operands in one microinstruction and takes the product in the next,
+    /// under the same selection: the multiplier then has the second of the two clocks to itself.
+    #[must_use]
+    #[track_caller]
+    pub fn held(self) -> Self {
+        let name = format!("{}_held", self.name);
+        let doc = "what the microinstruction before selected";
+        let out = self.designer.pipeline(&name, self.out).doc(doc);
+        Self { out, delay: self.delay + 1, ..self }
+    }
+
     /// The block number in the source's figure.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
@@ -153,7 +169,7 @@ struct Excess<'d> {
 pub struct SharedProduct<'d> {
     out: Signal<'d>,
     excess: Option<Excess<'d>>,
-    /// Registers behind the multiplier.
+    /// Registers in front of the multiplier.
     delay: u32,
     field: FieldId,
     pairs: Vec<(Signal<'d>, Signal<'d>)>,
@@ -227,25 +243,6 @@ impl<'d> SharedProduct<'d> {
         let lower = raw.bits(0, Format::unsigned(excess.low as i32, 0));
         let op = Op::Concat(vec![upper, lower.id()]);
         self.out.wiring("view", format, range, op)
-    }
-
-    /// The product of the word before, in a register `name` behind the multiplier.
-    ///
-    /// For a program that settles the operands in one word and takes the product in the next, under the
-    /// same selection: the multiplier then has the first of the two clocks to itself.
-    #[must_use]
-    #[track_caller]
-    pub fn held(&self, name: &str) -> Self {
-        let d = self.out.designer();
-        Self {
-            out: d.pipeline(name, self.out).doc("the product of the word before"),
-            excess: self.excess.map(|excess| Excess {
-                amount: d.pipeline(&format!("{name}_excess"), excess.amount),
-                ..excess
-            }),
-            delay: self.delay + 1,
-            ..self.clone()
-        }
     }
 
     /// The block number in the source's figure.

@@ -51,6 +51,7 @@ pub use registers::{Counter, Flag, Operand, Register, Select};
 pub use signal::{Mux, Signal};
 
 pub use crate::hdl::netlist::About;
+use crate::hdl::netlist::register_held;
 
 use crate::base::diagnostic::{Diagnostic, Diagnostics, SourceLocation};
 use crate::base::fixed::{Format, MAX_POINT, MAX_WIDTH};
@@ -305,14 +306,18 @@ impl Designer {
             let place = self.net(self.start).location;
             self.report(Diagnostic::new("the design has no microprogram".to_owned(), place));
         }
-        let Inner { design, views, mut diagnostics, .. } = self.inner.into_inner();
+        let Inner { mut design, views, mut diagnostics, .. } = self.inner.into_inner();
         if diagnostics.is_empty() {
             diagnostics = design.verify();
         }
         if diagnostics.is_empty() {
             diagnostics = rules::check(&design, &views);
         }
-        if diagnostics.is_empty() { Ok(design) } else { Err(Diagnostics(diagnostics)) }
+        if !diagnostics.is_empty() {
+            return Err(Diagnostics(diagnostics));
+        }
+        register_held(&mut design);
+        Ok(design)
     }
 }
 

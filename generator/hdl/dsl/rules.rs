@@ -5,8 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::View;
 use crate::base::diagnostic::Diagnostic;
-use crate::base::fixed::mask;
-use crate::hdl::netlist::{Design, Driver, FieldKind, NetId, Op, Word};
+use crate::hdl::netlist::{Design, Driver, FieldKind, NetId, Op, turned};
 
 /// Registers of `design` that are loaded with a product under a selection that means another one; `views` are the
 /// products that a selection gives their meaning.
@@ -57,7 +56,7 @@ impl Checker<'_> {
                     break;
                 }
                 if let Driver::Op(Op::Mux { select, inputs }) = &design.net(id).driver
-                    && let Some(chosen) = self.selected(&words[now], *select)
+                    && let Some(chosen) = turned(design, &words[now], *select)
                 {
                     // Of a mux that the word turns, only the chosen input matters.
                     let chosen = inputs.get(chosen as usize).or(inputs.last());
@@ -76,20 +75,6 @@ impl Checker<'_> {
                     }
                 }
             }
-        }
-    }
-
-    /// What `word` puts on a select line: a field, or bits of one.
-    fn selected(&self, word: &Word, select: NetId) -> Option<u64> {
-        let net = self.design.net(select);
-        match net.driver {
-            Driver::Field(field) => Some(word.values[field.index()]),
-            Driver::Op(Op::Relabel(of)) => self.selected(word, of),
-            Driver::Op(Op::Slice { of, low }) => {
-                let bits = self.selected(word, of)? >> low;
-                Some(bits & mask(net.format.width()))
-            }
-            _ => None,
         }
     }
 

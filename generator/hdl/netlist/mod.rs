@@ -18,7 +18,9 @@ mod decisions;
 mod dump;
 pub mod eval;
 mod handshake;
+mod held;
 pub mod microcode;
+mod needed;
 mod pipeline;
 pub mod termination;
 mod verify;
@@ -30,6 +32,8 @@ pub use control::{Control, Field, FieldKind, Sequence, Word};
 pub use decisions::{decided_by_data, delay_of_valid};
 pub use eval::Interpreter;
 pub use handshake::Handshake;
+pub use held::register_held;
+pub use needed::turned;
 pub use pipeline::{Checkpoint, Pipeline, Stage};
 pub use termination::latest_done;
 

@@ -1,0 +1,122 @@
+//! When a net's value first matters.
+
+use std::collections::{HashSet, VecDeque};
+
+use super::{Design, Driver, NetId, Op, Word};
+use crate::base::fixed::mask;
+
+/// For each net the clock, counted from that of the first microinstruction of a computation, in which its value
+/// first matters: reaches an output, the sequencer, or a register that is loaded. `usize::MAX` if it never does.
+///
+/// A microinstruction that turns a mux needs its chosen input alone.
+pub fn needed(design: &Design) -> Vec<usize> {
+    let mut walk = Walk {
+        design,
+        clocks: clocks_to(design),
+        needed: vec![usize::MAX; design.nets.len()],
+        seen: HashSet::new(),
+    };
+    let words = 0..design.control.words.len();
+    for port in design.outputs() {
+        walk.at_once(port.net);
+    }
+    for register in &design.registers {
+        let (Some(data), Some(enable)) = (register.data, register.enable) else { continue };
+        walk.at_once(enable);
+        for at in words.clone() {
+            if turned(design, &design.control.words[at], enable) != Some(0) {
+                walk.from(at, data);
+            }
+        }
+    }
+    for rom in design.roms.iter().filter(|rom| rom.synchronous) {
+        rom.enable.into_iter().for_each(|enable| walk.at_once(enable));
+    }
+    // The run flag of the sequencer has no enable.
+    if let Some(register) = design.registers.get(design.control.run.index()) {
+        register.data.into_iter().for_each(|data| walk.at_once(data));
+    }
+    walk.needed
+}
+
+/// The value of a control line in a microinstruction: a field, or what is made of fields alone.
+pub fn turned(design: &Design, word: &Word, line: NetId) -> Option<u64> {
+    let net = design.net(line);
+    let of = |line: NetId| turned(design, word, line);
+    match &net.driver {
+        Driver::Field(field) => Some(word.values[field.index()]),
+        Driver::Constant(bits) => Some(*bits),
+        Driver::Op(Op::Relabel(a)) => of(*a),
+        Driver::Op(Op::Slice { of: a, low }) => Some(of(*a)? >> low & mask(net.format.width())),
+        Driver::Op(Op::Not(a)) => Some(!of(*a)? & mask(net.format.width())),
+        Driver::Op(Op::Or(a, b)) => Some(of(*a)? | of(*b)?),
+        Driver::Op(Op::And(a, b)) if of(*a) == Some(0) || of(*b) == Some(0) => Some(0),
+        Driver::Op(Op::And(a, b)) => Some(of(*a)? & of(*b)?),
+        _ => None,
+    }
+}
+
+struct Walk<'a> {
+    design: &'a Design,
+    /// The fewest clocks from the first microinstruction to each.
+    clocks: Vec<usize>,
+    needed: Vec<usize>,
+    seen: HashSet<(usize, NetId)>,
+}
+
+impl Walk<'_> {
+    /// `net` matters in every clock.
+    fn at_once(&mut self, net: NetId) {
+        (0..self.design.control.words.len()).for_each(|at| self.from(at, net));
+    }
+
+    /// `net` matters in microinstruction `at`.
+    fn from(&mut self, at: usize, net: NetId) {
+        let design = self.design;
+        let mut pending = vec![(at, net)];
+        while let Some((at, net)) = pending.pop() {
+            if !self.seen.insert((at, net)) {
+                continue;
+            }
+            let needed = &mut self.needed[net.index()];
+            *needed = self.clocks[at].min(*needed);
+            let before = || design.control.predecessors(at, 1).into_iter();
+            match &design.net(net).driver {
+                Driver::Op(Op::Mux { select, inputs }) => {
+                    pending.push((at, *select));
+                    match turned(design, &design.control.words[at], *select) {
+                        Some(chosen) => {
+                            let chosen = inputs.get(chosen as usize).or(inputs.last());
+                            pending.extend(chosen.map(|&input| (at, input)));
+                        }
+                        None => pending.extend(inputs.iter().map(|&input| (at, input))),
+                    }
+                }
+                Driver::Register(id) if design.register(*id).enable.is_none() => {
+                    let data = design.register(*id).data;
+                    pending.extend(before().filter_map(|word| Some((word, data?))));
+                }
+                Driver::Rom(rom) if design.rom(*rom).synchronous => {
+                    let address = design.rom(*rom).address;
+                    pending.extend(before().map(|word| (word, address)));
+                }
+                _ => {
+                    let inputs = design.combinational_inputs(net).into_iter();
+                    pending.extend(inputs.map(|input| (at, input)));
+                }
+            }
+        }
+    }
+}
+
+fn clocks_to(design: &Design) -> Vec<usize> {
+    let mut clocks = vec![usize::MAX; design.control.words.len()];
+    let mut pending = VecDeque::from([(0, 0)]);
+    while let Some((at, after)) = pending.pop_front() {
+        if clocks[at] == usize::MAX {
+            clocks[at] = after;
+            pending.extend(design.control.successors(at).into_iter().map(|to| (to, after + 1)));
+        }
+    }
+    clocks
+}
