@@ -116,6 +116,12 @@ impl Cosine {
     }
 }
 
+/// The unit vector of a direction; the zero vector stays.
+fn unit_vector(vector: [f64; 3]) -> [f64; 3] {
+    let now = vector.map(|it| it * it).iter().sum::<f64>().sqrt();
+    vector.map(|it| if now == 0.0 { 0.0 } else { it / now })
+}
+
 impl Contract for Cosine {
     fn operands(&self) -> &[Operand] {
         &self.operands
@@ -132,6 +138,25 @@ impl Contract for Cosine {
     fn exact(&self, operands: &[i64], _: u64, values: &mut Vec<[f64; 2]>) {
         let sum = self.sum(operands) as f64 * exp2(-2 * self.it.fraction as i32);
         values.push([sum.clamp(0.0, 1.0); 2]);
+    }
+
+    /// A unit vector, and another close to it, or close to a right angle with it: highlights are near a product of 1,
+    /// and at 0 the result begins to be clamped.
+    fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
+        let mut centred = || [(); 3].map(|()| 2.0 * unit() - 1.0);
+        let normal = unit_vector(centred());
+        let off = centred();
+        let along: f64 = (0..3).map(|axis| normal[axis] * off[axis]).sum();
+        let across = unit_vector([0, 1, 2].map(|axis| off[axis] - along * normal[axis]));
+        // The smaller of the two angles between them and what they are close to, by octaves.
+        let (near, small) = (unit() < 0.5, exp2(-(unit() * f64::from(self.it.fraction)) as i32));
+        let half = [0, 1, 2].map(|axis| match near {
+            true => normal[axis] + small * across[axis],
+            false => across[axis] + small * off[axis],
+        });
+        let one = exp2(self.it.fraction as i32);
+        let raw = [normal, unit_vector(half)].concat().into_iter();
+        Some(raw.map(|component| (component * one).round() as i64).collect())
     }
 
     /// The products and their sum are exact, and rounded once. To clamp to 0 … 1 brings two values no further

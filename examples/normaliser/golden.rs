@@ -242,6 +242,13 @@ impl Contract for UnitVector {
         ])
     }
 
+    /// Vectors of any length, each octave as often as any other: the shift goes by the length.
+    fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
+        let most =
+            exp2(1 + self.it.fraction as i32) * libm::exp2(-unit() * f64::from(self.it.fraction));
+        Some((0..3).map(|_| ((2.0 * unit() - 1.0) * most).round() as i64).collect())
+    }
+
     /// The sum of squares determines the inverse root, and the largest error of any component with it.
     fn sweep(&self) -> Sweep {
         let most = FARTHEST << (2 * self.it.fraction);

@@ -5,6 +5,8 @@
 //! from the peak of `f` to where the formula has a value that is drawn too, half of the time evenly, half by
 //! decades. One in eight of these is taken to the very step at which the formula crosses that value, or leaves 0. The
 //! others are corners of the domain, evenly drawn, or any bits at all.
+//!
+//! Of a device that is no highlight, half of the points are those that its contract hints at.
 
 use crate::base::fixed::exp2;
 use crate::golden::{Contract, Highlight, Operand};
@@ -14,6 +16,9 @@ use super::random::Random;
 /// A point is of one of so many kinds: 0 has any bits, 1 and 2 are corners of the domain, 3 is drawn evenly; the
 /// others are drawn by the value of the formula.
 const KINDS: i64 = 16;
+
+/// Of a device that is no highlight, a point of a higher kind is one that its contract hints at.
+const HINTED: i64 = 7;
 
 /// A line that is not drawn by the value of the formula is no longer than this, all but one in so many: long ones
 /// would crowd out all other points.
@@ -35,6 +40,7 @@ const MOVED: usize = 6;
 
 /// What operands a point is given.
 pub struct Points<'a> {
+    contract: &'a dyn Contract,
     /// Of a device that multiplies by an f: without it there is no value to draw points by.
     highlight: Option<&'a Highlight>,
     /// With the domains that are drawn from: those of the contract, but of operands that are held.
@@ -55,7 +61,8 @@ impl<'a> Points<'a> {
         let length = contract.length();
         let length = operands.iter().position(|operand| Some(operand.name.as_str()) == length);
         let control = operands.iter().filter(|operand| !operand.colour).count();
-        let mut points = Self { highlight, control, length, peak: vec![None; control], operands };
+        let mut points =
+            Self { contract, highlight, control, length, peak: vec![None; control], operands };
         if let Some(highlight) = highlight {
             points.peak = points.search(highlight);
         }
@@ -106,6 +113,11 @@ impl<'a> Points<'a> {
         self.operands.iter().map(|it| random.within(it.domain.0, it.domain.1)).collect()
     }
 
+    /// Operands at which the contract says that results say much.
+    pub fn hint(&self, random: &mut Random) -> Option<Vec<i64>> {
+        self.contract.hint(&mut || random.unit()).map(|hint| self.clamped(hint))
+    }
+
     /// The position of the operand that says how many results a computation has.
     pub fn length(&self) -> Option<usize> {
         self.length
@@ -126,7 +138,11 @@ impl<'a> Points<'a> {
                 _ => random.within(domain.0, domain.1),
             };
         }
-        if kind > 3 {
+        if kind > HINTED && self.highlight.is_none() {
+            if let Some(hint) = self.hint(random) {
+                values.copy_from_slice(&hint);
+            }
+        } else if kind > 3 {
             self.spread(random, &mut values[..self.control]);
         } else if let Some(length) = self.length
             && !random.once_in(LONG)

@@ -22,6 +22,9 @@ const SHORT: i64 = 9;
 /// The longest line of which the clocks are measured, beyond the shortest.
 const LONG: i64 = 1000;
 
+/// Hints of a contract that are tried for a worked example.
+const TRIES: u32 = 256;
+
 /// What one computation showed.
 struct Trial {
     timing: Timing,
@@ -251,7 +254,7 @@ fn example_operands(contract: &dyn Contract) -> Vec<i64> {
         })
         .collect();
     let Some(highlight) = contract.highlight() else {
-        return values;
+        return hinted(contract).unwrap_or(values);
     };
     let control = highlight.control();
     for at in (0..control).filter(|&at| contract.operands()[at].format.frac > 0) {
@@ -272,6 +275,19 @@ fn example_operands(contract: &dyn Contract) -> Vec<i64> {
         values[at] = typical;
     }
     values
+}
+
+/// The first operands that the contract hints at for which no output is 0 or at an end of its format.
+fn hinted(contract: &dyn Contract) -> Option<Vec<i64>> {
+    let (mut random, points) = (Random::new(1), Points::new(contract));
+    let inside = |operands: &Vec<i64>| {
+        let mut raw = Vec::new();
+        contract.results(operands, 0, &mut raw);
+        let ends = |format: Format| [0, format.min_raw(), format.max_raw()];
+        let mut outputs = contract.outputs().iter().zip(raw);
+        outputs.all(|(output, raw)| !ends(output.format).contains(&i128::from(raw)))
+    };
+    (0..TRIES).map_while(|_| points.hint(&mut random)).find(inside)
 }
 
 fn results(design: &Design, contract: &dyn Contract) -> Vec<NetId> {

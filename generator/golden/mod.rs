@@ -128,6 +128,17 @@ pub trait Contract: Send + Sync {
         None
     }
 
+    /// Operands at which results say much: where the formula is steep, bends or ends. Half of the points of a test
+    /// are such. `unit` gives numbers from 0 to below 1, drawn evenly; what is outside the domain is moved to its
+    /// end.
+    ///
+    /// `None`: points are drawn over the domain alone, its ends more often than the rest. Those of a [`Highlight`]
+    /// are drawn by the value of its formula.
+    fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
+        let _ = unit;
+        None
+    }
+
     /// The operand that says how many results a computation has, when one does.
     fn length(&self) -> Option<&str> {
         None

@@ -132,13 +132,7 @@ fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
     Ok(Finding::new(
         of_sweep(job.f.sweep()),
         domain(&job),
-        format!(
-            "f is off by {:.3} units at most, a colour multiplier by {:.3}, together {:.3} of a stated {:.3}.",
-            proof.f_units,
-            proof.colours.error,
-            proof.together(),
-            contract.bound().units
-        ),
+        format!("The stated bound is {:.3} units; {}.", contract.bound().units, proof.words("")),
         proof.faults,
     )
     .open(job.f.sweep().omits.clone()))
@@ -153,12 +147,7 @@ fn of_sweep(sweep: &Sweep) -> Verdict {
 }
 
 fn domain(job: &Job<'_>) -> String {
-    format!(
-        "{} evaluations of f and {} colour products: {}",
-        grouped(job.f.count()),
-        grouped(job.colours.count()),
-        job.f.sweep().words(),
-    )
+    format!("{}: {}", job.words(), job.f.sweep().words())
 }
 
 fn recorded(
@@ -170,13 +159,12 @@ fn recorded(
     let (again, faults) = record.recheck(contract, AGAIN, progress);
     let path = record.path.display().to_string().replace('\\', "/");
     let words = format!(
-        "By the record `{path}`: f is off by {:.3} units at most, together with a colour multiplier {:.3} of a \
-         stated {:.3}. Of it, {} evaluations of f, spread evenly, the one with the largest error and all colour \
-         products were made again.",
-        record.f.units,
-        record.together,
+        "The stated bound is {:.3} units; by the record `{path}` {}. Of it, {} evaluations, spread evenly, and the one with the \
+         largest error{} were made again.",
         contract.bound().units,
+        record.words(contract),
         grouped(again),
+        if job.colours.count() > 0 { ", and all colour products," } else { "" },
     );
     let verdict = of_sweep(job.f.sweep());
     let finding = Finding::new(verdict, domain(&job), words, faults);

@@ -139,6 +139,17 @@ impl<'a> Job<'a> {
         Self { f: Places::of_f(contract), colours: Places::of_colours(contract), clocks: None }
     }
 
+    /// How much there is to evaluate, in words.
+    pub fn words(&self) -> String {
+        let places = grouped(self.f.count());
+        match self.colours.count() {
+            0 => format!("{places} evaluations of the outputs"),
+            colours => {
+                format!("{places} evaluations of f and {} colour products", grouped(colours))
+            }
+        }
+    }
+
     /// The same, and every combination of operands clock by clock, if they are not too many.
     #[must_use]
     pub fn with(mut self, clocks: Clocks<'a>) -> Self {

@@ -27,7 +27,9 @@ const F64: f64 = 1e-6;
 /// What the proof found.
 #[derive(Clone, Debug)]
 pub struct Proof {
-    /// The largest error of `f`.
+    /// Whether what is swept is the f of a highlight, and not the outputs themselves.
+    of_f: bool,
+    /// The largest error of `f`, or of an output in units.
     pub f: Peak,
     /// The same in output units, for the largest colour.
     pub f_units: f64,
@@ -43,10 +45,10 @@ impl Proof {
         let colour = contract.operands().iter().find(|operand| operand.colour);
         let largest = colour.map_or(1.0, |operand| operand.domain.1 as f64);
         let bound = contract.bound();
-        let mut proof = Self { f, f_units: f.error * largest, colours, faults: Vec::new() };
+        let of_f = contract.highlight().is_some();
+        let mut proof = Self { of_f, f, f_units: f.error * largest, colours, faults: Vec::new() };
         if f.error > bound.f + F64 / largest {
-            let what =
-                if contract.highlight().is_some() { "f is" } else { "an output is, in units," };
+            let what = if of_f { "f is" } else { "an output is, in units," };
             proof.faults.push(format!(
                 "{what} off by {:e}, beyond the stated bound of {:e}",
                 f.error, bound.f
@@ -74,6 +76,20 @@ impl Proof {
         } else {
             "passed, not proved"
         }
+    }
+
+    /// The largest errors in words, `at` after the first.
+    pub fn words(&self, at: &str) -> String {
+        if !self.of_f {
+            return format!("an output is off by {:.3} units at most{at}", self.together());
+        }
+        format!(
+            "f is off by {:.3e} at most, {:.3} units{at}; a colour multiplier by {:.3}; together {:.3}",
+            self.f.error,
+            self.f_units,
+            self.colours.error,
+            self.together()
+        )
     }
 
     /// The most by which an output can be off, in its units.

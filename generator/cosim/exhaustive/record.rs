@@ -24,9 +24,9 @@ pub struct Record {
     bound: f64,
     /// Evaluations of f.
     pub evaluations: u64,
-    /// Words f times colours.
+    /// Words f times colours; 0 of a device that is no highlight.
     pub colour_products: u64,
-    /// The largest error of f.
+    /// The largest error of f; of a device that is no highlight, of an output in units.
     pub f: RecordedPeak,
     /// The largest error of a colour multiplier, in output units.
     colour_units: f64,
@@ -124,6 +124,12 @@ impl Record {
             self.path.display()
         );
         Ok(())
+    }
+
+    /// The largest errors in words.
+    pub fn words(&self, contract: &dyn Contract) -> String {
+        let f = Peak { error: self.f.error, place: self.f.place };
+        Proof::new(contract, f, Peak { error: self.colour_units, place: 0 }).words("")
     }
 
     /// How many evaluations [`Record::recheck`] makes if it is to make about `places` of `f`.

@@ -69,20 +69,28 @@ pub fn limit(inputs: &PageInputs) -> String {
 }
 
 /// The bound, in sentences.
-pub fn accuracy(bound: &Bound) -> String {
+pub fn accuracy(contract: &dyn Contract) -> String {
+    let bound = contract.bound();
     let verdict = match bound.units < 1.0 {
         true => "which is inside the contract (less than 1 unit)",
         false => "which is outside the contract (less than 1 unit)",
     };
+    let proven = "The bound is proven, not measured; this is what it is made of:";
+    if contract.highlight().is_none() {
+        return format!(
+            "An output differs from the formula in f64, unrounded, at the quantised operands, by at most {:.3} units, \
+             {verdict}. A unit is the last place of the output. {proven}",
+            bound.units
+        );
+    }
     format!(
         "An output differs from K·f by at most {:.3} units, {verdict}. K is the integer of its colour operand, f the \
-         formula in f64, unrounded, at the quantised operands. The word f itself is off by at most {:.2e}. The bound is \
-         proven, not measured; this is what it is made of:",
+         formula in f64, unrounded, at the quantised operands. The word f itself is off by at most {:.2e}. {proven}",
         bound.units, bound.f
     )
 }
 
-/// What an exhaustive check of `f` goes through.
+/// What an exhaustive check goes through.
 pub fn proof(inputs: &PageInputs) -> String {
     let sweep = inputs.contract.sweep();
     let axes: Vec<String> = sweep
@@ -97,11 +105,13 @@ pub fn proof(inputs: &PageInputs) -> String {
         "" => String::new(),
         omits => format!(" Not covered: {omits}."),
     };
+    let (axes, checked) = (axes.join(", "), format!("`glint cosim {} --exhaustive`", inputs.path));
+    if inputs.contract.highlight().is_none() {
+        return format!("{checked} checks it: the outputs at every {axes} (integers).{omits}");
+    }
     format!(
-        "`glint cosim {} --exhaustive` checks it: every word f with every colour, and f at every combination of {} \
-         (integers, as on the ports).{omits}",
-        inputs.path,
-        axes.join(", ")
+        "{checked} checks it: every word f with every colour, and f at every combination of {axes} (integers, as on \
+         the ports).{omits}"
     )
 }
 

@@ -15,7 +15,7 @@ use crate::evidence::hardware::FamilyUsage;
 use crate::hdl::netlist::Design;
 use crate::package::{self, Seal, Timing};
 use crate::pages::account::{self, PageInputs, blocks, short};
-use crate::pages::figure::{Figure, figures, scientific};
+use crate::pages::figure::{Figure, figures};
 use crate::pages::formula;
 
 /// The clock at which rates are told, in MHz: what a small FPGA reaches.
@@ -64,10 +64,10 @@ struct Page<'a> {
 struct ProofView {
     holds: bool,
     evaluations: String,
-    products: String,
-    error: String,
-    units: String,
-    together: String,
+    /// None where nothing multiplies colours.
+    products: Option<String>,
+    /// The largest errors.
+    found: String,
 }
 
 struct HighlightView {
@@ -127,17 +127,15 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         timing: timing::drawing(&measured.waves, described(measured)).svg()?,
         wavedrom_link: format!("data:application/json;base64,{}", STANDARD.encode(&wavedrom)),
         wavedrom,
-        accuracy: html(&account::accuracy(&bound)),
+        accuracy: html(&account::accuracy(contract)),
         terms: TableView::new("Terms of the bound", &account::terms(&bound)),
         limit: html(&account::limit(&inputs)),
         sweep: html(&account::proof(&inputs)),
         proof: subject.proof.as_ref().map(|proof| ProofView {
             holds: proof.holds,
             evaluations: grouped(proof.evaluations),
-            products: grouped(proof.colour_products),
-            error: scientific(proof.f.error),
-            units: format!("{:.3}", proof.f.units),
-            together: format!("{:.3}", proof.together),
+            products: (proof.colour_products > 0).then(|| grouped(proof.colour_products)),
+            found: proof.words(contract),
         }),
         remarks: contract.remarks().iter().map(|it| html(it)).collect(),
         figures: figures(&charts)?,

@@ -58,7 +58,7 @@ pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
         fields: table(&account::fields(design)),
         words: table(&account::words(design)),
         clocks: table(&account::clocks(inputs.timing, inputs.line)),
-        accuracy: account::accuracy(&bound),
+        accuracy: account::accuracy(inputs.contract),
         terms: table(&account::terms(&bound)),
         limit: prose(&account::limit(inputs)),
         proof: prose(&account::proof(inputs)),

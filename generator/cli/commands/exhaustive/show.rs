@@ -14,13 +14,7 @@ use crate::golden::Values;
 
 /// What is about to be done, and what is not.
 pub fn announce(one: &Loaded, job: &Job<'_>, state: &State) {
-    tables::print_line(&format!(
-        "{}: {} evaluations of f ({}), {} colour products",
-        one.path,
-        text::grouped(job.f.count()),
-        job.f.sweep().words(),
-        text::grouped(job.colours.count())
-    ));
+    tables::print_line(&format!("{}: {} ({})", one.path, job.words(), job.f.sweep().words(),));
     if !job.f.sweep().omits.is_empty() {
         tables::print_line(&format!("  not covered: {}", job.f.sweep().omits));
     }
@@ -102,12 +96,8 @@ fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &State) {
         false => "FAILS".to_owned(),
     };
     tables::print_line(&format!(
-        "  f is off by {:.3e} at most, {:.3} units, at raw {}; a colour multiplier by {:.3}; together {:.3} (bound {:.3}): {verdict}",
-        proof.f.error,
-        proof.f_units,
-        at.join(" "),
-        proof.colours.error,
-        proof.together(),
+        "  {} (bound {:.3}): {verdict}",
+        proof.words(&format!(", at raw {}", at.join(" "))),
         one.unit.contract.bound().units,
     ));
     for fault in &proof.faults {
