@@ -57,6 +57,18 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
         )
         .only_when("architecture", "pipelined"),
         Key::flag(
+            "interface.stream",
+            false,
+            "Write an AXI4-Stream wrapper of the core, <name>_axis.v.",
+        ),
+        Key::integer(
+            "interface.user_bits",
+            1,
+            1..=1024,
+            "Bits of tuser, the side channel that travels with a point.",
+        )
+        .only_when("interface.stream", "true"),
+        Key::flag(
             "package.software",
             false,
             "Write software/<name>/: a bit-accurate model of the core in C.",

@@ -195,6 +195,14 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
         );
     }
 
+    if draft.config.flag("interface.stream") && draft.config.choice("pipeline.stall") == "none" {
+        problems.push(
+            "interface.stream",
+            "`interface.stream` needs a pipeline that its receiver can hold back".to_owned(),
+            "set pipeline.stall = \"ready\", or remove interface.stream".to_owned(),
+        );
+    }
+
     let mut certain: Option<Vec<Problem>> = None;
     for trial in trials(schema, draft) {
         let mut found = problems.cleared();

@@ -12,9 +12,18 @@ use crate::hdl::verilog::text::ascii;
 struct DeviceCore<'a> {
     name: &'a str,
     description: String,
-    rtl: &'a [String],
-    memories: &'a [String],
+    sources: Sources<'a>,
     testbench: bool,
+}
+
+/// The files of a device beside its core.
+pub struct Sources<'a> {
+    /// Verilog, the top module first.
+    pub rtl: &'a [String],
+    /// Verilog around it.
+    pub wrappers: &'a [String],
+    /// ROM contents.
+    pub memories: &'a [String],
 }
 
 /// The core of the bench.
@@ -30,16 +39,10 @@ struct BenchCore<'a> {
 ///
 /// # Errors
 /// A template that fails to print.
-pub fn device(
-    name: &str,
-    title: &str,
-    rtl: &[String],
-    memories: &[String],
-    testbench: bool,
-) -> Result<String> {
+pub fn device(name: &str, title: &str, sources: Sources, testbench: bool) -> Result<String> {
     // A YAML string in single quotes; a quote in it is doubled.
     let description = ascii(title).replace('\'', "''");
-    super::render(&DeviceCore { name, description, rtl, memories, testbench })
+    super::render(&DeviceCore { name, description, sources, testbench })
 }
 
 /// `<name>_tb.core`. File names are relative to it.

@@ -52,6 +52,8 @@ struct Computations<'a> {
 pub struct Files<'a> {
     /// Verilog, the top module first.
     pub rtl: &'a [String],
+    /// Verilog around the core, or nothing.
+    pub wrappers: &'a [String],
     /// ROM contents.
     pub memories: &'a [String],
     /// FuseSoC cores.
@@ -116,8 +118,10 @@ fn listed(files: &Files) -> Value {
         "cores": files.cores,
         "testbench": files.testbench,
     });
-    if !files.software.is_empty() {
-        listed["software"] = json!(files.software);
+    for (kind, names) in [("wrappers", files.wrappers), ("software", files.software)] {
+        if !names.is_empty() {
+            listed[kind] = json!(names);
+        }
     }
     listed
 }

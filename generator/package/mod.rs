@@ -19,6 +19,7 @@ pub(crate) mod seal;
 mod software;
 mod surroundings;
 mod window;
+mod wrap;
 
 use anyhow::{Result, ensure};
 use askama::Template;
@@ -115,6 +116,7 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
             memories.push((file.clone(), memory::contents(design, id)?));
         }
     }
+    let wrap::Wrappers { rtl: wrappers, formal } = wrap::wrappers(design, inputs)?;
     let mut testbench = Vec::new();
     if let Some(vectors) = &inputs.vectors {
         testbench = bench::files(design, &naming, vectors)?;
@@ -124,9 +126,9 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         let sequential = design.pipeline.is_none();
         let sources = formal::Sources { rtl: &names_of(&rtl), memories: &names_of(&memories) };
         if sequential {
-            let formal = formal::files(design, &naming, inputs, sources)?;
-            testbench.splice(0..0, formal);
+            testbench.splice(0..0, formal::files(design, &naming, inputs, sources)?);
         }
+        testbench.splice(0..0, formal);
         if let (true, Some(example), Some(accuracy)) =
             (sequential, &inputs.example, &inputs.accuracy)
         {
@@ -138,20 +140,25 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         if inputs.around.software { software::files(design, inputs)? } else { Vec::new() };
 
     let (rtl_names, memory_names) = (names_of(&rtl), names_of(&memories));
+    let wrapper_names = names_of(&wrappers);
     let mut cores = vec![format!("{name}.core")];
     let mut bench_names = names_of(&testbench);
     cores.extend(bench_names.pop());
     let files = manifest::Files {
         rtl: &rtl_names,
+        wrappers: &wrapper_names,
         memories: &memory_names,
         cores: &cores,
         testbench: &bench_names,
         software: &names_of(&software),
     };
     let has_bench = !testbench.is_empty();
-    let core = fusesoc::device(name, &design.about.title, &rtl_names, &memory_names, has_bench)?;
+    let sources =
+        fusesoc::Sources { rtl: &rtl_names, wrappers: &wrapper_names, memories: &memory_names };
+    let core = fusesoc::device(name, &design.about.title, sources, has_bench)?;
     let mut all: Vec<OutputFile> = rtl
         .into_iter()
+        .chain(wrappers)
         .chain(memories)
         .chain([(format!("{name}.core"), core)])
         .map(|(file, contents)| OutputFile { path: format!("rtl_out/{name}/{file}"), contents })

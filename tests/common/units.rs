@@ -67,9 +67,23 @@ pub fn configuration(path: &str) -> Unit {
 /// # Panics
 /// It is wrong.
 pub fn configuration_with(path: &str, more: &str) -> Unit {
-    let registry = Registry::catalogue();
     let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"));
-    let config = config::parse(path, &format!("{text}{more}"), &registry.schemas())
+    parsed(path, &format!("{text}{more}"))
+}
+
+/// The configuration of that path with other TOML in place of its table `interface`, which stands last.
+///
+/// # Panics
+/// It is wrong.
+pub fn configuration_between(path: &str, interface: &str) -> Unit {
+    let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    let own = text.split("\n[interface]\n").next().unwrap_or_default();
+    parsed(path, &format!("{own}\n[interface]\n{interface}"))
+}
+
+fn parsed(path: &str, text: &str) -> Unit {
+    let registry = Registry::catalogue();
+    let config = config::parse(path, text, &registry.schemas())
         .unwrap_or_else(|problems| panic!("{problems}"));
     let device = *registry.device(&config.device).expect("a device");
     Unit::new(device, config).unwrap_or_else(|error| panic!("{path}: {error:?}"))

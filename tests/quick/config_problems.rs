@@ -98,6 +98,24 @@ fn keys_that_every_device_shares_are_read_as_its_own() {
 }
 
 #[test]
+fn a_stream_that_does_not_fit_is_told_of() {
+    assert_eq!(
+        of_lamp("[interface]\nstream = true\nuser_bits = 1025\n"),
+        ["4:13 interface.user_bits | `interface.user_bits` = 1025 is out of range \
+          | give an integer from 1 to 1024 (default 1)"]
+    );
+    assert_eq!(
+        of_lamp(
+            "architecture = \"pipelined\"\n[pipeline]\nstall = \"none\"\n[interface]\nstream = true\n"
+        ),
+        [
+            "6:10 interface.stream | `interface.stream` needs a pipeline that its receiver can hold back \
+          | set pipeline.stall = \"ready\", or remove interface.stream"
+        ]
+    );
+}
+
+#[test]
 fn devices() {
     assert_eq!(
         of_file("a.toml", "device = \"lmap\"\npower = 3\n"),

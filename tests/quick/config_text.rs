@@ -84,6 +84,15 @@ deviation = 30.0
 # An integer from 0 to 64, default 0; only with architecture = \"pipelined\".
 # side = 0
 
+[interface]
+# Write an AXI4-Stream wrapper of the core, <name>_axis.v.
+# True or false, default false.
+stream = false
+
+# Bits of tuser, the side channel that travels with a point.
+# An integer from 1 to 1024, default 1; only with interface.stream = true.
+# user_bits = 1
+
 [package]
 # Write software/<name>/: a bit-accurate model of the core in C.
 # True or false, default false; only with architecture = \"sequential\".

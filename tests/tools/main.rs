@@ -19,3 +19,4 @@ mod random_netlists;
 mod software;
 mod synthesis;
 mod verilog;
+mod wrappers;

@@ -1,0 +1,194 @@
+//! `<name>_axis.v` of a pipeline: the core between two AXI4-Streams, and what is proved of it.
+
+use anyhow::{Result, ensure};
+use askama::Template;
+
+use super::Wrappers;
+use super::fields::{Field, bits, operands, packed, padding, results, sink};
+use crate::hdl::netlist::{Design, Pipeline, Role};
+use crate::hdl::verilog::rows::separated;
+use crate::hdl::verilog::text::{literal, range};
+use crate::package::{EmitInputs, render};
+
+#[derive(Template)]
+#[template(path = "axis_pipeline.v")]
+struct Wrapper<'a> {
+    name: &'a str,
+    regenerate: &'a str,
+    user_bits: u32,
+    operands: &'a [Field],
+    results: &'a [Field],
+    signed: bool,
+    in_high: u32,
+    out_high: u32,
+    stages: usize,
+    /// Bits of the own side channel of the core, which is not used.
+    side: u32,
+    packed: Vec<String>,
+    connections: Vec<String>,
+    unused: Vec<String>,
+}
+
+/// A stage of the core that stands in for any, and where the proof finds what travels through it.
+struct Stage {
+    number: u32,
+    /// The lowest and the highest bit of tlast and tuser of its point among those of all stages.
+    side_low: u32,
+    side_high: u32,
+}
+
+/// A result among the bits of all, without those that fill bytes.
+struct Raw<'a> {
+    name: &'a str,
+    range: String,
+    low: u32,
+    width: u32,
+}
+
+#[derive(Template)]
+#[template(path = "axis_pipeline_formal.sv")]
+struct Formal<'a> {
+    name: &'a str,
+    in_high: u32,
+    out_high: u32,
+    user_bits: u32,
+    count_bits: u32,
+    stub_ports: Vec<String>,
+    raw: Vec<Raw<'a>>,
+    raw_high: u32,
+    packed: Vec<String>,
+    checks: Vec<String>,
+    /// Declarations of what the proof sees of the inside.
+    inside: Vec<String>,
+    last: usize,
+    stages: Vec<Stage>,
+}
+
+#[derive(Template)]
+#[template(path = "axis_formal.ys")]
+struct Script<'a> {
+    name: &'a str,
+}
+
+/// The wrapper, and what is proved of it.
+///
+/// # Errors
+/// A pipeline that cannot be held back; one without operands or results.
+pub fn wrapper(design: &Design, pipeline: &Pipeline, inputs: &EmitInputs) -> Result<Wrappers> {
+    let name = design.name.as_str();
+    ensure!(
+        pipeline.stall,
+        "`{name}` cannot be held back, which interface.stream needs; set pipeline.stall = \"ready\""
+    );
+    let (operands, results) = (operands(design), results(design));
+    let connections = design.ports.iter().map(|port| {
+        let name = design.net(port.net).name.as_str();
+        let to = match port.role {
+            Role::Reset => "aresetn".to_owned(),
+            Role::InValid => "s_axis_tvalid".to_owned(),
+            Role::InReady => "s_axis_tready".to_owned(),
+            Role::OutReady => "ready".to_owned(),
+            Role::Valid => "valid".to_owned(),
+            Role::Point => {
+                let field = operands.iter().find(|field| field.name == name);
+                format!("s_axis_tdata{}", field.map(Field::bits).unwrap_or_default())
+            }
+            Role::SideIn => literal(0, design.width(port.net)),
+            _ => format!("core_{name}"),
+        };
+        format!(".{name}({to})")
+    });
+    let connections = std::iter::once(".clk(aclk)".to_owned()).chain(connections);
+    let mut unused = padding(&operands, "s_axis_tdata");
+    if pipeline.side > 0 {
+        unused.push("core_side_out".to_owned());
+    }
+    let view = Wrapper {
+        name,
+        regenerate: &inputs.config,
+        user_bits: inputs.around.user_bits,
+        signed: results.iter().any(|field| field.signed && field.padded() > field.width),
+        in_high: bits(&operands)? - 1,
+        out_high: bits(&results)? - 1,
+        stages: pipeline.stages.len(),
+        side: pipeline.side,
+        packed: separated(packed(&results, "core_")),
+        connections: separated(connections.collect()),
+        unused: sink(&unused),
+        operands: &operands,
+        results: &results,
+    };
+    let rtl = vec![(format!("{name}_axis.v"), render(&view)?)];
+    Ok(Wrappers { rtl, formal: formal(design, pipeline, inputs, (&operands, &results))? })
+}
+
+fn formal(
+    design: &Design,
+    pipeline: &Pipeline,
+    inputs: &EmitInputs,
+    (operands, results): (&[Field], &[Field]),
+) -> Result<Vec<(String, String)>> {
+    let name = design.name.as_str();
+    let mut stub_ports = vec!["input wire clk".to_owned()];
+    for port in &design.ports {
+        let net = design.net(port.net);
+        let range = range(net.format.width());
+        let sign = if net.format.signed { "signed " } else { "" };
+        let direction = if port.role.is_input() { "input" } else { "output" };
+        stub_ports.push(format!("{direction} wire {sign}{range} {}", net.name).replace("  ", " "));
+    }
+    let stages = pipeline.stages.len();
+    let user = inputs.around.user_bits;
+    let side = user + 1;
+    let stage = |number, low| Stage { number, side_low: low, side_high: low + user };
+    let mut raw_bits = 0;
+    let mut raw = Vec::new();
+    for field in results {
+        raw.push(Raw {
+            name: &field.name,
+            range: range(field.width),
+            low: raw_bits,
+            width: field.width,
+        });
+        raw_bits += field.width;
+    }
+    let mut nets = vec![
+        ("held".to_owned(), 1),
+        ("held_results".to_owned(), bits(results)?),
+        ("held_side".to_owned(), side),
+        ("side".to_owned(), stages as u32 * side),
+        ("core.any".to_owned(), raw_bits),
+    ];
+    nets.extend(operands.iter().map(|field| (format!("core.{}", field.name), field.width)));
+    for stage in 1..=stages {
+        nets.push((format!("core.valid_{stage}"), 1));
+        nets.push((format!("core.data_{stage}"), raw_bits));
+    }
+    let declared = |(net, width): (String, u32)| {
+        format!("(* hierconn *) wire {} \\dut.{net} ;", range(width)).replace("  ", " ")
+    };
+    let check = |field: &Field| format!("dut.core.{} == s_axis_tdata{}", field.name, field.bits());
+    let view = Formal {
+        name,
+        in_high: bits(operands)? - 1,
+        out_high: bits(results)? - 1,
+        user_bits: user,
+        // Points can be in every stage, offered, and behind the one that is offered.
+        count_bits: u32::BITS - (stages as u32 + 2).leading_zeros(),
+        stub_ports: separated(stub_ports),
+        raw,
+        raw_high: raw_bits - 1,
+        packed: separated(packed(results, "its_")),
+        checks: operands.iter().map(check).collect(),
+        inside: nets.into_iter().map(declared).collect(),
+        last: stages,
+        stages: (1..=stages as u32)
+            .rev()
+            .map(|number| stage(number, (number - 1) * side))
+            .collect(),
+    };
+    Ok(vec![
+        (format!("{name}_axis_formal.sv"), render(&view)?),
+        (format!("{name}_axis_formal.ys"), render(&Script { name })?),
+    ])
+}

@@ -1,0 +1,280 @@
+//! `<name>_axis.v`: the core between two AXI4-Streams, and what is proved of it.
+
+use anyhow::{Context, Result};
+use askama::Template;
+
+use super::Wrappers;
+use super::fields::{Field, bits, operands, packed, padding, results, sink};
+use crate::hdl::netlist::{Design, Role};
+use crate::hdl::verilog::rows::separated;
+use crate::hdl::verilog::text::{literal, range};
+use crate::package::{EmitInputs, render};
+
+/// Of a core that walks lines: the operand that says how long one is, and the buffer.
+struct Line {
+    length: String,
+    length_low: u32,
+    length_high: u32,
+    /// Bits of the length.
+    width: u32,
+}
+
+impl Line {
+    /// The highest bit of a place in the buffer.
+    fn high(&self) -> u32 {
+        self.width - 1
+    }
+
+    /// Of points, which have a bit more than places.
+    fn zero(&self) -> String {
+        literal(0, self.width + 1)
+    }
+
+    fn one(&self) -> String {
+        literal(1, self.width + 1)
+    }
+
+    /// As many points as a line can have, and as the buffer has places.
+    fn places(&self) -> String {
+        literal(1 << self.width, self.width + 1)
+    }
+
+    fn deepest(&self) -> u64 {
+        (1 << self.width) - 1
+    }
+}
+
+/// All that the templates print.
+#[derive(Template)]
+#[template(path = "axis.v")]
+struct Wrapper<'a> {
+    name: &'a str,
+    regenerate: &'a str,
+    user_bits: u32,
+    operands: Vec<Field>,
+    results: Vec<Field>,
+    signed: bool,
+    in_high: u32,
+    out_high: u32,
+    result_wires: Vec<String>,
+    packed: Vec<String>,
+    connections: Vec<String>,
+    line: Option<Line>,
+    unused: Vec<String>,
+    /// What drives the outputs: `reg `, or `wire` of the buffer.
+    output: &'static str,
+}
+
+#[derive(Template)]
+#[template(path = "axis_buffer.v")]
+struct Buffer<'a> {
+    name: &'a str,
+    regenerate: &'a str,
+    out_high: u32,
+    user_bits: u32,
+    line: Line,
+}
+
+#[derive(Template)]
+#[template(path = "axis_formal.sv")]
+struct Formal<'a> {
+    name: &'a str,
+    in_high: u32,
+    out_high: u32,
+    user_high: u32,
+    /// The highest bit of results, tlast and tuser together.
+    packed_high: u32,
+    stub_ports: Vec<String>,
+    stub_free: Vec<String>,
+    stub_packed: Vec<String>,
+    stub_checks: Vec<String>,
+    strobes: Vec<String>,
+    /// Declarations of what the proof sees of the inside.
+    inside: Vec<String>,
+    line: Option<Line>,
+}
+
+#[derive(Template)]
+#[template(path = "axis_formal.ys")]
+struct Script<'a> {
+    name: &'a str,
+}
+
+/// The wrapper, of a core that walks lines its buffer too, and what is proved of them.
+///
+/// # Errors
+/// A core without the handshake of a microprogram, or without operands or results.
+pub fn wrapper(design: &Design, inputs: &EmitInputs) -> Result<Wrappers> {
+    design.handshake()?;
+    Ok(Wrappers { rtl: modules(design, inputs)?, formal: formal(design, inputs)? })
+}
+
+fn modules(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>> {
+    let name = design.name.as_str();
+    let (operands, results) = (operands(design), results(design));
+    let connections = design.ports.iter().map(|port| {
+        let name = design.net(port.net).name.as_str();
+        let to = match port.role {
+            Role::Reset => "aresetn".to_owned(),
+            Role::Start => "start".to_owned(),
+            Role::Valid => "valid".to_owned(),
+            Role::Busy => "busy".to_owned(),
+            Role::Operand { .. } => {
+                let field = operands.iter().find(|field| field.name == name);
+                format!("operands{}", field.map(Field::bits).unwrap_or_default())
+            }
+            Role::Strobe if operands.iter().any(|field| field.strobe == name) => "start".to_owned(),
+            role if role.is_input() => "1'b0".to_owned(),
+            _ => format!("core_{name}"),
+        };
+        format!(".{name}({to})")
+    });
+    let connections = std::iter::once(".clk(aclk)".to_owned()).chain(connections);
+    let mut unused = Vec::new();
+    let mut result_wires = Vec::new();
+    for port in design.outputs() {
+        let net = design.net(port.net);
+        if matches!(port.role, Role::Done | Role::Result | Role::Status) {
+            let range = range(net.format.width());
+            result_wires.push(format!("wire {range} core_{};", net.name).replace("  ", " "));
+        }
+        if matches!(port.role, Role::Done | Role::Status) {
+            unused.push(format!("core_{}", net.name));
+        }
+    }
+    unused.extend(padding(&operands, "operands"));
+    let signed = results.iter().any(|field| field.signed && field.padded() > field.width);
+    let packed = packed(&results, "core_");
+    let buffered = line(inputs, &operands)?;
+    let wrapper = Wrapper {
+        name: &design.name,
+        regenerate: &inputs.config,
+        user_bits: inputs.around.user_bits,
+        in_high: bits(&operands)? - 1,
+        out_high: bits(&results)? - 1,
+        signed,
+        result_wires,
+        packed: separated(packed),
+        connections: separated(connections.collect()),
+        output: if buffered.is_some() { "wire" } else { "reg " },
+        line: line(inputs, &operands)?,
+        unused: sink(&unused),
+        operands,
+        results,
+    };
+    let (regenerate, user_bits, out_high) =
+        (wrapper.regenerate, wrapper.user_bits, wrapper.out_high);
+    let mut files = vec![(format!("{name}_axis.v"), render(&wrapper)?)];
+    if let Some(line) = buffered {
+        let buffer = Buffer { name, regenerate, out_high, user_bits, line };
+        files.push((format!("{name}_axis_buffer.v"), render(&buffer)?));
+    }
+    Ok(files)
+}
+
+/// What is proved of the wrapper.
+fn formal(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>> {
+    let name = design.name.as_str();
+    let (operands, results) = (operands(design), results(design));
+    let mut stub_ports = vec!["input wire clk".to_owned()];
+    let mut stub_free = Vec::new();
+    for port in &design.ports {
+        let net = design.net(port.net);
+        let range = range(net.format.width());
+        let sign = if net.format.signed { "signed " } else { "" };
+        let direction = if port.role.is_input() { "input" } else { "output" };
+        stub_ports.push(format!("{direction} wire {sign}{range}{}", net.name));
+        if matches!(port.role, Role::Result | Role::Status) {
+            stub_free.push(format!("(* anyseq *) reg {range}any_{};", net.name));
+            stub_free.push(format!("assign {0} = any_{0};", net.name));
+        }
+    }
+    let line = line(inputs, &operands)?;
+    let user_high = inputs.around.user_bits - 1;
+    let out_high = bits(&results)? - 1;
+    let stub_checks = operands
+        .iter()
+        .map(|field| format!("dut.core.{} == its_operands{}", field.name, field.bits()));
+    let inside = inside(&operands, &results, line.as_ref(), user_high + 1)?;
+    let formal = Formal {
+        name,
+        in_high: bits(&operands)? - 1,
+        out_high,
+        user_high,
+        packed_high: out_high + 1 + user_high + 1,
+        stub_ports: separated(stub_ports),
+        stub_free,
+        stub_packed: separated(packed(&results, "dut.core.")),
+        stub_checks: stub_checks.collect(),
+        inside,
+        strobes: operands.iter().map(|field| field.strobe.clone()).collect(),
+        line,
+    };
+    Ok(vec![
+        (format!("{name}_axis_formal.sv"), render(&formal)?),
+        (format!("{name}_axis_formal.ys"), render(&Script { name })?),
+    ])
+}
+
+/// Yosys finds nets below the top by their path, if a declaration says how wide they are.
+fn inside(
+    operands: &[Field],
+    results: &[Field],
+    line: Option<&Line>,
+    user: u32,
+) -> Result<Vec<String>> {
+    let (in_bits, out_bits) = (bits(operands)?, bits(results)?);
+    let mut nets: Vec<(String, u32)> = [
+        ("start", 1),
+        ("valid", 1),
+        ("waiting", 1),
+        ("operands", in_bits),
+        ("operands_user", user),
+        ("user", user),
+        ("core.computing", 1),
+    ]
+    .map(|(net, width)| (net.to_owned(), width))
+    .into();
+    let own = match line {
+        Some(Line { width, .. }) => vec![
+            ("core.to_come", width + 1),
+            ("read", 1),
+            ("read_at", width + 1),
+            ("write_at", width + 1),
+            ("next_line", width + 1),
+            ("buffer.watched", *width),
+            ("buffer.watched_word", out_bits + 1 + user),
+        ],
+        None => vec![
+            ("operands_last", 1),
+            ("last", 1),
+            ("held", 1),
+            ("held_last", 1),
+            ("held_user", user),
+            ("held_results", out_bits),
+        ],
+    };
+    nets.extend(own.into_iter().map(|(net, width)| (net.to_owned(), width)));
+    let ports = operands.iter().chain(results);
+    nets.extend(ports.map(|field| (format!("core.{}", field.name), field.width)));
+    let declared = |(net, width): (String, u32)| {
+        let range = range(width);
+        format!("(* hierconn *) wire {range} \\dut.{net} ;")
+    };
+    Ok(nets.into_iter().map(declared).collect())
+}
+
+fn line(inputs: &EmitInputs, operands: &[Field]) -> Result<Option<Line>> {
+    let length = inputs.accuracy.as_ref().and_then(|accuracy| accuracy.length.as_ref());
+    let Some(length) = length else {
+        return Ok(None);
+    };
+    let field = operands.iter().find(|field| field.name == *length);
+    let field = field.with_context(|| format!("`{length}` is no operand"))?;
+    Ok(Some(Line {
+        length: field.name.clone(),
+        length_low: field.low,
+        length_high: field.high(),
+        width: field.width,
+    }))
+}

@@ -1,0 +1,281 @@
+// ${ name }$_axis_formal: what is proved of ${ name }$_axis
+//
+// For formal tools alone: every input is free, the sender's too. In place of the core stands any
+// with its handshake: busy from the clock after start to done, results while it is busy,
+<%- if line.is_some() %> one more
+// than its length,
+<%- else %> exactly
+// one,
+<%- endif %> after any time and with any values. To prove it, from a directory that holds the
+// files of both folders:
+//   $ yosys -q ${ name }$_axis_formal.ys
+//   $ yosys-smtbmc -s z3 --unroll -t 3 ${ name }$_axis_formal.smt2
+//   $ yosys-smtbmc -s z3 --unroll -i -t 2 ${ name }$_axis_formal.smt2
+//
+// Generated files belong to their user, without conditions.
+
+`default_nettype none
+
+module ${ name }$ (
+<%- for line in stub_ports %>
+    ${ line }$
+<%- endfor %>
+);
+    (* anyseq *) reg shows;
+    (* anyseq *) reg ends;
+<%- for line in stub_free %>
+    ${ line }$
+<%- endfor %>
+    reg run;
+<%- if let Some(line) = line %>
+    reg [${ line.width }$:0] to_come;
+    always @(posedge clk) begin
+        if (!rst_n) to_come <= ${ line.zero() }$;
+        else if (!run) to_come <= start ? {1'b0, ${ line.length }$} + ${ line.one() }$ : ${ line.zero() }$;
+        else if (valid) to_come <= to_come - ${ line.one() }$;
+    end
+    wire computing = to_come != ${ line.zero() }$;
+    wire ended = valid ? to_come == ${ line.one() }$ : !computing;
+<%- else %>
+    reg computing;
+    always @(posedge clk) computing <= rst_n & (run ? computing & ~valid : start);
+    wire ended = ~computing | valid;
+<%- endif %>
+    assign busy = run;
+    assign valid = run & computing & shows;
+    assign done = run & ends & ended;
+    always @(posedge clk) run <= rst_n & (run ? ~done : start);
+
+    // A computation begins with all of its operands, and when the one before is over.
+    always @(posedge clk) if (!$initstate && start) begin
+        assert (!run);
+<%- for strobe in strobes %>
+        assert (${ strobe }$);
+<%- endfor %>
+    end
+    always @* if (!$initstate && computing) assert (run);
+endmodule
+
+<%- if let Some(line) = line %>
+
+// In place of the buffer, any memory: at one place, whichever, it is known what it holds.
+module ${ name }$_axis_buffer #(
+    parameter WIDTH = 1
+) (
+    input wire clk,
+    input wire write,
+    input wire [${ line.high() }$:0] write_at,
+    input wire [WIDTH-1:0] word,
+    input wire read,
+    input wire [${ line.high() }$:0] read_at,
+    output reg [WIDTH-1:0] out
+);
+    (* anyconst *) reg [${ line.high() }$:0] watched;
+    (* anyseq *) reg [WIDTH-1:0] other;
+    reg [WIDTH-1:0] watched_word;
+    always @(posedge clk) if (write && write_at == watched) watched_word <= word;
+    always @(posedge clk) if (read) out <= read_at == watched ? watched_word : other;
+endmodule
+<%- endif %>
+
+module ${ name }$_axis_formal (
+    input wire aclk,
+    input wire aresetn,
+    input wire [${ in_high }$:0] s_axis_tdata,
+    input wire [${ user_high }$:0] s_axis_tuser,
+<%- if line.is_none() %>
+    input wire s_axis_tlast,
+<%- endif %>
+    input wire s_axis_tvalid,
+    input wire m_axis_tready
+);
+    wire s_axis_tready;
+    wire [${ out_high }$:0] m_axis_tdata;
+    wire [${ user_high }$:0] m_axis_tuser;
+    wire m_axis_tlast;
+    wire m_axis_tvalid;
+
+    ${ name }$_axis dut (
+        .aclk(aclk),
+        .aresetn(aresetn),
+        .s_axis_tdata(s_axis_tdata),
+        .s_axis_tuser(s_axis_tuser),
+<%- if line.is_none() %>
+        .s_axis_tlast(s_axis_tlast),
+<%- endif %>
+        .s_axis_tvalid(s_axis_tvalid),
+        .s_axis_tready(s_axis_tready),
+        .m_axis_tdata(m_axis_tdata),
+        .m_axis_tuser(m_axis_tuser),
+        .m_axis_tlast(m_axis_tlast),
+        .m_axis_tvalid(m_axis_tvalid),
+        .m_axis_tready(m_axis_tready)
+    );
+
+    // What the proof sees of the inside.
+<%- for wire in inside %>
+    ${ wire }$
+<%- endfor %>
+
+    // The reset comes first; the state before it is arbitrary.
+    always @* if ($initstate) assume (!aresetn);
+<%- if let Some(line) = line %>
+
+    // Lines taken and begun, and points given, modulo more than there can be under way. The number
+    // of the point that is computed next is write_at.
+    reg [1:0] taken;
+    reg [1:0] begun;
+    reg [${ line.width }$:0] given;
+<%- else %>
+
+    // Points taken, begun, computed and given, modulo more than there can be under way.
+    reg [2:0] taken;
+    reg [2:0] begun;
+    reg [2:0] computed;
+    reg [2:0] given;
+<%- endif %>
+    wire accept = s_axis_tvalid && s_axis_tready;
+    wire give = m_axis_tvalid && m_axis_tready;
+    always @(posedge aclk) begin
+        if (!aresetn) begin
+            taken <= 0;
+            begun <= 0;
+<%- if line.is_none() %>
+            computed <= 0;
+<%- endif %>
+            given <= 0;
+        end else begin
+            taken <= taken + accept;
+            begun <= begun + dut.start;
+<%- if line.is_none() %>
+            computed <= computed + dut.valid;
+<%- endif %>
+            given <= given + give;
+        end
+    end
+
+    // One of them, whichever, and what belongs to it.
+<%- if line.is_some() %>
+    (* anyconst *) reg [1:0] chosen_line;
+<%- else %>
+    (* anyconst *) reg [2:0] chosen;
+    wire [2:0] chosen_line = chosen;
+    reg its_last;
+<%- endif %>
+    reg [${ in_high }$:0] its_operands;
+    reg [${ user_high }$:0] its_user;
+    reg [${ packed_high }$:0] its_results;
+<%- if line.is_some() %>
+    // The point that is offered comes from the watched place of the buffer.
+    reg its_turn;
+    reg [${ packed_high }$:0] its_turn_results;
+<%- endif %>
+    wire [${ out_high }$:0] results = {
+<%- for line in stub_packed %>
+        ${ line }$
+<%- endfor %>
+    };
+<%- if let Some(line) = line %>
+    wire [${ line.width }$:0] stored = dut.write_at - dut.read_at;
+    wire [${ line.width }$:0] reserved = dut.next_line - dut.read_at;
+    wire [${ line.high() }$:0] watched_from_read = dut.buffer.watched - dut.read_at[${ line.high() }$:0];
+<%- endif %>
+    always @(posedge aclk) begin
+        if (accept && taken == chosen_line) begin
+            its_operands <= s_axis_tdata;
+            its_user <= s_axis_tuser;
+<%- if line.is_none() %>
+            its_last <= s_axis_tlast;
+<%- endif %>
+        end
+<%- if let Some(line) = line %>
+        if (dut.valid && dut.write_at[${ line.high() }$:0] == dut.buffer.watched) begin
+            its_results <= {dut.user, dut.core.to_come == 1, results};
+        end
+        if (dut.read || m_axis_tready) begin
+            its_turn <= dut.read && dut.read_at[${ line.high() }$:0] == dut.buffer.watched;
+        end
+        if (dut.read) its_turn_results <= its_results;
+<%- else %>
+        if (dut.valid && computed == chosen) its_results <= {its_user, its_last, results};
+<%- endif %>
+    end
+
+    always @(posedge aclk) if (!$initstate) begin
+        if ($past(aresetn)) begin
+            // What is offered stays, as it is, until it is taken.
+            if ($past(m_axis_tvalid && !m_axis_tready)) begin
+                assert (m_axis_tvalid);
+                assert (m_axis_tdata == $past(m_axis_tdata));
+                assert (m_axis_tuser == $past(m_axis_tuser));
+                assert (m_axis_tlast == $past(m_axis_tlast));
+            end
+            // An offer does not wait for the receiver.
+<%- if line.is_some() %>
+            if ($past(dut.write_at != dut.read_at)) assert (m_axis_tvalid);
+<%- else %>
+            if ($past(dut.valid)) assert (m_axis_tvalid);
+<%- endif %>
+        end else begin
+            assert (!m_axis_tvalid && !s_axis_tready);
+        end
+        // The core computes with what was sent, in its order.
+        if (dut.start && begun == chosen_line) begin
+<%- for check in stub_checks %>
+            assert (${ check }$);
+<%- endfor %>
+        end
+        // What is given is what the core computed, in its order, and tuser and tlast with it.
+<%- if line.is_some() %>
+        if (give && its_turn) begin
+            assert ({m_axis_tuser, m_axis_tlast, m_axis_tdata} == its_turn_results);
+        end
+<%- else %>
+        if (give && given == chosen) begin
+            assert ({m_axis_tuser, m_axis_tlast, m_axis_tdata} == its_results);
+        end
+<%- endif %>
+    end
+
+    // What the induction stands on.
+    always @* if (!$initstate) begin
+        assert (!(s_axis_tready && dut.waiting));
+        assert (taken - begun == dut.waiting);
+        if (dut.waiting && begun == chosen_line) begin
+            assert (dut.operands == its_operands);
+            assert (dut.operands_user == its_user);
+<%- if line.is_none() %>
+            assert (dut.operands_last == its_last);
+<%- endif %>
+        end
+<%- if let Some(line) = line %>
+        if (dut.core.computing && begun - 2'd1 == chosen_line) assert (dut.user == its_user);
+        // There is a place for everything that is to come.
+        assert (dut.next_line - dut.write_at == dut.core.to_come);
+        assert (stored <= reserved);
+        assert (reserved <= ${ line.places() }$);
+        // Every point is given in its turn.
+        assert (given + m_axis_tvalid == dut.read_at);
+        if (watched_from_read < stored) assert (dut.buffer.watched_word == its_results);
+        if (m_axis_tvalid && its_turn) begin
+            assert ({m_axis_tuser, m_axis_tlast, m_axis_tdata} == its_turn_results);
+        end
+<%- else %>
+        assert (begun - computed == dut.core.computing);
+        assert (computed - given == {1'b0, dut.held} + m_axis_tvalid);
+        if (dut.held) assert (m_axis_tvalid && !dut.core.computing);
+        if (dut.core.computing && computed == chosen) begin
+            assert (dut.user == its_user);
+            assert (dut.last == its_last);
+        end
+        if (m_axis_tvalid && given == chosen) begin
+            assert ({m_axis_tuser, m_axis_tlast, m_axis_tdata} == its_results);
+        end
+        if (dut.held && given + 3'd1 == chosen) begin
+            assert ({dut.held_user, dut.held_last, dut.held_results} == its_results);
+        end
+<%- endif %>
+    end
+endmodule
+
+`default_nettype wire
