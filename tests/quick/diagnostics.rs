@@ -428,3 +428,164 @@ fn formats_that_no_net_can_have() {
     assert!(found[expected.len()].starts_with("`a_reg_shifted` would"), "{found:?}");
     assert!(found[expected.len() + 1].starts_with("`none` would be 0 bits wide"), "{found:?}");
 }
+
+#[test]
+fn valid_in_the_word_that_loads_the_result() {
+    let early = program(|_, load| {
+        vec![step("idle", []), step("load", [load, valid()]), step("end", [end()])]
+    });
+    assert_eq!(
+        early,
+        [
+            "word `load` raises valid and loads `y`, which `y_out` shows from the next word on: valid belongs there"
+        ]
+    );
+    // A result that is shown while the next is loaded was loaded before.
+    let stream = program(|_, load| {
+        vec![
+            step("idle", []),
+            step("first", [load.clone()]),
+            step("next", [load, valid()]),
+            step("last", [valid(), end()]),
+        ]
+    });
+    assert_eq!(stream, Vec::<String>::new());
+}
+
+/// A loop around the load of `y`, as long as `condition` says.
+fn looped(condition: impl for<'d> FnOnce(&'d Designer) -> glint::dsl::Signal<'d>) -> Vec<String> {
+    program(|d, load| {
+        let condition = condition(d);
+        vec![
+            step("idle", []),
+            step("begin", [load.clone()]),
+            step("again", [load, loop_while(condition, "begin")]),
+            step("result", [valid(), end()]),
+        ]
+    })
+}
+
+#[test]
+fn a_loop_that_nothing_ends() {
+    let on_operand = looped(|d| {
+        let n = d.operand("n", Format::unsigned(4, 0));
+        d.any("more", n.q())
+    });
+    assert_eq!(
+        on_operand,
+        [
+            "word `again` goes back to `begin` while `more` is 1, and no word of the loop changes `n_reg`: it never ends, or is no loop"
+        ]
+    );
+    let on_constant = looped(|d| d.raw_constant("steady", 1, Format::BIT));
+    assert_eq!(
+        on_constant,
+        [
+            "word `again` goes back to `begin` while `steady` is 1, which is constant: it never ends, or is no loop"
+        ]
+    );
+    // What the loop loads may end it.
+    let on_register = program(|d, load| {
+        let count = d.down_counter("count", d.raw_constant("three", 3, Format::unsigned(2, 0)));
+        let more = d.any("more", count.q());
+        vec![
+            step("idle", []),
+            step("begin", [load, count.load()]),
+            step("again", [count.count(), loop_while(more, "again")]),
+            step("result", [valid(), end()]),
+        ]
+    });
+    assert_eq!(on_register, Vec::<String>::new());
+    // A loop without an end of its own may have a way out.
+    let way_out = program(|d, load| {
+        let steady = d.raw_constant("steady", 1, Format::BIT);
+        let count = d.down_counter("count", d.raw_constant("three", 3, Format::unsigned(2, 0)));
+        let none = d.not("none", d.any("more", count.q()));
+        vec![
+            step("idle", []),
+            step("begin", [load, count.load()]),
+            step("test", [count.count(), jump_if(none, "result")]),
+            step("again", [loop_while(steady, "test")]),
+            step("result", [valid(), end()]),
+        ]
+    });
+    assert_eq!(way_out, Vec::<String>::new());
+}
+
+#[test]
+fn an_operand_that_nothing_uses() {
+    let unused = mistakes(|d| {
+        let _ = d.operand("spare", BYTE);
+    });
+    assert_eq!(unused, ["operand `spare` is not used: no output depends on it"]);
+    // It is read, but by a register that no output shows.
+    let nowhere = program(|d, load| {
+        let z = d.register("z", BYTE);
+        z.takes(d.operand("spare", BYTE).q());
+        vec![step("idle", []), step("load", [load, z.load()]), step("end", [valid(), end()])]
+    });
+    assert_eq!(nowhere, ["operand `spare` is not used: no output depends on it"]);
+    // How long a loop runs shows.
+    let length = program(|d, load| {
+        let count = d.down_counter("count", d.operand("n", Format::unsigned(4, 0)).q());
+        let more = d.any("more", count.q());
+        vec![
+            step("idle", []),
+            step("begin", [load, count.load()]),
+            step("again", [count.count(), loop_while(more, "again")]),
+            step("result", [valid(), end()]),
+        ]
+    });
+    assert_eq!(length, Vec::<String>::new());
+}
+
+#[test]
+fn signals_of_another_designer() {
+    let other = Designer::new("other");
+    let theirs = other.operand("theirs", BYTE);
+    let select = other.select("way", &["one", "other"]);
+    let register = other.register("there", BYTE);
+    let said = |name: &str| {
+        format!("`{name}` is a signal of the designer of `other`, and not of that of `device`")
+    };
+    let found = mistakes(|d| {
+        let ours = d.operand("ours", BYTE).q();
+        let bit = other.raw_constant("bit", 1, Format::BIT);
+        let _ = d.add("sum", ours, theirs.q());
+        let _ = d.mul("product", theirs.q(), ours);
+        let _ = d.less("less", ours, theirs.q());
+        let _ = d.choose("chosen", bit, [ours, ours]);
+        let _ = d.narrow("narrowed", theirs.q(), BYTE, Rounding::Nearest, Overflow::Saturate);
+        let _ = d.mux("mux", [ours, theirs.q()]).pick(theirs.q());
+        let _ = d.mux_on("on", select, [ours, ours]);
+        let _ = d.output("shown", theirs.q());
+        let _ = d.join("joined", &[ours, theirs.q()], Format::unsigned(0, 16));
+        let _ = d.pipeline("late", theirs.q());
+        d.register("r", BYTE).takes(theirs.q());
+    });
+    let reg = said("theirs_reg");
+    let expected: Vec<String> = [
+        vec![reg.clone(); 3],
+        vec![said("bit"), reg.clone(), reg.clone(), reg.clone(), said("way")],
+        vec![reg; 4],
+    ]
+    .concat();
+    assert_eq!(found, expected);
+    // Knobs and conditions, whose numbers would mean other fields and nets.
+    let found = program(|_, load| {
+        let more = other.any("more", theirs.q());
+        vec![
+            step("idle", []),
+            step("load", [load, register.load()]),
+            step("again", [loop_while(more, "load")]),
+            step("result", [valid(), end()]),
+        ]
+    });
+    assert_eq!(
+        found,
+        [
+            "word `load`: `there.load` is of the designer of `other`, and not of that of `device`",
+            "word `again`: a condition is of the designer of `other`, and not of that of `device`"
+        ]
+    );
+}

@@ -34,7 +34,8 @@ impl Designer {
         select: Select<'d>,
         inputs: impl IntoIterator<Item = Signal<'d>>,
     ) -> Bus<'d> {
-        let inputs: Vec<_> = inputs.into_iter().collect();
+        let inputs = self.own_all(&inputs.into_iter().collect::<Vec<_>>());
+        let select = self.own_select(select);
         select.check_inputs(name, inputs.len());
         let low = inputs.iter().map(|input| input.range().0).min().unwrap_or(0);
         let high = inputs.iter().map(|input| input.range().1).max().unwrap_or(0);
@@ -191,6 +192,7 @@ impl<'d> SharedProduct<'d> {
         let mut points = Vec::new();
         let mut range: Option<(i128, i128)> = None;
         for (first, second) in pairs {
+            let (first, second) = (d.own(*first), d.own(*second));
             let found =
                 self.pairs.iter().position(|(a, b)| a.id() == first.id() && b.id() == second.id());
             let Some(at) = found else {

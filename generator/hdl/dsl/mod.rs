@@ -42,6 +42,7 @@ mod signal;
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::panic::Location;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 pub use bus::{Bus, SharedProduct};
 pub use program::{
@@ -63,6 +64,8 @@ use crate::hdl::netlist::{
 /// Builds a [`Design`]; see the [module documentation](self).
 pub struct Designer {
     inner: RefCell<Inner>,
+    /// Tells its handles from those of another.
+    serial: u64,
     start: NetId,
     idle: NetId,
     run: NetId,
@@ -118,8 +121,14 @@ impl Designer {
             names: HashMap::new(),
             unit: Unit::Control,
         };
-        let mut designer =
-            Self { inner: RefCell::new(inner), start: NetId(0), idle: NetId(0), run: NetId(0) };
+        static DESIGNERS: AtomicU64 = AtomicU64::new(0);
+        let mut designer = Self {
+            inner: RefCell::new(inner),
+            serial: DESIGNERS.fetch_add(1, Ordering::Relaxed),
+            start: NetId(0),
+            idle: NetId(0),
+            run: NetId(0),
+        };
         let reset = designer.add_named("rst_n", Format::BIT, Driver::Input);
         designer.port(reset, Role::Reset);
         designer.set_doc(reset, "initial set, active low");
@@ -172,6 +181,7 @@ impl Designer {
     /// Connects a [`Designer::wire`].
     #[track_caller]
     pub fn drive(&self, wire: Signal<'_>, source: Signal<'_>) {
+        let wire = self.own(wire);
         let (format, net) = (wire.format(), self.net(wire.id()));
         if net.driver != Driver::Undriven {
             self.error_at(
@@ -200,6 +210,7 @@ impl Designer {
         words: &[i128],
         synchronous: bool,
     ) -> Rom<'_> {
+        let address = self.own(address);
         let format = self.sound(&format!("{name}_word"), format);
         let (low, high) = address.range();
         if address.format().frac != 0 || low < 0 || high >= words.len() as i128 {
@@ -253,6 +264,7 @@ impl Designer {
 
     #[track_caller]
     fn output_as<'d>(&'d self, name: &str, source: Signal<'d>, role: Role) -> Signal<'d> {
+        let source = self.own(source);
         let id = self.add_net(
             name,
             source.format(),
@@ -280,6 +292,7 @@ impl Designer {
     /// microprogram, so that the device is busy until then; a reset drops results that are on their way.
     #[track_caller]
     pub fn valid_after(&self, signal: Signal<'_>, clocks: u32) {
+        let signal = self.own(signal);
         if signal.format().width() != 1 {
             self.error(format!("valid follows `{}`, which has more than one bit", signal.name()));
         } else if self.inner.borrow_mut().valid.replace((signal.id(), clocks)).is_some() {
@@ -486,6 +499,34 @@ impl Designer {
     pub(crate) fn field_net(&self, field: FieldId) -> Signal<'_> {
         let net = self.with(|inner| inner.design.control.fields[field.index()].net);
         self.signal(net)
+    }
+
+    /// The signal; of another designer that is an error, and what to go on with a constant like it.
+    #[track_caller]
+    pub(crate) fn own(&self, signal: Signal<'_>) -> Signal<'_> {
+        let other = signal.designer();
+        if other.serial == self.serial {
+            return self.signal(signal.id());
+        }
+        let name = |designer: &Self| designer.with(|inner| inner.design.name.clone());
+        self.error(format!(
+            "`{}` is a signal of the designer of `{}`, and not of that of `{}`",
+            signal.name(),
+            name(other),
+            name(self)
+        ));
+        let driver = Driver::Constant(0);
+        self.signal(self.add_wiring(&signal.name(), signal.format(), signal.range(), driver))
+    }
+
+    /// The same of several. (In a closure the caller would be this library.)
+    #[track_caller]
+    pub(crate) fn own_all(&self, signals: &[Signal<'_>]) -> Vec<Signal<'_>> {
+        let mut own = Vec::with_capacity(signals.len());
+        for signal in signals {
+            own.push(self.own(*signal));
+        }
+        own
     }
 
     /// `source` as a net of exactly `format`, or an error that names `what` it was for.

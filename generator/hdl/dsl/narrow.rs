@@ -21,7 +21,7 @@ impl Designer {
         rounding: Rounding,
         overflow: Overflow,
     ) -> Signal<'d> {
-        let format = self.sound(name, format);
+        let (a, format) = (self.own(a), self.sound(name, format));
         let rounded = self.rounded(name, a, format.frac, rounding);
         let (low, high) = rounded.range();
         let fits = format.holds(low) && format.holds(high);

@@ -15,7 +15,16 @@ use crate::hdl::netlist::{
 #[derive(Clone)]
 pub struct Setting {
     kind: Kind,
+    /// The designer whose knob or condition it is; none where it speaks of neither.
+    of: Option<Origin>,
     location: SourceLocation,
+}
+
+/// The serial number of a designer, and the name of its design.
+type Origin = (u64, String);
+
+fn origin(d: &Designer) -> Origin {
+    (d.serial, d.with(|inner| inner.design.name.clone()))
 }
 
 #[derive(Clone)]
@@ -39,24 +48,23 @@ enum Kind {
 }
 
 impl Setting {
-    pub(crate) fn field(
-        field: FieldId,
-        value: u64,
-        what: String,
-        location: SourceLocation,
-    ) -> Self {
+    #[track_caller]
+    pub(crate) fn field(d: &Designer, field: FieldId, value: u64, what: String) -> Self {
         let kind = Kind::Field { field, value, what };
-        Self { kind, location }
+        Self { of: Some(origin(d)), ..Self::sequence(kind) }
     }
 
     #[track_caller]
     fn sequence(kind: Kind) -> Self {
-        Self { kind, location: Location::caller() }
+        Self { kind, of: None, location: Location::caller() }
     }
 
     /// A mux passes `input` on: found by what the mux's net selects from.
     #[track_caller]
     pub(crate) fn pick(d: &Designer, field: FieldId, mux: &str, input: Signal<'_>) -> Self {
+        if input.designer().serial != d.serial {
+            return Self::foreign(d, input);
+        }
         let inputs = match d.with(|inner| inner.design.find(mux)).map(|id| d.net(id).driver) {
             Some(Driver::Op(Op::Mux { inputs, .. })) => inputs,
             _ => Vec::new(),
@@ -79,8 +87,17 @@ impl Setting {
         input: Signal<'_>,
         inputs: &[Signal<'_>],
     ) -> Self {
+        if input.designer().serial != d.serial {
+            return Self::foreign(d, input);
+        }
         let found: Vec<_> = (0..inputs.len()).filter(|&at| inputs[at].id() == input.id()).collect();
         Self::picked(d, field, mux, input, &found)
+    }
+
+    #[track_caller]
+    fn foreign(d: &Designer, input: Signal<'_>) -> Self {
+        let _ = d.own(input);
+        Self::sequence(Kind::Wrong)
     }
 
     #[track_caller]
@@ -91,7 +108,7 @@ impl Setting {
             return Self::sequence(Kind::Wrong);
         };
         let what = format!("{mux}.pick({})", input.name());
-        Self::field(field, *at as u64, what, Location::caller())
+        Self::field(d, field, *at as u64, what)
     }
 }
 
@@ -122,7 +139,8 @@ pub fn wait_for_start() -> Setting {
 /// Back to the word named `to` while `condition`, one bit, is 1; then on to the next word.
 #[track_caller]
 pub fn loop_while(condition: Signal<'_>, to: &str) -> Setting {
-    Setting::sequence(Kind::LoopWhile { condition: condition.id(), to: to.to_owned() })
+    let kind = Kind::LoopWhile { condition: condition.id(), to: to.to_owned() };
+    Setting { of: Some(origin(condition.designer())), ..Setting::sequence(kind) }
 }
 
 /// On to the word named `to` when `condition`, one bit, is 1; else to the next word: a way around words
@@ -185,6 +203,9 @@ pub(crate) fn assemble(d: &Designer, program: &Program) {
         ));
         return;
     }
+    if foreign(d, steps) {
+        return;
+    }
     let mut loops: Vec<(NetId, usize)> = Vec::new();
     let sequences: Vec<Sequence> = steps.iter().map(|step| sequence(d, steps, step)).collect();
     for sequence in &sequences {
@@ -225,6 +246,30 @@ pub(crate) fn assemble(d: &Designer, program: &Program) {
     describe(fields.go_on, "0 in the last word", line);
     let words = words(d, steps, &sequences, &fields, &conditions);
     sequencer(d, program, words, &fields, &conditions, &targets, address_width);
+}
+
+/// Whether a setting is of another designer, which is reported: its numbers would mean other nets and fields here.
+fn foreign(d: &Designer, steps: &[Step]) -> bool {
+    let own = origin(d);
+    let settings = steps.iter().flat_map(|step| step.settings.iter().map(move |it| (step, it)));
+    let mut any = false;
+    for (step, setting) in settings {
+        if let Some((serial, name)) = &setting.of
+            && *serial != own.0
+        {
+            let what = match &setting.kind {
+                Kind::Field { what, .. } => format!("`{what}`"),
+                _ => "a condition".to_owned(),
+            };
+            let message = format!(
+                "word `{}`: {what} is of the designer of `{name}`, and not of that of `{}`",
+                step.name, own.1
+            );
+            d.report(Diagnostic::new(message, setting.location));
+            any = true;
+        }
+    }
+    any
 }
 
 fn distinct(loops: &[(NetId, usize)]) -> (Vec<NetId>, Vec<usize>) {

@@ -1,7 +1,5 @@
 //! What holds state, and the knobs that the microprogram turns.
 
-use std::panic::Location;
-
 use super::{Designer, Setting, Signal};
 use crate::base::fixed::Format;
 use crate::hdl::netlist::{Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role};
@@ -115,6 +113,7 @@ impl Designer {
     /// A register inside a block, loaded on every clock: it delays `source` by one.
     #[track_caller]
     pub fn pipeline<'d>(&'d self, name: &str, source: Signal<'d>) -> Signal<'d> {
+        let source = self.own(source);
         let (low, high) = source.range();
         // It holds 0 from power-up to the first clock.
         let range = (low.min(0), high.max(0));
@@ -133,6 +132,18 @@ impl Designer {
         Select { designer: self, field }
     }
 
+    /// Select lines; of another designer that is an error.
+    #[track_caller]
+    pub(crate) fn own_select<'d>(&'d self, select: Select<'d>) -> Select<'d> {
+        if self.serial == select.designer.serial {
+            return select;
+        }
+        let line = self.own(select.designer.field_net(select.field)).name();
+        let choices = select.choices();
+        let choices: Vec<&str> = choices.iter().map(String::as_str).collect();
+        self.select(&format!("{line}_own"), &choices)
+    }
+
     /// An output of the device that words raise.
     #[track_caller]
     pub fn flag(&self, name: &str) -> Flag<'_> {
@@ -147,6 +158,7 @@ impl Designer {
     /// `load` takes the value of `start`; `count` subtracts one. Both in one word: `load` wins.
     #[track_caller]
     pub fn down_counter<'d>(&'d self, name: &str, start: Signal<'d>) -> Counter<'d> {
+        let start = self.own(start);
         let format = start.format();
         let load = self.add_field(&format!("{name}_load"), 1, FieldKind::Enable);
         let count = self.add_field(&format!("{name}_count"), 1, FieldKind::Enable);
@@ -266,7 +278,7 @@ impl<'d> Register<'d> {
     /// The knob: the register takes its data at the end of the word.
     #[track_caller]
     pub fn load(self) -> Setting {
-        Setting::field(self.field, 1, format!("{}.load", self.q.name()), Location::caller())
+        Setting::field(self.q.designer(), self.field, 1, format!("{}.load", self.q.name()))
     }
 
     /// The block number in the source's figure.
@@ -318,16 +330,18 @@ impl<'d> Select<'d> {
         self
     }
 
+    /// The names of its values.
+    fn choices(self) -> Vec<String> {
+        self.designer.with(|inner| match &inner.design.control.fields[self.field.index()].kind {
+            FieldKind::Select(choices) => choices.clone(),
+            _ => Vec::new(),
+        })
+    }
+
     /// Mux `name` has as many inputs as the field has values.
     #[track_caller]
     pub(crate) fn check_inputs(self, name: &str, inputs: usize) {
-        let choices = self.designer.with(|inner| {
-            let FieldKind::Select(choices) = &inner.design.control.fields[self.field.index()].kind
-            else {
-                return 0;
-            };
-            choices.len()
-        });
+        let choices = self.choices().len();
         if inputs != choices {
             self.designer.error(format!(
                 "mux `{name}` has {inputs} inputs, but its select lines have {choices} choices"
@@ -348,7 +362,7 @@ impl Flag<'_> {
     #[track_caller]
     pub fn raise(self) -> Setting {
         let name = self.designer.field_net(self.field).name();
-        Setting::field(self.field, 1, name, Location::caller())
+        Setting::field(self.designer, self.field, 1, name)
     }
 }
 
@@ -383,13 +397,13 @@ impl<'d> Counter<'d> {
     /// The knob: takes the start value at the end of the word.
     #[track_caller]
     pub fn load(self) -> Setting {
-        Setting::field(self.load, 1, format!("{}.load", self.q.name()), Location::caller())
+        Setting::field(self.q.designer(), self.load, 1, format!("{}.load", self.q.name()))
     }
 
     /// The knob: one less at the end of the word.
     #[track_caller]
     pub fn count(self) -> Setting {
-        Setting::field(self.count, 1, format!("{}.count", self.q.name()), Location::caller())
+        Setting::field(self.q.designer(), self.count, 1, format!("{}.count", self.q.name()))
     }
 
     /// The block number in the source's figure.

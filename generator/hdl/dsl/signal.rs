@@ -147,6 +147,7 @@ impl<'d> Signal<'d> {
     #[must_use]
     #[track_caller]
     pub fn above(self, low: Signal<'d>, format: Format) -> Self {
+        let low = self.designer.own(low);
         let width = self.format().width() + low.format().width();
         let name = format!("{}_above", self.name());
         let format = self.designer.sound(&name, format);
@@ -224,7 +225,8 @@ impl Designer {
         b: Signal<'d>,
         carry: Option<Signal<'d>>,
     ) -> Signal<'d> {
-        let (a, b) = aligned(a, b);
+        let (a, b) = aligned(self.own(a), self.own(b));
+        let carry = self.own_all(carry.as_slice()).pop();
         let (a_range, b_range) = (a.range(), b.range());
         let carry_most = i128::from(carry.is_some());
         let range = (a_range.0 + b_range.0, a_range.1 + b_range.1 + carry_most);
@@ -246,6 +248,7 @@ impl Designer {
         b: Signal<'d>,
         carry: Option<Signal<'d>>,
     ) -> Signal<'d> {
+        let (a, b, carry) = (self.own(a), self.own(b), self.own_all(carry.as_slice()).pop());
         let format = a.format();
         if format != b.format() {
             self.error(format!(
@@ -263,7 +266,7 @@ impl Designer {
     /// `a − b`, aligned as in [`Designer::add`]; unsigned where the ranges show that it is never negative.
     #[track_caller]
     pub fn sub<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
-        let (a, b) = aligned(a, b);
+        let (a, b) = aligned(self.own(a), self.own(b));
         let (a_range, b_range) = (a.range(), b.range());
         let range = (a_range.0 - b_range.1, a_range.1 - b_range.0);
         let format = Format::holding(range.0, range.1, a.format().frac);
@@ -274,6 +277,7 @@ impl Designer {
     /// `a · b`, whole.
     #[track_caller]
     pub fn mul<'d>(&'d self, name: &str, a: Signal<'d>, b: Signal<'d>) -> Signal<'d> {
+        let (a, b) = (self.own(a), self.own(b));
         let (a, b) = if a.format().signed == b.format().signed {
             (a, b)
         } else {
@@ -290,6 +294,7 @@ impl Designer {
     /// Every bit inverted: `−a − ulp` for a signed signal, `largest − a` for an unsigned one.
     #[track_caller]
     pub fn not<'d>(&'d self, name: &str, a: Signal<'d>) -> Signal<'d> {
+        let a = self.own(a);
         let format = a.format();
         let (low, high) = a.range();
         let top = if format.signed { -1 } else { format.max_raw() };
@@ -301,6 +306,7 @@ impl Designer {
     /// `high` and `low` side by side, by wiring: an address made of two parts. Integers without a sign.
     #[track_caller]
     pub fn concat<'d>(&'d self, name: &str, high: Signal<'d>, low: Signal<'d>) -> Signal<'d> {
+        let (high, low) = (self.own(high), self.own(low));
         let width = low.format().width();
         let format = Format::unsigned((high.format().width() + width) as i32, 0);
         let (from, to) = (high.range().0 << width, high.range().1 << width);
@@ -331,6 +337,7 @@ impl Designer {
     /// as all together: wiring.
     #[track_caller]
     pub fn join<'d>(&'d self, name: &str, parts: &[Signal<'d>], format: Format) -> Signal<'d> {
+        let parts = self.own_all(parts);
         let width: u32 = parts.iter().map(|part| part.format().width()).sum();
         let format = self.sound(name, format);
         if width != format.width() {
@@ -385,13 +392,13 @@ impl Designer {
     /// 1 when any bit of `a` is 1: `a ≠ 0`.
     #[track_caller]
     pub fn any<'d>(&'d self, name: &str, a: Signal<'d>) -> Signal<'d> {
-        self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Any(a.id()))))
+        self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::Any(self.own(a).id()))))
     }
 
     /// 1 when every bit of `a` is 1.
     #[track_caller]
     pub fn all<'d>(&'d self, name: &str, a: Signal<'d>) -> Signal<'d> {
-        self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::All(a.id()))))
+        self.signal(self.add_named(name, Format::BIT, Driver::Op(Op::All(self.own(a).id()))))
     }
 
     /// Input 0 or 1 by the one-bit signal `select`, a signal of the datapath. Inputs have one point;
@@ -429,6 +436,7 @@ impl Designer {
         inputs: impl IntoIterator<Item = Signal<'d>>,
     ) -> Mux<'d> {
         let inputs: Vec<_> = inputs.into_iter().collect();
+        let select = self.own_select(select);
         select.check_inputs(name, inputs.len());
         let out = self.mux_of(name, self.field_net(select.field()).id(), &inputs);
         Mux { out, field: select.field() }
@@ -436,6 +444,7 @@ impl Designer {
 
     #[track_caller]
     fn mux_of<'d>(&'d self, name: &str, select: NetId, inputs: &[Signal<'d>]) -> Signal<'d> {
+        let inputs = self.own_all(inputs);
         let Some(first) = inputs.first() else {
             self.error(format!("mux `{name}` has no inputs"));
             return self.raw_constant("zeros", 0, Format::BIT);
@@ -461,6 +470,7 @@ impl Designer {
 
     #[track_caller]
     fn one_bit(&self, a: Signal<'_>) -> NetId {
+        let a = self.own(a);
         if a.format().width() != 1 {
             self.error(format!("`{}` is {}: one bit is wanted here", a.name(), a.format()));
         }
@@ -469,7 +479,7 @@ impl Designer {
 
     #[track_caller]
     fn comparable(&self, a: Signal<'_>, b: Signal<'_>) -> (NetId, NetId) {
-        let (a, b) = aligned(a, b);
+        let (a, b) = aligned(self.own(a), self.own(b));
         let low = a.range().0.min(b.range().0);
         let high = a.range().1.max(b.range().1);
         let format = Format::holding(low, high, a.format().frac);
@@ -480,6 +490,7 @@ impl Designer {
     /// range of `a`, the upper bits are dropped: an operand of a sum whose result the format holds.
     #[track_caller]
     pub(crate) fn resized(&self, a: Signal<'_>, format: Format) -> NetId {
+        let a = self.own(a);
         let have = a.format();
         debug_assert_eq!(have.frac, format.frac);
         if have == format {

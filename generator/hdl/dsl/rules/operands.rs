@@ -1,0 +1,44 @@
+//! Every operand has a say in some output.
+
+use std::collections::HashSet;
+
+use crate::base::diagnostic::Diagnostic;
+use crate::hdl::netlist::{Design, Driver, NetId, Role};
+
+/// Operands from which no way leads to an output.
+pub(super) fn check(design: &Design) -> Vec<Diagnostic> {
+    let used = used(design);
+    let mut found = Vec::new();
+    for port in design.inputs().filter(|port| matches!(port.role, Role::Operand { .. })) {
+        if !used.contains(&port.net) {
+            let net = design.net(port.net);
+            let message = format!("operand `{}` is not used: no output depends on it", net.name);
+            found.push(Diagnostic::new(message, net.location));
+        }
+    }
+    found
+}
+
+/// All nets on which outputs depend, in any number of clocks.
+fn used(design: &Design) -> HashSet<NetId> {
+    let outputs = design.ports.iter().filter(|port| !port.role.is_input());
+    let mut pending: Vec<NetId> = outputs.map(|port| port.net).collect();
+    let mut used = HashSet::new();
+    while let Some(id) = pending.pop() {
+        if !used.insert(id) {
+            continue;
+        }
+        match design.net(id).driver {
+            Driver::Register(register) => {
+                let register = design.register(register);
+                pending.extend(register.data.into_iter().chain(register.enable));
+            }
+            Driver::Rom(rom) => {
+                let rom = design.rom(rom);
+                pending.extend([rom.address].into_iter().chain(rom.enable));
+            }
+            _ => pending.extend(design.combinational_inputs(id)),
+        }
+    }
+    used
+}

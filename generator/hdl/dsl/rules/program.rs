@@ -1,0 +1,171 @@
+//! What a microprogram must not do: raise `valid` before the result is there, and go round a loop for ever.
+
+use std::collections::HashSet;
+
+use crate::base::diagnostic::Diagnostic;
+use crate::hdl::netlist::{
+    Control, Design, Driver, NetId, Op, RegId, RegisterKind, Role, Sequence, turned,
+};
+
+/// Microinstructions that raise `valid` too early, and loops that nothing in them ends.
+pub(super) fn check(design: &Design) -> Vec<Diagnostic> {
+    let mut found = early(design);
+    found.extend(endless(design));
+    found
+}
+
+/// Microinstructions that raise `valid` and load a register that a result shows, where control can come to them
+/// without having loaded it before: what is on the output is not yet the result.
+fn early(design: &Design) -> Vec<Diagnostic> {
+    let control = &design.control;
+    let valid = design.port(|role| role == Role::Valid).map(|port| port.net);
+    let raises =
+        |at: usize| valid.is_some_and(|valid| turned(design, &control.words[at], valid) == Some(1));
+    let mut found = Vec::new();
+    for at in (0..control.words.len()).filter(|&at| raises(at)) {
+        for port in design.ports.iter().filter(|port| port.role == Role::Result) {
+            let shown =
+                cone(design, at, port.net).into_iter().filter_map(|id| register(design, id));
+            let Some(register) = shown.into_iter().find(|&register| {
+                loads(design, at, register) == Some(1) && comes_without_load(design, at, register)
+            }) else {
+                continue;
+            };
+            let q = design.net(design.register(register).q);
+            let word = &control.words[at];
+            let message = format!(
+                "word `{}` raises valid and loads `{}`, which `{}` shows from the next word on: valid belongs there",
+                word.name,
+                q.name,
+                design.net(port.net).name
+            );
+            found.push(
+                Diagnostic::new(message, word.location).note("the register".to_owned(), q.location),
+            );
+            break;
+        }
+    }
+    found
+}
+
+/// The register that drives a net.
+fn register(design: &Design, id: NetId) -> Option<RegId> {
+    match design.net(id).driver {
+        Driver::Register(register) => Some(register),
+        _ => None,
+    }
+}
+
+/// Whether word `at` loads a register, as far as the word alone says so. One without an enable loads always.
+fn loads(design: &Design, at: usize, register: RegId) -> Option<u64> {
+    match design.register(register).enable {
+        Some(enable) => turned(design, &design.control.words[at], enable),
+        None => Some(1),
+    }
+}
+
+/// Whether control comes from the first word to word `at` through words that do not load the register.
+fn comes_without_load(design: &Design, at: usize, register: RegId) -> bool {
+    let goes = |from: usize| loads(design, from, register) == Some(0);
+    at == 0 || goes(0) && reached(&design.control, 0, goes).contains(&at)
+}
+
+/// The words to which control comes from word `from`, which is one of them, going on from those that `goes` holds for.
+fn reached(control: &Control, from: usize, goes: impl Fn(usize) -> bool) -> HashSet<usize> {
+    let mut reached = HashSet::from([from]);
+    let mut pending = vec![from];
+    while let Some(now) = pending.pop() {
+        if goes(now) {
+            let next = control.successors(now).into_iter();
+            pending.extend(next.filter(|&next| reached.insert(next)));
+        }
+    }
+    reached
+}
+
+/// The nets on which a net depends within the clock of word `at`, and itself. Of a mux that the word turns, only the
+/// chosen input counts; fields are what the word says.
+fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
+    let mut seen = HashSet::new();
+    let mut pending = vec![net];
+    while let Some(id) = pending.pop() {
+        if !seen.insert(id) {
+            continue;
+        }
+        match &design.net(id).driver {
+            Driver::Field(_) => {}
+            Driver::Op(Op::Mux { select, inputs }) => {
+                match turned(design, &design.control.words[at], *select) {
+                    Some(chosen) => pending.extend(inputs.get(chosen as usize).or(inputs.last())),
+                    None => pending.extend(design.combinational_inputs(id)),
+                }
+            }
+            _ => pending.extend(design.combinational_inputs(id)),
+        }
+    }
+    seen
+}
+
+/// Loops whose condition depends only on what no word of the loop changes, and that have no other way out.
+fn endless(design: &Design) -> Vec<Diagnostic> {
+    let control = &design.control;
+    let mut found = Vec::new();
+    for (at, word) in control.words.iter().enumerate() {
+        let Sequence::LoopWhile { condition, to } = word.sequence else { continue };
+        if to > at {
+            continue;
+        }
+        // The words from which control comes back to this one.
+        let within = reached(control, to, |now| now != at);
+        let body: Vec<usize> = within
+            .iter()
+            .copied()
+            .filter(|&from| reached(control, from, |now| within.contains(&now)).contains(&at))
+            .collect();
+        let waits = |now: &usize| *now == 0 || control.words[*now].sequence == Sequence::WaitStart;
+        let leaves = |now: &usize| {
+            *now != at && control.successors(*now).iter().any(|next| !body.contains(next))
+        };
+        if body.iter().any(|now| waits(now) || leaves(now)) {
+            continue;
+        }
+        let cone = cone(design, at, condition);
+        if cone.iter().any(|&id| changes(design, &body, id)) {
+            continue;
+        }
+        let mut held: Vec<&str> = cone
+            .iter()
+            .filter_map(|&id| register(design, id).map(|_| design.net(id).name.as_str()))
+            .collect();
+        held.sort_unstable();
+        let why = match held[..] {
+            [] => "which is constant".to_owned(),
+            _ => format!("and no word of the loop changes `{}`", held.join("`, `")),
+        };
+        let condition = design.net(condition);
+        let message = format!(
+            "word `{}` goes back to `{}` while `{}` is 1, {why}: it never ends, or is no loop",
+            word.name, control.words[to].name, condition.name
+        );
+        found.push(
+            Diagnostic::new(message, word.location)
+                .note("the condition".to_owned(), condition.location),
+        );
+    }
+    found
+}
+
+/// Whether a net that ends a cone may change while the words of a loop are executed.
+fn changes(design: &Design, body: &[usize], id: NetId) -> bool {
+    match design.net(id).driver {
+        Driver::Input => true,
+        Driver::Rom(rom) => design.rom(rom).synchronous,
+        // Operands are written while the device is not busy.
+        Driver::Register(id) => match design.register(id).kind {
+            RegisterKind::Operand => false,
+            RegisterKind::Sequencer | RegisterKind::Internal => true,
+            RegisterKind::Architectural => body.iter().any(|&at| loads(design, at, id) != Some(0)),
+        },
+        _ => false,
+    }
+}
