@@ -8,6 +8,7 @@ pub mod comparison;
 pub mod curves;
 pub mod hardware;
 pub mod measure;
+pub mod overview;
 pub mod seed_plots;
 
 use anyhow::Result;
@@ -31,6 +32,8 @@ pub struct Evidence {
     pub plots: Vec<SeedPlot>,
     /// Powers for a required accuracy.
     pub power_table: Vec<Accuracy>,
+    /// All devices in one chart each.
+    pub overview: Vec<chart::Chart>,
     /// Error curves of every device.
     pub devices: Vec<DeviceCurves>,
     /// W and Schlick's function synthesised, if that was asked for and possible.
@@ -91,11 +94,13 @@ pub fn gather(
             )
         })
         .collect();
+    let overview = overview::charts(registry, &devices)?;
     Ok(Evidence {
         glint: env!("CARGO_PKG_VERSION"),
         claims,
         plots,
         power_table,
+        overview,
         devices,
         hardware,
         rom_9: seed_plots::rom_9(),

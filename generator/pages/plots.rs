@@ -3,11 +3,12 @@
 use anyhow::{Result, anyhow};
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 use crate::evidence::chart::{Axis, Chart, Scale};
 
 /// Lines that the style sheet can tell apart, by colour and by dashes.
-pub const STYLES: usize = 6;
+pub const STYLES: usize = 10;
 
 /// The library places points on whole units: this many of them make one of the page's at full size.
 const FINE: u32 = 4;
@@ -104,7 +105,7 @@ fn draw(chart: &Chart, text: &mut String) -> Result<(), Box<dyn std::error::Erro
         .set_all_tick_mark_size(5 * FINE)
         .x_desc(chart.x.label.as_str())
         .label_style(font.clone())
-        .axis_desc_style(font)
+        .axis_desc_style(font.clone())
         .x_label_formatter(&|place| label(&chart.x, *place))
         .y_label_formatter(&|place| label(&chart.y, *place))
         .draw()?;
@@ -119,8 +120,45 @@ fn draw(chart: &Chart, text: &mut String) -> Result<(), Box<dyn std::error::Erro
             plane.draw_series(LineSeries::new(run, style))?;
         }
     }
+    // What is known at one place only is a point with its name.
+    for (at, (x, y), left) in points(chart) {
+        plane.draw_series([Circle::new((x, y), 4 * FINE, style(at).filled())])?;
+        let (away, end) = if left { (-8, HPos::Right) } else { (8, HPos::Left) };
+        let away = away * FINE as i32;
+        let name = font.clone().pos(Pos::new(end, VPos::Center));
+        let name = Text::new(chart.series[at].name.clone(), (away, 0), name);
+        plane.draw_series([EmptyElement::at((x, y)) + name])?;
+    }
     area.present()?;
     Ok(())
+}
+
+/// Series of one value: number, place, and whether the name stands left of it. Names stand on the side
+/// where there is more room, unless the name of a neighbour above is there.
+fn points(chart: &Chart) -> Vec<(usize, (f64, f64), bool)> {
+    let only = |values: &[f64]| {
+        let mut known = chart.places.iter().zip(values).filter(|(_, value)| value.is_finite());
+        let (x, y) = known.next()?;
+        let place = chart.x.place(*x).zip(chart.y.place(*y))?;
+        known.next().is_none().then_some(place)
+    };
+    let series = chart.series.iter().enumerate();
+    let mut places: Vec<_> =
+        series.filter_map(|(at, series)| Some((at, only(&series.values)?))).collect();
+    places.sort_by(|(_, (_, one)), (_, (_, other))| other.total_cmp(one));
+    let ends = |axis: &Axis| axis.place(axis.range.0).zip(axis.place(axis.range.1));
+    let Some(((left, right), (low, high))) = ends(&chart.x).zip(ends(&chart.y)) else {
+        return Vec::new();
+    };
+    let mut points: Vec<(usize, (f64, f64), bool)> = Vec::new();
+    for (at, (x, y)) in places {
+        let roomier = x > (left + right) / 2.0;
+        let near = |above: f64| above - y < (high - low) / 20.0;
+        let in_the_way =
+            points.last().is_some_and(|(_, (_, above), taken)| near(*above) && *taken == roomier);
+        points.push((at, (x, y), roomier != in_the_way));
+    }
+    points
 }
 
 /// The stretches of a series that can be shown, as places; a line that leaves the range ends at its border.
@@ -272,6 +310,19 @@ mod tests {
         assert_eq!(found, [vec![(0.0, 0.0), (1.0, 1.0)], vec![(3.0, 3.0), (3.5, 4.0)]]);
         let found = runs(&chart, &[6.0, 2.0, 2.0, 6.0, 6.0]);
         assert_eq!(found, [vec![(0.5, 4.0), (1.0, 2.0), (2.0, 2.0), (2.5, 4.0)]]);
+    }
+
+    #[test]
+    fn names_of_neighbours_stand_on_different_sides() {
+        let places = vec![1.0, 3.0, 3.5];
+        let alone = |name: &str, at: usize, value| {
+            let mut values = vec![f64::NAN; 3];
+            values[at] = value;
+            Series { name: name.to_owned(), values }
+        };
+        let series = vec![alone("a", 0, 2.0), alone("b", 1, 1.1), alone("c", 2, 1.0)];
+        let sides = points(&Chart { places, series, ..chart() });
+        assert_eq!(sides, [(0, (1.0, 2.0), false), (1, (3.0, 1.1), true), (2, (3.5, 1.0), false)]);
     }
 
     #[test]

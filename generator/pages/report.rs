@@ -30,6 +30,7 @@ struct Page<'a> {
     plots: Vec<Figure<'a>>,
     powers: Vec<PowerRow>,
     rom_9: Vec<RomRow>,
+    overview: Vec<Figure<'a>>,
     devices: Vec<DeviceView<'a>>,
     benchmark: Option<BenchmarkView<'a>>,
 }
@@ -69,6 +70,7 @@ struct BenchmarkView<'a> {
 pub fn page(evidence: &Evidence, benchmark: Option<&Benchmark>) -> Result<String> {
     let plots: Vec<(&Chart, &str)> =
         evidence.plots.iter().map(|plot| (&plot.chart, plot.figure)).collect();
+    let overview: Vec<(&Chart, &str)> = evidence.overview.iter().map(|chart| (chart, "")).collect();
     let page = Page {
         marker: MARKER,
         schlick: formula::typeset("S(n, gamma) = cos(gamma) / (n - n * cos(gamma) + cos(gamma))"),
@@ -79,6 +81,7 @@ pub fn page(evidence: &Evidence, benchmark: Option<&Benchmark>) -> Result<String
         plots: figures(&plots)?,
         powers: evidence.power_table.iter().map(powers).collect(),
         rom_9: evidence.rom_9.chunks(WORDS).map(rom_row).collect(),
+        overview: figures(&overview)?,
         devices: evidence.devices.iter().map(device).collect::<Result<_>>()?,
         benchmark: benchmark.map(timings),
     };

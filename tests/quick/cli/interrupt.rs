@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::process::{Child, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -16,6 +16,24 @@ const MARK: &str = "GLINT_TEST_PLACE";
 
 const PATIENCE: Duration = Duration::from_secs(300);
 const PAUSE: Duration = Duration::from_millis(20);
+
+/// The command with signals as a terminal has them: a shell lets what it starts in the background ignore Ctrl-C,
+/// and the tests may be such.
+fn signalled(command: &Command) -> Command {
+    let mut signalled = Command::new("env");
+    signalled.arg("--default-signal=INT,TERM,HUP").arg(command.get_program());
+    signalled.args(command.get_args());
+    command.get_current_dir().into_iter().for_each(|place| {
+        signalled.current_dir(place);
+    });
+    for (name, value) in command.get_envs() {
+        match value {
+            Some(value) => signalled.env(name, value),
+            None => signalled.env_remove(name),
+        };
+    }
+    signalled
+}
 
 /// The program in a place with tools of its own, while it runs.
 struct Running<'a> {
@@ -31,8 +49,7 @@ impl<'a> Running<'a> {
         let search = std::env::var_os("PATH").unwrap_or_default();
         let search = std::iter::once(place.at("tools")).chain(std::env::split_paths(&search));
         let before = place.files();
-        let child = place
-            .command()
+        let child = signalled(&place.command())
             .args(arguments)
             .env("PATH", std::env::join_paths(search).expect("a search path"))
             .env("TMPDIR", place.at("tmp"))

@@ -47,6 +47,11 @@ fn twice_the_same_and_self_contained() {
     assert_eq!(figures["claims"], told["claims"]);
     let devices = figures["devices"].as_array().expect("devices");
     assert!(devices.iter().any(|device| device["device"] == "rough"));
+    // All ten in each chart of all.
+    let overview = figures["overview"].as_array().expect("charts");
+    let lines: Vec<usize> =
+        overview.iter().filter_map(|chart| Some(chart["series"].as_array()?.len())).collect();
+    assert_eq!(lines, [10, 10]);
     assert_eq!(figures["hardware"], Value::Null);
 }
 
