@@ -1,8 +1,9 @@
 """Drives a core that Glint generated, from Python, by its manifest alone.
 
-`Manifest` reads rtl_out/<name>/<name>.json; `Core` plays the host, clock by clock, and checks the
-handshake in every one of them; the tests below hold for every core. A bench, such as
-testbench/<name>/test_<name>.py, imports them, adds its own, and has a simulator `run` them.
+`Manifest` reads rtl_out/<name>/<name>.json; `Core` plays the host of a core with a microprogram,
+and `Pipeline` that of one that takes a point a clock. Both check the handshake in every clock; the
+tests below hold for every core of their kind. A bench, such as testbench/<name>/test_<name>.py,
+imports them, adds its own, and has a simulator `run` them.
 
 Inputs change after the falling edge of the clock; outputs are read at the rising edge, as they
 were before it. Needs cocotb 2.1 and Icarus Verilog: cocotb refuses Verilator before 5.036.
@@ -59,6 +60,7 @@ class Manifest:
         self.sources = [self.directory / file for file in facts["files"]["rtl"]]
         self.memories = [self.directory / file for file in facts["files"]["memories"]]
         self.timing: dict[str, int | None] = facts["timing"]
+        self.latency: int | None = facts.get("pipeline", {}).get("latency")
         accuracy = facts["accuracy"]
         self.domain: dict[str, dict[str, int]] = accuracy["domain"]
         self.outputs: dict[str, str] = accuracy["outputs"]
@@ -238,12 +240,7 @@ class Core:
 
     def outputs(self) -> Raw:
         """The results as they are on the outputs now."""
-        results = {}
-        for name in self.manifest.outputs:
-            value = getattr(self.dut, name).value
-            signed = self.manifest.ports[name]["signed"]
-            results[name] = value.to_signed() if signed else value.to_unsigned()
-        return results
+        return outputs(self.dut, self.manifest)
 
     async def write_in_parts(self, operands: Mapping[str, int]) -> Raw:
         """Some operands one by one, with pauses; what is left may be written with `start`."""
@@ -272,6 +269,144 @@ class Core:
             if seen["done"]:
                 return Computation(valid, results, clock)
         raise AssertionError(f"not done within {LONGEST} clocks")
+
+
+class Pipeline:
+    """The host of a pipeline: offers points, takes results, and follows the points between."""
+
+    def __init__(self, dut: Any, seed: int = 1) -> None:
+        """Take over the inputs of `dut`; what is random follows from `seed`."""
+        self.dut = dut
+        self.manifest = Manifest(dut._name)
+        self.random = random.Random(seed)
+        self.clocks = 0
+        latency = self.manifest.latency
+        assert latency is not None, f"the manifest of {dut._name} has no pipeline"
+        self._stages: list[tuple[Raw, int] | None] = [None] * latency
+        """The point in each stage, with its side value; results are those of the last."""
+        self._known = False
+        """Whether there was a reset."""
+        self._waiting: Raw | None = None
+        """The results that were not taken in the clock before."""
+        ports = {port["role"]: getattr(dut, name) for name, port in self.manifest.ports.items()}
+        self._clk, self._rst_n = ports["clock"], ports["reset"]
+        self._in_valid, self._out_valid = ports["in_valid"], ports["valid"]
+        # Those of a pipeline that can be stalled, and of one with a side channel.
+        self._in_ready, self._out_ready = ports.get("in_ready"), ports.get("out_ready")
+        self._side_in, self._side_out = ports.get("side_in"), ports.get("side_out")
+        self._operands = [(name, getattr(dut, name)) for name in self.manifest.domain]
+
+    @classmethod
+    async def after_reset(cls, dut: Any, seed: int = 1) -> Pipeline:
+        """A pipeline whose clock runs and that has been reset."""
+        pipeline = cls(dut, seed)
+        Clock(pipeline._clk, 10, unit="ns").start(start_high=False)
+        await pipeline.clock(rst_n=0)
+        return pipeline
+
+    @property
+    def stalls(self) -> bool:
+        """Whether results can be held back."""
+        return self._out_ready is not None
+
+    @property
+    def occupied(self) -> bool:
+        """Whether any point is on its way."""
+        return any(point is not None for point in self._stages)
+
+    async def clock(
+        self, point: Mapping[str, int] | None = None, *, ready: int = 1, rst_n: int = 1
+    ) -> tuple[bool, tuple[Raw, Raw] | None]:
+        """One clock in which this point is offered, and results are taken if `ready`.
+
+        Returns whether the point was taken, and the point whose results were, with its results.
+        What is on the inputs without a point does not matter, and is noise.
+        """
+        ready = ready if self.stalls else 1
+        await FallingEdge(self._clk)
+        self._rst_n.value = rst_n
+        self._in_valid.value = int(point is not None)
+        if self._out_ready is not None:
+            self._out_ready.value = ready
+        for name, data in self._operands:
+            bits = self.random.getrandbits(len(data)) if point is None else point[name]
+            data.value = bits & ((1 << len(data)) - 1)
+        side = 0
+        if self._side_in is not None:
+            side = self.random.getrandbits(len(self._side_in))
+            self._side_in.value = side
+        await RisingEdge(self._clk)
+        self.clocks += 1
+        shown = self._check(ready) if self._known else None
+        moves = bool(ready) or self._stages[-1] is None
+        left = self._stages[-1] if moves else None
+        if moves:
+            taken = None if point is None else (dict(point), side)
+            self._stages = [taken, *self._stages[:-1]]
+        self._waiting = None if moves else shown
+        if not rst_n:
+            self._stages, self._waiting = [None] * len(self._stages), None
+            self._known = True
+        return moves and bool(rst_n), None if left is None or shown is None else (left[0], shown)
+
+    def _check(self, ready: int) -> Raw | None:
+        """The handshake of this clock against where the points are; the results that are shown."""
+        at = f"clock {self.clocks}"
+        last = self._stages[-1]
+        valid = int(self._out_valid.value)
+        assert valid == (last is not None), f"out_valid is {valid}, {at}"
+        if self._in_ready is not None:
+            in_ready = int(self._in_ready.value)
+            assert in_ready == (ready or not valid), f"in_ready is {in_ready}, {at}"
+        if last is None:
+            return None
+        if self._side_out is not None:
+            side = int(self._side_out.value)
+            assert side == last[1], f"side_out is {side} with a point that came with {last[1]}, {at}"
+        shown = self.outputs()
+        assert self._waiting in (None, shown), f"{self._waiting} changed while it waited, {at}"
+        return shown
+
+    def outputs(self) -> Raw:
+        """The results as they are on the outputs now."""
+        return outputs(self.dut, self.manifest)
+
+    async def compute(self, **operands: int) -> Raw:
+        """Offers one point, with nothing before and behind it; its results."""
+        taken, _ = await self.clock(operands)
+        assert taken, "a pipeline without points takes one"
+        while self.occupied:
+            _, shown = await self.clock()
+            if shown is not None:
+                return shown[1]
+        raise AssertionError("no results")
+
+    async def through(self, points: list[Raw], offer: int = 1, take: int = 1) -> list[Raw]:
+        """The results of these points; offered, and taken, once in so many clocks at random."""
+        results: list[Raw] = []
+        left = list(points)
+        offered: Raw | None = None
+        while left or offered is not None or self.occupied:
+            if offered is None and left and self.random.randrange(offer) == 0:
+                offered = left.pop(0)
+            ready = int(self.random.randrange(take) == 0)
+            taken, shown = await self.clock(offered, ready=ready)
+            if taken:
+                offered = None
+            if shown is not None:
+                assert shown[0] == points[len(results)], f"{shown[0]} came out of its turn"
+                results.append(shown[1])
+        return results
+
+
+def outputs(dut: Any, manifest: Manifest) -> Raw:
+    """The results as they are on the outputs now."""
+    results = {}
+    for name in manifest.outputs:
+        value = getattr(dut, name).value
+        signed = manifest.ports[name]["signed"]
+        results[name] = value.to_signed() if signed else value.to_unsigned()
+    return results
 
 
 @cocotb.test()
@@ -351,6 +486,65 @@ async def formula_holds_at_random_points(dut: Any) -> None:
                     f"{output} is {result[output]}, off by {error} units at {operands}, "
                     f"result {index}; the bound is {manifest.bound}"
                 )
+    dut._log.info("worst error %.3f units, bound %.3f", worst, manifest.bound)
+
+
+@cocotb.test()
+async def points_are_exact(dut: Any) -> None:
+    """Every computation of the manifest, a point a clock: results come as many clocks later."""
+    pipeline = await Pipeline.after_reset(dut)
+    points = [operands for operands, _ in pipeline.manifest.computations]
+    before = pipeline.clocks
+    results = await pipeline.through(points)
+    for (operands, wanted), result in zip(pipeline.manifest.computations, results, strict=True):
+        assert [result] == wanted.results, f"{operands}: {result}, not {wanted.results[0]}"
+    assert pipeline.manifest.latency is not None
+    assert pipeline.clocks - before == len(points) + pipeline.manifest.latency
+    dut._log.info("%d points in %d clocks", len(points), pipeline.clocks - before)
+
+
+@cocotb.test()
+async def bubbles_and_stalls_change_nothing(dut: Any) -> None:
+    """Points that come now and then, and results that are taken now and then, are the same."""
+    pipeline = await Pipeline.after_reset(dut)
+    points = [operands for operands, _ in pipeline.manifest.computations]
+    wanted = [wanted.results[0] for _, wanted in pipeline.manifest.computations]
+    for offer, take in ((1, 3), (3, 1), (2, 2), (1, 8), (8, 1)):
+        results = await pipeline.through(points, offer, take)
+        assert results == wanted, f"a point in {offer} clocks, a result in {take}"
+
+
+@cocotb.test()
+async def reset_drops_every_point(dut: Any) -> None:
+    """A reset leaves no point on its way, wherever they are, and the next one is right."""
+    pipeline = await Pipeline.after_reset(dut)
+    assert pipeline.manifest.latency is not None
+    operands, wanted = pipeline.manifest.computations[-1]
+    for count in range(1, pipeline.manifest.latency + 2):
+        for _ in range(count):
+            await pipeline.clock(pipeline.manifest.draw(pipeline.random))
+        await pipeline.clock(rst_n=0)
+        for _ in range(pipeline.manifest.latency + 1):
+            await pipeline.clock()
+        assert [await pipeline.compute(**operands)] == wanted.results, f"after {count} points"
+
+
+@cocotb.test()
+async def random_points_follow_the_formula(dut: Any) -> None:
+    """The results at random points are within the manifest's bound of its formula in floats."""
+    pipeline = await Pipeline.after_reset(dut, seed=2)
+    manifest = pipeline.manifest
+    points = [manifest.draw(pipeline.random) for _ in range(1000)]
+    worst = 0.0
+    for operands, result in zip(points, await pipeline.through(points, 2, 2), strict=True):
+        right = manifest.f(operands, 0)
+        for output, operand in manifest.outputs.items():
+            error = min(abs(result[output] - operands[operand] * f) for f in right)
+            worst = max(worst, error)
+            assert error <= manifest.bound, (
+                f"{output} is {result[output]}, off by {error} units at {operands}; "
+                f"the bound is {manifest.bound}"
+            )
     dut._log.info("worst error %.3f units, bound %.3f", worst, manifest.bound)
 
 

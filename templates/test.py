@@ -16,26 +16,27 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 import cocotb
 import glint_cocotb
 from glint_cocotb import (  # noqa: F401 - cocotb runs what is imported here
-    computations_are_exact,
-<%- if has_formula %>
-    formula_holds_at_random_points,
-<%- endif %>
-    held_start_repeats,
-    reset_ends_a_computation,
-    writes_and_starts_while_busy_are_ignored,
+<%- for test in tests %>
+    ${ test }$,
+<%- endfor %>
 )
 
 
 @cocotb.test()
 async def worked_example(dut: Any) -> None:
     """The example of the manifest, by hand."""
+<%- if pipeline %>
+    pipeline = await glint_cocotb.Pipeline.after_reset(dut)
+    shown = await pipeline.compute(
+<%- else %>
     core = await glint_cocotb.Core.after_reset(dut)
     shown = await core.compute(
+<%- endif %>
 <%- for line in operands %>
         ${ line }$
 <%- endfor %>
     )
-    assert shown.results[0] == {
+    assert ${ shown }$ == {
 <%- for line in outputs %>
         ${ line }$
 <%- endfor %>

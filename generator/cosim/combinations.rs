@@ -30,7 +30,8 @@ pub(super) struct Ports {
 struct Port {
     name: String,
     data: usize,
-    strobe: usize,
+    /// None where a point is offered as a whole.
+    strobe: Option<usize>,
     width: u32,
     /// Its bit pattern, where it is the same in all combinations.
     held: Option<u64>,
@@ -53,10 +54,13 @@ impl Ports {
             match port.role {
                 Role::Reset => ports.reset = data,
                 Role::Start => ports.start = data,
-                Role::Operand { strobe } => ports.operands.push(Port {
+                Role::Operand { .. } | Role::Point => ports.operands.push(Port {
                     name: design.net(port.net).name.clone(),
                     data,
-                    strobe: position(strobe),
+                    strobe: match port.role {
+                        Role::Operand { strobe } => Some(position(strobe)),
+                        _ => None,
+                    },
                     width: design.net(port.net).format.width(),
                     held: None,
                 }),
@@ -108,6 +112,11 @@ impl Ports {
             bits = bits.checked_shr(port.width).unwrap_or(0);
             (port, pattern)
         })
+    }
+
+    /// The bit patterns of the operands at a place, in the order of the ports.
+    pub(super) fn patterns(&self, place: u64) -> Vec<u64> {
+        self.at(place).map(|(_, pattern)| pattern).collect()
     }
 
     /// The bit patterns of the operands at a place, by name.
@@ -172,7 +181,7 @@ impl Combinations {
             let place = self.first + self.started;
             for (port, pattern) in self.ports.at(place) {
                 self.inputs[port.data] = pattern;
-                self.inputs[port.strobe] = 1;
+                port.strobe.into_iter().for_each(|strobe| self.inputs[strobe] = 1);
             }
             self.started += 1;
             self.since_start = 0;
@@ -181,7 +190,7 @@ impl Combinations {
             if self.since_start == 1 {
                 for port in &self.ports.operands {
                     self.inputs[port.data] ^= mask(port.width);
-                    self.inputs[port.strobe] = 0;
+                    port.strobe.into_iter().for_each(|strobe| self.inputs[strobe] = 0);
                 }
             }
         }

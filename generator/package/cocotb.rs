@@ -13,8 +13,29 @@ struct Bench<'a> {
     name: &'a str,
     operands: Vec<String>,
     outputs: Vec<String>,
-    has_formula: bool,
+    /// What is imported of the driver, sorted.
+    tests: Vec<&'static str>,
+    pipeline: bool,
+    /// The results of the example.
+    shown: &'static str,
 }
+
+/// The tests of the driver for a core with a microprogram; the first needs a formula.
+const SEQUENTIAL: [&str; 5] = [
+    "formula_holds_at_random_points",
+    "computations_are_exact",
+    "held_start_repeats",
+    "reset_ends_a_computation",
+    "writes_and_starts_while_busy_are_ignored",
+];
+
+/// The same for a pipeline.
+const PIPELINE: [&str; 4] = [
+    "random_points_follow_the_formula",
+    "points_are_exact",
+    "bubbles_and_stalls_change_nothing",
+    "reset_drops_every_point",
+];
 
 /// The bench of a design, as name and text.
 ///
@@ -25,11 +46,17 @@ pub fn bench(
     example: &WorkedExample,
     accuracy: &Accuracy,
 ) -> Result<(String, String)> {
+    let pipeline = design.pipeline.is_some();
+    let all = if pipeline { &PIPELINE[..] } else { &SEQUENTIAL[..] };
+    let mut tests = all[usize::from(accuracy.f.is_empty())..].to_vec();
+    tests.sort_unstable();
     let bench = Bench {
         name: &design.name,
         operands: lines(&example.operands, |name, raw| format!("{name}={raw},")),
         outputs: lines(&example.outputs, |name, raw| format!("\"{name}\": {raw},")),
-        has_formula: !accuracy.f.is_empty(),
+        tests,
+        pipeline,
+        shown: if pipeline { "shown" } else { "shown.results[0]" },
     };
     Ok((format!("test_{}.py", design.name), super::render(&bench)?))
 }

@@ -86,23 +86,23 @@ struct Word {
 /// Commands of Yosys that make the problem, alone or for SymbiYosys.
 #[derive(Template)]
 #[template(path = "formal.ys")]
-struct Script<'a> {
-    name: &'a str,
-    instance: &'a str,
-    datapath: &'a str,
-    rtl: &'a [String],
+pub(super) struct Script<'a> {
+    pub(super) name: &'a str,
+    /// The cells whose memories are cut out, as Yosys selects them.
+    pub(super) within: &'a str,
+    pub(super) rtl: &'a [String],
 }
 
 #[derive(Template)]
 #[template(path = "formal.sby")]
-struct Task<'a> {
-    name: &'a str,
-    instance: &'a str,
-    datapath: &'a str,
-    depth: u32,
-    engine: &'static str,
-    rtl: &'a [String],
-    memories: &'a [String],
+pub(super) struct Task<'a> {
+    pub(super) name: &'a str,
+    /// As in [`Script`].
+    pub(super) within: &'a str,
+    pub(super) depth: u32,
+    pub(super) engine: &'static str,
+    pub(super) rtl: &'a [String],
+    pub(super) memories: &'a [String],
 }
 
 /// The files of the device that a proof reads.
@@ -200,12 +200,11 @@ pub fn files(
             name: age.name.clone(),
         }),
     };
-    let datapath = naming.instance(Unit::Datapath);
-    let script = Script { name: &name, instance: &instance, datapath, rtl: sources.rtl };
+    let within = format!("{instance}.{}.*", naming.instance(Unit::Datapath));
+    let script = Script { name: &name, within: &within, rtl: sources.rtl };
     let task = Task {
         name: &name,
-        instance: &instance,
-        datapath,
+        within: &within,
         depth,
         engine: if unroll { "smtbmc --unroll z3" } else { "smtbmc z3" },
         rtl: sources.rtl,

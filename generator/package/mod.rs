@@ -9,6 +9,7 @@ mod bench;
 mod cocotb;
 pub(crate) mod facts;
 pub(crate) mod formal;
+mod formal_pipeline;
 mod fusesoc;
 mod instance;
 mod manifest;
@@ -122,16 +123,16 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         testbench = bench::files(design, &naming, vectors)?;
         let names = names_of(&testbench);
         testbench.push((format!("{name}_tb.core"), fusesoc::bench(name, &names[0], &names[1..])?));
-        // The properties and the bench in Python are of the handshake of a microprogram.
-        let sequential = design.pipeline.is_none();
         let sources = formal::Sources { rtl: &names_of(&rtl), memories: &names_of(&memories) };
-        if sequential {
-            testbench.splice(0..0, formal::files(design, &naming, inputs, sources)?);
-        }
+        testbench.splice(
+            0..0,
+            match &design.pipeline {
+                None => formal::files(design, &naming, inputs, sources)?,
+                Some(pipeline) => formal_pipeline::files(design, pipeline, sources)?,
+            },
+        );
         testbench.splice(0..0, formal);
-        if let (true, Some(example), Some(accuracy)) =
-            (sequential, &inputs.example, &inputs.accuracy)
-        {
+        if let (Some(example), Some(accuracy)) = (&inputs.example, &inputs.accuracy) {
             testbench.insert(0, cocotb::bench(design, example, accuracy)?);
         }
     }

@@ -457,20 +457,25 @@ module blinn_pipelined #(
     end
 
     // Stage 9: halvings <- n * decay
-    reg  [7:0]  red_s10;                   // intensity of the light times k_s
-    reg  [7:0]  green_s10;                 // intensity of the light times k_s
-    reg  [7:0]  blue_s10;                  // intensity of the light times k_s
-    reg         facing_s10;                // the surface faces the half vector
-    reg         decay_small_s10;           // the decay is below 1/4, and all its bits count
-    reg  [33:0] product_2_s10;             // its point depends on the operands
-    reg         halvings_coarse_over_s10;
-    reg         halvings_fine_over_s10;
-    reg         aligned_s10;               // cos gamma is 1.0
+    reg  [7:0]  red_s10;              // intensity of the light times k_s
+    reg  [7:0]  green_s10;            // intensity of the light times k_s
+    reg  [7:0]  blue_s10;             // intensity of the light times k_s
+    reg         facing_s10;           // the surface faces the half vector
+    reg         decay_small_s10;      // the decay is below 1/4, and all its bits count
+    reg  [20:0] halvings_coarse_s10;  // u5.16
+    reg  [20:0] halvings_fine_s10;    // u5.16
+    reg         aligned_s10;          // cos gamma is 1.0
 
     wire [27:0] product_sum_2_s9 = product_upper_2_s9 + {18'd0, product_carried_2_s9};
 
     // its point depends on the operands
     wire [33:0] product_2_s9 = {product_sum_2_s9, product_low_bits_2_s9};
+
+    // u5.16
+    wire [20:0] halvings_coarse_s9 = (|product_2_s9[33:24]) ? 21'h1fffff : product_2_s9[23:3];
+
+    // u5.16
+    wire [20:0] halvings_fine_s9 = (|product_2_s9[33:31]) ? 21'h1fffff : product_2_s9[30:10];
 
     always @(posedge clk) begin
         if (advance) begin
@@ -479,35 +484,31 @@ module blinn_pipelined #(
             blue_s10 <= blue_s9;
             facing_s10 <= facing_s9;
             decay_small_s10 <= decay_small_s9;
-            product_2_s10 <= product_2_s9;
-            halvings_coarse_over_s10 <= |product_2_s9[33:24];
-            halvings_fine_over_s10 <= |product_2_s9[33:31];
+            halvings_coarse_s10 <= halvings_coarse_s9;
+            halvings_fine_s10 <= halvings_fine_s9;
             aligned_s10 <= aligned_s9;
         end
     end
 
     // Stage 10: halvings <- n * decay; tables of 2^-x addressed by the fraction; reflectance <-
     // 2^-halvings
-    reg         [7:0]  red_s11;                     // intensity of the light times k_s
-    reg         [7:0]  green_s11;                   // intensity of the light times k_s
-    reg         [7:0]  blue_s11;                    // intensity of the light times k_s
-    reg                facing_s11;                  // the surface faces the half vector
-    reg         [20:0] halvings_s11;                // u5.16: n*decay: how often f is half of 1.0
-    reg         [14:0] exp2_bend_value_word_s11;    // u-4.19
-    reg                peak_s11;                    // f is 1.0, less an ulp
-    // s-10.19: what the field adds, less half an ulp
-    reg  signed [9:0]  exp2_bend_offset1_term_s11;
-
-    // u5.16
-    wire [20:0] halvings_coarse_s10 = halvings_coarse_over_s10 ? 21'h1fffff : product_2_s10[23:3];
-
-    // u5.16
-    wire [20:0] halvings_fine_s10 = halvings_fine_over_s10 ? 21'h1fffff : product_2_s10[30:10];
+    reg         [7:0]  red_s11;                      // intensity of the light times k_s
+    reg         [7:0]  green_s11;                    // intensity of the light times k_s
+    reg         [7:0]  blue_s11;                     // intensity of the light times k_s
+    reg                facing_s11;                   // the surface faces the half vector
+    reg         [20:0] halvings_s11;                 // u5.16: n*decay: how often f is half of 1.0
+    reg                exp2_bend_offset1_upper_s11;
+    reg                exp2_bend_offset2_upper_s11;
+    reg         [14:0] exp2_bend_value_word_s11;     // u-4.19
+    reg  signed [9:0]  exp2_bend_offset1_word_s11;   // s-10.19
+    reg  signed [7:0]  exp2_bend_offset2_word_s11;   // s-12.19
+    reg                peak_s11;                     // f is 1.0, less an ulp
 
     // u5.16: n*decay: how often f is half of 1.0
     wire [20:0] halvings_s10 = decay_small_s10 ? halvings_fine_s10 : halvings_coarse_s10;
 
     wire exp2_bend_offset1_upper_s10 = halvings_s10[8];
+    wire exp2_bend_offset2_upper_s10 = halvings_s10[6];
 
     // ROM exp2_bend_value: 1 - x/2 - 2^-x at the middle of each of 128 intervals of x, in units of
     // 2^-19
@@ -531,14 +532,25 @@ module blinn_pipelined #(
     wire signed [9:0] exp2_bend_offset1_word_s10 =
             exp2_bend_offset1_rom[exp2_bend_offset1_address_s10];
 
+    wire [1:0] exp2_bend_offset2_mirrored_s10 = ~halvings_s10[5:4];
+
+    // distance from the middle of the field
+    wire [1:0] exp2_bend_offset2_distance_s10 = exp2_bend_offset2_upper_s10 ? halvings_s10[5:4] :
+            exp2_bend_offset2_mirrored_s10;
+
+    wire [6:0] exp2_bend_offset2_address_s10 = {halvings_s10[15:11],
+            exp2_bend_offset2_distance_s10};
+
+    // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-5 of x, times the distance from the
+    // middle of bits 6 to 4 of x, in units of 2^-19, less a half
+    reg [7:0] exp2_bend_offset2_rom [0:127];
+    initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
+    wire signed [7:0] exp2_bend_offset2_word_s10 =
+            exp2_bend_offset2_rom[exp2_bend_offset2_address_s10];
+
     wire fades_s10 = |halvings_s10;
     wire level_s10 = ~fades_s10;
     wire peak_s10 = aligned_s10 | level_s10;  // f is 1.0, less an ulp
-    wire signed [9:0] exp2_bend_offset1_opposite_s10 = ~exp2_bend_offset1_word_s10;  // s-10.19
-
-    // s-10.19: what the field adds, less half an ulp
-    wire signed [9:0] exp2_bend_offset1_term_s10 = exp2_bend_offset1_upper_s10 ?
-            exp2_bend_offset1_word_s10 : exp2_bend_offset1_opposite_s10;
 
     always @(posedge clk) begin
         if (advance) begin
@@ -547,9 +559,12 @@ module blinn_pipelined #(
             blue_s11 <= blue_s10;
             facing_s11 <= facing_s10;
             halvings_s11 <= halvings_s10;
+            exp2_bend_offset1_upper_s11 <= exp2_bend_offset1_upper_s10;
+            exp2_bend_offset2_upper_s11 <= exp2_bend_offset2_upper_s10;
             exp2_bend_value_word_s11 <= exp2_bend_value_word_s10;
+            exp2_bend_offset1_word_s11 <= exp2_bend_offset1_word_s10;
+            exp2_bend_offset2_word_s11 <= exp2_bend_offset2_word_s10;
             peak_s11 <= peak_s10;
-            exp2_bend_offset1_term_s11 <= exp2_bend_offset1_term_s10;
         end
     end
 
@@ -570,24 +585,7 @@ module blinn_pipelined #(
     reg  signed [4:0]  exp2_bend_offset3_term_s12;
 
     wire [15:0] exp2_x_s11 = halvings_s11[15:0];  // u0.16
-    wire exp2_bend_offset2_upper_s11 = halvings_s11[6];
     wire exp2_bend_offset3_upper_s11 = halvings_s11[3];
-    wire [1:0] exp2_bend_offset2_mirrored_s11 = ~halvings_s11[5:4];
-
-    // distance from the middle of the field
-    wire [1:0] exp2_bend_offset2_distance_s11 = exp2_bend_offset2_upper_s11 ? halvings_s11[5:4] :
-            exp2_bend_offset2_mirrored_s11;
-
-    wire [6:0] exp2_bend_offset2_address_s11 = {halvings_s11[15:11],
-            exp2_bend_offset2_distance_s11};
-
-    // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-5 of x, times the distance from the
-    // middle of bits 6 to 4 of x, in units of 2^-19, less a half
-    reg [7:0] exp2_bend_offset2_rom [0:127];
-    initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
-    wire signed [7:0] exp2_bend_offset2_word_s11 =
-            exp2_bend_offset2_rom[exp2_bend_offset2_address_s11];
-
     wire [2:0] exp2_bend_offset3_mirrored_s11 = ~halvings_s11[2:0];
 
     // distance from the middle of the field
@@ -603,6 +601,12 @@ module blinn_pipelined #(
     initial $readmemh(EXP2_BEND_OFFSET3_FILE, exp2_bend_offset3_rom);
     wire signed [4:0] exp2_bend_offset3_word_s11 =
             exp2_bend_offset3_rom[exp2_bend_offset3_address_s11];
+
+    wire signed [9:0] exp2_bend_offset1_opposite_s11 = ~exp2_bend_offset1_word_s11;  // s-10.19
+
+    // s-10.19: what the field adds, less half an ulp
+    wire signed [9:0] exp2_bend_offset1_term_s11 = exp2_bend_offset1_upper_s11 ?
+            exp2_bend_offset1_word_s11 : exp2_bend_offset1_opposite_s11;
 
     // s-4.19
     wire signed [15:0] exp2_bend_offset1_sum_s11 = {1'b0, exp2_bend_value_word_s11} +
@@ -806,9 +810,9 @@ module blinn_pipelined #(
     assign blue_out = blue_intensity_s17;  // intensity on the output
 
     // Bits that nothing needs, among them those that narrowing drops.
-    wire unused = &{1'b0, octave_by1_s2[19], product_s6[10:0], product_2_s10[2:0],
-            product_2_s10[33:31], exp2_mantissa_s12[1:0], red_product_s15[14:0],
-            green_product_s15[14:0], blue_product_s15[14:0]};
+    wire unused = &{1'b0, octave_by1_s2[19], product_s6[10:0], product_2_s9[2:0],
+            exp2_mantissa_s12[1:0], red_product_s15[14:0], green_product_s15[14:0],
+            blue_product_s15[14:0]};
 endmodule
 
 `default_nettype wire

@@ -4,7 +4,7 @@
 //
 // Source: Seed 002, the paper's W(n, gamma) with zeta = n/m
 //
-// Pipeline: a point every clock, its results 9 clocks later; stages for 130 MHz on ecp5. While
+// Pipeline: a point every clock, its results 10 clocks later; stages for 130 MHz on ecp5. While
 // out_valid is high and out_ready low, nothing moves, and in_ready is low.
 //
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit
@@ -60,18 +60,19 @@ module cosine_power_pipelined (
     localparam [20:0] COS_GAMMA_MOST = 21'h100000;  // 1.0 in u1.20
 
     // The handshake: which stage has a point, and when all of them move on
-    reg  valid_s1;  // stage 1 has a point
-    reg  valid_s2;  // stage 2 has a point
-    reg  valid_s3;  // stage 3 has a point
-    reg  valid_s4;  // stage 4 has a point
-    reg  valid_s5;  // stage 5 has a point
-    reg  valid_s6;  // stage 6 has a point
-    reg  valid_s7;  // stage 7 has a point
-    reg  valid_s8;  // stage 8 has a point
-    reg  valid_s9;  // stage 9 has a point
+    reg  valid_s1;   // stage 1 has a point
+    reg  valid_s2;   // stage 2 has a point
+    reg  valid_s3;   // stage 3 has a point
+    reg  valid_s4;   // stage 4 has a point
+    reg  valid_s5;   // stage 5 has a point
+    reg  valid_s6;   // stage 6 has a point
+    reg  valid_s7;   // stage 7 has a point
+    reg  valid_s8;   // stage 8 has a point
+    reg  valid_s9;   // stage 9 has a point
+    reg  valid_s10;  // stage 10 has a point
 
-    assign out_valid = valid_s9;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s9;  // every point moves on by a stage
+    assign out_valid = valid_s10;  // the results are on the outputs
+    wire advance = out_ready | ~valid_s10;  // every point moves on by a stage
     assign in_ready = advance;  // a point that is offered is taken in this clock
 
     always @(posedge clk) begin
@@ -85,6 +86,7 @@ module cosine_power_pipelined (
             valid_s7 <= 1'b0;
             valid_s8 <= 1'b0;
             valid_s9 <= 1'b0;
+            valid_s10 <= 1'b0;
         end else if (advance) begin
             valid_s1 <= in_valid;
             valid_s2 <= valid_s1;
@@ -95,6 +97,7 @@ module cosine_power_pipelined (
             valid_s7 <= valid_s6;
             valid_s8 <= valid_s7;
             valid_s9 <= valid_s8;
+            valid_s10 <= valid_s9;
         end
     end
 
@@ -159,11 +162,12 @@ module cosine_power_pipelined (
         end
     end
 
-    // Stage 2: accumulator <- n/m * (1 - cos gamma); accumulator <- base^2
-    reg  [7:0]  red_s3;    // intensity of the light times k_s
-    reg  [7:0]  green_s3;  // intensity of the light times k_s
-    reg  [7:0]  blue_s3;   // intensity of the light times k_s
-    reg  [15:0] base_s3;   // u0.16: base of the power
+    // Stage 2: accumulator <- n/m * (1 - cos gamma)
+    reg  [7:0]  red_s3;          // intensity of the light times k_s
+    reg  [7:0]  green_s3;        // intensity of the light times k_s
+    reg  [7:0]  blue_s3;         // intensity of the light times k_s
+    reg         facing_s3;       // the surface faces the half vector
+    reg  [15:0] accumulator_s3;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
 
     wire [27:0] product_sum_s2 = product_upper_s2 + {18'd0, product_carried_s2};
 
@@ -173,57 +177,52 @@ module cosine_power_pipelined (
     // u0.16: n/m*(1 - cos gamma), then the powers of W's base
     wire [15:0] accumulator_s2 = (|product_s2[29:24]) ? 16'hffff : product_s2[23:8];
 
-    wire [15:0] inverse_s2 = ~accumulator_s2;  // u0.16: 1.0 - accumulator, less an ulp
-    wire [15:0] base_s2 = facing_s2 ? inverse_s2 : 16'd0;  // u0.16: base of the power
-
     always @(posedge clk) begin
         if (advance) begin
             red_s3 <= red_s2;
             green_s3 <= green_s2;
             blue_s3 <= blue_s2;
-            base_s3 <= base_s2;
+            facing_s3 <= facing_s2;
+            accumulator_s3 <= accumulator_s2;
         end
     end
 
     // Stage 3: accumulator <- base^2
-    reg  [7:0]  red_s4;            // intensity of the light times k_s
-    reg  [7:0]  green_s4;          // intensity of the light times k_s
-    reg  [7:0]  blue_s4;           // intensity of the light times k_s
-    reg  [15:0] accumulator_2_s4;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+    reg  [7:0]  red_s4;    // intensity of the light times k_s
+    reg  [7:0]  green_s4;  // intensity of the light times k_s
+    reg  [7:0]  blue_s4;   // intensity of the light times k_s
+    reg  [15:0] base_s4;   // u0.16: base of the power
 
-    // the shared product; its point depends on the operands
-    wire [31:0] product_2_s3 = base_s3 * base_s3;
-
-    // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_2_s3 = product_2_s3[31:16];
+    wire [15:0] inverse_s3 = ~accumulator_s3;  // u0.16: 1.0 - accumulator, less an ulp
+    wire [15:0] base_s3 = facing_s3 ? inverse_s3 : 16'd0;  // u0.16: base of the power
 
     always @(posedge clk) begin
         if (advance) begin
             red_s4 <= red_s3;
             green_s4 <= green_s3;
             blue_s4 <= blue_s3;
-            accumulator_2_s4 <= accumulator_2_s3;
+            base_s4 <= base_s3;
         end
     end
 
-    // Stage 4: accumulator <- accumulator^2
+    // Stage 4: accumulator <- base^2
     reg  [7:0]  red_s5;            // intensity of the light times k_s
     reg  [7:0]  green_s5;          // intensity of the light times k_s
     reg  [7:0]  blue_s5;           // intensity of the light times k_s
-    reg  [15:0] accumulator_3_s5;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+    reg  [15:0] accumulator_2_s5;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
 
     // the shared product; its point depends on the operands
-    wire [31:0] product_3_s4 = accumulator_2_s4 * accumulator_2_s4;
+    wire [31:0] product_2_s4 = base_s4 * base_s4;
 
     // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_3_s4 = product_3_s4[31:16];
+    wire [15:0] accumulator_2_s4 = product_2_s4[31:16];
 
     always @(posedge clk) begin
         if (advance) begin
             red_s5 <= red_s4;
             green_s5 <= green_s4;
             blue_s5 <= blue_s4;
-            accumulator_3_s5 <= accumulator_3_s4;
+            accumulator_2_s5 <= accumulator_2_s4;
         end
     end
 
@@ -231,20 +230,20 @@ module cosine_power_pipelined (
     reg  [7:0]  red_s6;            // intensity of the light times k_s
     reg  [7:0]  green_s6;          // intensity of the light times k_s
     reg  [7:0]  blue_s6;           // intensity of the light times k_s
-    reg  [15:0] accumulator_4_s6;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+    reg  [15:0] accumulator_3_s6;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
 
     // the shared product; its point depends on the operands
-    wire [31:0] product_4_s5 = accumulator_3_s5 * accumulator_3_s5;
+    wire [31:0] product_3_s5 = accumulator_2_s5 * accumulator_2_s5;
 
     // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_4_s5 = product_4_s5[31:16];
+    wire [15:0] accumulator_3_s5 = product_3_s5[31:16];
 
     always @(posedge clk) begin
         if (advance) begin
             red_s6 <= red_s5;
             green_s6 <= green_s5;
             blue_s6 <= blue_s5;
-            accumulator_4_s6 <= accumulator_4_s5;
+            accumulator_3_s6 <= accumulator_3_s5;
         end
     end
 
@@ -252,78 +251,99 @@ module cosine_power_pipelined (
     reg  [7:0]  red_s7;            // intensity of the light times k_s
     reg  [7:0]  green_s7;          // intensity of the light times k_s
     reg  [7:0]  blue_s7;           // intensity of the light times k_s
-    reg  [15:0] accumulator_5_s7;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+    reg  [15:0] accumulator_4_s7;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
 
     // the shared product; its point depends on the operands
-    wire [31:0] product_5_s6 = accumulator_4_s6 * accumulator_4_s6;
+    wire [31:0] product_4_s6 = accumulator_3_s6 * accumulator_3_s6;
 
     // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_5_s6 = product_5_s6[31:16];
+    wire [15:0] accumulator_4_s6 = product_4_s6[31:16];
 
     always @(posedge clk) begin
         if (advance) begin
             red_s7 <= red_s6;
             green_s7 <= green_s6;
             blue_s7 <= blue_s6;
-            accumulator_5_s7 <= accumulator_5_s6;
+            accumulator_4_s7 <= accumulator_4_s6;
         end
     end
 
-    // Stage 7: result
-    reg  [7:0] red_product_kept_s8;
-    reg        red_product_bits_s8;
-    reg  [7:0] green_product_kept_s8;
-    reg        green_product_bits_s8;
-    reg  [7:0] blue_product_kept_s8;
-    reg        blue_product_bits_s8;
+    // Stage 7: accumulator <- accumulator^2
+    reg  [7:0]  red_s8;            // intensity of the light times k_s
+    reg  [7:0]  green_s8;          // intensity of the light times k_s
+    reg  [7:0]  blue_s8;           // intensity of the light times k_s
+    reg  [15:0] accumulator_5_s8;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
 
-    // u8.16: an output before it is rounded
-    wire [23:0] red_product_s7 = accumulator_5_s7 * red_s7;
+    // the shared product; its point depends on the operands
+    wire [31:0] product_5_s7 = accumulator_4_s7 * accumulator_4_s7;
 
-    // u8.16: an output before it is rounded
-    wire [23:0] green_product_s7 = accumulator_5_s7 * green_s7;
-
-    // u8.16: an output before it is rounded
-    wire [23:0] blue_product_s7 = accumulator_5_s7 * blue_s7;
+    // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+    wire [15:0] accumulator_5_s7 = product_5_s7[31:16];
 
     always @(posedge clk) begin
         if (advance) begin
-            red_product_kept_s8 <= red_product_s7[23:16];
-            red_product_bits_s8 <= red_product_s7[15];
-            green_product_kept_s8 <= green_product_s7[23:16];
-            green_product_bits_s8 <= green_product_s7[15];
-            blue_product_kept_s8 <= blue_product_s7[23:16];
-            blue_product_bits_s8 <= blue_product_s7[15];
+            red_s8 <= red_s7;
+            green_s8 <= green_s7;
+            blue_s8 <= blue_s7;
+            accumulator_5_s8 <= accumulator_5_s7;
         end
     end
 
     // Stage 8: result
-    reg  [7:0] red_intensity_s9;
-    reg  [7:0] green_intensity_s9;
-    reg  [7:0] blue_intensity_s9;
+    reg  [7:0] red_product_kept_s9;
+    reg        red_product_bits_s9;
+    reg  [7:0] green_product_kept_s9;
+    reg        green_product_bits_s9;
+    reg  [7:0] blue_product_kept_s9;
+    reg        blue_product_bits_s9;
 
-    wire [7:0] red_intensity_s8 = red_product_kept_s8 + {7'd0, red_product_bits_s8};
-    wire [7:0] green_intensity_s8 = green_product_kept_s8 + {7'd0, green_product_bits_s8};
-    wire [7:0] blue_intensity_s8 = blue_product_kept_s8 + {7'd0, blue_product_bits_s8};
+    // u8.16: an output before it is rounded
+    wire [23:0] red_product_s8 = accumulator_5_s8 * red_s8;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] green_product_s8 = accumulator_5_s8 * green_s8;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] blue_product_s8 = accumulator_5_s8 * blue_s8;
 
     always @(posedge clk) begin
         if (advance) begin
-            red_intensity_s9 <= red_intensity_s8;
-            green_intensity_s9 <= green_intensity_s8;
-            blue_intensity_s9 <= blue_intensity_s8;
+            red_product_kept_s9 <= red_product_s8[23:16];
+            red_product_bits_s9 <= red_product_s8[15];
+            green_product_kept_s9 <= green_product_s8[23:16];
+            green_product_bits_s9 <= green_product_s8[15];
+            blue_product_kept_s9 <= blue_product_s8[23:16];
+            blue_product_bits_s9 <= blue_product_s8[15];
+        end
+    end
+
+    // Stage 9: result
+    reg  [7:0] red_intensity_s10;
+    reg  [7:0] green_intensity_s10;
+    reg  [7:0] blue_intensity_s10;
+
+    wire [7:0] red_intensity_s9 = red_product_kept_s9 + {7'd0, red_product_bits_s9};
+    wire [7:0] green_intensity_s9 = green_product_kept_s9 + {7'd0, green_product_bits_s9};
+    wire [7:0] blue_intensity_s9 = blue_product_kept_s9 + {7'd0, blue_product_bits_s9};
+
+    always @(posedge clk) begin
+        if (advance) begin
+            red_intensity_s10 <= red_intensity_s9;
+            green_intensity_s10 <= green_intensity_s9;
+            blue_intensity_s10 <= blue_intensity_s9;
         end
     end
 
     // Results
 
-    assign red_out = red_intensity_s9;  // intensity on the output
-    assign green_out = green_intensity_s9;  // intensity on the output
-    assign blue_out = blue_intensity_s9;  // intensity on the output
+    assign red_out = red_intensity_s10;  // intensity on the output
+    assign green_out = green_intensity_s10;  // intensity on the output
+    assign blue_out = blue_intensity_s10;  // intensity on the output
 
     // Bits that nothing needs, among them those that narrowing drops.
-    wire unused = &{1'b0, product_s2[7:0], product_s2[30], product_2_s3[15:0], product_3_s4[15:0],
-            product_4_s5[15:0], product_5_s6[15:0], red_product_s7[14:0], green_product_s7[14:0],
-            blue_product_s7[14:0]};
+    wire unused = &{1'b0, product_s2[7:0], product_s2[30], product_2_s4[15:0], product_3_s5[15:0],
+            product_4_s6[15:0], product_5_s7[15:0], red_product_s8[14:0], green_product_s8[14:0],
+            blue_product_s8[14:0]};
 endmodule
 
 `default_nettype wire

@@ -354,12 +354,14 @@ module gauss_pipelined #(
     end
 
     // Stage 7: halvings <- n * decay
-    reg  [7:0]  red_s8;       // intensity of the light times k_s
-    reg  [7:0]  green_s8;     // intensity of the light times k_s
-    reg  [7:0]  blue_s8;      // intensity of the light times k_s
-    reg         facing_s8;    // the surface faces the half vector
-    reg  [20:0] halvings_s8;  // u5.16: n*decay: how often f is half of 1.0
-    reg         aligned_s8;   // cos gamma is 1.0
+    reg  [7:0]  red_s8;              // intensity of the light times k_s
+    reg  [7:0]  green_s8;            // intensity of the light times k_s
+    reg  [7:0]  blue_s8;             // intensity of the light times k_s
+    reg         facing_s8;           // the surface faces the half vector
+    reg         decay_small_s8;      // the decay is below 1/4, and all its bits count
+    reg  [20:0] halvings_coarse_s8;  // u5.16
+    reg  [20:0] halvings_fine_s8;    // u5.16
+    reg         aligned_s8;          // cos gamma is 1.0
 
     wire [27:0] product_sum_2_s7 = product_upper_2_s7 + {18'd0, product_lower_s7[15:6]};
 
@@ -372,30 +374,38 @@ module gauss_pipelined #(
     // u5.16
     wire [20:0] halvings_fine_s7 = (|product_2_s7[33:30]) ? 21'h1fffff : product_2_s7[29:9];
 
-    // u5.16: n*decay: how often f is half of 1.0
-    wire [20:0] halvings_s7 = decay_small_s7 ? halvings_fine_s7 : halvings_coarse_s7;
-
     always @(posedge clk) begin
         if (advance) begin
             red_s8 <= red_s7;
             green_s8 <= green_s7;
             blue_s8 <= blue_s7;
             facing_s8 <= facing_s7;
-            halvings_s8 <= halvings_s7;
+            decay_small_s8 <= decay_small_s7;
+            halvings_coarse_s8 <= halvings_coarse_s7;
+            halvings_fine_s8 <= halvings_fine_s7;
             aligned_s8 <= aligned_s7;
         end
     end
 
-    // Stage 8: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
-    reg         [7:0]  red_s9;                    // intensity of the light times k_s
-    reg         [7:0]  green_s9;                  // intensity of the light times k_s
-    reg         [7:0]  blue_s9;                   // intensity of the light times k_s
-    reg                facing_s9;                 // the surface faces the half vector
-    reg         [20:0] halvings_s9;               // u5.16: n*decay: how often f is half of 1.0
-    reg                peak_s9;                   // f is 1.0, less an ulp
-    reg  signed [15:0] exp2_bend_offset1_sum_s9;  // s-4.19
+    // Stage 8: halvings <- n * decay; tables of 2^-x addressed by the fraction; reflectance <-
+    // 2^-halvings
+    reg         [7:0]  red_s9;                      // intensity of the light times k_s
+    reg         [7:0]  green_s9;                    // intensity of the light times k_s
+    reg         [7:0]  blue_s9;                     // intensity of the light times k_s
+    reg                facing_s9;                   // the surface faces the half vector
+    reg         [20:0] halvings_s9;                 // u5.16: n*decay: how often f is half of 1.0
+    reg                exp2_bend_offset1_upper_s9;
+    reg                exp2_bend_offset2_upper_s9;
+    reg         [14:0] exp2_bend_value_word_s9;     // u-4.19
+    reg  signed [9:0]  exp2_bend_offset1_word_s9;   // s-10.19
+    reg  signed [7:0]  exp2_bend_offset2_word_s9;   // s-12.19
+    reg                peak_s9;                     // f is 1.0, less an ulp
+
+    // u5.16: n*decay: how often f is half of 1.0
+    wire [20:0] halvings_s8 = decay_small_s8 ? halvings_fine_s8 : halvings_coarse_s8;
 
     wire exp2_bend_offset1_upper_s8 = halvings_s8[8];
+    wire exp2_bend_offset2_upper_s8 = halvings_s8[6];
 
     // ROM exp2_bend_value: 1 - x/2 - 2^-x at the middle of each of 128 intervals of x, in units of
     // 2^-19
@@ -418,18 +428,24 @@ module gauss_pipelined #(
     wire signed [9:0] exp2_bend_offset1_word_s8 =
             exp2_bend_offset1_rom[exp2_bend_offset1_address_s8];
 
+    wire [1:0] exp2_bend_offset2_mirrored_s8 = ~halvings_s8[5:4];
+
+    // distance from the middle of the field
+    wire [1:0] exp2_bend_offset2_distance_s8 = exp2_bend_offset2_upper_s8 ? halvings_s8[5:4] :
+            exp2_bend_offset2_mirrored_s8;
+
+    wire [6:0] exp2_bend_offset2_address_s8 = {halvings_s8[15:11], exp2_bend_offset2_distance_s8};
+
+    // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-5 of x, times the distance from the
+    // middle of bits 6 to 4 of x, in units of 2^-19, less a half
+    reg [7:0] exp2_bend_offset2_rom [0:127];
+    initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
+    wire signed [7:0] exp2_bend_offset2_word_s8 =
+            exp2_bend_offset2_rom[exp2_bend_offset2_address_s8];
+
     wire fades_s8 = |halvings_s8;
     wire level_s8 = ~fades_s8;
     wire peak_s8 = aligned_s8 | level_s8;  // f is 1.0, less an ulp
-    wire signed [9:0] exp2_bend_offset1_opposite_s8 = ~exp2_bend_offset1_word_s8;  // s-10.19
-
-    // s-10.19: what the field adds, less half an ulp
-    wire signed [9:0] exp2_bend_offset1_term_s8 = exp2_bend_offset1_upper_s8 ?
-            exp2_bend_offset1_word_s8 : exp2_bend_offset1_opposite_s8;
-
-    // s-4.19
-    wire signed [15:0] exp2_bend_offset1_sum_s8 = {1'b0, exp2_bend_value_word_s8} +
-            {{6{exp2_bend_offset1_term_s8[9]}}, exp2_bend_offset1_term_s8};
 
     always @(posedge clk) begin
         if (advance) begin
@@ -438,8 +454,12 @@ module gauss_pipelined #(
             blue_s9 <= blue_s8;
             facing_s9 <= facing_s8;
             halvings_s9 <= halvings_s8;
+            exp2_bend_offset1_upper_s9 <= exp2_bend_offset1_upper_s8;
+            exp2_bend_offset2_upper_s9 <= exp2_bend_offset2_upper_s8;
+            exp2_bend_value_word_s9 <= exp2_bend_value_word_s8;
+            exp2_bend_offset1_word_s9 <= exp2_bend_offset1_word_s8;
+            exp2_bend_offset2_word_s9 <= exp2_bend_offset2_word_s8;
             peak_s9 <= peak_s8;
-            exp2_bend_offset1_sum_s9 <= exp2_bend_offset1_sum_s8;
         end
     end
 
@@ -460,23 +480,7 @@ module gauss_pipelined #(
     reg  signed [4:0]  exp2_bend_offset3_term_s10;
 
     wire [15:0] exp2_x_s9 = halvings_s9[15:0];  // u0.16
-    wire exp2_bend_offset2_upper_s9 = halvings_s9[6];
     wire exp2_bend_offset3_upper_s9 = halvings_s9[3];
-    wire [1:0] exp2_bend_offset2_mirrored_s9 = ~halvings_s9[5:4];
-
-    // distance from the middle of the field
-    wire [1:0] exp2_bend_offset2_distance_s9 = exp2_bend_offset2_upper_s9 ? halvings_s9[5:4] :
-            exp2_bend_offset2_mirrored_s9;
-
-    wire [6:0] exp2_bend_offset2_address_s9 = {halvings_s9[15:11], exp2_bend_offset2_distance_s9};
-
-    // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-5 of x, times the distance from the
-    // middle of bits 6 to 4 of x, in units of 2^-19, less a half
-    reg [7:0] exp2_bend_offset2_rom [0:127];
-    initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
-    wire signed [7:0] exp2_bend_offset2_word_s9 =
-            exp2_bend_offset2_rom[exp2_bend_offset2_address_s9];
-
     wire [2:0] exp2_bend_offset3_mirrored_s9 = ~halvings_s9[2:0];
 
     // distance from the middle of the field
@@ -493,6 +497,16 @@ module gauss_pipelined #(
             exp2_bend_offset3_rom[exp2_bend_offset3_address_s9];
 
     wire [15:0] exp2_inverse_s9 = ~exp2_x_s9;  // u0.16
+    wire signed [9:0] exp2_bend_offset1_opposite_s9 = ~exp2_bend_offset1_word_s9;  // s-10.19
+
+    // s-10.19: what the field adds, less half an ulp
+    wire signed [9:0] exp2_bend_offset1_term_s9 = exp2_bend_offset1_upper_s9 ?
+            exp2_bend_offset1_word_s9 : exp2_bend_offset1_opposite_s9;
+
+    // s-4.19
+    wire signed [15:0] exp2_bend_offset1_sum_s9 = {1'b0, exp2_bend_value_word_s9} +
+            {{6{exp2_bend_offset1_term_s9[9]}}, exp2_bend_offset1_term_s9};
+
     wire signed [7:0] exp2_bend_offset2_opposite_s9 = ~exp2_bend_offset2_word_s9;  // s-12.19
 
     // s-12.19: what the field adds, less half an ulp

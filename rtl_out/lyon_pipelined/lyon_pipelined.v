@@ -125,42 +125,47 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 0: values on their way
-    reg  signed [17:0] dx_s1;     // s1.16: x of N - H, normal less half vector
-    reg  signed [17:0] dy_s1;     // s1.16: y of N - H, normal less half vector
-    reg  signed [17:0] dz_s1;     // s1.16: z of N - H, normal less half vector
-    reg         [3:0]  shift_s1;  // log2 of the specular exponent n, rounded
-    reg         [7:0]  red_s1;    // intensity of the light times k_s
-    reg         [7:0]  green_s1;  // intensity of the light times k_s
-    reg         [7:0]  blue_s1;   // intensity of the light times k_s
+    // Stage 0: shift_register <- 2 * shift_register
+    reg  signed [17:0] dx_s1;           // s1.16: x of N - H, normal less half vector
+    reg  signed [17:0] dy_s1;           // s1.16: y of N - H, normal less half vector
+    reg  signed [17:0] dz_s1;           // s1.16: z of N - H, normal less half vector
+    reg         [7:0]  red_s1;          // intensity of the light times k_s
+    reg         [7:0]  green_s1;        // intensity of the light times k_s
+    reg         [7:0]  blue_s1;         // intensity of the light times k_s
+    reg                more_shifts_s1;  // not the last shift
+    reg         [3:0]  remaining_s1;    // shifts, then squarings, to come
+
+    wire more_shifts_s0 = |shift;  // not the last shift
+    wire [3:0] remaining_s0 = shift - remaining_less_one;  // shifts, then squarings, to come
 
     always @(posedge clk) begin
         if (advance) begin
             dx_s1 <= dx;
             dy_s1 <= dy;
             dz_s1 <= dz;
-            shift_s1 <= shift;
             red_s1 <= red;
             green_s1 <= green;
             blue_s1 <= blue;
+            more_shifts_s1 <= more_shifts_s0;
+            remaining_s1 <= remaining_s0;
         end
     end
 
     // Stage 1: operands dx, dy, dz; shift_register <- 2 * shift_register
-    reg  signed [17:0] dz_s2;             // s1.16: z of N - H, normal less half vector
     reg         [7:0]  red_s2;            // intensity of the light times k_s
     reg         [7:0]  green_s2;          // intensity of the light times k_s
     reg         [7:0]  blue_s2;           // intensity of the light times k_s
     reg  signed [35:0] multiplier1_s2;    // register 1, s3.32
     reg  signed [35:0] multiplier2_s2;    // register 2, s3.32
+    reg  signed [35:0] multiplier3_s2;    // register 3, s3.32
     reg                more_shifts_s2;    // not the last shift
-    reg         [3:0]  remaining_3_s2;    // shifts, then squarings, to come
     reg                more_shifts_3_s2;  // not the last shift
+    reg         [3:0]  remaining_5_s2;    // shifts, then squarings, to come
+    reg                more_shifts_5_s2;  // not the last shift
 
     wire signed [35:0] multiplier1_s1 = dx_s1 * dx_s1;  // multiplier 1, s3.32
     wire signed [35:0] multiplier2_s1 = dy_s1 * dy_s1;  // multiplier 2, s3.32
-    wire more_shifts_s1 = |shift_s1;  // not the last shift
-    wire [3:0] remaining_s1 = shift_s1 - remaining_less_one;  // shifts, then squarings, to come
+    wire signed [35:0] multiplier3_s1 = dz_s1 * dz_s1;  // multiplier 3, s3.32
     wire more_shifts_2_s1 = |remaining_s1;  // not the last shift
 
     // shifts, then squarings, to come
@@ -170,49 +175,51 @@ module lyon_pipelined (
     wire [3:0] remaining_3_s1 = more_shifts_s1 ? remaining_2_s1 : remaining_s1;
 
     wire more_shifts_3_s1 = more_shifts_s1 & more_shifts_2_s1;  // not the last shift
+    wire more_shifts_4_s1 = |remaining_3_s1;  // not the last shift
+
+    // shifts, then squarings, to come
+    wire [3:0] remaining_4_s1 = remaining_3_s1 - remaining_less_one;
+
+    // shifts, then squarings, to come
+    wire [3:0] remaining_5_s1 = more_shifts_3_s1 ? remaining_4_s1 : remaining_3_s1;
+
+    wire more_shifts_5_s1 = more_shifts_3_s1 & more_shifts_4_s1;  // not the last shift
 
     always @(posedge clk) begin
         if (advance) begin
-            dz_s2 <= dz_s1;
             red_s2 <= red_s1;
             green_s2 <= green_s1;
             blue_s2 <= blue_s1;
             multiplier1_s2 <= multiplier1_s1;
             multiplier2_s2 <= multiplier2_s1;
+            multiplier3_s2 <= multiplier3_s1;
             more_shifts_s2 <= more_shifts_s1;
-            remaining_3_s2 <= remaining_3_s1;
             more_shifts_3_s2 <= more_shifts_3_s1;
+            remaining_5_s2 <= remaining_5_s1;
+            more_shifts_5_s2 <= more_shifts_5_s1;
         end
     end
 
-    // Stage 2: operands dx, dy, dz; shift_register <- D^2 / (4*power); shift_register <- 2 *
-    // shift_register
-    reg         [7:0]  red_s3;            // intensity of the light times k_s
-    reg         [7:0]  green_s3;          // intensity of the light times k_s
-    reg         [7:0]  blue_s3;           // intensity of the light times k_s
-    reg  signed [35:0] multiplier3_s3;    // register 3, s3.32
-    reg  signed [36:0] adder1_s3;         // register 1, s4.32
-    reg                more_shifts_s3;    // not the last shift
-    reg                more_shifts_3_s3;  // not the last shift
-    reg                more_shifts_5_s3;  // not the last shift
-    reg         [3:0]  remaining_7_s3;    // shifts, then squarings, to come
-    reg                more_shifts_7_s3;  // not the last shift
-
-    wire signed [35:0] multiplier3_s2 = dz_s2 * dz_s2;  // multiplier 3, s3.32
+    // Stage 2: shift_register <- D^2 / (4*power); shift_register <- 2 * shift_register
+    reg  [7:0]  red_s3;               // intensity of the light times k_s
+    reg  [7:0]  green_s3;             // intensity of the light times k_s
+    reg  [7:0]  blue_s3;              // intensity of the light times k_s
+    reg  [23:0] distance_rounded_s3;  // u4.20
+    reg         more_shifts_s3;       // not the last shift
+    reg         more_shifts_3_s3;     // not the last shift
+    reg         more_shifts_5_s3;     // not the last shift
+    reg         more_shifts_7_s3;     // not the last shift
+    reg  [3:0]  remaining_9_s3;       // shifts, then squarings, to come
+    reg         more_shifts_9_s3;     // not the last shift
 
     // adder 1, s4.32
     wire signed [36:0] adder1_s2 = {multiplier1_s2[35], multiplier1_s2} + {multiplier2_s2[35],
             multiplier2_s2};
 
-    wire more_shifts_4_s2 = |remaining_3_s2;  // not the last shift
+    // adder 2, s4.32: D^2
+    wire signed [36:0] adder2_s2 = adder1_s2 + {multiplier3_s2[35], multiplier3_s2};
 
-    // shifts, then squarings, to come
-    wire [3:0] remaining_4_s2 = remaining_3_s2 - remaining_less_one;
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_5_s2 = more_shifts_3_s2 ? remaining_4_s2 : remaining_3_s2;
-
-    wire more_shifts_5_s2 = more_shifts_3_s2 & more_shifts_4_s2;  // not the last shift
+    wire [23:0] distance_rounded_s2 = adder2_s2[35:12];  // u4.20
     wire more_shifts_6_s2 = |remaining_5_s2;  // not the last shift
 
     // shifts, then squarings, to come
@@ -222,37 +229,40 @@ module lyon_pipelined (
     wire [3:0] remaining_7_s2 = more_shifts_5_s2 ? remaining_6_s2 : remaining_5_s2;
 
     wire more_shifts_7_s2 = more_shifts_5_s2 & more_shifts_6_s2;  // not the last shift
+    wire more_shifts_8_s2 = |remaining_7_s2;  // not the last shift
+
+    // shifts, then squarings, to come
+    wire [3:0] remaining_8_s2 = remaining_7_s2 - remaining_less_one;
+
+    // shifts, then squarings, to come
+    wire [3:0] remaining_9_s2 = more_shifts_7_s2 ? remaining_8_s2 : remaining_7_s2;
+
+    wire more_shifts_9_s2 = more_shifts_7_s2 & more_shifts_8_s2;  // not the last shift
 
     always @(posedge clk) begin
         if (advance) begin
             red_s3 <= red_s2;
             green_s3 <= green_s2;
             blue_s3 <= blue_s2;
-            multiplier3_s3 <= multiplier3_s2;
-            adder1_s3 <= adder1_s2;
+            distance_rounded_s3 <= distance_rounded_s2;
             more_shifts_s3 <= more_shifts_s2;
             more_shifts_3_s3 <= more_shifts_3_s2;
             more_shifts_5_s3 <= more_shifts_5_s2;
-            remaining_7_s3 <= remaining_7_s2;
             more_shifts_7_s3 <= more_shifts_7_s2;
+            remaining_9_s3 <= remaining_9_s2;
+            more_shifts_9_s3 <= more_shifts_9_s2;
         end
     end
 
-    // Stage 3: shift_register <- D^2 / (4*power); shift_register <- 2 * shift_register
-    reg  [7:0]  red_s4;               // intensity of the light times k_s
-    reg  [7:0]  green_s4;             // intensity of the light times k_s
-    reg  [7:0]  blue_s4;              // intensity of the light times k_s
-    reg  [26:0] shift_register_6_s4;  // u1.26: beta*D^2, once it has shifted
-    reg         more_shifts_5_s4;     // not the last shift
-    reg         more_shifts_7_s4;     // not the last shift
-    reg         more_shifts_9_s4;     // not the last shift
-    reg         more_shifts_10_s4;    // not the last shift
-    reg  [3:0]  remaining_11_s4;      // shifts, then squarings, to come
-
-    // adder 2, s4.32: D^2
-    wire signed [36:0] adder2_s3 = adder1_s3 + {multiplier3_s3[35], multiplier3_s3};
-
-    wire [23:0] distance_rounded_s3 = adder2_s3[35:12];  // u4.20
+    // Stage 3: shift_register <- 2 * shift_register
+    reg  [7:0]  red_s4;                // intensity of the light times k_s
+    reg  [7:0]  green_s4;              // intensity of the light times k_s
+    reg  [7:0]  blue_s4;               // intensity of the light times k_s
+    reg  [26:0] shift_register_10_s4;  // u1.26: beta*D^2, once it has shifted
+    reg         more_shifts_9_s4;      // not the last shift
+    reg         more_shifts_11_s4;     // not the last shift
+    reg  [3:0]  remaining_13_s4;       // shifts, then squarings, to come
+    reg         more_shifts_13_s4;     // not the last shift
 
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_s3 = {2'd0, distance_rounded_s3, 1'b0};
@@ -269,15 +279,20 @@ module lyon_pipelined (
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_6_s3 = more_shifts_3_s3 ? shift_register_5_s3 : shift_register_4_s3;
 
-    wire more_shifts_8_s3 = |remaining_7_s3;  // not the last shift
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_7_s3 = shift_register_6_s3[26] ? 27'h7ffffff :
+            {shift_register_6_s3[25:0], 1'b0};
 
-    // shifts, then squarings, to come
-    wire [3:0] remaining_8_s3 = remaining_7_s3 - remaining_less_one;
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_8_s3 = more_shifts_5_s3 ? shift_register_7_s3 : shift_register_6_s3;
 
-    // shifts, then squarings, to come
-    wire [3:0] remaining_9_s3 = more_shifts_7_s3 ? remaining_8_s3 : remaining_7_s3;
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_9_s3 = shift_register_8_s3[26] ? 27'h7ffffff :
+            {shift_register_8_s3[25:0], 1'b0};
 
-    wire more_shifts_9_s3 = more_shifts_7_s3 & more_shifts_8_s3;  // not the last shift
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_10_s3 = more_shifts_7_s3 ? shift_register_9_s3 : shift_register_8_s3;
+
     wire more_shifts_10_s3 = |remaining_9_s3;  // not the last shift
 
     // shifts, then squarings, to come
@@ -286,17 +301,27 @@ module lyon_pipelined (
     // shifts, then squarings, to come
     wire [3:0] remaining_11_s3 = more_shifts_9_s3 ? remaining_10_s3 : remaining_9_s3;
 
+    wire more_shifts_11_s3 = more_shifts_9_s3 & more_shifts_10_s3;  // not the last shift
+    wire more_shifts_12_s3 = |remaining_11_s3;  // not the last shift
+
+    // shifts, then squarings, to come
+    wire [3:0] remaining_12_s3 = remaining_11_s3 - remaining_less_one;
+
+    // shifts, then squarings, to come
+    wire [3:0] remaining_13_s3 = more_shifts_11_s3 ? remaining_12_s3 : remaining_11_s3;
+
+    wire more_shifts_13_s3 = more_shifts_11_s3 & more_shifts_12_s3;  // not the last shift
+
     always @(posedge clk) begin
         if (advance) begin
             red_s4 <= red_s3;
             green_s4 <= green_s3;
             blue_s4 <= blue_s3;
-            shift_register_6_s4 <= shift_register_6_s3;
-            more_shifts_5_s4 <= more_shifts_5_s3;
-            more_shifts_7_s4 <= more_shifts_7_s3;
+            shift_register_10_s4 <= shift_register_10_s3;
             more_shifts_9_s4 <= more_shifts_9_s3;
-            more_shifts_10_s4 <= more_shifts_10_s3;
-            remaining_11_s4 <= remaining_11_s3;
+            more_shifts_11_s4 <= more_shifts_11_s3;
+            remaining_13_s4 <= remaining_13_s3;
+            more_shifts_13_s4 <= more_shifts_13_s3;
         end
     end
 
@@ -304,25 +329,10 @@ module lyon_pipelined (
     reg  [7:0]  red_s5;                // intensity of the light times k_s
     reg  [7:0]  green_s5;              // intensity of the light times k_s
     reg  [7:0]  blue_s5;               // intensity of the light times k_s
-    reg  [26:0] shift_register_12_s5;  // u1.26: beta*D^2, once it has shifted
-    reg         more_shifts_11_s5;     // not the last shift
-    reg         more_shifts_13_s5;     // not the last shift
-    reg  [3:0]  remaining_15_s5;       // shifts, then squarings, to come
+    reg  [26:0] shift_register_16_s5;  // u1.26: beta*D^2, once it has shifted
     reg         more_shifts_15_s5;     // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_7_s4 = shift_register_6_s4[26] ? 27'h7ffffff :
-            {shift_register_6_s4[25:0], 1'b0};
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_8_s4 = more_shifts_5_s4 ? shift_register_7_s4 : shift_register_6_s4;
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_9_s4 = shift_register_8_s4[26] ? 27'h7ffffff :
-            {shift_register_8_s4[25:0], 1'b0};
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_10_s4 = more_shifts_7_s4 ? shift_register_9_s4 : shift_register_8_s4;
+    reg  [3:0]  remaining_17_s5;       // shifts, then squarings, to come
+    reg         more_shifts_17_s5;     // not the last shift
 
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_11_s4 = shift_register_10_s4[26] ? 27'h7ffffff :
@@ -332,36 +342,50 @@ module lyon_pipelined (
     wire [26:0] shift_register_12_s4 = more_shifts_9_s4 ? shift_register_11_s4 :
             shift_register_10_s4;
 
-    wire more_shifts_11_s4 = more_shifts_9_s4 & more_shifts_10_s4;  // not the last shift
-    wire more_shifts_12_s4 = |remaining_11_s4;  // not the last shift
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_13_s4 = shift_register_12_s4[26] ? 27'h7ffffff :
+            {shift_register_12_s4[25:0], 1'b0};
 
-    // shifts, then squarings, to come
-    wire [3:0] remaining_12_s4 = remaining_11_s4 - remaining_less_one;
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_14_s4 = more_shifts_11_s4 ? shift_register_13_s4 :
+            shift_register_12_s4;
 
-    // shifts, then squarings, to come
-    wire [3:0] remaining_13_s4 = more_shifts_11_s4 ? remaining_12_s4 : remaining_11_s4;
-
-    wire more_shifts_13_s4 = more_shifts_11_s4 & more_shifts_12_s4;  // not the last shift
     wire more_shifts_14_s4 = |remaining_13_s4;  // not the last shift
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_15_s4 = shift_register_14_s4[26] ? 27'h7ffffff :
+            {shift_register_14_s4[25:0], 1'b0};
 
     // shifts, then squarings, to come
     wire [3:0] remaining_14_s4 = remaining_13_s4 - remaining_less_one;
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_16_s4 = more_shifts_13_s4 ? shift_register_15_s4 :
+            shift_register_14_s4;
 
     // shifts, then squarings, to come
     wire [3:0] remaining_15_s4 = more_shifts_13_s4 ? remaining_14_s4 : remaining_13_s4;
 
     wire more_shifts_15_s4 = more_shifts_13_s4 & more_shifts_14_s4;  // not the last shift
+    wire more_shifts_16_s4 = |remaining_15_s4;  // not the last shift
+
+    // shifts, then squarings, to come
+    wire [3:0] remaining_16_s4 = remaining_15_s4 - remaining_less_one;
+
+    // shifts, then squarings, to come
+    wire [3:0] remaining_17_s4 = more_shifts_15_s4 ? remaining_16_s4 : remaining_15_s4;
+
+    wire more_shifts_17_s4 = more_shifts_15_s4 & more_shifts_16_s4;  // not the last shift
 
     always @(posedge clk) begin
         if (advance) begin
             red_s5 <= red_s4;
             green_s5 <= green_s4;
             blue_s5 <= blue_s4;
-            shift_register_12_s5 <= shift_register_12_s4;
-            more_shifts_11_s5 <= more_shifts_11_s4;
-            more_shifts_13_s5 <= more_shifts_13_s4;
-            remaining_15_s5 <= remaining_15_s4;
+            shift_register_16_s5 <= shift_register_16_s4;
             more_shifts_15_s5 <= more_shifts_15_s4;
+            remaining_17_s5 <= remaining_17_s4;
+            more_shifts_17_s5 <= more_shifts_17_s4;
         end
     end
 
@@ -369,63 +393,61 @@ module lyon_pipelined (
     reg  [7:0]  red_s6;                // intensity of the light times k_s
     reg  [7:0]  green_s6;              // intensity of the light times k_s
     reg  [7:0]  blue_s6;               // intensity of the light times k_s
-    reg  [26:0] shift_register_18_s6;  // u1.26: beta*D^2, once it has shifted
-    reg         more_shifts_17_s6;     // not the last shift
-    reg  [3:0]  remaining_19_s6;       // shifts, then squarings, to come
-    reg         more_shifts_19_s6;     // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_13_s5 = shift_register_12_s5[26] ? 27'h7ffffff :
-            {shift_register_12_s5[25:0], 1'b0};
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_14_s5 = more_shifts_11_s5 ? shift_register_13_s5 :
-            shift_register_12_s5;
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_15_s5 = shift_register_14_s5[26] ? 27'h7ffffff :
-            {shift_register_14_s5[25:0], 1'b0};
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_16_s5 = more_shifts_13_s5 ? shift_register_15_s5 :
-            shift_register_14_s5;
-
-    wire more_shifts_16_s5 = |remaining_15_s5;  // not the last shift
+    reg  [26:0] shift_register_22_s6;  // u1.26: beta*D^2, once it has shifted
+    reg  [3:0]  remaining_21_s6;       // shifts, then squarings, to come
+    reg         more_shifts_21_s6;     // not the last shift
 
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_17_s5 = shift_register_16_s5[26] ? 27'h7ffffff :
             {shift_register_16_s5[25:0], 1'b0};
 
-    // shifts, then squarings, to come
-    wire [3:0] remaining_16_s5 = remaining_15_s5 - remaining_less_one;
-
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_18_s5 = more_shifts_15_s5 ? shift_register_17_s5 :
             shift_register_16_s5;
 
-    // shifts, then squarings, to come
-    wire [3:0] remaining_17_s5 = more_shifts_15_s5 ? remaining_16_s5 : remaining_15_s5;
-
-    wire more_shifts_17_s5 = more_shifts_15_s5 & more_shifts_16_s5;  // not the last shift
     wire more_shifts_18_s5 = |remaining_17_s5;  // not the last shift
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_19_s5 = shift_register_18_s5[26] ? 27'h7ffffff :
+            {shift_register_18_s5[25:0], 1'b0};
 
     // shifts, then squarings, to come
     wire [3:0] remaining_18_s5 = remaining_17_s5 - remaining_less_one;
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_20_s5 = more_shifts_17_s5 ? shift_register_19_s5 :
+            shift_register_18_s5;
 
     // shifts, then squarings, to come
     wire [3:0] remaining_19_s5 = more_shifts_17_s5 ? remaining_18_s5 : remaining_17_s5;
 
     wire more_shifts_19_s5 = more_shifts_17_s5 & more_shifts_18_s5;  // not the last shift
+    wire more_shifts_20_s5 = |remaining_19_s5;  // not the last shift
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_21_s5 = shift_register_20_s5[26] ? 27'h7ffffff :
+            {shift_register_20_s5[25:0], 1'b0};
+
+    // shifts, then squarings, to come
+    wire [3:0] remaining_20_s5 = remaining_19_s5 - remaining_less_one;
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_22_s5 = more_shifts_19_s5 ? shift_register_21_s5 :
+            shift_register_20_s5;
+
+    // shifts, then squarings, to come
+    wire [3:0] remaining_21_s5 = more_shifts_19_s5 ? remaining_20_s5 : remaining_19_s5;
+
+    wire more_shifts_21_s5 = more_shifts_19_s5 & more_shifts_20_s5;  // not the last shift
 
     always @(posedge clk) begin
         if (advance) begin
             red_s6 <= red_s5;
             green_s6 <= green_s5;
             blue_s6 <= blue_s5;
-            shift_register_18_s6 <= shift_register_18_s5;
-            more_shifts_17_s6 <= more_shifts_17_s5;
-            remaining_19_s6 <= remaining_19_s5;
-            more_shifts_19_s6 <= more_shifts_19_s5;
+            shift_register_22_s6 <= shift_register_22_s5;
+            remaining_21_s6 <= remaining_21_s5;
+            more_shifts_21_s6 <= more_shifts_21_s5;
         end
     end
 
@@ -433,35 +455,10 @@ module lyon_pipelined (
     reg  [7:0]  red_s7;                // intensity of the light times k_s
     reg  [7:0]  green_s7;              // intensity of the light times k_s
     reg  [7:0]  blue_s7;               // intensity of the light times k_s
-    reg  [26:0] shift_register_24_s7;  // u1.26: beta*D^2, once it has shifted
-    reg  [3:0]  remaining_23_s7;       // shifts, then squarings, to come
-    reg         more_shifts_23_s7;     // not the last shift
+    reg  [3:0]  remaining_25_s7;       // shifts, then squarings, to come
+    reg         more_shifts_25_s7;     // not the last shift
+    reg  [26:0] shift_register_28_s7;  // u1.26: beta*D^2, once it has shifted
 
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_19_s6 = shift_register_18_s6[26] ? 27'h7ffffff :
-            {shift_register_18_s6[25:0], 1'b0};
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_20_s6 = more_shifts_17_s6 ? shift_register_19_s6 :
-            shift_register_18_s6;
-
-    wire more_shifts_20_s6 = |remaining_19_s6;  // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_21_s6 = shift_register_20_s6[26] ? 27'h7ffffff :
-            {shift_register_20_s6[25:0], 1'b0};
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_20_s6 = remaining_19_s6 - remaining_less_one;
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_22_s6 = more_shifts_19_s6 ? shift_register_21_s6 :
-            shift_register_20_s6;
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_21_s6 = more_shifts_19_s6 ? remaining_20_s6 : remaining_19_s6;
-
-    wire more_shifts_21_s6 = more_shifts_19_s6 & more_shifts_20_s6;  // not the last shift
     wire more_shifts_22_s6 = |remaining_21_s6;  // not the last shift
 
     // u1.26: beta*D^2, once it has shifted
@@ -479,15 +476,40 @@ module lyon_pipelined (
     wire [3:0] remaining_23_s6 = more_shifts_21_s6 ? remaining_22_s6 : remaining_21_s6;
 
     wire more_shifts_23_s6 = more_shifts_21_s6 & more_shifts_22_s6;  // not the last shift
+    wire more_shifts_24_s6 = |remaining_23_s6;  // not the last shift
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_25_s6 = shift_register_24_s6[26] ? 27'h7ffffff :
+            {shift_register_24_s6[25:0], 1'b0};
+
+    // shifts, then squarings, to come
+    wire [3:0] remaining_24_s6 = remaining_23_s6 - remaining_less_one;
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_26_s6 = more_shifts_23_s6 ? shift_register_25_s6 :
+            shift_register_24_s6;
+
+    // shifts, then squarings, to come
+    wire [3:0] remaining_25_s6 = more_shifts_23_s6 ? remaining_24_s6 : remaining_23_s6;
+
+    wire more_shifts_25_s6 = more_shifts_23_s6 & more_shifts_24_s6;  // not the last shift
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_27_s6 = shift_register_26_s6[26] ? 27'h7ffffff :
+            {shift_register_26_s6[25:0], 1'b0};
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_28_s6 = more_shifts_25_s6 ? shift_register_27_s6 :
+            shift_register_26_s6;
 
     always @(posedge clk) begin
         if (advance) begin
             red_s7 <= red_s6;
             green_s7 <= green_s6;
             blue_s7 <= blue_s6;
-            shift_register_24_s7 <= shift_register_24_s6;
-            remaining_23_s7 <= remaining_23_s6;
-            more_shifts_23_s7 <= more_shifts_23_s6;
+            remaining_25_s7 <= remaining_25_s6;
+            more_shifts_25_s7 <= more_shifts_25_s6;
+            shift_register_28_s7 <= shift_register_28_s6;
         end
     end
 
@@ -495,39 +517,12 @@ module lyon_pipelined (
     reg  [7:0]  red_s8;                // intensity of the light times k_s
     reg  [7:0]  green_s8;              // intensity of the light times k_s
     reg  [7:0]  blue_s8;               // intensity of the light times k_s
-    reg         more_shifts_27_s8;     // not the last shift
-    reg         more_shifts_28_s8;     // not the last shift
-    reg  [26:0] shift_register_30_s8;  // u1.26: beta*D^2, once it has shifted
+    reg  [26:0] shift_register_32_s8;  // u1.26: beta*D^2, once it has shifted
 
-    wire more_shifts_24_s7 = |remaining_23_s7;  // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_25_s7 = shift_register_24_s7[26] ? 27'h7ffffff :
-            {shift_register_24_s7[25:0], 1'b0};
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_24_s7 = remaining_23_s7 - remaining_less_one;
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_26_s7 = more_shifts_23_s7 ? shift_register_25_s7 :
-            shift_register_24_s7;
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_25_s7 = more_shifts_23_s7 ? remaining_24_s7 : remaining_23_s7;
-
-    wire more_shifts_25_s7 = more_shifts_23_s7 & more_shifts_24_s7;  // not the last shift
     wire more_shifts_26_s7 = |remaining_25_s7;  // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_27_s7 = shift_register_26_s7[26] ? 27'h7ffffff :
-            {shift_register_26_s7[25:0], 1'b0};
 
     // shifts, then squarings, to come
     wire [3:0] remaining_26_s7 = remaining_25_s7 - remaining_less_one;
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_28_s7 = more_shifts_25_s7 ? shift_register_27_s7 :
-            shift_register_26_s7;
 
     // shifts, then squarings, to come
     wire [3:0] remaining_27_s7 = more_shifts_25_s7 ? remaining_26_s7 : remaining_25_s7;
@@ -543,32 +538,30 @@ module lyon_pipelined (
     wire [26:0] shift_register_30_s7 = more_shifts_27_s7 ? shift_register_29_s7 :
             shift_register_28_s7;
 
+    wire more_shifts_29_s7 = more_shifts_27_s7 & more_shifts_28_s7;  // not the last shift
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_31_s7 = shift_register_30_s7[26] ? 27'h7ffffff :
+            {shift_register_30_s7[25:0], 1'b0};
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_32_s7 = more_shifts_29_s7 ? shift_register_31_s7 :
+            shift_register_30_s7;
+
     always @(posedge clk) begin
         if (advance) begin
             red_s8 <= red_s7;
             green_s8 <= green_s7;
             blue_s8 <= blue_s7;
-            more_shifts_27_s8 <= more_shifts_27_s7;
-            more_shifts_28_s8 <= more_shifts_28_s7;
-            shift_register_30_s8 <= shift_register_30_s7;
+            shift_register_32_s8 <= shift_register_32_s7;
         end
     end
 
-    // Stage 8: shift_register <- 2 * shift_register; accumulator <- base^2
+    // Stage 8: accumulator <- base^2
     reg  [7:0]  red_s9;    // intensity of the light times k_s
     reg  [7:0]  green_s9;  // intensity of the light times k_s
     reg  [7:0]  blue_s9;   // intensity of the light times k_s
     reg  [15:0] base_s9;   // u0.16: base of the power, or 0
-
-    wire more_shifts_29_s8 = more_shifts_27_s8 & more_shifts_28_s8;  // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_31_s8 = shift_register_30_s8[26] ? 27'h7ffffff :
-            {shift_register_30_s8[25:0], 1'b0};
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_32_s8 = more_shifts_29_s8 ? shift_register_31_s8 :
-            shift_register_30_s8;
 
     // u1.16: beta*D^2, to the point of f
     wire [16:0] beta_distance_s8 = shift_register_32_s8[26:10];
@@ -718,7 +711,7 @@ module lyon_pipelined (
     assign blue_out = blue_intensity_s15;  // intensity on the output
 
     // Bits that nothing needs, among them those that narrowing drops.
-    wire unused = &{1'b0, adder2_s3[11:0], adder2_s3[36], shift_register_32_s8[9:0],
+    wire unused = &{1'b0, adder2_s2[11:0], adder2_s2[36], shift_register_32_s8[9:0],
             multiplier4_s9[15:0], multiplier4_2_s10[15:0], multiplier4_3_s11[15:0],
             multiplier4_4_s12[15:0], red_product_s13[14:0], green_product_s13[14:0],
             blue_product_s13[14:0]};

@@ -5,7 +5,7 @@
 //
 // Source: UA 20998, the analogue in seed 001
 //
-// Pipeline: a point every clock, its results 11 clocks later; stages for 130 MHz on ecp5. While
+// Pipeline: a point every clock, its results 9 clocks later; stages for 130 MHz on ecp5. While
 // out_valid is high and out_ready low, nothing moves, and in_ready is low.
 //
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit
@@ -66,20 +66,18 @@ module quadratic_pipelined #(
     localparam exponent_write = 1'b1;
 
     // The handshake: which stage has a point, and when all of them move on
-    reg  valid_s1;   // stage 1 has a point
-    reg  valid_s2;   // stage 2 has a point
-    reg  valid_s3;   // stage 3 has a point
-    reg  valid_s4;   // stage 4 has a point
-    reg  valid_s5;   // stage 5 has a point
-    reg  valid_s6;   // stage 6 has a point
-    reg  valid_s7;   // stage 7 has a point
-    reg  valid_s8;   // stage 8 has a point
-    reg  valid_s9;   // stage 9 has a point
-    reg  valid_s10;  // stage 10 has a point
-    reg  valid_s11;  // stage 11 has a point
+    reg  valid_s1;  // stage 1 has a point
+    reg  valid_s2;  // stage 2 has a point
+    reg  valid_s3;  // stage 3 has a point
+    reg  valid_s4;  // stage 4 has a point
+    reg  valid_s5;  // stage 5 has a point
+    reg  valid_s6;  // stage 6 has a point
+    reg  valid_s7;  // stage 7 has a point
+    reg  valid_s8;  // stage 8 has a point
+    reg  valid_s9;  // stage 9 has a point
 
-    assign out_valid = valid_s11;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s11;  // every point moves on by a stage
+    assign out_valid = valid_s9;  // the results are on the outputs
+    wire advance = out_ready | ~valid_s9;  // every point moves on by a stage
     assign in_ready = advance;  // a point that is offered is taken in this clock
 
     always @(posedge clk) begin
@@ -93,8 +91,6 @@ module quadratic_pipelined #(
             valid_s7 <= 1'b0;
             valid_s8 <= 1'b0;
             valid_s9 <= 1'b0;
-            valid_s10 <= 1'b0;
-            valid_s11 <= 1'b0;
         end else if (advance) begin
             valid_s1 <= in_valid;
             valid_s2 <= valid_s1;
@@ -105,8 +101,6 @@ module quadratic_pipelined #(
             valid_s7 <= valid_s6;
             valid_s8 <= valid_s7;
             valid_s9 <= valid_s8;
-            valid_s10 <= valid_s9;
-            valid_s11 <= valid_s10;
         end
     end
 
@@ -141,10 +135,9 @@ module quadratic_pipelined #(
     reg  [7:0]  green_s2;                       // register 4: intensity of the light times k_s
     reg  [7:0]  blue_s2;                        // register 5: intensity of the light times k_s
     reg  [35:0] multiplier5_upper_upper_s2;     // register 5
-    reg         multiplier5_upper_row_6_s2;     // register 5
     reg  [2:0]  multiplier5_upper_low_bits_s2;  // register 5
     reg  [17:0] multiplier5_upper_carried_s2;   // register 5
-    reg  [22:0] multiplier5_rows_s2;            // register 5
+    reg  [23:0] multiplier5_rows_2_s2;          // register 5
 
     // multiplier 5
     wire [35:0] multiplier5_upper_upper_s1 = cos_gamma_reg_s1[20:3] * cos_gamma_reg_s1[20:3];
@@ -173,6 +166,12 @@ module quadratic_pipelined #(
     wire [22:0] multiplier5_rows_s1 = {2'd0, multiplier5_row_s1} + {1'b0, multiplier5_row_2_s1,
             1'b0};
 
+    wire [20:0] multiplier5_row_4_s1 = cos_gamma_reg_s1[2] ? cos_gamma_reg_s1 : 21'd0;  // mux 5
+
+    // adder 5
+    wire [23:0] multiplier5_rows_2_s1 = {1'b0, multiplier5_rows_s1} + {1'b0, multiplier5_row_4_s1,
+            2'd0};
+
     always @(posedge clk) begin
         if (advance) begin
             exponent_s2 <= exponent_s1;
@@ -181,22 +180,20 @@ module quadratic_pipelined #(
             green_s2 <= green_s1;
             blue_s2 <= blue_s1;
             multiplier5_upper_upper_s2 <= multiplier5_upper_upper_s1;
-            multiplier5_upper_row_6_s2 <= cos_gamma_reg_s1[2];
             multiplier5_upper_low_bits_s2 <= multiplier5_upper_rows_2_s1[2:0];
             multiplier5_upper_carried_s2 <= multiplier5_upper_rows_2_s1[20:3];
-            multiplier5_rows_s2 <= multiplier5_rows_s1;
+            multiplier5_rows_2_s2 <= multiplier5_rows_2_s1;
         end
     end
 
     // Stage 2: operands; ROM(n) addressed
-    reg  [9:0]  exponent_s3;            // register 1: specular exponent n
     // register 2, u1.20: c, the cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s3;
-    reg  [7:0]  red_s3;                 // register 3: intensity of the light times k_s
-    reg  [7:0]  green_s3;               // register 4: intensity of the light times k_s
-    reg  [7:0]  blue_s3;                // register 5: intensity of the light times k_s
-    reg  [38:0] multiplier5_upper_s3;   // register 5
-    reg  [23:0] multiplier5_rows_2_s3;  // register 5
+    reg  [7:0]  red_s3;               // register 3: intensity of the light times k_s
+    reg  [7:0]  green_s3;             // register 4: intensity of the light times k_s
+    reg  [7:0]  blue_s3;              // register 5: intensity of the light times k_s
+    reg  [41:0] multiplier5_s3;       // register 5, u2.40: c^2
+    reg  [17:0] coefficient_word_s3;  // u10.8
 
     // adder 5
     wire [35:0] multiplier5_upper_sum_s2 = multiplier5_upper_upper_s2 + {18'd0,
@@ -205,44 +202,43 @@ module quadratic_pipelined #(
     // block 5
     wire [38:0] multiplier5_upper_s2 = {multiplier5_upper_sum_s2, multiplier5_upper_low_bits_s2};
 
-    // mux 5
-    wire [20:0] multiplier5_row_4_s2 = multiplier5_upper_row_6_s2 ? cos_gamma_reg_s2 : 21'd0;
-
     // adder 5
-    wire [23:0] multiplier5_rows_2_s2 = {1'b0, multiplier5_rows_s2} + {1'b0, multiplier5_row_4_s2,
-            2'd0};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            exponent_s3 <= exponent_s2;
-            cos_gamma_reg_s3 <= cos_gamma_reg_s2;
-            red_s3 <= red_s2;
-            green_s3 <= green_s2;
-            blue_s3 <= blue_s2;
-            multiplier5_upper_s3 <= multiplier5_upper_s2;
-            multiplier5_rows_2_s3 <= multiplier5_rows_2_s2;
-        end
-    end
-
-    // Stage 3: operands; ROM(n) addressed
-    // register 2, u1.20: c, the cosine of the angle between normal and half vector
-    reg  [20:0] cos_gamma_reg_s4;
-    reg  [7:0]  red_s4;               // register 3: intensity of the light times k_s
-    reg  [7:0]  green_s4;             // register 4: intensity of the light times k_s
-    reg  [7:0]  blue_s4;              // register 5: intensity of the light times k_s
-    reg  [41:0] multiplier5_s4;       // register 5, u2.40: c^2
-    reg  [17:0] coefficient_word_s4;  // u10.8
-
-    // adder 5
-    wire [38:0] multiplier5_sum_s3 = multiplier5_upper_s3 + {18'd0, multiplier5_rows_2_s3[23:3]};
+    wire [38:0] multiplier5_sum_s2 = multiplier5_upper_s2 + {18'd0, multiplier5_rows_2_s2[23:3]};
 
     // block 5, u2.40: c^2
-    wire [41:0] multiplier5_s3 = {multiplier5_sum_s3, multiplier5_rows_2_s3[2:0]};
+    wire [41:0] multiplier5_s2 = {multiplier5_sum_s2, multiplier5_rows_2_s2[2:0]};
 
     // ROM coefficient: a(n), minimax, for an exponent n (the address)
     reg [17:0] coefficient_rom [0:1023];
     initial $readmemh(COEFFICIENT_FILE, coefficient_rom);
-    always @(posedge clk) if (advance) coefficient_word_s4 <= coefficient_rom[exponent_s3];
+    always @(posedge clk) if (advance) coefficient_word_s3 <= coefficient_rom[exponent_s2];
+
+    always @(posedge clk) begin
+        if (advance) begin
+            cos_gamma_reg_s3 <= cos_gamma_reg_s2;
+            red_s3 <= red_s2;
+            green_s3 <= green_s2;
+            blue_s3 <= blue_s2;
+            multiplier5_s3 <= multiplier5_s2;
+        end
+    end
+
+    // Stage 3: operands; ROM(n) addressed; difference <- c^2 - c
+    // register 2, u1.20: c, the cosine of the angle between normal and half vector
+    reg         [20:0] cos_gamma_reg_s4;
+    reg         [7:0]  red_s4;               // register 3: intensity of the light times k_s
+    reg         [7:0]  green_s4;             // register 4: intensity of the light times k_s
+    reg         [7:0]  blue_s4;              // register 5: intensity of the light times k_s
+    reg         [17:0] coefficient_word_s4;  // u10.8
+    reg  signed [17:0] difference_s4;        // s-2.19: c^2 - c, from -0.25 to 0
+
+    // s1.40: -c, less an ulp of the square
+    wire signed [41:0] inverters_s3 = ~{1'b0, cos_gamma_reg_s3, 20'd0};
+
+    // adder 1, s1.40: c^2 - c
+    wire signed [41:0] adder1_s3 = multiplier5_s3 + inverters_s3 + {41'd0, exponent_write};
+
+    wire signed [17:0] difference_s3 = adder1_s3[38:21];  // s-2.19: c^2 - c, from -0.25 to 0
 
     always @(posedge clk) begin
         if (advance) begin
@@ -250,26 +246,23 @@ module quadratic_pipelined #(
             red_s4 <= red_s3;
             green_s4 <= green_s3;
             blue_s4 <= blue_s3;
-            multiplier5_s4 <= multiplier5_s3;
+            coefficient_word_s4 <= coefficient_word_s3;
+            difference_s4 <= difference_s3;
         end
     end
 
-    // Stage 4: operands; ROM(n) addressed; difference <- c^2 - c
+    // Stage 4: intensity <- c + a(n) * difference, not below 0
     // register 2, u1.20: c, the cosine of the angle between normal and half vector
     reg         [20:0] cos_gamma_reg_s5;
-    reg         [7:0]  red_s5;               // register 3: intensity of the light times k_s
-    reg         [7:0]  green_s5;             // register 4: intensity of the light times k_s
-    reg         [7:0]  blue_s5;              // register 5: intensity of the light times k_s
-    reg         [17:0] coefficient_word_s5;  // u10.8
-    reg  signed [17:0] difference_s5;        // s-2.19: c^2 - c, from -0.25 to 0
+    reg         [7:0]  red_s5;                // register 3: intensity of the light times k_s
+    reg         [7:0]  green_s5;              // register 4: intensity of the light times k_s
+    reg         [7:0]  blue_s5;               // register 5: intensity of the light times k_s
+    reg  signed [35:0] multiplier1_upper_s5;  // register 1, s35.0
+    reg  signed [17:0] multiplier1_row_2_s5;  // register 1, s17.0
 
-    // s1.40: -c, less an ulp of the square
-    wire signed [41:0] inverters_s4 = ~{1'b0, cos_gamma_reg_s4, 20'd0};
-
-    // adder 1, s1.40: c^2 - c
-    wire signed [41:0] adder1_s4 = multiplier5_s4 + inverters_s4 + {41'd0, exponent_write};
-
-    wire signed [17:0] difference_s4 = adder1_s4[38:21];  // s-2.19: c^2 - c, from -0.25 to 0
+    // multiplier 1, s35.0
+    wire signed [35:0] multiplier1_upper_s4 = $signed({1'b0, coefficient_word_s4[17:1]}) *
+            difference_s4;
 
     always @(posedge clk) begin
         if (advance) begin
@@ -277,156 +270,115 @@ module quadratic_pipelined #(
             red_s5 <= red_s4;
             green_s5 <= green_s4;
             blue_s5 <= blue_s4;
-            coefficient_word_s5 <= coefficient_word_s4;
-            difference_s5 <= difference_s4;
+            multiplier1_upper_s5 <= multiplier1_upper_s4;
+            multiplier1_row_2_s5 <= coefficient_word_s4[0] ? difference_s4 : 18'd0;
         end
     end
 
     // Stage 5: intensity <- c + a(n) * difference, not below 0
-    // register 2, u1.20: c, the cosine of the angle between normal and half vector
-    reg         [20:0] cos_gamma_reg_s6;
-    reg         [7:0]  red_s6;                // register 3: intensity of the light times k_s
-    reg         [7:0]  green_s6;              // register 4: intensity of the light times k_s
-    reg         [7:0]  blue_s6;               // register 5: intensity of the light times k_s
-    reg  signed [35:0] multiplier1_upper_s6;  // register 1, s35.0
-    reg  signed [17:0] multiplier1_row_2_s6;  // register 1, s17.0
+    reg  [7:0]  red_s6;                 // register 3: intensity of the light times k_s
+    reg  [7:0]  green_s6;               // register 4: intensity of the light times k_s
+    reg  [7:0]  blue_s6;                // register 5: intensity of the light times k_s
+    reg         adder2_kept_bits_s6;
+    reg  [7:0]  adder2_kept_bits_2_s6;
+    reg  [15:0] adder2_kept_inside_s6;  // u0.16
 
-    // multiplier 1, s35.0
-    wire signed [35:0] multiplier1_upper_s5 = $signed({1'b0, coefficient_word_s5[17:1]}) *
-            difference_s5;
+    // adder 1, s35.0
+    wire signed [35:0] multiplier1_sum_s5 = multiplier1_upper_s5 + {{19{multiplier1_row_2_s5[17]}},
+            multiplier1_row_2_s5[17:1]};
+
+    // block 1, s9.27
+    wire signed [36:0] multiplier1_s5 = {multiplier1_sum_s5, multiplier1_row_2_s5[0]};
+
+    // adder 2, s8.27: c + a(n)*(c^2 - c)
+    wire signed [35:0] adder2_s5 = multiplier1_s5[35:0] + {8'd0, cos_gamma_reg_s5, 7'd0};
 
     always @(posedge clk) begin
         if (advance) begin
-            cos_gamma_reg_s6 <= cos_gamma_reg_s5;
             red_s6 <= red_s5;
             green_s6 <= green_s5;
             blue_s6 <= blue_s5;
-            multiplier1_upper_s6 <= multiplier1_upper_s5;
-            multiplier1_row_2_s6 <= coefficient_word_s5[0] ? difference_s5 : 18'd0;
+            adder2_kept_bits_s6 <= adder2_s5[35];
+            adder2_kept_bits_2_s6 <= adder2_s5[34:27];
+            adder2_kept_inside_s6 <= adder2_s5[26:11];
         end
     end
 
     // Stage 6: intensity <- c + a(n) * difference, not below 0
-    // register 2, u1.20: c, the cosine of the angle between normal and half vector
-    reg         [20:0] cos_gamma_reg_s7;
-    reg         [7:0]  red_s7;              // register 3: intensity of the light times k_s
-    reg         [7:0]  green_s7;            // register 4: intensity of the light times k_s
-    reg         [7:0]  blue_s7;             // register 5: intensity of the light times k_s
-    reg  signed [35:0] multiplier1_low_s7;  // s8.27
+    reg  [7:0]  red_s7;        // register 3: intensity of the light times k_s
+    reg  [7:0]  green_s7;      // register 4: intensity of the light times k_s
+    reg  [7:0]  blue_s7;       // register 5: intensity of the light times k_s
+    reg  [15:0] intensity_s7;  // u0.16: the reflectance f
 
-    // adder 1, s35.0
-    wire signed [35:0] multiplier1_sum_s6 = multiplier1_upper_s6 + {{19{multiplier1_row_2_s6[17]}},
-            multiplier1_row_2_s6[17:1]};
+    // u0.16
+    wire [15:0] clamped_limited_s6 = (|adder2_kept_bits_2_s6) ? 16'hffff : adder2_kept_inside_s6;
 
-    // block 1, s9.27
-    wire signed [36:0] multiplier1_s6 = {multiplier1_sum_s6, multiplier1_row_2_s6[0]};
+    // u0.16: the reflectance f
+    wire [15:0] intensity_s6 = adder2_kept_bits_s6 ? 16'd0 : clamped_limited_s6;
 
     always @(posedge clk) begin
         if (advance) begin
-            cos_gamma_reg_s7 <= cos_gamma_reg_s6;
             red_s7 <= red_s6;
             green_s7 <= green_s6;
             blue_s7 <= blue_s6;
-            multiplier1_low_s7 <= multiplier1_s6[35:0];
+            intensity_s7 <= intensity_s6;
         end
     end
 
-    // Stage 7: intensity <- c + a(n) * difference, not below 0
-    reg  [7:0]  red_s8;                 // register 3: intensity of the light times k_s
-    reg  [7:0]  green_s8;               // register 4: intensity of the light times k_s
-    reg  [7:0]  blue_s8;                // register 5: intensity of the light times k_s
-    reg         adder2_kept_bits_s8;
-    reg         clamped_over_s8;
-    reg  [15:0] adder2_kept_inside_s8;  // u0.16
-
-    // adder 2, s8.27: c + a(n)*(c^2 - c)
-    wire signed [35:0] adder2_s7 = multiplier1_low_s7 + {8'd0, cos_gamma_reg_s7, 7'd0};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_s8 <= red_s7;
-            green_s8 <= green_s7;
-            blue_s8 <= blue_s7;
-            adder2_kept_bits_s8 <= adder2_s7[35];
-            clamped_over_s8 <= |adder2_s7[34:27];
-            adder2_kept_inside_s8 <= adder2_s7[26:11];
-        end
-    end
-
-    // Stage 8: intensity <- c + a(n) * difference, not below 0
-    reg  [7:0]  red_s9;        // register 3: intensity of the light times k_s
-    reg  [7:0]  green_s9;      // register 4: intensity of the light times k_s
-    reg  [7:0]  blue_s9;       // register 5: intensity of the light times k_s
-    reg  [15:0] intensity_s9;  // u0.16: the reflectance f
-
-    wire [15:0] clamped_limited_s8 = clamped_over_s8 ? 16'hffff : adder2_kept_inside_s8;  // u0.16
-
-    // u0.16: the reflectance f
-    wire [15:0] intensity_s8 = adder2_kept_bits_s8 ? 16'd0 : clamped_limited_s8;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_s9 <= red_s8;
-            green_s9 <= green_s8;
-            blue_s9 <= blue_s8;
-            intensity_s9 <= intensity_s8;
-        end
-    end
-
-    // Stage 9: result
-    reg  [7:0] red_product_kept_s10;
-    reg        red_product_bits_s10;
-    reg  [7:0] green_product_kept_s10;
-    reg        green_product_bits_s10;
-    reg  [7:0] blue_product_kept_s10;
-    reg        blue_product_bits_s10;
+    // Stage 7: result
+    reg  [7:0] red_product_kept_s8;
+    reg        red_product_bits_s8;
+    reg  [7:0] green_product_kept_s8;
+    reg        green_product_bits_s8;
+    reg  [7:0] blue_product_kept_s8;
+    reg        blue_product_bits_s8;
 
     // multiplier 2, u8.16: an output before it is rounded
-    wire [23:0] red_product_s9 = intensity_s9 * red_s9;
+    wire [23:0] red_product_s7 = intensity_s7 * red_s7;
 
     // multiplier 3, u8.16: an output before it is rounded
-    wire [23:0] green_product_s9 = intensity_s9 * green_s9;
+    wire [23:0] green_product_s7 = intensity_s7 * green_s7;
 
     // multiplier 4, u8.16: an output before it is rounded
-    wire [23:0] blue_product_s9 = intensity_s9 * blue_s9;
+    wire [23:0] blue_product_s7 = intensity_s7 * blue_s7;
 
     always @(posedge clk) begin
         if (advance) begin
-            red_product_kept_s10 <= red_product_s9[23:16];
-            red_product_bits_s10 <= red_product_s9[15];
-            green_product_kept_s10 <= green_product_s9[23:16];
-            green_product_bits_s10 <= green_product_s9[15];
-            blue_product_kept_s10 <= blue_product_s9[23:16];
-            blue_product_bits_s10 <= blue_product_s9[15];
+            red_product_kept_s8 <= red_product_s7[23:16];
+            red_product_bits_s8 <= red_product_s7[15];
+            green_product_kept_s8 <= green_product_s7[23:16];
+            green_product_bits_s8 <= green_product_s7[15];
+            blue_product_kept_s8 <= blue_product_s7[23:16];
+            blue_product_bits_s8 <= blue_product_s7[15];
         end
     end
 
-    // Stage 10: result
-    reg  [7:0] red_intensity_s11;
-    reg  [7:0] green_intensity_s11;
-    reg  [7:0] blue_intensity_s11;
+    // Stage 8: result
+    reg  [7:0] red_intensity_s9;
+    reg  [7:0] green_intensity_s9;
+    reg  [7:0] blue_intensity_s9;
 
-    wire [7:0] red_intensity_s10 = red_product_kept_s10 + {7'd0, red_product_bits_s10};
-    wire [7:0] green_intensity_s10 = green_product_kept_s10 + {7'd0, green_product_bits_s10};
-    wire [7:0] blue_intensity_s10 = blue_product_kept_s10 + {7'd0, blue_product_bits_s10};
+    wire [7:0] red_intensity_s8 = red_product_kept_s8 + {7'd0, red_product_bits_s8};
+    wire [7:0] green_intensity_s8 = green_product_kept_s8 + {7'd0, green_product_bits_s8};
+    wire [7:0] blue_intensity_s8 = blue_product_kept_s8 + {7'd0, blue_product_bits_s8};
 
     always @(posedge clk) begin
         if (advance) begin
-            red_intensity_s11 <= red_intensity_s10;
-            green_intensity_s11 <= green_intensity_s10;
-            blue_intensity_s11 <= blue_intensity_s10;
+            red_intensity_s9 <= red_intensity_s8;
+            green_intensity_s9 <= green_intensity_s8;
+            blue_intensity_s9 <= blue_intensity_s8;
         end
     end
 
     // Results
 
-    assign red_out = red_intensity_s11;  // output 1: intensity on the output
-    assign green_out = green_intensity_s11;  // output 2: intensity on the output
-    assign blue_out = blue_intensity_s11;  // output 3: intensity on the output
+    assign red_out = red_intensity_s9;  // output 1: intensity on the output
+    assign green_out = green_intensity_s9;  // output 2: intensity on the output
+    assign blue_out = blue_intensity_s9;  // output 3: intensity on the output
 
     // Bits that nothing needs, among them those that narrowing drops.
-    wire unused = &{1'b0, adder1_s4[20:0], adder1_s4[41:39], multiplier1_s6[36], adder2_s7[10:0],
-            red_product_s9[14:0], green_product_s9[14:0], blue_product_s9[14:0]};
+    wire unused = &{1'b0, adder1_s3[20:0], adder1_s3[41:39], multiplier1_s5[36], adder2_s5[10:0],
+            red_product_s7[14:0], green_product_s7[14:0], blue_product_s7[14:0]};
 endmodule
 
 `default_nettype wire

@@ -138,8 +138,7 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 0: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma; 11 <- cos
-    // gamma * cos dgamma
+    // Stage 0: operands cos gamma, cos dgamma; sine of gamma addressed
     // register 1, u1.20: cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s1;
     // register 2, u1.20: cosine of the angle by which the normal is perturbed
@@ -150,8 +149,6 @@ module rough_pipelined #(
     reg  [7:0]  red_s1;              // register 5: intensity of the light times k_s
     reg  [7:0]  green_s1;            // register 6: intensity of the light times k_s
     reg  [7:0]  blue_s1;             // register 7: intensity of the light times k_s
-    reg  [20:0] complement_s1;       // u1.20: 1.0 - cos
-    reg  [20:0] complement_2_s1;     // u1.20: 1.0 - cos
 
     wire cos_gamma_over_s0 = cos_gamma[20];
 
@@ -163,9 +160,6 @@ module rough_pipelined #(
     // mux 2, u1.20: cosine of the angle by which the normal is perturbed
     wire [20:0] cos_dgamma_reg_s0 = cos_dgamma_over_s0 ? COS_GAMMA_MOST : cos_dgamma;
 
-    wire [20:0] complement_s0 = COS_GAMMA_MOST - cos_gamma_reg_s0;  // u1.20: 1.0 - cos
-    wire [20:0] complement_2_s0 = COS_GAMMA_MOST - cos_dgamma_reg_s0;  // u1.20: 1.0 - cos
-
     always @(posedge clk) begin
         if (advance) begin
             cos_gamma_reg_s1 <= cos_gamma_reg_s0;
@@ -175,8 +169,6 @@ module rough_pipelined #(
             red_s1 <= red;
             green_s1 <= green;
             blue_s1 <= blue;
-            complement_s1 <= complement_s0;
-            complement_2_s1 <= complement_2_s0;
         end
     end
 
@@ -188,74 +180,19 @@ module rough_pipelined #(
     reg  [7:0]  red_s2;                          // register 5: intensity of the light times k_s
     reg  [7:0]  green_s2;                        // register 6: intensity of the light times k_s
     reg  [7:0]  blue_s2;                         // register 7: intensity of the light times k_s
-    reg  [13:0] sine_rest4_s2;                   // u0.14
+    reg  [20:0] complement_s2;                   // u1.20: 1.0 - cos
+    reg         sine_in_range8_s2;               // u is in range 8 or in one above
     reg         facing_s2;                       // the surface faces the half vector
     reg  [35:0] multiplier10_upper_upper_s2;     // register 10
     reg  [2:0]  multiplier10_upper_low_bits_s2;  // register 10
     reg  [17:0] multiplier10_upper_carried_s2;   // register 10
-    reg  [22:0] multiplier10_rows_s2;            // register 10
-    reg  [20:0] multiplier10_row_7_s2;           // register 10
-    reg  [13:0] sine_rest4_2_s2;                 // u0.14
-    reg  [34:0] sine_word_s2;
-    reg  [34:0] sine_word_2_s2;
+    reg  [23:0] multiplier10_rows_2_s2;          // register 10
+    reg  [20:0] complement_2_s2;                 // u1.20: 1.0 - cos
+    reg         sine_in_range8_2_s2;             // u is in range 8 or in one above
 
-    wire sine_in_range4_s1 = |complement_s1[20:10];  // u is in range 4 or in one above
-    wire sine_in_range6_s1 = |complement_s1[20:6];  // u is in range 6 or in one above
-    wire sine_in_range7_s1 = |complement_s1[20:4];  // u is in range 7 or in one above
+    wire [20:0] complement_s1 = COS_GAMMA_MOST - cos_gamma_reg_s1;  // u1.20: 1.0 - cos
     wire sine_in_range8_s1 = |complement_s1[20:2];  // u is in range 8 or in one above
-    wire [13:0] sine_rest8_s1 = sine_in_range8_s1 ? {complement_s1[1:0], 12'd0} : 14'd0;  // u0.14
-
-    // u0.14
-    wire [13:0] sine_rest7_s1 = sine_in_range7_s1 ? {complement_s1[2:0], 11'd0} : sine_rest8_s1;
-
-    wire sine_in_range5_s1 = |complement_s1[20:8];  // u is in range 5 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest5_s1 = sine_in_range5_s1 ? {complement_s1[5:0], 8'd0} :
-            {complement_s1[4:0], 9'd0};
-
-    wire [13:0] sine_rest6_s1 = sine_in_range6_s1 ? sine_rest5_s1 : sine_rest7_s1;  // u0.14
-    wire sine_in_range1_s1 = |complement_s1[20:16];  // u is in range 1 or in one above
-    wire sine_in_range2_s1 = |complement_s1[20:14];  // u is in range 2 or in one above
-    wire sine_in_range3_s1 = |complement_s1[20:12];  // u is in range 3 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest3_s1 = sine_in_range3_s1 ? {complement_s1[7:0], 6'd0} :
-            {complement_s1[6:0], 7'd0};
-
-    // u0.14
-    wire [13:0] sine_rest2_s1 = sine_in_range2_s1 ? {complement_s1[8:0], 5'd0} : sine_rest3_s1;
-
-    wire sine_in_range0_s1 = |complement_s1[20:18];  // u is in range 0 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest0_s1 = sine_in_range0_s1 ? complement_s1[13:0] : {complement_s1[9:0],
-            4'd0};
-
-    wire [13:0] sine_rest1_s1 = sine_in_range1_s1 ? sine_rest0_s1 : sine_rest2_s1;  // u0.14
-    wire [13:0] sine_rest4_s1 = sine_in_range4_s1 ? sine_rest1_s1 : sine_rest6_s1;  // u0.14
     wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
-
-    wire [9:0] sine_word8_s1 = sine_in_range8_s1 ? {8'd144, complement_s1[3:2]} : {8'd145,
-            complement_s1[1:0]};
-
-    wire [9:0] sine_word7_s1 = sine_in_range7_s1 ? {7'd71, complement_s1[5:3]} : sine_word8_s1;
-
-    wire [9:0] sine_word5_s1 = sine_in_range5_s1 ? {6'd34, complement_s1[9:6]} : {7'd70,
-            complement_s1[7:5]};
-
-    wire [9:0] sine_word6_s1 = sine_in_range6_s1 ? sine_word5_s1 : sine_word7_s1;
-
-    wire [9:0] sine_word3_s1 = sine_in_range3_s1 ? {4'd7, complement_s1[13:8]} : {5'd16,
-            complement_s1[11:7]};
-
-    wire [9:0] sine_word2_s1 = sine_in_range2_s1 ? {3'd2, complement_s1[15:9]} : sine_word3_s1;
-
-    wire [8:0] sine_word0_s1 = sine_in_range0_s1 ? {3'd6, complement_s1[19:14]} : {1'b0,
-            complement_s1[17:10]};
-
-    wire [9:0] sine_word1_s1 = sine_in_range1_s1 ? {1'b0, sine_word0_s1} : sine_word2_s1;
-    wire [9:0] sine_word4_s1 = sine_in_range4_s1 ? sine_word1_s1 : sine_word6_s1;
 
     // multiplier 10
     wire [35:0] multiplier10_upper_upper_s1 = cos_dgamma_reg_s1[20:3] * cos_gamma_reg_s1[20:3];
@@ -284,78 +221,14 @@ module rough_pipelined #(
     wire [22:0] multiplier10_rows_s1 = {2'd0, multiplier10_row_2_s1} + {1'b0, multiplier10_row_4_s1,
             1'b0};
 
-    wire sine_in_range4_2_s1 = |complement_2_s1[20:10];  // u is in range 4 or in one above
-    wire sine_in_range6_2_s1 = |complement_2_s1[20:6];  // u is in range 6 or in one above
-    wire sine_in_range7_2_s1 = |complement_2_s1[20:4];  // u is in range 7 or in one above
+    wire [20:0] multiplier10_row_7_s1 = cos_gamma_reg_s1[2] ? cos_dgamma_reg_s1 : 21'd0;  // mux 10
+
+    // adder 10
+    wire [23:0] multiplier10_rows_2_s1 = {1'b0, multiplier10_rows_s1} + {1'b0,
+            multiplier10_row_7_s1, 2'd0};
+
+    wire [20:0] complement_2_s1 = COS_GAMMA_MOST - cos_dgamma_reg_s1;  // u1.20: 1.0 - cos
     wire sine_in_range8_2_s1 = |complement_2_s1[20:2];  // u is in range 8 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest8_2_s1 = sine_in_range8_2_s1 ? {complement_2_s1[1:0], 12'd0} : 14'd0;
-
-    // u0.14
-    wire [13:0] sine_rest7_2_s1 = sine_in_range7_2_s1 ? {complement_2_s1[2:0], 11'd0} :
-            sine_rest8_2_s1;
-
-    wire sine_in_range5_2_s1 = |complement_2_s1[20:8];  // u is in range 5 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest5_2_s1 = sine_in_range5_2_s1 ? {complement_2_s1[5:0], 8'd0} :
-            {complement_2_s1[4:0], 9'd0};
-
-    wire [13:0] sine_rest6_2_s1 = sine_in_range6_2_s1 ? sine_rest5_2_s1 : sine_rest7_2_s1;  // u0.14
-    wire sine_in_range1_2_s1 = |complement_2_s1[20:16];  // u is in range 1 or in one above
-    wire sine_in_range2_2_s1 = |complement_2_s1[20:14];  // u is in range 2 or in one above
-    wire sine_in_range3_2_s1 = |complement_2_s1[20:12];  // u is in range 3 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest3_2_s1 = sine_in_range3_2_s1 ? {complement_2_s1[7:0], 6'd0} :
-            {complement_2_s1[6:0], 7'd0};
-
-    // u0.14
-    wire [13:0] sine_rest2_2_s1 = sine_in_range2_2_s1 ? {complement_2_s1[8:0], 5'd0} :
-            sine_rest3_2_s1;
-
-    wire sine_in_range0_2_s1 = |complement_2_s1[20:18];  // u is in range 0 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest0_2_s1 = sine_in_range0_2_s1 ? complement_2_s1[13:0] :
-            {complement_2_s1[9:0], 4'd0};
-
-    wire [13:0] sine_rest1_2_s1 = sine_in_range1_2_s1 ? sine_rest0_2_s1 : sine_rest2_2_s1;  // u0.14
-    wire [13:0] sine_rest4_2_s1 = sine_in_range4_2_s1 ? sine_rest1_2_s1 : sine_rest6_2_s1;  // u0.14
-
-    wire [9:0] sine_word8_2_s1 = sine_in_range8_2_s1 ? {8'd144, complement_2_s1[3:2]} : {8'd145,
-            complement_2_s1[1:0]};
-
-    wire [9:0] sine_word7_2_s1 = sine_in_range7_2_s1 ? {7'd71, complement_2_s1[5:3]} :
-            sine_word8_2_s1;
-
-    wire [9:0] sine_word5_2_s1 = sine_in_range5_2_s1 ? {6'd34, complement_2_s1[9:6]} : {7'd70,
-            complement_2_s1[7:5]};
-
-    wire [9:0] sine_word6_2_s1 = sine_in_range6_2_s1 ? sine_word5_2_s1 : sine_word7_2_s1;
-
-    wire [9:0] sine_word3_2_s1 = sine_in_range3_2_s1 ? {4'd7, complement_2_s1[13:8]} : {5'd16,
-            complement_2_s1[11:7]};
-
-    wire [9:0] sine_word2_2_s1 = sine_in_range2_2_s1 ? {3'd2, complement_2_s1[15:9]} :
-            sine_word3_2_s1;
-
-    wire [8:0] sine_word0_2_s1 = sine_in_range0_2_s1 ? {3'd6, complement_2_s1[19:14]} : {1'b0,
-            complement_2_s1[17:10]};
-
-    wire [9:0] sine_word1_2_s1 = sine_in_range1_2_s1 ? {1'b0, sine_word0_2_s1} : sine_word2_2_s1;
-    wire [9:0] sine_word4_2_s1 = sine_in_range4_2_s1 ? sine_word1_2_s1 : sine_word6_2_s1;
-
-    // ROM 18: value at the start of a segment (u0.22), then its rise over the segment in units of
-    // 2^-18 (13 bits)
-    reg [34:0] sine_rom [0:583];
-    initial $readmemh(SINE_FILE, sine_rom);
-    always @(posedge clk) if (advance) sine_word_s2 <= sine_rom[sine_word4_s1];
-
-    // ROM 18: value at the start of a segment (u0.22), then its rise over the segment in units of
-    // 2^-18 (13 bits)
-    always @(posedge clk) if (advance) sine_word_2_s2 <= sine_rom[sine_word4_2_s1];
 
     always @(posedge clk) begin
         if (advance) begin
@@ -364,36 +237,88 @@ module rough_pipelined #(
             red_s2 <= red_s1;
             green_s2 <= green_s1;
             blue_s2 <= blue_s1;
-            sine_rest4_s2 <= sine_rest4_s1;
+            complement_s2 <= complement_s1;
+            sine_in_range8_s2 <= sine_in_range8_s1;
             facing_s2 <= facing_s1;
             multiplier10_upper_upper_s2 <= multiplier10_upper_upper_s1;
             multiplier10_upper_low_bits_s2 <= multiplier10_upper_rows_2_s1[2:0];
             multiplier10_upper_carried_s2 <= multiplier10_upper_rows_2_s1[20:3];
-            multiplier10_rows_s2 <= multiplier10_rows_s1;
-            multiplier10_row_7_s2 <= cos_gamma_reg_s1[2] ? cos_dgamma_reg_s1 : 21'd0;
-            sine_rest4_2_s2 <= sine_rest4_2_s1;
+            multiplier10_rows_2_s2 <= multiplier10_rows_2_s1;
+            complement_2_s2 <= complement_2_s1;
+            sine_in_range8_2_s2 <= sine_in_range8_2_s1;
         end
     end
 
     // Stage 2: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma; 11 <- cos
     // gamma * cos dgamma
-    reg  [9:0]  exponent_s3;             // register 3: specular exponent n
+    reg  [9:0]  exponent_s3;         // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s3;
-    reg  [7:0]  red_s3;                  // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s3;                // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s3;                 // register 7: intensity of the light times k_s
-    reg  [13:0] sine_rest4_s3;           // u0.14
-    reg         facing_s3;               // the surface faces the half vector
-    reg  [21:0] sine_base_s3;            // u0.22
-    reg  [12:0] sine_slope_s3;           // u-5.18
-    reg  [38:0] multiplier10_upper_s3;   // register 10
-    reg  [23:0] multiplier10_rows_2_s3;  // register 10
-    reg  [13:0] sine_rest4_2_s3;         // u0.14
+    reg  [7:0]  red_s3;              // register 5: intensity of the light times k_s
+    reg  [7:0]  green_s3;            // register 6: intensity of the light times k_s
+    reg  [7:0]  blue_s3;             // register 7: intensity of the light times k_s
+    reg  [13:0] sine_rest4_s3;       // u0.14
+    reg         facing_s3;           // the surface faces the half vector
+    reg  [22:0] reg11_cos_cos_s3;    // register 11, u1.22: cos gamma * cos dgamma
+    reg  [13:0] sine_rest4_2_s3;     // u0.14
+    reg  [34:0] sine_word_s3;
     reg  [34:0] sine_word_2_s3;
 
-    wire [21:0] sine_base_s2 = sine_word_s2[34:13];  // u0.22
-    wire [12:0] sine_slope_s2 = sine_word_s2[12:0];  // u-5.18
+    wire sine_in_range4_s2 = |complement_s2[20:10];  // u is in range 4 or in one above
+    wire sine_in_range6_s2 = |complement_s2[20:6];  // u is in range 6 or in one above
+    wire sine_in_range7_s2 = |complement_s2[20:4];  // u is in range 7 or in one above
+    wire [13:0] sine_rest8_s2 = sine_in_range8_s2 ? {complement_s2[1:0], 12'd0} : 14'd0;  // u0.14
+
+    // u0.14
+    wire [13:0] sine_rest7_s2 = sine_in_range7_s2 ? {complement_s2[2:0], 11'd0} : sine_rest8_s2;
+
+    wire sine_in_range5_s2 = |complement_s2[20:8];  // u is in range 5 or in one above
+
+    // u0.14
+    wire [13:0] sine_rest5_s2 = sine_in_range5_s2 ? {complement_s2[5:0], 8'd0} :
+            {complement_s2[4:0], 9'd0};
+
+    wire [13:0] sine_rest6_s2 = sine_in_range6_s2 ? sine_rest5_s2 : sine_rest7_s2;  // u0.14
+    wire sine_in_range1_s2 = |complement_s2[20:16];  // u is in range 1 or in one above
+    wire sine_in_range2_s2 = |complement_s2[20:14];  // u is in range 2 or in one above
+    wire sine_in_range3_s2 = |complement_s2[20:12];  // u is in range 3 or in one above
+
+    // u0.14
+    wire [13:0] sine_rest3_s2 = sine_in_range3_s2 ? {complement_s2[7:0], 6'd0} :
+            {complement_s2[6:0], 7'd0};
+
+    // u0.14
+    wire [13:0] sine_rest2_s2 = sine_in_range2_s2 ? {complement_s2[8:0], 5'd0} : sine_rest3_s2;
+
+    wire sine_in_range0_s2 = |complement_s2[20:18];  // u is in range 0 or in one above
+
+    // u0.14
+    wire [13:0] sine_rest0_s2 = sine_in_range0_s2 ? complement_s2[13:0] : {complement_s2[9:0],
+            4'd0};
+
+    wire [13:0] sine_rest1_s2 = sine_in_range1_s2 ? sine_rest0_s2 : sine_rest2_s2;  // u0.14
+    wire [13:0] sine_rest4_s2 = sine_in_range4_s2 ? sine_rest1_s2 : sine_rest6_s2;  // u0.14
+
+    wire [9:0] sine_word8_s2 = sine_in_range8_s2 ? {8'd144, complement_s2[3:2]} : {8'd145,
+            complement_s2[1:0]};
+
+    wire [9:0] sine_word7_s2 = sine_in_range7_s2 ? {7'd71, complement_s2[5:3]} : sine_word8_s2;
+
+    wire [9:0] sine_word5_s2 = sine_in_range5_s2 ? {6'd34, complement_s2[9:6]} : {7'd70,
+            complement_s2[7:5]};
+
+    wire [9:0] sine_word6_s2 = sine_in_range6_s2 ? sine_word5_s2 : sine_word7_s2;
+
+    wire [9:0] sine_word3_s2 = sine_in_range3_s2 ? {4'd7, complement_s2[13:8]} : {5'd16,
+            complement_s2[11:7]};
+
+    wire [9:0] sine_word2_s2 = sine_in_range2_s2 ? {3'd2, complement_s2[15:9]} : sine_word3_s2;
+
+    wire [8:0] sine_word0_s2 = sine_in_range0_s2 ? {3'd6, complement_s2[19:14]} : {1'b0,
+            complement_s2[17:10]};
+
+    wire [9:0] sine_word1_s2 = sine_in_range1_s2 ? {1'b0, sine_word0_s2} : sine_word2_s2;
+    wire [9:0] sine_word4_s2 = sine_in_range4_s2 ? sine_word1_s2 : sine_word6_s2;
 
     // adder 10
     wire [35:0] multiplier10_upper_sum_s2 = multiplier10_upper_upper_s2 + {18'd0,
@@ -403,8 +328,85 @@ module rough_pipelined #(
     wire [38:0] multiplier10_upper_s2 = {multiplier10_upper_sum_s2, multiplier10_upper_low_bits_s2};
 
     // adder 10
-    wire [23:0] multiplier10_rows_2_s2 = {1'b0, multiplier10_rows_s2} + {1'b0,
-            multiplier10_row_7_s2, 2'd0};
+    wire [38:0] multiplier10_sum_s2 = multiplier10_upper_s2 + {18'd0, multiplier10_rows_2_s2[23:3]};
+
+    // block 10: the shared product; its point depends on the operands
+    wire [41:0] multiplier10_s2 = {multiplier10_sum_s2, multiplier10_rows_2_s2[2:0]};
+
+    // block 11, u1.22: cos gamma * cos dgamma
+    wire [22:0] reg11_cos_cos_s2 = multiplier10_s2[40:18];
+
+    wire sine_in_range4_2_s2 = |complement_2_s2[20:10];  // u is in range 4 or in one above
+    wire sine_in_range6_2_s2 = |complement_2_s2[20:6];  // u is in range 6 or in one above
+    wire sine_in_range7_2_s2 = |complement_2_s2[20:4];  // u is in range 7 or in one above
+
+    // u0.14
+    wire [13:0] sine_rest8_2_s2 = sine_in_range8_2_s2 ? {complement_2_s2[1:0], 12'd0} : 14'd0;
+
+    // u0.14
+    wire [13:0] sine_rest7_2_s2 = sine_in_range7_2_s2 ? {complement_2_s2[2:0], 11'd0} :
+            sine_rest8_2_s2;
+
+    wire sine_in_range5_2_s2 = |complement_2_s2[20:8];  // u is in range 5 or in one above
+
+    // u0.14
+    wire [13:0] sine_rest5_2_s2 = sine_in_range5_2_s2 ? {complement_2_s2[5:0], 8'd0} :
+            {complement_2_s2[4:0], 9'd0};
+
+    wire [13:0] sine_rest6_2_s2 = sine_in_range6_2_s2 ? sine_rest5_2_s2 : sine_rest7_2_s2;  // u0.14
+    wire sine_in_range1_2_s2 = |complement_2_s2[20:16];  // u is in range 1 or in one above
+    wire sine_in_range2_2_s2 = |complement_2_s2[20:14];  // u is in range 2 or in one above
+    wire sine_in_range3_2_s2 = |complement_2_s2[20:12];  // u is in range 3 or in one above
+
+    // u0.14
+    wire [13:0] sine_rest3_2_s2 = sine_in_range3_2_s2 ? {complement_2_s2[7:0], 6'd0} :
+            {complement_2_s2[6:0], 7'd0};
+
+    // u0.14
+    wire [13:0] sine_rest2_2_s2 = sine_in_range2_2_s2 ? {complement_2_s2[8:0], 5'd0} :
+            sine_rest3_2_s2;
+
+    wire sine_in_range0_2_s2 = |complement_2_s2[20:18];  // u is in range 0 or in one above
+
+    // u0.14
+    wire [13:0] sine_rest0_2_s2 = sine_in_range0_2_s2 ? complement_2_s2[13:0] :
+            {complement_2_s2[9:0], 4'd0};
+
+    wire [13:0] sine_rest1_2_s2 = sine_in_range1_2_s2 ? sine_rest0_2_s2 : sine_rest2_2_s2;  // u0.14
+    wire [13:0] sine_rest4_2_s2 = sine_in_range4_2_s2 ? sine_rest1_2_s2 : sine_rest6_2_s2;  // u0.14
+
+    wire [9:0] sine_word8_2_s2 = sine_in_range8_2_s2 ? {8'd144, complement_2_s2[3:2]} : {8'd145,
+            complement_2_s2[1:0]};
+
+    wire [9:0] sine_word7_2_s2 = sine_in_range7_2_s2 ? {7'd71, complement_2_s2[5:3]} :
+            sine_word8_2_s2;
+
+    wire [9:0] sine_word5_2_s2 = sine_in_range5_2_s2 ? {6'd34, complement_2_s2[9:6]} : {7'd70,
+            complement_2_s2[7:5]};
+
+    wire [9:0] sine_word6_2_s2 = sine_in_range6_2_s2 ? sine_word5_2_s2 : sine_word7_2_s2;
+
+    wire [9:0] sine_word3_2_s2 = sine_in_range3_2_s2 ? {4'd7, complement_2_s2[13:8]} : {5'd16,
+            complement_2_s2[11:7]};
+
+    wire [9:0] sine_word2_2_s2 = sine_in_range2_2_s2 ? {3'd2, complement_2_s2[15:9]} :
+            sine_word3_2_s2;
+
+    wire [8:0] sine_word0_2_s2 = sine_in_range0_2_s2 ? {3'd6, complement_2_s2[19:14]} : {1'b0,
+            complement_2_s2[17:10]};
+
+    wire [9:0] sine_word1_2_s2 = sine_in_range1_2_s2 ? {1'b0, sine_word0_2_s2} : sine_word2_2_s2;
+    wire [9:0] sine_word4_2_s2 = sine_in_range4_2_s2 ? sine_word1_2_s2 : sine_word6_2_s2;
+
+    // ROM 18: value at the start of a segment (u0.22), then its rise over the segment in units of
+    // 2^-18 (13 bits)
+    reg [34:0] sine_rom [0:583];
+    initial $readmemh(SINE_FILE, sine_rom);
+    always @(posedge clk) if (advance) sine_word_s3 <= sine_rom[sine_word4_s2];
+
+    // ROM 18: value at the start of a segment (u0.22), then its rise over the segment in units of
+    // 2^-18 (13 bits)
+    always @(posedge clk) if (advance) sine_word_2_s3 <= sine_rom[sine_word4_2_s2];
 
     always @(posedge clk) begin
         if (advance) begin
@@ -415,43 +417,29 @@ module rough_pipelined #(
             blue_s3 <= blue_s2;
             sine_rest4_s3 <= sine_rest4_s2;
             facing_s3 <= facing_s2;
-            sine_base_s3 <= sine_base_s2;
-            sine_slope_s3 <= sine_slope_s2;
-            multiplier10_upper_s3 <= multiplier10_upper_s2;
-            multiplier10_rows_2_s3 <= multiplier10_rows_2_s2;
+            reg11_cos_cos_s3 <= reg11_cos_cos_s2;
             sine_rest4_2_s3 <= sine_rest4_2_s2;
-            sine_word_2_s3 <= sine_word_2_s2;
         end
     end
 
-    // Stage 3: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin gamma
-    reg  [9:0]  exponent_s4;          // register 3: specular exponent n
+    // Stage 3: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma; 11 <- cos
+    // gamma * cos dgamma
+    reg  [9:0]  exponent_s4;         // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s4;
-    reg  [7:0]  red_s4;               // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s4;             // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s4;              // register 7: intensity of the light times k_s
-    reg         facing_s4;            // the surface faces the half vector
-    reg  [21:0] sine_base_s4;         // u0.22
-    reg  [16:0] sine_rise_kept_s4;    // u-5.22
-    reg  [22:0] reg11_cos_cos_s4;     // register 11, u1.22: cos gamma * cos dgamma
-    reg  [21:0] sine_base_2_s4;       // u0.22
-    reg  [16:0] sine_rise_kept_2_s4;  // u-5.22
+    reg  [7:0]  red_s4;              // register 5: intensity of the light times k_s
+    reg  [7:0]  green_s4;            // register 6: intensity of the light times k_s
+    reg  [7:0]  blue_s4;             // register 7: intensity of the light times k_s
+    reg  [13:0] sine_rest4_s4;       // u0.14
+    reg         facing_s4;           // the surface faces the half vector
+    reg  [21:0] sine_base_s4;        // u0.22
+    reg  [12:0] sine_slope_s4;       // u-5.18
+    reg  [22:0] reg11_cos_cos_s4;    // register 11, u1.22: cos gamma * cos dgamma
+    reg  [13:0] sine_rest4_2_s4;     // u0.14
+    reg  [34:0] sine_word_2_s4;
 
-    wire [26:0] sine_rise_s3 = sine_slope_s3 * sine_rest4_s3;  // u-5.32
-
-    // adder 10
-    wire [38:0] multiplier10_sum_s3 = multiplier10_upper_s3 + {18'd0, multiplier10_rows_2_s3[23:3]};
-
-    // block 10: the shared product; its point depends on the operands
-    wire [41:0] multiplier10_s3 = {multiplier10_sum_s3, multiplier10_rows_2_s3[2:0]};
-
-    // block 11, u1.22: cos gamma * cos dgamma
-    wire [22:0] reg11_cos_cos_s3 = multiplier10_s3[40:18];
-
-    wire [21:0] sine_base_2_s3 = sine_word_2_s3[34:13];  // u0.22
-    wire [12:0] sine_slope_2_s3 = sine_word_2_s3[12:0];  // u-5.18
-    wire [26:0] sine_rise_2_s3 = sine_slope_2_s3 * sine_rest4_2_s3;  // u-5.32
+    wire [21:0] sine_base_s3 = sine_word_s3[34:13];  // u0.22
+    wire [12:0] sine_slope_s3 = sine_word_s3[12:0];  // u-5.18
 
     always @(posedge clk) begin
         if (advance) begin
@@ -460,36 +448,34 @@ module rough_pipelined #(
             red_s4 <= red_s3;
             green_s4 <= green_s3;
             blue_s4 <= blue_s3;
+            sine_rest4_s4 <= sine_rest4_s3;
             facing_s4 <= facing_s3;
             sine_base_s4 <= sine_base_s3;
-            sine_rise_kept_s4 <= sine_rise_s3[26:10];
+            sine_slope_s4 <= sine_slope_s3;
             reg11_cos_cos_s4 <= reg11_cos_cos_s3;
-            sine_base_2_s4 <= sine_base_2_s3;
-            sine_rise_kept_2_s4 <= sine_rise_2_s3[26:10];
+            sine_rest4_2_s4 <= sine_rest4_2_s3;
+            sine_word_2_s4 <= sine_word_2_s3;
         end
     end
 
     // Stage 4: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin gamma
-    reg  [9:0]  exponent_s5;         // register 3: specular exponent n
+    reg  [9:0]  exponent_s5;          // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s5;
-    reg  [7:0]  red_s5;              // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s5;            // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s5;             // register 7: intensity of the light times k_s
-    reg         facing_s5;           // the surface faces the half vector
-    reg  [21:0] reg19_sin_gamma_s5;  // register 19, u0.22: sin gamma
-    reg  [22:0] reg11_cos_cos_s5;    // register 11, u1.22: cos gamma * cos dgamma
-    reg  [21:0] sine_value_s5;       // u0.22: sine of the addressed cosine
+    reg  [7:0]  red_s5;               // register 5: intensity of the light times k_s
+    reg  [7:0]  green_s5;             // register 6: intensity of the light times k_s
+    reg  [7:0]  blue_s5;              // register 7: intensity of the light times k_s
+    reg         facing_s5;            // the surface faces the half vector
+    reg  [21:0] sine_base_s5;         // u0.22
+    reg  [16:0] sine_rise_kept_s5;    // u-5.22
+    reg  [22:0] reg11_cos_cos_s5;     // register 11, u1.22: cos gamma * cos dgamma
+    reg  [21:0] sine_base_2_s5;       // u0.22
+    reg  [16:0] sine_rise_kept_2_s5;  // u-5.22
 
-    wire [22:0] sine_sum_s4 = {1'b0, sine_base_s4} + {6'd0, sine_rise_kept_s4};  // u1.22
-
-    // mux 19, u0.22: sin gamma
-    wire [21:0] reg19_sin_gamma_s4 = sine_sum_s4[22] ? 22'h3fffff : sine_sum_s4[21:0];
-
-    wire [22:0] sine_sum_2_s4 = {1'b0, sine_base_2_s4} + {6'd0, sine_rise_kept_2_s4};  // u1.22
-
-    // u0.22: sine of the addressed cosine
-    wire [21:0] sine_value_s4 = sine_sum_2_s4[22] ? 22'h3fffff : sine_sum_2_s4[21:0];
+    wire [26:0] sine_rise_s4 = sine_slope_s4 * sine_rest4_s4;  // u-5.32
+    wire [21:0] sine_base_2_s4 = sine_word_2_s4[34:13];  // u0.22
+    wire [12:0] sine_slope_2_s4 = sine_word_2_s4[12:0];  // u-5.18
+    wire [26:0] sine_rise_2_s4 = sine_slope_2_s4 * sine_rest4_2_s4;  // u-5.32
 
     always @(posedge clk) begin
         if (advance) begin
@@ -499,54 +485,35 @@ module rough_pipelined #(
             green_s5 <= green_s4;
             blue_s5 <= blue_s4;
             facing_s5 <= facing_s4;
-            reg19_sin_gamma_s5 <= reg19_sin_gamma_s4;
+            sine_base_s5 <= sine_base_s4;
+            sine_rise_kept_s5 <= sine_rise_s4[26:10];
             reg11_cos_cos_s5 <= reg11_cos_cos_s4;
-            sine_value_s5 <= sine_value_s4;
+            sine_base_2_s5 <= sine_base_2_s4;
+            sine_rise_kept_2_s5 <= sine_rise_2_s4[26:10];
         end
     end
 
-    // Stage 5: 12 <- sin gamma * sin dgamma
-    reg  [9:0]  exponent_s6;                    // register 3: specular exponent n
+    // Stage 5: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin gamma
+    reg  [9:0]  exponent_s6;         // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s6;
-    reg  [7:0]  red_s6;                         // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s6;                       // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s6;                        // register 7: intensity of the light times k_s
-    reg         facing_s6;                      // the surface faces the half vector
-    reg  [22:0] reg11_cos_cos_s6;               // register 11, u1.22: cos gamma * cos dgamma
-    reg  [35:0] multiplier10_upper_upper_2_s6;  // register 10
-    reg  [20:0] multiplier10_upper_rows_4_s6;   // register 10
-    reg  [17:0] multiplier10_upper_row_18_s6;   // register 10
-    reg  [23:0] multiplier10_rows_3_s6;         // register 10
-    reg  [21:0] multiplier10_row_15_s6;         // register 10
-    reg  [21:0] multiplier10_row_18_s6;         // register 10
+    reg  [7:0]  red_s6;              // register 5: intensity of the light times k_s
+    reg  [7:0]  green_s6;            // register 6: intensity of the light times k_s
+    reg  [7:0]  blue_s6;             // register 7: intensity of the light times k_s
+    reg         facing_s6;           // the surface faces the half vector
+    reg  [21:0] reg19_sin_gamma_s6;  // register 19, u0.22: sin gamma
+    reg  [22:0] reg11_cos_cos_s6;    // register 11, u1.22: cos gamma * cos dgamma
+    reg  [21:0] sine_value_s6;       // u0.22: sine of the addressed cosine
 
-    // multiplier 10
-    wire [35:0] multiplier10_upper_upper_2_s5 = reg19_sin_gamma_s5[21:4] * sine_value_s5[21:4];
+    wire [22:0] sine_sum_s5 = {1'b0, sine_base_s5} + {6'd0, sine_rise_kept_s5};  // u1.22
 
-    // mux 10
-    wire [17:0] multiplier10_upper_row_10_s5 = reg19_sin_gamma_s5[0] ? sine_value_s5[21:4] : 18'd0;
+    // mux 19, u0.22: sin gamma
+    wire [21:0] reg19_sin_gamma_s5 = sine_sum_s5[22] ? 22'h3fffff : sine_sum_s5[21:0];
 
-    // mux 10
-    wire [17:0] multiplier10_upper_row_12_s5 = reg19_sin_gamma_s5[1] ? sine_value_s5[21:4] : 18'd0;
+    wire [22:0] sine_sum_2_s5 = {1'b0, sine_base_2_s5} + {6'd0, sine_rise_kept_2_s5};  // u1.22
 
-    // adder 10
-    wire [19:0] multiplier10_upper_rows_3_s5 = {2'd0, multiplier10_upper_row_10_s5} + {1'b0,
-            multiplier10_upper_row_12_s5, 1'b0};
-
-    // mux 10
-    wire [17:0] multiplier10_upper_row_15_s5 = reg19_sin_gamma_s5[2] ? sine_value_s5[21:4] : 18'd0;
-
-    // adder 10
-    wire [20:0] multiplier10_upper_rows_4_s5 = {1'b0, multiplier10_upper_rows_3_s5} + {1'b0,
-            multiplier10_upper_row_15_s5, 2'd0};
-
-    wire [21:0] multiplier10_row_10_s5 = sine_value_s5[0] ? reg19_sin_gamma_s5 : 22'd0;  // mux 10
-    wire [21:0] multiplier10_row_12_s5 = sine_value_s5[1] ? reg19_sin_gamma_s5 : 22'd0;  // mux 10
-
-    // adder 10
-    wire [23:0] multiplier10_rows_3_s5 = {2'd0, multiplier10_row_10_s5} + {1'b0,
-            multiplier10_row_12_s5, 1'b0};
+    // u0.22: sine of the addressed cosine
+    wire [21:0] sine_value_s5 = sine_sum_2_s5[22] ? 22'h3fffff : sine_sum_2_s5[21:0];
 
     always @(posedge clk) begin
         if (advance) begin
@@ -556,48 +523,38 @@ module rough_pipelined #(
             green_s6 <= green_s5;
             blue_s6 <= blue_s5;
             facing_s6 <= facing_s5;
+            reg19_sin_gamma_s6 <= reg19_sin_gamma_s5;
             reg11_cos_cos_s6 <= reg11_cos_cos_s5;
-            multiplier10_upper_upper_2_s6 <= multiplier10_upper_upper_2_s5;
-            multiplier10_upper_rows_4_s6 <= multiplier10_upper_rows_4_s5;
-            multiplier10_upper_row_18_s6 <= reg19_sin_gamma_s5[3] ? sine_value_s5[21:4] : 18'd0;
-            multiplier10_rows_3_s6 <= multiplier10_rows_3_s5;
-            multiplier10_row_15_s6 <= sine_value_s5[2] ? reg19_sin_gamma_s5 : 22'd0;
-            multiplier10_row_18_s6 <= sine_value_s5[3] ? reg19_sin_gamma_s5 : 22'd0;
+            sine_value_s6 <= sine_value_s5;
         end
     end
 
     // Stage 6: 12 <- sin gamma * sin dgamma
-    reg  [9:0]  exponent_s7;                 // register 3: specular exponent n
+    reg  [9:0]  exponent_s7;                   // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s7;
-    reg  [7:0]  red_s7;                      // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s7;                    // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s7;                     // register 7: intensity of the light times k_s
-    reg         facing_s7;                   // the surface faces the half vector
-    reg  [22:0] reg11_cos_cos_s7;            // register 11, u1.22: cos gamma * cos dgamma
-    reg  [39:0] multiplier10_upper_2_s7;     // register 10
-    reg  [3:0]  multiplier10_low_bits_2_s7;  // register 10
-    reg  [21:0] multiplier10_carried_2_s7;   // register 10
+    reg  [7:0]  red_s7;                        // register 5: intensity of the light times k_s
+    reg  [7:0]  green_s7;                      // register 6: intensity of the light times k_s
+    reg  [7:0]  blue_s7;                       // register 7: intensity of the light times k_s
+    reg         facing_s7;                     // the surface faces the half vector
+    reg  [21:0] reg19_sin_gamma_s7;            // register 19, u0.22: sin gamma
+    reg  [22:0] reg11_cos_cos_s7;              // register 11, u1.22: cos gamma * cos dgamma
+    reg  [17:0] multiplier10_upper_bits_2_s7;  // register 10
+    reg  [19:0] multiplier10_upper_rows_3_s7;  // register 10
+    reg         multiplier10_row_9_s7;         // register 10
+    reg         multiplier10_row_11_s7;        // register 10
+    reg         multiplier10_row_14_s7;        // register 10
+    reg         multiplier10_row_17_s7;        // register 10
+
+    // mux 10
+    wire [17:0] multiplier10_upper_row_10_s6 = reg19_sin_gamma_s6[0] ? sine_value_s6[21:4] : 18'd0;
+
+    // mux 10
+    wire [17:0] multiplier10_upper_row_12_s6 = reg19_sin_gamma_s6[1] ? sine_value_s6[21:4] : 18'd0;
 
     // adder 10
-    wire [21:0] multiplier10_upper_rows_5_s6 = {1'b0, multiplier10_upper_rows_4_s6} + {1'b0,
-            multiplier10_upper_row_18_s6, 3'd0};
-
-    // adder 10
-    wire [35:0] multiplier10_upper_sum_2_s6 = multiplier10_upper_upper_2_s6 + {18'd0,
-            multiplier10_upper_rows_5_s6[21:4]};
-
-    // block 10
-    wire [39:0] multiplier10_upper_2_s6 = {multiplier10_upper_sum_2_s6,
-            multiplier10_upper_rows_5_s6[3:0]};
-
-    // adder 10
-    wire [24:0] multiplier10_rows_4_s6 = {1'b0, multiplier10_rows_3_s6} + {1'b0,
-            multiplier10_row_15_s6, 2'd0};
-
-    // adder 10
-    wire [25:0] multiplier10_rows_5_s6 = {1'b0, multiplier10_rows_4_s6} + {1'b0,
-            multiplier10_row_18_s6, 3'd0};
+    wire [19:0] multiplier10_upper_rows_3_s6 = {2'd0, multiplier10_upper_row_10_s6} + {1'b0,
+            multiplier10_upper_row_12_s6, 1'b0};
 
     always @(posedge clk) begin
         if (advance) begin
@@ -607,33 +564,67 @@ module rough_pipelined #(
             green_s7 <= green_s6;
             blue_s7 <= blue_s6;
             facing_s7 <= facing_s6;
+            reg19_sin_gamma_s7 <= reg19_sin_gamma_s6;
             reg11_cos_cos_s7 <= reg11_cos_cos_s6;
-            multiplier10_upper_2_s7 <= multiplier10_upper_2_s6;
-            multiplier10_low_bits_2_s7 <= multiplier10_rows_5_s6[3:0];
-            multiplier10_carried_2_s7 <= multiplier10_rows_5_s6[25:4];
+            multiplier10_upper_bits_2_s7 <= sine_value_s6[21:4];
+            multiplier10_upper_rows_3_s7 <= multiplier10_upper_rows_3_s6;
+            multiplier10_row_9_s7 <= sine_value_s6[0];
+            multiplier10_row_11_s7 <= sine_value_s6[1];
+            multiplier10_row_14_s7 <= sine_value_s6[2];
+            multiplier10_row_17_s7 <= sine_value_s6[3];
         end
     end
 
     // Stage 7: 12 <- sin gamma * sin dgamma
-    reg  [9:0]  exponent_s8;         // register 3: specular exponent n
+    reg  [9:0]  exponent_s8;                    // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s8;
-    reg  [7:0]  red_s8;              // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s8;            // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s8;             // register 7: intensity of the light times k_s
-    reg         facing_s8;           // the surface faces the half vector
-    reg  [22:0] reg11_cos_cos_s8;    // register 11, u1.22: cos gamma * cos dgamma
-    reg  [21:0] reg12_sin_sin_s8;    // register 12, u0.22: sin gamma * sin dgamma
+    reg  [7:0]  red_s8;                         // register 5: intensity of the light times k_s
+    reg  [7:0]  green_s8;                       // register 6: intensity of the light times k_s
+    reg  [7:0]  blue_s8;                        // register 7: intensity of the light times k_s
+    reg         facing_s8;                      // the surface faces the half vector
+    reg  [22:0] reg11_cos_cos_s8;               // register 11, u1.22: cos gamma * cos dgamma
+    reg  [35:0] multiplier10_upper_upper_2_s8;  // register 10
+    reg  [21:0] multiplier10_upper_rows_5_s8;   // register 10
+    reg  [24:0] multiplier10_rows_4_s8;         // register 10
+    reg  [21:0] multiplier10_row_18_s8;         // register 10
+
+    // multiplier 10
+    wire [35:0] multiplier10_upper_upper_2_s7 = reg19_sin_gamma_s7[21:4] *
+            multiplier10_upper_bits_2_s7;
+
+    // mux 10
+    wire [17:0] multiplier10_upper_row_15_s7 = reg19_sin_gamma_s7[2] ? multiplier10_upper_bits_2_s7
+            : 18'd0;
 
     // adder 10
-    wire [39:0] multiplier10_sum_2_s7 = multiplier10_upper_2_s7 + {18'd0,
-            multiplier10_carried_2_s7};
+    wire [20:0] multiplier10_upper_rows_4_s7 = {1'b0, multiplier10_upper_rows_3_s7} + {1'b0,
+            multiplier10_upper_row_15_s7, 2'd0};
 
-    // block 10: the shared product; its point depends on the operands
-    wire [43:0] multiplier10_2_s7 = {multiplier10_sum_2_s7, multiplier10_low_bits_2_s7};
+    // mux 10
+    wire [17:0] multiplier10_upper_row_18_s7 = reg19_sin_gamma_s7[3] ? multiplier10_upper_bits_2_s7
+            : 18'd0;
 
-    // block 12, u0.22: sin gamma * sin dgamma
-    wire [21:0] reg12_sin_sin_s7 = multiplier10_2_s7[43:22];
+    // adder 10
+    wire [21:0] multiplier10_upper_rows_5_s7 = {1'b0, multiplier10_upper_rows_4_s7} + {1'b0,
+            multiplier10_upper_row_18_s7, 3'd0};
+
+    // mux 10
+    wire [21:0] multiplier10_row_10_s7 = multiplier10_row_9_s7 ? reg19_sin_gamma_s7 : 22'd0;
+
+    // mux 10
+    wire [21:0] multiplier10_row_12_s7 = multiplier10_row_11_s7 ? reg19_sin_gamma_s7 : 22'd0;
+
+    // adder 10
+    wire [23:0] multiplier10_rows_3_s7 = {2'd0, multiplier10_row_10_s7} + {1'b0,
+            multiplier10_row_12_s7, 1'b0};
+
+    // mux 10
+    wire [21:0] multiplier10_row_15_s7 = multiplier10_row_14_s7 ? reg19_sin_gamma_s7 : 22'd0;
+
+    // adder 10
+    wire [24:0] multiplier10_rows_4_s7 = {1'b0, multiplier10_rows_3_s7} + {1'b0,
+            multiplier10_row_15_s7, 2'd0};
 
     always @(posedge clk) begin
         if (advance) begin
@@ -644,44 +635,56 @@ module rough_pipelined #(
             blue_s8 <= blue_s7;
             facing_s8 <= facing_s7;
             reg11_cos_cos_s8 <= reg11_cos_cos_s7;
-            reg12_sin_sin_s8 <= reg12_sin_sin_s7;
+            multiplier10_upper_upper_2_s8 <= multiplier10_upper_upper_2_s7;
+            multiplier10_upper_rows_5_s8 <= multiplier10_upper_rows_5_s7;
+            multiplier10_rows_4_s8 <= multiplier10_rows_4_s7;
+            multiplier10_row_18_s8 <= multiplier10_row_17_s7 ? reg19_sin_gamma_s7 : 22'd0;
         end
     end
 
-    // Stage 8: operands adder 15, n/2
-    reg         [9:0]  exponent_s9;       // register 3: specular exponent n
-    reg         [7:0]  red_s9;            // register 5: intensity of the light times k_s
-    reg         [7:0]  green_s9;          // register 6: intensity of the light times k_s
-    reg         [7:0]  blue_s9;           // register 7: intensity of the light times k_s
-    reg                facing_s9;         // the surface faces the half vector
-    reg         [22:0] reg11_cos_cos_s9;  // register 11, u1.22: cos gamma * cos dgamma
-    reg  signed [23:0] mux14_s9;          // register 14, s1.22: what adder 15 adds to register 11
-    reg                subtracts_s9;      // carry-in of adder 15
+    // Stage 8: 12 <- sin gamma * sin dgamma
+    reg  [9:0]  exponent_s9;         // register 3: specular exponent n
+    // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
+    reg         dgamma_negative_s9;
+    reg  [7:0]  red_s9;              // register 5: intensity of the light times k_s
+    reg  [7:0]  green_s9;            // register 6: intensity of the light times k_s
+    reg  [7:0]  blue_s9;             // register 7: intensity of the light times k_s
+    reg         facing_s9;           // the surface faces the half vector
+    reg  [22:0] reg11_cos_cos_s9;    // register 11, u1.22: cos gamma * cos dgamma
+    reg  [21:0] reg12_sin_sin_s9;    // register 12, u0.22: sin gamma * sin dgamma
 
-    // u1.22: register 12 + 1.0, by wiring
-    wire [22:0] raised12_s8 = {1'b0, reg12_sin_sin_s8} + ONE;
+    // adder 10
+    wire [35:0] multiplier10_upper_sum_2_s8 = multiplier10_upper_upper_2_s8 + {18'd0,
+            multiplier10_upper_rows_5_s8[21:4]};
 
-    // s1.22: -(register 12) - 1.0, less an ulp
-    wire signed [23:0] inverse12_s8 = ~{1'b0, raised12_s8};
+    // block 10
+    wire [39:0] multiplier10_upper_2_s8 = {multiplier10_upper_sum_2_s8,
+            multiplier10_upper_rows_5_s8[3:0]};
 
-    // adder 31, s0.22: register 12 - 1.0
-    wire signed [22:0] adder31_s8 = {1'b0, reg12_sin_sin_s8} - ONE_2_SAME;
+    // adder 10
+    wire [25:0] multiplier10_rows_5_s8 = {1'b0, multiplier10_rows_4_s8} + {1'b0,
+            multiplier10_row_18_s8, 3'd0};
 
-    // mux 14, s1.22: what adder 15 adds to register 11
-    wire signed [23:0] mux14_s8 = dgamma_negative_s8 ? {adder31_s8[22], adder31_s8} : inverse12_s8;
+    // adder 10
+    wire [39:0] multiplier10_sum_2_s8 = multiplier10_upper_2_s8 + {18'd0,
+            multiplier10_rows_5_s8[25:4]};
 
-    wire subtracts_s8 = ~dgamma_negative_s8;  // carry-in of adder 15
+    // block 10: the shared product; its point depends on the operands
+    wire [43:0] multiplier10_2_s8 = {multiplier10_sum_2_s8, multiplier10_rows_5_s8[3:0]};
+
+    // block 12, u0.22: sin gamma * sin dgamma
+    wire [21:0] reg12_sin_sin_s8 = multiplier10_2_s8[43:22];
 
     always @(posedge clk) begin
         if (advance) begin
             exponent_s9 <= exponent_s8;
+            dgamma_negative_s9 <= dgamma_negative_s8;
             red_s9 <= red_s8;
             green_s9 <= green_s8;
             blue_s9 <= blue_s8;
             facing_s9 <= facing_s8;
             reg11_cos_cos_s9 <= reg11_cos_cos_s8;
-            mux14_s9 <= mux14_s8;
-            subtracts_s9 <= subtracts_s8;
+            reg12_sin_sin_s9 <= reg12_sin_sin_s8;
         end
     end
 
@@ -692,6 +695,20 @@ module rough_pipelined #(
     reg         [7:0]  blue_s10;      // register 7: intensity of the light times k_s
     reg                facing_s10;    // the surface faces the half vector
     reg  signed [23:0] adder15_s10;   // register 15, s1.22: cos(gamma +- dgamma) - 1.0
+
+    // u1.22: register 12 + 1.0, by wiring
+    wire [22:0] raised12_s9 = {1'b0, reg12_sin_sin_s9} + ONE;
+
+    // s1.22: -(register 12) - 1.0, less an ulp
+    wire signed [23:0] inverse12_s9 = ~{1'b0, raised12_s9};
+
+    // adder 31, s0.22: register 12 - 1.0
+    wire signed [22:0] adder31_s9 = {1'b0, reg12_sin_sin_s9} - ONE_2_SAME;
+
+    // mux 14, s1.22: what adder 15 adds to register 11
+    wire signed [23:0] mux14_s9 = dgamma_negative_s9 ? {adder31_s9[22], adder31_s9} : inverse12_s9;
+
+    wire subtracts_s9 = ~dgamma_negative_s9;  // carry-in of adder 15
 
     // adder 15, s1.22: cos(gamma +- dgamma) - 1.0
     wire signed [23:0] adder15_s9 = {1'b0, reg11_cos_cos_s9} + mux14_s9 + {23'd0, subtracts_s9};
@@ -913,8 +930,8 @@ module rough_pipelined #(
     assign blue_out = blue_intensity_s18;  // output 42: intensity on the output
 
     // Bits that nothing needs, among them those that narrowing drops.
-    wire unused = &{1'b0, sine_rise_s3[9:0], multiplier10_s3[17:0], multiplier10_s3[41],
-            sine_rise_2_s3[9:0], multiplier10_2_s7[21:0], multiplier10_3_s11[6:0],
+    wire unused = &{1'b0, sine_rise_s4[9:0], multiplier10_s2[17:0], multiplier10_s2[41],
+            sine_rise_2_s4[9:0], multiplier10_2_s8[21:0], multiplier10_3_s11[6:0],
             multiplier10_4_s14[15:0], reg13_result_2_s15[16], red_product_s16[14:0],
             green_product_s16[14:0], blue_product_s16[14:0]};
 endmodule

@@ -5,7 +5,7 @@
 //
 // Source: UA 30041, the prototype in seed 001
 //
-// Pipeline: a point every clock, its results 8 clocks later; stages for 130 MHz on ecp5. While
+// Pipeline: a point every clock, its results 9 clocks later; stages for 130 MHz on ecp5. While
 // out_valid is high and out_ready low, nothing moves, and in_ready is low.
 //
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit
@@ -78,9 +78,10 @@ module threshold_pipelined #(
     reg  valid_s6;  // stage 6 has a point
     reg  valid_s7;  // stage 7 has a point
     reg  valid_s8;  // stage 8 has a point
+    reg  valid_s9;  // stage 9 has a point
 
-    assign out_valid = valid_s8;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s8;  // every point moves on by a stage
+    assign out_valid = valid_s9;  // the results are on the outputs
+    wire advance = out_ready | ~valid_s9;  // every point moves on by a stage
     assign in_ready = advance;  // a point that is offered is taken in this clock
 
     always @(posedge clk) begin
@@ -93,6 +94,7 @@ module threshold_pipelined #(
             valid_s6 <= 1'b0;
             valid_s7 <= 1'b0;
             valid_s8 <= 1'b0;
+            valid_s9 <= 1'b0;
         end else if (advance) begin
             valid_s1 <= in_valid;
             valid_s2 <= valid_s1;
@@ -102,6 +104,7 @@ module threshold_pipelined #(
             valid_s6 <= valid_s5;
             valid_s7 <= valid_s6;
             valid_s8 <= valid_s7;
+            valid_s9 <= valid_s8;
         end
     end
 
@@ -259,10 +262,11 @@ module threshold_pipelined #(
     end
 
     // Stage 5: intensity <- (scaled + 1)^2, or 0 below ROM(n)
-    reg  [7:0]  red_s6;        // register 3: intensity of the light times k_s
-    reg  [7:0]  green_s6;      // register 4: intensity of the light times k_s
-    reg  [7:0]  blue_s6;       // register 5: intensity of the light times k_s
-    reg  [15:0] intensity_s6;  // u0.16: the reflectance f: what the gates passed
+    reg  [7:0]  red_s6;     // register 3: intensity of the light times k_s
+    reg  [7:0]  green_s6;   // register 4: intensity of the light times k_s
+    reg  [7:0]  blue_s6;    // register 5: intensity of the light times k_s
+    reg  [15:0] square_s6;  // u0.16
+    reg         pass_s6;    // opens the gates
 
     // u0.16
     wire [15:0] square_s5 = (|multiplier2_kept_bits_s5) ? 16'hffff : multiplier2_kept_inside_s5;
@@ -271,72 +275,88 @@ module threshold_pipelined #(
     wire visible_s5 = ~comparator_s5;
     wire pass_s5 = facing_s5 & visible_s5;  // opens the gates
 
-    // u0.16: the reflectance f: what the gates passed
-    wire [15:0] intensity_s5 = pass_s5 ? square_s5 : 16'd0;
-
     always @(posedge clk) begin
         if (advance) begin
             red_s6 <= red_s5;
             green_s6 <= green_s5;
             blue_s6 <= blue_s5;
-            intensity_s6 <= intensity_s5;
+            square_s6 <= square_s5;
+            pass_s6 <= pass_s5;
         end
     end
 
-    // Stage 6: result
-    reg  [7:0] red_product_kept_s7;
-    reg        red_product_bits_s7;
-    reg  [7:0] green_product_kept_s7;
-    reg        green_product_bits_s7;
-    reg  [7:0] blue_product_kept_s7;
-    reg        blue_product_bits_s7;
+    // Stage 6: intensity <- (scaled + 1)^2, or 0 below ROM(n)
+    reg  [7:0]  red_s7;        // register 3: intensity of the light times k_s
+    reg  [7:0]  green_s7;      // register 4: intensity of the light times k_s
+    reg  [7:0]  blue_s7;       // register 5: intensity of the light times k_s
+    reg  [15:0] intensity_s7;  // u0.16: the reflectance f: what the gates passed
 
-    // multiplier 3, u8.16: an output before it is rounded
-    wire [23:0] red_product_s6 = intensity_s6 * red_s6;
-
-    // multiplier 4, u8.16: an output before it is rounded
-    wire [23:0] green_product_s6 = intensity_s6 * green_s6;
-
-    // multiplier 5, u8.16: an output before it is rounded
-    wire [23:0] blue_product_s6 = intensity_s6 * blue_s6;
+    // u0.16: the reflectance f: what the gates passed
+    wire [15:0] intensity_s6 = pass_s6 ? square_s6 : 16'd0;
 
     always @(posedge clk) begin
         if (advance) begin
-            red_product_kept_s7 <= red_product_s6[23:16];
-            red_product_bits_s7 <= red_product_s6[15];
-            green_product_kept_s7 <= green_product_s6[23:16];
-            green_product_bits_s7 <= green_product_s6[15];
-            blue_product_kept_s7 <= blue_product_s6[23:16];
-            blue_product_bits_s7 <= blue_product_s6[15];
+            red_s7 <= red_s6;
+            green_s7 <= green_s6;
+            blue_s7 <= blue_s6;
+            intensity_s7 <= intensity_s6;
         end
     end
 
     // Stage 7: result
-    reg  [7:0] red_intensity_s8;
-    reg  [7:0] green_intensity_s8;
-    reg  [7:0] blue_intensity_s8;
+    reg  [7:0] red_product_kept_s8;
+    reg        red_product_bits_s8;
+    reg  [7:0] green_product_kept_s8;
+    reg        green_product_bits_s8;
+    reg  [7:0] blue_product_kept_s8;
+    reg        blue_product_bits_s8;
 
-    wire [7:0] red_intensity_s7 = red_product_kept_s7 + {7'd0, red_product_bits_s7};
-    wire [7:0] green_intensity_s7 = green_product_kept_s7 + {7'd0, green_product_bits_s7};
-    wire [7:0] blue_intensity_s7 = blue_product_kept_s7 + {7'd0, blue_product_bits_s7};
+    // multiplier 3, u8.16: an output before it is rounded
+    wire [23:0] red_product_s7 = intensity_s7 * red_s7;
+
+    // multiplier 4, u8.16: an output before it is rounded
+    wire [23:0] green_product_s7 = intensity_s7 * green_s7;
+
+    // multiplier 5, u8.16: an output before it is rounded
+    wire [23:0] blue_product_s7 = intensity_s7 * blue_s7;
 
     always @(posedge clk) begin
         if (advance) begin
-            red_intensity_s8 <= red_intensity_s7;
-            green_intensity_s8 <= green_intensity_s7;
-            blue_intensity_s8 <= blue_intensity_s7;
+            red_product_kept_s8 <= red_product_s7[23:16];
+            red_product_bits_s8 <= red_product_s7[15];
+            green_product_kept_s8 <= green_product_s7[23:16];
+            green_product_bits_s8 <= green_product_s7[15];
+            blue_product_kept_s8 <= blue_product_s7[23:16];
+            blue_product_bits_s8 <= blue_product_s7[15];
+        end
+    end
+
+    // Stage 8: result
+    reg  [7:0] red_intensity_s9;
+    reg  [7:0] green_intensity_s9;
+    reg  [7:0] blue_intensity_s9;
+
+    wire [7:0] red_intensity_s8 = red_product_kept_s8 + {7'd0, red_product_bits_s8};
+    wire [7:0] green_intensity_s8 = green_product_kept_s8 + {7'd0, green_product_bits_s8};
+    wire [7:0] blue_intensity_s8 = blue_product_kept_s8 + {7'd0, blue_product_bits_s8};
+
+    always @(posedge clk) begin
+        if (advance) begin
+            red_intensity_s9 <= red_intensity_s8;
+            green_intensity_s9 <= green_intensity_s8;
+            blue_intensity_s9 <= blue_intensity_s8;
         end
     end
 
     // Results
 
-    assign red_out = red_intensity_s8;  // output 1: intensity on the output
-    assign green_out = green_intensity_s8;  // output 2: intensity on the output
-    assign blue_out = blue_intensity_s8;  // output 3: intensity on the output
+    assign red_out = red_intensity_s9;  // output 1: intensity on the output
+    assign green_out = green_intensity_s9;  // output 2: intensity on the output
+    assign blue_out = blue_intensity_s9;  // output 3: intensity on the output
 
     // Bits that nothing needs, among them those that narrowing drops.
-    wire unused = &{1'b0, multiplier1_s2[4:0], multiplier2_s4[15:0], red_product_s6[14:0],
-            green_product_s6[14:0], blue_product_s6[14:0]};
+    wire unused = &{1'b0, multiplier1_s2[4:0], multiplier2_s4[15:0], red_product_s7[14:0],
+            green_product_s7[14:0], blue_product_s7[14:0]};
 endmodule
 
 `default_nettype wire

@@ -16,8 +16,8 @@ module threshold_pipelined_tb #(
     parameter STIMULUS_FILE = "threshold_pipelined_stimulus.mem",
     parameter EXPECTED_FILE = "threshold_pipelined_expected.mem"
 );
-    localparam CLOCKS     = 4144;
-    localparam KNOWN_FROM = 11;  // results are compared from this clock on
+    localparam CLOCKS     = 3918;
+    localparam KNOWN_FROM = 12;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 
     reg [57:0] stimulus [0:CLOCKS-1];

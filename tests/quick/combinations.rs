@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::common::units::configuration;
+use crate::common::units::{configuration, configuration_with};
 use glint::config::Config;
 use glint::core::Unit;
 use glint::cosim::exhaustive::{Clocks, Job, MOST_BITS, Proof, Shard, State};
@@ -18,6 +18,9 @@ use glint::registry::{Device, Registry};
 use serde_json::Value;
 
 const NARROW: &str = "configs/reduced/quadratic.toml";
+
+/// Makes a pipeline of it.
+const PIPELINED: &str = "architecture = \"pipelined\"\n";
 
 /// Operands, with what they must be for a model to err.
 type Aim = &'static [(&'static str, u64)];
@@ -137,6 +140,48 @@ fn every_combination_of_every_device() {
     let all: BTreeSet<&str> =
         (Registry::catalogue().devices().iter()).map(|device| device.name).collect();
     assert_eq!(devices, all);
+}
+
+/// The same of the pipelines; the stages are those of the narrow configuration.
+#[test]
+fn every_combination_of_every_pipeline() {
+    for entry in fs::read_dir("configs/reduced").expect("configs/reduced/") {
+        let path = entry.expect("an entry").path().display().to_string();
+        let sequential = configuration(&path);
+        if sequential.contract.length().is_some() {
+            continue;
+        }
+        let unit = configuration_with(&path, PIPELINED);
+        assert!(unit.design.pipeline.is_some(), "{path}");
+        let clocks = unit.clocks().expect("they fit");
+        assert_eq!(clocks.count(), sequential.clocks().expect("they fit").count(), "{path}");
+        let blocks = (0..clocks.blocks()).collect();
+        let differs = clocks.check(blocks, &|_| ()).expect("it can be simulated");
+        let difference = differs.map(|place| clocks.difference(place));
+        assert!(difference.is_none(), "{path}: {difference:?}");
+    }
+}
+
+/// The combination of which a model errs, in a pipeline: found, had again, and no other.
+#[test]
+fn a_fault_that_one_combination_of_a_pipeline_shows_is_found() {
+    let unit = configuration_with(NARROW, PIPELINED);
+    let job = job(&unit, ONE);
+    let clocks = job.clocks.as_ref().expect("combinations");
+    let place = whole(&job).clocks.differs.expect("it differs");
+    let found = clocks.difference(place).expect("it can be had again");
+    for (name, bits) in ONE {
+        let operand = found.operands.iter().find(|(operand, _)| operand == name);
+        assert_eq!(operand.map(|(_, bits)| bits), Some(bits), "{found:?}");
+    }
+    assert_eq!((found.place, found.mismatch.signal.as_str()), (place, "red_out"));
+    // It shows when the point is at the end.
+    let latency = unit.design.pipeline.as_ref().expect("a pipeline").stages.len();
+    assert_eq!(found.clock, latency as u64 - 1);
+    let block = place / (clocks.count() / clocks.blocks());
+    let others = (0..clocks.blocks()).filter(|&other| other != block);
+    assert_eq!(clocks.check(others.collect(), &|_| ()).expect("checked"), None);
+    assert!(clocks.difference(place + 1).is_err());
 }
 
 #[test]

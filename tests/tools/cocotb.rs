@@ -7,7 +7,7 @@ use std::path::Path;
 
 use crate::common::bench::with_flipped_bit;
 use crate::common::tools::{LIMIT, tool};
-use crate::common::units::{Emitted, configuration, configurations};
+use crate::common::units::{Emitted, all_configurations, configuration, configuration_with};
 use glint::core::Unit;
 use glint::package;
 use glint::tools::Run;
@@ -19,27 +19,51 @@ const HELD: &str = "held_start_repeats";
 const RESET: &str = "reset_ends_a_computation";
 const FORMULA: &str = "formula_holds_at_random_points";
 
+/// The tests of a pipeline.
+const POINTS: &str = "points_are_exact";
+const STALLS: &str = "bubbles_and_stalls_change_nothing";
+const DROPS: &str = "reset_drops_every_point";
+const FOLLOWS: &str = "random_points_follow_the_formula";
+
+const OF_SEQUENTIAL: [&str; 6] = [EXACT, IGNORED, HELD, RESET, FORMULA, "worked_example"];
+const OF_PIPELINE: [&str; 5] = [POINTS, STALLS, DROPS, FOLLOWS, "worked_example"];
+
+/// Its tests.
+fn tests(unit: &Unit) -> &'static [&'static str] {
+    if unit.design.pipeline.is_some() { &OF_PIPELINE } else { &OF_SEQUENTIAL }
+}
+
 #[test]
 fn every_bench_passes() {
-    configurations().par_iter().for_each(|(path, unit)| {
-        let place = place(unit);
-        let run = run(place.path(), &unit.config.name);
-        let tests = [EXACT, IGNORED, HELD, RESET, FORMULA, "worked_example"];
-        let passed = tests.map(|test| run.output.contains(&format!("{test} passed")));
-        let says = format!("PASS {}: 6 tests, 0 failed", unit.config.name);
-        assert!(
-            run.status.success() && passed == [true; 6] && run.output.contains(&says),
-            "{path}:\n{}",
-            run.output
-        );
-    });
+    all_configurations().par_iter().for_each(|(path, unit)| assert_passes(path, unit));
+}
+
+#[test]
+fn benches_of_pipelines_with_and_without_stalls_and_a_side_channel_pass() {
+    for more in ["side = 64\n", "stall = \"none\"\n", "stall = \"none\"\nside = 1\n"] {
+        let unit = configuration_with("configs/cosine_power_pipelined.toml", more);
+        assert_passes(more, &unit);
+    }
+}
+
+fn assert_passes(what: &str, unit: &Unit) {
+    let place = place(unit);
+    let run = run(place.path(), &unit.config.name);
+    let passed = |test: &&str| run.output.contains(&format!("{test} passed"));
+    let tests = tests(unit);
+    let says = format!("PASS {}: {} tests, 0 failed", unit.config.name, tests.len());
+    assert!(
+        run.status.success() && tests.iter().all(passed) && run.output.contains(&says),
+        "{what}:\n{}",
+        run.output
+    );
 }
 
 /// A fault: in which file of which configuration, what stands there, what stands there instead, and a test
 /// that notices.
 type Fault = (&'static str, &'static str, &'static str, &'static str, &'static str);
 
-const FAULTS: [Fault; 14] = [
+const FAULTS: [Fault; 20] = [
     // The handshake: late, early, forgotten.
     (
         "rough",
@@ -64,6 +88,25 @@ const FAULTS: [Fault; 14] = [
     ("rough", ".json", "\"start_to_done\": 10", "\"start_to_done\": 11", EXACT),
     ("rough", ".json", "max(exponent / 2", "max(exponent / 3", FORMULA),
     ("threshold", ".json", "levels[int(exponent)]", "0.25 + levels[int(exponent)]", FORMULA),
+    // A pipeline: results that come late, or change while they wait; points that stay after a reset.
+    ("cosine_power_pipelined", ".json", "\"latency\": ", "\"latency\": 1", POINTS),
+    (
+        "cosine_power_pipelined",
+        ".v",
+        "advance = out_ready | ~",
+        "advance = out_ready | ~valid_s2 | ~",
+        STALLS,
+    ),
+    (
+        "cosine_power_pipelined",
+        ".v",
+        "assign red_out = ",
+        "assign red_out = {8{out_ready}} & ",
+        STALLS,
+    ),
+    ("cosine_power_pipelined", ".v", "valid_s4 <= 1'b0;", "valid_s4 <= valid_s3;", DROPS),
+    ("threshold_pipelined", ".v", "green_out = green_", "green_out = 8'd1 ^ green_", POINTS),
+    ("cosine_power_pipelined", ".json", "max(exponent / 16", "max(exponent / 15", FOLLOWS),
 ];
 
 #[test]
@@ -75,7 +118,7 @@ fn every_test_notices_a_fault() {
         let text = fs::read_to_string(&path).expect("a file");
         assert!(text.contains(right), "`{right}` is not in {name}{file}");
         fs::write(&path, text.replace(right, wrong)).expect("written");
-        assert_noticed(place.path(), name, test, &format!("`{wrong}` in {file}"));
+        assert_noticed(place.path(), &unit, test, &format!("`{wrong}` in {file}"));
     });
 }
 
@@ -108,11 +151,12 @@ fn wrong_order_of_words_is_noticed() {
 }
 
 fn memory_is_noticed(name: &str, rom: &str, wrong: impl Fn(&str) -> String) {
-    let place = place(&configuration(&format!("configs/{name}.toml")));
+    let unit = configuration(&format!("configs/{name}.toml"));
+    let place = place(&unit);
     let file = format!("rtl_out/{name}/{name}_{rom}.mem");
     let text = fs::read_to_string(place.path().join(&file)).expect("a memory");
     fs::write(place.path().join(&file), wrong(&text)).expect("written");
-    assert_noticed(place.path(), name, EXACT, &file);
+    assert_noticed(place.path(), &unit, EXACT, &file);
 }
 
 /// The files of a configuration where the bench expects them.
@@ -135,12 +179,13 @@ fn run(place: &Path, name: &str) -> Run {
     tool("python").run([bench], place, LIMIT).unwrap_or_else(|error| panic!("{error:#}"))
 }
 
-fn assert_noticed(place: &Path, name: &str, test: &str, what: &str) {
+fn assert_noticed(place: &Path, unit: &Unit, test: &str, what: &str) {
+    let (name, count) = (&unit.config.name, tests(unit).len());
     let run = run(place, name);
     let says = |word: &str| run.output.lines().any(|line| line.starts_with(word));
     assert!(
         !run.status.success()
-            && says(&format!("FAIL {name}: 6 tests"))
+            && says(&format!("FAIL {name}: {count} tests"))
             && !says("PASS")
             && run.output.contains(&format!("{test} failed")),
         "{test} does not notice {what} in {name}:\n{}",

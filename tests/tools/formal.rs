@@ -8,13 +8,13 @@ use std::time::Duration;
 
 use crate::common::bench::with_flipped_bit;
 use crate::common::tools::LIMIT;
-use crate::common::units::{Emitted, configuration, configurations, write};
+use crate::common::units::{Emitted, all_configurations, configuration, write};
 use glint::tools::{LimitReached, Limits, PROOF_LIMITS, prove};
 use rayon::prelude::*;
 
 #[test]
 fn every_configuration_is_proved() {
-    configurations().par_iter().for_each(|(path, unit)| {
+    all_configurations().par_iter().for_each(|(path, unit)| {
         let (place, name) = emitted(unit);
         prove(place.path(), &name, LIMIT).unwrap_or_else(|error| panic!("{path}: {error:#}"));
     });
@@ -76,6 +76,58 @@ const OF_QUAD_COSINE: [Fault; 6] = [
     ("_datapath.v", "more = intervals > 12'd1;", "more = 1'b1;"),
 ];
 
+/// Of a pipeline with a side channel.
+const OF_PIPELINE: [Fault; 9] = [
+    // A point that is lost, one that is doubled, one that overtakes.
+    (".v", "valid_s3 <= valid_s2;", "valid_s3 <= valid_s2 & ~valid_s3;"),
+    (".v", "valid_s3 <= valid_s2;", "valid_s3 <= valid_s2 | valid_s3;"),
+    (".v", "valid_s3 <= valid_s2;", "valid_s3 <= valid_s1;"),
+    // A reset that leaves a point on its way.
+    (".v", "            valid_s2 <= 1'b0;", "            valid_s2 <= valid_s1;"),
+    // Stages that move while a result waits, and stages that do not move when none does.
+    (".v", "advance = out_ready | ~valid_s6", "advance = out_ready | ~valid_s5"),
+    (".v", "assign in_ready = advance;", "assign in_ready = out_ready;"),
+    // A result, and a side value, of another point.
+    (
+        ".v",
+        "        if (advance) begin\n            side_s6",
+        "        if (1'b1) begin\n            side_s6",
+    ),
+    (".v", "side_s4 <= side_s3;", "side_s4 <= side_s2;"),
+    (".v", "assign side_out = side_s6;", "assign side_out = side_s5;"),
+];
+
+#[test]
+fn pipelines_with_and_without_stalls_and_a_side_channel_are_proved() {
+    for more in
+        ["side = 8", "stall = \"none\"", "stall = \"none\"\nside = 3", "stages = 1\nside = 2"]
+    {
+        let unit = pipeline(more);
+        let (place, name) = emitted(&unit);
+        prove(place.path(), &name, LIMIT).unwrap_or_else(|error| panic!("{more}: {error:#}"));
+    }
+}
+
+#[test]
+fn faults_of_a_pipeline_break_the_proof() {
+    OF_PIPELINE.par_iter().for_each(|fault| {
+        assert_breaks(&pipeline("stages = 6\nside = 8"), fault);
+    });
+}
+
+/// The pipeline of `cosine-power` with these keys.
+fn pipeline(keys: &str) -> glint::core::Unit {
+    let text = "device = \"cosine-power\"\narchitecture = \"pipelined\"\n[pipeline]\n";
+    with_text("cosine-power", &format!("{text}{keys}\n"))
+}
+
+fn with_text(device: &str, text: &str) -> glint::core::Unit {
+    let device = *glint::registry::Registry::catalogue().device(device).expect("a device");
+    let config = glint::config::parse("test.toml", text, &[(device.schema)()]);
+    let config = config.unwrap_or_else(|problems| panic!("{problems}"));
+    glint::core::Unit::new(device, config).expect("a design")
+}
+
 #[test]
 fn faults_break_the_proof() {
     let faults = |config, faults: &'static [Fault]| faults.iter().map(move |fault| (config, fault));
@@ -85,15 +137,19 @@ fn faults_break_the_proof() {
         .chain(faults("lyon", &OF_LYON))
         .chain(faults("quad_cosine", &OF_QUAD_COSINE))
         .collect();
-    faults.par_iter().for_each(|(config, (file, right, wrong))| {
-        let (place, name) = emitted(&configuration(&format!("configs/{config}.toml")));
-        let path = place.path().join(format!("{name}{file}"));
-        let text = fs::read_to_string(&path).expect("a file");
-        assert!(text.contains(right), "`{right}` is not in {name}{file}");
-        fs::write(&path, text.replace(right, wrong)).expect("written");
-        let proof = prove(place.path(), &name, LIMIT);
-        assert!(proof.is_err(), "`{wrong}` in {name} is proved");
+    faults.par_iter().for_each(|(config, fault)| {
+        assert_breaks(&configuration(&format!("configs/{config}.toml")), fault);
     });
+}
+
+fn assert_breaks(unit: &glint::core::Unit, (file, right, wrong): &Fault) {
+    let (place, name) = emitted(unit);
+    let path = place.path().join(format!("{name}{file}"));
+    let text = fs::read_to_string(&path).expect("a file");
+    assert!(text.contains(right), "`{right}` is not in {name}{file}");
+    fs::write(&path, text.replace(right, wrong)).expect("written");
+    let proof = prove(place.path(), &name, LIMIT);
+    assert!(proof.is_err(), "`{wrong}` in {name} is proved");
 }
 
 /// The lowest bit of a word lets the program go on; the one above it is `valid` in `rough`.
@@ -117,11 +173,8 @@ fn a_wrong_bit_of_sequencing_breaks_the_proof() {
 /// and the port takes every one.
 #[test]
 fn a_domain_narrower_than_its_port_is_proved() {
-    let device = *glint::registry::Registry::catalogue().device("lyon").expect("lyon");
     let text = "device = \"lyon\"\n[domain]\nexponent_min = 100\nexponent_max = 150\n";
-    let config = glint::config::parse("lyon.toml", text, &[(device.schema)()]);
-    let config = config.unwrap_or_else(|problems| panic!("{problems}"));
-    let unit = glint::core::Unit::new(device, config).expect("a design");
+    let unit = with_text("lyon", text);
     let (place, name) = emitted(&unit);
     prove(place.path(), &name, PROOF_LIMITS).unwrap_or_else(|error| panic!("{error:#}"));
 }

@@ -11,7 +11,7 @@ use anyhow::{Context, Result, bail, ensure};
 use indicatif::HumanDuration;
 use serde_json::json;
 
-use super::{load, load_sequential};
+use super::load;
 use crate::base::{input, text};
 use crate::cli::failure::Usage;
 use crate::cli::interrupt::Deferred;
@@ -39,7 +39,7 @@ pub fn exhaustive(
     configs: &[PathBuf],
     request: &ExhaustiveRequest,
 ) -> Result<bool> {
-    let loaded = load_sequential(registry, configs, "cosim --exhaustive")?;
+    let loaded = load(registry, configs)?;
     if request.resume.is_some() && loaded.len() != 1 {
         bail!(Usage(format!("--resume is for one configuration; here are {}", loaded.len())));
     }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use anyhow::{Context, Result};
 use serde_json::json;
 
-use super::{Loaded, load_sequential};
+use super::{Loaded, load};
 use crate::cli::own_file::OwnFile;
 use crate::cli::{Output, progress, tables};
 use crate::registry::Registry;
@@ -61,7 +61,7 @@ pub fn verify(
     configs: &[PathBuf],
     request: &VerifyRequest,
 ) -> Result<bool> {
-    let loaded = load_sequential(registry, configs, "verify")?;
+    let loaded = load(registry, configs)?;
     // Before the work: a directory that cannot be written is known now.
     std::fs::create_dir_all(&request.out)
         .with_context(|| format!("cannot make the directory `{}`", request.out.display()))?;

@@ -8,6 +8,7 @@
 use std::fmt;
 use std::io::Write;
 use std::ops::Range;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, ensure};
@@ -15,9 +16,11 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::cosim::alone::Alone;
+use crate::cosim::combinations::Ports;
 use crate::cosim::lockstep::LANES;
 use crate::cosim::outcome::{Course, Mismatch};
 use crate::cosim::pairing::Pairing;
+use crate::cosim::pipelined::Pipelined;
 use crate::cosim::together::Together;
 use crate::golden::{Contract, Model};
 use crate::hdl::netlist::Design;
@@ -71,7 +74,16 @@ impl fmt::Display for Difference {
 
 /// All combinations of the operands of a design, against its golden model.
 pub struct Clocks<'a> {
-    pairing: Pairing<'a>,
+    ports: Arc<Ports>,
+    architecture: Architecture<'a>,
+}
+
+/// How combinations go through a design.
+enum Architecture<'a> {
+    /// One computation after another.
+    Sequential(Pairing<'a>),
+    /// A point every clock.
+    Pipelined(Pipelined<'a>),
 }
 
 impl<'a> Clocks<'a> {
@@ -84,19 +96,42 @@ impl<'a> Clocks<'a> {
         model: Box<dyn Model>,
         contract: &'a dyn Contract,
     ) -> Result<Self> {
-        let pairing = Pairing::new(design, model, contract)?;
-        Ok(Self { pairing })
+        Ok(match &design.pipeline {
+            None => {
+                let pairing = Pairing::new(design, model, contract)?;
+                let ports = Arc::clone(&pairing.ports);
+                Self { ports, architecture: Architecture::Sequential(pairing) }
+            }
+            Some(pipeline) => Self {
+                ports: Arc::new(Ports::new(design)),
+                architecture: Architecture::Pipelined(Pipelined::new(
+                    design, pipeline, model, contract, 0,
+                )?),
+            },
+        })
     }
 
     /// The same with some operands held at raw values: the combinations are those of the others.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
-        Self { pairing: self.pairing.holding(held) }
+        match self.architecture {
+            Architecture::Sequential(pairing) => {
+                let pairing = pairing.holding(held);
+                let ports = Arc::clone(&pairing.ports);
+                Self { ports, architecture: Architecture::Sequential(pairing) }
+            }
+            Architecture::Pipelined(pipelined) => {
+                let mut ports = Ports::new(pipelined.design());
+                ports.hold(held);
+                let architecture = Architecture::Pipelined(pipelined.holding(held));
+                Self { ports: Arc::new(ports), architecture }
+            }
+        }
     }
 
     /// The bits of all operands together.
     pub fn bits(&self) -> u32 {
-        self.pairing.ports.bits()
+        self.ports.bits()
     }
 
     /// How many combinations there are; 0 if they are too many to go through.
@@ -115,6 +150,11 @@ impl<'a> Clocks<'a> {
                 "registers at every clock: the operands have {} bits, and all combinations are gone through for up to {MOST_BITS}, of a narrower configuration of the device",
                 self.bits()
             ),
+            _ if matches!(self.architecture, Architecture::Pipelined(_)) => {
+                "pauses between points, results that wait, resets with points on their way; `glint cosim` draws these at \
+                 random"
+                    .to_owned()
+            }
             _ => "idle gaps, operands written one by one, writes and starts while busy, resets within a computation, and other contents of the registers before it than those that one other computation leaves; `glint cosim` draws these at random".to_owned(),
         }
     }
@@ -146,29 +186,40 @@ impl<'a> Clocks<'a> {
         let check = |block| {
             let places = self.of_block(block);
             let count = places.end - places.start;
-            let found = self.together(places).and_then(Self::first);
+            let found = self.first(places);
             progress(count);
             found.transpose()
         };
         blocks.into_par_iter().find_map_first(check).transpose()
     }
 
-    /// Lanes at power-up, with a run of combinations each.
-    fn together(&self, places: Range<u64>) -> Result<Together<'_, LANES>> {
-        let runs = places.clone().step_by(RUN as usize);
-        let courses =
-            runs.map(|first| Course::Combinations { first, count: RUN.min(places.end - first) });
-        Together::new(&self.pairing, courses)
+    /// The first of some places at which something differs, each lane with a run of them from power-up on.
+    fn first(&self, places: Range<u64>) -> Result<Option<u64>> {
+        let runs =
+            places.clone().step_by(RUN as usize).map(|first| (first, RUN.min(places.end - first)));
+        self.first_of(runs)
     }
 
-    /// The first place at which something differs.
-    fn first(mut lanes: Together<'_, LANES>) -> Result<Option<u64>> {
-        while !lanes.ended() {
-            lanes.run()?;
+    fn first_of(&self, runs: impl Iterator<Item = (u64, u64)>) -> Result<Option<u64>> {
+        match &self.architecture {
+            Architecture::Sequential(pairing) => {
+                let courses = runs.map(|(first, count)| Course::Combinations { first, count });
+                let mut lanes = Together::<LANES>::new(pairing, courses)?;
+                while !lanes.ended() {
+                    lanes.run()?;
+                }
+                let seen = lanes.into_seen()?;
+                let mismatch = seen.into_iter().find_map(|seen| seen.mismatch);
+                Ok(mismatch.map(|mismatch| mismatch.seed))
+            }
+            Architecture::Pipelined(pipelined) => {
+                let mut lanes = pipelined.walk::<LANES>(&self.ports, runs)?;
+                while !lanes.ended() {
+                    lanes.clock()?;
+                }
+                Ok(lanes.first().map(|(mismatch, _)| mismatch.seed))
+            }
         }
-        let seen = lanes.into_seen()?;
-        let mismatch = seen.into_iter().find_map(|seen| seen.mismatch);
-        Ok(mismatch.map(|mismatch| mismatch.seed))
     }
 
     /// What differs at a place that [`Clocks::check`] found.
@@ -176,16 +227,28 @@ impl<'a> Clocks<'a> {
     /// # Errors
     /// Nothing differs there; those of [`Clocks::check`].
     pub fn difference(&self, place: u64) -> Result<Difference> {
-        let mut alone = self.alone(place)?;
-        while !alone.ended() {
-            alone.clock()?;
-        }
-        let mismatch = alone.seen().mismatch.clone();
+        let (mismatch, clock) = match &self.architecture {
+            Architecture::Sequential(pairing) => {
+                let mut alone = self.alone(pairing, place)?;
+                while !alone.ended() {
+                    alone.clock()?;
+                }
+                (alone.seen().mismatch.clone(), alone.since_start())
+            }
+            Architecture::Pipelined(pipelined) => {
+                let mut alone = pipelined.walk::<1>(&self.ports, [self.run_to(place)?])?;
+                while !alone.ended() {
+                    alone.clock()?;
+                }
+                let found = alone.first();
+                (found.map(|it| it.0.clone()), found.map_or(0, |it| it.1))
+            }
+        };
         let mismatch = mismatch.filter(|mismatch| mismatch.seed == place);
         Ok(Difference {
             place,
-            clock: alone.since_start(),
-            operands: self.pairing.ports.named(place),
+            clock,
+            operands: self.ports.named(place),
             mismatch: mismatch
                 .with_context(|| format!("nothing differs at combination {place}"))?,
         })
@@ -196,23 +259,43 @@ impl<'a> Clocks<'a> {
     /// # Errors
     /// Those of [`Clocks::difference`]; the file cannot be written.
     pub fn trace(&self, place: u64, from: u64, file: impl Write + Send + 'static) -> Result<()> {
-        let mut alone = self.alone(place)?;
-        while !alone.ended() && alone.seen().clocks < from {
-            alone.clock()?;
+        match &self.architecture {
+            Architecture::Sequential(pairing) => {
+                let mut alone = self.alone(pairing, place)?;
+                while !alone.ended() && alone.seen().clocks < from {
+                    alone.clock()?;
+                }
+                alone.simulator.trace(file)?;
+                while !alone.ended() {
+                    alone.clock()?;
+                }
+                alone.simulator.end_trace()
+            }
+            Architecture::Pipelined(pipelined) => {
+                let mut alone = pipelined.walk::<1>(&self.ports, [self.run_to(place)?])?;
+                while !alone.ended() && alone.clocks < from {
+                    alone.clock()?;
+                }
+                alone.simulator.trace(file)?;
+                while !alone.ended() {
+                    alone.clock()?;
+                }
+                alone.simulator.end_trace()
+            }
         }
-        alone.simulator.trace(file)?;
-        while !alone.ended() {
-            alone.clock()?;
-        }
-        alone.simulator.end_trace()
     }
 
-    /// The run that has a place, up to it, in a simulator of its own.
-    fn alone(&self, place: u64) -> Result<Alone<'_>> {
+    /// The run that has a place, up to it: its first place, and how many there are.
+    fn run_to(&self, place: u64) -> Result<(u64, u64)> {
         ensure!(place < self.count(), "there is no combination {place}");
         let first = place - place % RUN;
-        let count = place - first + 1;
-        Alone::new(&self.pairing, Course::Combinations { first, count })
+        Ok((first, place - first + 1))
+    }
+
+    /// The same in a simulator of its own.
+    fn alone<'p>(&self, pairing: &'p Pairing<'a>, place: u64) -> Result<Alone<'p>> {
+        let (first, count) = self.run_to(place)?;
+        Alone::new(pairing, Course::Combinations { first, count })
     }
 
     /// How long one combination takes on one thread.
@@ -222,14 +305,9 @@ impl<'a> Clocks<'a> {
     pub(super) fn pace(&self) -> Result<Duration> {
         let places = 0..self.count().min(BLOCK / 8);
         let count = places.end as u32;
-        let runs = places
-            .step_by(RUN as usize / 8)
-            .map(|first| Course::Combinations { first, count: RUN / 8 });
-        let mut lanes = Together::<LANES>::new(&self.pairing, runs)?;
+        let runs = places.step_by(RUN as usize / 8).map(|first| (first, RUN / 8));
         let begin = Instant::now();
-        while !lanes.ended() {
-            lanes.run()?;
-        }
+        self.first_of(runs)?;
         Ok(begin.elapsed() / count)
     }
 }

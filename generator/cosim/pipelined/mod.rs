@@ -5,6 +5,7 @@
 //! the point in each stage, every value that a register of the sequential core has: with what the golden
 //! model's register holds in that microinstruction.
 
+pub(super) mod combinations;
 mod lane;
 mod reference;
 #[cfg(test)]
@@ -126,6 +127,10 @@ impl<'a> Pipelined<'a> {
         };
         setup.reference()?;
         Ok(Self { setup, seed })
+    }
+
+    pub(super) fn design(&self) -> &'a Design {
+        self.setup.design
     }
 
     /// The same with some operands held at raw values.

@@ -20,6 +20,10 @@ pub struct Pipeline {
     pub stage_of: Vec<usize>,
     /// The nets that say which stage has a point, and when points move.
     pub handshake: Vec<NetId>,
+    /// For each stage from 1 on, to the results: whether it has a point.
+    pub valid: Vec<NetId>,
+    /// For each of them, what travels with the point; none without a side channel.
+    pub side_values: Vec<NetId>,
     /// Where values are to be seen that the sequential design has in registers.
     pub checkpoints: Vec<Checkpoint>,
 }

@@ -52,6 +52,8 @@ pub fn assemble(
         names: HashMap::new(),
         values: HashMap::new(),
         flow: Vec::new(),
+        valid: Vec::new(),
+        side_values: Vec::new(),
         memories: HashMap::new(),
     };
     builder.ports(unrolled, options);
@@ -61,7 +63,7 @@ pub fn assemble(
     builder.results(unrolled);
     let stages = builder.stages(unrolled);
     let checkpoints = builder.checkpoints(unrolled);
-    let Builder { mut design, stage_of, flow, .. } = builder;
+    let Builder { mut design, stage_of, flow, valid, side_values, .. } = builder;
     design.ports.sort_by_key(|port| match port.role {
         role if role.is_input() => 0,
         Role::InReady => 1,
@@ -80,6 +82,8 @@ pub fn assemble(
         stages,
         stage_of,
         handshake: flow,
+        valid,
+        side_values,
         checkpoints,
     });
     design
@@ -107,6 +111,10 @@ struct Builder<'a> {
     values: HashMap<(NetId, usize), NetId>,
     /// The nets of the handshake.
     flow: Vec<NetId>,
+    /// Whether a stage has a point, from stage 1 on.
+    valid: Vec<NetId>,
+    /// What travels with the point of a stage, from stage 1 on.
+    side_values: Vec<NetId>,
     /// The read ports of each memory.
     memories: HashMap<RomId, Vec<RomId>>,
 }
@@ -269,12 +277,14 @@ impl Builder<'_> {
         for stage in 1..=latency {
             self.register(valid[stage], valid[stage - 1], self.advance, Some(0));
         }
+        self.valid = valid.split_off(1);
         if let Some(mut side) = find(&self.design, Role::SideIn) {
             let format = self.design.net(side).format;
             for stage in 1..=latency {
                 let name = self.staged("side", stage);
                 let q = self.net(name, stage, format, Driver::Undriven);
                 self.register(q, side, self.advance, None);
+                self.side_values.push(q);
                 side = q;
             }
             let driver = Driver::Op(Op::Relabel(side));

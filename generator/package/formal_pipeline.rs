@@ -1,0 +1,164 @@
+//! What is proved of the emitted Verilog of a pipeline, by k-induction.
+//!
+//! A wrapper holds a queue beside the pipeline, and states that its stages have points exactly where the
+//! queue has them. With a side channel it follows any one point, and states that its side value stays
+//! with it. No property depends on a product or a ROM, which are cut out.
+
+use anyhow::Result;
+use askama::Template;
+
+use super::formal::{Script, Sources, Task};
+use crate::hdl::netlist::{Design, NetId, Pipeline, Role};
+use crate::hdl::verilog::rows::{Row, separated};
+use crate::hdl::verilog::text::{Names, literal, range};
+
+/// Steps of the induction: every property follows from the clock before.
+const DEPTH: u32 = 2;
+
+#[derive(Template)]
+#[template(path = "pipeline_formal.sv")]
+struct Wrapper {
+    name: String,
+    module: String,
+    depth: u32,
+    instance: String,
+    /// Ports with their commas.
+    ports: Vec<String>,
+    outputs: Vec<String>,
+    connections: Vec<String>,
+    /// What the proof sees of the inside: declarations.
+    inside: Vec<String>,
+    stages: usize,
+    /// One bit a stage, the last first, with their commas.
+    valids: Vec<String>,
+    stall: bool,
+    moves_when: &'static str,
+    /// No point in any stage.
+    empty: String,
+    results: Vec<String>,
+    /// Names of the wrapper.
+    present: String,
+    moves: String,
+    queue: String,
+    queue_next: String,
+    chosen: String,
+    begins: String,
+    followed: String,
+    followed_next: String,
+    side: Option<Side>,
+}
+
+/// The side channel.
+struct Side {
+    range: String,
+    tag: String,
+    stages: Vec<SideStage>,
+}
+
+/// What travels with the point in a stage.
+struct SideStage {
+    number: usize,
+    value: String,
+}
+
+/// Wrapper and scripts, as names and texts.
+///
+/// # Errors
+/// A template that fails.
+pub fn files(
+    design: &Design,
+    pipeline: &Pipeline,
+    sources: Sources<'_>,
+) -> Result<Vec<(String, String)>> {
+    let module = &design.name;
+    let name = format!("{module}_formal");
+    let port_name = |net: NetId| design.net(net).name.clone();
+    let mut names = Names::new(design.ports.iter().map(|port| design.net(port.net).name.as_str()));
+    names.fresh("clk");
+    let instance = names.fresh("dut");
+    let chosen = names.fresh("chosen");
+    let mut ports = vec!["input  wire clk".to_owned()];
+    for port in design.inputs() {
+        let range = range(design.width(port.net));
+        let space = if range.is_empty() { "" } else { " " };
+        ports.push(format!("input  wire {range}{space}{}", port_name(port.net)));
+    }
+    if pipeline.side > 0 {
+        ports.push(format!("input  wire {chosen}"));
+    }
+    let outputs: Vec<_> = design
+        .outputs()
+        .map(|port| Row::port("", "wire", design.width(port.net), false, &port_name(port.net), ""))
+        .collect();
+    let connections = std::iter::once("clk".to_owned())
+        .chain(design.ports.iter().map(|port| port_name(port.net)))
+        .map(|name| format!(".{name}({name})"))
+        .collect();
+    // A net of the inside under its path; Yosys joins the two when it flattens.
+    let mut inside = Vec::new();
+    let mut seen = |net: NetId| {
+        let path = format!("\\{instance}.{} ", port_name(net));
+        let range = range(design.width(net));
+        let space = if range.is_empty() { "" } else { " " };
+        inside.push(format!("(* hierconn *) wire {range}{space}{path};"));
+        path
+    };
+    let latency = pipeline.stages.len();
+    let valid: Vec<String> = pipeline.valid.iter().map(|&net| seen(net)).collect();
+    let side = (pipeline.side > 0).then(|| Side {
+        range: range(pipeline.side),
+        tag: names.fresh("tag"),
+        stages: (1..)
+            .zip(&pipeline.side_values)
+            .map(|(number, &net)| SideStage { number, value: seen(net) })
+            .collect(),
+    });
+    let (queue, followed, begins) =
+        (names.fresh("queue"), names.fresh("followed"), names.fresh("begins"));
+    let shifted = |register: &str, first: &str| match latency {
+        1 => first.to_owned(),
+        _ => format!("{{{register}[{}:1], {first}}}", latency - 1),
+    };
+    let result = |role: Role| matches!(role, Role::Result | Role::Status | Role::SideOut);
+    let results = design.outputs().filter(|port| result(port.role));
+    let wrapper = Wrapper {
+        name: name.clone(),
+        module: module.clone(),
+        depth: DEPTH,
+        instance: instance.clone(),
+        ports: separated(ports),
+        outputs: Row::declarations(&outputs),
+        connections: separated(connections),
+        stages: latency,
+        valids: separated(valid.into_iter().rev().collect()),
+        stall: pipeline.stall,
+        moves_when: if pipeline.stall { "out_ready | ~out_valid" } else { "1'b1" },
+        empty: literal(0, latency as u32),
+        results: results.map(|port| port_name(port.net)).collect(),
+        present: names.fresh("present"),
+        moves: names.fresh("moves"),
+        queue_next: shifted(&queue, "in_valid"),
+        followed_next: shifted(&followed, &begins),
+        queue,
+        chosen,
+        begins,
+        followed,
+        side,
+        inside,
+    };
+    let within = format!("{instance}.*");
+    let script = Script { name: &name, within: &within, rtl: sources.rtl };
+    let task = Task {
+        name: &name,
+        within: &within,
+        depth: DEPTH,
+        engine: "smtbmc --unroll z3",
+        rtl: sources.rtl,
+        memories: sources.memories,
+    };
+    Ok(vec![
+        (format!("{name}.sv"), super::render(&wrapper)?),
+        (format!("{name}.ys"), super::render(&script)?),
+        (format!("{name}.sby"), super::render(&task)?),
+    ])
+}

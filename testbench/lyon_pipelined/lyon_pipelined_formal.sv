@@ -1,0 +1,115 @@
+// lyon_pipelined_formal: what is proved of the handshake of lyon_pipelined
+//
+// For formal tools alone: every input is free. To prove it, from a directory that holds the files
+// of both folders:
+//   $ yosys -q lyon_pipelined_formal.ys
+//   $ yosys-smtbmc --unroll -s z3 -t 2 lyon_pipelined_formal.smt2
+//   $ yosys-smtbmc --unroll -s z3 -i -t 2 lyon_pipelined_formal.smt2
+// or, with SymbiYosys,
+//   $ sby -f lyon_pipelined_formal.sby
+//
+// Generated files belong to their user, without conditions.
+
+`default_nettype none
+
+module lyon_pipelined_formal (
+    input  wire clk,
+    input  wire rst_n,
+    input  wire in_valid,
+    input  wire [17:0] dx,
+    input  wire [17:0] dy,
+    input  wire [17:0] dz,
+    input  wire [3:0] shift,
+    input  wire [7:0] red,
+    input  wire [7:0] green,
+    input  wire [7:0] blue,
+    input  wire out_ready
+);
+    wire       in_ready;
+    wire       out_valid;
+    wire [7:0] red_out;
+    wire [7:0] green_out;
+    wire [7:0] blue_out;
+
+    lyon_pipelined dut (
+        .clk(clk),
+        .rst_n(rst_n),
+        .in_valid(in_valid),
+        .dx(dx),
+        .dy(dy),
+        .dz(dz),
+        .shift(shift),
+        .red(red),
+        .green(green),
+        .blue(blue),
+        .out_ready(out_ready),
+        .in_ready(in_ready),
+        .out_valid(out_valid),
+        .red_out(red_out),
+        .green_out(green_out),
+        .blue_out(blue_out)
+    );
+
+    // The initial set comes first; the state before it is arbitrary.
+    always @* if ($initstate) assume (!rst_n);
+
+    // Which stage of the pipeline has a point.
+    (* hierconn *) wire \dut.valid_s1 ;
+    (* hierconn *) wire \dut.valid_s2 ;
+    (* hierconn *) wire \dut.valid_s3 ;
+    (* hierconn *) wire \dut.valid_s4 ;
+    (* hierconn *) wire \dut.valid_s5 ;
+    (* hierconn *) wire \dut.valid_s6 ;
+    (* hierconn *) wire \dut.valid_s7 ;
+    (* hierconn *) wire \dut.valid_s8 ;
+    (* hierconn *) wire \dut.valid_s9 ;
+    (* hierconn *) wire \dut.valid_s10 ;
+    (* hierconn *) wire \dut.valid_s11 ;
+    (* hierconn *) wire \dut.valid_s12 ;
+    (* hierconn *) wire \dut.valid_s13 ;
+    (* hierconn *) wire \dut.valid_s14 ;
+    (* hierconn *) wire \dut.valid_s15 ;
+    wire [15:1] present = {
+        \dut.valid_s15 ,
+        \dut.valid_s14 ,
+        \dut.valid_s13 ,
+        \dut.valid_s12 ,
+        \dut.valid_s11 ,
+        \dut.valid_s10 ,
+        \dut.valid_s9 ,
+        \dut.valid_s8 ,
+        \dut.valid_s7 ,
+        \dut.valid_s6 ,
+        \dut.valid_s5 ,
+        \dut.valid_s4 ,
+        \dut.valid_s3 ,
+        \dut.valid_s2 ,
+        \dut.valid_s1 
+    };
+
+    // The same of a queue, which all points move through together, unless a result waits.
+    wire moves = out_ready | ~out_valid;
+    reg  [15:1] queue;
+    always @(posedge clk) begin
+        if (!rst_n) queue <= 15'd0;
+        else if (moves) queue <= {queue[14:1], in_valid};
+    end
+
+    always @(posedge clk) if (!$initstate) begin
+        // No point is lost, none is doubled, and none comes sooner or later than the stages let it:
+        // out_valid follows from the points that were taken, whatever out_ready is.
+        assert (present == queue);
+        assert (out_valid == queue[15]);
+        // A point is taken whenever no result waits.
+        assert (in_ready == moves);
+        // A result that waits stays as it is.
+        if ($past(rst_n && out_valid && !out_ready)) begin
+            assert (out_valid);
+            assert ($stable(red_out));
+            assert ($stable(green_out));
+            assert ($stable(blue_out));
+        end
+    end
+endmodule
+
+`default_nettype wire
