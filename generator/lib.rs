@@ -25,7 +25,11 @@ pub mod pages;
 pub mod registry;
 #[cfg(feature = "cli")]
 pub mod render;
+#[cfg(feature = "cli")]
+pub mod synth;
 pub mod tools;
+#[cfg(feature = "cli")]
+pub mod tune;
 #[cfg(feature = "cli")]
 pub mod verify;
 

@@ -49,6 +49,7 @@ Examples:
   glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
   glint describe my_core.toml                   ports, blocks, microprogram, accuracy: a page
   glint datasheet my_core.toml                  the same as a product guide in HTML, with diagrams and plots
+  glint synth my_core.toml                      area, frequency and critical path on FPGAs and in cells
   glint compare --exponent 100                  all devices side by side
   glint verify my_core.toml                     every proof and test there is, and a page about it
   glint render my_core.toml --out sphere.png    a picture through the bit-accurate device
@@ -212,6 +213,32 @@ Examples:
         #[command(flatten)]
         configs: Configs,
     },
+    /// Measure area and frequency by synthesis, placement and routing
+    ///
+    /// iCE40 (UP5K) and ECP5 by Yosys and nextpnr over several seeds, Xilinx 7 by Yosys (area alone), 0.18 µm standard cells by
+    /// Yosys and OpenSTA (before layout; a gate is a NAND2X1). Registers stand around the core, so that pins do not count; the
+    /// delay of a DSP block is never left out. Points a second are the median frequency over the clocks a
+    /// point. The critical path is told in the names of the description. What was measured is kept in `.glint/` beside the
+    /// configuration until Verilog or tools change.
+    #[command(after_help = "\
+Examples:
+  glint synth my_core.toml                            every target whose tools are there
+  glint synth my_core.toml --target ecp5 --seeds 11   one of them, more seeds
+  glint synth --json                                  everything in configs/, for scripts
+  glint synth --out synthesis                         a record of each configuration in configs/")]
+    Synth(Box<commands::SynthArguments>),
+    /// Find the smallest configuration of a device for an error
+    ///
+    /// The proved bound of the accuracy contract decides, so that the answer keeps the error for every operand of the domain.
+    /// Keys that change neither ports nor formula are searched; formats, domain and what the device computes are the wish, and
+    /// `--set` says them. Area and clock are estimates that were fitted to synthesis; `glint synth` measures the answer.
+    #[command(after_help = "\
+Examples:
+  glint tune cosine-power --error 0.75                     an error of 3/4 of the outputs' last bit, on ECP5
+  glint tune blinn --error 0.0005 --unit f --target ice40
+  glint tune rough --error 0.9 --set cosine.fraction=16 --set exponent.bits=7 --out small_rough.toml
+  glint tune gauss --error 0.001 --unit f --csv            the front between error and area")]
+    Tune(Box<commands::TuneArguments>),
     /// Write a datasheet, one HTML page that needs no network
     ///
     /// A page as a vendor's product guide: figures at a glance, block diagram, ports and formats, a worked
@@ -475,6 +502,8 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
         Some(Command::Schedule { configs }) => {
             commands::schedule(registry, output, &configs.configs)
         }
+        Some(Command::Synth(arguments)) => commands::synth(registry, output, &arguments),
+        Some(Command::Tune(arguments)) => commands::tune(registry, output, &arguments),
         Some(Command::Datasheet(arguments)) => commands::datasheet(registry, output, &arguments),
         Some(Command::Compare {
             configs,

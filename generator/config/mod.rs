@@ -6,6 +6,7 @@
 //! valid configurations for tests.
 
 mod audit;
+mod follow;
 mod module_name;
 mod nearest;
 mod parse;

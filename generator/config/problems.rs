@@ -166,6 +166,11 @@ impl Problems {
 }
 
 impl Problem {
+    /// The problem with its message in other words.
+    pub(super) fn told(self, words: impl FnOnce(&str) -> String) -> Self {
+        Self { message: words(&self.message), ..self }
+    }
+
     fn start(&self) -> Option<usize> {
         self.span.as_ref().map(|span| span.start)
     }

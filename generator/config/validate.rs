@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use super::follow::follow;
 use super::module_name;
 use super::nearest::nearest;
 use super::problems::{Fault, Problem, Problems, out_of_range, quoted, shown};
@@ -213,7 +214,20 @@ fn check(schema: &Schema, draft: &Draft, problems: &mut Problems) {
             Some(before) => before.into_iter().filter(|p| found.contains(p)).collect(),
         });
     }
-    problems.extend(certain.unwrap_or_default());
+    let found = certain.unwrap_or_default().into_iter().map(|problem| {
+        let governs = schema.key(&problem.key).filter(|key| !draft.given.contains(key.name));
+        match governs {
+            None => problem,
+            Some(key) => problem.told(|message| of_default(key, draft, message)),
+        }
+    });
+    problems.extend(found);
+}
+
+/// A message about a key that was not given: which it is, and where its value comes from.
+fn of_default(key: &Key, draft: &Draft, message: &str) -> String {
+    let value = draft.config.value(key.name).toml();
+    format!("`{}` = {value}, its default, since it is not given: {message}", key.name)
 }
 
 /// The keys that decide whether `key` applies, nearest first, with the values that it needs.
@@ -322,12 +336,17 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// Checks the conditions between keys, and gives the configuration if nothing is wrong.
+    /// Checks the conditions between keys, and gives the configuration if nothing is wrong. Keys that were not
+    /// given follow from those that were.
     pub(super) fn finish(
-        self,
+        mut self,
         schema: &Schema,
         mut problems: Problems,
     ) -> Result<Config, Problems> {
+        // While a value is not known, nothing follows from it.
+        if self.doubtful.is_empty() {
+            self.config = follow(schema, &self.config, &self.given);
+        }
         check(schema, &self, &mut problems);
         match problems.is_empty() {
             true => Ok(self.config),

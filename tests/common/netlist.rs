@@ -25,9 +25,9 @@ pub fn synthesise(directory: &Path, emitted: &Emitted, family: &Family) {
     let commands = format!(
         "read_verilog {}; hierarchy -check -top {top}; proc; \
          select -assert-none t:$dlatch t:$adlatch t:$dlatchsr t:$sr; \
-         {} -top {top}; check -assert; write_json netlist.json; write_verilog -noattr netlist.v",
+         {}; check -assert; write_json netlist.json; write_verilog -noattr netlist.v",
         verilog_files(directory).join(" "),
-        family.command,
+        family.script(&emitted.name),
         top = emitted.name,
     );
     yosys(directory, &commands);

@@ -11,6 +11,7 @@ mod cli;
 mod clocks;
 mod combinations;
 mod config_device;
+mod config_follow;
 mod config_fuzz;
 mod config_problems;
 mod config_text;
@@ -26,6 +27,7 @@ mod rough_microprogram;
 mod shared_products;
 mod spread;
 mod streams;
+mod tune;
 mod worst;
 
 use cli::{place, refusals};

@@ -8,7 +8,7 @@ use glint::registry::Registry;
 use regex::Regex;
 
 /// From the bottom: a room and those above it that it may import from.
-const ROOMS: [(&str, &str); 22] = [
+const ROOMS: [(&str, &str); 24] = [
     ("base", ""),
     ("config", "base"),
     ("golden", "base config"),
@@ -22,9 +22,11 @@ const ROOMS: [(&str, &str); 22] = [
     ("devices", "base config hdl/netlist hdl/dsl hdl/blocks"),
     ("package", "base config golden hdl/netlist hdl/verilog observation"),
     ("tools", "base package"),
+    ("synth", "base hdl/netlist package tools"),
     ("cosim", "base golden hdl/netlist hdl/sim observation package tools"),
     ("registry", "base config golden hdl/netlist hdl/dsl hdl/pipeline devices"),
     ("core", "config golden hdl/netlist package tools cosim registry"),
+    ("tune", "config golden hdl/netlist hdl/pipeline registry synth"),
     ("mutate", "base golden hdl/netlist hdl/sim package tools cosim core"),
     ("render", "base config golden cosim core"),
     ("evidence", "config golden hdl/netlist tools cosim registry core"),
@@ -35,7 +37,7 @@ const ROOMS: [(&str, &str); 22] = [
     ("verify", "base golden package tools cosim core mutate"),
     (
         "cli",
-        "base config golden hdl/netlist package tools cosim registry core mutate render evidence pages verify",
+        "base config golden hdl/netlist package tools cosim registry core mutate render evidence pages verify synth tune",
     ),
 ];
 

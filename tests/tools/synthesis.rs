@@ -77,6 +77,7 @@ fn usage_is_that_of_the_netlist() {
             luts: cells.count_all(family.luts),
             dsps: cells.count_all(family.dsps),
             block_rams: cells.count_all(family.block_rams),
+            flip_flops: cells.count_all(family.flip_flops),
         };
         assert_eq!(told, wanted, "{}", family.title);
         assert!(told.luts > 50 && told.dsps > 3, "{told:?}");

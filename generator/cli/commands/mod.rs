@@ -14,6 +14,8 @@ mod mutate;
 mod render;
 mod report;
 mod schedule;
+mod synth;
+mod tune;
 mod verify;
 
 use std::path::{Path, PathBuf};
@@ -33,6 +35,8 @@ pub use mutate::{MutateRequest, mutate};
 pub use render::{RenderArguments, render};
 pub use report::{ReportRequest, report};
 pub use schedule::schedule;
+pub use synth::{SynthArguments, synth};
+pub use tune::{TuneArguments, tune};
 pub use verify::{VerifyRequest, verify};
 
 use super::failure::{self, Several, Usage};

@@ -79,7 +79,7 @@ fn check(config: &Config, problems: &mut Problems) {
                 format!("range {range} has {bits} bits of 1 - cos, which cannot be cut into 2^{prefix} segments"),
                 "fewer ranges or smaller entries, or a larger cosine.fraction".to_owned(),
             );
-            return;
+            break;
         }
         most = most.max(bits - prefix);
     }

@@ -110,7 +110,7 @@ fn wrong_types_and_values() {
 #[test]
 fn a_format_too_narrow_for_its_values() {
     rough(
-        "[exponent]\nbits = 4",
+        "[exponent]\nbits = 4\n[domain]\nexponent_max = 1000",
         &["1000 does not fit the 4 bits of the exponent", "at most 15, or a larger exponent.bits"],
     );
 }
@@ -133,9 +133,8 @@ fn names_that_are_no_module_names() {
 
 #[test]
 fn a_rom_beyond_a_sane_size_is_told_its_size() {
-    // 22 bits is the default of sine.fraction.
     rough(
-        "[sine]\nscheme = \"direct\"\naddress = 16",
+        "[sine]\nscheme = \"direct\"\naddress = 16\nfraction = 22",
         &[
             "ROM 18 would have 2^16 entries of 22 bits, 1441792 bits in all",
             "core.toml:4:11",
@@ -256,7 +255,7 @@ fn no_configuration_at_all() {
 /// Ranges of two bits each, more than there are bits.
 #[test]
 fn no_count_is_negative() {
-    let segments = "[decay]\nsegments = [2, 2, 2, 2, 2, 2, 2, 2, 2, 2]\n";
+    let segments = "[decay]\nsegments = [2, 2, 2, 2, 2, 2, 2, 2, 2, 2]\ntail = 1\n";
     let text = format!("device = \"blinn\"\n[cosine]\nfraction = 12\n{segments}");
     let place = Place::with("core.toml", text);
     let run = place.glint(["generate", "core.toml"]);

@@ -16,4 +16,6 @@ mod questions;
 pub mod refusals;
 mod render;
 mod report;
+mod synth;
+mod tune;
 mod verify;

@@ -1,0 +1,227 @@
+//! `synth`.
+
+mod cache;
+mod show;
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use anyhow::{Context, Result};
+use clap::{Args, ValueEnum};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{Loaded, load};
+use crate::cli::own_file::OwnFile;
+use crate::cli::{Configs, Output, progress, tables};
+use crate::evidence::comparison;
+use crate::registry::Registry;
+use crate::synth::{Figures, Flow, Subject, TARGETS, Target};
+use crate::tune::{Cost, Features};
+use cache::Cache;
+
+/// The exponent at which the clocks of a device are counted where they depend on it.
+const EXPONENT: f64 = 35.0;
+
+/// Where Debian's `qflow-tech-osu018` puts the cells.
+const LIBERTY: &str = "/usr/share/qflow/tech/osu018/osu018_stdcells.lib";
+
+/// What `synth` was asked for.
+#[derive(Args)]
+pub struct SynthArguments {
+    #[command(flatten)]
+    configs: Configs,
+    /// What to measure for; may be repeated [default: every target whose tools are there]
+    #[arg(long = "target", value_name = "TARGET", value_enum)]
+    targets: Vec<Target>,
+    /// Runs of place and route, of which the median counts
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
+    seeds: u32,
+    /// Runs of tools at the same time [default: the number of processors]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Measure again what is in the cache, `.glint/` beside each configuration
+    #[arg(long)]
+    no_cache: bool,
+    /// Write the figures of each configuration, `<name>.json`, into this directory
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Describes the standard cells
+    #[arg(long, value_name = "FILE.lib", default_value = LIBERTY)]
+    liberty: PathBuf,
+    /// Seconds after which a run of a tool is given up
+    #[arg(long, value_name = "SECONDS", default_value_t = 3600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    time_limit: u64,
+}
+
+impl ValueEnum for Target {
+    fn value_variants<'a>() -> &'a [Self] {
+        &TARGETS
+    }
+
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        Some(clap::builder::PossibleValue::new(self.name()).help(self.title()))
+    }
+}
+
+/// A configuration with all that was measured of it.
+struct Measured<'a> {
+    one: &'a Loaded,
+    clocks_per_point: f64,
+    figures: Vec<Figures>,
+}
+
+/// The record of a configuration.
+#[derive(Serialize)]
+struct Record<'a> {
+    glint: &'static str,
+    config: &'a str,
+    name: &'a str,
+    device: &'a str,
+    clocks_per_point: f64,
+    targets: Vec<Recorded<'a>>,
+}
+
+/// Figures with what the netlist is made of, to which the estimates of `tune` are fitted.
+#[derive(Serialize)]
+struct Recorded<'a> {
+    #[serde(flatten)]
+    figures: &'a Figures,
+    netlist: Features,
+    /// The clock by the estimate, in MHz.
+    estimated_mhz: f64,
+}
+
+/// `glint synth`.
+pub fn synth(registry: &Registry, output: Output, request: &SynthArguments) -> Result<bool> {
+    let loaded = load(registry, &request.configs.configs)?;
+    let (flows, notes) = flows(request)?;
+    let mut records = Vec::new();
+    for one in &loaded {
+        let file = format!("{}.json", one.unit.config.name);
+        let record = request.out.as_ref().map(|out| OwnFile::new(out, &file, OwnFile::JSON));
+        records.push(record.transpose()?);
+    }
+    let steps = flows.iter().map(|flow| Flow::steps(flow.target(), request.seeds));
+    let steps = steps.sum::<u64>() * loaded.len() as u64;
+    let bar = progress::bar(output, steps, "synthesis");
+    bar.tick();
+    let jobs = rayon::ThreadPoolBuilder::new().num_threads(request.jobs.map_or(0, usize::from));
+    let jobs = jobs.build().context("cannot start threads")?;
+    let measured: Vec<Result<Measured>> = jobs.install(|| {
+        let all = loaded.par_iter();
+        all.map(|one| measure(one, &flows, request, &|steps| bar.inc(steps))).collect()
+    });
+    let measured: Vec<Measured> = measured.into_iter().collect::<Result<_>>()?;
+    bar.finish_and_clear();
+    let mut written = Vec::new();
+    for (one, record) in measured.iter().zip(records) {
+        if let Some(record) = record {
+            written.push(record.write_json(&one.record())?);
+        }
+    }
+    if output.json {
+        show::as_json(&measured, &notes);
+        return Ok(true);
+    }
+    show::print(&measured, &notes);
+    for file in written {
+        tables::print_line(&format!("{file} written"));
+    }
+    Ok(true)
+}
+
+/// The tools for each target, and what is said of targets that are left out.
+fn flows(request: &SynthArguments) -> Result<(Vec<Flow>, Vec<String>)> {
+    let search = std::env::var_os("PATH").unwrap_or_default();
+    let find = |target: Target| {
+        let flow = Flow::find(target, &search, &request.liberty);
+        flow.with_context(|| format!("nothing can be measured for {}", target.title()))
+    };
+    let mut wanted = request.targets.clone();
+    wanted.sort();
+    wanted.dedup();
+    if !wanted.is_empty() {
+        let flows = wanted.into_iter().map(find).collect::<Result<_>>()?;
+        return Ok((flows, Vec::new()));
+    }
+    let (mut flows, mut notes, mut missing) = (Vec::new(), Vec::new(), None);
+    for target in TARGETS {
+        match find(target) {
+            Ok(flow) => flows.push(flow),
+            // A record is of all targets.
+            Err(error) if request.out.is_some() => return Err(error),
+            Err(error) => {
+                notes.push(format!("{error:#}"));
+                missing = Some(error);
+            }
+        }
+    }
+    match missing {
+        Some(error) if flows.is_empty() => Err(error),
+        _ => Ok((flows, notes)),
+    }
+}
+
+/// Measures a configuration for all targets; `done` is told of steps.
+fn measure<'a>(
+    one: &'a Loaded,
+    flows: &[Flow],
+    request: &SynthArguments,
+    done: &(dyn Fn(u64) + Sync),
+) -> Result<Measured<'a>> {
+    let unit = &one.unit;
+    let clocks_per_point =
+        comparison::clocks_per_point(&unit.design, unit.contract.as_ref(), EXPONENT)?;
+    let files = unit.verilog()?;
+    let subject = Subject {
+        design: &unit.design,
+        files: &files,
+        seeds: request.seeds,
+        limit: Duration::from_secs(request.time_limit),
+    };
+    let figures = flows.par_iter().map(|flow| {
+        let digest = flow.digest(&subject);
+        let cache = (!request.no_cache).then(|| Cache::beside(&one.path)).flatten();
+        if let Some(figures) =
+            cache.as_ref().and_then(|cache| cache.find(unit, flow.target(), &digest))
+        {
+            done(Flow::steps(flow.target(), request.seeds));
+            return Ok(figures);
+        }
+        let figures = flow.measure(&subject, &|| done(1));
+        let figures = figures.with_context(|| format!("`{}`", one.path))?;
+        if let Some(cache) = Cache::beside(&one.path) {
+            cache.keep(unit, &digest, &figures);
+        }
+        Ok(figures)
+    });
+    Ok(Measured { one, clocks_per_point, figures: figures.collect::<Result<_>>()? })
+}
+
+impl Measured<'_> {
+    fn record(&self) -> Record<'_> {
+        Record {
+            glint: env!("CARGO_PKG_VERSION"),
+            config: &self.one.path,
+            name: &self.one.unit.config.name,
+            device: self.one.unit.device.name,
+            clocks_per_point: self.clocks_per_point,
+            targets: self.figures.iter().map(|figures| self.recorded(figures)).collect(),
+        }
+    }
+
+    fn recorded<'f>(&self, figures: &'f Figures) -> Recorded<'f> {
+        let design = &self.one.unit.design;
+        Recorded {
+            figures,
+            netlist: Features::new(design, figures.target),
+            estimated_mhz: Cost::new(design, figures.target).mhz,
+        }
+    }
+
+    /// Points a second, in millions.
+    fn rate(&self, figures: &Figures) -> Option<f64> {
+        Some(figures.frequency?.median / self.clocks_per_point)
+    }
+}

@@ -1,0 +1,56 @@
+//! What was measured before, beside the configuration.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use serde::{Deserialize, Serialize};
+
+use crate::base::input;
+use crate::cli::staged;
+use crate::core::Unit;
+use crate::synth::{Figures, Target};
+
+/// The folder beside configurations, which may be deleted at any time.
+const FOLDER: &str = ".glint";
+
+/// A folder with one file for each configuration and target. What is not readable is measured again, and what cannot be kept is not.
+pub struct Cache(PathBuf);
+
+#[derive(Serialize, Deserialize)]
+struct Entry {
+    glint: String,
+    digest: String,
+    figures: Figures,
+}
+
+impl Cache {
+    /// The cache beside the configuration `path`; none beside standard input.
+    pub fn beside(path: &str) -> Option<Self> {
+        (path != input::STDIN)
+            .then(|| Self(Path::new(path).parent().unwrap_or(Path::new("")).join(FOLDER)))
+    }
+
+    fn file(&self, unit: &Unit, target: Target) -> PathBuf {
+        self.0.join(format!("{}.{target}.json", unit.config.name))
+    }
+
+    /// The figures of a measurement with this digest.
+    pub fn find(&self, unit: &Unit, target: Target, digest: &str) -> Option<Figures> {
+        let text = fs::read_to_string(self.file(unit, target)).ok()?;
+        let entry: Entry = serde_json::from_str(&text).ok()?;
+        (entry.digest == digest).then_some(entry.figures)
+    }
+
+    /// Keeps figures, if the folder can be written: a cache that cannot be kept is no error.
+    pub fn keep(&self, unit: &Unit, digest: &str, figures: &Figures) {
+        let entry = Entry {
+            glint: env!("CARGO_PKG_VERSION").to_owned(),
+            digest: digest.to_owned(),
+            figures: figures.clone(),
+        };
+        let text = serde_json::to_string_pretty(&entry);
+        if let (Ok(text), Ok(())) = (text, fs::create_dir_all(&self.0)) {
+            let _ = staged::replace(&self.file(unit, figures.target), text.as_bytes());
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! Figures of synthesis for people and for scripts.
+
+use serde_json::{Value, json};
+
+use super::Measured;
+use crate::cli::tables::{self, Column};
+use crate::synth::{Figures, Step};
+
+/// What stands where there is nothing to tell.
+const NONE: &str = "–";
+
+pub fn print(measured: &[Measured], notes: &[String]) {
+    let columns = [
+        Column::words("configuration"),
+        Column::words("target"),
+        Column::numbers("LUT"),
+        Column::numbers("DSP"),
+        Column::numbers("RAM"),
+        Column::numbers("FF").dispensable(3),
+        Column::numbers("gates").dispensable(2),
+        Column::numbers("µm²").dispensable(5),
+        Column::numbers("MHz"),
+        Column::numbers("spread").dispensable(4),
+        Column::numbers("clocks/point").dispensable(1),
+        Column::numbers("M points/s"),
+        Column::numbers("k/s per LUT").dispensable(6),
+        Column::numbers("M/s per DSP").dispensable(6),
+    ];
+    let rows =
+        measured.iter().flat_map(|one| one.figures.iter().map(move |figures| row(one, figures)));
+    tables::print(&columns, rows);
+    for one in measured {
+        for figures in &one.figures {
+            let about = format!("{}, {}", one.one.unit.config.name, figures.device);
+            if !figures.critical_path.is_empty() {
+                tables::print_line(&format!("{about}: {}", path(&figures.critical_path)));
+            }
+            if let Some(reason) = &figures.untimed {
+                tables::print_line(&format!("{about}: {reason}"));
+            }
+        }
+    }
+    let mut tools: Vec<&str> = measured
+        .iter()
+        .flat_map(|one| &one.figures)
+        .flat_map(|it| &it.tools)
+        .map(String::as_str)
+        .collect();
+    tools.sort_unstable();
+    tools.dedup();
+    tables::print_line(&format!("Measured with {}.", tools.join(", ")));
+    for note in notes {
+        tables::print_line(&format!("Note: {note}"));
+    }
+}
+
+fn row(one: &Measured, figures: &Figures) -> Vec<String> {
+    let area = &figures.area;
+    let count = |number: Option<u64>| number.map_or_else(|| NONE.to_owned(), |it| it.to_string());
+    let whole =
+        |number: Option<f64>| number.map_or_else(|| NONE.to_owned(), |it| format!("{it:.0}"));
+    let decimal =
+        |number: Option<f64>| number.map_or_else(|| NONE.to_owned(), |it| format!("{it:.2}"));
+    let rate = one.rate(figures);
+    let per = |units: Option<u64>| Some(rate? / units.filter(|units| *units > 0)? as f64);
+    let frequency = figures.frequency;
+    vec![
+        one.one.unit.config.name.clone(),
+        figures.target.to_string(),
+        count(area.luts),
+        count(area.dsps),
+        count(area.block_rams),
+        area.flip_flops.to_string(),
+        whole(area.gates),
+        whole(area.square_micrometres),
+        decimal(frequency.map(|it| it.median)),
+        frequency
+            .filter(|it| it.runs > 1)
+            .map_or_else(|| NONE.to_owned(), |it| format!("{:.1}–{:.1}", it.lowest, it.highest)),
+        format!("{:.3}", one.clocks_per_point)
+            .trim_end_matches('0')
+            .trim_end_matches('.')
+            .to_owned(),
+        decimal(rate),
+        decimal(per(area.luts).map(|it| it * 1000.0)),
+        decimal(per(area.dsps)),
+    ]
+}
+
+/// A path as `first → second 3.1 → third 7.9 ns`.
+fn path(steps: &[Step]) -> String {
+    let steps: Vec<String> =
+        steps.iter().map(|step| format!("{} {:.1}", step.name, step.ns)).collect();
+    format!("{} ns", steps.join(" → "))
+}
+
+pub fn as_json(measured: &[Measured], notes: &[String]) {
+    let all = measured.iter().map(|one| {
+        let targets = one.figures.iter().map(|figures| {
+            let mut value = json!(one.recorded(figures));
+            let rate = one.rate(figures);
+            let per = |units: Option<u64>| Some(rate? / units.filter(|units| *units > 0)? as f64);
+            value["million_points_per_second"] = json!(rate);
+            value["million_points_per_second_per_lut"] = json!(per(figures.area.luts));
+            value["million_points_per_second_per_dsp"] = json!(per(figures.area.dsps));
+            value
+        });
+        json!({
+            "config": one.one.path,
+            "name": one.one.unit.config.name,
+            "device": one.one.unit.device.name,
+            "clocks_per_point": one.clocks_per_point,
+            "targets": targets.collect::<Vec<Value>>(),
+        })
+    });
+    let all: Vec<Value> = all.collect();
+    tables::print_json(&json!({ "ok": true, "synthesis": all, "notes": notes }));
+}

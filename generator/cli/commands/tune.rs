@@ -1,0 +1,285 @@
+//! `tune`.
+
+use std::io::Write;
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, bail};
+use clap::{Args, ValueEnum};
+use indicatif::ProgressBar;
+use serde_json::{Value as Json, json};
+
+use crate::cli::destination::Destination;
+use crate::cli::failure::Usage;
+use crate::cli::tables::{self, Column};
+use crate::cli::{Output, progress};
+use crate::config::{self, Config, Value};
+use crate::registry::{Device, Registry};
+use crate::synth::Target;
+use crate::tune::{self, Answer, Candidate, Objective, Unit, Wish};
+
+/// What `tune` was asked for.
+#[derive(Args)]
+pub struct TuneArguments {
+    /// A device, as `glint list` names it
+    device: String,
+    /// The largest error
+    #[arg(long, value_name = "E")]
+    error: f64,
+    /// What the error is measured in: the reflectance f, 0 to 1, or the outputs' least significant bit
+    #[arg(long, value_enum, default_value_t = Unit::Output)]
+    unit: Unit,
+    /// What the core is for
+    #[arg(long, value_name = "TARGET", value_enum, default_value_t = Target::Ecp5)]
+    target: Target,
+    /// What is to be small
+    #[arg(long, value_enum, default_value_t = Objective::Area)]
+    objective: Objective,
+    /// The slowest clock, by the estimate
+    #[arg(long, value_name = "MHZ")]
+    clock: Option<f64>,
+    /// A key that is part of the wish: a format, the domain, or one that is not to be changed; may be repeated
+    #[arg(long = "set", value_name = "KEY=VALUE")]
+    set: Vec<String>,
+    /// The name of the module [default: the device's, with _ for -]
+    #[arg(long)]
+    name: Option<String>,
+    /// Write the configuration to a file that is not there yet
+    #[arg(long, value_name = "FILE.toml")]
+    out: Option<PathBuf>,
+    /// Print the front as CSV, for spreadsheets
+    #[arg(long)]
+    csv: bool,
+}
+
+impl ValueEnum for Unit {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::F, Self::Output]
+    }
+
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        Some(clap::builder::PossibleValue::new(match self {
+            Self::F => "f",
+            Self::Output => "output",
+        }))
+    }
+}
+
+impl ValueEnum for Objective {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[Self::Area, Self::Luts, Self::Dsps, Self::Memory]
+    }
+
+    fn to_possible_value(&self) -> Option<clap::builder::PossibleValue> {
+        let (name, help) = match self {
+            Self::Area => (
+                "area",
+                "look-up tables; a DSP block or a block RAM counts for as many as the chip has of them",
+            ),
+            Self::Luts => ("luts", "look-up tables"),
+            Self::Dsps => ("dsps", "DSP blocks, then area"),
+            Self::Memory => ("memory", "bits of ROM, then area"),
+        };
+        Some(clap::builder::PossibleValue::new(name).help(help))
+    }
+}
+
+/// `glint tune`.
+pub fn tune(registry: &Registry, output: Output, request: &TuneArguments) -> Result<bool> {
+    if output.json && request.csv {
+        bail!(Usage("--json and --csv are two forms of the same: give one".to_owned()));
+    }
+    if !(request.error > 0.0 && request.error.is_finite()) {
+        bail!(Usage(format!("--error {}: an error is a number above 0", request.error)));
+    }
+    if !tune::model::knows(request.target) {
+        bail!(Usage(format!(
+            "--target {}: there is no estimate of what a configuration costs there; tune for an FPGA and see `glint synth`",
+            request.target
+        )));
+    }
+    let (device, base, fixed) = base(registry, request)?;
+    if let Some(path) = request.out.as_ref().filter(|path| path.exists()) {
+        bail!("`{}` is there already; move it away, or give another --out", path.display());
+    }
+    let file = request.out.as_deref().map(Destination::open).transpose()?;
+    let wish = Wish {
+        error: request.error,
+        unit: request.unit,
+        target: request.target,
+        objective: request.objective,
+        clock: request.clock,
+    };
+    let bar: ProgressBar = progress::bar(output, 0, "configurations");
+    let fixed: Vec<&str> = fixed.iter().map(String::as_str).collect();
+    let answer = tune::tune(&device, &base, &fixed, &wish, &|looked_at| {
+        bar.set_length(looked_at as u64);
+        bar.set_position(looked_at as u64);
+    });
+    bar.finish_and_clear();
+    let answer = answer?;
+    let text = toml(&device, &answer.best, request);
+    if let Some(file) = file {
+        file.file()?.write_all(text.as_bytes()).context("cannot write the configuration")?;
+        file.commit()?;
+    }
+    if output.json {
+        tables::print_json(&as_json(&answer, request, &text));
+    } else if request.csv {
+        print_csv(&answer)?;
+    } else {
+        print(&answer, request, &text);
+    }
+    Ok(true)
+}
+
+/// The device, the configuration to start from, and the keys that are part of the wish.
+fn base(registry: &Registry, request: &TuneArguments) -> Result<(Device, Config, Vec<String>)> {
+    let Some(device) = registry.device(&request.device) else {
+        let names: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
+        let near = config::nearest(&request.device, names.iter().copied());
+        let near = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
+        bail!("there is no device `{}`; {near}devices: {}", request.device, names.join(", "));
+    };
+    let name = request.name.clone().unwrap_or_else(|| device.name.replace('-', "_"));
+    // The same reader as a file's, so that messages are the same.
+    let mut text = format!("device = \"{}\"\nname = \"{name}\"\n", device.name);
+    let mut fixed = Vec::new();
+    for given in &request.set {
+        let Some((key, value)) = given.split_once('=') else {
+            bail!(Usage(format!(
+                "--set {given}: a key and a value are wanted, as cosine.fraction=16"
+            )));
+        };
+        let (key, value) = (key.trim(), value.trim());
+        let is_bare = value.parse::<f64>().is_ok()
+            || value.starts_with(['[', '"'])
+            || matches!(value, "true" | "false");
+        let value = if is_bare { value.to_owned() } else { format!("\"{value}\"") };
+        text += &format!("{key} = {value}\n");
+        fixed.push(key.to_owned());
+    }
+    let config = config::parse("--set", &text, &registry.schemas())?;
+    Ok((*device, config, fixed))
+}
+
+/// The configuration as a file, with what led to it.
+fn toml(device: &Device, best: &Candidate, request: &TuneArguments) -> String {
+    let cost = &best.cost;
+    let head = format!(
+        "# The smallest `{}` within {} {} that `glint tune` found for {}.\n\
+         # Proved bound: {:.6} of f, {:.4} output units. Estimate: {:.0} LUTs, {} DSP blocks, {} block RAMs,\n\
+         # {} bits of ROM, {:.0} MHz; `glint synth` measures.\n",
+        device.name,
+        request.error,
+        request.unit,
+        request.target.title(),
+        best.bound.f,
+        best.bound.units,
+        cost.luts,
+        cost.dsps,
+        cost.block_rams,
+        cost.rom_bits,
+        cost.mhz
+    );
+    head + &best.config.to_toml(&(device.schema)())
+}
+
+/// The free keys of a candidate, as `key = value, …`.
+fn widths(answer: &Answer, candidate: &Candidate) -> String {
+    let shown = answer.free.iter().map(|key| {
+        let value: &Value = candidate.config.value(key);
+        format!("{key} = {}", value.toml())
+    });
+    shown.collect::<Vec<_>>().join(", ")
+}
+
+fn print(answer: &Answer, request: &TuneArguments, text: &str) {
+    let columns = [
+        Column::numbers("error of f"),
+        Column::numbers("output units"),
+        Column::numbers("LUT"),
+        Column::numbers("DSP"),
+        Column::numbers("RAM"),
+        Column::numbers("ROM bits"),
+        Column::numbers("MHz"),
+        Column::words("keys").dispensable(1),
+    ];
+    let rows = answer.front.iter().map(|candidate| {
+        let cost = &candidate.cost;
+        vec![
+            format!("{:.6}", candidate.bound.f),
+            format!("{:.4}", candidate.bound.units),
+            format!("{:.0}", cost.luts),
+            cost.dsps.to_string(),
+            cost.block_rams.to_string(),
+            cost.rom_bits.to_string(),
+            format!("{:.0}", cost.mhz),
+            widths(answer, candidate),
+        ]
+    });
+    tables::print(&columns, rows);
+    tables::print_line(&format!(
+        "Proved bounds; LUTs and MHz are estimates for {}. {} configurations were looked at.",
+        request.target.title(),
+        answer.looked_at
+    ));
+    match &request.out {
+        Some(path) => tables::print_line(&format!("{} written", path.display())),
+        None => tables::print_line(&format!("\n{}", text.trim_end())),
+    }
+}
+
+fn as_json(answer: &Answer, request: &TuneArguments, text: &str) -> Json {
+    let candidate = |candidate: &Candidate| {
+        let keys = answer.free.iter().map(|key| {
+            let value = match candidate.config.value(key) {
+                Value::Integer(value) => json!(value),
+                Value::Number(value) => json!(value),
+                Value::Text(value) => json!(value),
+                Value::Flag(value) => json!(value),
+                Value::Integers(values) => json!(values),
+            };
+            ((*key).to_owned(), value)
+        });
+        json!({
+            "error_of_f": candidate.bound.f,
+            "output_units": candidate.bound.units,
+            "cost": candidate.cost,
+            "keys": keys.collect::<serde_json::Map<String, Json>>(),
+        })
+    };
+    json!({
+        "ok": true,
+        "device": request.device,
+        "target": request.target,
+        "error": request.error,
+        "unit": if request.unit == Unit::F { "f" } else { "output" },
+        "best": candidate(&answer.best),
+        "front": answer.front.iter().map(candidate).collect::<Vec<_>>(),
+        "looked_at": answer.looked_at,
+        "configuration": text,
+    })
+}
+
+fn print_csv(answer: &Answer) -> Result<()> {
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    let head = ["error_of_f", "output_units", "luts", "dsps", "block_rams", "rom_bits", "mhz"];
+    csv.write_record(head.iter().copied().chain(answer.free.iter().copied()))?;
+    for candidate in &answer.front {
+        let cost = &candidate.cost;
+        let figures = [
+            candidate.bound.f.to_string(),
+            candidate.bound.units.to_string(),
+            format!("{:.0}", cost.luts),
+            cost.dsps.to_string(),
+            cost.block_rams.to_string(),
+            cost.rom_bits.to_string(),
+            format!("{:.1}", cost.mhz),
+        ];
+        let keys = answer.free.iter().map(|key| candidate.config.value(key).bare());
+        csv.write_record(figures.into_iter().chain(keys))?;
+    }
+    let text = csv.into_inner().context("cannot write CSV")?;
+    tables::print_line(String::from_utf8_lossy(&text).trim_end());
+    Ok(())
+}

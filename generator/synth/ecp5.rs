@@ -1,0 +1,151 @@
+//! ECP5: Yosys and nextpnr-ecp5, which times multipliers without registers and block RAMs.
+
+use anyhow::{Context, Result, bail};
+use rayon::prelude::*;
+use serde_json::Value;
+
+use super::figures::{Figures, Step};
+use super::netlist::{self, Netlist};
+use super::place::Place;
+use super::{Subject, Target};
+use crate::tools::Tool;
+use crate::tools::synthesis::{FAMILIES, Usage};
+
+/// Out of reach, so that the placer tries hardest, in MHz.
+const GOAL: &str = "200";
+
+/// A chip of the family, in speed grade 6.
+struct Chip {
+    flag: &'static str,
+    package: &'static str,
+    name: &'static str,
+    luts: u64,
+    dsps: u64,
+    block_rams: u64,
+}
+
+/// From the smallest; all are as fast.
+const CHIPS: [Chip; 2] = [
+    Chip {
+        flag: "--25k",
+        package: "CABGA381",
+        name: "ECP5 LFE5U-25F, speed grade 6",
+        luts: 24_288,
+        dsps: 28,
+        block_rams: 56,
+    },
+    Chip {
+        flag: "--85k",
+        package: "CABGA756",
+        name: "ECP5 LFE5U-85F, speed grade 6",
+        luts: 83_640,
+        dsps: 156,
+        block_rams: 208,
+    },
+];
+
+pub fn measure(
+    yosys: &Tool,
+    nextpnr: &Tool,
+    subject: &Subject,
+    done: &(dyn Fn() + Sync),
+) -> Result<Figures> {
+    let place = Place::new(subject)?;
+    let (usage, netlist) = place.synthesise(yosys, &FAMILIES[1])?;
+    no_registers_in_blocks(&netlist)?;
+    done();
+    let Some(chip) = CHIPS.iter().find(|chip| chip.holds(usage)) else {
+        let mut figures = Figures::new(Target::Ecp5, CHIPS[1].name, usage.into());
+        figures.untimed = Some("does not fit".to_owned());
+        (0..subject.seeds).for_each(|_| done());
+        return Ok(figures);
+    };
+    let runs: Vec<(f64, Vec<Step>)> = (1..=subject.seeds)
+        .into_par_iter()
+        .map(|seed| {
+            let run = route(nextpnr, subject, &place, &netlist, chip, seed);
+            done();
+            run.with_context(|| format!("seed {seed}"))
+        })
+        .collect::<Result<_>>()?;
+    Ok(Figures::new(Target::Ecp5, chip.name, usage.into()).with_runs(runs))
+}
+
+impl Chip {
+    fn holds(&self, usage: Usage) -> bool {
+        usage.luts <= self.luts && usage.dsps <= self.dsps && usage.block_rams <= self.block_rams
+    }
+}
+
+/// Makes sure that no delay is left out: nextpnr-ecp5 times a multiplier only when no register is inside.
+fn no_registers_in_blocks(netlist: &Netlist) -> Result<()> {
+    for (name, cell) in netlist.cells("MULT18X18D") {
+        let parameters = cell["parameters"].as_object().into_iter().flatten();
+        for (parameter, value) in parameters {
+            let clocked = parameter.starts_with("REG_") && parameter.ends_with("_CLK");
+            if clocked && value != "NONE" {
+                bail!(
+                    "the DSP block `{name}` has registers inside ({parameter} is {value}), which nextpnr does not time"
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+fn route(
+    nextpnr: &Tool,
+    subject: &Subject,
+    place: &Place,
+    netlist: &Netlist,
+    chip: &Chip,
+    seed: u32,
+) -> Result<(f64, Vec<Step>)> {
+    let report = format!("seed{seed}.json");
+    let seed = seed.to_string();
+    // File names without a directory: the WebAssembly of nextpnr sees no other.
+    let arguments =
+        ["--lpf-allow-unconstrained", "--timing-allow-fail", "-q", chip.flag, "--speed", "6"];
+    let arguments = arguments.iter().copied().chain([
+        "--package",
+        chip.package,
+        "--freq",
+        GOAL,
+        "--seed",
+        &seed,
+        "--json",
+        Place::netlist_name(),
+        "--report",
+        &report,
+    ]);
+    nextpnr.run_to_success(arguments, place.path(), subject.limit)?;
+    let report = place.json(&report)?;
+    // Clock pins of DSP blocks that are tied to ground are listed as a clock too.
+    let clocks = report["fmax"].as_object().into_iter().flatten();
+    let clock = clocks
+        .filter(|(name, _)| !name.contains("PACKER"))
+        .find_map(|(name, clock)| Some((name, clock["achieved"].as_f64()?)));
+    let (clock, frequency) =
+        clock.context("`nextpnr-ecp5` does not tell the frequency of the clock")?;
+    Ok((frequency, steps(netlist, &report, &format!("posedge {clock}"))))
+}
+
+/// The longest path from the clock to the clock.
+fn steps(netlist: &Netlist, report: &Value, clock: &str) -> Vec<Step> {
+    let paths = report["critical_paths"].as_array().into_iter().flatten();
+    let path = paths.into_iter().find(|path| path["from"] == clock && path["to"] == clock);
+    let pieces = path.and_then(|path| path["path"].as_array()).into_iter().flatten();
+    let mut points = Vec::new();
+    let mut time = 0.0;
+    for piece in pieces {
+        // A net settles at the end of its route.
+        time += piece["delay"].as_f64().unwrap_or(0.0);
+        let name = match piece["type"].as_str() {
+            Some("routing") => piece["net"].as_str().and_then(|net| netlist.name(net)),
+            Some("setup") => piece["to"]["cell"].as_str().and_then(|cell| netlist.register(cell)),
+            _ => None,
+        };
+        points.extend(name.map(|name| (name.to_owned(), time)));
+    }
+    netlist::path(points)
+}

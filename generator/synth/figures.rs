@@ -1,0 +1,120 @@
+//! What was measured.
+
+use serde::{Deserialize, Serialize};
+
+use super::Target;
+use crate::tools::synthesis::Usage;
+
+/// What a core takes of a target, and how fast it is there.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Figures {
+    /// The target.
+    pub target: Target,
+    /// The chip or the library, for people.
+    pub device: String,
+    /// What the core takes, without the registers around it.
+    pub area: Area,
+    /// How fast it is, with the registers around it; not of every target.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub frequency: Option<Frequency>,
+    /// The longest path between registers, by names of the description; of the median run.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub critical_path: Vec<Step>,
+    /// Why there is no frequency.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub untimed: Option<String>,
+    /// The tools with their versions.
+    pub tools: Vec<String>,
+}
+
+/// What a core takes. What does not exist in a target is `None`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Area {
+    /// Look-up tables.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub luts: Option<u64>,
+    /// DSP blocks.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dsps: Option<u64>,
+    /// Block RAMs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub block_rams: Option<u64>,
+    /// Flip-flops.
+    pub flip_flops: u64,
+    /// Area in NAND gates of two inputs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gates: Option<f64>,
+    /// Area of the cells in µm².
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub square_micrometres: Option<f64>,
+}
+
+/// Frequencies in MHz.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Frequency {
+    /// Of the slowest run.
+    pub lowest: f64,
+    /// Of the run in the middle; of an even number of runs the slower of two.
+    pub median: f64,
+    /// Of the fastest run.
+    pub highest: f64,
+    /// The number of runs.
+    pub runs: u32,
+}
+
+/// A point of a path.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Step {
+    /// The net, as the description names it; `ROM` before that of a ROM.
+    pub name: String,
+    /// When it settles, after the clock's edge, in nanoseconds.
+    pub ns: f64,
+}
+
+impl Figures {
+    /// Figures with an area alone.
+    pub(super) fn new(target: Target, device: &str, area: Area) -> Self {
+        Self {
+            target,
+            device: device.to_owned(),
+            area,
+            frequency: None,
+            critical_path: Vec::new(),
+            untimed: None,
+            tools: Vec::new(),
+        }
+    }
+
+    /// Puts the runs in, each a frequency in MHz and its longest path.
+    pub(super) fn with_runs(mut self, mut runs: Vec<(f64, Vec<Step>)>) -> Self {
+        runs.sort_by(|one, other| one.0.total_cmp(&other.0));
+        let (Some(first), Some(last)) = (runs.first(), runs.last()) else {
+            return self;
+        };
+        let (lowest, highest) = (rounded(first.0), rounded(last.0));
+        let count = runs.len();
+        let (median, path) = runs.swap_remove((count - 1) / 2);
+        let median = rounded(median);
+        self.frequency = Some(Frequency { lowest, median, highest, runs: count as u32 });
+        self.critical_path = path;
+        self
+    }
+}
+
+impl From<Usage> for Area {
+    fn from(usage: Usage) -> Self {
+        Self {
+            luts: Some(usage.luts),
+            dsps: Some(usage.dsps),
+            block_rams: Some(usage.block_rams),
+            flip_flops: usage.flip_flops,
+            ..Self::default()
+        }
+    }
+}
+
+/// To two decimals: more than a tool's figures are worth.
+pub(super) fn rounded(number: f64) -> f64 {
+    (number * 100.0).round() / 100.0
+}

@@ -1,0 +1,124 @@
+//! iCE40 UltraPlus 5K: Yosys, nextpnr-ice40 and icetime.
+//!
+//! nextpnr-ice40 takes every DSP block for a register and leaves its delay out. `icetime` knows the delay of a
+//! block that is a multiplier and nothing else, so that is what [`crate::tools::synthesis`] makes of products.
+
+use anyhow::{Context, Result, bail};
+use rayon::prelude::*;
+use serde_json::Value;
+
+use super::figures::{Figures, Step};
+use super::netlist::{self, Netlist};
+use super::place::Place;
+use super::{Subject, Target};
+use crate::tools::Tool;
+use crate::tools::synthesis::{FAMILIES, Usage};
+
+const DEVICE: &str = "iCE40 UP5K, SG48";
+
+/// The largest core of the family that has DSP blocks.
+const CAPACITY: [(&str, u64); 3] = [("LUTs", 5280), ("DSP blocks", 8), ("block RAMs", 30)];
+
+/// Out of reach, so that the placer tries hardest, in MHz.
+const GOAL: &str = "60";
+
+pub fn measure(
+    yosys: &Tool,
+    nextpnr: &Tool,
+    icetime: &Tool,
+    subject: &Subject,
+    done: &(dyn Fn() + Sync),
+) -> Result<Figures> {
+    let place = Place::new(subject)?;
+    let (usage, netlist) = place.synthesise(yosys, &FAMILIES[0])?;
+    only_multipliers(&netlist)?;
+    done();
+    let mut figures = Figures::new(Target::Ice40, DEVICE, usage.into());
+    if let Some(lack) = lack(usage) {
+        figures.untimed = Some(lack);
+        (0..subject.seeds).for_each(|_| done());
+        return Ok(figures);
+    }
+    let runs: Vec<(f64, Vec<Step>)> = (1..=subject.seeds)
+        .into_par_iter()
+        .map(|seed| {
+            let run = route(nextpnr, icetime, subject, &place, &netlist, seed);
+            done();
+            run.with_context(|| format!("seed {seed}"))
+        })
+        .collect::<Result<_>>()?;
+    Ok(figures.with_runs(runs))
+}
+
+/// What the chip has too little of.
+fn lack(usage: Usage) -> Option<String> {
+    let wanted = [usage.luts, usage.dsps, usage.block_rams];
+    let pairs = CAPACITY.iter().zip(wanted);
+    let short = pairs.filter(|((_, there), wanted)| wanted > there);
+    let short: Vec<String> =
+        short.map(|((what, there), wanted)| format!("{wanted} {what}, UP5K has {there}")).collect();
+    (!short.is_empty()).then(|| format!("does not fit: {}", short.join("; ")))
+}
+
+/// Makes sure that the delay of no DSP block is left out.
+fn only_multipliers(netlist: &Netlist) -> Result<()> {
+    for (name, cell) in netlist.cells("SB_MAC16") {
+        let parameters = cell["parameters"].as_object().into_iter().flatten();
+        for (parameter, value) in parameters {
+            let value = value.as_str().unwrap_or_default();
+            let pure = match parameter.as_str() {
+                "TOPOUTPUT_SELECT" | "BOTOUTPUT_SELECT" => value.ends_with("11"),
+                "A_SIGNED" | "B_SIGNED" => true,
+                _ => !value.contains('1'),
+            };
+            if !pure {
+                bail!(
+                    "the DSP block `{name}` is more than a multiplier ({parameter} is {value}), which icetime cannot time"
+                );
+            }
+        }
+    }
+    Ok(())
+}
+
+fn route(
+    nextpnr: &Tool,
+    icetime: &Tool,
+    subject: &Subject,
+    place: &Place,
+    netlist: &Netlist,
+    seed: u32,
+) -> Result<(f64, Vec<Step>)> {
+    let (placed, timing) = (format!("seed{seed}.asc"), format!("seed{seed}.json"));
+    let seed = seed.to_string();
+    let arguments =
+        ["--up5k", "--package", "sg48", "--pcf-allow-unconstrained", "--timing-allow-fail", "-q"];
+    let arguments = arguments.iter().copied().chain([
+        "--freq",
+        GOAL,
+        "--seed",
+        &seed,
+        "--json",
+        Place::netlist_name(),
+        "--asc",
+        &placed,
+    ]);
+    nextpnr.run_to_success(arguments, place.path(), subject.limit)?;
+    let arguments = ["-d", "up5k", "-P", "sg48", "-i", "-t", "-j", &timing, &placed];
+    let said = icetime.run_to_success(arguments, place.path(), subject.limit)?;
+    let nanoseconds = said.lines().find_map(|line| {
+        line.strip_prefix("Total path delay: ")?.split(' ').next()?.parse::<f64>().ok()
+    });
+    let nanoseconds = nanoseconds.context("`icetime` does not tell the longest path")?;
+    let path = place.json(&timing)?;
+    Ok((1000.0 / nanoseconds, steps(netlist, &path)))
+}
+
+/// The longest path; times are those at which a cell's output, or the next cell's input, settles.
+fn steps(netlist: &Netlist, path: &Value) -> Vec<Step> {
+    let points = path[0].as_array().into_iter().flatten();
+    netlist::path(points.filter_map(|point| {
+        let name = netlist.name(point["net"].as_str()?)?;
+        Some((name.to_owned(), point["delay_ns"].as_f64()?))
+    }))
+}

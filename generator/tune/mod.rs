@@ -1,0 +1,114 @@
+//! The smallest configuration of a device for an error.
+//!
+//! The bound of the accuracy contract decides, which is proved and known before anything is simulated: what
+//! [`tune`] answers keeps the error that was asked for, for every operand of the domain. What a configuration costs is
+//! estimated from its netlist ([`model`]); synthesis confirms the answer.
+//!
+//! Free are the keys that change neither a port nor the formula ([`space`]); all others are the wish itself.
+
+pub mod model;
+mod search;
+mod space;
+
+use std::fmt;
+
+use anyhow::{Context, Result};
+
+use crate::config::Config;
+use crate::golden::Bound;
+use crate::registry::Device;
+pub use model::{Cost, Features};
+use search::Search;
+pub use search::{Answer, Candidate};
+use space::Space;
+
+use crate::synth::Target;
+
+/// What the error is measured in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Unit {
+    /// Of the reflectance f, from 0 to 1.
+    F,
+    /// Of an output: its least significant bit.
+    Output,
+}
+
+impl Unit {
+    /// The bound in this unit.
+    pub fn of(self, bound: &Bound) -> f64 {
+        match self {
+            Self::F => bound.f,
+            Self::Output => bound.units,
+        }
+    }
+}
+
+impl fmt::Display for Unit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::F => "of f",
+            Self::Output => "output units",
+        })
+    }
+}
+
+/// What is to be as small as possible.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Objective {
+    /// Look-up tables, with DSP blocks and block RAMs counted as the look-up tables that the target has for each.
+    Area,
+    /// Look-up tables.
+    Luts,
+    /// DSP blocks, then area.
+    Dsps,
+    /// Bits of the ROMs, then area.
+    Memory,
+}
+
+/// What is asked for.
+#[derive(Clone, Debug)]
+pub struct Wish {
+    /// The largest error.
+    pub error: f64,
+    /// What it is measured in.
+    pub unit: Unit,
+    /// What the core is for.
+    pub target: Target,
+    /// What is to be small.
+    pub objective: Objective,
+    /// The slowest clock in MHz, by the estimate.
+    pub clock: Option<f64>,
+}
+
+/// Searches for the smallest configuration. `base` has the keys that are part of the wish; the free ones are changed, but for those
+/// in `fixed`. `progress` is told how many configurations were looked at.
+///
+/// # Errors
+/// No configuration keeps the wish; the message says which term of the bound, or the clock, is in the way.
+pub fn tune(
+    device: &Device,
+    base: &Config,
+    fixed: &[&str],
+    wish: &Wish,
+    progress: &(dyn Fn(usize) + Sync),
+) -> Result<Answer> {
+    let space = Space::new(device, base, fixed)?;
+    Search::new(device, &space, wish, progress)
+        .run(base)
+        .with_context(|| format!("`{}` cannot be tuned", device.name))
+}
+
+/// Every configuration of the free keys whose values are given, each with its cost, in the order of the values: for tests
+/// of the search, and for small spaces.
+///
+/// # Errors
+/// A configuration that the device accepts and that makes no design.
+pub fn exhaustive(
+    device: &Device,
+    base: &Config,
+    values: &[(&str, Vec<crate::config::Value>)],
+    wish: &Wish,
+) -> Result<Option<Candidate>> {
+    let space = Space::new(device, base, &[])?;
+    Search::new(device, &space, wish, &|_| ()).exhaustive(base, values)
+}

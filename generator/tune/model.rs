@@ -1,0 +1,241 @@
+//! What a configuration costs, estimated from its netlist.
+//!
+//! DSP blocks and block RAMs follow from the widths. Look-up tables are a weighted sum of what the netlist is made of; the weights are
+//! fitted to synthesis by `benches/tune/fit`, from the table beside it. The clock is the longest path by the delays of
+//! the pipelines' targets, which were measured.
+
+use serde::Serialize;
+
+use crate::hdl::netlist::{Design, Driver, NetId, Op};
+use crate::hdl::pipeline::{self, TARGETS};
+use crate::synth::Target;
+
+/// What a netlist is made of, as far as look-up tables are concerned.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Features {
+    /// Bits of sums, differences and comparisons.
+    pub adder: f64,
+    /// Bits of multiplexers, for each input beyond the first.
+    pub mux: f64,
+    /// Bits of gates; a reduction or an equality takes a look-up table for three bits.
+    pub logic: f64,
+    /// Bits of ROMs that are look-up tables, in sixteenths.
+    pub rom: f64,
+    /// Bits of the sums of partial products.
+    pub product: f64,
+}
+
+/// What a configuration costs on a target.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Cost {
+    /// Look-up tables.
+    pub luts: f64,
+    /// DSP blocks.
+    pub dsps: u64,
+    /// Block RAMs.
+    pub block_rams: u64,
+    /// Bits of all ROMs.
+    pub rom_bits: u64,
+    /// The clock in MHz.
+    pub mhz: f64,
+}
+
+/// A target as the model sees it.
+struct Chip {
+    target: Target,
+    /// The weights of [`Features`], and what every core takes.
+    weights: [f64; 6],
+    /// The target of pipelines with its delays.
+    delays: &'static str,
+    /// What was measured over what the delays say.
+    scale: f64,
+    /// The widest unsigned operands of a DSP block, the wider one first.
+    multiplier: (u32, u32),
+    /// Bits of a block RAM, and its widest word.
+    block: (u64, u64),
+    /// Synchronous ROMs of fewer bits are look-up tables.
+    least_block: u64,
+    /// Look-up tables that the chip has for each DSP block and for each block RAM.
+    worth: (f64, f64),
+}
+
+/// UP5K has 5280 look-up tables, 8 DSP blocks and 30 block RAMs; LFE5U-25F 24288, 28 and 56; XC7A35T 20800, 90 and 100.
+const CHIPS: [Chip; 3] = [
+    Chip {
+        target: Target::Ice40,
+        weights: ICE40,
+        delays: "ice40",
+        scale: 1.0,
+        multiplier: (16, 16),
+        block: (4096, 16),
+        least_block: 128,
+        worth: (660.0, 176.0),
+    },
+    Chip {
+        target: Target::Ecp5,
+        weights: ECP5,
+        delays: "ecp5",
+        scale: 1.0,
+        multiplier: (18, 18),
+        block: (18_432, 36),
+        least_block: 2048,
+        worth: (867.0, 434.0),
+    },
+    Chip {
+        target: Target::Xilinx7,
+        weights: XILINX7,
+        delays: "xilinx7",
+        scale: 1.0,
+        multiplier: (24, 17),
+        block: (18_432, 36),
+        least_block: 8192,
+        worth: (231.0, 208.0),
+    },
+];
+
+const ICE40: [f64; 6] = [1.0, 0.7, 0.5, 1.0, 1.0, 20.0];
+const ECP5: [f64; 6] = [1.0, 0.7, 0.5, 1.0, 1.0, 20.0];
+const XILINX7: [f64; 6] = [1.0, 0.5, 0.3, 0.3, 0.5, 20.0];
+
+fn chip(target: Target) -> &'static Chip {
+    // Cells have no model of their own: of the FPGAs ECP5 is nearest, where a product is not split.
+    CHIPS.iter().find(|chip| chip.target == target).unwrap_or(&CHIPS[1])
+}
+
+/// Whether the model knows a target.
+pub fn knows(target: Target) -> bool {
+    CHIPS.iter().any(|chip| chip.target == target)
+}
+
+impl Cost {
+    /// The estimate for a design.
+    pub fn new(design: &Design, target: Target) -> Self {
+        let chip = chip(target);
+        let features = Features::new(design, target);
+        let Features { adder, mux, logic, rom, product } = features;
+        let parts = [adder, mux, logic, rom, product, 1.0];
+        let luts = parts.iter().zip(chip.weights).map(|(part, weight)| part * weight).sum::<f64>();
+        Self {
+            // A tenth of a look-up table is more than an estimate is worth.
+            luts: (luts * 10.0).round() / 10.0,
+            dsps: products(design).map(|(a, b)| blocks(chip, a, b)).sum(),
+            block_rams: block_rams(design, chip),
+            rom_bits: design.rom_bits(),
+            mhz: (10_000.0 / (chip.scale * period(design, chip))).round() / 10.0,
+        }
+    }
+
+    /// Everything in look-up tables.
+    pub fn area(&self, target: Target) -> f64 {
+        let (dsp, block) = chip(target).worth;
+        self.luts + dsp * self.dsps as f64 + block * self.block_rams as f64
+    }
+}
+
+impl Features {
+    /// Those of a design on a target.
+    pub fn new(design: &Design, target: Target) -> Self {
+        let chip = chip(target);
+        let mut sum = Self::default();
+        let width = |net: NetId| f64::from(design.width(net));
+        for (id, net) in design.iter() {
+            let Driver::Op(op) = &net.driver else {
+                continue;
+            };
+            match op {
+                Op::Add { a, .. } | Op::Sub(a, _) | Op::Less(a, _) => sum.adder += width(*a),
+                Op::And(..) | Op::Or(..) | Op::Xor(..) => sum.logic += width(id),
+                Op::Any(a) | Op::All(a) => sum.logic += width(*a) / 3.0,
+                Op::Equal(a, _) => sum.logic += 2.0 * width(*a) / 3.0,
+                Op::Mux { inputs, .. } => sum.mux += width(id) * (inputs.len() - 1) as f64,
+                Op::Mul(a, b) => {
+                    let blocks = blocks(chip, design.width(*a), design.width(*b));
+                    sum.product += blocks.saturating_sub(1) as f64 * width(id) / 2.0;
+                }
+                Op::Relabel(_) | Op::Extend(_) | Op::Slice { .. } | Op::Concat(_) | Op::Not(_) => {}
+            }
+        }
+        for rom in &design.roms {
+            let bits = rom.words.len() as u64 * u64::from(design.width(rom.data));
+            if !rom.synchronous || bits < chip.least_block {
+                sum.rom += bits as f64 / 16.0;
+            }
+        }
+        sum
+    }
+}
+
+fn products(design: &Design) -> impl Iterator<Item = (u32, u32)> {
+    design.nets.iter().filter_map(|net| match net.driver {
+        Driver::Op(Op::Mul(a, b)) => Some((design.width(a), design.width(b))),
+        _ => None,
+    })
+}
+
+/// DSP blocks for a product, the better way round. Slices of an operand of more than one block lose a bit to the sign.
+fn blocks(chip: &Chip, a: u32, b: u32) -> u64 {
+    let (wide, narrow) = chip.multiplier;
+    let slices = |operand: u32, block: u32| {
+        if operand <= block { 1 } else { u64::from(operand.div_ceil(block)) }
+    };
+    let either = |a: u32, b: u32| slices(a, wide) * slices(b, narrow);
+    either(a, b).min(either(b, a))
+}
+
+fn block_rams(design: &Design, chip: &Chip) -> u64 {
+    let (capacity, widest) = chip.block;
+    design
+        .roms
+        .iter()
+        .filter(|rom| rom.synchronous && rom.shares.is_none())
+        .map(|rom| (rom.words.len() as u64, u64::from(design.width(rom.data))))
+        .filter(|(words, width)| words * width >= chip.least_block)
+        .map(|(words, width)| {
+            // The word of a block shrinks as the number of words grows, by powers of two.
+            let mut shapes =
+                std::iter::successors(Some(widest), |wide| (*wide > 1).then_some(wide / 2));
+            let fits = |wide: &u64| capacity / wide >= words;
+            let wide = shapes.find(fits);
+            wide.map_or((words * width).div_ceil(capacity), |wide| width.div_ceil(wide))
+        })
+        .sum()
+}
+
+/// The longest path between registers in nanoseconds, by the delays of the pipelines' target.
+fn period(design: &Design, chip: &Chip) -> f64 {
+    let delays = pipeline::Target::named(chip.delays).unwrap_or(&TARGETS[0]);
+    let order = design.levelise().unwrap_or_default();
+    let mut arrival = vec![0.0_f64; design.nets.len()];
+    let levels = |inputs: u32| f64::from(inputs.max(2).ilog2().div_ceil(2).max(1));
+    let chain = |width: u32| delays.carry + delays.carry_bit * f64::from(width);
+    let mut longest = 0.0_f64;
+    for id in order {
+        let net = design.net(id);
+        let before = design.combinational_inputs(id);
+        let before = before.iter().map(|input| arrival[input.index()]).fold(0.0, f64::max);
+        let own = match &net.driver {
+            Driver::Op(op) => match op {
+                Op::And(..) | Op::Or(..) | Op::Xor(..) => delays.logic,
+                Op::Add { a, .. } | Op::Sub(a, _) | Op::Less(a, _) => chain(design.width(*a)),
+                Op::Mul(a, b) => {
+                    let blocks = blocks(chip, design.width(*a), design.width(*b));
+                    let sums = if blocks > 1 { chain(design.width(id) / 2) } else { 0.0 };
+                    delays.product + sums
+                }
+                Op::Equal(a, _) => delays.logic * levels(2 * design.width(*a)),
+                Op::Any(a) | Op::All(a) => delays.logic * levels(design.width(*a)),
+                Op::Mux { inputs, .. } => delays.logic * levels(inputs.len() as u32),
+                _ => 0.0,
+            },
+            Driver::Rom(rom) => {
+                let rom = design.rom(*rom);
+                let address = design.width(rom.address).saturating_sub(2).max(1);
+                if rom.synchronous { delays.block } else { delays.logic * levels(2 * address) }
+            }
+            _ => 0.0,
+        };
+        arrival[id.index()] = before + own;
+        longest = longest.max(before + own);
+    }
+    longest + delays.register
+}

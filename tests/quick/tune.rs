@@ -1,0 +1,139 @@
+//! `tune`: sound, as small as exhaustive search finds, the same every time.
+
+use glint::config::{Config, Value};
+use glint::registry::{Device, Registry};
+use glint::synth::Target;
+use glint::tune::{Candidate, Objective, Unit, Wish, exhaustive, tune};
+
+fn device(name: &str) -> Device {
+    *Registry::catalogue().device(name).expect("a device of the catalogue")
+}
+
+fn defaults(device: &Device) -> Config {
+    Config::defaults(&(device.schema)(), &device.name.replace('-', "_"))
+}
+
+fn integers(range: std::ops::RangeInclusive<i64>) -> Vec<Value> {
+    range.map(Value::Integer).collect()
+}
+
+fn roundings() -> Vec<Value> {
+    ["truncate", "nearest"].map(|word| Value::Text(word.to_owned())).to_vec()
+}
+
+/// Spaces that can be gone through, an error that takes some of each, and what of them the search may not touch: a key
+/// that is not in the space is fixed.
+fn spaces() -> Vec<(&'static str, f64, Vec<(&'static str, Vec<Value>)>)> {
+    let f = || ("intensity.fraction", integers(10..=20));
+    vec![
+        (
+            "cosine-power",
+            0.75,
+            vec![f(), ("intensity.rounding", roundings()), ("output.rounding", roundings())],
+        ),
+        (
+            "schlick",
+            0.8,
+            vec![("intensity.fraction", integers(6..=24)), ("output.rounding", roundings())],
+        ),
+        (
+            "threshold",
+            0.7,
+            vec![f(), ("intensity.rounding", roundings()), ("output.rounding", roundings())],
+        ),
+        ("lyon", 0.9, vec![("distance.fraction", integers(14..=28)), f()]),
+        ("quadratic", 0.9, vec![("difference.fraction", integers(12..=28)), f()]),
+        ("rough", 1.2, vec![("product.fraction", integers(21..=25)), f()]),
+    ]
+}
+
+fn wish(error: f64, target: Target) -> Wish {
+    Wish { error, unit: Unit::Output, target, objective: Objective::Area, clock: None }
+}
+
+#[test]
+fn the_answer_is_within_a_tenth_of_the_best_there_is() {
+    for (name, error, values) in spaces() {
+        let device = device(name);
+        let base = defaults(&device);
+        let inside: Vec<&str> = values.iter().map(|(key, _)| *key).collect();
+        let fixed: Vec<&str> =
+            base.values().map(|(key, _)| key).filter(|key| !inside.contains(key)).collect();
+        for target in [Target::Ice40, Target::Ecp5] {
+            let wish = wish(error, target);
+            let best = exhaustive(&device, &base, &values, &wish).expect("designs");
+            let best = best.unwrap_or_else(|| panic!("{name}: nothing keeps {error}"));
+            let answer = tune(&device, &base, &fixed, &wish, &|_| ()).expect("an answer").best;
+            let area = |it: &Candidate| it.cost.area(target);
+            assert!(area(&answer) <= 1.1 * area(&best), "{name}: {answer:?}, the best is {best:?}");
+            assert!(answer.bound.units <= error, "{name}: {answer:?}");
+            // What was not free is as it was.
+            for key in &fixed {
+                assert_eq!(answer.config.value(key), base.value(key), "{name} {key}");
+            }
+        }
+    }
+}
+
+/// An ulp by which the base of `cosine-power` is off is 16 ulp of its sixteenth power; what the four squarings truncate makes 8, 4, 2
+/// and 1 of them: 31 ulp in all, so that half the error takes a bit more.
+#[test]
+fn half_the_error_takes_a_bit_more() {
+    let device = device("cosine-power");
+    let base = defaults(&device);
+    let bits = |error: f64| {
+        let wish = Wish { unit: Unit::F, ..wish(error, Target::Ecp5) };
+        let answer = tune(&device, &base, &[], &wish, &|_| ()).expect("an answer");
+        answer.best.config.integer("intensity.fraction")
+    };
+    // 31 · 2⁻¹⁶ = 0.000473.
+    assert_eq!(bits(0.000_474), 16);
+    assert_eq!(bits(0.000_237), 17);
+    assert_eq!(bits(0.000_948), 15);
+}
+
+#[test]
+fn ports_and_formula_stay() {
+    let device = device("lyon");
+    let base = defaults(&device);
+    let answer = tune(&device, &base, &[], &wish(0.9, Target::Ice40), &|_| ()).expect("an answer");
+    for key in ["power", "scale", "vector.fraction", "colour.bits"] {
+        assert!(!answer.free.contains(&key), "{key} is free");
+        assert_eq!(answer.best.config.value(key), base.value(key), "{key}");
+    }
+    assert!(answer.free.contains(&"distance.fraction"), "{:?}", answer.free);
+}
+
+#[test]
+fn the_front_falls_and_has_the_answer() {
+    let device = device("cosine-power");
+    let base = defaults(&device);
+    let run = || tune(&device, &base, &[], &wish(0.75, Target::Ecp5), &|_| ()).expect("an answer");
+    let (answer, again) = (run(), run());
+    for pair in answer.front.windows(2) {
+        assert!(pair[0].bound.units <= pair[1].bound.units, "{:?}", answer.front);
+        assert!(pair[0].cost.area(Target::Ecp5) > pair[1].cost.area(Target::Ecp5));
+    }
+    assert!(answer.front.iter().any(|it| it.config == answer.best.config));
+    let texts = |answer: &glint::tune::Answer| {
+        answer.front.iter().map(|it| format!("{:?}", it.config)).collect::<Vec<_>>()
+    };
+    assert_eq!(texts(&answer), texts(&again));
+}
+
+#[test]
+fn a_wish_out_of_reach_says_what_is_in_the_way() {
+    let device = device("cosine-power");
+    // Rounding to eight bits costs half a unit, whatever f is.
+    let refused = tune(&device, &defaults(&device), &[], &wish(0.1, Target::Ecp5), &|_| ());
+    let refused = format!("{:#}", refused.expect_err("out of reach"));
+    assert!(refused.contains("no configuration keeps 0.1 output units"), "{refused}");
+    assert!(
+        refused.contains("rounding of the colour outputs (`output.rounding`), 0.500000"),
+        "{refused}"
+    );
+    let fast = Wish { clock: Some(5000.0), ..wish(0.9, Target::Ecp5) };
+    let refused = tune(&device, &defaults(&device), &[], &fast, &|_| ());
+    let refused = format!("{:#}", refused.expect_err("out of reach"));
+    assert!(refused.contains("5000.0 MHz are wanted"), "{refused}");
+}

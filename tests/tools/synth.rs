@@ -1,0 +1,119 @@
+//! `glint synth`: figures that the tools' own tables bear out, and the record in `synthesis/`.
+
+use std::env;
+use std::ffi::OsString;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use glint::dsl::{Designer, end, step, valid};
+use glint::fixed::{Format, Overflow, Rounding};
+use glint::hdl::netlist::Design;
+use glint::package::{self, EmitInputs};
+use glint::synth::{Area, Figures, Flow, Subject, Target};
+use serde_json::Value;
+
+use crate::common::sample::sampled;
+use crate::common::tools::LIMIT;
+use crate::common::units::configuration;
+
+/// Pairs of a configuration and a target whose areas are measured again.
+const PAIRS: usize = 6;
+
+/// The flow of a target, its tools from the Python environment that `tools/install` makes, or from `PATH`.
+fn flow(target: Target) -> Flow {
+    let venv = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/tools/venv/bin");
+    let path = env::var_os("PATH").unwrap_or_default();
+    let places = env::split_paths(&path).chain([venv]);
+    let search: OsString = env::join_paths(places).expect("a search path");
+    let liberty = Path::new("/usr/share/qflow/tech/osu018/osu018_stdcells.lib");
+    Flow::find(target, &search, liberty).unwrap_or_else(|error| panic!("{error:#}"))
+}
+
+fn measured(target: Target, design: &Design, seeds: u32) -> Figures {
+    let files = package::emit(design, &EmitInputs::default()).expect("Verilog");
+    let files = package::sources(files);
+    let subject = Subject { design, files: &files, seeds, limit: LIMIT };
+    flow(target).measure(&subject, &|| ()).unwrap_or_else(|error| panic!("{error:#}"))
+}
+
+/// A register, a product of 16 by 16 bits, a register.
+fn square() -> Design {
+    let d = Designer::new("square_of_x");
+    let x = d.operand("x", Format::unsigned(0, 16));
+    let product = d.mul("product", x.q(), x.q());
+    let y = d.register("y", Format::unsigned(0, 32));
+    y.takes(d.narrow("whole", product, y.format(), Rounding::Truncate, Overflow::Saturate));
+    d.output("y_out", y.q());
+    d.microprogram([
+        step("idle", []),
+        step("square", [y.load()]),
+        step("result", [valid(), end()]),
+    ]);
+    d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"))
+}
+
+/// The multipliers' delays stand in the tools' tables: 16 by 16 bits take at least 6.6 ns in UP5K (`icetime`, to the
+/// lowest of the upper output bits), and any take 3.9 ns in ECP5's speed grade 6 (nextpnr-ecp5).
+#[test]
+fn the_delay_of_a_multiplier_is_not_left_out() {
+    for (target, delay) in [(Target::Ice40, 6.6), (Target::Ecp5, 3.9)] {
+        let figures = measured(target, &square(), 1);
+        assert_eq!(figures.area.dsps, Some(1), "{figures:?}");
+        let frequency = figures.frequency.expect("a frequency");
+        assert!(1000.0 / frequency.median > delay, "{figures:?}");
+        let names: Vec<&str> =
+            figures.critical_path.iter().map(|step| step.name.as_str()).collect();
+        let (first, last) = (names.first().copied(), names.last().copied());
+        assert_eq!((first, last), (Some("x_reg"), Some("y")), "{figures:?}");
+        assert!(names.contains(&"product"), "{figures:?}");
+        let end = figures.critical_path.last().expect("a path").ns;
+        assert!(end <= 1000.0 / frequency.median + 0.01, "{figures:?}");
+    }
+}
+
+/// A product needs about a full adder for each pair of bits, and those are about four gates or more.
+#[test]
+fn cells_are_counted_in_gates() {
+    let figures = measured(Target::Osu018, &square(), 1);
+    let gates = figures.area.gates.expect("gates");
+    assert!((16.0 * 16.0 * 4.0..16.0 * 16.0 * 16.0).contains(&gates), "{figures:?}");
+    // NAND2X1 is 24 µm² in that library.
+    let area = figures.area.square_micrometres.expect("an area");
+    assert!((area / 24.0 - gates).abs() < 1.0, "{figures:?}");
+    let names: Vec<&str> = figures.critical_path.iter().map(|step| step.name.as_str()).collect();
+    assert_eq!((names.first(), names.last()), (Some(&"x_reg"), Some(&"y")), "{figures:?}");
+}
+
+/// What a later change of description or emission costs is seen here. `glint synth --out synthesis` makes the record anew.
+#[test]
+fn areas_are_those_of_the_record() {
+    let record = Path::new(env!("CARGO_MANIFEST_DIR")).join("synthesis");
+    let mut files: Vec<PathBuf> =
+        fs::read_dir(&record).expect("synthesis/").map(|it| it.expect("an entry").path()).collect();
+    files.retain(|file| file.extension().is_some_and(|it| it == "json"));
+    files.sort();
+    let mut pairs = Vec::new();
+    for file in &files {
+        let text = fs::read_to_string(file).expect("a record");
+        let record: Value = serde_json::from_str(&text).expect("JSON");
+        let config = record["config"].as_str().expect("a configuration").to_owned();
+        let targets: Vec<Figures> =
+            serde_json::from_value(record["targets"].clone()).expect("figures");
+        pairs.extend(targets.into_iter().map(|figures| (config.clone(), figures)));
+    }
+    assert!(pairs.len() >= PAIRS, "{} pairs", pairs.len());
+    for (config, recorded) in sampled("synth", pairs, PAIRS) {
+        let unit = configuration(&config);
+        // No seed, no run of place and route.
+        let now = measured(recorded.target, &unit.design, 0);
+        assert_eq!(now.tools[0], recorded.tools[0], "{config}: the record is of another Yosys");
+        let of = |area: &Area| {
+            let gates = area.gates.map(|gates| gates as u64);
+            [area.luts, area.dsps, area.block_rams, Some(area.flip_flops), gates]
+        };
+        let pairs = of(&now.area).into_iter().zip(of(&recorded.area));
+        let grown =
+            pairs.filter(|(now, recorded)| now.unwrap_or(0) * 50 > recorded.unwrap_or(0) * 51);
+        assert_eq!(grown.count(), 0, "{config}: {:?}, in the record {:?}", now.area, recorded.area);
+    }
+}
