@@ -146,10 +146,10 @@ fn steps(netlist: &Netlist, said: &str) -> Vec<Step> {
         if line.trim_end().ends_with("(net)") {
             let name = words.next().and_then(|net| netlist.name(net));
             points.extend(name.map(|name| (name.to_owned(), time)));
-        } else if let Some(arrival) = words.next().and_then(|word| word.parse().ok()) {
-            if first.parse::<f64>().is_ok() {
-                time = arrival;
-            }
+        } else if let Some(arrival) = words.next().and_then(|word| word.parse().ok())
+            && first.parse::<f64>().is_ok()
+        {
+            time = arrival;
         }
     }
     let end = said.lines().find_map(|line| line.strip_prefix("Endpoint: ")?.split(' ').next());

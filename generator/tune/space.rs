@@ -1,6 +1,8 @@
 //! Which keys are free, and what lies next to a configuration.
 
 use anyhow::{Context, Result};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use crate::config::{Config, Key, Kind, Schema, Value};
 use crate::golden::Contract;
@@ -10,8 +12,9 @@ use crate::registry::Device;
 /// Steps by which an integer is changed.
 const STEPS: [i64; 3] = [1, 2, 4];
 
-/// Places of each operand's domain at which formulas are compared.
-const PLACES: i64 = 4;
+/// Points at which formulas are compared, drawn over the places that divide each domain into so many parts.
+const POINTS: u32 = 600;
+const PLACES: i64 = 12;
 
 /// The free keys of a device.
 pub struct Space {
@@ -104,7 +107,7 @@ fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> O
     values.iter().all(|(key, value)| config.value(key) == value).then_some(config)
 }
 
-/// What somebody outside the core sees: its ports, and its formula at some places.
+/// What somebody outside the core sees: its ports, and its formula at some points.
 #[derive(PartialEq)]
 struct Outside {
     ports: Vec<String>,
@@ -124,19 +127,19 @@ fn ports(design: &Design) -> Vec<String> {
     ports.map(|net| format!("{} {}", net.name, net.format)).collect()
 }
 
-/// The formula's values on a grid over the domains.
+/// The formula's values at some operands, spread over the domains.
 fn formula(contract: &dyn Contract) -> Vec<u64> {
-    let mut places: Vec<Vec<i64>> = vec![Vec::new()];
-    for operand in contract.operands().iter().filter(|operand| !operand.colour) {
-        let (low, high) = operand.domain;
-        let all = |place: &Vec<i64>| -> Vec<Vec<i64>> {
-            let values = (0..=PLACES).map(|at| low + (high - low) * at / PLACES);
-            values.map(|value| [place.as_slice(), &[value]].concat()).collect()
-        };
-        places = places.iter().flat_map(all).collect();
+    let mut random = ChaCha8Rng::seed_from_u64(1);
+    let mut values = Vec::new();
+    for _ in 0..POINTS {
+        let place = contract.operands().iter().map(|operand| {
+            let (low, high) = operand.domain;
+            let part = i64::from(random.next_u32()) % (PLACES + 1);
+            low + (high - low) * part / PLACES
+        });
+        contract.exact(&place.collect::<Vec<_>>(), 0, &mut values);
     }
-    let values = places.iter().flat_map(|place| contract.references(place));
-    values.map(f64::to_bits).collect()
+    values.into_iter().flatten().map(f64::to_bits).collect()
 }
 
 /// The values by which it is seen what a key does: those next to its own, and the ends of its range.

@@ -21,9 +21,12 @@ fn roundings() -> Vec<Value> {
     ["truncate", "nearest"].map(|word| Value::Text(word.to_owned())).to_vec()
 }
 
+/// A key with the values that it takes.
+type Values = (&'static str, Vec<Value>);
+
 /// Spaces that can be gone through, an error that takes some of each, and what of them the search may not touch: a key
 /// that is not in the space is fixed.
-fn spaces() -> Vec<(&'static str, f64, Vec<(&'static str, Vec<Value>)>)> {
+fn spaces() -> Vec<(&'static str, f64, Vec<Values>)> {
     let f = || ("intensity.fraction", integers(10..=20));
     vec![
         (
