@@ -301,7 +301,8 @@ mod tests {
         let y = d.register("y", x.q().format());
         y.takes(x.q());
         d.output("y_out", y.q());
-        d.microprogram([step("idle", []), step("load", [y.load(), valid(), end()])]);
+        let load = step("load", [y.load()]);
+        d.microprogram([step("idle", []), load, step("result", [valid(), end()])]);
         d.finish().unwrap()
     }
 

@@ -178,12 +178,14 @@ mod tests {
     /// `intervals + 1` results, one a clock.
     fn design() -> Design {
         let d = Designer::new("line");
-        let _ = d.operand("cos_gamma", Format::unsigned(1, 1));
+        let cosine = d.operand("cos_gamma", Format::unsigned(1, 1));
         let intervals = d.operand("intervals", Format::unsigned(4, 0));
-        let _ = d.operand("exponent", Format::unsigned(4, 0));
+        let exponent = d.operand("exponent", Format::unsigned(4, 0));
         let left = d.down_counter("left", intervals.q());
         let more = d.any("more", left.q());
         d.output("left_out", left.q());
+        d.output("cosine_out", cosine.q());
+        d.output("exponent_out", exponent.q());
         d.microprogram([
             step("operands", []),
             step("load", [left.load()]),

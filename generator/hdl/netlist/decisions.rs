@@ -97,6 +97,7 @@ mod tests {
         let result = d.register("result", Format::unsigned(3, 0));
         result.takes(turns.q());
         d.output("result_out", result.q());
+        d.output("x_out", x.q());
         d.valid_after(result.loading(), 2);
         d.microprogram([
             step("idle", []),

@@ -61,6 +61,7 @@ const NAMES: [&str; 14] = [
 struct Builder<'d> {
     d: &'d Designer,
     signals: Vec<Signal<'d>>,
+    operands: Vec<Signal<'d>>,
     registers: Vec<Register<'d>>,
     /// Wires that are not driven yet.
     wires: Vec<Signal<'d>>,
@@ -80,6 +81,7 @@ pub fn build(calls: &[Call]) -> Result<Design, Diagnostics> {
     let mut builder = Builder {
         d: &d,
         signals: vec![x],
+        operands: vec![x],
         registers: Vec::new(),
         wires: Vec::new(),
         settings: Vec::new(),
@@ -138,7 +140,11 @@ impl<'d> Builder<'d> {
         let number = Format::unsigned(5, 0);
         let small = Format::signed(3, 4);
         let new = match call.what % 30 {
-            0 => d.operand(&name, format).q(),
+            0 => {
+                let operand = d.operand(&name, format).q();
+                self.operands.push(operand);
+                operand
+            }
             1 => {
                 let register = d.register(&name, format);
                 let from = self.fitted(call, 0, format);
@@ -279,6 +285,10 @@ impl<'d> Builder<'d> {
             );
         }
         d.output("out", self.signals[self.signals.len() - 1]);
+        // Every operand is used.
+        for operand in std::mem::take(&mut self.operands) {
+            d.output(&format!("{}_shown", operand.name()), operand);
+        }
         let steps = vec![
             step("idle", []),
             step("work", std::mem::take(&mut self.settings)),
