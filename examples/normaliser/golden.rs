@@ -2,10 +2,10 @@
 
 use glint::config::Config;
 use glint::fixed::{Format, Rounding, exp2, mask};
-use glint::golden::contract::control;
+use glint::golden::device::{self, Formula};
 use glint::golden::frame::{Datapath, Frame, Slot, State, idle, step};
 use glint::golden::narrow::{Narrow, rounding_error};
-use glint::golden::{Axis, Bound, Contract, Model, Operand, Output, Sweep, Term, Values, keys};
+use glint::golden::{Axis, Contract, Model, Sweep, Term, Values, keys};
 
 /// The most that the sum of squares can be: each component is at least −2.0.
 const FARTHEST: i64 = 12;
@@ -95,9 +95,7 @@ impl Normaliser {
     }
 }
 
-const OPERANDS: [&str; 3] = ["x", "y", "z"];
-const RESULTS: [&str; 3] = ["unit_x", "unit_y", "unit_z"];
-
+/// Operands and registers, and the arithmetic.
 struct Device {
     it: Normaliser,
     components: [Slot; 3],
@@ -106,7 +104,6 @@ struct Device {
     shift: Slot,
     inverse: Slot,
     units: [Slot; 3],
-    outputs: [Slot; 3],
 }
 
 impl Device {
@@ -120,26 +117,23 @@ impl Device {
     }
 }
 
-impl Datapath for Device {
-    fn outputs(&self, s: &mut State) {
-        for (output, unit) in self.outputs.into_iter().zip(self.units) {
-            s[output] = s[unit];
-        }
-    }
-}
+impl Datapath for Device {}
 
-/// The golden model.
-pub fn model(config: &Config) -> Box<dyn Model> {
+/// What each microinstruction does.
+fn device(config: &Config) -> device::Device<Device> {
     let it = Normaliser::new(config);
     let mut frame = Frame::default();
     let device = Device {
-        components: OPERANDS.map(|name| frame.operand(name, it.vector())),
+        components: ["x", "y", "z"].map(|name| frame.operand(name, it.vector())),
         sum: frame.register("sum", Format::unsigned(4, 2 * it.fraction as i32)),
         mantissa: frame.register("mantissa", Format::unsigned(it.width() as i32, 0)),
         shift: frame.register("shift", Format::unsigned(it.pair_bits() as i32, 0)),
         inverse: frame.register("inverse", Format::unsigned(1, it.inverse as i32)),
-        units: RESULTS.map(|name| frame.register(name, it.result())),
-        outputs: RESULTS.map(|name| frame.output(&format!("{name}_out"), it.result())),
+        units: ["unit_x", "unit_y", "unit_z"].map(|name| {
+            let unit = frame.register(name, it.result());
+            frame.shows(&format!("{name}_out"), unit);
+            unit
+        }),
         it,
     };
     let program = [
@@ -159,49 +153,23 @@ pub fn model(config: &Config) -> Box<dyn Model> {
         step(|d: &Device, s| d.scale(s, 2)),
         idle().valid().end(),
     ];
-    Box::new(frame.model(device, program))
+    frame.device(device, program)
 }
 
-struct UnitVector {
-    it: Normaliser,
-    operands: Vec<Operand>,
-    outputs: Vec<Output>,
+/// The golden model.
+pub fn model(config: &Config) -> Box<dyn Model> {
+    device(config).model()
 }
 
 /// Which function the device computes, and how far off it may be.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
-    let it = Normaliser::new(config);
-    let (vector, format) = (it.vector(), it.result());
-    let domain = (vector.min_raw() as i64, vector.max_raw() as i64);
-    Box::new(UnitVector {
-        operands: OPERANDS
-            .map(|name| control(name, vector, domain, "component of the vector"))
-            .into(),
-        outputs: RESULTS.map(|name| Output { name: format!("{name}_out"), format }).into(),
-        it,
-    })
+    device(config).contract(Normaliser::new(config))
 }
 
-impl Contract for UnitVector {
-    fn operands(&self) -> &[Operand] {
-        &self.operands
-    }
-
-    fn outputs(&self) -> &[Output] {
-        &self.outputs
-    }
-
-    fn results(&self, operands: &[i64], _: u64, raw: &mut Vec<i64>) {
-        let sum = operands.iter().map(|component| component * component).sum();
-        let pairs = self.it.pairs(sum);
-        let inverse = self.it.inverse_root(self.it.mantissa(sum, pairs));
-        raw.extend(operands.iter().map(|&component| self.it.scaled(component, pairs, inverse)));
-    }
-
-    fn exact(&self, operands: &[i64], _: u64, values: &mut Vec<[f64; 2]>) {
-        let sum: i64 = operands.iter().map(|component| component * component).sum();
-        let length = (sum.max(1) as f64).sqrt();
-        values.extend(operands.iter().map(|&component| [component as f64 / length; 2]));
+impl Formula for Normaliser {
+    fn exact(&self, vector: &[f64]) -> Vec<f64> {
+        let length = vector.iter().map(|component| component * component).sum::<f64>().sqrt();
+        vector.iter().map(|it| if length == 0.0 { 0.0 } else { it / length }).collect()
     }
 
     /// Let m be the mantissa, 1 ≤ m < 4, f = 1/√m and r what stands for it, u the last place of r.
@@ -215,54 +183,52 @@ impl Contract for UnitVector {
     /// - The product is rounded once. It does not saturate: |x·f| ≤ 1, and the rest is far below 1.
     ///
     /// The zero vector has zeros, as the formula has it here.
-    fn bound(&self) -> Bound {
-        let it = &self.it;
-        let segments = exp2(it.address as i32);
+    fn terms(&self) -> Vec<Term> {
+        let segments = exp2(self.address as i32);
         let h = 4.0 / segments;
-        let chord = (1 << (it.address - 2)..1u32 << it.address)
+        let chord = (1 << (self.address - 2)..1u32 << self.address)
             .map(|at| {
                 let a = f64::from(at) * h;
                 h * h / 8.0 * 0.75 * libm::pow(a, -2.5) * (a + h).sqrt()
             })
             .fold(0.0, f64::max);
-        let units = exp2(it.kept as i32);
+        let units = exp2(self.kept as i32);
         let term = |key, what, error| Term { key, what, units: error * units };
-        Bound::of(vec![
+        vec![
             term("table.address", "straight segments for the inverse root", chord),
             term(
                 "inverse.fraction",
                 "rounding of the inverse root",
-                4.0 * exp2(-(it.inverse as i32)),
+                4.0 * exp2(-(self.inverse as i32)),
             ),
             term(
                 "output.rounding",
                 "rounding of the results",
-                rounding_error(it.fraction + 1 + it.inverse, it.kept, it.rounding),
+                rounding_error(self.fraction + 1 + self.inverse, self.kept, self.rounding),
             ),
-        ])
+        ]
     }
 
     /// Vectors of any length, each octave as often as any other: the shift goes by the length.
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
-        let most =
-            exp2(1 + self.it.fraction as i32) * libm::exp2(-unit() * f64::from(self.it.fraction));
+        let most = exp2(1 + self.fraction as i32) * libm::exp2(-unit() * f64::from(self.fraction));
         Some((0..3).map(|_| ((2.0 * unit() - 1.0) * most).round() as i64).collect())
     }
 
     /// The sum of squares determines the inverse root, and the largest error of any component with it.
-    fn sweep(&self) -> Sweep {
-        let most = FARTHEST << (2 * self.it.fraction);
+    fn sweep(&self) -> Option<Sweep> {
+        let most = FARTHEST << (2 * self.fraction);
         let name = "sum of squares".to_owned();
-        Sweep { axes: vec![Axis { name, values: Values::Range(1, most) }], omits: String::new() }
+        let axes = vec![Axis { name, values: Values::Range(1, most) }];
+        Some(Sweep { axes, omits: String::new() })
     }
 
     /// Of a component as long as the vector, before it is rounded, and the rounding.
-    fn sweep_error(&self, place: &[i64]) -> f64 {
-        let it = &self.it;
-        let mantissa = it.mantissa(place[0], it.pairs(place[0]));
-        let root = (mantissa as f64 * exp2(-2 * it.fraction as i32 - 2)).sqrt();
-        let inverse = it.inverse_root(mantissa) as f64 * exp2(-(it.inverse as i32));
-        let rounding = rounding_error(it.fraction + 1 + it.inverse, it.kept, it.rounding);
-        ((inverse * root - 1.0).abs() + rounding) * exp2(it.kept as i32)
+    fn sweep_error(&self, place: &[i64]) -> Option<f64> {
+        let mantissa = self.mantissa(place[0], self.pairs(place[0]));
+        let root = (mantissa as f64 * exp2(-2 * self.fraction as i32 - 2)).sqrt();
+        let inverse = self.inverse_root(mantissa) as f64 * exp2(-(self.inverse as i32));
+        let rounding = rounding_error(self.fraction + 1 + self.inverse, self.kept, self.rounding);
+        Some(((inverse * root - 1.0).abs() + rounding) * exp2(self.kept as i32))
     }
 }

@@ -10,6 +10,7 @@ pub mod cosine_power;
 pub mod cosine_squared;
 pub mod curve;
 pub mod decay;
+pub mod device;
 pub mod formulas;
 pub mod frame;
 pub mod gauss;
@@ -152,9 +153,14 @@ pub trait Contract: Send + Sync {
     /// The error at a place of the sweep: by default a place has the operands, and the error is the largest of an
     /// output, in units.
     fn sweep_error(&self, place: &[i64]) -> f64 {
+        self.largest_error(place)
+    }
+
+    /// The largest error of an output at raw operands, in units.
+    fn largest_error(&self, operands: &[i64]) -> f64 {
         let (mut raw, mut exact) = (Vec::new(), Vec::new());
-        self.results(place, 0, &mut raw);
-        self.exact(place, 0, &mut exact);
+        self.results(operands, 0, &mut raw);
+        self.exact(operands, 0, &mut exact);
         let outputs = self.outputs().iter().zip(&raw).zip(exact);
         let errors = outputs.map(|((output, &raw), exact)| {
             let unit = exp2(-output.format.frac);

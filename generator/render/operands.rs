@@ -2,14 +2,12 @@
 //!
 //! Nothing here knows a device; its contract names its operands, and those names are what it is known by.
 
-use std::f64::consts::FRAC_PI_2;
-
 use anyhow::{Result, bail, ensure};
 
 use super::vector::Vector;
-use crate::base::fixed::{Format, Overflow, Rounding, exp2};
+use crate::base::fixed::Format;
 use crate::golden::{Contract, Operand};
-use crate::render::setup::Arc;
+use crate::render::setup::{Arc, raw_angle};
 
 /// What is known of a point that a light shines on.
 #[derive(Clone, Copy, Debug)]
@@ -114,6 +112,7 @@ impl Feed {
         for operand in contract.operands() {
             match quantity(operand, names) {
                 Some(quantity) => operands.push((quantity, operand.format, operand.domain)),
+                None if operand.doc.is_empty() => unknown.push(format!("`{}`", operand.name)),
                 None => unknown.push(format!("`{}` ({})", operand.name, operand.doc)),
             }
         }
@@ -227,15 +226,10 @@ impl Feed {
         let line = arc.line(full * light, self.exponent, length as u32);
         let stretch = match self.takes(Quantity::Exponent) {
             true => 1.0,
-            false => (f64::from(self.exponent) / 2.0).sqrt(),
+            false => line.stretch(),
         };
         let raw = |&(quantity, format, (low, high)): &(Quantity, Format, (i64, i64))| {
-            let angle = |radians: f64| {
-                // In right angles; modulo a turn, which is what an angle without room for more means.
-                let scaled = (radians * stretch / FRAC_PI_2 * exp2(format.frac) + 0.5).floor();
-                format.narrow(scaled as i128, format.frac, Rounding::Truncate, Overflow::Wrap)
-                    as i64
-            };
+            let angle = |radians: f64| raw_angle(radians * stretch, format);
             let number =
                 |value: f64| format.quantise(value).clamp(i128::from(low), i128::from(high)) as i64;
             match quantity {
@@ -250,16 +244,12 @@ impl Feed {
         };
         if let Some((_, format, _)) = self.find(Quantity::ZetaStart)
             && !self.takes(Quantity::Exponent)
+            && let Some(right_angles) = line.beyond(stretch, format)
         {
-            for zeta in [line.zeta_start, line.zeta(line.length)] {
-                let right_angles = zeta * stretch / FRAC_PI_2;
-                // A right angle is kept for what rounding may add along the line.
-                ensure!(
-                    right_angles.abs() <= exp2(format.int) - 1.0,
-                    "an angle of the picture, times the root of n/2, is {right_angles:.1} right angles, for which \
-                     the device has no room; a smaller --exponent helps"
-                );
-            }
+            bail!(
+                "an angle of the picture, times the root of n/2, is {right_angles:.1} right angles, for which the \
+                 device has no room; a smaller --exponent helps"
+            );
         }
         Ok(self.operands.iter().map(raw).collect())
     }

@@ -1,5 +1,7 @@
 //! Devices of `examples/` that are no highlights: they have several outputs, with a sign, and multiply no colour.
 
+use std::ops::ControlFlow;
+
 #[allow(dead_code)]
 #[path = "../../examples/dot_product/main.rs"]
 mod dot_product;
@@ -8,8 +10,10 @@ mod dot_product;
 mod normaliser;
 
 use dot_product::DOT_PRODUCT;
-use glint::config::{Config, sample};
+use glint::config::{Config, parse, sample};
 use glint::core::Unit;
+use glint::cosim::exhaustive::{Clocks, Proof, Shard, State};
+use glint::cosim::trial;
 use glint::golden::Contract;
 use glint::registry::Device;
 use normaliser::NORMALISER;
@@ -96,6 +100,45 @@ fn the_bounds_hold() {
         }
         assert!(worst <= bound + 1e-9, "{}: {worst} > {bound}", device.name);
         assert!(worst > bound / 2.0, "{}: {worst} is far below {bound}", device.name);
+    }
+}
+
+/// Every vector of a narrow normaliser at every clock, and its contract for every sum of squares.
+#[test]
+fn a_narrow_normaliser_is_proved() {
+    let keys = "[vector]\nfraction = 2\n[table]\naddress = 3\n[inverse]\nfraction = 6\n[output]\nfraction = 2\n";
+    let text = format!("device = \"normaliser\"\nname = \"narrow\"\n{keys}");
+    let config = parse("narrow.toml", &text, &[(NORMALISER.schema)()]).expect("a configuration");
+    let unit = Unit::new(NORMALISER, config).unwrap_or_else(|error| panic!("{error:#}"));
+    let contract = unit.contract.as_ref();
+    let job = unit.job().expect("model and design fit");
+    let mut state = State::new("", Shard::WHOLE);
+    let whole = job.run(&mut state, &|_| (), &mut |_| ControlFlow::Continue(())).expect("it runs");
+    assert!(whole.is_continue());
+    assert_eq!(state.clocks.differs, None);
+    // 12·16 sums of squares, of which 0 has no direction; 3 operands of 4 bits.
+    assert_eq!(job.words(), "192 evaluations of the outputs");
+    assert_eq!(job.clocks.as_ref().map(Clocks::count), Some(4096));
+    let proof = Proof::new(contract, state.f.peak, state.colours.peak);
+    assert_eq!((proof.verdict(contract), &proof.faults[..]), ("proved", &[][..]));
+    let said = proof.words("");
+    assert!(said.starts_with("an output is off by 0."), "{said}");
+}
+
+/// The worked example shows something, and hints lie within the domain.
+#[test]
+fn examples_come_from_hints() {
+    for device in DEVICES {
+        let unit = default(device);
+        let example = trial::example(&unit.design, unit.contract.as_ref()).expect("an example");
+        for output in &example.outputs {
+            let magnitude = output.value.abs();
+            assert!(magnitude > 0.0 && magnitude < 1.0, "{}: {output:?}", device.name);
+        }
+        for (operand, quantity) in unit.contract.operands().iter().zip(&example.operands) {
+            let (low, high) = operand.domain;
+            assert!((low..=high).contains(&(quantity.raw as i64)), "{}: {quantity:?}", device.name);
+        }
     }
 }
 

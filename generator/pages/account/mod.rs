@@ -296,7 +296,7 @@ pub fn terms(bound: &Bound) -> Table {
 }
 
 /// The operands, and for which values of them the contract is stated.
-pub fn domain(contract: &dyn Contract) -> Table {
+pub fn domain(design: &Design, contract: &dyn Contract) -> Table {
     let mut table = Table::new(&[
         ("operand", Align::Left),
         ("format", Align::Left),
@@ -311,7 +311,11 @@ pub fn domain(contract: &dyn Contract) -> Table {
             format_text(operand.format),
             value(operand.domain.0),
             value(operand.domain.1),
-            operand.doc.clone(),
+            // Where the contract does not say what it is, the description does.
+            match (operand.doc.as_str(), design.find(&operand.name)) {
+                ("", Some(port)) => design.net(port).doc.clone(),
+                (doc, _) => doc.to_owned(),
+            },
         ]);
     }
     table

@@ -113,7 +113,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         numbering: account::numbering(design),
         formats: html(account::FORMATS),
         ports: TableView::new("Ports", &account::ports(design)),
-        domain: TableView::new("Domain of the operands", &account::domain(contract)),
+        domain: TableView::new("Domain of the operands", &account::domain(design, contract)),
         example: TableView::new("A worked example", &account::example(contract, &measured.example)),
         blocks: TableView::new("Blocks", &blocks::table(design)),
         roms: TableView::new("ROMs", &account::roms(design)),

@@ -62,7 +62,7 @@ pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
         terms: table(&account::terms(&bound)),
         limit: prose(&account::limit(inputs)),
         proof: prose(&account::proof(inputs)),
-        domain: table(&account::domain(inputs.contract)),
+        domain: table(&account::domain(design, inputs.contract)),
         remarks: inputs
             .contract
             .remarks()

@@ -22,7 +22,7 @@ mod vector;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
-pub use operands::Operands;
+pub use operands::{Operands, raw_angle};
 pub use vector::Vector;
 use vector::{angle, cross, dot, scaled, sum, unit};
 

@@ -48,30 +48,30 @@ impl Line {
     /// # Panics
     /// If the configuration is one of another device.
     pub fn cosine_squared(&self, config: &Config) -> Result<Operands, Error> {
-        let a = (f64::from(self.exponent) / 2.0).sqrt();
+        let a = self.stretch();
         let format = Format::signed(config.integer("angle.integer") as i32, fraction(config));
-        let most = exp2(format.int);
-        for zeta in [self.zeta_start, self.zeta(self.length)] {
-            let value = a * zeta / FRAC_PI_2;
-            // A right angle is kept for what rounding may add along the line.
-            if value.abs() > most - 1.0 {
-                return Err(Error::Beyond {
-                    operand: "the stretched angle",
-                    value,
-                    key: "angle.integer",
-                });
-            }
+        if let Some(value) = self.beyond(a, format) {
+            let operand = "the stretched angle";
+            return Err(Error::Beyond { operand, value, key: "angle.integer" });
         }
         self.stretched(a, format, config)
     }
 
+    /// By what a device without an exponent takes the angles: √(n/2).
+    pub fn stretch(&self) -> f64 {
+        (f64::from(self.exponent) / 2.0).sqrt()
+    }
+
+    /// The angle of an end of the line times `by`, in right angles, if a format has no room for it. A right angle is
+    /// kept for what rounding may add along the line.
+    pub fn beyond(&self, by: f64, format: Format) -> Option<f64> {
+        let ends = [self.zeta_start, self.zeta(self.length)].map(|zeta| by * zeta / FRAC_PI_2);
+        ends.into_iter().find(|right_angles| right_angles.abs() > exp2(format.int) - 1.0)
+    }
+
     fn stretched(&self, by: f64, format: Format, config: &Config) -> Result<Operands, Error> {
         self.fits("length", self.length, config, "length.bits")?;
-        let angle = |radians: f64| {
-            let raw = (radians * by / FRAC_PI_2 * exp2(format.frac) + 0.5).floor();
-            let raw = raw as i128;
-            format.narrow(raw, format.frac, Rounding::Truncate, Overflow::Wrap) as i64
-        };
+        let angle = |radians: f64| raw_angle(radians * by, format);
         let colour = Format::unsigned(config.integer("colour.bits") as i32, 0);
         Ok(Operands {
             amplitude: colour.quantise(self.amplitude) as i64,
@@ -95,6 +95,12 @@ impl Line {
         let value = f64::from(value);
         Err(Error::Beyond { operand, value, key })
     }
+}
+
+/// An angle in right angles, raw; modulo a turn, which is what an angle without room for more means.
+pub fn raw_angle(radians: f64, format: Format) -> i64 {
+    let scaled = (radians / FRAC_PI_2 * exp2(format.frac) + 0.5).floor() as i128;
+    format.narrow(scaled, format.frac, Rounding::Truncate, Overflow::Wrap) as i64
 }
 
 fn fraction(config: &Config) -> i32 {

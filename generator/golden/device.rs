@@ -1,0 +1,207 @@
+//! A device by what each of its microinstructions does: its model, and a contract whose results are the model's.
+//!
+//! Names, formats and the arithmetic stand once, in the [`Frame`] and the microinstructions. What is left to say is
+//! the formula, and how far off the device may be.
+//!
+//! ```
+//! use glint::fixed::Format;
+//! use glint::golden::device::Formula;
+//! use glint::golden::frame::{Datapath, Frame, Slot, idle, step};
+//! use glint::golden::{Contract, Term};
+//!
+//! /// The square of its operand, with half the fraction bits of the product.
+//! struct Square {
+//!     x: Slot,
+//!     square: Slot,
+//! }
+//!
+//! impl Datapath for Square {}
+//!
+//! struct Formulas;
+//!
+//! impl Formula for Formulas {
+//!     fn exact(&self, x: &[f64]) -> Vec<f64> {
+//!         vec![x[0] * x[0]]
+//!     }
+//!
+//!     /// What is cut is less than the last place.
+//!     fn terms(&self) -> Vec<Term> {
+//!         vec![Term { key: "width", what: "the square is cut", units: 1.0 - 1.0 / 16.0 }]
+//!     }
+//! }
+//!
+//! let mut frame = Frame::default();
+//! let device = Square {
+//!     x: frame.operand("x", Format::unsigned(0, 4)),
+//!     square: frame.register("square", Format::unsigned(0, 4)),
+//! };
+//! frame.shows("square_out", device.square);
+//! let square = step(|it: &Square, s| s[it.square] = (s[it.x] * s[it.x]) >> 4);
+//! let contract = frame.device(device, [idle(), square, idle().valid().end()]).contract(Formulas);
+//! let (mut raw, mut exact) = (Vec::new(), Vec::new());
+//! contract.results(&[13], 0, &mut raw);
+//! contract.exact(&[13], 0, &mut exact);
+//! // 13/16 squared is 10.5625/16.
+//! assert_eq!((raw, exact), (vec![10], vec![[0.66015625; 2]]));
+//! ```
+
+use super::frame::{Clocked, Datapath, Frame, Microinstruction};
+use super::{Bound, Contract, Model, Operand, Output, Sweep, Term};
+
+/// More clocks than any computation takes.
+const LONGEST: u32 = 1 << 20;
+
+/// A device that is described by its microinstructions.
+pub struct Device<D> {
+    model: Clocked<D>,
+    operands: Vec<Operand>,
+    outputs: Vec<Output>,
+}
+
+impl Frame {
+    /// The device at power-up, as [`Frame::model`] takes it.
+    ///
+    /// # Panics
+    /// If there is no microinstruction.
+    pub fn device<D: Datapath>(
+        self,
+        datapath: D,
+        program: impl IntoIterator<Item = Microinstruction<D>>,
+    ) -> Device<D> {
+        let operands = self.operands().map(|(name, format, domain)| Operand {
+            name: name.to_owned(),
+            format,
+            domain,
+            colour: false,
+            doc: String::new(),
+        });
+        let operands = operands.collect();
+        let outputs = self.results().map(|(name, format)| Output { name: name.to_owned(), format });
+        let outputs = outputs.collect();
+        Device { model: self.model(datapath, program), operands, outputs }
+    }
+}
+
+impl<D: Datapath> Device<D> {
+    /// Its clock model.
+    pub fn model(self) -> Box<dyn Model> {
+        Box::new(self.model)
+    }
+
+    /// States the contract for fewer values of an operand than its register holds.
+    ///
+    /// # Panics
+    /// If there is no such operand.
+    #[must_use]
+    pub fn domain(mut self, operand: &str, low: i64, high: i64) -> Self {
+        let found = self.operands.iter_mut().find(|it| it.name == operand);
+        found.expect("an operand of the device").domain = (low, high);
+        self
+    }
+
+    /// Its contract. Results are those of the model.
+    pub fn contract(self, formula: impl Formula + 'static) -> Box<dyn Contract> {
+        let shown = |output: &Output| self.model.signals().iter().position(|it| *it == output.name);
+        let shown = self.outputs.iter().filter_map(shown).collect();
+        Box::new(OfModel { device: self, shown, formula })
+    }
+}
+
+/// What a device stands for.
+pub trait Formula: Send + Sync {
+    /// The outputs in f64, unrounded, for the values (not raw) of the operands, in the order of the frame.
+    fn exact(&self, operands: &[f64]) -> Vec<f64>;
+
+    /// What the error of an output is made of, each a proven upper limit.
+    fn terms(&self) -> Vec<Term>;
+
+    /// As [`Contract::hint`].
+    fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
+        let _ = unit;
+        None
+    }
+
+    /// As [`Contract::sweep`]; none for every combination of the operands.
+    fn sweep(&self) -> Option<Sweep> {
+        None
+    }
+
+    /// As [`Contract::sweep_error`]; none where a place has the operands.
+    fn sweep_error(&self, place: &[i64]) -> Option<f64> {
+        let _ = place;
+        None
+    }
+
+    /// As [`Contract::remarks`].
+    fn remarks(&self) -> Vec<String> {
+        Vec::new()
+    }
+}
+
+/// A contract whose results are those of a model.
+struct OfModel<D, F> {
+    device: Device<D>,
+    /// Where the outputs are among the signals of the model.
+    shown: Vec<usize>,
+    formula: F,
+}
+
+impl<D: Datapath, F: Formula> Contract for OfModel<D, F> {
+    fn operands(&self) -> &[Operand] {
+        &self.device.operands
+    }
+
+    fn outputs(&self) -> &[Output] {
+        &self.device.outputs
+    }
+
+    /// A device that never shows the result has what it shows after a million clocks.
+    fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>) {
+        let mut model = self.device.model.clone();
+        let strobes = |strobe: u64| {
+            let pairs = self.device.operands.iter().zip(operands);
+            let ports = pairs.flat_map(|(it, &raw)| [it.format.bits(raw.into()), strobe]);
+            [1, strobe].into_iter().chain(ports).collect::<Vec<u64>>()
+        };
+        model.clock(&strobes(1));
+        let rest = strobes(0);
+        let mut left = index;
+        for _ in 0..LONGEST {
+            if model.is_valid() {
+                if left == 0 {
+                    break;
+                }
+                left -= 1;
+            }
+            model.clock(&rest);
+        }
+        let shown = self.shown.iter().zip(&self.device.outputs);
+        raw.extend(shown.map(|(&at, output)| output.format.raw(model.values()[at]) as i64));
+    }
+
+    fn exact(&self, operands: &[i64], _: u64, values: &mut Vec<[f64; 2]>) {
+        let pairs = self.device.operands.iter().zip(operands);
+        let operands: Vec<f64> = pairs.map(|(it, &raw)| it.format.to_f64(raw.into())).collect();
+        values.extend(self.formula.exact(&operands).into_iter().map(|value| [value; 2]));
+    }
+
+    fn bound(&self) -> Bound {
+        Bound::of(self.formula.terms())
+    }
+
+    fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
+        self.formula.hint(unit)
+    }
+
+    fn sweep(&self) -> Sweep {
+        self.formula.sweep().unwrap_or_else(|| Sweep::all(self.device.operands.iter()))
+    }
+
+    fn sweep_error(&self, place: &[i64]) -> f64 {
+        self.formula.sweep_error(place).unwrap_or_else(|| self.largest_error(place))
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        self.formula.remarks()
+    }
+}

@@ -1,0 +1,167 @@
+//! A device that the frame runs, clock by clock.
+
+use std::sync::Arc;
+
+use super::{Datapath, Frame, Microinstruction, Next, Operand, Slot, State};
+use crate::base::fixed::mask;
+use crate::golden::Model;
+use crate::golden::handshake::{After, Handshake};
+
+/// The handshake's own, which stand before the device's.
+const HANDSHAKE: [&str; 5] = ["valid", "busy", "done", "run", "word_address"];
+
+impl Frame {
+    /// The model at power-up. The first microinstruction is the one in which the device idles, the last ends
+    /// the program.
+    ///
+    /// # Panics
+    /// If there is no microinstruction.
+    pub fn model<D: Datapath>(
+        mut self,
+        datapath: D,
+        program: impl IntoIterator<Item = Microinstruction<D>>,
+    ) -> Clocked<D> {
+        let program: Vec<_> = program.into_iter().collect();
+        assert!(!program.is_empty(), "a device idles in its first microinstruction");
+        // Of signals that differ in one clock the first is reported: one that a user of the device sees.
+        self.shown.sort_by_key(|shown| !shown.output);
+        let signals = self.shown.iter().map(|shown| shown.name.clone()).collect();
+        let operands = self.operands.iter();
+        let inputs =
+            operands.flat_map(|it| [it.name.clone(), format!("{}_write", it.name)]).collect();
+        let names = |first: &[&str], then: Vec<String>| {
+            first.iter().map(|&name| name.to_owned()).chain(then).collect::<Vec<_>>()
+        };
+        let mut model = Clocked {
+            handshake: Handshake::default(),
+            pulses: 0,
+            state: State(vec![0; self.slots].into()),
+            values: vec![0; HANDSHAKE.len() + self.shown.len()].into(),
+            fixed: Arc::new(Fixed {
+                inputs: names(&["rst_n", "start"], inputs),
+                signals: names(&HANDSHAKE, signals),
+                operands: self.operands,
+                shown: self
+                    .shown
+                    .into_iter()
+                    .map(|shown| (shown.slot, mask(shown.format.width())))
+                    .collect(),
+                flags: self.flags,
+                valid_delay: self.valid_delay,
+                datapath,
+                program,
+            }),
+        };
+        model.settle();
+        model
+    }
+}
+
+/// What does not change.
+struct Fixed<D> {
+    datapath: D,
+    program: Vec<Microinstruction<D>>,
+    operands: Vec<Operand>,
+    shown: Vec<(Slot, u64)>,
+    flags: Vec<Slot>,
+    valid_delay: u32,
+    inputs: Vec<String>,
+    signals: Vec<String>,
+}
+
+/// A device, clock by clock.
+pub struct Clocked<D> {
+    fixed: Arc<Fixed<D>>,
+    handshake: Handshake,
+    /// Whether the microinstructions of the latest clocks said `valid`, the latest in bit 0.
+    pulses: u64,
+    state: State,
+    values: Box<[u64]>,
+}
+
+impl<D> Clone for Clocked<D> {
+    fn clone(&self) -> Self {
+        Self {
+            fixed: self.fixed.clone(),
+            handshake: self.handshake,
+            pulses: self.pulses,
+            state: self.state.clone(),
+            values: self.values.clone(),
+        }
+    }
+}
+
+impl<D: Datapath> Clocked<D> {
+    /// Whether `valid` is high.
+    pub fn is_valid(&self) -> bool {
+        self.values[0] == 1
+    }
+
+    /// What the outputs show of the state.
+    #[inline]
+    fn settle(&mut self) {
+        let it = &*self.fixed;
+        let Handshake { run, word } = self.handshake;
+        let here = &it.program[word as usize];
+        for &flag in &it.flags {
+            self.state[flag] = 0;
+        }
+        for &flag in &here.asserts {
+            self.state[flag] = 1;
+        }
+        it.datapath.outputs(&mut self.state);
+        let valid = match it.valid_delay {
+            0 => here.valid,
+            clocks => self.pulses >> (clocks - 1) & 1 == 1,
+        };
+        let done = run && matches!(here.next, Next::End);
+        let handshake = [valid.into(), run.into(), done.into(), run.into(), word.into()];
+        let (first, then) = self.values.split_at_mut(HANDSHAKE.len());
+        first.copy_from_slice(&handshake);
+        for (value, &(slot, mask)) in then.iter_mut().zip(&it.shown) {
+            *value = self.state[slot] as u64 & mask;
+        }
+    }
+}
+
+impl<D: Datapath> Model for Clocked<D> {
+    fn inputs(&self) -> &[String] {
+        &self.fixed.inputs
+    }
+
+    fn signals(&self) -> &[String] {
+        &self.fixed.signals
+    }
+
+    fn clock(&mut self, inputs: &[u64]) {
+        let it = &*self.fixed;
+        let (rst_n, start) = (inputs[0] & 1 == 1, inputs[1] & 1 == 1);
+        let here = &it.program[self.handshake.word as usize];
+        it.datapath.edge(&mut self.state);
+        let after = match here.next {
+            Next::Following => After::Next,
+            Next::RepeatWhile(condition) if condition(&it.datapath, &self.state) => After::Again,
+            Next::SkipIf(count, condition) if condition(&it.datapath, &self.state) => {
+                After::To(self.handshake.word + 1 + count)
+            }
+            Next::RepeatWhile(_) | Next::SkipIf(..) => After::Next,
+            Next::End => After::End,
+        };
+        (here.does)(&it.datapath, &mut self.state);
+        if !self.handshake.run {
+            for (operand, ports) in it.operands.iter().zip(inputs[2..].chunks_exact(2)) {
+                if ports[1] & 1 == 1 {
+                    let raw = operand.format.raw(ports[0]) as i64;
+                    self.state[operand.slot] = raw.clamp(operand.min, operand.max);
+                }
+            }
+        }
+        self.pulses = if rst_n { self.pulses << 1 | u64::from(here.valid) } else { 0 };
+        self.handshake.clock(rst_n, start, after);
+        self.settle();
+    }
+
+    fn values(&self) -> &[u64] {
+        &self.values
+    }
+}

@@ -1,0 +1,254 @@
+//! The clock model that every device has: reset, `start`, strobes, the sequence of microinstructions, `busy`,
+//! `valid`, `done`.
+//!
+//! A device names its operands, registers and outputs once, in a [`Frame`], and gets a [`Slot`] for each. It
+//! says what each microinstruction does to them ([`step`]) and what its outputs show ([`Datapath`]); the
+//! order of the microinstructions numbers them. [`Frame::model`] makes a [`Model`] of that.
+//!
+//! ```
+//! use glint::fixed::Format;
+//! use glint::golden::Model;
+//! use glint::golden::frame::{Datapath, Frame, Slot, State, idle, step};
+//!
+//! /// It doubles its operand.
+//! struct Double {
+//!     operand: Slot,
+//!     doubled: Slot,
+//!     output: Slot,
+//! }
+//!
+//! impl Datapath for Double {
+//!     fn outputs(&self, state: &mut State) {
+//!         state[self.output] = state[self.doubled];
+//!     }
+//! }
+//!
+//! let mut frame = Frame::default();
+//! let device = Double {
+//!     operand: frame.operand("x", Format::unsigned(4, 0)),
+//!     doubled: frame.register("doubled", Format::unsigned(5, 0)),
+//!     output: frame.output("x_out", Format::unsigned(5, 0)),
+//! };
+//! let mut model = frame.model(
+//!     device,
+//!     [idle(), step(|it: &Double, s| s[it.doubled] = 2 * s[it.operand]), idle().valid().end()],
+//! );
+//! // rst_n, start, x, x_write.
+//! model.clock(&[1, 1, 5, 1]);
+//! model.clock(&[1, 0, 0, 0]);
+//! model.clock(&[1, 0, 0, 0]);
+//! assert_eq!(["valid", "x_out"].map(|name| model.value(name)), [Some(1), Some(10)]);
+//! ```
+
+mod clocked;
+
+#[cfg(test)]
+mod tests;
+
+use std::ops::{Index, IndexMut};
+
+pub use clocked::Clocked;
+
+use crate::base::fixed::Format;
+
+/// A place in the [`State`] of a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Slot(usize);
+
+/// The raw values of operands, registers and outputs.
+#[derive(Clone, Debug)]
+pub struct State(Box<[i64]>);
+
+impl Index<Slot> for State {
+    type Output = i64;
+
+    #[inline]
+    fn index(&self, slot: Slot) -> &i64 {
+        &self.0[slot.0]
+    }
+}
+
+impl IndexMut<Slot> for State {
+    #[inline]
+    fn index_mut(&mut self, slot: Slot) -> &mut i64 {
+        &mut self.0[slot.0]
+    }
+}
+
+/// What a device computes beside its microinstructions.
+pub trait Datapath: Send + Sync + 'static {
+    /// What every rising edge does, whatever microinstruction is in force: a synchronous ROM reads. It comes
+    /// before the microinstruction, and sees the values before the edge.
+    #[inline]
+    fn edge(&self, state: &mut State) {
+        let _ = state;
+    }
+
+    /// What the outputs show that are no register: combinational functions of operands and registers.
+    #[inline]
+    fn outputs(&self, state: &mut State) {
+        let _ = state;
+    }
+}
+
+type Does<D> = fn(&D, &mut State);
+type Condition<D> = fn(&D, &State) -> bool;
+
+/// What follows a microinstruction.
+enum Next<D> {
+    Following,
+    RepeatWhile(Condition<D>),
+    SkipIf(u32, Condition<D>),
+    End,
+}
+
+/// One microinstruction.
+pub struct Microinstruction<D> {
+    does: Does<D>,
+    next: Next<D>,
+    valid: bool,
+    asserts: Vec<Slot>,
+}
+
+/// A microinstruction that changes no register.
+pub fn idle<D>() -> Microinstruction<D> {
+    step(|_, _| ())
+}
+
+/// A microinstruction by what its rising edge does to the registers.
+pub fn step<D>(does: fn(&D, &mut State)) -> Microinstruction<D> {
+    Microinstruction { does, next: Next::Following, valid: false, asserts: Vec::new() }
+}
+
+impl<D> Microinstruction<D> {
+    /// The results are on the outputs.
+    pub fn valid(self) -> Self {
+        Self { valid: true, ..self }
+    }
+
+    /// The program ends here.
+    pub fn end(self) -> Self {
+        Self { next: Next::End, ..self }
+    }
+
+    /// It is in force once more while this holds of the values before the edge.
+    pub fn repeat_while(self, condition: fn(&D, &State) -> bool) -> Self {
+        Self { next: Next::RepeatWhile(condition), ..self }
+    }
+
+    /// It passes over so many microinstructions if this holds of the values before the edge.
+    pub fn skip_if(self, count: u32, condition: fn(&D, &State) -> bool) -> Self {
+        Self { next: Next::SkipIf(count, condition), ..self }
+    }
+
+    /// A flag that is 1 in this microinstruction.
+    pub fn asserts(mut self, flag: Slot) -> Self {
+        self.asserts.push(flag);
+        self
+    }
+}
+
+/// An operand register with its write strobe. It ignores writes while the device is busy, and does not know
+/// the reset.
+struct Operand {
+    name: String,
+    slot: Slot,
+    format: Format,
+    min: i64,
+    max: i64,
+}
+
+/// What is predicted, with the bits that its net has.
+struct Shown {
+    name: String,
+    output: bool,
+    slot: Slot,
+    format: Format,
+}
+
+/// What a device's state is made of.
+#[derive(Default)]
+pub struct Frame {
+    operands: Vec<Operand>,
+    shown: Vec<Shown>,
+    slots: usize,
+    flags: Vec<Slot>,
+    valid_delay: u32,
+}
+
+impl Frame {
+    /// State that no signal of the design shows.
+    pub fn hidden(&mut self) -> Slot {
+        self.slots += 1;
+        Slot(self.slots - 1)
+    }
+
+    fn shown(&mut self, name: String, format: Format, output: bool) -> Slot {
+        let slot = self.hidden();
+        self.shown.push(Shown { name, output, slot, format });
+        slot
+    }
+
+    /// A register, of which the low bits that `format` has are shown.
+    pub fn register(&mut self, name: &str, format: Format) -> Slot {
+        self.shown(name.to_owned(), format, false)
+    }
+
+    /// An output, which [`Datapath::outputs`] sets.
+    pub fn output(&mut self, name: &str, format: Format) -> Slot {
+        self.shown(name.to_owned(), format, true)
+    }
+
+    /// An output that shows a register.
+    ///
+    /// # Panics
+    /// If the slot is not that of a register.
+    pub fn shows(&mut self, name: &str, register: Slot) {
+        let of = self.shown.iter().find(|shown| shown.slot == register);
+        let format = of.expect("a register that is shown").format;
+        self.shown.push(Shown { name: name.to_owned(), output: true, slot: register, format });
+    }
+
+    /// An output of one bit that is 1 in the microinstructions that assert it.
+    pub fn flag(&mut self, name: &str) -> Slot {
+        let slot = self.output(name, Format::BIT);
+        self.flags.push(slot);
+        slot
+    }
+
+    /// The same for the device alone.
+    pub fn hidden_flag(&mut self) -> Slot {
+        let slot = self.hidden();
+        self.flags.push(slot);
+        slot
+    }
+
+    /// An operand with its register, which holds whatever `format` can denote.
+    pub fn operand(&mut self, name: &str, format: Format) -> Slot {
+        self.clamped(name, format, format.min_raw() as i64, format.max_raw() as i64)
+    }
+
+    /// An operand whose register moves what it loads into `min ..= max`, raw.
+    pub fn clamped(&mut self, name: &str, format: Format, min: i64, max: i64) -> Slot {
+        let slot = self.shown(format!("{name}_reg"), format, false);
+        self.operands.push(Operand { name: name.to_owned(), slot, format, min, max });
+        slot
+    }
+
+    /// The operands: name, format, and the smallest and largest raw value that the register holds.
+    pub fn operands(&self) -> impl Iterator<Item = (&str, Format, (i64, i64))> {
+        self.operands.iter().map(|it| (it.name.as_str(), it.format, (it.min, it.max)))
+    }
+
+    /// The outputs but for flags: name and format.
+    pub fn results(&self) -> impl Iterator<Item = (&str, Format)> {
+        let results = self.shown.iter().filter(|it| it.output && !self.flags.contains(&it.slot));
+        results.map(|it| (it.name.as_str(), it.format))
+    }
+
+    /// `valid` comes so many clocks after the microinstructions that say it, through registers that a reset
+    /// clears.
+    pub fn delay_valid(&mut self, clocks: u32) {
+        self.valid_delay = clocks;
+    }
+}
