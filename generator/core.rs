@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 
 use crate::config::Config;
 use crate::cosim::batch::{Engine, Golden, RustHdl, Verilog};
@@ -213,11 +213,6 @@ impl Unit {
     /// The design cannot be simulated or written as Verilog, or an outside tool is missing or refuses it.
     pub fn engine(&self, through: Through) -> Result<Box<dyn Engine + '_>> {
         let contract = self.contract.as_ref();
-        ensure!(
-            through == Through::Golden || self.design.pipeline.is_none(),
-            "`{}` is a pipeline, through which nothing can be rendered yet; set architecture = \"sequential\"",
-            self.config.name
-        );
         Ok(match through {
             Through::Golden => Box::new(Golden(contract)),
             Through::RustHdl => Box::new(RustHdl::new(&self.design, contract)?),

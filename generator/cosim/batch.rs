@@ -4,6 +4,7 @@
 //! Glint proves, and what makes it no matter which of them computes a picture.
 
 mod lanes;
+mod stream;
 mod verilog;
 
 use anyhow::{Result, ensure};

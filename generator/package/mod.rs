@@ -16,6 +16,7 @@ mod manifest;
 mod memory;
 pub mod module_names;
 mod points;
+mod points_pipeline;
 pub(crate) mod seal;
 mod software;
 mod surroundings;

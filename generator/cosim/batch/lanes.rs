@@ -5,6 +5,7 @@ use std::ops::Range;
 use anyhow::{Context, Result, ensure};
 use rayon::prelude::*;
 
+use super::stream::Stream;
 use super::{Engine, Points};
 use crate::base::fixed::Format;
 use crate::golden::Contract;
@@ -12,14 +13,20 @@ use crate::hdl::netlist::{Design, Handshake, NetId};
 use crate::hdl::sim::Simulator;
 
 /// Instances that one thread clocks together.
-const LANES: usize = 32;
+pub(super) const LANES: usize = 32;
 
 /// More clocks than any computation takes.
 const LIMIT: u32 = 1 << 16;
 
 /// rust_hdl: as many simulators as there are threads, each of many instances of the design.
 pub struct RustHdl {
-    teams: Vec<Team>,
+    teams: Vec<Instances>,
+}
+
+/// The instances of one thread.
+enum Instances {
+    Cores(Team),
+    Pipelines(Stream),
 }
 
 impl RustHdl {
@@ -29,7 +36,12 @@ impl RustHdl {
     /// Those of [`Simulator::new`], and a contract that speaks of ports that the design does not have.
     pub fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
         let teams = (0..rayon::current_num_threads())
-            .map(|_| Team::new(design, contract))
+            .map(|_| match &design.pipeline {
+                None => Ok(Instances::Cores(Team::new(design, contract)?)),
+                Some(pipeline) => {
+                    Ok(Instances::Pipelines(Stream::new(design, pipeline, contract)?))
+                }
+            })
             .collect::<Result<_>>()?;
         Ok(Self { teams })
     }
@@ -43,7 +55,10 @@ impl Engine for RustHdl {
             .teams
             .par_iter_mut()
             .enumerate()
-            .map(|(at, team)| team.compute(points, share(at)))
+            .map(|(at, team)| match team {
+                Instances::Cores(team) => team.compute(points, share(at)),
+                Instances::Pipelines(stream) => stream.compute(points, share(at)),
+            })
             .collect::<Result<_>>()?;
         Ok(parts.concat())
     }

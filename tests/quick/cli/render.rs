@@ -95,10 +95,7 @@ fn every_configuration_draws() {
         }
         let path = path.to_str().expect("UTF-8");
         let mut pictures = Vec::new();
-        // Pictures are not drawn through the simulation of a pipeline.
-        let pipelined = path.ends_with("_pipelined.toml");
-        let all: &[&str] = if pipelined { &["golden"] } else { &["golden", "rust-hdl"] };
-        for through in all {
+        for through in ["golden", "rust-hdl"] {
             let run = place.glint(render(&[path, "--through", through, "--compare", "--json"]));
             assert_eq!(run.code, 0, "{path}: {run:?}");
             let told = &run.json()["compare"];
