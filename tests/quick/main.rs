@@ -22,6 +22,7 @@ mod divider;
 mod lines;
 mod pages;
 mod proofs;
+mod readme;
 mod rooms;
 mod rough_microprogram;
 mod shared_products;

@@ -1,0 +1,252 @@
+//! The tables of README.md and docs/verification.md say what Glint and its records say today.
+//!
+//! What only outside tools know (area, frequency, speed) is not here.
+
+use std::collections::BTreeMap;
+use std::fs;
+
+use glint::core::Unit;
+use glint::evidence::comparison::{accuracy, clocks_per_point};
+use glint::registry::Registry;
+use serde_json::Value;
+
+use crate::common::units::configuration;
+
+/// The exponent of the comparison in README.md.
+const EXPONENT: f64 = 35.0;
+
+fn read(path: &str) -> String {
+    fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+fn json(path: &str) -> Value {
+    serde_json::from_str(&read(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+fn cells(line: &str) -> Vec<String> {
+    let line = line.trim().trim_matches('|');
+    line.split('|').map(|cell| cell.trim().replace('`', "")).collect()
+}
+
+/// The rows of the table whose first line begins so, without the lines of its head.
+fn table(path: &str, head: &str) -> Vec<Vec<String>> {
+    let text = read(path);
+    let lines = text.lines().skip_while(|line| !line.starts_with(head));
+    let rows: Vec<_> = lines.skip(2).take_while(|line| line.starts_with('|')).map(cells).collect();
+    assert!(!rows.is_empty(), "{path} has no table that begins with {head}");
+    rows
+}
+
+/// Digits in groups of three, with a blank between them.
+fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let first = digits.len() % 3;
+    let groups =
+        digits.as_bytes()[first..].chunks(3).map(|it| std::str::from_utf8(it).expect("digits"));
+    let groups: Vec<&str> = [&digits[..first]].into_iter().chain(groups).collect();
+    groups.join(" ").trim().to_owned()
+}
+
+fn number(value: &Value) -> u64 {
+    value.as_u64().unwrap_or_else(|| panic!("{value} is no number"))
+}
+
+/// A file name without `-`.
+fn module(device: &str) -> String {
+    device.replace('-', "_")
+}
+
+fn of(name: &str) -> Unit {
+    let studies = format!("configs/studies/{name}.toml");
+    let path = format!("configs/{name}.toml");
+    configuration(if fs::exists(&path).expect("readable") { &path } else { &studies })
+}
+
+#[test]
+fn groups_have_three_digits() {
+    let found = [7, 84, 100, 1000, 20_530, 100_000, 1_048_577_000].map(grouped);
+    assert_eq!(found, ["7", "84", "100", "1 000", "20 530", "100 000", "1 048 577 000"]);
+}
+
+#[test]
+fn every_device_stands_in_the_table() {
+    let rows = table("README.md", "| device | computes |");
+    let mut listed: Vec<&str> = rows.iter().map(|row| row[0].as_str()).collect();
+    listed.sort_unstable();
+    let catalogue = Registry::catalogue();
+    let mut devices: Vec<&str> = catalogue.devices().iter().map(|it| it.name).collect();
+    devices.sort_unstable();
+    assert_eq!(listed, devices);
+}
+
+/// All columns but those of a run of 100 000 points, which the main job has.
+#[test]
+fn the_main_job() {
+    for row in table("README.md", "| configuration    | device") {
+        let unit = of(&row[0]);
+        let timing = unit.timing().expect("clocks");
+        let bound = unit.contract.bound().units;
+        let clocks = timing.clocks_per_point().map(|it| it.to_string());
+        assert_eq!(
+            [&row[1], &row[2], &row[5], &row[6]],
+            [
+                unit.device.name,
+                &clocks.unwrap_or_default(),
+                &grouped(unit.design.rom_bits()),
+                &format!("{bound:.3}")
+            ],
+            "{row:?}"
+        );
+        assert!(row[7].parse::<f64>().is_ok_and(|error| error <= bound), "{row:?}");
+    }
+    let configurations = fs::read_dir("configs").expect("configs/").filter(|entry| {
+        let path = entry.as_ref().expect("an entry").path();
+        path.extension().is_some_and(|it| it == "toml")
+    });
+    let count = configurations.count();
+    assert!(read("README.md").contains(&format!("\n{count} of {count} hold.\n")), "{count}");
+}
+
+#[test]
+fn choosing_a_device() {
+    for row in table("README.md", "| device | largest error of f") {
+        let device = row[0].split(' ').next().expect("a name");
+        let unit = of(&module(device));
+        let found = accuracy(unit.contract.as_ref(), EXPONENT).expect("a highlight");
+        let clocks =
+            clocks_per_point(&unit.design, unit.contract.as_ref(), EXPONENT).expect("it ends");
+        let clocks = format!("{clocks:.3}");
+        assert_eq!(
+            row[1..6],
+            [
+                format!("{:.5}", found.whole.largest),
+                format!("{:.5}", found.formula.largest),
+                format!("{:.5}", found.fixed_point.largest),
+                clocks.trim_end_matches(".000").to_owned(),
+                unit.design.rom_bits().to_string(),
+            ],
+            "{device}"
+        );
+    }
+}
+
+#[test]
+fn what_the_choices_cost() {
+    for row in table("README.md", "| configuration | arithmetic |") {
+        let unit = of(&row[0]);
+        let bound = unit.contract.bound().units;
+        let digits = row[4].split_once('.').map_or(0, |(_, digits)| digits.len());
+        assert_eq!(
+            row[3..5],
+            [grouped(unit.design.rom_bits()), format!("{bound:.digits$}")],
+            "{}",
+            row[0]
+        );
+        let record = format!("proofs/{}.json", row[0]);
+        if row[5].contains(&record) {
+            let together = &json(&record)["configurations"][0]["together"];
+            let found = format!("{:.3} in its record", together.as_f64().expect("an error"));
+            assert!(row[5].contains(&found), "{row:?} without {found}");
+        }
+    }
+}
+
+/// Of a record of `glint mutate`: planted, caught by each test, proved equivalent, open.
+fn faults(all: &Value) -> (u64, BTreeMap<String, u64>, u64, u64) {
+    let each = |value: &Value| -> BTreeMap<String, u64> {
+        let of = value.as_object().expect("an object").iter();
+        of.map(|(name, count)| (name.clone(), number(count))).collect()
+    };
+    let equivalent = each(&all["equivalent"]).values().sum();
+    (number(&all["planted"]), each(&all["caught"]), equivalent, number(&all["open"]))
+}
+
+#[test]
+fn faults_in_the_netlists() {
+    let share =
+        |open: u64, planted: u64| format!("{open} ({:.2} %)", 100.0 * open as f64 / planted as f64);
+    let mut sum = [0; 5];
+    for row in table("docs/verification.md", "| configuration | faults | default test |") {
+        let (planted, default, rest, equivalent, open) = if row[0] == "all" {
+            (sum[0], sum[1], sum[2], sum[3], sum[4])
+        } else {
+            let record = json(&format!("mutation/{}.json", row[0]));
+            let (planted, caught, equivalent, open) = faults(&record["netlist"]["all"]);
+            let default = caught.get("cosim").copied().unwrap_or(0);
+            let rest = caught.values().sum::<u64>() - default;
+            let counts = [planted, default, rest, equivalent, open];
+            sum.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
+            (planted, default, rest, equivalent, open)
+        };
+        let expected = [planted, default, rest, equivalent].map(grouped);
+        assert_eq!(row[1..5], expected, "{}", row[0]);
+        assert_eq!(row[5], share(open, planted), "{}", row[0]);
+    }
+    let [planted, default, rest, equivalent, open] = sum;
+    let (planted, caught) = (planted, default + rest);
+    let readme = read("README.md").replace('\n', " ");
+    for said in [
+        format!(
+            "Of {} faults in the ten default configurations {} are caught",
+            grouped(planted),
+            grouped(caught)
+        ),
+        format!("{} proved equivalent and {} open", grouped(equivalent), grouped(open)),
+        format!("({:.2} %)", 100.0 * open as f64 / planted as f64),
+    ] {
+        assert!(readme.contains(&said), "README.md does not say: {said}");
+    }
+}
+
+/// The lines of `glint verify` that come from records.
+#[test]
+fn what_verify_says_of_cosine_power() {
+    let rows = table("README.md", "| leg of `glint verify");
+    let over = |leg: &str| {
+        let row = rows.iter().find(|row| row[0] == leg);
+        row.unwrap_or_else(|| panic!("no row {leg}"))[2].clone()
+    };
+    let proof = &json("proofs/cosine_power.json")["configurations"][0];
+    let [evaluations, products] =
+        ["evaluations", "colour_products"].map(|key| grouped(number(&proof[key])));
+    assert_eq!(
+        over("golden model against the formula"),
+        format!("{evaluations} evaluations of f and {products} colour products")
+    );
+    let (planted, caught, equivalent, open) =
+        faults(&json("mutation/cosine_power.json")["netlist"]["all"]);
+    let caught: u64 = caught.values().sum();
+    let planted = grouped(planted);
+    assert_eq!(
+        over("faults in the netlist"),
+        format!("{planted} faults: {caught} caught, {equivalent} proved equivalent, {open} open")
+    );
+}
+
+/// Faults in the emitted text: planted, noticed by lint and by the bench, equivalent, open; and the share that is open
+/// of all, those in the netlist too.
+#[test]
+fn faults_in_the_verilog() {
+    let mut sum = [0; 7];
+    for row in table("docs/verification.md", "| configuration | faults | lint |") {
+        let counts = if row[0] == "all" {
+            sum
+        } else {
+            let record = json(&format!("mutation/{}.json", row[0]));
+            let (netlist, _, _, open) = faults(&record["netlist"]["all"]);
+            let verilog = &record["verilog"];
+            let [planted, lint, bench] =
+                ["planted", "lint", "bench"].map(|key| number(&verilog[key]));
+            let [equivalent, left] = ["equivalent", "open"]
+                .map(|key| verilog[key].as_array().expect("a list").len() as u64);
+            [planted, lint, bench, equivalent, left, planted + netlist, left + open]
+        };
+        if row[0] != "all" {
+            sum.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
+        }
+        let [planted, lint, bench, equivalent, left, all, open] = counts;
+        assert_eq!(row[1..6], [planted, lint, bench, equivalent, left].map(grouped), "{}", row[0]);
+        let share = format!("{:.2} %", 100.0 * open as f64 / all as f64);
+        assert_eq!(row[6], share, "{}", row[0]);
+    }
+}
