@@ -33,6 +33,9 @@ struct Cli {
     /// Of the main job: say of each configuration what was compared, and where the largest error is
     #[arg(long)]
     details: bool,
+    /// Threads of whatever uses several [default: the number of processors]
+    #[arg(long, value_name = "N", global = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
     #[command(flatten)]
     output: Output,
 }
@@ -452,6 +455,16 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
         }
     };
     let output = cli.output;
+    if let Some(threads) = cli.threads {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads)).build_global();
+        if let Err(error) = pool {
+            failure::print(
+                &anyhow::anyhow!("cannot start {threads} threads: {error}"),
+                output.json,
+            );
+            return ExitCode::FAILURE;
+        }
+    }
     let done = match cli.command {
         None => commands::everything(registry, output, cli.details),
         Some(Command::Generate { configs, out, check, force }) => {

@@ -3,6 +3,8 @@
 //! nextpnr-ice40 takes every DSP block for a register and leaves its delay out. `icetime` knows the delay of a
 //! block that is a multiplier and nothing else, so that is what [`crate::tools::synthesis`] makes of products.
 
+use std::collections::BTreeMap;
+
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
 use serde_json::Value;
@@ -89,7 +91,8 @@ fn route(
     netlist: &Netlist,
     seed: u32,
 ) -> Result<(f64, Vec<Step>)> {
-    let (placed, timing) = (format!("seed{seed}.asc"), format!("seed{seed}.json"));
+    let (bits, timing) = (format!("seed{seed}.asc"), format!("seed{seed}.json"));
+    let placed = format!("placed{seed}.json");
     let seed = seed.to_string();
     let arguments =
         ["--up5k", "--package", "sg48", "--pcf-allow-unconstrained", "--timing-allow-fail", "-q"];
@@ -101,24 +104,80 @@ fn route(
         "--json",
         Place::netlist_name(),
         "--asc",
+        &bits,
+        "--write",
         &placed,
     ]);
     nextpnr.run_to_success(arguments, place.path(), subject.limit)?;
-    let arguments = ["-d", "up5k", "-P", "sg48", "-i", "-t", "-j", &timing, &placed];
+    let arguments = ["-d", "up5k", "-P", "sg48", "-i", "-t", "-j", &timing, &bits];
     let said = icetime.run_to_success(arguments, place.path(), subject.limit)?;
     let nanoseconds = said.lines().find_map(|line| {
         line.strip_prefix("Total path delay: ")?.split(' ').next()?.parse::<f64>().ok()
     });
     let nanoseconds = nanoseconds.context("`icetime` does not tell the longest path")?;
-    let path = place.json(&timing)?;
-    Ok((1000.0 / nanoseconds, steps(netlist, &path)))
+    let (path, placed) = (place.json(&timing)?, place.json(&placed)?);
+    Ok((1000.0 / nanoseconds, steps(netlist, &path, &placed)))
 }
 
-/// The longest path; times are those at which a cell's output, or the next cell's input, settles.
-fn steps(netlist: &Netlist, path: &Value) -> Vec<Step> {
+/// The longest path. What icetime calls a net is often the next one that has a name, so that cells are looked up by their
+/// place.
+fn steps(netlist: &Netlist, path: &Value, placed: &Value) -> Vec<Step> {
+    let outputs = outputs(placed);
     let points = path[0].as_array().into_iter().flatten();
     netlist::path(points.filter_map(|point| {
-        let name = netlist.name(point["net"].as_str()?)?;
+        let net = outputs.get(&place_of(point["cell"].as_str()?)?)?;
+        let name = netlist.name(net)?;
         Some((name.to_owned(), point["delay_ns"].as_f64()?))
     }))
+}
+
+/// The place of a cell of icetime, `lc40_16_2_0`, as nextpnr writes it, without the kind of cell: `16 2 0`. Routing is at no place.
+fn place_of(cell: &str) -> Option<String> {
+    let mut parts = cell.split('_');
+    let kind = parts.next()?;
+    // DSP blocks and block RAMs have a tile, or the tile of their first part, to themselves.
+    let place: Vec<&str> = parts.collect();
+    match kind {
+        "lc40" => (place.len() == 3).then(|| place.join(" ")),
+        "MAC16" | "ram" | "ram40" => Some(format!("{} {}", place.first()?, place.get(1)?)),
+        _ => None,
+    }
+}
+
+/// A net that each cell drives, by the cell's place: of a block the first of its outputs.
+fn outputs(placed: &Value) -> BTreeMap<String, String> {
+    // nextpnr calls the only module `top`.
+    let Some(module) = placed["modules"].as_object().and_then(|modules| modules.values().next())
+    else {
+        return BTreeMap::new();
+    };
+    let objects = |value: &'_ Value| value.as_object().cloned().unwrap_or_default();
+    let nets: BTreeMap<u64, String> = objects(&module["netnames"])
+        .iter()
+        .filter_map(|(name, net)| Some((net["bits"][0].as_u64()?, name.clone())))
+        .collect();
+    let mut found = BTreeMap::new();
+    for cell in objects(&module["cells"]).values() {
+        // X16/Y2/lc0
+        let bel = cell["attributes"]["NEXTPNR_BEL"].as_str().unwrap_or_default();
+        let mut parts =
+            bel.split('/').map(|part| part.trim_start_matches(|c: char| !c.is_ascii_digit()));
+        let (Some(x), Some(y), Some(z)) = (parts.next(), parts.next(), parts.next()) else {
+            continue;
+        };
+        let (prefix, place) = match cell["type"].as_str() {
+            Some("ICESTORM_LC") => ("O", format!("{x} {y} {z}")),
+            Some("ICESTORM_DSP") => ("O_", format!("{x} {y}")),
+            Some("ICESTORM_RAM") => ("RDATA_", format!("{x} {y}")),
+            _ => continue,
+        };
+        let connections = objects(&cell["connections"]);
+        let driven = connections.iter().filter(|(port, _)| match prefix {
+            "O" => *port == "O",
+            _ => port.starts_with(prefix),
+        });
+        let net = driven.filter_map(|(_, bits)| nets.get(&bits[0].as_u64()?)).next();
+        found.extend(net.map(|net| (place, net.clone())));
+    }
+    found
 }

@@ -23,6 +23,9 @@ use show::{announce, report};
 /// How often the state is written.
 const SAVE: Duration = Duration::from_secs(5);
 
+/// Cores for which the duration of a proof is told.
+const CORES: [u32; 3] = [1, 16, 1000];
+
 /// What `cosim --exhaustive` was asked for beside configurations.
 pub struct ExhaustiveRequest {
     /// Where the state stands.
@@ -178,10 +181,19 @@ fn announce_duration(job: &Job<'_>, state: &State) -> Result<()> {
     }
     let threads = rayon::current_num_threads();
     let duration = job.estimate(state, threads)?;
-    let duration = match duration.as_secs() {
+    let here = format!("{} on {}", roughly(duration), text::counted(threads, "thread"));
+    // On cores such as these, which a job array has to itself: parts are as many as one likes.
+    let elsewhere = CORES.map(|cores| {
+        let duration = duration.mul_f64(threads as f64 / f64::from(cores));
+        format!("{} on {}", roughly(duration), text::counted(cores as usize, "core"))
+    });
+    tables::print_line(&format!("  {here} ({})", elsewhere.join(", ")));
+    Ok(())
+}
+
+fn roughly(duration: Duration) -> String {
+    match duration.as_secs() {
         0 => "less than a second".to_owned(),
         seconds => format!("about {}", HumanDuration(Duration::from_secs(seconds))),
-    };
-    tables::print_line(&format!("  {duration} on {}", text::counted(threads, "thread")));
-    Ok(())
+    }
 }

@@ -37,7 +37,7 @@ pub struct SynthArguments {
     /// Runs of place and route, of which the median counts
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
     seeds: u32,
-    /// Runs of tools at the same time [default: the number of processors]
+    /// Runs of tools at the same time [default: the number of threads]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Measure again what is in the cache, `.glint/` beside each configuration
@@ -106,7 +106,8 @@ pub fn synth(registry: &Registry, output: Output, request: &SynthArguments) -> R
     let steps = steps.sum::<u64>() * loaded.len() as u64;
     let bar = progress::bar(output, steps, "synthesis");
     bar.tick();
-    let jobs = rayon::ThreadPoolBuilder::new().num_threads(request.jobs.map_or(0, usize::from));
+    let jobs = rayon::ThreadPoolBuilder::new()
+        .num_threads(request.jobs.map_or_else(rayon::current_num_threads, usize::from));
     let jobs = jobs.build().context("cannot start threads")?;
     let measured: Vec<Result<Measured>> = jobs.install(|| {
         let all = loaded.par_iter();

@@ -339,5 +339,5 @@ fn one_thread_is_a_thread() {
         command.args(["cosim", "core.toml", "--exhaustive"]).env("RAYON_NUM_THREADS", "1");
     let run = Run::of(command.output());
     assert_eq!(run.code, 0, "{run:?}");
-    assert!(run.out.contains(" on 1 thread\n"), "{}", run.out);
+    assert!(run.out.contains(" on 1 thread ("), "{}", run.out);
 }
