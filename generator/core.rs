@@ -188,6 +188,7 @@ impl Unit {
     pub fn files(&self, config: &str, vectors: Vectors) -> Result<Vec<OutputFile>> {
         let inputs = EmitInputs {
             config: config.to_owned(),
+            configuration: self.digest(),
             timing: self.timing()?,
             example: Some(self.example()?),
             accuracy: Some(Accuracy::new(self.contract.as_ref())),

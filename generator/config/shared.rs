@@ -68,6 +68,13 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
             "Bits of tuser, the side channel that travels with a point.",
         )
         .only_when("interface.stream", "true"),
+        Key::choice(
+            "interface.registers",
+            "none",
+            &["none", "axi-lite", "wishbone"],
+            "Write registers around the core: <name>_axil.v on AXI4-Lite, <name>_wb.v on Wishbone.",
+        )
+        .only_when("architecture", "sequential"),
         Key::flag(
             "package.software",
             false,

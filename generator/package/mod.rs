@@ -13,6 +13,7 @@ mod formal_pipeline;
 mod fusesoc;
 mod instance;
 mod manifest;
+mod map;
 mod memory;
 pub mod module_names;
 mod points;
@@ -75,6 +76,8 @@ pub fn sources(files: Vec<OutputFile>) -> Vec<(String, String)> {
 pub struct EmitInputs {
     /// The configuration as the command line names it, `configs/<name>.toml`.
     pub config: String,
+    /// Tells the configuration from others: SHA-256 in hexadecimal.
+    pub configuration: String,
     /// Clocks, for header and manifest.
     pub timing: Timing,
     /// One computation with all its numbers, for the manifest.
@@ -118,7 +121,12 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
             memories.push((file.clone(), memory::contents(design, id)?));
         }
     }
-    let wrap::Wrappers { rtl: wrappers, formal } = wrap::wrappers(design, inputs)?;
+    let map = match inputs.around.registers {
+        Some(bus) => Some((bus, map::Map::new(design, inputs)?)),
+        None => None,
+    };
+    let registers = map.as_ref().map(|(bus, map)| (*bus, map));
+    let wrap::Wrappers { rtl: wrappers, formal } = wrap::wrappers(design, inputs, registers)?;
     let mut testbench = Vec::new();
     if let Some(vectors) = &inputs.vectors {
         testbench = bench::files(design, &naming, vectors)?;
@@ -138,8 +146,13 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         }
     }
 
-    let software =
-        if inputs.around.software { software::files(design, inputs)? } else { Vec::new() };
+    let mut software = match inputs.around.software {
+        true => software::files(design, inputs)?,
+        false => Vec::new(),
+    };
+    if let Some((bus, map)) = &map {
+        software.extend(software::of_registers(design, inputs, *bus, map)?);
+    }
 
     let (rtl_names, memory_names) = (names_of(&rtl), names_of(&memories));
     let wrapper_names = names_of(&wrappers);

@@ -2,6 +2,15 @@
 
 use crate::config::Config;
 
+/// A bus on which registers are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Bus {
+    /// AXI4-Lite.
+    AxiLite,
+    /// Wishbone B4, classic cycles.
+    Wishbone,
+}
+
 /// What is put around a core.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Surroundings {
@@ -9,6 +18,8 @@ pub struct Surroundings {
     pub stream: bool,
     /// The width of their `tuser`.
     pub user_bits: u32,
+    /// The core behind registers.
+    pub registers: Option<Bus>,
     /// A model in C, in `software/<name>/`.
     pub software: bool,
 }
@@ -19,6 +30,11 @@ impl Surroundings {
         Self {
             stream: config.flag("interface.stream"),
             user_bits: config.integer("interface.user_bits") as u32,
+            registers: match config.choice("interface.registers") {
+                "axi-lite" => Some(Bus::AxiLite),
+                "wishbone" => Some(Bus::Wishbone),
+                _ => None,
+            },
             software: config.flag("package.software"),
         }
     }

@@ -98,6 +98,22 @@ fn keys_that_every_device_shares_are_read_as_its_own() {
 }
 
 #[test]
+fn an_unknown_bus_is_told_of() {
+    assert_eq!(
+        of_lamp("[interface]\nregisters = \"wishbon\"\n"),
+        ["3:13 interface.registers | `interface.registers` cannot be \"wishbon\" \
+          | did you mean \"wishbone\"? give \"none\", \"axi-lite\" or \"wishbone\" (default \"none\")"]
+    );
+    assert_eq!(
+        of_lamp("architecture = \"pipelined\"\n[interface]\nregisters = \"wishbone\"\n"),
+        [
+            "4:13 interface.registers | `interface.registers` has no effect with architecture = \"pipelined\" \
+          | remove it, or set architecture = \"sequential\""
+        ]
+    );
+}
+
+#[test]
 fn a_stream_that_does_not_fit_is_told_of() {
     assert_eq!(
         of_lamp("[interface]\nstream = true\nuser_bits = 1025\n"),

@@ -93,6 +93,11 @@ stream = false
 # An integer from 1 to 1024, default 1; only with interface.stream = true.
 # user_bits = 1
 
+# Write registers around the core: <name>_axil.v on AXI4-Lite, <name>_wb.v on Wishbone.
+# \"none\", \"axi-lite\" or \"wishbone\", default \"none\"; only with architecture =
+# \"sequential\".
+registers = \"none\"
+
 [package]
 # Write software/<name>/: a bit-accurate model of the core in C.
 # True or false, default false; only with architecture = \"sequential\".

@@ -6,6 +6,8 @@
 mod graph;
 mod model;
 mod print;
+mod registers;
 mod unroll;
 
 pub use model::files;
+pub use registers::files as of_registers;

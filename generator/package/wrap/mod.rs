@@ -2,11 +2,15 @@
 
 mod fields;
 mod pipeline;
+mod registers;
 mod stream;
 
 use anyhow::Result;
+use askama::Template;
 
-use super::EmitInputs;
+use super::map::Map;
+use super::surroundings::Bus;
+use super::{EmitInputs, render};
 use crate::hdl::netlist::Design;
 
 /// The wrappers that a configuration asks for: pairs of a plain name and its text.
@@ -18,19 +22,39 @@ pub struct Wrappers {
     pub formal: Vec<(String, String)>,
 }
 
-/// The wrappers that the configuration asks for.
+/// The wrappers that the configuration asks for; the map is that of the registers.
 ///
 /// # Errors
 /// A core that they do not fit.
-pub fn wrappers(design: &Design, inputs: &EmitInputs) -> Result<Wrappers> {
+pub fn wrappers(
+    design: &Design,
+    inputs: &EmitInputs,
+    map: Option<(Bus, &Map)>,
+) -> Result<Wrappers> {
     let mut made = Wrappers::default();
-    if inputs.around.stream {
-        let one = match &design.pipeline {
-            Some(pipeline) => pipeline::wrapper(design, pipeline, inputs)?,
-            None => stream::wrapper(design, inputs)?,
-        };
+    let mut add = |one: Wrappers| {
         made.rtl.extend(one.rtl);
         made.formal.extend(one.formal);
+    };
+    if inputs.around.stream {
+        add(match &design.pipeline {
+            Some(pipeline) => pipeline::wrapper(design, pipeline, inputs)?,
+            None => stream::wrapper(design, inputs)?,
+        });
+    }
+    if let Some((bus, map)) = map {
+        add(registers::wrapper(design, inputs, bus, map)?);
     }
     Ok(made)
+}
+
+/// The commands of Yosys that make the problem of `<wrapper>_formal.sv`.
+#[derive(Template)]
+#[template(path = "wrapper_formal.ys")]
+struct Script<'a> {
+    name: &'a str,
+}
+
+fn script(name: &str) -> Result<String> {
+    render(&Script { name })
 }

@@ -3,8 +3,8 @@
 use anyhow::{Result, ensure};
 use askama::Template;
 
-use super::Wrappers;
 use super::fields::{Field, bits, operands, packed, padding, results, sink};
+use super::{Wrappers, script};
 use crate::hdl::netlist::{Design, Pipeline, Role};
 use crate::hdl::verilog::rows::separated;
 use crate::hdl::verilog::text::{literal, range};
@@ -62,12 +62,6 @@ struct Formal<'a> {
     inside: Vec<String>,
     last: usize,
     stages: Vec<Stage>,
-}
-
-#[derive(Template)]
-#[template(path = "axis_formal.ys")]
-struct Script<'a> {
-    name: &'a str,
 }
 
 /// The wrapper, and what is proved of it.
@@ -189,6 +183,6 @@ fn formal(
     };
     Ok(vec![
         (format!("{name}_axis_formal.sv"), render(&view)?),
-        (format!("{name}_axis_formal.ys"), render(&Script { name })?),
+        (format!("{name}_axis_formal.ys"), script(&format!("{name}_axis"))?),
     ])
 }

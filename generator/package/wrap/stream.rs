@@ -3,8 +3,8 @@
 use anyhow::{Context, Result};
 use askama::Template;
 
-use super::Wrappers;
 use super::fields::{Field, bits, operands, packed, padding, results, sink};
+use super::{Wrappers, script};
 use crate::hdl::netlist::{Design, Role};
 use crate::hdl::verilog::rows::separated;
 use crate::hdl::verilog::text::{literal, range};
@@ -92,12 +92,6 @@ struct Formal<'a> {
     /// Declarations of what the proof sees of the inside.
     inside: Vec<String>,
     line: Option<Line>,
-}
-
-#[derive(Template)]
-#[template(path = "axis_formal.ys")]
-struct Script<'a> {
-    name: &'a str,
 }
 
 /// The wrapper, of a core that walks lines its buffer too, and what is proved of them.
@@ -212,7 +206,7 @@ fn formal(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>>
     };
     Ok(vec![
         (format!("{name}_axis_formal.sv"), render(&formal)?),
-        (format!("{name}_axis_formal.ys"), render(&Script { name })?),
+        (format!("{name}_axis_formal.ys"), script(&format!("{name}_axis"))?),
     ])
 }
 

@@ -1,0 +1,150 @@
+// ${ name }$_registers_formal: what is proved of ${ name }$_registers
+//
+// For formal tools alone: every input is free. In place of the core stands any that is busy from
+// the clock after start to done, with any results. To prove it, from a directory that holds the
+// files of both folders:
+//   $ yosys -q ${ name }$_registers_formal.ys
+//   $ yosys-smtbmc -s z3 --unroll -t 3 ${ name }$_registers_formal.smt2
+//   $ yosys-smtbmc -s z3 --unroll -i -t 2 ${ name }$_registers_formal.smt2
+//
+// Generated files belong to their user, without conditions.
+
+`default_nettype none
+
+module ${ name }$ (
+<%- for line in stub_ports %>
+    ${ line }$
+<%- endfor %>
+);
+    (* anyseq *) reg ends;
+<%- for line in stub_free %>
+    ${ line }$
+<%- endfor %>
+    reg run;
+    assign busy = run;
+    assign valid = done;
+    assign done = run & ends;
+    always @(posedge clk) run <= rst_n & (run ? ~done : start);
+
+    // A computation begins with all of its operands, and when the one before is over.
+    always @* if (!$initstate && start) begin
+        assert (!run);
+<%- for operand in operands %>
+        assert (${ operand.strobe }$);
+<%- endfor %>
+    end
+endmodule
+
+module ${ name }$_registers_formal (
+    input wire clk,
+    input wire rst_n,
+    input wire write,
+    input wire [${ address_high }$:2] write_at,
+    input wire [31:0] write_data,
+    input wire [3:0] write_bytes,
+    input wire read,
+    input wire [${ address_high }$:2] read_at
+);
+    wire write_answer;
+    wire write_error;
+    wire read_answer;
+    wire read_error;
+    wire [31:0] read_data;
+    wire irq;
+
+    ${ name }$_registers dut (
+        .clk(clk),
+        .rst_n(rst_n),
+        .write(write),
+        .write_at(write_at),
+        .write_data(write_data),
+        .write_bytes(write_bytes),
+        .write_answer(write_answer),
+        .write_error(write_error),
+        .read(read),
+        .read_at(read_at),
+        .read_answer(read_answer),
+        .read_error(read_error),
+        .read_data(read_data),
+        .irq(irq)
+    );
+
+    // What the proof sees of the inside.
+<%- for wire in inside %>
+    ${ wire }$
+<%- endfor %>
+
+    // The reset comes first; the state before it is arbitrary.
+    always @* if ($initstate) assume (!rst_n);
+
+    localparam WORDS = ${ word_count }$;
+    wire [31:0] write_word = write_at;
+    wire [31:0] read_word = read_at;
+    wire write_mapped =
+            write_word >= ${ control_number }$ && write_word <= ${ last_operand_number }$;
+    wire is_result =
+            read_word >= ${ first_result_number }$ && read_word <= ${ last_result_number }$;
+    wire asks_start = write_mapped && (dut.start_on_write && write_word == dut.start_word
+            || write_word == ${ control_number }$ && write_bytes[0] && write_data[0]);
+
+    always @* if (!$initstate) begin
+        // A request waits only for a computation, which ends; only requests are answered.
+        if (write && !write_answer) assert (asks_start && (dut.start || dut.core.run));
+        if (read && !read_answer) assert (is_result && (dut.start || dut.core.run));
+        if (!write) assert (!write_answer);
+        if (!read) assert (!read_answer);
+        // A result that is read is that of a computation that is over.
+        if (read_answer && is_result) assert (!dut.start && !dut.core.run);
+        // What is not in the map, and nothing else, is an error.
+        assert (write_error == !write_mapped);
+        assert (read_error == (read_word >= WORDS));
+        assert (irq == (dut.interrupt_enable && dut.interrupt_pending));
+        // What was written is what is read, and what the core computes with.
+<%- for operand in operands %>
+        assert (dut.core.${ operand.name }$ == dut.operand_${ operand.name }$);
+<%- endfor %>
+<%- for word in operand_words %>
+        if (read_word == ${ word.number }$) begin
+            assert (read_data[${ word.width - 1 }$:0] == dut.operand_${ word.name }$${ word.bits }$);
+        end
+<%- endfor %>
+    end
+
+    // What was taken in the clock before.
+    reg took;
+    reg [31:0] took_word;
+    always @(posedge clk) begin
+        took <= write_answer && !write_error;
+        took_word <= write_word;
+    end
+    wire took_control = took && took_word == ${ control_number }$;
+    wire took_enable = took && took_word == ${ control_number + 1 }$;
+    wire took_pending = took && took_word == ${ control_number + 2 }$;
+    always @(posedge clk) if (!$initstate && $past(!$initstate) && $past(rst_n)) begin
+        // A computation starts once for each write that asks for it, and for nothing else.
+        assert (dut.start == $past(write_answer && asks_start));
+        // The registers change where they are written, in those bytes, and nowhere else.
+        assert (dut.start_on_write == (took_control && $past(write_bytes[0])
+                ? $past(write_data[1]) : $past(dut.start_on_write)));
+        assert (dut.start_word == (took_control && $past(write_bytes[1])
+                ? $past(write_data[${ word_high + 8 }$:8]) : $past(dut.start_word)));
+        assert (dut.interrupt_enable == (took_enable && $past(write_bytes[0])
+                ? $past(write_data[0]) : $past(dut.interrupt_enable)));
+        assert (dut.interrupt_pending == ($past(dut.core.run && dut.core.ends)
+                || $past(dut.interrupt_pending)
+                && !(took_pending && $past(write_bytes[0] && write_data[0]))));
+        assert (dut.finished == ($past(dut.core.run && dut.core.ends)
+                || $past(dut.finished) && !$past(dut.start)));
+<%- for operand in operands %>
+<%- for lane in operand.lanes %>
+        if (took && took_word == ${ lane.number }$ && $past(write_bytes[${ lane.byte }$])) begin
+            assert (dut.operand_${ operand.name }$${ lane.bits }$ == $past(write_data${ lane.data }$));
+        end else begin
+            assert ($stable(dut.operand_${ operand.name }$${ lane.bits }$));
+        end
+<%- endfor %>
+<%- endfor %>
+    end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,99 @@
+// cosine_power_wb_formal: what is proved of cosine_power_wb
+//
+// For formal tools alone: every input is free, the master's too, which may even give a request up.
+// In place of the registers stands anything that answers requests at any time. To prove it, from a
+// directory that holds the files of both folders:
+//   $ yosys -q cosine_power_wb_formal.ys
+//   $ yosys-smtbmc -s z3 --unroll -t 3 cosine_power_wb_formal.smt2
+//   $ yosys-smtbmc -s z3 --unroll -i -t 2 cosine_power_wb_formal.smt2
+//
+// Generated files belong to their user, without conditions.
+
+`default_nettype none
+
+module cosine_power_registers (
+    input wire clk,
+    input wire rst_n,
+    input wire write,
+    input wire [5:2] write_at,
+    input wire [31:0] write_data,
+    input wire [3:0] write_bytes,
+    output wire write_answer,
+    output wire write_error,
+    input wire read,
+    input wire [5:2] read_at,
+    output wire read_answer,
+    output wire read_error,
+    output wire [31:0] read_data,
+    output wire irq
+);
+    (* anyseq *) reg answers_write;
+    (* anyseq *) reg answers_read;
+    (* anyseq *) reg [34:0] any;
+    assign write_answer = write & answers_write;
+    assign read_answer = read & answers_read;
+    assign {irq, write_error, read_error, read_data} = any;
+endmodule
+
+module cosine_power_wb_formal (
+    input wire wb_clk_i,
+    input wire wb_rst_i,
+    input wire wb_cyc_i,
+    input wire wb_stb_i,
+    input wire wb_we_i,
+    input wire [5:0] wb_adr_i,
+    input wire [31:0] wb_dat_i,
+    input wire [3:0] wb_sel_i
+);
+    wire [31:0] wb_dat_o;
+    wire wb_ack_o;
+    wire wb_err_o;
+    wire irq;
+
+    cosine_power_wb dut (
+        .wb_clk_i(wb_clk_i),
+        .wb_rst_i(wb_rst_i),
+        .wb_cyc_i(wb_cyc_i),
+        .wb_stb_i(wb_stb_i),
+        .wb_we_i(wb_we_i),
+        .wb_adr_i(wb_adr_i),
+        .wb_dat_i(wb_dat_i),
+        .wb_sel_i(wb_sel_i),
+        .wb_dat_o(wb_dat_o),
+        .wb_ack_o(wb_ack_o),
+        .wb_err_o(wb_err_o),
+        .irq(irq)
+    );
+
+    // What the proof sees of the inside.
+    (* hierconn *) wire \dut.write ;
+    (* hierconn *) wire \dut.read ;
+    (* hierconn *) wire \dut.write_answer ;
+    (* hierconn *) wire \dut.write_error ;
+    (* hierconn *) wire \dut.read_answer ;
+    (* hierconn *) wire \dut.read_error ;
+    (* hierconn *) wire [31:0] \dut.read_data ;
+
+    // The reset comes first; the state before it is arbitrary.
+    always @* if ($initstate) assume (wb_rst_i);
+
+    wire answered = wb_ack_o || wb_err_o;
+    always @* if (!$initstate) begin
+        // One answer at a time, and a request is asked of the registers until it has one.
+        assert (!(wb_ack_o && wb_err_o));
+        assert (dut.write == (wb_cyc_i && wb_stb_i && wb_we_i && !answered));
+        assert (dut.read == (wb_cyc_i && wb_stb_i && !wb_we_i && !answered));
+    end
+    always @(posedge wb_clk_i) if (!$initstate && $past(!$initstate)) begin
+        // An answer is given once, in the clock after that of the registers, and only to a request.
+        assert (wb_ack_o == $past(!wb_rst_i && (dut.write_answer && !dut.write_error
+                || dut.read_answer && !dut.read_error)));
+        assert (wb_err_o == $past(!wb_rst_i && (dut.write_answer && dut.write_error
+                || dut.read_answer && dut.read_error)));
+        if (answered) assert ($past(wb_cyc_i && wb_stb_i));
+        if ($past(answered)) assert (!answered);
+        if ($past(dut.read_answer)) assert (wb_dat_o == $past(dut.read_data));
+    end
+endmodule
+
+`default_nettype wire
