@@ -119,7 +119,12 @@ module ${ name }$_registers (
             end
         endcase
     end
-    wire read_result = (read_word >= ${ first_result }$) & (read_word <= ${ last_result }$);
+<%- match last_result %>
+<%- when Some(last) %>
+    wire read_result = (read_word >= ${ first_result }$) & (read_word <= ${ last }$);
+<%- when None %>
+    wire read_result = read_word >= ${ first_result }$;
+<%- endmatch %>
     assign read_answer = read & ~(read_result & under_way);
 
     // What nothing needs.

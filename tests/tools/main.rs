@@ -17,6 +17,7 @@ mod mutants;
 mod random_configurations;
 mod random_netlists;
 mod slurm;
+mod soc;
 mod software;
 mod synth;
 mod synthesis;

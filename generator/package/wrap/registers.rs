@@ -64,7 +64,8 @@ struct Registers<'a> {
     pending: String,
     last_operand: String,
     first_result: String,
-    last_result: String,
+    /// Unless no address lies behind it.
+    last_result: Option<String>,
     unused: Vec<String>,
 }
 
@@ -198,7 +199,7 @@ fn block<'a>(design: &'a Design, inputs: &'a EmitInputs, map: &Map) -> Registers
         pending: place(map::INTERRUPT_PENDING),
         last_operand: place(map.last_operand()),
         first_result: place(map.last_operand() + 1),
-        last_result: place(map.last()),
+        last_result: (!(map.last() + 1).is_power_of_two()).then(|| place(map.last())),
         unused: sink(&unused),
     }
 }
