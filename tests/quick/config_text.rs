@@ -94,8 +94,7 @@ stream = false
 # user_bits = 1
 
 # Write registers around the core: <name>_axil.v on AXI4-Lite, <name>_wb.v on Wishbone.
-# \"none\", \"axi-lite\" or \"wishbone\", default \"none\"; only with architecture =
-# \"sequential\".
+# \"none\", \"axi-lite\" or \"wishbone\", default \"none\"; only with architecture = \"sequential\".
 registers = \"none\"
 
 [package]
