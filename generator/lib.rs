@@ -1,9 +1,34 @@
 //! Glint: specular-shading hardware from Rust descriptions.
 //!
 //! A device is a [`registry::Device`]: keys ([`config::Schema`]), a description ([`dsl`]), a golden model
-//! ([`golden::Model`]) and a contract ([`golden::Contract`]). [`cli::run`] makes a command line of a
-//! registry, whether its devices are the catalogue's or your own: `examples/fresnel` is a complete
-//! one, to be read from top to bottom.
+//! ([`golden::Model`]) and a contract ([`golden::Contract`]). `cli::run` makes a command line of a
+//! registry, whether its devices are the catalogue's or your own. Complete devices outside the library, to be read
+//! from top to bottom, are `examples/fresnel`, which multiplies colours, and `examples/dot_product` and
+//! `examples/normaliser`, which do not.
+//!
+//! | to | see |
+//! |---|---|
+//! | describe a datapath and its microprogram | [`dsl`], [`hdl::blocks`] |
+//! | predict it, clock by clock and by its formula | [`golden::device`], [`golden::highlight`] |
+//! | state its keys, and read a configuration | [`config`] |
+//! | simulate a design in the program | [`hdl::sim::Simulator`] |
+//! | have all of it for a configuration: model, contract, files, co-simulation | [`core::Unit`] |
+//!
+//! What has no page here is public for the tests of this crate, and may change in any version.
+//!
+//! ```
+//! use glint::config::Config;
+//! use glint::core::Unit;
+//! use glint::registry::Registry;
+//!
+//! let registry = Registry::catalogue();
+//! let device = *registry.devices().iter().find(|it| it.name == "cosine-power").unwrap();
+//! let unit = Unit::new(device, Config::defaults(&(device.schema)(), "highlight")).unwrap();
+//! assert!(unit.contract.bound().units < 1.0);
+//! // Golden model and simulation on every clock of a hundred points.
+//! let outcome = unit.lockstep(1).unwrap().run(100, &|_| ()).unwrap();
+//! assert!(outcome.mismatch.is_none());
+//! ```
 
 pub mod base;
 #[cfg(feature = "cli")]
@@ -13,24 +38,32 @@ pub mod core;
 pub mod cosim;
 pub mod devices;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod evidence;
 pub mod golden;
 pub mod hdl;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod mutate;
 pub mod observation;
 pub mod package;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod pages;
 pub mod registry;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod render;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod synth;
+#[doc(hidden)]
 pub mod tools;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod tune;
 #[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod verify;
 
 pub use base::fixed;

@@ -3,7 +3,7 @@
 //! Descriptions write formulas as programs do, `out = colour * (n/2 * (c - 1) + 1)^2`. What this reader does not
 //! understand stays plain text.
 
-use super::datasheet::html;
+use super::markup::html;
 
 /// Functions whose names may carry a power, and whose parentheses may go around a single name.
 const FUNCTIONS: [&str; 4] = ["cos", "sin", "tan", "log"];

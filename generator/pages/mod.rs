@@ -6,6 +6,7 @@ pub mod drawing;
 pub mod figure;
 mod formula;
 mod markdown;
+mod markup;
 pub mod plots;
 pub mod report;
 

@@ -2,8 +2,7 @@
 
 use crate::hdl::netlist::{Design, FieldKind};
 use crate::pages::account;
-
-use super::table::html;
+use crate::pages::markup::html;
 
 /// The table of words and lines.
 pub struct Microprogram {

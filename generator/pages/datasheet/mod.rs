@@ -11,8 +11,6 @@ mod waves;
 
 use anyhow::Result;
 
-pub(super) use table::html;
-
 use crate::core::{Through, Unit};
 use crate::cosim::exhaustive::Record;
 use crate::evidence::curves::{self, DeviceCurves};

@@ -6,7 +6,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 use super::microprogram::Microprogram;
-use super::table::{TableView, html};
+use super::table::TableView;
 use super::{Measured, Subject, diagram, timing};
 use crate::base::text;
 use crate::evidence::chart::Chart;
@@ -17,6 +17,7 @@ use crate::package::{self, Seal, Timing};
 use crate::pages::account::{self, PageInputs, blocks, short};
 use crate::pages::figure::{Figure, figures};
 use crate::pages::formula;
+use crate::pages::markup::html;
 
 /// The clock at which rates are told, in MHz: what a small FPGA reaches.
 const CLOCK: f64 = 25.0;

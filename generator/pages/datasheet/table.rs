@@ -1,6 +1,7 @@
-//! Tables and sentences as HTML.
+//! Tables as HTML.
 
 use crate::pages::account::{Align, Table};
+use crate::pages::markup::html;
 
 /// The width of a phone, in characters of a table; a wider one is shown there a row below the other.
 const NARROW: usize = 36;
@@ -63,28 +64,6 @@ impl TableView {
     }
 }
 
-/// Plain text with names in backquotes as HTML.
-pub fn html(text: &str) -> String {
-    let mut html = String::with_capacity(text.len());
-    // An odd backquote is one.
-    let names = text.matches('`').count() / 2;
-    let mut quotes = 0;
-    for sign in text.chars() {
-        match sign {
-            '`' if quotes < 2 * names => {
-                html += if quotes % 2 == 0 { "<code>" } else { "</code>" };
-                quotes += 1;
-            }
-            '&' => html += "&amp;",
-            '<' => html += "&lt;",
-            '>' => html += "&gt;",
-            '"' => html += "&quot;",
-            _ => html.push(sign),
-        }
-    }
-    html
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -101,11 +80,5 @@ mod tests {
         assert_eq!((cell.class, cell.label.as_str()), ("number", "units"));
         assert_eq!(view.columns[0].1, "<code>key</code>");
         assert_eq!(view.rows[1][0].label, "key");
-    }
-
-    #[test]
-    fn names_are_code_and_signs_are_signs() {
-        assert_eq!(html("`a<b` & c > `d`"), "<code>a&lt;b</code> &amp; c &gt; <code>d</code>");
-        assert_eq!(html("one ` alone"), "one ` alone");
     }
 }

@@ -1,0 +1,34 @@
+//! Plain text as HTML.
+
+/// Plain text with names in backquotes as HTML.
+pub fn html(text: &str) -> String {
+    let mut html = String::with_capacity(text.len());
+    // An odd backquote is one.
+    let names = text.matches('`').count() / 2;
+    let mut quotes = 0;
+    for sign in text.chars() {
+        match sign {
+            '`' if quotes < 2 * names => {
+                html += if quotes % 2 == 0 { "<code>" } else { "</code>" };
+                quotes += 1;
+            }
+            '&' => html += "&amp;",
+            '<' => html += "&lt;",
+            '>' => html += "&gt;",
+            '"' => html += "&quot;",
+            _ => html.push(sign),
+        }
+    }
+    html
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_code_and_signs_are_signs() {
+        assert_eq!(html("`a<b` & c > `d`"), "<code>a&lt;b</code> &amp; c &gt; <code>d</code>");
+        assert_eq!(html("one ` alone"), "one ` alone");
+    }
+}
