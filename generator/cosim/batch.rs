@@ -15,6 +15,9 @@ pub use verilog::Verilog;
 
 use crate::golden::Contract;
 
+/// Instances that one thread clocks together.
+const LANES: usize = 32;
+
 /// Points that are computed as one piece of work.
 const PIECE: usize = 4096;
 

@@ -40,10 +40,22 @@ pub use crate::observation::{
 };
 pub use cocotb::driver;
 pub use instance::instance;
-pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE, points_bench};
+pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE};
 pub use seal::{Seal, is_sealed, sealed, sealed_json};
 pub use surroundings::Surroundings;
 pub use window::{WINDOW_FILE, window};
+
+/// The bench that computes a list of points, each in less than `limit` clocks: of a pipeline, or of a design with a
+/// microprogram.
+///
+/// # Errors
+/// A design without its handshake, or without operands or results.
+pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
+    match design.pipeline {
+        Some(_) => points_pipeline::points_bench(design, limit),
+        None => points::points_bench(design, limit),
+    }
+}
 
 /// A file to be written.
 #[derive(Clone, Debug, PartialEq, Eq)]

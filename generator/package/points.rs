@@ -61,14 +61,11 @@ struct Variables {
     dut: String,
 }
 
-/// The bench of a design, whose computations take less than `limit` clocks each.
+/// The bench of a design with a microprogram, whose computations take less than `limit` clocks each.
 ///
 /// # Errors
 /// A design without the common handshake, or without operands or results.
 pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
-    if design.pipeline.is_some() {
-        return super::points_pipeline::points_bench(design, limit);
-    }
     let port_name = |port: &Port| design.net(port.net).name.clone();
     let handshake = design.handshake()?;
     let name_of = |net: NetId| design.net(net).name.clone();

@@ -1,6 +1,6 @@
 //! What a core costs and how fast it is: synthesis, placement, routing and timing analysis by outside tools.
 //!
-//! A core is measured with a register on each side of every port ([`harness`]), so that pins do not count. The
+//! A core is measured with a register on each side of every port (`harness`), so that pins do not count. The
 //! delay of a DSP block is never left out: on iCE40 the blocks are pure multipliers, and `icetime` times what
 //! nextpnr-ice40 does not; on ECP5 a netlist with registers inside the blocks is refused.
 

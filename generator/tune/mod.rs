@@ -4,7 +4,7 @@
 //! [`tune`] answers keeps the error that was asked for, for every operand of the domain. What a configuration costs is
 //! estimated from its netlist ([`model`]); synthesis confirms the answer.
 //!
-//! Free are the keys that change neither a port nor the formula ([`space`]); all others are the wish itself.
+//! Free are the keys that change neither a port nor the formula (`space`); all others are the wish itself.
 
 pub mod model;
 mod search;

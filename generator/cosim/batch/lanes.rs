@@ -6,14 +6,11 @@ use anyhow::{Context, Result, ensure};
 use rayon::prelude::*;
 
 use super::stream::Stream;
-use super::{Engine, Points};
+use super::{Engine, LANES, Points};
 use crate::base::fixed::Format;
 use crate::golden::Contract;
 use crate::hdl::netlist::{Design, Handshake, NetId};
 use crate::hdl::sim::Simulator;
-
-/// Instances that one thread clocks together.
-pub(super) const LANES: usize = 32;
 
 /// More clocks than any computation takes.
 const LIMIT: u32 = 1 << 16;

@@ -5,8 +5,7 @@ use std::ops::Range;
 
 use anyhow::{Context, Result, ensure};
 
-use super::Points;
-use super::lanes::LANES;
+use super::{LANES, Points};
 use crate::base::fixed::Format;
 use crate::golden::Contract;
 use crate::hdl::netlist::{Design, NetId, Pipeline, Role};

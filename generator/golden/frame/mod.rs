@@ -3,7 +3,7 @@
 //!
 //! A device names its operands, registers and outputs once, in a [`Frame`], and gets a [`Slot`] for each. It
 //! says what each microinstruction does to them ([`step`]) and what its outputs show ([`Datapath`]); the
-//! order of the microinstructions numbers them. [`Frame::model`] makes a [`Model`] of that.
+//! order of the microinstructions numbers them. [`Frame::model`] makes a [`Model`](super::Model) of that.
 //!
 //! ```
 //! use glint::fixed::Format;
