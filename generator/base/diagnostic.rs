@@ -15,11 +15,19 @@ pub struct Diagnostic {
     pub location: SourceLocation,
     /// Other places that take part.
     pub notes: Vec<(String, SourceLocation)>,
+    /// The key of the configuration that asks for what the description cannot give, and what to do about it.
+    pub key: Option<(&'static str, String)>,
 }
 
 impl Diagnostic {
     pub(crate) fn new(message: String, location: SourceLocation) -> Self {
-        Self { message, location, notes: Vec::new() }
+        Self { message, location, notes: Vec::new(), key: None }
+    }
+
+    /// The same as the fault of a configuration's key, with a remedy.
+    pub(crate) fn of_key(mut self, key: &'static str, remedy: String) -> Self {
+        self.key = Some((key, remedy));
+        self
     }
 
     pub(crate) fn note(mut self, note: String, location: SourceLocation) -> Self {
@@ -33,6 +41,9 @@ impl fmt::Display for Diagnostic {
         write!(f, "error: {}\n  --> {}", self.message, self.location)?;
         for (note, location) in &self.notes {
             write!(f, "\n  note: {note}: {location}")?;
+        }
+        if let Some((key, remedy)) = &self.key {
+            write!(f, "\n  help: `{key}`: {remedy}")?;
         }
         Ok(())
     }

@@ -22,7 +22,7 @@ mod write;
 pub use nearest::nearest;
 pub use parse::parse;
 pub use problems::{Problem, Problems};
-pub use read::read;
+pub use read::{read, read_located};
 pub use sample::sample;
 pub use schema::{Key, Kind, Schema};
 pub use shared::shared_keys;

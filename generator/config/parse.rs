@@ -23,6 +23,18 @@ use super::values::{Config, Value};
 /// All problems of the text at once. Conditions between keys are examined only if the text is
 /// valid TOML, for otherwise it is not known which keys it gives.
 pub fn parse(file_name: &str, text: &str, schemas: &[Schema]) -> Result<Config, Problems> {
+    located(file_name, text, schemas).map(|(config, _)| config)
+}
+
+/// As [`parse`]; and where the text gives which key, for problems that show later.
+///
+/// # Errors
+/// Those of [`parse`].
+pub(super) fn located(
+    file_name: &str,
+    text: &str,
+    schemas: &[Schema],
+) -> Result<(Config, Problems), Problems> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut problems = Problems::of_file(file_name, text);
     if text.trim().is_empty() {
@@ -105,7 +117,7 @@ impl Reader<'_> {
         document: &DeTable,
         file_name: &str,
         schemas: &[Schema],
-    ) -> Result<Config, Problems> {
+    ) -> Result<(Config, Problems), Problems> {
         let schema = self.device(document, schemas);
         let name = self.name(document, file_name);
         let strict = self.strict(document);
@@ -116,7 +128,10 @@ impl Reader<'_> {
         draft.config.strict = strict;
         self.table(document, "", schema, &mut draft);
         match self.valid_toml {
-            true => draft.finish(schema, self.problems),
+            true => {
+                let places = self.problems.cleared();
+                Ok((draft.finish(schema, self.problems)?, places))
+            }
             false => Err(self.problems),
         }
     }

@@ -4,7 +4,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use super::nearest::nearest;
-use super::parse::parse;
+use super::parse::located;
 use super::problems::{Problems, STANDARD_INPUT};
 use super::schema::Schema;
 use super::values::Config;
@@ -17,8 +17,16 @@ const LARGEST: u64 = 1 << 16;
 ///
 /// # Errors
 /// All problems of the file at once: that it cannot be read, that it is not text, or what
-/// [`parse`] finds.
+/// [`parse`](super::parse) finds.
 pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
+    read_located(path, schemas).map(|(config, _)| config)
+}
+
+/// As [`read`]; and where the file gives which key: what shows later to be wrong is added there.
+///
+/// # Errors
+/// Those of [`read`].
+pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, Problems), Problems> {
     let file_name = match path == Path::new(input::STDIN) {
         true => STANDARD_INPUT.to_owned(),
         false => path.display().to_string(),
@@ -29,7 +37,7 @@ pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
         problems
     })?;
     match std::str::from_utf8(&bytes) {
-        Ok(text) => parse(&file_name, text, schemas),
+        Ok(text) => located(&file_name, text, schemas),
         Err(error) => {
             // Up to the fault the lossy text is the file's own, so the place is right in it.
             let lossy = String::from_utf8_lossy(&bytes);

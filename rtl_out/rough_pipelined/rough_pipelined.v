@@ -530,21 +530,22 @@ module rough_pipelined #(
     end
 
     // Stage 6: 12 <- sin gamma * sin dgamma
-    reg  [9:0]  exponent_s7;                   // register 3: specular exponent n
+    reg  [9:0]  exponent_s7;                    // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s7;
-    reg  [7:0]  red_s7;                        // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s7;                      // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s7;                       // register 7: intensity of the light times k_s
-    reg         facing_s7;                     // the surface faces the half vector
-    reg  [21:0] reg19_sin_gamma_s7;            // register 19, u0.22: sin gamma
-    reg  [22:0] reg11_cos_cos_s7;              // register 11, u1.22: cos gamma * cos dgamma
-    reg  [17:0] multiplier10_upper_bits_2_s7;  // register 10
-    reg  [19:0] multiplier10_upper_rows_3_s7;  // register 10
-    reg         multiplier10_row_9_s7;         // register 10
-    reg         multiplier10_row_11_s7;        // register 10
-    reg         multiplier10_row_14_s7;        // register 10
-    reg         multiplier10_row_17_s7;        // register 10
+    reg  [7:0]  red_s7;                         // register 5: intensity of the light times k_s
+    reg  [7:0]  green_s7;                       // register 6: intensity of the light times k_s
+    reg  [7:0]  blue_s7;                        // register 7: intensity of the light times k_s
+    reg         facing_s7;                      // the surface faces the half vector
+    reg  [22:0] reg11_cos_cos_s7;               // register 11, u1.22: cos gamma * cos dgamma
+    reg  [35:0] multiplier10_upper_upper_2_s7;  // register 10
+    reg  [20:0] multiplier10_upper_rows_4_s7;   // register 10
+    reg  [17:0] multiplier10_upper_row_18_s7;   // register 10
+    reg  [24:0] multiplier10_rows_4_s7;         // register 10
+    reg  [21:0] multiplier10_row_18_s7;         // register 10
+
+    // multiplier 10
+    wire [35:0] multiplier10_upper_upper_2_s6 = reg19_sin_gamma_s6[21:4] * sine_value_s6[21:4];
 
     // mux 10
     wire [17:0] multiplier10_upper_row_10_s6 = reg19_sin_gamma_s6[0] ? sine_value_s6[21:4] : 18'd0;
@@ -556,6 +557,26 @@ module rough_pipelined #(
     wire [19:0] multiplier10_upper_rows_3_s6 = {2'd0, multiplier10_upper_row_10_s6} + {1'b0,
             multiplier10_upper_row_12_s6, 1'b0};
 
+    // mux 10
+    wire [17:0] multiplier10_upper_row_15_s6 = reg19_sin_gamma_s6[2] ? sine_value_s6[21:4] : 18'd0;
+
+    // adder 10
+    wire [20:0] multiplier10_upper_rows_4_s6 = {1'b0, multiplier10_upper_rows_3_s6} + {1'b0,
+            multiplier10_upper_row_15_s6, 2'd0};
+
+    wire [21:0] multiplier10_row_10_s6 = sine_value_s6[0] ? reg19_sin_gamma_s6 : 22'd0;  // mux 10
+    wire [21:0] multiplier10_row_12_s6 = sine_value_s6[1] ? reg19_sin_gamma_s6 : 22'd0;  // mux 10
+
+    // adder 10
+    wire [23:0] multiplier10_rows_3_s6 = {2'd0, multiplier10_row_10_s6} + {1'b0,
+            multiplier10_row_12_s6, 1'b0};
+
+    wire [21:0] multiplier10_row_15_s6 = sine_value_s6[2] ? reg19_sin_gamma_s6 : 22'd0;  // mux 10
+
+    // adder 10
+    wire [24:0] multiplier10_rows_4_s6 = {1'b0, multiplier10_rows_3_s6} + {1'b0,
+            multiplier10_row_15_s6, 2'd0};
+
     always @(posedge clk) begin
         if (advance) begin
             exponent_s7 <= exponent_s6;
@@ -564,67 +585,43 @@ module rough_pipelined #(
             green_s7 <= green_s6;
             blue_s7 <= blue_s6;
             facing_s7 <= facing_s6;
-            reg19_sin_gamma_s7 <= reg19_sin_gamma_s6;
             reg11_cos_cos_s7 <= reg11_cos_cos_s6;
-            multiplier10_upper_bits_2_s7 <= sine_value_s6[21:4];
-            multiplier10_upper_rows_3_s7 <= multiplier10_upper_rows_3_s6;
-            multiplier10_row_9_s7 <= sine_value_s6[0];
-            multiplier10_row_11_s7 <= sine_value_s6[1];
-            multiplier10_row_14_s7 <= sine_value_s6[2];
-            multiplier10_row_17_s7 <= sine_value_s6[3];
+            multiplier10_upper_upper_2_s7 <= multiplier10_upper_upper_2_s6;
+            multiplier10_upper_rows_4_s7 <= multiplier10_upper_rows_4_s6;
+            multiplier10_upper_row_18_s7 <= reg19_sin_gamma_s6[3] ? sine_value_s6[21:4] : 18'd0;
+            multiplier10_rows_4_s7 <= multiplier10_rows_4_s6;
+            multiplier10_row_18_s7 <= sine_value_s6[3] ? reg19_sin_gamma_s6 : 22'd0;
         end
     end
 
     // Stage 7: 12 <- sin gamma * sin dgamma
-    reg  [9:0]  exponent_s8;                    // register 3: specular exponent n
+    reg  [9:0]  exponent_s8;                 // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s8;
-    reg  [7:0]  red_s8;                         // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s8;                       // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s8;                        // register 7: intensity of the light times k_s
-    reg         facing_s8;                      // the surface faces the half vector
-    reg  [22:0] reg11_cos_cos_s8;               // register 11, u1.22: cos gamma * cos dgamma
-    reg  [35:0] multiplier10_upper_upper_2_s8;  // register 10
-    reg  [21:0] multiplier10_upper_rows_5_s8;   // register 10
-    reg  [24:0] multiplier10_rows_4_s8;         // register 10
-    reg  [21:0] multiplier10_row_18_s8;         // register 10
-
-    // multiplier 10
-    wire [35:0] multiplier10_upper_upper_2_s7 = reg19_sin_gamma_s7[21:4] *
-            multiplier10_upper_bits_2_s7;
-
-    // mux 10
-    wire [17:0] multiplier10_upper_row_15_s7 = reg19_sin_gamma_s7[2] ? multiplier10_upper_bits_2_s7
-            : 18'd0;
-
-    // adder 10
-    wire [20:0] multiplier10_upper_rows_4_s7 = {1'b0, multiplier10_upper_rows_3_s7} + {1'b0,
-            multiplier10_upper_row_15_s7, 2'd0};
-
-    // mux 10
-    wire [17:0] multiplier10_upper_row_18_s7 = reg19_sin_gamma_s7[3] ? multiplier10_upper_bits_2_s7
-            : 18'd0;
+    reg  [7:0]  red_s8;                      // register 5: intensity of the light times k_s
+    reg  [7:0]  green_s8;                    // register 6: intensity of the light times k_s
+    reg  [7:0]  blue_s8;                     // register 7: intensity of the light times k_s
+    reg         facing_s8;                   // the surface faces the half vector
+    reg  [22:0] reg11_cos_cos_s8;            // register 11, u1.22: cos gamma * cos dgamma
+    reg  [39:0] multiplier10_upper_2_s8;     // register 10
+    reg  [3:0]  multiplier10_low_bits_2_s8;  // register 10
+    reg  [21:0] multiplier10_carried_2_s8;   // register 10
 
     // adder 10
     wire [21:0] multiplier10_upper_rows_5_s7 = {1'b0, multiplier10_upper_rows_4_s7} + {1'b0,
             multiplier10_upper_row_18_s7, 3'd0};
 
-    // mux 10
-    wire [21:0] multiplier10_row_10_s7 = multiplier10_row_9_s7 ? reg19_sin_gamma_s7 : 22'd0;
+    // adder 10
+    wire [35:0] multiplier10_upper_sum_2_s7 = multiplier10_upper_upper_2_s7 + {18'd0,
+            multiplier10_upper_rows_5_s7[21:4]};
 
-    // mux 10
-    wire [21:0] multiplier10_row_12_s7 = multiplier10_row_11_s7 ? reg19_sin_gamma_s7 : 22'd0;
+    // block 10
+    wire [39:0] multiplier10_upper_2_s7 = {multiplier10_upper_sum_2_s7,
+            multiplier10_upper_rows_5_s7[3:0]};
 
     // adder 10
-    wire [23:0] multiplier10_rows_3_s7 = {2'd0, multiplier10_row_10_s7} + {1'b0,
-            multiplier10_row_12_s7, 1'b0};
-
-    // mux 10
-    wire [21:0] multiplier10_row_15_s7 = multiplier10_row_14_s7 ? reg19_sin_gamma_s7 : 22'd0;
-
-    // adder 10
-    wire [24:0] multiplier10_rows_4_s7 = {1'b0, multiplier10_rows_3_s7} + {1'b0,
-            multiplier10_row_15_s7, 2'd0};
+    wire [25:0] multiplier10_rows_5_s7 = {1'b0, multiplier10_rows_4_s7} + {1'b0,
+            multiplier10_row_18_s7, 3'd0};
 
     always @(posedge clk) begin
         if (advance) begin
@@ -635,10 +632,9 @@ module rough_pipelined #(
             blue_s8 <= blue_s7;
             facing_s8 <= facing_s7;
             reg11_cos_cos_s8 <= reg11_cos_cos_s7;
-            multiplier10_upper_upper_2_s8 <= multiplier10_upper_upper_2_s7;
-            multiplier10_upper_rows_5_s8 <= multiplier10_upper_rows_5_s7;
-            multiplier10_rows_4_s8 <= multiplier10_rows_4_s7;
-            multiplier10_row_18_s8 <= multiplier10_row_17_s7 ? reg19_sin_gamma_s7 : 22'd0;
+            multiplier10_upper_2_s8 <= multiplier10_upper_2_s7;
+            multiplier10_low_bits_2_s8 <= multiplier10_rows_5_s7[3:0];
+            multiplier10_carried_2_s8 <= multiplier10_rows_5_s7[25:4];
         end
     end
 
@@ -654,23 +650,11 @@ module rough_pipelined #(
     reg  [21:0] reg12_sin_sin_s9;    // register 12, u0.22: sin gamma * sin dgamma
 
     // adder 10
-    wire [35:0] multiplier10_upper_sum_2_s8 = multiplier10_upper_upper_2_s8 + {18'd0,
-            multiplier10_upper_rows_5_s8[21:4]};
-
-    // block 10
-    wire [39:0] multiplier10_upper_2_s8 = {multiplier10_upper_sum_2_s8,
-            multiplier10_upper_rows_5_s8[3:0]};
-
-    // adder 10
-    wire [25:0] multiplier10_rows_5_s8 = {1'b0, multiplier10_rows_4_s8} + {1'b0,
-            multiplier10_row_18_s8, 3'd0};
-
-    // adder 10
     wire [39:0] multiplier10_sum_2_s8 = multiplier10_upper_2_s8 + {18'd0,
-            multiplier10_rows_5_s8[25:4]};
+            multiplier10_carried_2_s8};
 
     // block 10: the shared product; its point depends on the operands
-    wire [43:0] multiplier10_2_s8 = {multiplier10_sum_2_s8, multiplier10_rows_5_s8[3:0]};
+    wire [43:0] multiplier10_2_s8 = {multiplier10_sum_2_s8, multiplier10_low_bits_2_s8};
 
     // block 12, u0.22: sin gamma * sin dgamma
     wire [21:0] reg12_sin_sin_s8 = multiplier10_2_s8[43:22];

@@ -40,6 +40,7 @@ pub use tune::{TuneArguments, tune};
 pub use verify::{VerifyRequest, verify};
 
 use super::failure::{self, Several, Usage};
+use crate::base::diagnostic::Diagnostics;
 use crate::base::input;
 use crate::config;
 use crate::core::Unit;
@@ -124,12 +125,24 @@ fn load_sequential(registry: &Registry, named: &[PathBuf], command: &str) -> Res
 }
 
 fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Result<Loaded> {
-    let config = config::read(path, schemas)?;
+    let (config, mut problems) = config::read_located(path, schemas)?;
     let device = registry
         .device(&config.device)
         .with_context(|| format!("no device `{}`", config.device))?;
     let name = path.display().to_string().replace('\\', "/");
-    let unit = Unit::new(*device, config).with_context(|| format!("`{name}`"))?;
+    let unit = Unit::new(*device, config).map_err(|error| {
+        // What the configuration asks for and the description cannot give is a fault of the configuration.
+        let faults = error.downcast_ref::<Diagnostics>().map_or(&[][..], |faults| &faults.0);
+        for fault in faults {
+            if let Some((key, remedy)) = &fault.key {
+                problems.push(key, format!("{} ({})", fault.message, fault.location), remedy);
+            }
+        }
+        match problems.is_empty() {
+            true => error.context(format!("`{name}`")),
+            false => problems.into(),
+        }
+    })?;
     Ok(Loaded { path: name, unit })
 }
 

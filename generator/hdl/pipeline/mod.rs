@@ -18,7 +18,7 @@ mod value;
 
 use crate::base::diagnostic::{Diagnostic, Diagnostics};
 use crate::config::Config;
-use crate::hdl::netlist::Design;
+use crate::hdl::netlist::{Design, NetId};
 
 pub use target::{TARGETS, Target};
 
@@ -63,51 +63,50 @@ pub fn options(config: &Config) -> Option<Options> {
 /// A microprogram that cannot be unrolled, with its source line; a clock or a number of stages that
 /// cannot be reached, with the nearest that can.
 pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagnostics> {
-    let unrolled = split::split(&unroll::unroll(sequential)?, options.target);
+    let sequentially = |faults: Diagnostics| {
+        let remedy = || "set architecture = \"sequential\"".to_owned();
+        Diagnostics(faults.0.into_iter().map(|it| it.of_key("architecture", remedy())).collect())
+    };
+    let unrolled = split::split(&unroll::unroll(sequential).map_err(sequentially)?, options.target);
     let results: Vec<_> = unrolled.results.iter().map(|&(_, value)| value).collect();
     let problems = schedule::Problems::new(&unrolled.graph, options.target, &results);
-    let wrong = |message: String, at: Option<schedule::Unreachable>| {
-        let place = at.map_or(sequential.nets[0].location, |at| {
-            unrolled.graph.node(at.limiting).label.location
-        });
-        Diagnostics(vec![Diagnostic::new(message, place)])
+    let wrong = |key: &'static str, message: String, remedy: String, at: Option<NetId>| {
+        let place =
+            at.map_or(sequential.nets[0].location, |at| unrolled.graph.node(at).label.location);
+        Diagnostics(vec![Diagnostic::new(message, place).of_key(key, remedy)])
     };
+    let (name, target) = (&sequential.name, options.target.name);
     let schedule = match options.goal {
         Goal::ClockMhz(clock) => problems.for_period(1000.0 / clock).map_err(|unreachable| {
-            let node = unrolled.graph.node(unreachable.limiting);
+            let (limiting, period) = (unreachable.limiting, unreachable.period);
             // Rounded down, so that what is proposed can be reached.
-            let nearest = (1000.0 / unreachable.period * 10.0).floor() / 10.0;
-            wrong(
-                format!(
-                    "pipeline.clock_mhz = {clock}: `{}` alone takes {:.2} ns on {}, which allows {nearest} MHz at most; \
-                     set pipeline.clock_mhz to {nearest} or less",
-                    node.label.name, unreachable.period, options.target.name
-                ),
-                Some(unreachable),
-            )
+            let nearest = (1000.0 / period * 10.0).floor() / 10.0;
+            let message = format!(
+                "`{name}` cannot run at {clock} MHz: `{}` alone takes {period:.2} ns on {target}, which allows {nearest} MHz at \
+                 most",
+                unrolled.graph.node(limiting).label.name
+            );
+            let remedy = format!("set pipeline.clock_mhz to {nearest} or less");
+            wrong("pipeline.clock_mhz", message, remedy, Some(limiting))
         })?,
         Goal::Stages(stages) => {
+            let key = "pipeline.stages";
             let most = problems.most_stages();
             if stages > most {
-                return Err(wrong(
-                    format!(
-                        "pipeline.stages = {stages}: `{}` has no use for more than {most} on {}; set pipeline.stages to \
-                         {most} or less",
-                        sequential.name, options.target.name
-                    ),
-                    problems.fastest(),
-                ));
+                let message = format!(
+                    "`{name}` has no use for {stages} stages: more than {most} make it no faster on {target}"
+                );
+                let remedy = format!("set pipeline.stages to {most} or less");
+                let limiting = problems.fastest().map(|it| it.limiting);
+                return Err(wrong(key, message, remedy, limiting));
             }
             let schedule = problems.for_stages(stages);
             if schedule.latency > stages {
-                return Err(wrong(
-                    format!(
-                        "pipeline.stages = {stages}: block memories of `{}` need {} on {}; set pipeline.stages to that \
-                         or more",
-                        sequential.name, schedule.latency, options.target.name
-                    ),
-                    None,
-                ));
+                let least = schedule.latency;
+                let message = format!(
+                    "`{name}` cannot have {stages} stages: its block memories need {least} on {target}"
+                );
+                return Err(wrong(key, message, format!("set pipeline.stages to {least} or more"), None));
             }
             schedule
         }

@@ -7,11 +7,14 @@
 //! bit and boundary. Constraints are differences of two variables, so the linear program has integers for
 //! a solution.
 
-use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
+use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome, Variable};
 
 use super::graph::{Cell, Graph};
 use super::target::Target;
 use crate::hdl::netlist::{NetId, Op};
+
+/// Register bits that it is worth that a multiplier has its operand registers for itself.
+const SHARED: f64 = 40.0;
 
 /// When each value is computed.
 #[derive(Clone, Debug)]
@@ -239,6 +242,7 @@ impl<'a> Problems<'a> {
                 problem.add_constraint(terms, ComparisonOp::Ge, last);
             }
         }
+        self.spread(&mut problem, &stage, last);
         let earliest = self.earliest(differences);
         let stage: Vec<usize> = match problem.solve() {
             Ok(SolveOutcome::Solution(solution)) => {
@@ -249,6 +253,26 @@ impl<'a> Problems<'a> {
         };
         let logic = self.logic(&stage, latency);
         Schedule { stage, latency, period, logic }
+    }
+
+    /// A multiplier costs [`SHARED`] bits if what had better stand in a later stage does not.
+    fn spread(&self, problem: &mut Problem, stage: &[Variable], last: f64) {
+        let live = |id: &NetId| self.live.binary_search(id).is_ok();
+        let mut multipliers: Vec<NetId> = self.graph.apart.iter().map(|it| it.0).collect();
+        multipliers.sort_unstable();
+        multipliers.dedup();
+        for multiplier in multipliers.into_iter().filter(live) {
+            let shared = problem.add_var(SHARED, (0.0, last));
+            let others = self.graph.apart.iter().filter(|it| it.0 == multiplier).map(|it| it.1);
+            // The earliest of the others, or a stage after the multiplier.
+            let after = problem.add_var(0.0, (0.0, last));
+            for other in others.filter(live) {
+                let terms = [(stage[other.index()], 1.0), (after, -1.0)];
+                problem.add_constraint(terms, ComparisonOp::Ge, 0.0);
+            }
+            let terms = [(shared, 1.0), (after, 1.0), (stage[multiplier.index()], -1.0)];
+            problem.add_constraint(terms, ComparisonOp::Ge, 1.0);
+        }
     }
 
     /// The longest way through the logic of each stage.

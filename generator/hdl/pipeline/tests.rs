@@ -54,7 +54,7 @@ fn so_many_stages_are_made_as_are_asked_for() {
 #[test]
 fn a_clock_that_cannot_be_met_names_the_nearest_and_what_limits_it() {
     let text = refused(&ratio(), Goal::ClockMhz(1500.0));
-    assert!(text.contains("pipeline.clock_mhz = 1500"), "{text}");
+    assert!(text.contains("cannot run at 1500 MHz"), "{text}");
     assert!(text.contains("`ratio_trial") && text.contains("pipeline/tests.rs"), "{text}");
     // What it proposes can be reached.
     let nearest = text.split("set pipeline.clock_mhz to ").nth(1).expect("a remedy");

@@ -16,6 +16,7 @@ mod questions;
 pub mod refusals;
 mod render;
 mod report;
+mod schedule;
 mod synth;
 mod tune;
 mod verify;
