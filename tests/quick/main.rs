@@ -21,6 +21,7 @@ mod diagnostics;
 mod divider;
 mod lines;
 mod pages;
+mod pipelines;
 mod proofs;
 mod readme;
 mod rooms;
