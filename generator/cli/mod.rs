@@ -383,6 +383,15 @@ Example:
         #[arg(long)]
         name: Option<String>,
     },
+    /// Print a JSON Schema of the configuration keys, for editors and validators
+    ///
+    /// It has names, types, ranges, defaults and descriptions. Conditions between keys are checked when a
+    /// configuration is read.
+    #[command(after_help = "\
+Example:
+  glint schema > glint.schema.json
+  and in the first line of my_core.toml: #:schema ./glint.schema.json")]
+    Schema,
 }
 
 #[derive(Args)]
@@ -566,6 +575,10 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
         Some(Command::List) => commands::list(registry, output),
         Some(Command::New { device, name }) => {
             commands::new(registry, output, &device, name.as_deref())
+        }
+        Some(Command::Schema) => {
+            tables::print_json(&crate::config::json_schema(&registry.schemas()));
+            Ok(true)
         }
     };
     let code = match done {

@@ -7,6 +7,7 @@
 
 mod audit;
 mod follow;
+mod json_schema;
 mod module_name;
 mod nearest;
 mod parse;
@@ -19,6 +20,7 @@ mod validate;
 mod values;
 mod write;
 
+pub use json_schema::json_schema;
 pub use nearest::nearest;
 pub use parse::parse;
 pub use problems::{Problem, Problems};

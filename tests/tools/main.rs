@@ -16,6 +16,7 @@ mod gate_level;
 mod mutants;
 mod random_configurations;
 mod random_netlists;
+mod schema;
 mod slurm;
 mod soc;
 mod software;

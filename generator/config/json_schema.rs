@@ -1,0 +1,87 @@
+//! The keys as JSON Schema, for editors and validators.
+
+use serde_json::{Map, Value as Json, json};
+
+use super::schema::{Key, Kind, Schema};
+use super::values::Value;
+
+/// A JSON Schema (draft 7) of a configuration of any of these devices: names, types, ranges, defaults and what
+/// each key governs. Conditions between keys are in the descriptions alone; reading the file checks them.
+pub fn json_schema(schemas: &[Schema]) -> Json {
+    json!({
+        "$schema": "http://json-schema.org/draft-07/schema#",
+        "title": "Glint configuration",
+        "oneOf": schemas.iter().map(of_device).collect::<Vec<_>>(),
+    })
+}
+
+fn of_device(schema: &Schema) -> Json {
+    let mut device = table();
+    let root = properties(&mut device);
+    for (name, doc) in super::COMMON {
+        let mut entry = match name {
+            "device" => json!({ "const": schema.device }),
+            "strict" => json!({ "type": "boolean", "default": false }),
+            _ => json!({ "type": "string", "pattern": "^[A-Za-z_][A-Za-z0-9_]{0,59}$" }),
+        };
+        entry["description"] = json!(doc);
+        root.insert(name.to_owned(), entry);
+    }
+    for key in schema.all_keys() {
+        let (tables, leaf) = key.table_and_leaf();
+        let mut place = properties(&mut device);
+        for name in tables.split('.').filter(|name| !name.is_empty()) {
+            place = properties(place.entry(name).or_insert_with(table));
+        }
+        place.insert(leaf.to_owned(), of_key(key));
+    }
+    device["title"] = json!(schema.device);
+    device["required"] = json!(["device"]);
+    device
+}
+
+/// A table without keys, which takes no others.
+fn table() -> Json {
+    json!({ "type": "object", "additionalProperties": false, "properties": {} })
+}
+
+fn properties(table: &mut Json) -> &mut Map<String, Json> {
+    table["properties"].as_object_mut().expect("a table has properties")
+}
+
+fn of_key(key: &Key) -> Json {
+    let mut entry = match &key.kind {
+        Kind::Integer { min, max } => {
+            json!({ "type": "integer", "minimum": min, "maximum": max })
+        }
+        Kind::Number { min, max } => json!({ "type": "number", "minimum": min, "maximum": max }),
+        Kind::Choice(options) => {
+            json!({ "enum": options.iter().map(|option| choice(key, option)).collect::<Vec<_>>() })
+        }
+        Kind::Flag => json!({ "type": "boolean" }),
+        Kind::Integers { min, max, len_min, len_max } => json!({
+            "type": "array",
+            "items": { "type": "integer", "minimum": min, "maximum": max },
+            "minItems": len_min,
+            "maxItems": len_max,
+        }),
+    };
+    entry["default"] = match &key.default {
+        Value::Integer(value) => json!(value),
+        Value::Number(value) => json!(value),
+        Value::Text(value) => choice(key, value),
+        Value::Flag(value) => json!(value),
+        Value::Integers(values) => json!(values),
+    };
+    let condition = key.only_when.map(|(other, value)| format!(" Only with {other} = {value}."));
+    entry["description"] = json!(format!("{}{}", key.doc, condition.unwrap_or_default()));
+    entry
+}
+
+/// A choice as a file writes it.
+fn choice(key: &Key, option: &str) -> Json {
+    match option.parse::<i64>() {
+        Ok(number) if key.kind.is_integer_choice() => json!(number),
+        _ => json!(option),
+    }
+}

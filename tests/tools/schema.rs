@@ -1,0 +1,74 @@
+//! The JSON Schema of the keys, by validators of others: what Glint accepts, they accept, and what is beside a range or
+//! unknown, they refuse.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::common::tools::{LIMIT, tool};
+
+/// Every configuration of the repository.
+fn configurations() -> Vec<PathBuf> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut found = vec![root.join("examples/soc/shade.toml")];
+    for directory in ["configs", "configs/studies", "configs/reduced"] {
+        let entries = root.join(directory).read_dir().expect("a directory");
+        let paths = entries.map(|entry| entry.expect("an entry").path());
+        found.extend(paths.filter(|path| path.extension().is_some_and(|it| it == "toml")));
+    }
+    assert!(found.len() > 20, "{found:?}");
+    found
+}
+
+/// A directory with the schema, by `glint schema`.
+fn with_schema() -> tempfile::TempDir {
+    let place = tempfile::tempdir().expect("a directory");
+    let glint = Command::new(env!("CARGO_BIN_EXE_glint")).arg("schema").output().expect("glint");
+    assert!(glint.status.success() && glint.stderr.is_empty(), "{glint:?}");
+    fs::write(place.path().join("schema.json"), glint.stdout).expect("written");
+    place
+}
+
+/// What each validator says of some files: whether they are valid.
+fn verdicts(place: &Path, files: &[PathBuf]) -> [(bool, String); 2] {
+    let files = || files.iter().map(|file| file.display().to_string());
+    let options = |all: &[&str]| all.iter().map(|&it| it.to_owned()).collect::<Vec<_>>();
+    let schema = format!("file://{}", place.join("schema.json").display());
+    let check = options(&["--schemafile", "schema.json", "--default-filetype", "toml"]);
+    let taplo = options(&["lint", "--no-auto-config", "--schema", &schema]);
+    [("check-jsonschema", check), ("taplo", taplo)].map(|(name, arguments)| {
+        let run = tool(name).run(arguments.into_iter().chain(files()), place, LIMIT);
+        let run = run.unwrap_or_else(|error| panic!("{name}: {error:#}"));
+        (run.status.success(), run.output)
+    })
+}
+
+#[test]
+fn every_configuration_is_valid() {
+    let place = with_schema();
+    for (valid, output) in verdicts(place.path(), &configurations()) {
+        assert!(valid, "{output}");
+    }
+}
+
+#[test]
+fn mistakes_are_found() {
+    let place = with_schema();
+    let mistakes = [
+        "device = \"cosine-powr\"\n",
+        "device = \"cosine-power\"\npower = 3\n",
+        "device = \"cosine-power\"\n[cosine]\nfraction = 25\n",
+        "device = \"cosine-power\"\n[cosine]\nfractoin = 20\n",
+        "device = \"cosine-power\"\n[interface]\nregisters = \"wishbon\"\n",
+        "device = \"cosine-power\"\n[interface]\nstream = \"yes\"\n",
+        "device = \"quad-cosine\"\npower = 4\n",
+        "power = 4\n",
+    ];
+    for (at, mistake) in mistakes.iter().enumerate() {
+        let file = place.path().join(format!("mistake_{at}.toml"));
+        fs::write(&file, mistake).expect("written");
+        for (valid, output) in verdicts(place.path(), &[file]) {
+            assert!(!valid, "{mistake} is valid: {output}");
+        }
+    }
+}
