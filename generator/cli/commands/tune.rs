@@ -1,7 +1,9 @@
 //! `tune`.
 
+mod plot;
+
 use std::io::Write;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
@@ -46,6 +48,9 @@ pub struct TuneArguments {
     /// Write the configuration to a file that is not there yet
     #[arg(long, value_name = "FILE.toml")]
     out: Option<PathBuf>,
+    /// Draw the front, area over error, into a file that is not there yet
+    #[arg(long, value_name = "FILE.svg")]
+    plot: Option<PathBuf>,
     /// Print the front as CSV, for spreadsheets
     #[arg(long)]
     csv: bool,
@@ -98,10 +103,8 @@ pub fn tune(registry: &Registry, output: Output, request: &TuneArguments) -> Res
         )));
     }
     let (device, base, fixed) = base(registry, request)?;
-    if let Some(path) = request.out.as_ref().filter(|path| path.exists()) {
-        bail!("`{}` is there already; move it away, or give another --out", path.display());
-    }
-    let file = request.out.as_deref().map(Destination::open).transpose()?;
+    let file = request.out.as_deref().map(fresh).transpose()?;
+    let drawing = request.plot.as_deref().map(fresh).transpose()?;
     let wish = Wish {
         error: request.error,
         unit: request.unit,
@@ -118,6 +121,11 @@ pub fn tune(registry: &Registry, output: Output, request: &TuneArguments) -> Res
     bar.finish_and_clear();
     let answer = answer?;
     let text = toml(&device, &answer.best, request);
+    if let Some(drawing) = drawing {
+        let svg = plot::plot(&answer, request)?;
+        drawing.file()?.write_all(svg.as_bytes()).context("cannot write the plot")?;
+        drawing.commit()?;
+    }
     if let Some(file) = file {
         file.file()?.write_all(text.as_bytes()).context("cannot write the configuration")?;
         file.commit()?;
@@ -130,6 +138,14 @@ pub fn tune(registry: &Registry, output: Output, request: &TuneArguments) -> Res
         print(&answer, request, &text);
     }
     Ok(true)
+}
+
+/// A file to be, which is not there yet.
+fn fresh(path: &Path) -> Result<Destination> {
+    if path.exists() {
+        bail!("`{}` is there already; move it away, or name another file", path.display());
+    }
+    Destination::open(path)
 }
 
 /// The device, the configuration to start from, and the keys that are part of the wish.

@@ -16,6 +16,10 @@ fn the_file_is_one_that_generate_takes() {
         .glint(arguments.into_iter().chain(["--out", "small.toml"]))
         .refused(1, &["`small.toml` is there already"]);
     assert_eq!(place.read("small.toml"), text);
+    place.done(arguments.into_iter().chain(["--plot", "front.svg"]));
+    let svg = place.read("front.svg");
+    let drawing = roxmltree::Document::parse(&svg).unwrap_or_else(|error| panic!("{error}: {svg}"));
+    assert!(drawing.descendants().any(|it| it.has_tag_name("polyline")), "{svg}");
     let csv = place.done(arguments.into_iter().chain(["--csv"]));
     let first = csv.lines().next().expect("a heading");
     assert!(

@@ -1,0 +1,56 @@
+//! The front as a picture: area over error.
+
+use anyhow::{Result, bail};
+
+use super::TuneArguments;
+use crate::evidence::chart::{Axis, Chart, Mark, Series};
+use crate::pages::plots;
+use crate::tune::{Answer, Unit};
+
+/// What the page's style sheet says elsewhere.
+const STYLE: &str = "<style>svg{background:#fcfcfb}text{fill:#1c1d1f;font-family:sans-serif}.ink{stroke:#5b5f66}text.ink{stroke:none}\
+                     .grid{stroke:#e6e8ea;stroke-width:4}.mark{stroke:#7a7f87;stroke-width:6;stroke-dasharray:16 12}\
+                     .s1{stroke:#1b4fa8;stroke-width:8;stroke-linejoin:round}</style>";
+
+/// An SVG that stands by itself.
+///
+/// # Errors
+/// A front of one configuration, which is no line.
+pub fn plot(answer: &Answer, request: &TuneArguments) -> Result<String> {
+    let area = |at: usize| answer.front[at].cost.area(request.target);
+    let (Some(first), Some(last)) = (answer.front.first(), answer.front.last()) else {
+        bail!("there is no front to plot");
+    };
+    let (low, high) = (request.unit.of(&first.bound), request.unit.of(&last.bound));
+    if answer.front.len() < 2 || low <= 0.0 || low >= high {
+        bail!("the front is a single configuration, and no line to plot");
+    }
+    let unit = match request.unit {
+        Unit::F => "error of f",
+        Unit::Output => "error in output units",
+    };
+    let values: Vec<f64> = (0..answer.front.len()).map(area).collect();
+    let chart = Chart {
+        id: "front".to_owned(),
+        title: format!("{}: area over proved error", request.device),
+        caption: "Each corner is a configuration that none of those looked at betters in both."
+            .to_owned(),
+        x: Axis::logarithmic(unit, low * 0.95, high * 1.05),
+        y: Axis::linear(
+            &format!("look-up tables of {}, blocks counted in", request.target.title()),
+            0.0,
+            values.iter().copied().fold(0.0, f64::max) * 1.1,
+        ),
+        places: answer.front.iter().map(|candidate| request.unit.of(&candidate.bound)).collect(),
+        series: vec![Series { name: "front".to_owned(), values }],
+        marks: vec![Mark { label: "wish".to_owned(), at: request.error }],
+    };
+    let svg = plots::svg(&chart)?;
+    let (start, rest) = svg.split_once('>').unwrap_or((&svg, ""));
+    let start = start.replace("<svg ", "<svg xmlns=\"http://www.w3.org/2000/svg\" ");
+    let about = format!(
+        "<title id=\"front-title\">{}</title><desc id=\"front-caption\">{}</desc>",
+        chart.title, chart.caption
+    );
+    Ok(format!("{start}>{about}{STYLE}{rest}\n"))
+}
