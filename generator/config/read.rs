@@ -17,7 +17,7 @@ const LARGEST: u64 = 1 << 16;
 ///
 /// # Errors
 /// All problems of the file at once: that it cannot be read, that it is not text, or what
-/// [`parse`](super::parse) finds.
+/// [`parse`](super::parse()) finds.
 pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
     read_located(path, schemas).map(|(config, _)| config)
 }

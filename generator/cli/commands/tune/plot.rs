@@ -3,13 +3,13 @@
 use anyhow::{Result, bail};
 
 use super::TuneArguments;
-use crate::evidence::chart::{Axis, Chart, Mark, Series};
+use crate::evidence::chart::{Axis, Chart, Series};
 use crate::pages::plots;
 use crate::tune::{Answer, Unit};
 
 /// What the page's style sheet says elsewhere.
 const STYLE: &str = "<style>svg{background:#fcfcfb}text{fill:#1c1d1f;font-family:sans-serif}.ink{stroke:#5b5f66}text.ink{stroke:none}\
-                     .grid{stroke:#e6e8ea;stroke-width:4}.mark{stroke:#7a7f87;stroke-width:6;stroke-dasharray:16 12}\
+                     .grid{stroke:#e6e8ea;stroke-width:4}\
                      .s1{stroke:#1b4fa8;stroke-width:8;stroke-linejoin:round}</style>";
 
 /// An SVG that stands by itself.
@@ -37,20 +37,29 @@ pub fn plot(answer: &Answer, request: &TuneArguments) -> Result<String> {
             .to_owned(),
         x: Axis::logarithmic(unit, low * 0.95, high * 1.05),
         y: Axis::linear(
-            &format!("look-up tables of {}, blocks counted in", request.target.title()),
+            &format!(
+                "{}: look-up tables of {}, blocks counted in",
+                request.device,
+                request.target.title()
+            ),
             0.0,
             values.iter().copied().fold(0.0, f64::max) * 1.1,
         ),
         places: answer.front.iter().map(|candidate| request.unit.of(&candidate.bound)).collect(),
         series: vec![Series { name: "front".to_owned(), values }],
-        marks: vec![Mark { label: "wish".to_owned(), at: request.error }],
+        marks: Vec::new(),
     };
     let svg = plots::svg(&chart)?;
     let (start, rest) = svg.split_once('>').unwrap_or((&svg, ""));
     let start = start.replace("<svg ", "<svg xmlns=\"http://www.w3.org/2000/svg\" ");
+    // On the page of a report, title and axis stand beside the plot.
+    let shown = format!(
+        "<text x=\"1840\" y=\"90\" font-size=\"52\" text-anchor=\"end\">{}</text>",
+        chart.y.label
+    );
     let about = format!(
         "<title id=\"front-title\">{}</title><desc id=\"front-caption\">{}</desc>",
         chart.title, chart.caption
     );
-    Ok(format!("{start}>{about}{STYLE}{rest}\n"))
+    Ok(format!("{start}>{about}{STYLE}{shown}{rest}\n"))
 }
