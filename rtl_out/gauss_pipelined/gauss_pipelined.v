@@ -239,19 +239,20 @@ module gauss_pipelined #(
     end
 
     // Stage 3: decay <- base + slope * rest
-    reg  [9:0]  exponent_s4;       // specular exponent n
-    reg  [7:0]  red_s4;            // intensity of the light times k_s
-    reg  [7:0]  green_s4;          // intensity of the light times k_s
-    reg  [7:0]  blue_s4;           // intensity of the light times k_s
-    reg  [13:0] curve_rest2_s4;    // u0.14
-    reg         facing_s4;         // the surface faces the half vector
-    reg  [25:0] curve_base_s4;     // u0.26
+    reg  [9:0]  exponent_s4;          // specular exponent n
+    reg  [7:0]  red_s4;               // intensity of the light times k_s
+    reg  [7:0]  green_s4;             // intensity of the light times k_s
+    reg  [7:0]  blue_s4;              // intensity of the light times k_s
+    reg         facing_s4;            // the surface faces the half vector
+    reg  [25:0] curve_base_s4;        // u0.26
     reg  [31:0] product_upper_s4;
-    reg         product_row_s4;
-    reg         aligned_s4;        // cos gamma is 1.0
+    reg         product_low_bits_s4;
+    reg  [12:0] product_carried_s4;
+    reg         aligned_s4;           // cos gamma is 1.0
 
     wire [25:0] curve_base_s3 = curve_word_s3[44:19];  // u0.26
     wire [31:0] product_upper_s3 = curve_word_s3[18:1] * curve_rest2_s3;
+    wire [13:0] product_row_2_s3 = curve_word_s3[0] ? curve_rest2_s3 : 14'd0;
 
     always @(posedge clk) begin
         if (advance) begin
@@ -259,30 +260,31 @@ module gauss_pipelined #(
             red_s4 <= red_s3;
             green_s4 <= green_s3;
             blue_s4 <= blue_s3;
-            curve_rest2_s4 <= curve_rest2_s3;
             facing_s4 <= facing_s3;
             curve_base_s4 <= curve_base_s3;
             product_upper_s4 <= product_upper_s3;
-            product_row_s4 <= curve_word_s3[0];
+            product_low_bits_s4 <= product_row_2_s3[0];
+            product_carried_s4 <= product_row_2_s3[13:1];
             aligned_s4 <= aligned_s3;
         end
     end
 
     // Stage 4: decay <- base + slope * rest
-    reg  [9:0]  exponent_s5;           // specular exponent n
-    reg  [7:0]  red_s5;                // intensity of the light times k_s
-    reg  [7:0]  green_s5;              // intensity of the light times k_s
-    reg  [7:0]  blue_s5;               // intensity of the light times k_s
-    reg         facing_s5;             // the surface faces the half vector
-    reg  [25:0] curve_base_s5;         // u0.26
-    reg  [20:0] product_view_kept_s5;  // u-5.26
-    reg         aligned_s5;            // cos gamma is 1.0
+    reg  [9:0]  exponent_s5;  // specular exponent n
+    reg  [7:0]  red_s5;       // intensity of the light times k_s
+    reg  [7:0]  green_s5;     // intensity of the light times k_s
+    reg  [7:0]  blue_s5;      // intensity of the light times k_s
+    reg         facing_s5;    // the surface faces the half vector
+    reg  [25:0] decay_s5;     // u0.26: gamma^2/(4 ln 2), half the decay
+    reg         aligned_s5;   // cos gamma is 1.0
 
-    wire [13:0] product_row_2_s4 = product_row_s4 ? curve_rest2_s4 : 14'd0;
-    wire [31:0] product_sum_s4 = product_upper_s4 + {19'd0, product_row_2_s4[13:1]};
+    wire [31:0] product_sum_s4 = product_upper_s4 + {19'd0, product_carried_s4};
 
     // its point depends on the operands
-    wire [32:0] product_s4 = {product_sum_s4, product_row_2_s4[0]};
+    wire [32:0] product_s4 = {product_sum_s4, product_low_bits_s4};
+
+    // u0.26: gamma^2/(4 ln 2), half the decay
+    wire [25:0] decay_s4 = curve_base_s4 + {5'd0, product_s4[32:12]};
 
     always @(posedge clk) begin
         if (advance) begin
@@ -291,13 +293,12 @@ module gauss_pipelined #(
             green_s5 <= green_s4;
             blue_s5 <= blue_s4;
             facing_s5 <= facing_s4;
-            curve_base_s5 <= curve_base_s4;
-            product_view_kept_s5 <= product_s4[32:12];
+            decay_s5 <= decay_s4;
             aligned_s5 <= aligned_s4;
         end
     end
 
-    // Stage 5: decay <- base + slope * rest; halvings <- n * decay
+    // Stage 5: halvings <- n * decay
     reg  [9:0]  exponent_s6;     // specular exponent n
     reg  [7:0]  red_s6;          // intensity of the light times k_s
     reg  [7:0]  green_s6;        // intensity of the light times k_s
@@ -306,9 +307,6 @@ module gauss_pipelined #(
     reg         decay_small_s6;  // the decay is below 1/4, and all its bits count
     reg  [23:0] factor_s6;       // the decay, its point by decay_small
     reg         aligned_s6;      // cos gamma is 1.0
-
-    // u0.26: gamma^2/(4 ln 2), half the decay
-    wire [25:0] decay_s5 = curve_base_s5 + {5'd0, product_view_kept_s5};
 
     wire decay_large_s5 = |decay_s5[25:24];
     wire decay_small_s5 = ~decay_large_s5;  // the decay is below 1/4, and all its bits count

@@ -14,7 +14,7 @@ use super::target::Target;
 use crate::hdl::netlist::{NetId, Op};
 
 /// Register bits that it is worth that a multiplier has its operand registers for itself.
-const SHARED: f64 = 40.0;
+const SHARED: f64 = 20.0;
 
 /// When each value is computed.
 #[derive(Clone, Debug)]
