@@ -17,7 +17,7 @@ use crate::common::tools::LIMIT;
 use crate::common::units::configuration;
 
 /// Pairs of a configuration and a target whose areas are measured again.
-const PAIRS: usize = 6;
+const PAIRS: usize = 4;
 
 /// The flow of a target, its tools from the Python environment that `tools/install` makes, or from `PATH`.
 fn flow(target: Target) -> Flow {
