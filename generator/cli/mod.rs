@@ -138,11 +138,12 @@ Example, on four machines and then on one:
     ///
     /// Stuck and inverted bits, swapped mux inputs, wrong operators, constants, enables, every bit of every control
     /// word, a sample of ROM words: each is put into the netlist, and the default test of `cosim` is run on it. A
-    /// mutant is caught, or proved to change nothing that is compared, or open. The exit code is 0 if at most 1 % of
-    /// each configuration's are open.
+    /// mutant is caught, or proved to change nothing that is compared, or undecided. Which of them the bench that is
+    /// shipped with the core notices by itself is counted apart. The exit code is 0 if at most 1 % of each
+    /// configuration's are undecided.
     #[command(after_help = "\
 Examples:
-  glint mutate my_core.toml                               the score, and what is open
+  glint mutate my_core.toml                               the score, and what is undecided
   glint mutate my_core.toml --list                        the names of all faults
   glint mutate my_core.toml --only 'result[3]:inverted'   one of them: where it shows, and a waveform
   glint mutate my_core.toml --full                        the emitted Verilog too

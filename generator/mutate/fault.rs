@@ -190,7 +190,11 @@ impl Faults {
         };
         for at in bits {
             let (word, bit) = (at / width as usize, at % width as usize);
-            let kind = if control { Kind::ControlBit } else { Kind::RomBit };
+            let kind = match control {
+                true => Kind::ControlBit,
+                false if 2 * bit >= width as usize => Kind::RomHighBit,
+                false => Kind::RomBit,
+            };
             let site = Site::Words(id, vec![(word, words[word] ^ 1 << bit)]);
             let id_text = match control {
                 true => format!("{}@{word}.{}", rom.name, field_bit(design, bit as u32)),

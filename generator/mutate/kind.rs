@@ -38,15 +38,17 @@ pub enum Kind {
     ControlBit,
     /// Two words of the microprogram change places.
     ControlWords,
-    /// A bit of a table is inverted.
+    /// A bit of the lower half of a table's word is inverted.
     RomBit,
+    /// A bit of the upper half is.
+    RomHighBit,
     /// Two words of a table change places.
     RomWords,
 }
 
 impl Kind {
     /// Every kind, in the order of tables.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 18] = [
         Self::StuckAt0,
         Self::StuckAt1,
         Self::Inverted,
@@ -63,6 +65,7 @@ impl Kind {
         Self::ControlBit,
         Self::ControlWords,
         Self::RomBit,
+        Self::RomHighBit,
         Self::RomWords,
     ];
 }
@@ -85,7 +88,8 @@ impl fmt::Display for Kind {
             Self::Reset => "reset dropped",
             Self::ControlBit => "control bit inverted",
             Self::ControlWords => "control words swapped",
-            Self::RomBit => "ROM bit inverted",
+            Self::RomBit => "ROM bit inverted, lower half",
+            Self::RomHighBit => "ROM bit inverted, upper half",
             Self::RomWords => "ROM words swapped",
         })
     }

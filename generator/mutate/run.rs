@@ -1,16 +1,17 @@
-//! Every fault of a configuration through the legs that may notice it.
+//! Every fault of a configuration through the checks that may notice it.
 
 use std::sync::OnceLock;
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 
-use super::aim::{self, Tried};
 use super::coverage::{Coverage, Operands};
 use super::fault::{Fault, Site};
+use super::held::{self, Tried};
 use super::plant;
 use super::proof::Prover;
-use super::verdict::{Difference, Found, How, Leg, Verdict};
+use super::shipped::Shipped;
+use super::verdict::{Check, Difference, Found, How, Verdict};
 use crate::core::{self, Unit};
 use crate::cosim::{Lockstep, Mismatch};
 use crate::golden::Model;
@@ -41,15 +42,15 @@ pub fn run<'f>(
         prover: Prover::new(&unit.design),
         tested: Coverage::of(&unit.design, &lockstep, core::TEST_POINTS)?,
         beyond: OnceLock::new(),
+        shipped: Shipped::of(unit)?,
     };
     let faults: Vec<&Fault> = faults.into_iter().collect();
     faults
         .into_par_iter()
         .map(|fault| {
-            let verdict = bench.verdict(fault);
-            let verdict = verdict.with_context(|| format!("the mutant `{}`", fault.id))?;
+            let found = bench.found(fault);
             progress();
-            Ok(Found { fault: fault.clone(), verdict })
+            found.with_context(|| format!("the mutant `{}`", fault.id))
         })
         .collect()
 }
@@ -64,12 +65,21 @@ struct Bench<'a> {
     tested: Coverage,
     /// Which words a longer test reads, once one is asked for that the default test does not read.
     beyond: OnceLock<Coverage>,
+    shipped: Shipped,
 }
 
 impl Bench<'_> {
-    fn verdict(&self, fault: &Fault) -> Result<Verdict> {
+    fn found(&self, fault: &Fault) -> Result<Found> {
         let mutant = fault.planted(&self.sound);
-        if let Some(mismatch) = self.first_look(&mutant, &fault.site)? {
+        let verdict = self.verdict(fault, &mutant)?;
+        // What changes nothing that is compared changes no output.
+        let shipped =
+            !matches!(verdict, Verdict::Equivalent(_)) && self.shipped.notices(&mutant)?;
+        Ok(Found { fault: fault.clone(), verdict, shipped })
+    }
+
+    fn verdict(&self, fault: &Fault, mutant: &Design) -> Result<Verdict> {
+        if let Some(mismatch) = self.first_look(mutant, &fault.site)? {
             return Ok(caught(mismatch));
         }
         let prover = self.prover.as_ref();
@@ -78,14 +88,14 @@ impl Bench<'_> {
         }
         let word = self.words(&fault.site);
         if word.is_none() || !self.places(&fault.site).is_empty() {
-            let lockstep = self.lockstep(&mutant, core::TEST_SEED)?;
+            let lockstep = self.lockstep(mutant, core::TEST_SEED)?;
             if let Some(mismatch) = lockstep.run(core::TEST_POINTS, &|_| ())?.mismatch {
                 return Ok(caught(mismatch));
             }
         }
         match word {
-            Some((rom, words)) => self.aimed(&mutant, rom, words),
-            None => Ok(Verdict::Open),
+            Some((rom, words)) => self.directed(mutant, rom, words),
+            None => Ok(Verdict::Undecided),
         }
     }
 
@@ -105,32 +115,32 @@ impl Bench<'_> {
     }
 
     /// With operands held at the words at fault.
-    fn aimed(&self, mutant: &Design, rom: RomId, words: &[(usize, u64)]) -> Result<Verdict> {
-        let aimed = |difference| Verdict::Caught(Leg::Aimed, difference);
+    fn directed(&self, mutant: &Design, rom: RomId, words: &[(usize, u64)]) -> Result<Verdict> {
+        let directed = |difference| Verdict::Caught(Check::Directed, difference);
         let mut all_tried = true;
         for &(word, _) in words {
-            let addressing = aim::addressing(self.unit, rom, word);
+            let addressing = held::addressing(self.unit, rom, word);
             for held in addressing.iter().cloned().chain(self.readings(rom, word)?) {
-                if let Some(difference) = aim::drawn(self.unit, mutant, held)? {
-                    return Ok(aimed(difference));
+                if let Some(difference) = held::drawn(self.unit, mutant, held)? {
+                    return Ok(directed(difference));
                 }
             }
             let tried = match addressing {
-                Some(held) => aim::all(self.unit, mutant, held)?,
+                Some(held) => held::all(self.unit, mutant, held)?,
                 None => Tried::Nothing,
             };
             match tried {
                 Tried::All => {}
                 Tried::Nothing => all_tried = false,
                 Tried::Differs(held) => {
-                    let shown = aim::drawn(self.unit, mutant, held)?;
-                    return Ok(shown.map_or(Verdict::Open, aimed));
+                    let shown = held::drawn(self.unit, mutant, held)?;
+                    return Ok(shown.map_or(Verdict::Undecided, directed));
                 }
             }
         }
         Ok(match all_tried {
             true => Verdict::Equivalent(How::Operands),
-            false => Verdict::Open,
+            false => Verdict::Undecided,
         })
     }
 
@@ -185,5 +195,5 @@ impl Bench<'_> {
 /// Noticed by the default test.
 fn caught(mismatch: Mismatch) -> Verdict {
     let held = Vec::new();
-    Verdict::Caught(Leg::Cosim, Difference { held, mismatch })
+    Verdict::Caught(Check::Cosim, Difference { held, mismatch })
 }

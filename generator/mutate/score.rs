@@ -5,36 +5,66 @@ use std::collections::BTreeMap;
 use serde::{Deserialize, Serialize};
 
 use super::kind::Kind;
-use super::verdict::{Found, How, Leg, Verdict};
-use super::verilog::{TextFault, TextVerdict};
+use super::verdict::{Check, Found, How, Verdict};
+use super::verilog::{ShippedBench, TextFault, TextFound, TextVerdict};
 
-/// At most so much of the faults may be open, as a share.
+/// At most so much of the faults may be undecided, as a share.
 pub const TOLERATED: f64 = 0.01;
+
+/// So much of the faults in the Verilog the shipped bench ought to notice by itself: of those that it or a longer
+/// bench notices.
+pub const GOAL_TEXT: f64 = 0.98;
+
+/// And of the bits in the upper half of the words of tables: of those whose inversion some check notices. Words that
+/// are never read are not among them.
+pub const GOAL_MEMORY: f64 = 0.95;
+
+/// Some of the faults.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Share {
+    /// Those that are noticed.
+    pub noticed: usize,
+    /// All that could be.
+    pub of: usize,
+}
+
+impl Share {
+    /// As a number, 1 of nothing.
+    pub fn value(self) -> f64 {
+        if self.of == 0 { 1.0 } else { self.noticed as f64 / self.of as f64 }
+    }
+}
 
 /// Faults by what became of them.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Tally {
     /// How many were planted.
     pub planted: usize,
-    /// How many each leg noticed first.
-    pub caught: BTreeMap<Leg, usize>,
+    /// How many each check noticed first.
+    pub caught: BTreeMap<Check, usize>,
     /// How many were proved equivalent, by proof.
     pub equivalent: BTreeMap<How, usize>,
     /// How many are neither.
-    pub open: usize,
+    #[serde(rename = "open")]
+    pub undecided: usize,
+    /// How many the shipped bench notices by itself, and how many it does not though a check does.
+    pub shipped: usize,
+    pub missed: usize,
 }
 
 impl Tally {
-    fn add(&mut self, verdict: &Verdict) {
+    fn add(&mut self, found: &Found) {
         self.planted += 1;
-        match verdict {
-            Verdict::Caught(leg, _) => *self.caught.entry(*leg).or_default() += 1,
+        self.shipped += usize::from(found.shipped);
+        self.missed += usize::from(found.is_missed());
+        match &found.verdict {
+            Verdict::Caught(check, _) => *self.caught.entry(*check).or_default() += 1,
             Verdict::Equivalent(how) => *self.equivalent.entry(*how).or_default() += 1,
-            Verdict::Open => self.open += 1,
+            Verdict::Undecided => self.undecided += 1,
         }
     }
 
-    /// How many some leg noticed.
+    /// How many some check noticed.
     pub fn all_caught(&self) -> usize {
         self.caught.values().sum()
     }
@@ -44,9 +74,14 @@ impl Tally {
         self.equivalent.values().sum()
     }
 
-    /// The share that is open.
-    pub fn share_open(&self) -> f64 {
-        if self.planted == 0 { 0.0 } else { self.open as f64 / self.planted as f64 }
+    /// The share that is undecided.
+    pub fn share_undecided(&self) -> f64 {
+        if self.planted == 0 { 0.0 } else { self.undecided as f64 / self.planted as f64 }
+    }
+
+    /// What the shipped bench notices of those that anything notices.
+    pub fn of_shipped(&self) -> Share {
+        Share { noticed: self.shipped, of: self.shipped + self.missed }
     }
 }
 
@@ -57,36 +92,49 @@ pub struct Score {
     pub all: Tally,
     /// By kind.
     pub kinds: BTreeMap<Kind, Tally>,
-    /// The ids of those that are open.
-    pub open: Vec<String>,
-    /// The ids of those that the default test misses and stimulus that is aimed at them does not.
-    pub aimed: Vec<String>,
+    /// The ids of those that are undecided.
+    #[serde(rename = "open")]
+    pub undecided: Vec<String>,
+    /// The ids of those that the default test misses and stimulus that is directed at them does not.
+    #[serde(rename = "aimed")]
+    pub directed: Vec<String>,
     /// The ids of those that were proved equivalent.
     pub equivalent: BTreeMap<How, Vec<String>>,
+    /// The ids of those that are caught, and not by the shipped bench.
+    pub missed: Vec<String>,
 }
 
 impl Score {
     /// Adds up.
     pub fn of(found: &[Found]) -> Self {
         let mut score = Self::default();
-        for Found { fault, verdict } in found {
-            score.all.add(verdict);
-            score.kinds.entry(fault.kind).or_default().add(verdict);
+        for one in found {
+            let Found { fault, verdict, .. } = one;
+            score.all.add(one);
+            score.kinds.entry(fault.kind).or_default().add(one);
             match verdict {
-                Verdict::Open => score.open.push(fault.id.clone()),
-                Verdict::Caught(Leg::Aimed, _) => score.aimed.push(fault.id.clone()),
+                Verdict::Undecided => score.undecided.push(fault.id.clone()),
+                Verdict::Caught(Check::Directed, _) => score.directed.push(fault.id.clone()),
                 Verdict::Caught(..) => {}
                 Verdict::Equivalent(how) => {
                     score.equivalent.entry(*how).or_default().push(fault.id.clone());
                 }
             }
+            if one.is_missed() {
+                score.missed.push(fault.id.clone());
+            }
         }
         score
     }
 
-    /// Whether no more than is tolerated is open.
+    /// Whether no more than is tolerated is undecided.
     pub fn holds(&self) -> bool {
-        self.all.share_open() <= TOLERATED
+        self.all.share_undecided() <= TOLERATED
+    }
+
+    /// What the shipped bench notices of the bits in the upper half of the words of tables; nothing without tables.
+    pub fn of_memory(&self) -> Option<Share> {
+        self.kinds.get(&Kind::RomHighBit).map(Tally::of_shipped)
     }
 }
 
@@ -97,26 +145,38 @@ pub struct TextScore {
     pub planted: usize,
     /// How many a compiler or lint refuses or warns of.
     pub lint: usize,
-    /// How many the bench notices.
+    /// How many of the others a bench notices.
     pub bench: usize,
     /// The ids of those that are proved equivalent.
     pub equivalent: Vec<String>,
     /// The ids of the others.
-    pub open: Vec<String>,
+    #[serde(rename = "open")]
+    pub undecided: Vec<String>,
+    /// What the shipped bench notices by itself of those that it or a longer one notices.
+    pub shipped: Share,
+    /// The ids of those that it does not.
+    pub missed: Vec<String>,
 }
 
 impl TextScore {
-    /// Adds up the verdicts on faults, given in the same order.
-    pub fn of(faults: &[TextFault], verdicts: &[TextVerdict]) -> Self {
+    /// Adds up what was found of faults, given in the same order.
+    pub fn of(faults: &[TextFault], found: &[TextFound]) -> Self {
         let mut score = Self::default();
-        for (fault, verdict) in faults.iter().zip(verdicts) {
+        for (fault, found) in faults.iter().zip(found) {
+            let id = || fault.id.clone();
             score.planted += 1;
-            match verdict {
+            match found.verdict {
                 TextVerdict::Lint => score.lint += 1,
                 TextVerdict::Bench => score.bench += 1,
-                TextVerdict::Equivalent => score.equivalent.push(fault.id.clone()),
-                TextVerdict::Open => score.open.push(fault.id.clone()),
+                TextVerdict::Equivalent => score.equivalent.push(id()),
+                TextVerdict::Undecided => score.undecided.push(id()),
             }
+            match found.shipped {
+                ShippedBench::Refused | ShippedBench::Silent => continue,
+                ShippedBench::Noticed => score.shipped.noticed += 1,
+                ShippedBench::Missed => score.missed.push(id()),
+            }
+            score.shipped.of += 1;
         }
         score
     }

@@ -2,35 +2,51 @@
 
 use anyhow::Result;
 
+use crate::core::Unit;
 use crate::hdl::netlist::{Design, Role};
 use crate::hdl::sim::Simulator;
 use crate::package::Vectors;
 
-/// Whether a mutant differs in an output that the shipped bench compares.
-///
-/// # Errors
-/// A mutant that cannot be simulated.
-pub fn notices(mutant: &Design, vectors: &Vectors) -> Result<bool> {
-    let mut simulator: Simulator = Simulator::new(mutant)?;
-    let outputs: Vec<_> = mutant.outputs().collect();
-    let reset = mutant.inputs().position(|port| port.role == Role::Reset);
-    let mut was_reset = false;
-    for (clock, (inputs, expected)) in vectors.inputs.iter().zip(&vectors.expected).enumerate() {
-        for (at, &bits) in inputs.iter().enumerate() {
-            simulator.set(at, bits);
-        }
-        // The outputs depend on registers alone, so that they stand as they were after the edge before.
-        for (port, &expected) in outputs.iter().zip(expected) {
-            let compared = match port.role {
-                Role::Result => clock >= vectors.known_from,
-                _ => was_reset,
-            };
-            if compared && simulator.value(port.net) != expected {
-                return Ok(true);
-            }
-        }
-        was_reset |= reset.is_none_or(|reset| inputs[reset] == 0);
-        simulator.clock()?;
+/// The bench that goes with a core, as the built-in simulator runs it.
+pub(super) struct Shipped(Vectors);
+
+impl Shipped {
+    /// That of a configuration.
+    ///
+    /// # Errors
+    /// Golden model and simulation do not agree.
+    pub(super) fn of(unit: &Unit) -> Result<Self> {
+        unit.shipped_vectors().map(Self)
     }
-    Ok(false)
+
+    /// Whether a mutant differs in an output that the bench compares.
+    ///
+    /// # Errors
+    /// A mutant that cannot be simulated.
+    pub(super) fn notices(&self, mutant: &Design) -> Result<bool> {
+        let mut simulator: Simulator = Simulator::new(mutant)?;
+        let Self(vectors) = self;
+        let outputs: Vec<_> = mutant.outputs().collect();
+        let reset = mutant.inputs().position(|port| port.role == Role::Reset);
+        let mut was_reset = false;
+        for (clock, (inputs, expected)) in vectors.inputs.iter().zip(&vectors.expected).enumerate()
+        {
+            for (at, &bits) in inputs.iter().enumerate() {
+                simulator.set(at, bits);
+            }
+            // The outputs depend on registers alone, so that they stand as they were after the edge before.
+            for (port, &expected) in outputs.iter().zip(expected) {
+                let compared = match port.role {
+                    Role::Result => clock >= vectors.known_from,
+                    _ => was_reset,
+                };
+                if compared && simulator.value(port.net) != expected {
+                    return Ok(true);
+                }
+            }
+            was_reset |= reset.is_none_or(|reset| inputs[reset] == 0);
+            simulator.clock()?;
+        }
+        Ok(false)
+    }
 }

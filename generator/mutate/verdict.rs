@@ -10,11 +10,12 @@ use crate::cosim::Mismatch;
 /// What notices a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Leg {
+pub enum Check {
     /// The default test: golden model against built-in simulator.
     Cosim,
     /// Operands held where the words at fault are read.
-    Aimed,
+    #[serde(rename = "aimed")]
+    Directed,
 }
 
 /// How a fault was proved equivalent.
@@ -29,11 +30,11 @@ pub enum How {
     Operands,
 }
 
-impl fmt::Display for Leg {
+impl fmt::Display for Check {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.pad(match self {
             Self::Cosim => "co-simulation",
-            Self::Aimed => "aimed stimulus",
+            Self::Directed => "directed stimulus",
         })
     }
 }
@@ -48,7 +49,7 @@ impl fmt::Display for How {
     }
 }
 
-/// What a leg showed.
+/// What a check showed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Difference {
     /// Operands that the stimulus held, by name, at raw values ([`crate::cosim::Lockstep::holding`]).
@@ -60,12 +61,12 @@ pub struct Difference {
 /// What became of a mutant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
-    /// A leg differs, and where.
-    Caught(Leg, Difference),
+    /// A check differs, and where.
+    Caught(Check, Difference),
     /// Proved to change nothing that is compared.
     Equivalent(How),
     /// Neither caught nor proved equivalent.
-    Open,
+    Undecided,
 }
 
 /// A fault and what became of it.
@@ -75,4 +76,13 @@ pub struct Found {
     pub fault: Fault,
     /// What became of it.
     pub verdict: Verdict,
+    /// Whether the vectors of the shipped bench notice it, at the outputs alone.
+    pub shipped: bool,
+}
+
+impl Found {
+    /// Whether a check notices it and the shipped bench does not.
+    pub fn is_missed(&self) -> bool {
+        matches!(self.verdict, Verdict::Caught(..)) && !self.shipped
+    }
 }

@@ -1,13 +1,15 @@
 //! Faults of the emitted Verilog: what an emitter could write wrongly.
 //!
-//! They are planted in the text of the modules, one at a time. The bench that goes with the sound text, and the
-//! vectors on which golden model and built-in simulator agree, must notice.
+//! They are planted in the text of the modules, one at a time. Lint must notice, or a bench: the one that is shipped
+//! with the fault-free text, or a longer one, on whose vectors golden model and built-in simulator agree. What the
+//! shipped bench notices by itself is told apart.
 //!
 //! No register is put on the other edge of the clock: what it takes is stable by then, so that it carries the
 //! same at every edge that counts, and only timing analysis can tell.
 
 use std::collections::BTreeMap;
 use std::fs;
+use std::path::Path;
 use std::sync::LazyLock;
 use std::time::Duration;
 
@@ -19,13 +21,15 @@ use serde::{Deserialize, Serialize};
 use super::formal;
 use crate::base::transient::Directory;
 use crate::core::{TEST_SEED, Unit};
+use crate::package::{self, EmitInputs};
 use crate::tools::{BuiltBench, Simulator, Tool, Waveform};
 
-/// Results in the vectors of the bench that must notice.
-pub const POINTS: u64 = 2000;
+/// Results of the longer bench, which runs where the shipped one notices nothing.
+const POINTS: u64 = 10_000;
 
-/// What Yosys may take for the proof that a fault changes nothing: those that succeed take a second.
-const PROOF_LIMIT: Duration = Duration::from_secs(5);
+/// What Yosys may take for the proof that a fault changes nothing. Those that succeed take some seconds; a machine that
+/// is busy with other things does not make them fail.
+const PROOF_LIMIT: Duration = Duration::from_secs(120);
 
 /// A fault of a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -46,12 +50,34 @@ pub struct TextFault {
 pub enum TextVerdict {
     /// Icarus Verilog or Verilator refuses the text or warns of it.
     Lint,
-    /// The bench fails.
+    /// A bench fails.
     Bench,
     /// Yosys proves that the module behaves as before.
     Equivalent,
     /// Nothing notices it, and nothing proves it equivalent.
-    Open,
+    Undecided,
+}
+
+/// What the shipped bench by itself says of a fault of a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ShippedBench {
+    /// Icarus Verilog does not build it.
+    Refused,
+    /// It fails.
+    Noticed,
+    /// It passes, and a longer one fails.
+    Missed,
+    /// Both pass: if the fault changes an output, then seldom.
+    Silent,
+}
+
+/// What was found of a fault of a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TextFound {
+    /// By all checks together.
+    pub verdict: TextVerdict,
+    /// By the shipped bench.
+    pub shipped: ShippedBench,
 }
 
 /// What the faults are shown to.
@@ -60,6 +86,8 @@ const TOOLS: [&str; 4] = ["iverilog", "vvp", "verilator", "yosys"];
 /// Files by name, with which ones are modules of the device.
 pub struct Text {
     files: Vec<(String, String)>,
+    /// A bench with more points, all at random, and its vectors: they take the place of the shipped ones.
+    longer: Vec<(String, String)>,
     top: String,
     modules: Vec<usize>,
 }
@@ -141,15 +169,23 @@ static OPERATORS: LazyLock<Vec<Operator>> = LazyLock::new(|| {
 });
 
 impl Text {
-    /// The sound text of a configuration, with a bench of [`POINTS`] results.
+    /// The fault-free text of a configuration, with its shipped bench.
     ///
     /// # Errors
     /// A tool is missing; golden model and simulation differ; the design cannot be written.
     pub fn of(unit: &Unit) -> Result<Self> {
         TOOLS.iter().try_for_each(|tool| Tool::find(tool).map(drop))?;
         let name = &unit.config.name;
-        let files = unit.files(&format!("{name}.toml"), unit.vectors(POINTS, TEST_SEED)?)?;
-        let mut text = Self { files: Vec::new(), top: format!("{name}_tb"), modules: Vec::new() };
+        let files = unit.files(&format!("{name}.toml"), unit.shipped_vectors()?)?;
+        let vectors = Some(unit.vectors(POINTS, TEST_SEED)?);
+        let longer = package::emit(&unit.design, &EmitInputs { vectors, ..EmitInputs::default() })?;
+        let bench = longer.into_iter().filter(|file| file.path.starts_with("testbench/"));
+        let mut text = Self {
+            files: Vec::new(),
+            longer: package::sources(bench.collect()),
+            top: format!("{name}_tb"),
+            modules: Vec::new(),
+        };
         for file in files {
             let plain = file.path.rsplit('/').next().unwrap_or(&file.path).to_owned();
             if !plain.ends_with(".v") && !plain.ends_with(".mem") {
@@ -200,7 +236,7 @@ impl Text {
         sample
     }
 
-    /// What notices each of the faults.
+    /// What is found of each of the faults.
     ///
     /// # Errors
     /// A linter is missing, or does not end within `limit`.
@@ -209,52 +245,99 @@ impl Text {
         faults: &[TextFault],
         limit: Duration,
         progress: &(dyn Fn() + Sync),
-    ) -> Result<Vec<TextVerdict>> {
+    ) -> Result<Vec<TextFound>> {
         let verilator = Tool::find("verilator")?;
         let run = |fault: &TextFault| {
-            let verdict = self.verdict(fault, &verilator, limit);
+            let found = self.found(fault, &verilator, limit);
             progress();
-            verdict.with_context(|| format!("the mutant `{}`", fault.id))
+            found.with_context(|| format!("the mutant `{}`", fault.id))
         };
         faults.par_iter().map(run).collect()
     }
 
-    fn verdict(&self, fault: &TextFault, verilator: &Tool, limit: Duration) -> Result<TextVerdict> {
+    fn found(&self, fault: &TextFault, verilator: &Tool, limit: Duration) -> Result<TextFound> {
         let mut files = self.files.clone();
         let lines = files[fault.file].1.lines().enumerate();
         let lines = lines.map(|(at, line)| if at == fault.line { &fault.text } else { line });
         files[fault.file].1 = lines.fold(String::new(), |text, line| text + line + "\n");
+        let is_linted = self.is_linted(&files, verilator, limit)?;
+        let (shipped, place) = self.benches(&files, limit)?;
+        let verdict = match (shipped, place) {
+            _ if is_linted => TextVerdict::Lint,
+            // What Icarus does not build is noticed as lint is.
+            (ShippedBench::Refused, _) => TextVerdict::Lint,
+            (ShippedBench::Silent, Some(bench)) => {
+                match self.proves(&files, fault.file, bench.directory(), limit)? {
+                    true => TextVerdict::Equivalent,
+                    false => TextVerdict::Undecided,
+                }
+            }
+            _ => TextVerdict::Bench,
+        };
+        Ok(TextFound { verdict, shipped })
+    }
+
+    /// Whether lint refuses the modules or warns of them.
+    fn is_linted(
+        &self,
+        files: &[(String, String)],
+        verilator: &Tool,
+        limit: Duration,
+    ) -> Result<bool> {
         let place = Directory::new().context("cannot make a temporary directory")?;
-        let mut arguments = vec!["--lint-only", "-Wall", "--top-module"];
-        arguments.push(self.top.trim_end_matches("_tb"));
-        for (name, contents) in &files {
+        for (name, contents) in files {
             fs::write(place.path().join(name), contents)
                 .with_context(|| format!("cannot write `{name}`"))?;
         }
+        let mut arguments = vec!["--lint-only", "-Wall", "--top-module"];
+        arguments.push(self.top.trim_end_matches("_tb"));
         arguments.extend(self.modules.iter().map(|&at| files[at].0.as_str()));
         let lint = verilator.run(arguments, place.path(), limit)?;
-        if !lint.status.success() || !lint.output.is_empty() {
-            return Ok(TextVerdict::Lint);
-        }
-        let Ok(bench) =
-            BuiltBench::build(Simulator::Icarus, &files, &self.top, Waveform::None, limit)
-        else {
-            return Ok(TextVerdict::Lint);
+        Ok(!lint.status.success() || !lint.output.is_empty())
+    }
+
+    /// What the shipped bench says of a mutant, and the bench as it was built.
+    fn benches(
+        &self,
+        mutant: &[(String, String)],
+        limit: Duration,
+    ) -> Result<(ShippedBench, Option<BuiltBench>)> {
+        let build = |files: &[(String, String)]| {
+            BuiltBench::build(Simulator::Icarus, files, &self.top, Waveform::None, limit)
         };
         // A bench that does not end, or ends without a verdict, does not pass either.
-        if !bench.run(limit).is_ok_and(|outcome| outcome.passed) {
-            return Ok(TextVerdict::Bench);
+        let fails = |bench: &BuiltBench| !bench.run(limit).is_ok_and(|outcome| outcome.passed);
+        let Ok(shipped) = build(mutant) else {
+            return Ok((ShippedBench::Refused, None));
+        };
+        if fails(&shipped) {
+            return Ok((ShippedBench::Noticed, None));
         }
-        let (file, sound) = &self.files[fault.file];
-        let place = bench.directory();
-        fs::write(place.join(formal::MUTANT), &files[fault.file].1)
-            .and_then(|()| fs::write(place.join(file), sound))
-            .with_context(|| format!("cannot write `{file}`"))?;
-        let module = file.trim_end_matches(".v");
-        Ok(match formal::proves(place, module, limit.min(PROOF_LIMIT))? {
-            true => TextVerdict::Equivalent,
-            false => TextVerdict::Open,
+        let mut longer = mutant.to_vec();
+        for (name, contents) in &self.longer {
+            if let Some(file) = longer.iter_mut().find(|(other, _)| other == name) {
+                file.1.clone_from(contents);
+            }
+        }
+        Ok(match fails(&build(&longer)?) {
+            true => (ShippedBench::Missed, None),
+            false => (ShippedBench::Silent, Some(shipped)),
         })
+    }
+
+    /// Whether the module in a file is proved to behave as without the fault, in a directory that holds all files.
+    fn proves(
+        &self,
+        mutant: &[(String, String)],
+        file: usize,
+        place: &Path,
+        limit: Duration,
+    ) -> Result<bool> {
+        let (name, fault_free) = &self.files[file];
+        fs::write(place.join(formal::MUTANT), &mutant[file].1)
+            .and_then(|()| fs::write(place.join(name), fault_free))
+            .with_context(|| format!("cannot write `{name}`"))?;
+        formal::proves(place, name.trim_end_matches(".v"), limit.min(PROOF_LIMIT))
     }
 }
 

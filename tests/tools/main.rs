@@ -17,6 +17,7 @@ mod mutants;
 mod random_configurations;
 mod random_netlists;
 mod schema;
+mod shipped_bench;
 mod slurm;
 mod soc;
 mod software;

@@ -11,7 +11,7 @@ use crate::common::tools::LIMIT;
 use crate::common::units::{configuration, configurations};
 use glint::core::{TEST_POINTS, Unit};
 use glint::cosim::Lockstep;
-use glint::mutate::{self, Faults, Found, Leg, Text, TextVerdict, Verdict};
+use glint::mutate::{self, Check, Faults, Found, Text, TextVerdict, Verdict};
 use glint::registry::Registry;
 use serde_json::Value;
 
@@ -49,18 +49,18 @@ fn recorded(netlist: &Value, id: &str) -> Said {
     if has(&netlist["open"]) {
         Said::Open
     } else if has(&netlist["aimed"]) {
-        Said::Caught(Leg::Aimed)
+        Said::Caught(Check::Directed)
     } else if let Some((how, _)) = proofs.find(|(_, ids)| has(ids)) {
         Said::Equivalent(how.clone())
     } else {
-        Said::Caught(Leg::Cosim)
+        Said::Caught(Check::Cosim)
     }
 }
 
 /// A verdict without what shows it.
 #[derive(Debug, PartialEq)]
 enum Said {
-    Caught(Leg),
+    Caught(Check),
     Equivalent(String),
     Open,
 }
@@ -68,12 +68,12 @@ enum Said {
 impl From<&Verdict> for Said {
     fn from(verdict: &Verdict) -> Self {
         match verdict {
-            Verdict::Caught(leg, _) => Self::Caught(*leg),
+            Verdict::Caught(check, _) => Self::Caught(*check),
             Verdict::Equivalent(how) => {
                 let how = serde_json::to_value(how).expect("JSON");
                 Self::Equivalent(how.as_str().expect("a name").to_owned())
             }
-            Verdict::Open => Self::Open,
+            Verdict::Undecided => Self::Open,
         }
     }
 }
@@ -108,7 +108,7 @@ fn the_records_hold_today() {
         let planted = sampled(&path, faults.iter(), NETLIST_FAULTS);
         let found =
             mutate::run(&unit, planted, &|| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"));
-        for Found { fault, verdict } in &found {
+        for Found { fault, verdict, .. } in &found {
             let expected = recorded(netlist, &fault.id);
             assert_eq!(Said::from(verdict), expected, "{}: {stale}", fault.id);
         }
@@ -153,7 +153,7 @@ fn faults_of_the_verilog_are_noticed() {
         assert!(faults.len() >= 20, "{path}: {} faults", faults.len());
         let verdicts =
             text.run(&faults, LIMIT, &|| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"));
-        for (fault, verdict) in faults.iter().zip(verdicts) {
+        for (fault, verdict) in faults.iter().zip(verdicts.iter().map(|found| found.verdict)) {
             let id = fault.id.as_str();
             if !open.contains(id) {
                 let noticed = matches!(verdict, TextVerdict::Lint | TextVerdict::Bench);

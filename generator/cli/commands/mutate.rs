@@ -16,7 +16,8 @@ use crate::cli::tables::Column;
 use crate::cli::{Output, progress, tables};
 use crate::cosim::Lockstep;
 use crate::mutate::{
-    self, Difference, Fault, Faults, Score, TOLERATED, Tally, Text, TextFault, TextScore, Verdict,
+    self, Check, Difference, Fault, Faults, Found, GOAL_MEMORY, GOAL_TEXT, Score, Share, TOLERATED,
+    Tally, Text, TextFault, TextScore, Verdict,
 };
 use crate::registry::Registry;
 
@@ -48,15 +49,17 @@ struct Scored {
 }
 
 impl Scored {
-    /// The share of all faults, of the netlist and of the Verilog, that is open.
-    fn share_open(&self) -> f64 {
+    /// The share of all faults, of the netlist and of the Verilog, that is undecided.
+    fn share_undecided(&self) -> f64 {
         let verilog = self.verilog.as_ref();
-        let (planted, open) = verilog.map_or((0, 0), |text| (text.planted, text.open.len()));
-        (self.netlist.all.open + open) as f64 / (self.netlist.all.planted + planted).max(1) as f64
+        let (planted, undecided) =
+            verilog.map_or((0, 0), |text| (text.planted, text.undecided.len()));
+        let all = &self.netlist.all;
+        (all.undecided + undecided) as f64 / (all.planted + planted).max(1) as f64
     }
 
     fn holds(&self) -> bool {
-        self.share_open() <= TOLERATED
+        self.share_undecided() <= TOLERATED
     }
 }
 
@@ -102,9 +105,9 @@ pub fn mutate(
         let netlist = Score::of(&found.with_context(|| format!("`{}`", one.path))?);
         let verilog = match text {
             Some((text, faults)) => {
-                let verdicts = text.run(faults, request.time_limit, &|| bar.inc(1));
-                let verdicts = verdicts.with_context(|| format!("`{}`", one.path))?;
-                Some(TextScore::of(faults, &verdicts))
+                let found = text.run(faults, request.time_limit, &|| bar.inc(1));
+                let found = found.with_context(|| format!("`{}`", one.path))?;
+                Some(TextScore::of(faults, &found))
             }
             None => None,
         };
@@ -161,10 +164,10 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
         )));
     };
     let found = mutate::run(&one.unit, [fault], &|| ())?;
-    let verdict = found.into_iter().next().map(|found| found.verdict);
-    let verdict = verdict.context("a fault without a verdict")?;
+    let found = found.into_iter().next().context("a fault without a verdict")?;
+    let verdict = &found.verdict;
     let mut waveform = None;
-    if let Verdict::Caught(_, Difference { held, mismatch }) = &verdict {
+    if let Verdict::Caught(_, Difference { held, mismatch }) = verdict {
         let mutant = fault.planted(&one.unit.design);
         let model = (one.unit.device.model)(&one.unit.config);
         let lockstep = Lockstep::new(&mutant, model, one.unit.contract.as_ref(), mismatch.seed)?;
@@ -175,19 +178,23 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
         waveform = Some((path, from, mismatch.clock));
     }
     if output.json {
-        tables::print_json(&verdict_as_json(one, fault, &verdict));
-        return Ok(verdict != Verdict::Open);
+        tables::print_json(&found_as_json(one, &found));
+        return Ok(*verdict != Verdict::Undecided);
     }
-    let said = match &verdict {
-        Verdict::Caught(leg, shown) => format!("caught by {leg}: {}", shown_by(shown)),
+    let said = match verdict {
+        Verdict::Caught(check, shown) => format!("caught by {check}: {}", shown_by(shown)),
         Verdict::Equivalent(how) => format!("equivalent, {how}"),
-        Verdict::Open => "OPEN: not caught, and not proved equivalent".to_owned(),
+        Verdict::Undecided => "UNDECIDED: not caught, and not proved equivalent".to_owned(),
     };
     tables::print_line(&format!("{}: {} ({}): {said}", one.path, fault.id, fault.kind));
     if let Some((path, from, to)) = waveform {
         tables::print_line(&format!("  `{}` shows clocks {from} to {to}", path.display()));
     }
-    Ok(verdict != Verdict::Open)
+    if !matches!(verdict, Verdict::Equivalent(_)) {
+        let notices = if found.shipped { "notices it" } else { "does not notice it" };
+        tables::print_line(&format!("  the shipped bench {notices}"));
+    }
+    Ok(*verdict != Verdict::Undecided)
 }
 
 /// Where a mutant differs, and in what.
@@ -202,24 +209,26 @@ fn shown_by(Difference { held, mismatch }: &Difference) -> String {
     )
 }
 
-fn verdict_as_json(one: &Loaded, fault: &Fault, verdict: &Verdict) -> Value {
+fn found_as_json(one: &Loaded, found: &Found) -> Value {
+    let Found { fault, verdict, shipped } = found;
     let (caught, equivalent) = match verdict {
-        Verdict::Caught(leg, Difference { held, mismatch }) => {
+        Verdict::Caught(check, Difference { held, mismatch }) => {
             let mut caught = mismatch::as_json(mismatch);
-            caught["by"] = json!(leg);
+            caught["by"] = json!(check);
             caught["held"] = json!(held.iter().cloned().collect::<BTreeMap<_, _>>());
             (Some(caught), None)
         }
         Verdict::Equivalent(how) => (None, Some(how)),
-        Verdict::Open => (None, None),
+        Verdict::Undecided => (None, None),
     };
     json!({
-        "ok": *verdict != Verdict::Open,
+        "ok": *verdict != Verdict::Undecided,
         "config": one.path,
         "id": fault.id,
         "kind": fault.kind,
         "caught": caught,
         "equivalent": equivalent,
+        "shipped": shipped,
     })
 }
 
@@ -242,14 +251,15 @@ fn print(scored: &Scored) {
     let score = &scored.netlist;
     tables::print_line(&format!("{}:", scored.config));
     let row = |name: String, tally: &Tally| {
-        let caught = |leg| tally.caught.get(&leg).copied().unwrap_or(0).to_string();
+        let caught = |check| tally.caught.get(&check).copied().unwrap_or(0).to_string();
         vec![
             name,
             tally.planted.to_string(),
-            caught(mutate::Leg::Cosim),
-            caught(mutate::Leg::Aimed),
+            caught(Check::Cosim),
+            caught(Check::Directed),
             tally.all_equivalent().to_string(),
-            tally.open.to_string(),
+            tally.undecided.to_string(),
+            tally.shipped.to_string(),
         ]
     };
     let kinds = score.kinds.iter().map(|(kind, tally)| row(kind.to_string(), tally));
@@ -258,26 +268,36 @@ fn print(scored: &Scored) {
         Column::words("fault"),
         Column::numbers("planted"),
         Column::numbers("caught"),
-        Column::numbers("aimed"),
+        Column::numbers("directed").dispensable(1),
         Column::numbers("equivalent"),
-        Column::numbers("open"),
+        Column::numbers("undecided"),
+        Column::numbers("bench"),
     ];
     tables::print(&columns, kinds.chain([all]));
-    print_open(&score.open);
+    print_undecided(&score.undecided);
+    print_shipped("faults in the netlist", score.all.of_shipped(), None);
+    if let Some(memory) = score.of_memory() {
+        print_shipped("upper bits of words in ROMs", memory, Some(GOAL_MEMORY));
+    }
     if let Some(verilog) = &scored.verilog {
         tables::print_line(&format!(
-            "  Verilog: {} faults, {} noticed by lint, {} by the bench, {} equivalent, {} open",
+            "  Verilog: {} faults, {} noticed by lint, {} by a bench, {} equivalent, {} undecided",
             verilog.planted,
             verilog.lint,
             verilog.bench,
             verilog.equivalent.len(),
-            verilog.open.len(),
+            verilog.undecided.len(),
         ));
-        print_open(&verilog.open);
+        print_undecided(&verilog.undecided);
+        print_shipped(
+            "faults in the Verilog that show at the outputs",
+            verilog.shipped,
+            Some(GOAL_TEXT),
+        );
     }
     tables::print_line(&format!(
-        "  {:.2} % open: {}",
-        100.0 * scored.share_open(),
+        "  {:.2} % undecided: {}",
+        100.0 * scored.share_undecided(),
         match scored.holds() {
             true => "holds",
             false => "FAILS, at most 1 % may be",
@@ -285,8 +305,21 @@ fn print(scored: &Scored) {
     ));
 }
 
-fn print_open(ids: &[String]) {
+fn print_undecided(ids: &[String]) {
     for id in ids {
-        tables::print_line(&format!("  open: {id}"));
+        tables::print_line(&format!("  undecided: {id}"));
     }
+}
+
+/// What the shipped bench notices by itself of those faults that anything notices, beside its goal.
+fn print_shipped(faults: &str, share: Share, goal: Option<f64>) {
+    let goal = goal.map_or(String::new(), |goal| {
+        let reached = if share.value() >= goal { "reached" } else { "missed" };
+        format!(", goal of {:.0} % {reached}", 100.0 * goal)
+    });
+    let Share { noticed, of } = share;
+    let percent = 100.0 * share.value();
+    tables::print_line(&format!(
+        "  shipped bench: {noticed} of {of} {faults} ({percent:.1} %{goal})"
+    ));
 }

@@ -31,12 +31,14 @@ fn a_fault_alone_shows_where_it_is_caught() {
     let out = place.done(["mutate", "core.toml", "--only", SHOWS]);
     assert!(out.contains("caught by co-simulation: seed 1, after clock"), "{out}");
     assert!(out.contains("`accumulator` is "), "{out}");
+    assert!(out.contains("the shipped bench notices it"), "{out}");
     let waveform = place.read("core_mutant.vcd");
     assert!(waveform.contains("$enddefinitions"), "{waveform}");
     let json = place.glint(["mutate", "core.toml", "--only", SHOWS, "--json"]).json();
     assert_eq!(json["ok"], true);
     assert_eq!(json["caught"]["by"], "cosim");
     assert_eq!(json["caught"]["signal"], "accumulator");
+    assert_eq!(json["shipped"], true);
     place.assert_no_staging();
 }
 
@@ -61,8 +63,15 @@ fn scores_are_recorded_and_nothing_else_is_overwritten() {
         serde_json::from_str(&place.read("scores/core.json")).expect("JSON");
     assert_eq!(printed["configurations"][0], record);
     let all = &record["netlist"]["all"];
-    let open = record["netlist"]["open"].as_array().expect("open").len();
-    assert_eq!(all["open"], open);
+    let undecided = record["netlist"]["open"].as_array().expect("open").len();
+    assert_eq!(all["open"], undecided);
+    // What the shipped bench notices and what it misses are all that is caught, and perhaps some that are undecided.
+    let missed = record["netlist"]["missed"].as_array().expect("missed").len();
+    let number = |value: &serde_json::Value| value.as_u64().expect("a number") as usize;
+    let caught: usize = all["caught"].as_object().expect("checks").values().map(number).sum();
+    let shipped = number(&all["shipped"]);
+    assert_eq!(all["missed"], missed);
+    assert!((caught..=caught + undecided).contains(&(shipped + missed)), "{all}");
     assert!(all["planted"].as_u64() > Some(2000), "{all}");
     // Over its own record it writes.
     place.done(["mutate", "core.toml", "--out", "scores"]);
