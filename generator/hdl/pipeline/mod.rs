@@ -20,7 +20,9 @@ use crate::base::diagnostic::{Diagnostic, Diagnostics};
 use crate::config::Config;
 use crate::hdl::netlist::{Design, NetId};
 
+pub use graph::{Cell, Graph, Interval, Node};
 pub use target::{TARGETS, Target};
+pub use unroll::{Unrolled, unroll};
 
 /// What is asked of the schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]

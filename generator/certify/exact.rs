@@ -1,0 +1,290 @@
+//! The formula on one way through the hardware, as terms.
+
+use std::collections::HashMap;
+
+use super::formula::{Comparison, Real};
+use super::terms::{Id, Term, Terms};
+use crate::base::fixed::exp2;
+
+/// A formula's term under what it presupposes: these terms are not negative, those not positive.
+#[derive(Clone, Debug, Default)]
+pub struct Branch {
+    /// Terms that are at least 0.
+    pub at_least: Vec<Id>,
+    /// Terms that are at most 0.
+    pub at_most: Vec<Id>,
+    /// The formula.
+    pub term: Id,
+}
+
+impl Branch {
+    /// Whether it presupposes of a number what is not so.
+    pub fn is_never(&self, terms: &Terms) -> bool {
+        let is = |id: &Id, wrong: fn(f64) -> bool| match terms.get(*id) {
+            Term::Number(value) => wrong(*value),
+            _ => false,
+        };
+        self.at_least.iter().any(|id| is(id, |value| value < 0.0))
+            || self.at_most.iter().any(|id| is(id, |value| value > 0.0))
+    }
+}
+
+/// What formulas are written of.
+pub struct Setting<'a> {
+    /// Variable, and the power of two by which an operand is divided in it.
+    pub variables: &'a HashMap<String, (String, i32)>,
+    /// The values, lowest and highest, that an operand has in this case.
+    pub ranges: &'a HashMap<String, (f64, f64)>,
+    /// The words of ROMs as values, by the name of the ROM.
+    pub words: &'a HashMap<String, Vec<f64>>,
+}
+
+/// How often each operand is divided by a power of two where it occurs: that power, if it is so everywhere.
+pub fn divisors(real: &Real, found: &mut HashMap<String, Option<i32>>) {
+    let mut note = |name: &str, power: i32| {
+        let all = found.entry(name.to_owned()).or_insert(Some(power));
+        if *all != Some(power) {
+            *all = Some(0);
+        }
+    };
+    match real {
+        Real::Div(a, b) => {
+            if let (Real::Operand(name), Real::Number(by)) = (&**a, &**b)
+                && let Some(power) = power_of_two(*by)
+            {
+                note(name, power);
+                return;
+            }
+            divisors(a, found);
+            divisors(b, found);
+        }
+        Real::Operand(name) => note(name, 0),
+        Real::Number(_) | Real::Word(..) => {}
+        Real::Add(a, b)
+        | Real::Sub(a, b)
+        | Real::Mul(a, b)
+        | Real::Max(a, b)
+        | Real::Power(a, b) => {
+            divisors(a, found);
+            divisors(b, found);
+        }
+        Real::If(comparison, a, b) => {
+            let sides = [&comparison.left, &comparison.right, a, b];
+            sides.into_iter().for_each(|side| divisors(side, found));
+        }
+    }
+}
+
+fn power_of_two(value: f64) -> Option<i32> {
+    (0..=30).find(|&power| exp2(power) == value)
+}
+
+/// Every way that a formula can go.
+///
+/// # Errors
+/// What has no translation.
+pub fn branches(real: &Real, setting: &Setting, terms: &mut Terms) -> Result<Vec<Branch>, String> {
+    let pairs = |terms: &mut Terms, a: &Real, b: &Real| -> Result<Vec<(Branch, Id)>, String> {
+        let (first, second) = (branches(a, setting, terms)?, branches(b, setting, terms)?);
+        let mut pairs = Vec::new();
+        for one in &first {
+            for other in &second {
+                let mut both = one.clone();
+                both.at_least.extend(&other.at_least);
+                both.at_most.extend(&other.at_most);
+                pairs.push((both, other.term));
+            }
+        }
+        Ok(pairs)
+    };
+    let operation = |terms: &mut Terms, a: &Real, b: &Real, make: fn(Id, Id) -> Term| {
+        let pairs = pairs(terms, a, b)?;
+        let made = pairs.into_iter().map(|(branch, right)| {
+            let term = folded(terms, make(branch.term, right));
+            Branch { term, ..branch }
+        });
+        Ok(made.collect())
+    };
+    let plain = |term: Id| vec![Branch { term, ..Branch::default() }];
+    match real {
+        Real::Number(value) => Ok(plain(terms.number(*value))),
+        Real::Operand(name) => Ok(plain(operand(name, setting, terms)?)),
+        Real::Word(rom, place) => {
+            let place = constant(place, setting).ok_or("a table is read at several places")?;
+            let word = setting.words.get(rom).and_then(|words| words.get(place as usize));
+            let word = word.ok_or_else(|| format!("there is no word {place} in `{rom}`"))?;
+            Ok(plain(terms.number(*word)))
+        }
+        Real::Add(a, b) => operation(terms, a, b, Term::Add),
+        Real::Sub(a, b) => operation(terms, a, b, Term::Sub),
+        Real::Mul(a, b) => operation(terms, a, b, Term::Mul),
+        Real::Div(a, b) => {
+            if let (Real::Operand(name), Real::Number(by)) = (&**a, &**b)
+                && let Some((variable, divisor)) = setting.variables.get(name)
+                && Some(*divisor) == power_of_two(*by)
+                && *divisor > 0
+            {
+                return Ok(plain(variable_of(name, variable, *divisor, setting, terms)));
+            }
+            operation(terms, a, b, Term::Div)
+        }
+        Real::Power(base, exponent) => {
+            let exponent =
+                constant(exponent, setting).ok_or("a power with an exponent that varies")?;
+            if let Some(base) = constant(base, setting) {
+                return Ok(plain(terms.number(libm::pow(base, exponent))));
+            }
+            let mut found = branches(base, setting, terms)?;
+            for branch in &mut found {
+                branch.term = power(terms, branch.term, exponent as u32);
+            }
+            Ok(found)
+        }
+        Real::Max(a, b) => {
+            let mut found = Vec::new();
+            for (branch, right) in pairs(terms, a, b)? {
+                let difference = folded(terms, Term::Sub(branch.term, right));
+                let (mut left, mut other) = (branch.clone(), Branch { term: right, ..branch });
+                left.at_least.push(difference);
+                other.at_most.push(difference);
+                found.extend([left, other]);
+            }
+            Ok(found)
+        }
+        Real::If(comparison, yes, no) => {
+            let decided = decided(comparison, setting);
+            let mut found = Vec::new();
+            for (taken, side) in [(true, yes), (false, no)] {
+                if decided == Some(!taken) {
+                    continue;
+                }
+                for side in branches(side, setting, terms)? {
+                    if decided.is_some() {
+                        found.push(side);
+                        continue;
+                    }
+                    for (condition, right) in pairs(terms, &comparison.left, &comparison.right)? {
+                        let difference = folded(terms, Term::Sub(condition.term, right));
+                        let mut branch = side.clone();
+                        branch.at_least.extend(&condition.at_least);
+                        branch.at_most.extend(&condition.at_most);
+                        let bound = if taken { &mut branch.at_least } else { &mut branch.at_most };
+                        bound.push(difference);
+                        found.push(branch);
+                    }
+                }
+            }
+            Ok(found)
+        }
+    }
+}
+
+fn operand(name: &str, setting: &Setting, terms: &mut Terms) -> Result<Id, String> {
+    let (variable, divisor) =
+        setting.variables.get(name).ok_or_else(|| format!("there is no operand `{name}`"))?;
+    let own = variable_of(name, variable, *divisor, setting, terms);
+    if *divisor == 0 {
+        return Ok(own);
+    }
+    let factor = terms.number(exp2(*divisor));
+    Ok(folded(terms, Term::Mul(own, factor)))
+}
+
+fn variable_of(
+    name: &str,
+    variable: &str,
+    divisor: i32,
+    setting: &Setting,
+    terms: &mut Terms,
+) -> Id {
+    match setting.ranges.get(name) {
+        Some((low, high)) if low == high => terms.number(low * exp2(-divisor)),
+        _ => terms.insert(Term::Variable(variable.to_owned()), variable),
+    }
+}
+
+/// The value of what does not vary in this case.
+fn constant(real: &Real, setting: &Setting) -> Option<f64> {
+    match real {
+        Real::Number(value) => Some(*value),
+        Real::Operand(name) => {
+            setting.ranges.get(name).filter(|(low, high)| low == high).map(|range| range.0)
+        }
+        _ => None,
+    }
+}
+
+/// Whether a comparison of an operand with a number holds for all values of this case, or for none.
+fn decided(comparison: &Comparison, setting: &Setting) -> Option<bool> {
+    let range = |real: &Real| match real {
+        Real::Number(value) => Some((*value, *value)),
+        Real::Operand(name) => setting.ranges.get(name).copied(),
+        _ => None,
+    };
+    let (left, right) = (range(&comparison.left)?, range(&comparison.right)?);
+    if left.0 > right.1 || comparison.or_equal && left.0 >= right.1 {
+        return Some(true);
+    }
+    if left.1 < right.0 || !comparison.or_equal && left.1 <= right.0 {
+        return Some(false);
+    }
+    None
+}
+
+/// By squaring, as the hardware has it.
+fn power(terms: &mut Terms, base: Id, exponent: u32) -> Id {
+    let mut result = None;
+    let (mut square, mut rest) = (base, exponent);
+    while rest > 0 {
+        if rest % 2 == 1 {
+            result = Some(match result {
+                None => square,
+                Some(result) => folded(terms, Term::Mul(result, square)),
+            });
+        }
+        rest /= 2;
+        if rest > 0 {
+            square = folded(terms, Term::Mul(square, square));
+        }
+    }
+    result.unwrap_or_else(|| terms.number(1.0))
+}
+
+/// The term, or what it is by the rules of 0 and 1, or the number that it is if that is exact.
+pub fn folded(terms: &mut Terms, term: Term) -> Id {
+    let value = |id: Id| match terms.get(id) {
+        Term::Number(value) => Some(*value),
+        _ => None,
+    };
+    let is = |id: Id, number: f64| value(id) == Some(number);
+    match term {
+        Term::Add(a, b) | Term::Sub(a, b) if is(b, 0.0) => return a,
+        Term::Add(a, b) if is(a, 0.0) => return b,
+        Term::Mul(a, b) if is(a, 0.0) || is(b, 0.0) => return terms.number(0.0),
+        Term::Mul(a, b) if is(a, 1.0) => return b,
+        Term::Mul(a, b) | Term::Div(a, b) if is(b, 1.0) => return a,
+        _ => {}
+    }
+    let exact = match term {
+        Term::Add(a, b) => value(a).zip(value(b)).and_then(|(a, b)| exact_sum(a, b)),
+        Term::Sub(a, b) => value(a).zip(value(b)).and_then(|(a, b)| exact_sum(a, -b)),
+        Term::Mul(a, b) => value(a).zip(value(b)).and_then(|(a, b)| {
+            let product = a * b;
+            (a.mul_add(b, -product) == 0.0).then_some(product)
+        }),
+        Term::Div(a, b) => value(a).zip(value(b)).and_then(|(a, b)| {
+            let quotient = a / b;
+            (quotient.mul_add(b, -a) == 0.0).then_some(quotient)
+        }),
+        _ => None,
+    };
+    match exact {
+        Some(value) => terms.number(value),
+        None => terms.insert(term, "exact"),
+    }
+}
+
+fn exact_sum(a: f64, b: f64) -> Option<f64> {
+    let sum = a + b;
+    (sum - a == b && sum - b == a).then_some(sum)
+}

@@ -1,0 +1,263 @@
+//! What the hardware computes on one way through it, as terms.
+
+use std::collections::HashMap;
+
+use super::cases::{Case, turns};
+use super::terms::{Direction, Id, Term, Terms};
+use crate::base::fixed::exp2;
+use crate::hdl::netlist::{NetId, Op};
+use crate::hdl::pipeline::{Cell, Graph, Interval};
+
+/// A node's raw value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Value {
+    /// It is this, on this way.
+    Constant(i128),
+    /// The term times two to the power of `scale`.
+    Term {
+        /// The value with its point.
+        id: Id,
+        /// Fraction bits.
+        scale: i32,
+    },
+}
+
+/// The operands as terms: by their number in the graph, the variable and its fraction bits.
+pub type Variables = Vec<(String, i32)>;
+
+/// Translates nodes of one case.
+pub struct Hardware<'a> {
+    graph: &'a Graph,
+    case: &'a Case,
+    variables: &'a Variables,
+    known: HashMap<NetId, Value>,
+}
+
+impl<'a> Hardware<'a> {
+    /// Nothing translated yet.
+    pub fn new(graph: &'a Graph, case: &'a Case, variables: &'a Variables) -> Self {
+        Self { graph, case, variables, known: HashMap::new() }
+    }
+
+    fn range(&self, id: NetId) -> Interval {
+        self.case.ranges[id.index()]
+    }
+
+    /// The node as a value.
+    ///
+    /// # Errors
+    /// The operation that has no translation, with the name of its result.
+    pub fn value(&mut self, terms: &mut Terms, id: NetId) -> Result<Value, String> {
+        if let Some(&value) = self.known.get(&id) {
+            return Ok(value);
+        }
+        let (low, high) = self.range(id);
+        let value = if low == high { Value::Constant(low) } else { self.translated(terms, id)? };
+        self.known.insert(id, value);
+        Ok(value)
+    }
+
+    fn translated(&mut self, terms: &mut Terms, id: NetId) -> Result<Value, String> {
+        let graph = self.graph;
+        let node = graph.node(id);
+        let name = node.label.name.clone();
+        let op = match &node.cell {
+            Cell::Op(op) => op,
+            Cell::Operand(at) => {
+                let (variable, scale) = self.variables[*at].clone();
+                let id = terms.insert(Term::Variable(variable.clone()), &variable);
+                return Ok(Value::Term { id, scale });
+            }
+            Cell::Read { .. } => return Err(format!("`{name}` is the word of a table")),
+            _ => return Err(format!("`{name}` is nothing that the operands determine")),
+        };
+        // What is to be added where bits above the format are dropped.
+        let turn = |range: Interval| {
+            turns(range, node.format).ok_or_else(|| {
+                let ((low, high), format) = (range, node.format);
+                format!("`{name}` is {format}, and {low} to {high} ulp come to it as far as intervals tell")
+            })
+        };
+        let case = self.case;
+        let range = |id: &NetId| case.ranges[id.index()];
+        match op {
+            Op::Relabel(a) | Op::Extend(a) => {
+                let turn = turn(range(a))?;
+                let a = self.value(terms, *a)?;
+                Ok(add(terms, a, Value::Constant(turn), Term::Add, &name))
+            }
+            Op::Mux { select, inputs } => {
+                let chosen = range(select).0 as usize;
+                self.value(terms, inputs[chosen.min(inputs.len() - 1)])
+            }
+            Op::Slice { of, low } => {
+                let turn = turn((range(of).0 >> low, range(of).1 >> low))?;
+                let of = self.value(terms, *of)?;
+                let cut = cut(terms, of, *low, Direction::Down, &name);
+                Ok(add(terms, cut, Value::Constant(turn), Term::Add, &name))
+            }
+            Op::Concat(parts) => {
+                let mut sum = Value::Constant(0);
+                let mut position = 0;
+                for part in parts.iter().rev() {
+                    if range(part).0 < 0 {
+                        return Err(format!("`{name}` joins bits of a negative number"));
+                    }
+                    let raised = raised(self.value(terms, *part)?, position);
+                    sum = add(terms, sum, raised, Term::Add, &name);
+                    position += graph.width(*part) as i32;
+                }
+                Ok(sum)
+            }
+            Op::Not(a) => {
+                let most = if node.format.signed { -1 } else { node.format.range().1 };
+                let a = self.value(terms, *a)?;
+                // The inverse of an unsigned number stands for 1.0 less it, with the point at its top.
+                let a = match (a, node.format.signed) {
+                    (Value::Term { id, scale }, false) => {
+                        let wanted = node.format.width() as i32;
+                        Value::Term { id: scaled(terms, id, scale - wanted, &name), scale: wanted }
+                    }
+                    _ => a,
+                };
+                Ok(add(terms, Value::Constant(most), a, Term::Sub, &name))
+            }
+            Op::Add { a, b, carry } => {
+                if let Some((of, low)) = self.rounded(*a, *b) {
+                    let half = 1 << (low - 1);
+                    let turn = turn(((range(&of).0 + half) >> low, (range(&of).1 + half) >> low))?;
+                    let of = self.value(terms, of)?;
+                    let cut = cut(terms, of, low, Direction::Nearest, &name);
+                    return Ok(add(terms, cut, Value::Constant(turn), Term::Add, &name));
+                }
+                let one = carry.as_ref().map_or((0, 0), range);
+                let turn =
+                    turn((range(a).0 + range(b).0 + one.0, range(a).1 + range(b).1 + one.1))?;
+                let (a, b) = (self.value(terms, *a)?, self.value(terms, *b)?);
+                let (a, b) = match (a, b) {
+                    (Value::Constant(a), b) => (Value::Constant(a + turn), b),
+                    (a, Value::Constant(b)) => (a, Value::Constant(b + turn)),
+                    (a, b) => (add(terms, a, Value::Constant(turn), Term::Add, &name), b),
+                };
+                let sum = add(terms, a, b, Term::Add, &name);
+                match carry {
+                    None => Ok(sum),
+                    Some(carry) => {
+                        let carry = self.value(terms, *carry)?;
+                        Ok(add(terms, sum, carry, Term::Add, &name))
+                    }
+                }
+            }
+            Op::Sub(a, b) => {
+                let turn = turn((range(a).0 - range(b).1, range(a).1 - range(b).0))?;
+                let (a, b) = (self.value(terms, *a)?, self.value(terms, *b)?);
+                let difference = add(terms, a, b, Term::Sub, &name);
+                Ok(add(terms, difference, Value::Constant(turn), Term::Add, &name))
+            }
+            Op::Mul(a, b) => {
+                let (a, b) = (self.value(terms, *a)?, self.value(terms, *b)?);
+                let (a, a_scale) = placed(terms, a);
+                let (b, b_scale) = placed(terms, b);
+                let id = terms.insert(Term::Mul(a, b), &name);
+                Ok(Value::Term { id, scale: a_scale + b_scale })
+            }
+            Op::And(..)
+            | Op::Or(..)
+            | Op::Xor(..)
+            | Op::Equal(..)
+            | Op::Less(..)
+            | Op::Any(_)
+            | Op::All(_) => Err(format!("`{name}` is logic whose result is taken for a number")),
+        }
+    }
+
+    /// The number of which `a` holds the bits from `low` up and `b` the one below: their sum is that number
+    /// rounded to the nearest, halves up, for ⌊y⌋ + (⌊2y⌋ − 2⌊y⌋) = ⌊y + 1/2⌋. None where it may be negative.
+    fn rounded(&self, a: NetId, b: NetId) -> Option<(NetId, u32)> {
+        let inner = |id: NetId| match &self.graph.node(id).cell {
+            Cell::Op(Op::Extend(of) | Op::Relabel(of)) => *of,
+            _ => id,
+        };
+        let slice = |id: NetId| match &self.graph.node(inner(id)).cell {
+            Cell::Op(Op::Slice { of, low }) => Some((*of, *low)),
+            _ => None,
+        };
+        let one = |a: NetId, b: NetId| {
+            let ((of, low), (below, bit)) = (slice(a)?, slice(b)?);
+            let is = of == below
+                && bit + 1 == low
+                && self.graph.width(inner(b)) == 1
+                && self.range(of).0 >= 0
+                && low + self.graph.width(inner(a)) == self.graph.width(of);
+            is.then_some((of, low))
+        };
+        one(a, b).or_else(|| one(b, a))
+    }
+}
+
+/// Drops `low` bits.
+fn cut(terms: &mut Terms, value: Value, low: u32, direction: Direction, name: &str) -> Value {
+    match value {
+        Value::Constant(raw) => Value::Constant(match direction {
+            Direction::Down => raw >> low,
+            Direction::Nearest => (raw + (1 << low >> 1)) >> low,
+        }),
+        Value::Term { .. } if low == 0 => value,
+        Value::Term { id, scale } => {
+            let fraction = scale - low as i32;
+            let id = terms.insert(Term::Round { of: id, fraction, direction }, name);
+            Value::Term { id, scale: fraction }
+        }
+    }
+}
+
+/// The value with zeros below.
+fn raised(value: Value, position: i32) -> Value {
+    match value {
+        Value::Constant(raw) => Value::Constant(raw << position),
+        Value::Term { id, scale } => Value::Term { id, scale: scale + position },
+    }
+}
+
+/// The sum or the difference.
+fn add(terms: &mut Terms, a: Value, b: Value, operation: fn(Id, Id) -> Term, name: &str) -> Value {
+    let scale = match (a, b) {
+        (Value::Constant(a), Value::Constant(b)) => {
+            return Value::Constant(match operation(0, 0) {
+                Term::Sub(..) => a - b,
+                _ => a + b,
+            });
+        }
+        (Value::Constant(0), Value::Term { .. }) if matches!(operation(0, 0), Term::Add(..)) => {
+            return b;
+        }
+        (Value::Term { .. }, Value::Constant(0)) => return a,
+        (Value::Term { scale, .. }, Value::Constant(_))
+        | (Value::Constant(_), Value::Term { scale, .. }) => scale,
+        (Value::Term { scale: a, .. }, Value::Term { scale: b, .. }) => a.max(b),
+    };
+    let mut at = |value: Value| match value {
+        Value::Constant(raw) => terms.number(raw as f64 * exp2(-scale)),
+        Value::Term { id, scale: own } if own == scale => id,
+        Value::Term { id, scale: own } => scaled(terms, id, own - scale, name),
+    };
+    let (a, b) = (at(a), at(b));
+    Value::Term { id: terms.insert(operation(a, b), name), scale }
+}
+
+/// The term times two to the power of `power`.
+pub fn scaled(terms: &mut Terms, id: Id, power: i32, name: &str) -> Id {
+    if power == 0 {
+        return id;
+    }
+    let factor = terms.number(exp2(power));
+    terms.insert(Term::Mul(id, factor), name)
+}
+
+/// The value as a term and its fraction bits.
+pub fn placed(terms: &mut Terms, value: Value) -> (Id, i32) {
+    match value {
+        Value::Constant(raw) => (terms.number(raw as f64), 0),
+        Value::Term { id, scale } => (id, scale),
+    }
+}

@@ -1,0 +1,10 @@
+# configs/cosine_power.toml, blue_out, statement 1: accepted. To check: gappa blue_out_1.g
+
+product_5 = 1048576 * exponent_over_16;
+difference_8 = 0 - 0;
+
+{ @FIX(exponent_over_16,-4)
+  /\ exponent_over_16 in [0.0625,62.5]
+  /\ product_5 in [0,1048575.9375]
+  -> |difference_8| <= 0.6206207275390625 }
+

@@ -1,0 +1,31 @@
+# configs/cosine_power.toml, blue_out, statement 3: accepted. To check: gappa blue_out_3.g
+
+complement_2 = 1 - cos_gamma;
+product_4 = complement_2 * exponent_over_16;
+product_view_kept_inside_5 = fixed<-16,dn>(product_4);
+inverse_7 = 0.9999847412109375 - product_view_kept_inside_5;
+product_8 = inverse_7 * inverse_7;
+accumulator_9 = fixed<-16,dn>(product_8);
+product_10 = accumulator_9 * accumulator_9;
+accumulator_11 = fixed<-16,dn>(product_10);
+product_12 = accumulator_11 * accumulator_11;
+accumulator_13 = fixed<-16,dn>(product_12);
+product_14 = accumulator_13 * accumulator_13;
+accumulator_15 = fixed<-16,dn>(product_14);
+blue_product_17 = accumulator_15 * blue;
+blue_intensity_18 = fixed<0,na>(blue_product_17);
+exact_21 = cos_gamma - 1;
+exact_22 = exponent_over_16 * exact_21;
+exact_23 = exact_22 + 1;
+difference_29 = blue_intensity_18 - 0;
+
+{ @FIX(cos_gamma,-20)
+  /\ @FIX(exponent_over_16,-4)
+  /\ @FIX(blue,0)
+  /\ cos_gamma in [0.00000095367431640625,0.99999904632568359375]
+  /\ exponent_over_16 in [0.0625,62.5]
+  /\ product_4 in [0,0.999999940395355224609375]
+  /\ blue in [0,255]
+  /\ exact_23 <= 0
+  -> |difference_29| <= 0.6206207275390625 }
+

@@ -1,0 +1,26 @@
+# configs/cosine_power.toml, blue_out, statement 5: accepted. To check: gappa blue_out_5.g
+
+complement_6 = 1 - cos_gamma;
+product_7 = complement_6 * exponent_over_16;
+product_view_kept_bits_8 = fixed<0,dn>(product_7);
+exact_10 = cos_gamma - 1;
+exact_11 = exponent_over_16 * exact_10;
+exact_12 = exact_11 + 1;
+exact_13 = exact_12 * exact_12;
+exact_14 = exact_13 * exact_13;
+exact_15 = exact_14 * exact_14;
+exact_16 = exact_15 * exact_15;
+exact_17 = exact_16 * blue;
+difference_18 = 0 - exact_17;
+
+{ @FIX(cos_gamma,-20)
+  /\ @FIX(exponent_over_16,-4)
+  /\ @FIX(blue,0)
+  /\ cos_gamma in [0.00000095367431640625,0.99999904632568359375]
+  /\ exponent_over_16 in [0.0625,62.5]
+  /\ blue in [0,255]
+  /\ product_7 in [1,63.9375]
+  /\ product_view_kept_bits_8 in [1,63]
+  /\ exact_12 >= 0
+  -> |difference_18| <= 0.6206207275390625 }
+

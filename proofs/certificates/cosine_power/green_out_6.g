@@ -1,0 +1,19 @@
+# configs/cosine_power.toml, green_out, statement 6: accepted. To check: gappa green_out_6.g
+
+complement_6 = 1 - cos_gamma;
+product_7 = complement_6 * exponent_over_16;
+product_view_kept_bits_8 = fixed<0,dn>(product_7);
+exact_10 = cos_gamma - 1;
+exact_11 = exponent_over_16 * exact_10;
+exact_12 = exact_11 + 1;
+difference_17 = 0 - 0;
+
+{ @FIX(cos_gamma,-20)
+  /\ @FIX(exponent_over_16,-4)
+  /\ cos_gamma in [0.00000095367431640625,0.99999904632568359375]
+  /\ exponent_over_16 in [0.0625,62.5]
+  /\ product_7 in [1,63.9375]
+  /\ product_view_kept_bits_8 in [1,63]
+  /\ exact_12 <= 0
+  -> |difference_17| <= 0.6206207275390625 }
+
