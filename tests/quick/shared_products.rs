@@ -27,9 +27,11 @@ fn device(a_first: bool, held: bool) -> Design {
     let signed = product.of(first, second);
     let of_signed = d.register("of_signed", signed.format());
     of_signed.takes(signed);
+    d.output("signed_out", of_signed.q());
     let unsigned = product.of(c, e);
     let of_unsigned = d.register("of_unsigned", unsigned.format());
     of_unsigned.takes(unsigned);
+    d.output("unsigned_out", of_unsigned.q());
     d.microprogram([
         step("idle", []),
         step("settle a, b", [left.pick(first), right.pick(second)]),

@@ -124,7 +124,7 @@ fn a_record_stands_for_the_sweep_of_a_contract() {
     place.write("proofs/under_any_name.json", proof);
     let run = place.glint(WITHOUT_TOOLS);
     assert_eq!(run.code, 0, "{run:?}");
-    assert!(run.out.contains("By the record `proofs/under_any_name.json`"), "{}", run.out);
+    assert!(run.out.contains("by the record `proofs/under_any_name.json`"), "{}", run.out);
     let found = record(&place, "verification/core.json");
     let legs = found["legs"].as_array().expect("legs");
     let contract = legs.iter().find(|leg| leg["leg"] == "contract").expect("a leg");
