@@ -258,7 +258,7 @@ Examples:
     Certify {
         #[command(flatten)]
         configs: Configs,
-        /// Write each script as DIR/<name>/<output>_<number>.g
+        /// Write each script as `DIR/<name>/<output>_<number>.g`
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
         /// Have Coq check each of Gappa's proofs

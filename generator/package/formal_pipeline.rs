@@ -130,7 +130,11 @@ pub fn files(
         outputs: Row::declarations(&outputs),
         connections: separated(connections),
         stages: latency,
-        valids: separated(valid.into_iter().rev().collect()),
+        // An escaped name ends with a blank, or with the line.
+        valids: separated(valid.into_iter().rev().collect())
+            .into_iter()
+            .map(|line| line.trim_end().to_owned())
+            .collect(),
         stall: pipeline.stall,
         moves_when: if pipeline.stall { "out_ready | ~out_valid" } else { "1'b1" },
         empty: literal(0, latency as u32),

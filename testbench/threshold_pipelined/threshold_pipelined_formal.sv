@@ -68,7 +68,7 @@ module threshold_pipelined_formal (
         \dut.valid_s4 ,
         \dut.valid_s3 ,
         \dut.valid_s2 ,
-        \dut.valid_s1 
+        \dut.valid_s1
     };
 
     // The same of a queue, which all points move through together, unless a result waits.

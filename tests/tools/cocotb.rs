@@ -41,7 +41,7 @@ fn every_bench_passes() {
 #[test]
 fn benches_of_pipelines_with_and_without_stalls_and_a_side_channel_pass() {
     for more in ["side = 64\n", "stall = \"none\"\n", "stall = \"none\"\nside = 1\n"] {
-        let unit = configuration_with("configs/cosine_power_pipelined.toml", more);
+        let unit = configuration_with("configs/schlick_pipelined.toml", more);
         assert_passes(more, &unit);
     }
 }
