@@ -186,12 +186,17 @@ impl Text {
             top: format!("{name}_tb"),
             modules: Vec::new(),
         };
+        // Wrappers around the core have a bench and proofs of their own.
+        let core =
+            ["", "_control", "_datapath"].map(|part| format!("rtl_out/{name}/{name}{part}.v"));
         for file in files {
             let plain = file.path.rsplit('/').next().unwrap_or(&file.path).to_owned();
-            if !plain.ends_with(".v") && !plain.ends_with(".mem") {
+            let module = core.contains(&file.path);
+            let other = plain.ends_with(".v") && file.path.starts_with("rtl_out/") && !module;
+            if other || !plain.ends_with(".v") && !plain.ends_with(".mem") {
                 continue;
             }
-            if plain.ends_with(".v") && file.path.starts_with("rtl_out/") {
+            if module {
                 text.modules.push(text.files.len());
             }
             text.files.push((plain, file.contents));
