@@ -137,12 +137,17 @@ fn without_a_fault_nothing_is_noticed() {
     }
 }
 
-/// What the record does not name is noticed by lint or by the bench, and what it says is proved equivalent is not. Of
+/// Of the devices whose record has the Verilog of today: what it does not name is noticed by lint or by the bench, and what it says is proved equivalent is not. Of
 /// what it leaves open nothing is said here: a better bench may notice it.
 #[test]
 fn faults_of_the_verilog_are_noticed() {
+    let mut recorded = 0;
     for (path, unit) in defaults() {
         let record = record(&unit);
+        if record["verilog"].is_null() {
+            continue;
+        }
+        recorded += 1;
         let named = |list: &str| -> BTreeSet<&str> {
             let ids = record["verilog"][list].as_array().into_iter().flatten();
             ids.filter_map(Value::as_str).collect()
@@ -161,4 +166,8 @@ fn faults_of_the_verilog_are_noticed() {
             }
         }
     }
+    assert!(
+        recorded >= 4,
+        "{recorded} records have the Verilog: glint mutate --full --out mutation"
+    );
 }
