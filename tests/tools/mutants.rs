@@ -167,7 +167,7 @@ fn faults_of_the_verilog_are_noticed() {
         }
     }
     assert!(
-        recorded >= 4,
+        recorded >= 3,
         "{recorded} records have the Verilog: glint mutate --full --out mutation"
     );
 }
