@@ -5,6 +5,9 @@
 //! roundings ([`hardware`]), and the contract's formula ([`formula`]) one without ([`exact`]). What Gappa has to
 //! prove of each way and each output: the two differ by the contract's bound at most. The ways together cover the
 //! domain, so that the statements together are the contract.
+//!
+//! A formula that reads a table reads the words that the hardware has: that they are the right ones is not part of
+//! the statement.
 
 pub mod cases;
 pub mod exact;
@@ -41,8 +44,8 @@ const TRIES: usize = 20_000;
 pub struct Statement {
     /// The output that it speaks of.
     pub output: String,
-    /// The number of the case, from 1.
-    pub case: usize,
+    /// Its number among those of the output, from 1.
+    pub number: usize,
     /// Scripts of which one has to be accepted: where the formula jumps there are two that are right.
     pub scripts: Vec<String>,
 }
@@ -63,10 +66,9 @@ pub fn statements(design: &Design, contract: &dyn Contract) -> Result<Vec<Statem
         design.net(rom.data).format.raw(word)
     };
     let mut statements = Vec::new();
-    let mut number = 0;
     for known in task.split(&known) {
         for case in cases::cases(&unrolled.graph, &words, &results, &known)? {
-            task.state(&case, &mut number, &mut statements)?;
+            task.state(&case, &mut statements)?;
         }
     }
     Ok(statements)
@@ -172,12 +174,7 @@ impl Task<'_> {
     }
 
     /// The statements of one case.
-    fn state(
-        &self,
-        case: &Case,
-        number: &mut usize,
-        statements: &mut Vec<Statement>,
-    ) -> Result<(), String> {
+    fn state(&self, case: &Case, statements: &mut Vec<Statement>) -> Result<(), String> {
         let variables = self.variables();
         let mut ranges = HashMap::new();
         let mut placed = Variables::new();
@@ -238,7 +235,6 @@ impl Task<'_> {
                 if chosen.iter().any(|way| way.is_never(&terms)) {
                     continue;
                 }
-                *number += 1;
                 let script = Script {
                     terms: &terms,
                     hardware_terms,
@@ -249,9 +245,10 @@ impl Task<'_> {
                 let scripts = chosen
                     .iter()
                     .map(|way| script.text(out, colour, way.term, self.contract.bound().units));
+                let before = statements.iter().filter(|other| other.output == output).count();
                 statements.push(Statement {
                     output: output.clone(),
-                    case: *number,
+                    number: before + 1,
                     scripts: scripts.collect(),
                 });
             }

@@ -86,7 +86,7 @@ fn what_cannot_be_stated_says_which_step() {
 }
 
 #[test]
-fn committed_certificates_are_those_of_today() {
+fn committed_certificates_are_those_of_today_and_proved() {
     let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(root.join("configs/cosine_power.toml")).expect("a file");
     let registry = Registry::catalogue();
@@ -94,13 +94,14 @@ fn committed_certificates_are_those_of_today() {
     let device = registry.device("cosine-power").expect("in the catalogue");
     let design = device.sequential(&config).expect("a design");
     let stated = statements(&design, (device.contract)(&config).as_ref()).expect("statements");
-    let mut numbers = std::collections::BTreeMap::new();
+    let directory = "proofs/certificates/cosine_power";
+    let files = std::fs::read_dir(root.join(directory)).expect("certificates");
+    assert_eq!(files.count(), stated.len());
     for statement in &stated {
-        let number = numbers.entry(statement.output.as_str()).or_insert(0);
-        *number += 1;
-        let file = format!("proofs/certificates/cosine_power/{}_{number}.g", statement.output);
+        let file = format!("{directory}/{}_{}.g", statement.output, statement.number);
         let committed = std::fs::read_to_string(root.join(&file)).expect("a certificate");
         let (_, script) = committed.split_once("\n\n").expect("a head and a script");
         assert!(statement.scripts.iter().any(|it| it == script), "{file} is of another time");
+        assert!(accepted(&committed), "{file} is not proved");
     }
 }

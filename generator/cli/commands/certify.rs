@@ -1,6 +1,5 @@
 //! `certify`.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -9,10 +8,15 @@ use rayon::prelude::*;
 use serde_json::json;
 
 use super::load_sequential;
+use crate::base::transient::Directory;
 use crate::certify::{Statement, statements};
+use crate::cli::own_file::OwnFile;
 use crate::cli::{Output, progress, tables};
 use crate::registry::Registry;
 use crate::tools::Tool;
+
+/// What a script of ours begins with: nothing else is overwritten.
+const MARKER: &str = "# Certificate by Glint: ";
 
 /// What `certify` was asked for.
 pub struct CertifyRequest {
@@ -98,11 +102,14 @@ pub fn certify(
                 ),
             });
             for (statement, why) in open.iter().take(3) {
-                tables::print_line(&format!("  {} of {}: {why}", statement.case, statement.output));
+                tables::print_line(&format!(
+                    "  {} of {}: {why}",
+                    statement.number, statement.output
+                ));
             }
         }
         let open = open.iter().map(|(statement, why)| {
-            json!({ "number": statement.case, "output": statement.output, "why": why })
+            json!({ "number": statement.number, "output": statement.output, "why": why })
         });
         let open: Vec<_> = open.collect();
         list.push(json!({
@@ -131,7 +138,7 @@ fn prove(
     statement: &Statement,
     limit: Duration,
 ) -> Result<Outcome> {
-    let place = tempfile::tempdir().context("cannot make a temporary directory")?;
+    let place = Directory::new().context("cannot make a temporary directory")?;
     let mut why = String::new();
     for (number, script) in statement.scripts.iter().enumerate() {
         std::fs::write(place.path().join("statement.g"), script)
@@ -173,7 +180,8 @@ fn prove(
     Ok(Outcome::Open(why))
 }
 
-/// The accepted scripts, or the first of what is open, each in a file.
+/// The scripts, each in a file: the accepted one, or of what is open the first. Those of an earlier run with more
+/// statements go.
 fn write(
     directory: &Path,
     config: &str,
@@ -182,23 +190,29 @@ fn write(
 ) -> Result<()> {
     std::fs::create_dir_all(directory)
         .with_context(|| format!("cannot make `{}`", directory.display()))?;
-    let mut numbers: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut names = Vec::new();
     for (statement, outcome) in statements.iter().zip(outcomes) {
-        let number = numbers.entry(&statement.output).or_default();
-        *number += 1;
+        let Statement { output, number, scripts } = statement;
         let (chosen, state) = match outcome {
             Outcome::Proved(chosen) => (*chosen, "accepted"),
             Outcome::Open(_) => (0, "open"),
         };
-        let path = directory.join(format!("{}_{number}.g", statement.output));
-        let text = format!(
-            "# {config}, {}, statement {number}: {state}. To check: gappa {}\n\n{}",
-            statement.output,
-            path.file_name().unwrap_or_default().to_string_lossy(),
-            statement.scripts[chosen]
-        );
-        std::fs::write(&path, text)
-            .with_context(|| format!("cannot write `{}`", path.display()))?;
+        let name = format!("{output}_{number}.g");
+        let head = format!("{MARKER}{config}, {output}, statement {number}: {state}.");
+        let text = format!("{head} To check: gappa {name}\n\n{}", scripts[chosen]);
+        OwnFile::new(directory, &name, MARKER)?.write(&text)?;
+        names.push(name);
+    }
+    let entries = std::fs::read_dir(directory);
+    for entry in entries.with_context(|| format!("cannot read `{}`", directory.display()))? {
+        let path = entry.context("cannot read a directory")?.path();
+        let own = path.file_name().and_then(|name| name.to_str()).is_some_and(|name| {
+            name.ends_with(".g") && !names.iter().any(|written| written == name)
+        });
+        if own && std::fs::read_to_string(&path).is_ok_and(|text| text.starts_with(MARKER)) {
+            std::fs::remove_file(&path)
+                .with_context(|| format!("cannot remove `{}`", path.display()))?;
+        }
     }
     Ok(())
 }

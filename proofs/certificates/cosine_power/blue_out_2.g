@@ -1,4 +1,4 @@
-# configs/cosine_power.toml, blue_out, statement 2: accepted. To check: gappa blue_out_2.g
+# Certificate by Glint: configs/cosine_power.toml, blue_out, statement 2: accepted. To check: gappa blue_out_2.g
 
 complement_2 = 1 - cos_gamma;
 product_4 = complement_2 * exponent_over_16;

@@ -1,4 +1,4 @@
-# configs/cosine_power.toml, blue_out, statement 5: accepted. To check: gappa blue_out_5.g
+# Certificate by Glint: configs/cosine_power.toml, blue_out, statement 5: accepted. To check: gappa blue_out_5.g
 
 complement_6 = 1 - cos_gamma;
 product_7 = complement_6 * exponent_over_16;

@@ -1,4 +1,4 @@
-# configs/cosine_power.toml, blue_out, statement 7: accepted. To check: gappa blue_out_7.g
+# Certificate by Glint: configs/cosine_power.toml, blue_out, statement 7: accepted. To check: gappa blue_out_7.g
 
 blue_product_2 = 65520 * blue;
 blue_intensity_3 = fixed<16,na>(blue_product_2);

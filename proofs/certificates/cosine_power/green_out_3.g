@@ -1,4 +1,4 @@
-# configs/cosine_power.toml, green_out, statement 3: accepted. To check: gappa green_out_3.g
+# Certificate by Glint: configs/cosine_power.toml, green_out, statement 3: accepted. To check: gappa green_out_3.g
 
 complement_2 = 1 - cos_gamma;
 product_4 = complement_2 * exponent_over_16;

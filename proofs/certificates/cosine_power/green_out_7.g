@@ -1,4 +1,4 @@
-# configs/cosine_power.toml, green_out, statement 7: accepted. To check: gappa green_out_7.g
+# Certificate by Glint: configs/cosine_power.toml, green_out, statement 7: accepted. To check: gappa green_out_7.g
 
 green_product_2 = 65520 * green;
 green_intensity_3 = fixed<16,na>(green_product_2);

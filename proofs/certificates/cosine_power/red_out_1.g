@@ -1,4 +1,4 @@
-# configs/cosine_power.toml, red_out, statement 1: accepted. To check: gappa red_out_1.g
+# Certificate by Glint: configs/cosine_power.toml, red_out, statement 1: accepted. To check: gappa red_out_1.g
 
 product_5 = 1048576 * exponent_over_16;
 difference_8 = 0 - 0;

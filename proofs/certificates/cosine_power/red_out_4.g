@@ -1,4 +1,4 @@
-# configs/cosine_power.toml, red_out, statement 4: accepted. To check: gappa red_out_4.g
+# Certificate by Glint: configs/cosine_power.toml, red_out, statement 4: accepted. To check: gappa red_out_4.g
 
 product_5 = 1048576 * exponent_over_16;
 product_view_kept_bits_6 = fixed<20,dn>(product_5);

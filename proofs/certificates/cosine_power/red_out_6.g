@@ -1,4 +1,4 @@
-# configs/cosine_power.toml, red_out, statement 6: accepted. To check: gappa red_out_6.g
+# Certificate by Glint: configs/cosine_power.toml, red_out, statement 6: accepted. To check: gappa red_out_6.g
 
 complement_6 = 1 - cos_gamma;
 product_7 = complement_6 * exponent_over_16;

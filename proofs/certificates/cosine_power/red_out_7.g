@@ -1,4 +1,4 @@
-# configs/cosine_power.toml, red_out, statement 7: accepted. To check: gappa red_out_7.g
+# Certificate by Glint: configs/cosine_power.toml, red_out, statement 7: accepted. To check: gappa red_out_7.g
 
 red_product_2 = 65520 * red;
 red_intensity_3 = fixed<16,na>(red_product_2);

@@ -1,6 +1,7 @@
 //! The command line as a user meets it: the built program, in a directory of its own; messages, exit
 //! codes, and what is in the directory afterwards.
 
+mod certify;
 mod compare;
 mod configurations;
 mod cosim;

@@ -1,0 +1,59 @@
+//! `glint certify` as a user meets it, with a Gappa that says what a test wants.
+
+use super::place::{COSINE_POWER, Place, Run};
+
+fn certify(place: &Place, arguments: &[&str]) -> Run {
+    let mut command = place.command();
+    command.env("PATH", place.at("tools")).args(["certify", "core.toml"]).args(arguments);
+    Run::of(command.output())
+}
+
+#[test]
+fn a_missing_tool_is_named_with_the_way_to_get_it() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    std::fs::create_dir(place.at("tools")).unwrap();
+    certify(&place, &[]).refused(1, &["`gappa` is not on PATH", "apt install gappa"]);
+    #[cfg(unix)]
+    {
+        place.script("tools/gappa", "exit 0");
+        let refused = ["`coqc` is not on PATH", "apt install coq libcoq-gappa"];
+        certify(&place, &["--coq"]).refused(1, &refused);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn only_certificates_are_overwritten_and_old_ones_go() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    std::fs::create_dir(place.at("tools")).unwrap();
+    place.script("tools/gappa", "exit 0");
+    let run = certify(&place, &["--out", "out"]);
+    assert_eq!(run.code, 0, "{run:?}");
+    assert!(run.out.contains("certified: |output - formula| <= "), "{run:?}");
+    let first = place.read("out/core/red_out_1.g");
+    place.write("out/core/red_out_99.g", &first);
+    place.write("out/core/notes.g", "mine");
+    assert_eq!(certify(&place, &["--out", "out"]).code, 0);
+    assert_eq!(place.read("out/core/red_out_1.g"), first);
+    assert_eq!(place.read("out/core/notes.g"), "mine");
+    assert!(!place.at("out/core/red_out_99.g").exists());
+    place.write("out/core/red_out_1.g", "mine");
+    certify(&place, &["--out", "out"]).refused(1, &["red_out_1.g", "not of Glint's making"]);
+    assert_eq!(place.read("out/core/red_out_1.g"), "mine");
+}
+
+#[cfg(unix)]
+#[test]
+fn what_gappa_refuses_or_assumes_is_not_certified() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    std::fs::create_dir(place.at("tools")).unwrap();
+    for script in [
+        "echo 'Error: some properties were not satisfied:'; exit 1",
+        "echo 'Warning: a and b are not trivially equal.'; exit 0",
+    ] {
+        place.script("tools/gappa", script);
+        let run = certify(&place, &[]);
+        assert_eq!(run.code, 1, "{run:?}");
+        assert!(run.out.contains("not certified: 0 of "), "{run:?}");
+    }
+}
