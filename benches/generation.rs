@@ -7,7 +7,7 @@ use std::hint::black_box;
 use anyhow::{Context, Result, anyhow};
 use criterion::{Criterion, criterion_group, criterion_main};
 use glint::config;
-use glint::core::Unit;
+use glint::core::Core;
 use glint::package::OutputFile;
 use glint::registry::Registry;
 
@@ -18,9 +18,9 @@ fn generate(registry: &Registry, path: &str, text: &str) -> Result<Vec<OutputFil
     let config =
         config::parse(path, text, &registry.schemas()).map_err(|problems| anyhow!("{problems}"))?;
     let device = registry.device(&config.device).context("a device")?;
-    let unit = Unit::new(*device, config)?;
-    black_box(unit.contract.bound());
-    unit.files(path, unit.shipped_vectors()?)
+    let core = Core::new(*device, config)?;
+    black_box(core.contract.bound());
+    core.files(path, core.shipped_vectors()?)
 }
 
 fn both(registry: &Registry, texts: &[(&str, String)]) -> Result<Vec<Vec<OutputFile>>> {

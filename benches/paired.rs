@@ -26,7 +26,7 @@ use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, ensure};
 use glint::config::Config;
-use glint::core::Unit;
+use glint::core::Core;
 use glint::hdl::netlist::{NetId, Role};
 use glint::hdl::sim::Simulator;
 use glint::package::Vectors;
@@ -69,17 +69,17 @@ fn main() -> Result<()> {
             continue;
         }
         let name = device.name.replace('-', "_");
-        let unit = Unit::new(*device, Config::defaults(&(device.schema)(), &name))?;
-        let streams = Streams::record(&unit)?;
-        let verilator = Verilator::build(&unit, &streams)?;
-        let icarus = Icarus::build(&unit, &streams)?;
+        let core = Core::new(*device, Config::defaults(&(device.schema)(), &name))?;
+        let streams = Streams::record(&core)?;
+        let verilator = Verilator::build(&core, &streams)?;
+        let icarus = Icarus::build(&core, &streams)?;
         let mut rounds = Vec::new();
         let mut verdicts = Vec::new();
         for _ in 0..ROUNDS {
-            let design = streams.design(&unit)?;
-            let golden = golden(&unit)?;
+            let design = streams.design(&core)?;
+            let golden = golden(&core)?;
             rounds.push([design, golden, verilator.run()?, icarus.run()?].map(|rate| rate / 1e6));
-            verdicts.push(verdict(&unit)?);
+            verdicts.push(verdict(&core)?);
         }
         let figure = |of: fn(&[f64; 4]) -> f64| median(rounds.iter().map(of).collect());
         println!(
@@ -142,11 +142,11 @@ struct Streams {
 }
 
 impl Streams {
-    fn record(unit: &Unit) -> Result<Self> {
-        let role = |wanted| unit.design.port(move |role| role == wanted);
+    fn record(core: &Core) -> Result<Self> {
+        let role = |wanted| core.design.port(move |role| role == wanted);
         let mut streams = Self {
             inputs: (1..=LANES as u64)
-                .map(|seed| Ok(unit.vectors(POINTS, seed)?.inputs))
+                .map(|seed| Ok(core.vectors(POINTS, seed)?.inputs))
                 .collect::<Result<_>>()?,
             valid: role(Role::Valid).context("an output `valid`")?.net,
             result: role(Role::Result).context("a result")?.net,
@@ -156,7 +156,7 @@ impl Streams {
         for stream in &mut streams.inputs {
             stream.truncate(clocks);
         }
-        streams.sum = streams.replay(&unit.design, 1)?.1;
+        streams.sum = streams.replay(&core.design, 1)?.1;
         Ok(streams)
     }
 
@@ -190,18 +190,18 @@ impl Streams {
     }
 
     /// Clocks per second of the built-in simulator.
-    fn design(&self, unit: &Unit) -> Result<f64> {
-        let (seconds, sum) = self.replay(&unit.design, PASSES)?;
+    fn design(&self, core: &Core) -> Result<f64> {
+        let (seconds, sum) = self.replay(&core.design, PASSES)?;
         ensure!(sum == self.sum.wrapping_mul(PASSES as u64), "another sum");
         Ok((PASSES * self.clocks()) as f64 / seconds)
     }
 
     /// All streams one after the other, with the outputs before each edge.
-    fn vectors(&self, unit: &Unit) -> Result<Vectors> {
-        let mut simulator: Simulator = Simulator::new(&unit.design)?;
-        let outputs: Vec<NetId> = unit.design.outputs().map(|port| port.net).collect();
+    fn vectors(&self, core: &Core) -> Result<Vectors> {
+        let mut simulator: Simulator = Simulator::new(&core.design)?;
+        let outputs: Vec<NetId> = core.design.outputs().map(|port| port.net).collect();
         let mut vectors =
-            Vectors { known_from: unit.vectors(1, 1)?.known_from, ..Vectors::default() };
+            Vectors { known_from: core.vectors(1, 1)?.known_from, ..Vectors::default() };
         for inputs in self.inputs.iter().flatten() {
             let outputs = outputs.iter().map(|&net| simulator.value(net));
             vectors.expected.push(outputs.collect());
@@ -216,27 +216,27 @@ impl Streams {
 }
 
 /// Clocks per second of one thread with golden model and comparison.
-fn golden(unit: &Unit) -> Result<f64> {
+fn golden(core: &Core) -> Result<f64> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
-    let lockstep = unit.lockstep(1)?;
+    let lockstep = core.lockstep(1)?;
     let (seconds, outcome) = pool.install(|| timed(|| lockstep.run(GOLDEN_POINTS, &|_| ())))?;
     ensure!(outcome.mismatch.is_none(), "golden model and simulation differ");
     Ok(outcome.clocks as f64 / seconds)
 }
 
 /// Seconds of wall time from the configuration to the verdict, on all threads.
-fn verdict(unit: &Unit) -> Result<f64> {
+fn verdict(core: &Core) -> Result<f64> {
     let begin = Instant::now();
-    let unit = Unit::new(unit.device, unit.config.clone())?;
-    let outcome = unit.lockstep(1)?.run(VERDICT_POINTS, &|_| ())?;
+    let core = Core::new(core.device, core.config.clone())?;
+    let outcome = core.lockstep(1)?.run(VERDICT_POINTS, &|_| ())?;
     ensure!(outcome.mismatch.is_none(), "golden model and simulation differ");
     Ok(begin.elapsed().as_secs_f64())
 }
 
 /// Writes what the simulators outside need, and returns the names of the Verilog files.
-fn write(unit: &Unit, vectors: &Vectors, place: &Path) -> Result<Vec<String>> {
+fn write(core: &Core, vectors: &Vectors, place: &Path) -> Result<Vec<String>> {
     let mut sources = Vec::new();
-    for file in unit.files("bench", vectors.clone())? {
+    for file in core.files("bench", vectors.clone())? {
         let name = file.name().to_owned();
         fs::write(place.join(&name), &file.contents)?;
         if name.ends_with(".v") {
@@ -255,15 +255,15 @@ struct Verilator {
 }
 
 impl Verilator {
-    fn build(unit: &Unit, streams: &Streams) -> Result<Self> {
+    fn build(core: &Core, streams: &Streams) -> Result<Self> {
         let place = tempfile::tempdir()?;
-        let name = |net: NetId| &unit.design.net(net).name;
-        let sources = write(unit, &streams.vectors(unit)?, place.path())?;
+        let name = |net: NetId| &core.design.net(net).name;
+        let sources = write(core, &streams.vectors(core)?, place.path())?;
         let mut ports = format!(
             "constexpr int INPUTS = {};\n\nstatic void drive(Vtop& top, const uint64_t* row) {{\n",
-            unit.design.inputs().count()
+            core.design.inputs().count()
         );
-        for (at, port) in unit.design.inputs().enumerate() {
+        for (at, port) in core.design.inputs().enumerate() {
             writeln!(ports, "    top.{} = row[{at}];", name(port.net))?;
         }
         let result = name(streams.result);
@@ -283,7 +283,7 @@ impl Verilator {
                 .split(' ')
                 .filter(|argument| !argument.is_empty())
                 .collect();
-        arguments.push(&unit.config.name);
+        arguments.push(&core.config.name);
         arguments
             .extend(sources.iter().map(String::as_str).filter(|file| !file.ends_with("_tb.v")));
         arguments.push("paired.cpp");
@@ -321,9 +321,9 @@ struct Icarus {
 }
 
 impl Icarus {
-    fn build(unit: &Unit, streams: &Streams) -> Result<Self> {
+    fn build(core: &Core, streams: &Streams) -> Result<Self> {
         let place = tempfile::tempdir()?;
-        let sources = write(unit, &streams.vectors(unit)?, place.path())?;
+        let sources = write(core, &streams.vectors(core)?, place.path())?;
         let mut arguments = ["-g2012", "-o", "bench.vvp"].map(str::to_owned).to_vec();
         arguments.extend(sources);
         Tool::find("iverilog")?.run_to_success(arguments, place.path(), LIMIT)?;

@@ -49,7 +49,7 @@ pub enum Through {
 }
 
 /// A configuration with its design.
-pub struct Unit {
+pub struct Core {
     /// The device.
     pub device: Device,
     /// Its configuration.
@@ -60,7 +60,7 @@ pub struct Unit {
     pub contract: Box<dyn Contract>,
 }
 
-impl Unit {
+impl Core {
     /// Builds and checks the design.
     ///
     /// # Errors
@@ -170,7 +170,7 @@ impl Unit {
     /// and directed ones, which show the datapath and its tables.
     ///
     /// # Errors
-    /// Those of [`Unit::vectors`].
+    /// Those of [`Core::vectors`].
     pub fn shipped_vectors(&self) -> Result<Vectors> {
         if self.design.pipeline.is_some() {
             return self.vectors(PIPELINE_POINTS, BENCH_SEED);

@@ -12,21 +12,21 @@
 //! | predict it, clock by clock and by its formula | [`golden::device`], [`golden::highlight`] |
 //! | state its keys, and read a configuration | [`config`] |
 //! | simulate a design in the program | [`hdl::sim::Simulator`] |
-//! | have all of it for a configuration: model, contract, files, co-simulation | [`core::Unit`] |
+//! | have all of it for a configuration: model, contract, files, co-simulation | [`core::Core`] |
 //!
 //! What has no page here is public for the tests of this crate, and may change in any version.
 //!
 //! ```
 //! use glint::config::Config;
-//! use glint::core::Unit;
+//! use glint::core::Core;
 //! use glint::registry::Registry;
 //!
 //! let registry = Registry::catalogue();
 //! let device = *registry.devices().iter().find(|it| it.name == "cosine-power").unwrap();
-//! let unit = Unit::new(device, Config::defaults(&(device.schema)(), "highlight")).unwrap();
-//! assert!(unit.contract.bound().units < 1.0);
+//! let core = Core::new(device, Config::defaults(&(device.schema)(), "highlight")).unwrap();
+//! assert!(core.contract.bound().units < 1.0);
 //! // Golden model and simulation on every clock of a hundred points.
-//! let outcome = unit.lockstep(1).unwrap().run(100, &|_| ()).unwrap();
+//! let outcome = core.lockstep(1).unwrap().run(100, &|_| ()).unwrap();
 //! assert!(outcome.mismatch.is_none());
 //! ```
 

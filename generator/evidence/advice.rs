@@ -3,7 +3,7 @@
 use std::fmt;
 
 use crate::config::{Config, Kind, Schema, Value};
-use crate::core::Unit;
+use crate::core::Core;
 use crate::golden::Bound;
 use crate::registry::Device;
 
@@ -33,7 +33,7 @@ impl fmt::Display for Advice {
     }
 }
 
-impl Unit {
+impl Core {
     /// The change of one key that would bring the error bound down most.
     pub fn advice(&self) -> Option<Advice> {
         advise(&self.device, &self.config, &self.contract.bound())

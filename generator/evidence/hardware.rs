@@ -9,7 +9,7 @@ use serde::Serialize;
 use super::claims::Measured;
 use super::comparison;
 use crate::config::Config;
-use crate::core::Unit;
+use crate::core::Core;
 use crate::registry::Registry;
 use crate::tools::Tool;
 use crate::tools::synthesis::{self, FAMILIES, Family};
@@ -108,33 +108,33 @@ pub fn synthesised(
     else {
         return Ok(None);
     };
-    let units: Vec<Unit> = rivals
+    let cores: Vec<Core> = rivals
         .into_iter()
         .map(|device| {
             let schema = (device.schema)();
             let config = Config::defaults(&schema, &device.name.replace('-', "_"));
-            Unit::new(*device, config)
+            Core::new(*device, config)
         })
         .collect::<Result<_>>()?;
-    let files: Vec<_> = units.iter().map(Unit::verilog).collect::<Result<_>>()?;
+    let files: Vec<_> = cores.iter().map(Core::verilog).collect::<Result<_>>()?;
     let usage: Vec<FamilyUsage> = (0..STEPS)
         .into_par_iter()
         .map(|step| {
             let (one, family) = (step / FAMILIES.len(), &FAMILIES[step % FAMILIES.len()]);
-            let usage = take(yosys, &files[one], &units[one].config.name, family, limit);
+            let usage = take(yosys, &files[one], &cores[one].config.name, family, limit);
             done();
             usage
         })
         .collect::<Result<_>>()?;
-    let devices: Vec<Rival> = units
+    let devices: Vec<Rival> = cores
         .iter()
         .zip(usage.chunks(FAMILIES.len()))
-        .map(|(unit, usage)| {
-            let contract = unit.contract.as_ref();
-            let clocks = comparison::clocks_per_point(&unit.design, contract, EXPONENT)?;
-            let multipliers = comparison::multipliers(&unit.design);
+        .map(|(core, usage)| {
+            let contract = core.contract.as_ref();
+            let clocks = comparison::clocks_per_point(&core.design, contract, EXPONENT)?;
+            let multipliers = comparison::multipliers(&core.design);
             Ok(Rival {
-                device: unit.device.name.to_owned(),
+                device: core.device.name.to_owned(),
                 clocks_per_point: clocks,
                 multipliers: multipliers.iter().map(ToString::to_string).collect(),
                 usage: usage.to_vec(),
@@ -168,15 +168,15 @@ fn take(
 /// # Errors
 /// Yosys fails, or takes longer than `limit`.
 pub fn usage(
-    unit: &Unit,
+    core: &Core,
     (yosys, limit): Synthesis,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<FamilyUsage>> {
-    let files = unit.verilog()?;
+    let files = core.verilog()?;
     let families = FAMILIES.par_iter();
     families
         .map(|family| {
-            let usage = take(yosys, &files, &unit.config.name, family, limit);
+            let usage = take(yosys, &files, &core.config.name, family, limit);
             done();
             usage
         })

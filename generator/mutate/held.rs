@@ -8,7 +8,7 @@ use anyhow::Result;
 
 use super::coverage::{Operands, operand_of};
 use super::verdict::Difference;
-use crate::core::Unit;
+use crate::core::Core;
 use crate::cosim::Lockstep;
 use crate::cosim::exhaustive::Clocks;
 use crate::hdl::netlist::{Design, Driver, RegisterKind, RomId};
@@ -23,8 +23,8 @@ const SEED: u64 = 3;
 const MOST_BITS: u32 = 22;
 
 /// The operand whose register addresses a ROM, held at a word.
-pub(super) fn addressing(unit: &Unit, rom: RomId, word: usize) -> Option<Operands> {
-    let design = &unit.design;
+pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operands> {
+    let design = &core.design;
     let net = design.net(design.rom(rom).address);
     let Driver::Register(id) = net.driver else {
         return None;
@@ -38,9 +38,9 @@ pub(super) fn addressing(unit: &Unit, rom: RomId, word: usize) -> Option<Operand
 ///
 /// # Errors
 /// The mutant cannot be simulated.
-pub(super) fn drawn(unit: &Unit, mutant: &Design, held: Operands) -> Result<Option<Difference>> {
-    let model = (unit.device.model)(&unit.config);
-    let lockstep = Lockstep::new(mutant, model, unit.contract.as_ref(), SEED)?.holding(&held);
+pub(super) fn drawn(core: &Core, mutant: &Design, held: Operands) -> Result<Option<Difference>> {
+    let model = (core.device.model)(&core.config);
+    let lockstep = Lockstep::new(mutant, model, core.contract.as_ref(), SEED)?.holding(&held);
     let mismatch = lockstep.run(POINTS, &|_| ())?.mismatch;
     Ok(mismatch.map(|mismatch| Difference { held, mismatch }))
 }
@@ -59,15 +59,15 @@ pub(super) enum Tried {
 ///
 /// # Errors
 /// The mutant cannot be simulated.
-pub(super) fn all(unit: &Unit, mutant: &Design, mut held: Operands) -> Result<Tried> {
-    let contract = unit.contract.as_ref();
+pub(super) fn all(core: &Core, mutant: &Design, mut held: Operands) -> Result<Tried> {
+    let contract = core.contract.as_ref();
     if contract.length().is_some() {
         return Ok(Tried::Nothing);
     }
     // A colour shows what f is; the register of f is compared.
     let colours = contract.operands().iter().filter(|it| it.colour);
     held.extend(colours.map(|it| (it.name.clone(), it.domain.1)));
-    let model = (unit.device.model)(&unit.config);
+    let model = (core.device.model)(&core.config);
     let clocks = Clocks::new(mutant, model, contract)?.holding(&held);
     if clocks.bits() > MOST_BITS {
         return Ok(Tried::Nothing);

@@ -5,7 +5,7 @@ use anyhow::Result;
 
 use super::coverage::Coverage;
 use super::fault::{Bit, Fault, Site};
-use crate::core::{TEST_POINTS, TEST_SEED, Unit};
+use crate::core::{Core, TEST_POINTS, TEST_SEED};
 use crate::hdl::netlist::NetId;
 use crate::hdl::sim::Simulator;
 
@@ -31,10 +31,10 @@ impl Watch<'_> {
 ///
 /// # Errors
 /// A design that cannot be simulated.
-pub fn unreached<'f>(unit: &Unit, faults: &[&'f Fault]) -> Result<Vec<&'f Fault>> {
-    let lockstep = unit.lockstep(TEST_SEED)?;
+pub fn unreached<'f>(core: &Core, faults: &[&'f Fault]) -> Result<Vec<&'f Fault>> {
+    let lockstep = core.lockstep(TEST_SEED)?;
     // What a register holds is seen after the edge; what other nets show in between is not.
-    let registers = unit.design.registers.iter().map(|register| register.q);
+    let registers = core.design.registers.iter().map(|register| register.q);
     let nets: Vec<NetId> = registers.collect();
     let begin = |_| Watch { nets: &nets, seen: vec![[0; 2]; nets.len()] };
     let streams = lockstep.watch(TEST_POINTS, begin, Watch::note)?;
@@ -46,7 +46,7 @@ pub fn unreached<'f>(unit: &Unit, faults: &[&'f Fault]) -> Result<Vec<&'f Fault>
     };
     let reads_words = faults.iter().any(|fault| matches!(fault.site, Site::Words(..)));
     let coverage = match reads_words {
-        true => Some(Coverage::of(&unit.design, &lockstep, TEST_POINTS)?),
+        true => Some(Coverage::of(&core.design, &lockstep, TEST_POINTS)?),
         false => None,
     };
     let is_unreached = |fault: &Fault| match &fault.site {

@@ -12,7 +12,7 @@ use super::plant;
 use super::proof::Prover;
 use super::shipped::Shipped;
 use super::verdict::{Check, Difference, Found, How, Verdict};
-use crate::core::{self, Unit};
+use crate::core::{self, Core};
 use crate::cosim::{Lockstep, Mismatch};
 use crate::golden::Model;
 use crate::hdl::netlist::{Design, RomId};
@@ -30,19 +30,19 @@ const BEYOND_SEED: u64 = 2;
 /// # Errors
 /// A mutant that cannot be simulated.
 pub fn run<'f>(
-    unit: &Unit,
+    core: &Core,
     faults: impl IntoIterator<Item = &'f Fault>,
     progress: &(dyn Fn() + Sync),
 ) -> Result<Vec<Found>> {
-    let lockstep = unit.lockstep(core::TEST_SEED)?;
+    let lockstep = core.lockstep(core::TEST_SEED)?;
     let bench = Bench {
-        unit,
-        sound: plant::bare(&unit.design),
-        model: (unit.device.model)(&unit.config),
-        prover: Prover::new(&unit.design),
-        tested: Coverage::of(&unit.design, &lockstep, core::TEST_POINTS)?,
+        core,
+        sound: plant::bare(&core.design),
+        model: (core.device.model)(&core.config),
+        prover: Prover::new(&core.design),
+        tested: Coverage::of(&core.design, &lockstep, core::TEST_POINTS)?,
         beyond: OnceLock::new(),
-        shipped: Shipped::of(unit)?,
+        shipped: Shipped::of(core)?,
     };
     let faults: Vec<&Fault> = faults.into_iter().collect();
     faults
@@ -57,7 +57,7 @@ pub fn run<'f>(
 
 /// What all faults of a configuration share.
 struct Bench<'a> {
-    unit: &'a Unit,
+    core: &'a Core,
     sound: Design,
     model: Box<dyn Model>,
     prover: Option<Prover<'a>>,
@@ -119,21 +119,21 @@ impl Bench<'_> {
         let directed = |difference| Verdict::Caught(Check::Directed, difference);
         let mut all_tried = true;
         for &(word, _) in words {
-            let addressing = held::addressing(self.unit, rom, word);
+            let addressing = held::addressing(self.core, rom, word);
             for held in addressing.iter().cloned().chain(self.readings(rom, word)?) {
-                if let Some(difference) = held::drawn(self.unit, mutant, held)? {
+                if let Some(difference) = held::drawn(self.core, mutant, held)? {
                     return Ok(directed(difference));
                 }
             }
             let tried = match addressing {
-                Some(held) => held::all(self.unit, mutant, held)?,
+                Some(held) => held::all(self.core, mutant, held)?,
                 None => Tried::Nothing,
             };
             match tried {
                 Tried::All => {}
                 Tried::Nothing => all_tried = false,
                 Tried::Differs(held) => {
-                    let shown = held::drawn(self.unit, mutant, held)?;
+                    let shown = held::drawn(self.core, mutant, held)?;
                     return Ok(shown.map_or(Verdict::Undecided, directed));
                 }
             }
@@ -151,7 +151,7 @@ impl Bench<'_> {
         if readings.is_empty() {
             readings = self.beyond()?.operands(design, rom, word).collect();
         }
-        let contract = self.unit.contract.operands();
+        let contract = self.core.contract.operands();
         let is_colour = |name: &str| contract.iter().any(|it| it.colour && it.name == name);
         for reading in &mut readings {
             reading.retain(|(name, _)| !is_colour(name));
@@ -160,7 +160,7 @@ impl Bench<'_> {
     }
 
     fn lockstep<'d>(&'d self, mutant: &'d Design, seed: u64) -> Result<Lockstep<'d>> {
-        let contract = self.unit.contract.as_ref();
+        let contract = self.core.contract.as_ref();
         Lockstep::new(mutant, self.model.boxed_clone(), contract, seed)
     }
 

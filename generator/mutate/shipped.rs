@@ -2,7 +2,7 @@
 
 use anyhow::Result;
 
-use crate::core::Unit;
+use crate::core::Core;
 use crate::hdl::netlist::{Design, Role};
 use crate::hdl::sim::Simulator;
 use crate::package::Vectors;
@@ -15,8 +15,8 @@ impl Shipped {
     ///
     /// # Errors
     /// Golden model and simulation do not agree.
-    pub(super) fn of(unit: &Unit) -> Result<Self> {
-        unit.shipped_vectors().map(Self)
+    pub(super) fn of(core: &Core) -> Result<Self> {
+        core.shipped_vectors().map(Self)
     }
 
     /// Whether a mutant differs in an output that the bench compares.

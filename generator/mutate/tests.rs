@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::proof::Prover;
 use super::{Fault, Faults, Kind, plant, unreached};
 use crate::config;
-use crate::core::{TEST_SEED, Unit};
+use crate::core::{Core, TEST_SEED};
 use crate::cosim::Lockstep;
 use crate::registry::Registry;
 
@@ -17,10 +17,10 @@ const EVERY: usize = 29;
 /// Points in which most faults show.
 const POINTS: u64 = 200;
 
-fn unit(path: &str) -> Unit {
+fn core(path: &str) -> Core {
     let registry = Registry::catalogue();
     let config = config::read(Path::new(path), &registry.schemas()).unwrap();
-    Unit::new(*registry.device(&config.device).unwrap(), config).unwrap()
+    Core::new(*registry.device(&config.device).unwrap(), config).unwrap()
 }
 
 #[test]
@@ -29,18 +29,18 @@ fn no_proof_of_what_shows() {
     let (mut proved, mut noticed) = (0, 0);
     for device in devices.devices() {
         let path = format!("configs/{}.toml", device.name.replace('-', "_"));
-        let unit = unit(&path);
-        let prover = Prover::new(&unit.design).unwrap();
-        let sound = plant::bare(&unit.design);
-        let faults = Faults::of(&unit.design);
+        let core = core(&path);
+        let prover = Prover::new(&core.design).unwrap();
+        let sound = plant::bare(&core.design);
+        let faults = Faults::of(&core.design);
         let faults: Vec<_> = faults.iter().step_by(EVERY).collect();
         let of_each: Vec<(bool, bool)> = faults
             .par_iter()
             .map(|fault| {
                 let is_proved = prover.proves(&fault.site).is_some();
                 let mutant = fault.planted(&sound);
-                let model = (unit.device.model)(&unit.config);
-                let lockstep = Lockstep::new(&mutant, model, unit.contract.as_ref(), 5).unwrap();
+                let model = (core.device.model)(&core.config);
+                let lockstep = Lockstep::new(&mutant, model, core.contract.as_ref(), 5).unwrap();
                 let shows = lockstep.run_alone(POINTS).unwrap().mismatch.is_some();
                 assert!(!(is_proved && shows), "{path}: {}", fault.id);
                 (is_proved, shows)
@@ -55,15 +55,15 @@ fn no_proof_of_what_shows() {
 /// The default test cannot notice what it never comes to, and comes to nearly everything.
 #[test]
 fn what_is_never_reached_is_never_noticed() {
-    let unit = unit("configs/reduced/schlick.toml");
-    let faults = Faults::of(&unit.design);
+    let core = core("configs/reduced/schlick.toml");
+    let faults = Faults::of(&core.design);
     let faults: Vec<&Fault> = faults.iter().collect();
-    let unreached = unreached(&unit, &faults).unwrap();
+    let unreached = unreached(&core, &faults).unwrap();
     assert!(unreached.len() * 4 < faults.len(), "{} of {}", unreached.len(), faults.len());
     for fault in &unreached {
-        let mutant = fault.planted(&unit.design);
-        let model = (unit.device.model)(&unit.config);
-        let contract = unit.contract.as_ref();
+        let mutant = fault.planted(&core.design);
+        let model = (core.device.model)(&core.config);
+        let contract = core.contract.as_ref();
         let lockstep = Lockstep::new(&mutant, model, contract, TEST_SEED).unwrap();
         assert_eq!(lockstep.run(2_000, &|_| ()).unwrap().mismatch, None, "{}", fault.id);
     }

@@ -20,7 +20,7 @@ use serde::{Deserialize, Serialize};
 
 use super::formal;
 use crate::base::transient::Directory;
-use crate::core::{TEST_SEED, Unit};
+use crate::core::{Core, TEST_SEED};
 use crate::package::{self, EmitInputs};
 use crate::tools::{BuiltBench, Simulator, Tool, Waveform};
 
@@ -173,12 +173,12 @@ impl Text {
     ///
     /// # Errors
     /// A tool is missing; golden model and simulation differ; the design cannot be written.
-    pub fn of(unit: &Unit) -> Result<Self> {
+    pub fn of(core: &Core) -> Result<Self> {
         TOOLS.iter().try_for_each(|tool| Tool::find(tool).map(drop))?;
-        let name = &unit.config.name;
-        let files = unit.files(&format!("{name}.toml"), unit.shipped_vectors()?)?;
-        let vectors = Some(unit.vectors(POINTS, TEST_SEED)?);
-        let longer = package::emit(&unit.design, &EmitInputs { vectors, ..EmitInputs::default() })?;
+        let name = &core.config.name;
+        let files = core.files(&format!("{name}.toml"), core.shipped_vectors()?)?;
+        let vectors = Some(core.vectors(POINTS, TEST_SEED)?);
+        let longer = package::emit(&core.design, &EmitInputs { vectors, ..EmitInputs::default() })?;
         let bench = longer.into_iter().filter(|file| file.path.starts_with("testbench/"));
         let mut text = Self {
             files: Vec::new(),

@@ -341,8 +341,8 @@ mod tests {
         let registry = Registry::catalogue();
         for device in registry.devices() {
             let config = crate::config::Config::defaults(&(device.schema)(), "core");
-            let unit = crate::core::Unit::new(*device, config).expect("the defaults work");
-            let formula = &unit.design.about.formula;
+            let core = crate::core::Core::new(*device, config).expect("the defaults work");
+            let formula = &core.design.about.formula;
             assert!(mathml(formula).is_some(), "{}: {formula}", device.name);
         }
     }

@@ -15,9 +15,9 @@ pub use markdown::page;
 
 use anyhow::Result;
 
-use crate::core::Unit;
+use crate::core::Core;
 
-impl Unit {
+impl Core {
     /// The page of the configuration, which the command line knows as `config`.
     ///
     /// # Errors

@@ -34,7 +34,7 @@ pub use scene::{BACKGROUND, BuiltIn, COLOUR, Light, Object, Scene, Shape};
 pub use shade::Material;
 pub use vector::Vector;
 
-use crate::core::Unit;
+use crate::core::Core;
 use crate::cosim::batch::{Engine, Points};
 use crate::golden::{Contract, nearer};
 use camera::Camera;
@@ -123,9 +123,9 @@ pub fn usual_exponent(contract: &dyn Contract) -> u32 {
 }
 
 /// Whether a picture has the operands of a device.
-pub fn draws(unit: &Unit) -> bool {
-    let contract = unit.contract.as_ref();
-    Feed::new(unit.device.name, contract, usual_exponent(contract)).is_ok()
+pub fn draws(core: &Core) -> bool {
+    let contract = core.contract.as_ref();
+    Feed::new(core.device.name, contract, usual_exponent(contract)).is_ok()
 }
 
 /// Checks what is to be rendered.
@@ -171,7 +171,7 @@ pub fn check(settings: &Settings, scene: &Scene) -> Result<()> {
 /// Those of [`check`]; a camera that sees nowhere; operands that a picture cannot supply; and those of the
 /// engine.
 pub fn render(
-    unit: &Unit,
+    core: &Core,
     engine: &mut dyn Engine,
     scene: &Scene,
     settings: &Settings,
@@ -183,12 +183,12 @@ pub fn render(
     let (middle, radius) = scene.extent();
     let aspect = f64::from(width) / f64::from(height);
     let camera = Camera::new(&settings.view, aspect, middle, scene.balls())?;
-    let contract = unit.contract.as_ref();
-    let feed = Feed::new(unit.device.name, contract, settings.material.exponent)?;
+    let contract = core.contract.as_ref();
+    let feed = Feed::new(core.device.name, contract, settings.material.exponent)?;
     ensure!(
         feed.longest().is_none() || scene.relief.is_none(),
         "the device `{}` walks lines of points, which a height map cannot perturb",
-        unit.device.name
+        core.device.name
     );
     let raster = Raster::new(width as usize * samples, height as usize * samples, &camera);
     let visibility = Visibility::new(scene, &camera, raster, radius);
@@ -201,7 +201,7 @@ pub fn render(
         compare: settings.compare,
     };
     let mut result = Portions {
-        unit,
+        core,
         feed: &feed,
         engine,
         samples,
@@ -234,7 +234,7 @@ pub fn render(
 
 /// What has been rendered so far, and what computes the rest.
 struct Portions<'a> {
-    unit: &'a Unit,
+    core: &'a Core,
     feed: &'a Feed,
     engine: &'a mut dyn Engine,
     /// Along each side of a pixel.
@@ -285,7 +285,7 @@ impl Portions<'_> {
 
     /// What was computed for each sample and each of its lights.
     fn specular(&self, rows: &[Shaded], outputs: &[i64]) -> Vec<Vector> {
-        let width = self.unit.contract.outputs().len();
+        let width = self.core.contract.outputs().len();
         let result = |at: usize| &outputs[at * width..(at + 1) * width];
         let mut all = Vec::new();
         let mut first = 0;
@@ -332,7 +332,7 @@ impl Portions<'_> {
 
     /// The largest error of an output against the device's own formula, in output units.
     fn error(&self, points: &Points, outputs: &[i64]) -> f64 {
-        let contract = self.unit.contract.as_ref();
+        let contract = self.core.contract.as_ref();
         let width = contract.outputs().len();
         let units: Vec<f64> = contract.outputs().iter().map(|it| it.format.to_f64(1)).collect();
         let starts: Vec<usize> = (0..points.len())

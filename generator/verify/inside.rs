@@ -28,7 +28,7 @@ pub const DESIGN: Leg = Leg {
     tools: &[],
     steps: |_| 1,
     run: |subject, _, _| {
-        let (design, bound) = (&subject.unit.design, subject.unit.contract.bound());
+        let (design, bound) = (&subject.core.design, subject.core.contract.bound());
         let finding = Finding::new(
             Verdict::Proved,
             "all nets, registers, ROMs and words of the microprogram".to_owned(),
@@ -66,8 +66,8 @@ fn points(subject: &Subject<'_>) -> u64 {
 }
 
 fn lockstep(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
-    let outcome = subject.unit.lockstep(TEST_SEED)?.run(points(subject), progress)?;
-    let bound = subject.unit.contract.bound();
+    let outcome = subject.core.lockstep(TEST_SEED)?.run(points(subject), progress)?;
+    let bound = subject.core.contract.bound();
     let worst = outcome.worst.as_ref().map_or_else(String::new, |worst| {
         format!(
             " The largest error against the formula in f64 is {:.3} units, of a stated {:.3}.",
@@ -99,13 +99,13 @@ pub const CONTRACT: Leg = Leg {
     tools: &[],
     steps: |subject| match evaluations(subject) {
         all if is_short(subject, all) => all,
-        _ => Recorded::steps(subject.unit.contract.as_ref(), AGAIN),
+        _ => Recorded::steps(subject.core.contract.as_ref(), AGAIN),
     },
     run: |subject, _, progress| contract(subject, progress),
 };
 
 fn evaluations(subject: &Subject<'_>) -> u64 {
-    let job = Job::new(subject.unit.contract.as_ref());
+    let job = Job::new(subject.core.contract.as_ref());
     job.f.count() + job.colours.count()
 }
 
@@ -115,10 +115,10 @@ fn is_short(subject: &Subject<'_>, evaluations: u64) -> bool {
 
 /// The whole proof; or, where it is long, its record, checked again in part.
 fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
-    let contract = subject.unit.contract.as_ref();
+    let contract = subject.core.contract.as_ref();
     let all = evaluations(subject);
     if !is_short(subject, all) {
-        let digest = subject.unit.contract_digest();
+        let digest = subject.core.contract_digest();
         return Ok(match Recorded::find(subject.proofs, &digest, contract)? {
             Some(record) => recorded(&record, contract, progress),
             None => without_record(subject, all),
@@ -189,11 +189,11 @@ pub const CLOCKS: Leg = Leg {
     question: "Has every register and output the value that the golden model predicts, on every clock, for every combination of operands?",
     tools: &[],
     steps: |subject| {
-        let clocks = subject.unit.clocks();
+        let clocks = subject.core.clocks();
         clocks.map_or(1, |clocks| clocks.count().max(1))
     },
     run: |subject, _, progress| {
-        let clocks = subject.unit.clocks()?;
+        let clocks = subject.core.clocks()?;
         if clocks.count() == 0 {
             return Ok(Finding::without(Verdict::NotCovered, clocks.omits()));
         }
@@ -218,17 +218,17 @@ pub const MUTATION: Leg = Leg {
     title: "Faults in the netlist",
     question: "Does the test notice each of the faults that are planted in the netlist, one at a time?",
     tools: &[],
-    steps: |subject| match subject.unit.design.pipeline {
-        None => Faults::of(&subject.unit.design).len() as u64,
+    steps: |subject| match subject.core.design.pipeline {
+        None => Faults::of(&subject.core.design).len() as u64,
         Some(_) => 1,
     },
     run: |subject, _, progress| {
-        if subject.unit.design.pipeline.is_some() {
+        if subject.core.design.pipeline.is_some() {
             let why = "Faults are planted in netlists with a microprogram; a pipeline has none.";
             return Ok(Finding::without(Verdict::NotCovered, why.to_owned()));
         }
-        let faults = Faults::of(&subject.unit.design);
-        let found = mutate::run(subject.unit, faults.iter(), &|| progress(1))?;
+        let faults = Faults::of(&subject.core.design);
+        let found = mutate::run(subject.core, faults.iter(), &|| progress(1))?;
         let score = Score::of(&found);
         let all = &score.all;
         let (caught, equivalent) = (all.all_caught(), all.all_equivalent());
@@ -248,7 +248,7 @@ pub const MUTATION: Leg = Leg {
         // The fault-free design passes the same test: that too little is noticed speaks of the test.
         let unnoticed = found.iter().filter(|found| found.verdict == mutate::Verdict::Undecided);
         let unnoticed: Vec<&Fault> = unnoticed.map(|found| &found.fault).collect();
-        let unreached = mutate::unreached(subject.unit, &unnoticed)?;
+        let unreached = mutate::unreached(subject.core, &unnoticed)?;
         let ids: Vec<String> = unreached.iter().map(|fault| fault.id.clone()).collect();
         let words = format!(
             "{words} More than 1 %: the test is too weak to say much; it shows nothing against the core. {}{MORE_STIMULUS}",

@@ -18,7 +18,7 @@ use std::time::{Duration, Instant};
 use anyhow::Result;
 use serde::Serialize;
 
-use crate::core::Unit;
+use crate::core::Core;
 use crate::tools::Tool;
 
 /// A configuration to be verified.
@@ -26,7 +26,7 @@ pub struct Subject<'a> {
     /// What the command line calls it.
     pub path: &'a str,
     /// The configuration and its design.
-    pub unit: &'a Unit,
+    pub core: &'a Core,
     /// How much is done.
     pub effort: Effort,
     /// Where records of `cosim --exhaustive --json` are.
@@ -302,9 +302,9 @@ impl Record {
         Self {
             glint: env!("CARGO_PKG_VERSION"),
             config: subject.path.to_owned(),
-            name: subject.unit.config.name.clone(),
-            device: subject.unit.device.name,
-            configuration: subject.unit.digest(),
+            name: subject.core.config.name.clone(),
+            device: subject.core.device.name,
+            configuration: subject.core.digest(),
             full: subject.effort.full,
             conclusion: Conclusion::of(&legs),
             legs,

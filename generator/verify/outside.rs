@@ -33,14 +33,14 @@ pub const LINT: Leg = Leg {
     run: |subject, tools, _| {
         let place = Directory::new().context("cannot make a directory for the linters")?;
         let mut sources = Vec::new();
-        for (name, contents) in subject.unit.verilog()? {
+        for (name, contents) in subject.core.verilog()? {
             fs::write(place.path().join(&name), contents)
                 .with_context(|| format!("cannot write `{name}` for the linters"))?;
             if name.ends_with(".v") {
                 sources.push(name);
             }
         }
-        let (name, limit) = (&subject.unit.config.name, subject.effort.time_limit);
+        let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
         let mut faults = Vec::new();
         for tool in tools {
             let remarks = lint(tool, place.path(), &sources, name, limit)?;
@@ -78,12 +78,12 @@ pub const VERILATOR: Leg = Leg {
 };
 
 fn bench(subject: &Subject<'_>, simulator: Simulator) -> Result<Finding> {
-    let (unit, effort) = (subject.unit, subject.effort);
+    let (core, effort) = (subject.core, subject.effort);
     let points = POINTS[usize::from(effort.full)];
-    let vectors = unit.vectors(points, BENCH_SEED)?;
+    let vectors = core.vectors(points, BENCH_SEED)?;
     let clocks = vectors.inputs.len() as u64;
-    let files = package::sources(unit.files(subject.path, vectors)?);
-    let top = format!("{}_tb", unit.config.name);
+    let files = package::sources(core.files(subject.path, vectors)?);
+    let top = format!("{}_tb", core.config.name);
     let outcome = run_bench(simulator, &files, &top, effort.time_limit)?;
     let faults = match outcome.passed {
         true => Vec::new(),
@@ -106,8 +106,8 @@ pub const SYNTHESIS: Leg = Leg {
     tools: &["yosys"],
     steps: |_| FAMILIES.len() as u64,
     run: |subject, tools, progress| {
-        let (name, limit) = (&subject.unit.config.name, subject.effort.time_limit);
-        let files = subject.unit.verilog()?;
+        let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
+        let files = subject.core.verilog()?;
         let taken: Vec<String> = FAMILIES
             .par_iter()
             .map(|family| {
@@ -137,7 +137,7 @@ pub const FORMAL: Leg = Leg {
     steps: |_| 1,
     run: |subject, _, _| {
         let place = place(subject)?;
-        let (name, limit) = (&subject.unit.config.name, subject.effort.time_limit);
+        let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
         let flat = place.path().join("proof");
         fs::create_dir(&flat).context("cannot make a directory for the proof")?;
         for directory in ["rtl_out", "testbench"] {
@@ -186,7 +186,7 @@ pub const COCOTB: Leg = Leg {
             return Ok(Finding::without(Verdict::NotRun, why));
         }
         let place = place(subject)?;
-        let name = &subject.unit.config.name;
+        let name = &subject.core.config.name;
         let bench = format!("testbench/{name}/test_{name}.py");
         let run = python.run([&bench], place.path(), limit)?;
         let verdict = run.output.lines().rev().find(|line| line.contains(&format!("{name}: ")));
@@ -207,8 +207,8 @@ pub const COCOTB: Leg = Leg {
 /// Everything that is emitted, in a directory of its own.
 fn place(subject: &Subject<'_>) -> Result<Directory> {
     let place = Directory::new().context("cannot make a directory for what is emitted")?;
-    let vectors = subject.unit.shipped_vectors()?;
-    let files = subject.unit.files(subject.path, vectors)?;
+    let vectors = subject.core.shipped_vectors()?;
+    let files = subject.core.files(subject.path, vectors)?;
     for file in files.iter().chain([&package::driver()]) {
         let path = place.path().join(&file.path);
         path.parent()
@@ -227,11 +227,11 @@ pub const GATES: Leg = Leg {
     tools: &["yosys", "iverilog", "vvp"],
     steps: |_| simulated().count() as u64,
     run: |subject, tools, progress| {
-        let (name, limit) = (&subject.unit.config.name, subject.effort.time_limit);
-        let vectors = subject.unit.vectors(GATE_POINTS, BENCH_SEED)?;
+        let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
+        let vectors = subject.core.vectors(GATE_POINTS, BENCH_SEED)?;
         let clocks = vectors.inputs.len() as u64;
-        let sources = package::sources(subject.unit.files(subject.path, vectors)?);
-        let rtl = subject.unit.verilog()?;
+        let sources = package::sources(subject.core.files(subject.path, vectors)?);
+        let rtl = subject.core.verilog()?;
         let names: Vec<String> = rtl.iter().map(|(name, _)| name.clone()).collect();
         let families: Vec<_> = simulated().collect();
         let faults: Vec<Option<String>> = families

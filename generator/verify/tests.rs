@@ -5,22 +5,22 @@ use std::time::Duration;
 
 use super::{Conclusion, Effort, Finding, LEGS, Record, Subject, Verdict};
 use crate::config;
-use crate::core::Unit;
+use crate::core::Core;
 use crate::registry::Registry;
 
 /// A narrow device, of which every leg says something.
-fn unit() -> Unit {
+fn core() -> Core {
     let registry = Registry::catalogue();
     let text = include_str!("../../configs/reduced/rough.toml");
     let config = config::parse("core.toml", text, &registry.schemas()).expect("a configuration");
     let device = *registry.device(&config.device).expect("a device");
-    Unit::new(device, config).expect("a design")
+    Core::new(device, config).expect("a design")
 }
 
 /// What the legs that need nothing but Glint say.
-fn verified(unit: &Unit) -> Record {
+fn verified(core: &Core) -> Record {
     let effort = Effort { full: false, without_tools: true, time_limit: Duration::from_secs(1) };
-    let subject = Subject { path: "core.toml", unit, effort, proofs: Path::new("proofs") };
+    let subject = Subject { path: "core.toml", core, effort, proofs: Path::new("proofs") };
     let legs = LEGS.iter().filter(|leg| !leg.is_outside());
     let answers = legs.map(|leg| leg.run(&subject, &|_| ())).collect();
     Record::new(&subject, answers)
@@ -33,14 +33,14 @@ fn finding<'a>(record: &'a Record, leg: &str) -> &'a Finding {
 
 #[test]
 fn a_fault_in_the_design_fails_the_lockstep() {
-    let mut unit = unit();
-    assert_eq!(verified(&unit).conclusion, Conclusion::Verified);
+    let mut core = core();
+    assert_eq!(verified(&core).conclusion, Conclusion::Verified);
     // The words of a ROM of the datapath, from the last to the first.
-    let control = unit.design.control.rom.index();
-    let rom = unit.design.roms.iter_mut().enumerate();
+    let control = core.design.control.rom.index();
+    let rom = core.design.roms.iter_mut().enumerate();
     let rom = rom.filter(|(at, _)| *at != control).map(|(_, rom)| rom);
     rom.for_each(|rom| rom.words.reverse());
-    let record = verified(&unit);
+    let record = verified(&core);
     assert_eq!(record.conclusion, Conclusion::Failed);
     let lockstep = finding(&record, "lockstep");
     assert_eq!(lockstep.verdict, Verdict::Failed);

@@ -8,8 +8,8 @@ use std::fs;
 use glint::tools::{Run, Simulator};
 use tempfile::TempDir;
 
+use super::cores::{Files, write};
 use super::tools::{LIMIT, tool};
-use super::units::{Files, write};
 
 /// A built bench beside its memories, which it reads when it starts.
 pub struct Bench {

@@ -1,10 +1,10 @@
 //! What several tests share.
 
 pub mod bench;
+pub mod cores;
 pub mod netlist;
 pub mod sample;
 pub mod tools;
-pub mod units;
 
 /// Cases of a fuzz test: so many by default, or what `GLINT_FUZZ_CASES` says.
 ///

@@ -10,8 +10,8 @@ use glint::tools::gates;
 use glint::tools::synthesis::Family;
 
 use super::bench::Bench;
+use super::cores::{Emitted, write};
 use super::tools::{tool, verilog_files, yosys};
-use super::units::{Emitted, write};
 
 /// Points of the bench that a netlist runs.
 pub const POINTS: u64 = 40;

@@ -1,8 +1,8 @@
 //! The prototype and the analogues of the seeds, `threshold`, `quadratic` and `lyon`, at the edges of
 //! their operands: the simulated hardware against values worked out by hand.
 
-use crate::common::units::configuration;
-use glint::core::Unit;
+use crate::common::cores::configuration;
+use glint::core::Core;
 use glint::hdl::netlist::Role;
 use glint::hdl::sim::Simulator;
 
@@ -11,8 +11,8 @@ const COSINE_ONE: i64 = 1 << 20;
 const COMPONENT_ONE: i64 = 1 << 16;
 
 /// The red output for the largest red, and the clocks from start to valid.
-fn red(unit: &Unit, operands: &[(&str, i64)]) -> (u64, u32) {
-    let design = &unit.design;
+fn red(core: &Core, operands: &[(&str, i64)]) -> (u64, u32) {
+    let design = &core.design;
     let mut simulator: Simulator = Simulator::new(design).expect("a simulator");
     let names: Vec<&str> = design.inputs().map(|port| design.net(port.net).name.as_str()).collect();
     let input = |name: &str| names.iter().position(|other| *other == name).expect(name);
@@ -38,16 +38,16 @@ fn red(unit: &Unit, operands: &[(&str, i64)]) -> (u64, u32) {
     (simulator.value(design.find("red_out").expect("red")), clocks)
 }
 
-fn of_cosine(unit: &Unit, cosine: i64, n: i64) -> u64 {
-    let (red, clocks) = red(unit, &[("cos_gamma", cosine), ("exponent", n)]);
+fn of_cosine(core: &Core, cosine: i64, n: i64) -> u64 {
+    let (red, clocks) = red(core, &[("cos_gamma", cosine), ("exponent", n)]);
     assert_eq!(clocks, 4);
     red
 }
 
 #[test]
 fn threshold() {
-    let unit = configuration("configs/threshold.toml");
-    let at = |cosine, n| of_cosine(&unit, cosine, n);
+    let core = configuration("configs/threshold.toml");
+    let at = |cosine, n| of_cosine(&core, cosine, n);
     // The peak, and what lies above it at the port.
     assert_eq!([at(COSINE_ONE, 1000), at(COSINE_ONE + 5, 1000)], [255, 255]);
     // n = 0 is 1.0 everywhere but where the surface faces away.
@@ -61,16 +61,16 @@ fn threshold() {
 /// At n = 16 the level is 8 units, 2056.03 words of f.
 #[test]
 fn threshold_at_its_level() {
-    let unit = configuration("configs/threshold_levels.toml");
+    let core = configuration("configs/threshold_levels.toml");
     // Bases of 11611 and 11610 words, whose squares are 2057 and 2056 words.
-    let at = |base: i64| of_cosine(&unit, COSINE_ONE - 2 * (65536 - base), 16);
+    let at = |base: i64| of_cosine(&core, COSINE_ONE - 2 * (65536 - base), 16);
     assert_eq!([at(11611), at(11610)], [8, 0]);
 }
 
 #[test]
 fn quadratic() {
-    let unit = configuration("configs/quadratic.toml");
-    let at = |cosine, n| of_cosine(&unit, cosine, n);
+    let core = configuration("configs/quadratic.toml");
+    let at = |cosine, n| of_cosine(&core, cosine, n);
     let half = COSINE_ONE / 2;
     assert_eq!([at(COSINE_ONE, 1023), at(COSINE_ONE + 1, 0)], [255, 255]);
     // n = 0 and n = 1: c itself, 127.5 units. n = 2: its square.
@@ -82,9 +82,9 @@ fn quadratic() {
 
 #[test]
 fn lyon_with_the_shift_register() {
-    let unit = configuration("configs/lyon.toml");
+    let core = configuration("configs/lyon.toml");
     let at = |[dx, dy, dz]: [i64; 3], shift| {
-        let (red, clocks) = red(&unit, &[("dx", dx), ("dy", dy), ("dz", dz), ("shift", shift)]);
+        let (red, clocks) = red(&core, &[("dx", dx), ("dy", dy), ("dz", dz), ("shift", shift)]);
         assert_eq!(clocks, 8 + shift as u32);
         red
     };
@@ -100,10 +100,10 @@ fn lyon_with_the_shift_register() {
 
 #[test]
 fn lyon_with_the_multiplier() {
-    let unit = configuration("configs/studies/lyon_multiplier.toml");
+    let core = configuration("configs/studies/lyon_multiplier.toml");
     let at = |[dx, dy, dz]: [i64; 3], n| {
         let operands = [("dx", dx), ("dy", dy), ("dz", dz), ("exponent", n)];
-        let (red, clocks) = red(&unit, &operands);
+        let (red, clocks) = red(&core, &operands);
         assert_eq!(clocks, 8);
         red
     };

@@ -4,11 +4,11 @@
 use std::collections::BTreeSet;
 
 use glint::config::{self, Config};
-use glint::core::Unit;
+use glint::core::Core;
 use glint::cosim::trial;
 use glint::registry::Registry;
 
-use crate::common::units::configurations;
+use crate::common::cores::configurations;
 
 /// Random configurations of `lyon`, whose clocks depend on an operand or not, as a key says.
 const CONFIGURATIONS: u64 = 48;
@@ -24,8 +24,8 @@ fn parsed(text: &str) -> Config {
 
 /// Clocks from start to start for every value of the port `shift`, or of none, and for the lowest and the highest
 /// of all others.
-fn clocks_of_every_shift(unit: &Unit) -> BTreeSet<u32> {
-    let operands = unit.contract.operands();
+fn clocks_of_every_shift(core: &Core) -> BTreeSet<u32> {
+    let operands = core.contract.operands();
     let shift = operands.iter().find(|operand| operand.name == "shift");
     let shifts =
         shift.map_or(0..=0, |shift| shift.format.min_raw() as i64..=shift.format.max_raw() as i64);
@@ -39,7 +39,7 @@ fn clocks_of_every_shift(unit: &Unit) -> BTreeSet<u32> {
             };
             let point: Vec<i64> = operands.iter().map(raw).collect();
             let (taken, results) =
-                trial::throughput(&unit.design, unit.contract.as_ref(), &point).expect("an end");
+                trial::throughput(&core.design, core.contract.as_ref(), &point).expect("an end");
             assert_eq!(results, 1);
             clocks.insert(taken);
         }
@@ -48,18 +48,18 @@ fn clocks_of_every_shift(unit: &Unit) -> BTreeSet<u32> {
 }
 
 #[track_caller]
-fn assert_stated_clocks_are_right(unit: &Unit) {
-    let stated = unit.timing().expect("a timing");
-    let taken = clocks_of_every_shift(unit);
+fn assert_stated_clocks_are_right(core: &Core) {
+    let stated = core.timing().expect("a timing");
+    let taken = clocks_of_every_shift(core);
     let latest = *taken.last().expect("a clock");
     if taken.len() == 1 {
-        assert_eq!(stated.start_to_start, Some(latest), "{}", unit.config.name);
+        assert_eq!(stated.start_to_start, Some(latest), "{}", core.config.name);
         assert_eq!(stated.start_to_done, Some(latest - 1));
         // The result comes in the last clock.
         assert_eq!(stated.start_to_valid, Some(latest - 1));
     } else {
         let fixed = [stated.start_to_valid, stated.start_to_done, stated.start_to_start];
-        assert_eq!(fixed, [None; 3], "{}: {taken:?}", unit.config.name);
+        assert_eq!(fixed, [None; 3], "{}: {taken:?}", core.config.name);
         assert!(stated.start_to_done_at_most.expect("a bound") >= latest - 1);
     }
 }
@@ -70,9 +70,9 @@ fn random_configurations_of_lyon() {
     let mut by_shift = 0;
     for seed in 0..CONFIGURATIONS {
         let config = config::sample(&(device.schema)(), seed);
-        let unit = Unit::new(device, config).expect("a design");
-        by_shift += u64::from(unit.design.find("shift").is_some());
-        assert_stated_clocks_are_right(&unit);
+        let core = Core::new(device, config).expect("a design");
+        by_shift += u64::from(core.design.find("shift").is_some());
+        assert_stated_clocks_are_right(&core);
     }
     assert!((1..CONFIGURATIONS).contains(&by_shift), "{by_shift} by shift");
 }
@@ -81,12 +81,12 @@ fn random_configurations_of_lyon() {
 #[test]
 fn a_domain_with_a_single_shift() {
     let domain = "[domain]\nexponent_min = 100\nexponent_max = 150\n";
-    let unit =
-        Unit::new(lyon(), parsed(&format!("device = \"lyon\"\n{domain}"))).expect("a design");
-    let operand = unit.contract.operands().iter().find(|operand| operand.name == "shift").cloned();
+    let core =
+        Core::new(lyon(), parsed(&format!("device = \"lyon\"\n{domain}"))).expect("a design");
+    let operand = core.contract.operands().iter().find(|operand| operand.name == "shift").cloned();
     let (low, high) = operand.expect("shift").domain;
     assert_eq!(low, high);
-    assert_stated_clocks_are_right(&unit);
+    assert_stated_clocks_are_right(&core);
 }
 
 /// What was measured at the domain's corners and is right stays as it was.
@@ -106,7 +106,7 @@ fn shipped_configurations_have_the_clocks_of_their_microprograms() {
     let all = configurations();
     for (name, clocks) in expected {
         let path = format!("configs/{name}.toml");
-        let (_, unit) = all.iter().find(|(found, _)| *found == path).expect("a configuration");
-        assert_eq!(unit.timing().expect("a timing").clocks_per_point(), clocks, "{name}");
+        let (_, core) = all.iter().find(|(found, _)| *found == path).expect("a configuration");
+        assert_eq!(core.timing().expect("a timing").clocks_per_point(), clocks, "{name}");
     }
 }

@@ -9,9 +9,9 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use crate::common::units::{configuration, configuration_with};
+use crate::common::cores::{configuration, configuration_with};
 use glint::config::Config;
-use glint::core::Unit;
+use glint::core::Core;
 use glint::cosim::exhaustive::{Clocks, Job, MOST_BITS, Proof, Shard, State};
 use glint::golden::Model;
 use glint::registry::{Device, Registry};
@@ -90,10 +90,10 @@ impl Model for Wrong {
 }
 
 /// The job of a configuration whose model is wrong.
-fn job(unit: &Unit, aim: Aim) -> Job<'_> {
-    let model = Wrong::new((unit.device.model)(&unit.config), aim);
-    let contract = unit.contract.as_ref();
-    let clocks = Clocks::new(&unit.design, Box::new(model), contract).expect("they fit");
+fn job(core: &Core, aim: Aim) -> Job<'_> {
+    let model = Wrong::new((core.device.model)(&core.config), aim);
+    let contract = core.contract.as_ref();
+    let clocks = Clocks::new(&core.design, Box::new(model), contract).expect("they fit");
     Job::new(contract).with(clocks)
 }
 
@@ -123,19 +123,19 @@ fn every_combination_of_every_device() {
     let mut devices = BTreeSet::new();
     for entry in fs::read_dir("configs/reduced").expect("configs/reduced/") {
         let path = entry.expect("an entry").path().display().to_string();
-        let unit = configuration(&path);
-        let job = unit.job().expect("they fit");
+        let core = configuration(&path);
+        let job = core.job().expect("they fit");
         let clocks = job.clocks.as_ref().expect("combinations");
         let bits: u32 =
-            (unit.contract.operands().iter()).map(|operand| operand.format.width()).sum();
+            (core.contract.operands().iter()).map(|operand| operand.format.width()).sum();
         assert!(bits <= MOST_BITS && clocks.bits() == bits, "{path}: {bits}");
         assert_eq!(clocks.count(), 1 << bits, "{path}");
         let state = whole(&job);
         let difference = state.clocks.differs.map(|place| clocks.difference(place));
         assert!(difference.is_none(), "{path}: {difference:?}");
-        let proof = Proof::new(unit.contract.as_ref(), state.f.peak, state.colours.peak);
+        let proof = Proof::new(core.contract.as_ref(), state.f.peak, state.colours.peak);
         assert!(proof.faults.is_empty(), "{path}: {:?}", proof.faults);
-        devices.insert(unit.device.name);
+        devices.insert(core.device.name);
     }
     let all: BTreeSet<&str> =
         (Registry::catalogue().devices().iter()).map(|device| device.name).collect();
@@ -151,9 +151,9 @@ fn every_combination_of_every_pipeline() {
         if sequential.contract.length().is_some() {
             continue;
         }
-        let unit = configuration_with(&path, PIPELINED);
-        assert!(unit.design.pipeline.is_some(), "{path}");
-        let clocks = unit.clocks().expect("they fit");
+        let core = configuration_with(&path, PIPELINED);
+        assert!(core.design.pipeline.is_some(), "{path}");
+        let clocks = core.clocks().expect("they fit");
         assert_eq!(clocks.count(), sequential.clocks().expect("they fit").count(), "{path}");
         let blocks = (0..clocks.blocks()).collect();
         let differs = clocks.check(blocks, &|_| ()).expect("it can be simulated");
@@ -165,8 +165,8 @@ fn every_combination_of_every_pipeline() {
 /// The combination of which a model errs, in a pipeline: found, had again, and no other.
 #[test]
 fn a_fault_that_one_combination_of_a_pipeline_shows_is_found() {
-    let unit = configuration_with(NARROW, PIPELINED);
-    let job = job(&unit, ONE);
+    let core = configuration_with(NARROW, PIPELINED);
+    let job = job(&core, ONE);
     let clocks = job.clocks.as_ref().expect("combinations");
     let place = whole(&job).clocks.differs.expect("it differs");
     let found = clocks.difference(place).expect("it can be had again");
@@ -176,7 +176,7 @@ fn a_fault_that_one_combination_of_a_pipeline_shows_is_found() {
     }
     assert_eq!((found.place, found.mismatch.signal.as_str()), (place, "red_out"));
     // It shows when the point is at the end.
-    let latency = unit.design.pipeline.as_ref().expect("a pipeline").stages.len();
+    let latency = core.design.pipeline.as_ref().expect("a pipeline").stages.len();
     assert_eq!(found.clock, latency as u64 - 1);
     let block = place / (clocks.count() / clocks.blocks());
     let others = (0..clocks.blocks()).filter(|&other| other != block);
@@ -186,8 +186,8 @@ fn a_fault_that_one_combination_of_a_pipeline_shows_is_found() {
 
 #[test]
 fn a_fault_that_one_combination_shows_is_found() {
-    let unit = configuration(NARROW);
-    let job = job(&unit, ONE);
+    let core = configuration(NARROW);
+    let job = job(&core, ONE);
     let clocks = job.clocks.as_ref().expect("combinations");
     let place = whole(&job).clocks.differs.expect("it differs");
     let found = clocks.difference(place).expect("it can be had again");
@@ -210,8 +210,8 @@ fn a_fault_that_one_combination_shows_is_found() {
 
 #[test]
 fn the_first_difference_is_the_same_however_the_work_is_divided() {
-    let unit = configuration(NARROW);
-    let job = job(&unit, SOME);
+    let core = configuration(NARROW);
+    let job = job(&core, SOME);
     let clocks = job.clocks.as_ref().expect("combinations");
     let whole = whole(&job);
     let first = whole.clocks.differs;

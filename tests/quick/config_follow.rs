@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use glint::config::{Config, Key, Kind, Problems, Schema, Value, parse};
-use glint::core::Unit;
+use glint::core::Core;
 use glint::registry::Registry;
 
 use crate::config_device::{lamp, schemas};
@@ -49,7 +49,7 @@ fn a_coarse_cosine_alone_is_a_valid_rough() {
     assert!(config.integers("sine.segments").len() <= 6, "{config:?}");
     let device = Registry::catalogue();
     let device = device.device("rough").expect("rough");
-    Unit::new(*device, config).unwrap_or_else(|error| panic!("{error:#}"));
+    Core::new(*device, config).unwrap_or_else(|error| panic!("{error:#}"));
 }
 
 /// Every integer of every device, at either end of its range and alone, makes a configuration, or is itself what is wrong.

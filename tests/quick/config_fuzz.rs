@@ -3,7 +3,7 @@
 use crate::common::cases;
 use crate::config_device::{lamp, schemas};
 use glint::config::{Config, Schema, commented, parse, read, sample};
-use glint::core::Unit;
+use glint::core::Core;
 use glint::registry::Registry;
 use proptest::collection::vec;
 use proptest::prelude::*;
@@ -235,9 +235,9 @@ proptest! {
         let registry = Registry::catalogue();
         if let Some(config) = answer(&text, &registry.schemas())? {
             let device = *registry.device(&config.device).expect("a device");
-            let unit = Unit::new(device, config);
-            prop_assert!(unit.is_ok(), "{:?}", unit.err());
-            prop_assert!(unit.expect("a unit").lockstep(1).is_ok());
+            let core = Core::new(device, config);
+            prop_assert!(core.is_ok(), "{:?}", core.err());
+            prop_assert!(core.expect("a core").lockstep(1).is_ok());
         }
     }
 }

@@ -5,19 +5,19 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use crate::common::units::{configuration, configurations};
-use glint::core::Unit;
+use crate::common::cores::{configuration, configurations};
+use glint::core::Core;
 use glint::cosim::exhaustive::Record;
 use glint::package::{Seal, is_sealed};
 use glint::pages::datasheet::{Datasheet, Subject, datasheet};
 use roxmltree::{Document, Node, ParsingOptions};
 use serde_json::Value;
 
-fn make(path: &str, unit: &Unit) -> Datasheet {
-    let digest = unit.contract_digest();
-    let proof = Record::find(Path::new("proofs"), &digest, unit.contract.as_ref());
+fn make(path: &str, core: &Core) -> Datasheet {
+    let digest = core.contract_digest();
+    let proof = Record::find(Path::new("proofs"), &digest, core.contract.as_ref());
     let subject = Subject {
-        unit,
+        core,
         path,
         proof: proof.unwrap_or_else(|error| panic!("{path}: {error:?}")),
         synthesis: None,
@@ -50,18 +50,18 @@ fn of_class<'a>(document: &'a Document, class: &'a str) -> impl Iterator<Item = 
 
 #[test]
 fn every_configuration_has_its_page() {
-    for (path, unit) in configurations() {
-        let made = make(&path, &unit);
+    for (path, core) in configurations() {
+        let made = make(&path, &core);
         let document = parse(&made.page);
         needs_nothing_else(&path, &made.page, &document);
         is_accessible(&path, &document);
         wires_are_clear(&path, &document);
-        has_the_blocks_of_the_netlist(&path, &document, &unit);
+        has_the_blocks_of_the_netlist(&path, &document, &core);
         // Studies are not in the main job, which writes manifests.
         if !path.starts_with("configs/studies/") {
-            has_the_clocks_of_the_manifest(&path, &made.wavedrom, &unit);
+            has_the_clocks_of_the_manifest(&path, &made.wavedrom, &core);
         }
-        has_every_word(&path, &document, &unit);
+        has_every_word(&path, &document, &core);
         assert!(is_sealed(made.page.as_bytes(), Seal::Markup), "{path}");
     }
 }
@@ -240,8 +240,8 @@ fn drawn(document: &Document) -> BTreeSet<u16> {
     numbers.collect()
 }
 
-fn has_the_blocks_of_the_netlist(path: &str, document: &Document, unit: &Unit) {
-    let design = &unit.design;
+fn has_the_blocks_of_the_netlist(path: &str, document: &Document, core: &Core) {
+    let design = &core.design;
     let nets = design.nets.iter().filter_map(|net| net.block);
     let roms = design.roms.iter().filter_map(|rom| rom.block);
     let lines = design.control.fields.iter().flat_map(|field| field.lines.iter().copied());
@@ -253,8 +253,8 @@ fn has_the_blocks_of_the_netlist(path: &str, document: &Document, unit: &Unit) {
     assert!(missing.is_empty(), "{path}: not drawn: {missing:?}");
 }
 
-fn has_the_clocks_of_the_manifest(path: &str, wavedrom: &str, unit: &Unit) {
-    let name = &unit.config.name;
+fn has_the_clocks_of_the_manifest(path: &str, wavedrom: &str, core: &Core) {
+    let name = &core.config.name;
     let manifest = fs::read_to_string(format!("rtl_out/{name}/{name}.json")).expect("a manifest");
     let manifest: Value = serde_json::from_str(&manifest).expect("JSON");
     let waves: Value = serde_json::from_str(wavedrom).expect("JSON");
@@ -276,11 +276,11 @@ fn has_the_clocks_of_the_manifest(path: &str, wavedrom: &str, unit: &Unit) {
     }
 }
 
-fn has_every_word(path: &str, document: &Document, unit: &Unit) {
-    let control = &unit.design.control;
-    let width = unit.design.width(unit.design.rom(control.rom).data);
+fn has_every_word(path: &str, document: &Document, core: &Core) {
+    let control = &core.design.control;
+    let width = core.design.width(core.design.rom(control.rom).data);
     let bits: String = of_class(document, "bit").map(text).collect();
-    let words = &unit.design.rom(control.rom).words;
+    let words = &core.design.rom(control.rom).words;
     let expected: String = words[..control.words.len()]
         .iter()
         .map(|word| format!("{word:0width$b}", width = width as usize))
@@ -291,16 +291,16 @@ fn has_every_word(path: &str, document: &Document, unit: &Unit) {
 #[test]
 fn the_same_bytes_twice() {
     let path = "configs/quad_cosine.toml";
-    let unit = configuration(path);
-    let (first, second) = (make(path, &unit), make(path, &unit));
+    let core = configuration(path);
+    let (first, second) = (make(path, &core), make(path, &core));
     assert_eq!(first.page, second.page);
     assert_eq!(first.wavedrom, second.wavedrom);
 }
 
 /// The worked example of a page: port, integer, value.
 fn example(path: &str) -> Vec<(String, i64, f64)> {
-    let unit = configuration(path);
-    let page = make(path, &unit).page;
+    let core = configuration(path);
+    let page = make(path, &core).page;
     let document = parse(&page);
     let tables = elements(&document, "div");
     let mut tables = tables.filter(|div| div.attribute("aria-label") == Some("A worked example"));

@@ -11,7 +11,7 @@ mod normaliser;
 
 use dot_product::DOT_PRODUCT;
 use glint::config::{Config, parse, sample};
-use glint::core::Unit;
+use glint::core::Core;
 use glint::cosim::exhaustive::{Clocks, Proof, Shard, State};
 use glint::cosim::trial;
 use glint::golden::Contract;
@@ -20,9 +20,9 @@ use normaliser::NORMALISER;
 
 const DEVICES: [Device; 2] = [DOT_PRODUCT, NORMALISER];
 
-fn default(device: Device) -> Unit {
+fn default(device: Device) -> Core {
     let config = Config::defaults(&(device.schema)(), &device.name.replace('-', "_"));
-    Unit::new(device, config).unwrap_or_else(|error| panic!("{error:#}"))
+    Core::new(device, config).unwrap_or_else(|error| panic!("{error:#}"))
 }
 
 /// The raw results and the error of each in last places, by the formula given.
@@ -50,9 +50,9 @@ fn unit(v: &[f64]) -> Vec<f64> {
 fn schemas_are_sound_and_defaults_are_proven() {
     for device in DEVICES {
         assert_eq!((device.schema)().faults(), Vec::<String>::new());
-        let unit = default(device);
-        assert!(unit.contract.highlight().is_none());
-        let bound = unit.contract.bound();
+        let core = default(device);
+        assert!(core.contract.highlight().is_none());
+        let bound = core.contract.bound();
         assert!(bound.units < 1.0, "{}: {bound:?}", device.name);
     }
 }
@@ -64,13 +64,13 @@ fn random_configurations_agree_on_every_clock() {
         for seed in 0..24 {
             let config = sample(&schema, seed);
             let what = config.to_toml(&schema);
-            let unit =
-                Unit::new(device, config).unwrap_or_else(|error| panic!("{what}: {error:#}"));
-            let outcome = unit.lockstep(seed).and_then(|lockstep| lockstep.run(300, &|_| ()));
+            let core =
+                Core::new(device, config).unwrap_or_else(|error| panic!("{what}: {error:#}"));
+            let outcome = core.lockstep(seed).and_then(|lockstep| lockstep.run(300, &|_| ()));
             let outcome = outcome.unwrap_or_else(|error| panic!("{what}: {error:#}"));
             assert!(outcome.mismatch.is_none(), "{what}: {:?}", outcome.mismatch);
             let worst = outcome.worst.expect("results").units;
-            assert!(worst <= unit.contract.bound().units + 1e-9, "{what}: {worst}");
+            assert!(worst <= core.contract.bound().units + 1e-9, "{what}: {worst}");
         }
     }
 }
@@ -109,9 +109,9 @@ fn a_narrow_normaliser_is_proved() {
     let keys = "[vector]\nfraction = 2\n[table]\naddress = 3\n[inverse]\nfraction = 6\n[output]\nfraction = 2\n";
     let text = format!("device = \"normaliser\"\nname = \"narrow\"\n{keys}");
     let config = parse("narrow.toml", &text, &[(NORMALISER.schema)()]).expect("a configuration");
-    let unit = Unit::new(NORMALISER, config).unwrap_or_else(|error| panic!("{error:#}"));
-    let contract = unit.contract.as_ref();
-    let job = unit.job().expect("model and design fit");
+    let core = Core::new(NORMALISER, config).unwrap_or_else(|error| panic!("{error:#}"));
+    let contract = core.contract.as_ref();
+    let job = core.job().expect("model and design fit");
     let mut state = State::new("", Shard::WHOLE);
     let whole = job.run(&mut state, &|_| (), &mut |_| ControlFlow::Continue(())).expect("it runs");
     assert!(whole.is_continue());
@@ -129,13 +129,13 @@ fn a_narrow_normaliser_is_proved() {
 #[test]
 fn examples_come_from_hints() {
     for device in DEVICES {
-        let unit = default(device);
-        let example = trial::example(&unit.design, unit.contract.as_ref()).expect("an example");
+        let core = default(device);
+        let example = trial::example(&core.design, core.contract.as_ref()).expect("an example");
         for output in &example.outputs {
             let magnitude = output.value.abs();
             assert!(magnitude > 0.0 && magnitude < 1.0, "{}: {output:?}", device.name);
         }
-        for (operand, quantity) in unit.contract.operands().iter().zip(&example.operands) {
+        for (operand, quantity) in core.contract.operands().iter().zip(&example.operands) {
             let (low, high) = operand.domain;
             assert!((low..=high).contains(&(quantity.raw as i64)), "{}: {quantity:?}", device.name);
         }
@@ -144,7 +144,7 @@ fn examples_come_from_hints() {
 
 #[test]
 fn vectors_by_hand() {
-    let unit = default(NORMALISER);
+    let core = default(NORMALISER);
     let mut raw = Vec::new();
     // (0.6, 0, −0.8) has length 1; in 2^-14: 9830.4 and −13107.2. The zero vector stays.
     for (operands, expected) in [
@@ -154,10 +154,10 @@ fn vectors_by_hand() {
         ([0, 0, 0], [0, 0, 0]),
     ] {
         raw.clear();
-        unit.contract.results(&operands, 0, &mut raw);
+        core.contract.results(&operands, 0, &mut raw);
         assert_eq!(raw, expected, "{operands:?}");
     }
-    let unit = default(DOT_PRODUCT);
+    let core = default(DOT_PRODUCT);
     for (operands, expected) in [
         // (0.5, 0.5, 0)·(1, 0, 0); the other way round it is 0; beyond 1 it is 1.
         ([8192, 8192, 0, 16384, 0, 0], 8192),
@@ -165,7 +165,7 @@ fn vectors_by_hand() {
         ([16384, 16384, 0, 16384, 16384, 0], 16384),
     ] {
         raw.clear();
-        unit.contract.results(&operands, 0, &mut raw);
+        core.contract.results(&operands, 0, &mut raw);
         assert_eq!(raw, [expected], "{operands:?}");
     }
 }

@@ -5,7 +5,7 @@
 use std::f64::consts::FRAC_PI_2;
 
 use glint::config::Config;
-use glint::core::Unit;
+use glint::core::Core;
 use glint::golden::formulas;
 use glint::hdl::sim::Simulator;
 use glint::registry::Registry;
@@ -16,31 +16,31 @@ use rand_chacha::rand_core::{RngCore, SeedableRng};
 /// A right angle of the default of `quad-cosine`, s1.26.
 const RIGHT: i64 = 1 << 26;
 
-fn unit(name: &str) -> Unit {
+fn core(name: &str) -> Core {
     let registry = Registry::catalogue();
     let device = *registry.device(name).expect("a device");
-    Unit::new(device, Config::defaults(&(device.schema)(), "line")).expect("a design")
+    Core::new(device, Config::defaults(&(device.schema)(), "line")).expect("a design")
 }
 
 /// The default of a device in the simulator.
 struct Bench {
-    unit: Unit,
+    core: Core,
     simulator: Simulator,
 }
 
 impl Bench {
     /// After a reset.
     fn new(name: &str) -> Self {
-        let unit = unit(name);
-        let simulator = Simulator::new(&unit.design).expect("a simulator");
-        let mut bench = Self { unit, simulator };
+        let core = core(name);
+        let simulator = Simulator::new(&core.design).expect("a simulator");
+        let mut bench = Self { core, simulator };
         bench.clock();
         bench.set("rst_n", 1);
         bench
     }
 
     fn set(&mut self, name: &str, bits: u64) {
-        let design = &self.unit.design;
+        let design = &self.core.design;
         let at = design.inputs().position(|port| design.net(port.net).name == name);
         self.simulator.set(at.expect("an input"), bits);
     }
@@ -50,7 +50,7 @@ impl Bench {
     }
 
     fn value(&self, name: &str) -> u64 {
-        let net = self.unit.design.find(name).expect("a signal");
+        let net = self.core.design.find(name).expect("a signal");
         self.simulator.value(net)
     }
 
@@ -58,7 +58,7 @@ impl Bench {
     fn start(&mut self, operands: &[(&str, i64)]) {
         self.set("start", 1);
         for &(name, raw) in operands {
-            let design = &self.unit.design;
+            let design = &self.core.design;
             let format = design.net(design.find(name).expect("an operand")).format;
             self.set(name, format.bits(i128::from(raw)));
             self.set(&format!("{name}_write"), 1);
@@ -83,7 +83,7 @@ impl Bench {
                 assert_eq!(clock, 4 + points.len(), "done with the last point");
                 return points;
             }
-            let last = self.unit.design.control.words.len() as u64 - 1;
+            let last = self.core.design.control.words.len() as u64 - 1;
             let in_last_word = self.value("word_address") == last;
             assert_eq!(self.value("done"), u64::from(in_last_word));
             self.clock();
@@ -93,7 +93,7 @@ impl Bench {
 
     /// What the contract expects of a line of `quad-cosine`.
     fn quad_expected(&self, [delta, start, n, length, amplitude]: [i64; 5]) -> Vec<i64> {
-        let highlight = self.unit.contract.highlight().expect("a highlight");
+        let highlight = self.core.contract.highlight().expect("a highlight");
         (0..=length as u64)
             .map(|index| {
                 let f = highlight.f(&highlight.point(&[delta, start, n, length], index));
@@ -228,8 +228,8 @@ fn every_word_of_the_tables() {
         _ => 16,
     };
     for (device, tables) in [("quad-cosine", &[1, 2, 4, 16][..]), ("cosine-squared", &[2])] {
-        let unit = unit(device);
-        let rom = |name: &str| unit.design.roms.iter().find(|rom| rom.name == name);
+        let core = core(device);
+        let rom = |name: &str| core.design.roms.iter().find(|rom| rom.name == name);
         if let Some(rom) = rom("root") {
             for (n, &word) in (0u64..).zip(&rom.words) {
                 // (2r − 1)² ≤ 4·n·2²⁸/k < (2r + 1)².
@@ -277,13 +277,13 @@ fn set_ups(count: usize) -> impl Iterator<Item = Line> {
 /// The largest difference over a line between the outputs that the contract gives for the operands and the
 /// unquantised formula.
 fn drift(
-    unit: &Unit,
+    core: &Core,
     line: &Line,
     operands: &Operands,
     control: &[i64],
     f: impl Fn(f64) -> f64,
 ) -> f64 {
-    let highlight = unit.contract.highlight().expect("a highlight");
+    let highlight = core.contract.highlight().expect("a highlight");
     (0..=line.length)
         .map(|index| {
             let word = highlight.f(&highlight.point(control, u64::from(index)));
@@ -301,8 +301,8 @@ fn drift(
 /// F = 22 of the stretched angle 0.20.
 #[test]
 fn the_longest_lines_stay_within_two_units_of_the_unquantised_set_up() {
-    let quad = unit("quad-cosine");
-    let squared = unit("cosine-squared");
+    let quad = core("quad-cosine");
+    let squared = core("cosine-squared");
     let mut worst = [0.0f64; 2];
     for line in set_ups(400) {
         let n = i64::from(line.exponent);
@@ -327,7 +327,7 @@ fn the_longest_lines_stay_within_two_units_of_the_unquantised_set_up() {
 /// the formula is steepest, with an amplitude rounded by half a unit.
 #[test]
 fn the_worst_rounding_of_the_longest_line_stays_within_two_units() {
-    let quad = unit("quad-cosine");
+    let quad = core("quad-cosine");
     let ulp = FRAC_PI_2 / RIGHT as f64;
     let mut worst = 0.0f64;
     for (end, half) in (1..200).flat_map(|end| [(end, 0.499_999), (end, -0.499_999)]) {

@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use crate::common::units::{configuration, configurations};
+use crate::common::cores::{configuration, configurations};
 use glint::registry::Registry;
 
 /// The modules of the default configurations.

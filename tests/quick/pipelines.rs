@@ -5,7 +5,7 @@
 
 use glint::hdl::netlist::{Driver, NetId, Role};
 
-use crate::common::units::all_configurations;
+use crate::common::cores::all_configurations;
 
 #[test]
 fn values_of_a_stage_are_made_of_values_of_this_stage_and_all_registers_move_together() {

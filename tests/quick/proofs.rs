@@ -8,7 +8,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use crate::common::units::{configuration, configurations};
+use crate::common::cores::{configuration, configurations};
 use glint::cosim::exhaustive::{Places, Proof};
 use glint::registry::Registry;
 use serde_json::{Value, json};

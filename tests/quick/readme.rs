@@ -5,12 +5,12 @@
 use std::collections::BTreeMap;
 use std::fs;
 
-use glint::core::Unit;
+use glint::core::Core;
 use glint::evidence::comparison::{accuracy, clocks_per_point};
 use glint::registry::Registry;
 use serde_json::Value;
 
-use crate::common::units::configuration;
+use crate::common::cores::configuration;
 
 /// The exponent of the comparison in README.md.
 const EXPONENT: f64 = 35.0;
@@ -56,7 +56,7 @@ fn module(device: &str) -> String {
     device.replace('-', "_")
 }
 
-fn of(name: &str) -> Unit {
+fn of(name: &str) -> Core {
     let studies = format!("configs/studies/{name}.toml");
     let path = format!("configs/{name}.toml");
     configuration(if fs::exists(&path).expect("readable") { &path } else { &studies })
@@ -83,16 +83,16 @@ fn every_device_stands_in_the_table() {
 #[test]
 fn the_main_job() {
     for row in table("README.md", "| configuration    | device") {
-        let unit = of(&row[0]);
-        let timing = unit.timing().expect("clocks");
-        let bound = unit.contract.bound().units;
+        let core = of(&row[0]);
+        let timing = core.timing().expect("clocks");
+        let bound = core.contract.bound().units;
         let clocks = timing.clocks_per_point().map(|it| it.to_string());
         assert_eq!(
             [&row[1], &row[2], &row[5], &row[6]],
             [
-                unit.device.name,
+                core.device.name,
                 &clocks.unwrap_or_default(),
-                &grouped(unit.design.rom_bits()),
+                &grouped(core.design.rom_bits()),
                 &format!("{bound:.3}")
             ],
             "{row:?}"
@@ -111,10 +111,10 @@ fn the_main_job() {
 fn choosing_a_device() {
     for row in table("README.md", "| device | largest error of f") {
         let device = row[0].split(' ').next().expect("a name");
-        let unit = of(&module(device));
-        let found = accuracy(unit.contract.as_ref(), EXPONENT).expect("a highlight");
+        let core = of(&module(device));
+        let found = accuracy(core.contract.as_ref(), EXPONENT).expect("a highlight");
         let clocks =
-            clocks_per_point(&unit.design, unit.contract.as_ref(), EXPONENT).expect("it ends");
+            clocks_per_point(&core.design, core.contract.as_ref(), EXPONENT).expect("it ends");
         let clocks = format!("{clocks:.3}");
         assert_eq!(
             row[1..6],
@@ -123,7 +123,7 @@ fn choosing_a_device() {
                 format!("{:.5}", found.formula.largest),
                 format!("{:.5}", found.fixed_point.largest),
                 clocks.trim_end_matches(".000").to_owned(),
-                unit.design.rom_bits().to_string(),
+                core.design.rom_bits().to_string(),
             ],
             "{device}"
         );
@@ -133,12 +133,12 @@ fn choosing_a_device() {
 #[test]
 fn what_the_choices_cost() {
     for row in table("README.md", "| configuration | arithmetic |") {
-        let unit = of(&row[0]);
-        let bound = unit.contract.bound().units;
+        let core = of(&row[0]);
+        let bound = core.contract.bound().units;
         let digits = row[4].split_once('.').map_or(0, |(_, digits)| digits.len());
         assert_eq!(
             row[3..5],
-            [grouped(unit.design.rom_bits()), format!("{bound:.digits$}")],
+            [grouped(core.design.rom_bits()), format!("{bound:.digits$}")],
             "{}",
             row[0]
         );

@@ -1,6 +1,6 @@
 //! The points of tests lie where the function does.
 
-use crate::common::units::configurations;
+use crate::common::cores::configurations;
 use glint::cosim::{Points, Random};
 use rayon::prelude::*;
 

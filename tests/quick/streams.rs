@@ -4,36 +4,36 @@
 use std::fs::File;
 use std::io::BufReader;
 
-use crate::common::units::configurations;
-use glint::core::Unit;
+use crate::common::cores::configurations;
+use glint::core::Core;
 use glint::cosim::{Lockstep, Outcome};
 use glint::hdl::netlist::Design;
 
 /// Enough for streams of many lanes and several simulators.
 const POINTS: u64 = 70_000;
 
-fn unit(name: &str) -> Unit {
+fn core(name: &str) -> Core {
     let found = configurations().into_iter();
-    let found = found.map(|(_, unit)| unit);
-    let named = |unit: &Unit| unit.config.name == name;
+    let found = found.map(|(_, core)| core);
+    let named = |core: &Core| core.config.name == name;
     found.into_iter().find(named).expect("a configuration")
 }
 
-fn lockstep<'a>(unit: &'a Unit, design: &'a Design, seed: u64) -> Lockstep<'a> {
-    let model = (unit.device.model)(&unit.config);
-    Lockstep::new(design, model, unit.contract.as_ref(), seed).expect("they fit")
+fn lockstep<'a>(core: &'a Core, design: &'a Design, seed: u64) -> Lockstep<'a> {
+    let model = (core.device.model)(&core.config);
+    Lockstep::new(design, model, core.contract.as_ref(), seed).expect("they fit")
 }
 
-fn run(unit: &Unit, design: &Design, points: u64, threads: usize) -> Outcome {
+fn run(core: &Core, design: &Design, points: u64, threads: usize) -> Outcome {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
     let pool = pool.build().expect("threads");
-    let lockstep = lockstep(unit, design, 5);
+    let lockstep = lockstep(core, design, 5);
     pool.install(|| lockstep.run(points, &|_| ())).expect("it can be simulated")
 }
 
 /// A word of the sine that is seldom read is off by one.
-fn rarely_wrong(unit: &Unit) -> Design {
-    let mut design = unit.design.clone();
+fn rarely_wrong(core: &Core) -> Design {
+    let mut design = core.design.clone();
     let sine = design.roms.iter_mut().find(|rom| rom.name.contains("sine"));
     // Low bits may be of a slope that is not used; this one is of the sine itself.
     sine.expect("a sine").words[550] ^= 1 << 20;
@@ -42,16 +42,16 @@ fn rarely_wrong(unit: &Unit) -> Design {
 
 #[test]
 fn threads_have_no_influence() {
-    let unit = unit("rough");
-    let one = run(&unit, &unit.design, POINTS, 1);
-    let three = run(&unit, &unit.design, POINTS, 3);
+    let core = core("rough");
+    let one = run(&core, &core.design, POINTS, 1);
+    let three = run(&core, &core.design, POINTS, 3);
     assert_eq!((one.points, one.mismatch.is_none()), (POINTS, true));
     assert_eq!(one.clocks, three.clocks);
     assert_eq!(one.worst, three.worst);
 
-    let wrong = rarely_wrong(&unit);
-    let one = run(&unit, &wrong, POINTS, 1);
-    let three = run(&unit, &wrong, POINTS, 3);
+    let wrong = rarely_wrong(&core);
+    let one = run(&core, &wrong, POINTS, 1);
+    let three = run(&core, &wrong, POINTS, 3);
     assert!(one.mismatch.is_some(), "it is never read");
     assert_eq!(one.mismatch, three.mismatch);
     assert_eq!((one.points, one.clocks), (three.points, three.clocks));
@@ -60,24 +60,24 @@ fn threads_have_no_influence() {
 
 #[test]
 fn every_point_is_counted() {
-    let unit = unit("rough");
+    let core = core("rough");
     // One stream, a few lanes, lanes that do not fill two simulators, and many.
     for points in [1, 511, 515, 3_000, 4_096, 5_001] {
-        assert_eq!(run(&unit, &unit.design, points, 2).points, points);
+        assert_eq!(run(&core, &core.design, points, 2).points, points);
     }
 }
 
 #[test]
 fn what_differs_can_be_had_again_with_its_waveform() {
-    let unit = unit("rough");
-    let wrong = rarely_wrong(&unit);
-    let found = run(&unit, &wrong, POINTS, 2).mismatch.expect("it differs");
+    let core = core("rough");
+    let wrong = rarely_wrong(&core);
+    let found = run(&core, &wrong, POINTS, 2).mismatch.expect("it differs");
     let place = tempfile::tempdir().expect("a directory");
     let path = place.path().join("window.vcd");
     let file = File::create(&path).expect("a file");
     let from = found.clock.saturating_sub(10);
     let again =
-        lockstep(&unit, &wrong, found.seed).trace(u64::MAX, from, file).expect("it can be traced");
+        lockstep(&core, &wrong, found.seed).trace(u64::MAX, from, file).expect("it can be traced");
     assert_eq!(again.mismatch.as_ref(), Some(&found));
     assert_eq!(again.clocks, found.clock);
 
@@ -107,11 +107,11 @@ fn what_differs_can_be_had_again_with_its_waveform() {
 /// For people: no structures of Rust.
 #[test]
 fn what_differs_is_told_in_words() {
-    let unit = unit("rough");
-    let mut wrong = unit.design.clone();
+    let core = core("rough");
+    let mut wrong = core.design.clone();
     let sine = wrong.roms.iter_mut().find(|rom| rom.name.contains("sine"));
     sine.expect("a sine").words.reverse();
-    let told = lockstep(&unit, &wrong, 5).record(200, &[]).expect_err("it differs").to_string();
+    let told = lockstep(&core, &wrong, 5).record(200, &[]).expect_err("it differs").to_string();
     for part in ["(seed 5, after clock ", "in the simulated hardware and 0x", "in the golden model"]
     {
         assert!(told.contains(part), "{told}");

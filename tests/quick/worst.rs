@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use crate::common::units::configuration;
+use crate::common::cores::configuration;
 use glint::cosim::search;
 use serde_json::Value;
 

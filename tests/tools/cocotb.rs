@@ -6,9 +6,9 @@ use std::fs;
 use std::path::Path;
 
 use crate::common::bench::with_flipped_bit;
+use crate::common::cores::{Emitted, all_configurations, configuration, configuration_with};
 use crate::common::tools::{LIMIT, tool};
-use crate::common::units::{Emitted, all_configurations, configuration, configuration_with};
-use glint::core::Unit;
+use glint::core::Core;
 use glint::package;
 use glint::tools::Run;
 use rayon::prelude::*;
@@ -29,29 +29,29 @@ const OF_SEQUENTIAL: [&str; 6] = [EXACT, IGNORED, HELD, RESET, FORMULA, "worked_
 const OF_PIPELINE: [&str; 5] = [POINTS, STALLS, DROPS, FOLLOWS, "worked_example"];
 
 /// Its tests.
-fn tests(unit: &Unit) -> &'static [&'static str] {
-    if unit.design.pipeline.is_some() { &OF_PIPELINE } else { &OF_SEQUENTIAL }
+fn tests(core: &Core) -> &'static [&'static str] {
+    if core.design.pipeline.is_some() { &OF_PIPELINE } else { &OF_SEQUENTIAL }
 }
 
 #[test]
 fn every_bench_passes() {
-    all_configurations().par_iter().for_each(|(path, unit)| assert_passes(path, unit));
+    all_configurations().par_iter().for_each(|(path, core)| assert_passes(path, core));
 }
 
 #[test]
 fn benches_of_pipelines_with_and_without_stalls_and_a_side_channel_pass() {
     for more in ["side = 64\n", "stall = \"none\"\n", "stall = \"none\"\nside = 1\n"] {
-        let unit = configuration_with("configs/schlick_pipelined.toml", more);
-        assert_passes(more, &unit);
+        let core = configuration_with("configs/schlick_pipelined.toml", more);
+        assert_passes(more, &core);
     }
 }
 
-fn assert_passes(what: &str, unit: &Unit) {
-    let place = place(unit);
-    let run = run(place.path(), &unit.config.name);
+fn assert_passes(what: &str, core: &Core) {
+    let place = place(core);
+    let run = run(place.path(), &core.config.name);
     let passed = |test: &&str| run.output.contains(&format!("{test} passed"));
-    let tests = tests(unit);
-    let says = format!("PASS {}: {} tests, 0 failed", unit.config.name, tests.len());
+    let tests = tests(core);
+    let says = format!("PASS {}: {} tests, 0 failed", core.config.name, tests.len());
     assert!(
         run.status.success() && tests.iter().all(passed) && run.output.contains(&says),
         "{what}:\n{}",
@@ -112,13 +112,13 @@ const FAULTS: [Fault; 20] = [
 #[test]
 fn every_test_notices_a_fault() {
     FAULTS.par_iter().for_each(|(name, file, right, wrong, test)| {
-        let unit = configuration(&format!("configs/{name}.toml"));
-        let place = place(&unit);
+        let core = configuration(&format!("configs/{name}.toml"));
+        let place = place(&core);
         let path = place.path().join(format!("rtl_out/{name}/{name}{file}"));
         let text = fs::read_to_string(&path).expect("a file");
         assert!(text.contains(right), "`{right}` is not in {name}{file}");
         fs::write(&path, text.replace(right, wrong)).expect("written");
-        assert_noticed(place.path(), &unit, test, &format!("`{wrong}` in {file}"));
+        assert_noticed(place.path(), &core, test, &format!("`{wrong}` in {file}"));
     });
 }
 
@@ -151,18 +151,18 @@ fn wrong_order_of_words_is_noticed() {
 }
 
 fn memory_is_noticed(name: &str, rom: &str, wrong: impl Fn(&str) -> String) {
-    let unit = configuration(&format!("configs/{name}.toml"));
-    let place = place(&unit);
+    let core = configuration(&format!("configs/{name}.toml"));
+    let place = place(&core);
     let file = format!("rtl_out/{name}/{name}_{rom}.mem");
     let text = fs::read_to_string(place.path().join(&file)).expect("a memory");
     fs::write(place.path().join(&file), wrong(&text)).expect("written");
-    assert_noticed(place.path(), &unit, EXACT, &file);
+    assert_noticed(place.path(), &core, EXACT, &file);
 }
 
 /// The files of a configuration where the bench expects them.
-fn place(unit: &Unit) -> tempfile::TempDir {
+fn place(core: &Core) -> tempfile::TempDir {
     let place = tempfile::tempdir().expect("a directory");
-    let emitted = Emitted::new(unit, 1, 1);
+    let emitted = Emitted::new(core, 1, 1);
     for file in emitted.files.iter().chain([&package::driver()]) {
         let path = place.path().join(&file.path);
         fs::create_dir_all(path.parent().expect("a directory")).expect("a directory");
@@ -179,8 +179,8 @@ fn run(place: &Path, name: &str) -> Run {
     tool("python").run([bench], place, LIMIT).unwrap_or_else(|error| panic!("{error:#}"))
 }
 
-fn assert_noticed(place: &Path, unit: &Unit, test: &str, what: &str) {
-    let (name, count) = (&unit.config.name, tests(unit).len());
+fn assert_noticed(place: &Path, core: &Core, test: &str, what: &str) {
+    let (name, count) = (&core.config.name, tests(core).len());
     let run = run(place, name);
     let says = |word: &str| run.output.lines().any(|line| line.starts_with(word));
     assert!(

@@ -11,7 +11,7 @@ use std::process::{Command, Output};
 
 use fresnel::FRESNEL;
 use glint::config::{Config, sample};
-use glint::core::Unit;
+use glint::core::Core;
 
 /// Runs the example as its user does.
 fn run(directory: &Path, arguments: &[&str]) -> Output {
@@ -148,13 +148,13 @@ fn random_configurations_agree_on_every_clock() {
     let schema = (FRESNEL.schema)();
     for seed in 0..40 {
         let config = sample(&schema, seed);
-        let unit = Unit::new(FRESNEL, config).unwrap_or_else(|error| panic!("{error:#}"));
-        let outcome = unit
+        let core = Core::new(FRESNEL, config).unwrap_or_else(|error| panic!("{error:#}"));
+        let outcome = core
             .lockstep(seed)
             .and_then(|lockstep| lockstep.run(500, &|_| ()))
             .unwrap_or_else(|error| panic!("{error:#}"));
         assert!(outcome.mismatch.is_none(), "{seed}: {:?}", outcome.mismatch);
         let worst = outcome.worst.expect("results").units;
-        assert!(worst <= unit.contract.bound().units, "{seed}: {worst}");
+        assert!(worst <= core.contract.bound().units, "{seed}: {worst}");
     }
 }

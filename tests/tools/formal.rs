@@ -7,15 +7,15 @@ use std::fs;
 use std::time::Duration;
 
 use crate::common::bench::with_flipped_bit;
+use crate::common::cores::{Emitted, all_configurations, configuration, write};
 use crate::common::tools::LIMIT;
-use crate::common::units::{Emitted, all_configurations, configuration, write};
 use glint::tools::{LimitReached, Limits, PROOF_LIMITS, prove};
 use rayon::prelude::*;
 
 #[test]
 fn every_configuration_is_proved() {
-    all_configurations().par_iter().for_each(|(path, unit)| {
-        let (place, name) = emitted(unit);
+    all_configurations().par_iter().for_each(|(path, core)| {
+        let (place, name) = emitted(core);
         prove(place.path(), &name, LIMIT).unwrap_or_else(|error| panic!("{path}: {error:#}"));
     });
 }
@@ -102,8 +102,8 @@ fn pipelines_with_and_without_stalls_and_a_side_channel_are_proved() {
     for more in
         ["side = 8", "stall = \"none\"", "stall = \"none\"\nside = 3", "stages = 1\nside = 2"]
     {
-        let unit = pipeline(more);
-        let (place, name) = emitted(&unit);
+        let core = pipeline(more);
+        let (place, name) = emitted(&core);
         prove(place.path(), &name, LIMIT).unwrap_or_else(|error| panic!("{more}: {error:#}"));
     }
 }
@@ -116,16 +116,16 @@ fn faults_of_a_pipeline_break_the_proof() {
 }
 
 /// The pipeline of `cosine-power` with these keys.
-fn pipeline(keys: &str) -> glint::core::Unit {
+fn pipeline(keys: &str) -> glint::core::Core {
     let text = "device = \"cosine-power\"\narchitecture = \"pipelined\"\n[pipeline]\n";
     with_text("cosine-power", &format!("{text}{keys}\n"))
 }
 
-fn with_text(device: &str, text: &str) -> glint::core::Unit {
+fn with_text(device: &str, text: &str) -> glint::core::Core {
     let device = *glint::registry::Registry::catalogue().device(device).expect("a device");
     let config = glint::config::parse("test.toml", text, &[(device.schema)()]);
     let config = config.unwrap_or_else(|problems| panic!("{problems}"));
-    glint::core::Unit::new(device, config).expect("a design")
+    glint::core::Core::new(device, config).expect("a design")
 }
 
 #[test]
@@ -142,8 +142,8 @@ fn faults_break_the_proof() {
     });
 }
 
-fn assert_breaks(unit: &glint::core::Unit, (file, right, wrong): &Fault) {
-    let (place, name) = emitted(unit);
+fn assert_breaks(core: &glint::core::Core, (file, right, wrong): &Fault) {
+    let (place, name) = emitted(core);
     let path = place.path().join(format!("{name}{file}"));
     let text = fs::read_to_string(&path).expect("a file");
     assert!(text.contains(right), "`{right}` is not in {name}{file}");
@@ -157,9 +157,9 @@ fn assert_breaks(unit: &glint::core::Unit, (file, right, wrong): &Fault) {
 fn a_wrong_bit_of_sequencing_breaks_the_proof() {
     let bits = [("rough", 0), ("rough", 1), ("lyon", 0), ("quad_cosine", 0)];
     bits.par_iter().for_each(|&(config, bit)| {
-        let unit = configuration(&format!("configs/{config}.toml"));
-        (0..unit.design.control.words.len()).into_par_iter().for_each(|word| {
-            let (place, name) = emitted(&unit);
+        let core = configuration(&format!("configs/{config}.toml"));
+        (0..core.design.control.words.len()).into_par_iter().for_each(|word| {
+            let (place, name) = emitted(&core);
             let path = place.path().join(format!("{name}_control.mem"));
             let text = fs::read_to_string(&path).expect("a file");
             fs::write(&path, with_flipped_bit(&text, word, bit)).expect("written");
@@ -174,8 +174,8 @@ fn a_wrong_bit_of_sequencing_breaks_the_proof() {
 #[test]
 fn a_domain_narrower_than_its_port_is_proved() {
     let text = "device = \"lyon\"\n[domain]\nexponent_min = 100\nexponent_max = 150\n";
-    let unit = with_text("lyon", text);
-    let (place, name) = emitted(&unit);
+    let core = with_text("lyon", text);
+    let (place, name) = emitted(&core);
     prove(place.path(), &name, PROOF_LIMITS).unwrap_or_else(|error| panic!("{error:#}"));
 }
 
@@ -192,8 +192,8 @@ fn a_proof_that_takes_too_much_says_so() {
 }
 
 /// The files of a configuration in a directory of their own, and its name.
-fn emitted(unit: &glint::core::Unit) -> (tempfile::TempDir, String) {
-    let emitted = Emitted::new(unit, 1, 1);
+fn emitted(core: &glint::core::Core) -> (tempfile::TempDir, String) {
+    let emitted = Emitted::new(core, 1, 1);
     let place = tempfile::tempdir().expect("a directory");
     let files = emitted.files.iter();
     let files = files.map(|file| (file.name().to_owned(), file.contents.clone()));

@@ -3,8 +3,8 @@
 
 use std::fs;
 
+use crate::common::cores::{Emitted, configuration};
 use crate::common::netlist::{self, POINTS, synthesise};
-use crate::common::units::{Emitted, configuration};
 use glint::tools::gates;
 use glint::tools::synthesis::{FAMILIES, Family};
 use rayon::prelude::*;

@@ -6,10 +6,10 @@
 use std::collections::BTreeSet;
 use std::fs;
 
+use crate::common::cores::{configuration, configurations};
 use crate::common::sample::sampled;
 use crate::common::tools::LIMIT;
-use crate::common::units::{configuration, configurations};
-use glint::core::{TEST_POINTS, Unit};
+use glint::core::{Core, TEST_POINTS};
 use glint::cosim::Lockstep;
 use glint::mutate::{self, Check, Faults, Found, Text, TextVerdict, Verdict};
 use glint::registry::Registry;
@@ -28,15 +28,15 @@ const PROVED: usize = 40;
 const SEED: u64 = 77;
 
 /// The default configuration of every device, with its path.
-fn defaults() -> Vec<(String, Unit)> {
+fn defaults() -> Vec<(String, Core)> {
     let registry = Registry::catalogue();
     let devices = registry.devices().iter();
     let paths = devices.map(|device| format!("configs/{}.toml", device.name.replace('-', "_")));
     paths.map(|path| (path.clone(), configuration(&path))).collect()
 }
 
-fn record(unit: &Unit) -> Value {
-    let path = format!("mutation/{}.json", unit.config.name);
+fn record(core: &Core) -> Value {
+    let path = format!("mutation/{}.json", core.config.name);
     let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
     serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
@@ -79,14 +79,14 @@ impl From<&Verdict> for Said {
 }
 
 /// Proofs are of the whole design; another test must not find what they exclude.
-fn assert_unnoticed(path: &str, unit: &Unit, found: &[Found]) {
+fn assert_unnoticed(path: &str, core: &Core, found: &[Found]) {
     let proved = |it: &&Found| matches!(it.verdict, Verdict::Equivalent(_));
     let proved: Vec<&Found> = found.iter().filter(proved).collect();
     let step = (proved.len() / PROVED).max(1);
     for one in proved.into_iter().step_by(step) {
-        let mutant = one.fault.planted(&unit.design);
-        let model = (unit.device.model)(&unit.config);
-        let outcome = Lockstep::new(&mutant, model, unit.contract.as_ref(), SEED)
+        let mutant = one.fault.planted(&core.design);
+        let model = (core.device.model)(&core.config);
+        let outcome = Lockstep::new(&mutant, model, core.contract.as_ref(), SEED)
             .and_then(|lockstep| lockstep.run(TEST_POINTS / 5, &|_| ()))
             .unwrap_or_else(|error| panic!("{path}: {}: {error:?}", one.fault.id));
         assert_eq!(outcome.mismatch, None, "{path}: {}", one.fault.id);
@@ -95,11 +95,11 @@ fn assert_unnoticed(path: &str, unit: &Unit, found: &[Found]) {
 
 #[test]
 fn the_records_hold_today() {
-    for (path, unit) in defaults() {
-        let record = record(&unit);
+    for (path, core) in defaults() {
+        let record = record(&core);
         let netlist = &record["netlist"];
         let stale = format!("{path}: `glint mutate --out mutation {path}` makes another record");
-        let faults = Faults::of(&unit.design);
+        let faults = Faults::of(&core.design);
         let all = &netlist["all"];
         assert_eq!(all["planted"], faults.len(), "{stale}");
         let open = netlist["open"].as_array().expect("open").len();
@@ -107,19 +107,19 @@ fn the_records_hold_today() {
         assert!(open * 100 <= faults.len(), "{path}: {open} are open");
         let planted = sampled(&path, faults.iter(), NETLIST_FAULTS);
         let found =
-            mutate::run(&unit, planted, &|| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"));
+            mutate::run(&core, planted, &|| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"));
         for Found { fault, verdict, .. } in &found {
             let expected = recorded(netlist, &fault.id);
             assert_eq!(Said::from(verdict), expected, "{}: {stale}", fault.id);
         }
-        assert_unnoticed(&path, &unit, &found);
+        assert_unnoticed(&path, &core, &found);
     }
 }
 
 #[test]
 fn faults_have_names_of_their_own() {
-    for (path, unit) in configurations() {
-        let faults = Faults::of(&unit.design);
+    for (path, core) in configurations() {
+        let faults = Faults::of(&core.design);
         let ids: BTreeSet<&str> = faults.iter().map(|fault| fault.id.as_str()).collect();
         assert_eq!(ids.len(), faults.len(), "{path}");
         assert!(faults.len() > 500, "{path}: a kind of fault is missing");
@@ -128,8 +128,8 @@ fn faults_have_names_of_their_own() {
 
 #[test]
 fn without_a_fault_nothing_is_noticed() {
-    for (path, unit) in configurations() {
-        let outcome = unit
+    for (path, core) in configurations() {
+        let outcome = core
             .lockstep(3)
             .and_then(|lockstep| lockstep.run(TEST_POINTS, &|_| ()))
             .unwrap_or_else(|error| panic!("{path}: {error:?}"));
@@ -142,8 +142,8 @@ fn without_a_fault_nothing_is_noticed() {
 #[test]
 fn faults_of_the_verilog_are_noticed() {
     let mut recorded = 0;
-    for (path, unit) in defaults() {
-        let record = record(&unit);
+    for (path, core) in defaults() {
+        let record = record(&core);
         if record["verilog"].is_null() {
             continue;
         }
@@ -153,7 +153,7 @@ fn faults_of_the_verilog_are_noticed() {
             ids.filter_map(Value::as_str).collect()
         };
         let (open, equivalent) = (named("open"), named("equivalent"));
-        let text = Text::of(&unit).unwrap_or_else(|error| panic!("{path}: {error:?}"));
+        let text = Text::of(&core).unwrap_or_else(|error| panic!("{path}: {error:?}"));
         let faults = text.sample(TEXT_FAULTS);
         assert!(faults.len() >= 20, "{path}: {} faults", faults.len());
         let verdicts =

@@ -4,11 +4,11 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
+use crate::common::cores::{Emitted, random, write};
 use crate::common::sample::sampled;
 use crate::common::tools::{assert_bench_passes, assert_lint_clean};
-use crate::common::units::{Emitted, random, write};
 use glint::config;
-use glint::core::Unit;
+use glint::core::Core;
 use glint::registry::Registry;
 use glint::tools::Simulator;
 use rayon::prelude::*;
@@ -35,8 +35,8 @@ const BENCH_POINTS: u64 = 20;
 fn golden_model_and_simulation_agree_and_the_bound_holds() {
     for &device in Registry::catalogue().devices() {
         sampled(device.name, SIMULATED, SIMULATED_DRAWN).into_par_iter().for_each(|seed| {
-            let (toml, unit) = random(device, seed);
-            agrees_within_its_bound(&toml, &unit);
+            let (toml, core) = random(device, seed);
+            agrees_within_its_bound(&toml, &core);
         });
     }
 }
@@ -45,8 +45,8 @@ fn golden_model_and_simulation_agree_and_the_bound_holds() {
 fn the_verilog_is_clean_and_passes_its_bench() {
     for &device in Registry::catalogue().devices() {
         sampled(device.name, EMITTED, EMITTED_DRAWN).into_par_iter().for_each(|seed| {
-            let (toml, unit) = random(device, seed);
-            passes_outside(&toml, &unit, seed);
+            let (toml, core) = random(device, seed);
+            passes_outside(&toml, &core, seed);
         });
     }
 }
@@ -64,17 +64,17 @@ fn what_was_wrong_once_is_right() {
         let config = config::parse(&format!("once_wrong_{at}.toml"), text, &registry.schemas())
             .unwrap_or_else(|problems| panic!("{problems}"));
         let device = *registry.device(&config.device).expect("a device");
-        let unit = Unit::new(device, config).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
+        let core = Core::new(device, config).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
         let toml = text.to_owned();
-        agrees_within_its_bound(&toml, &unit);
-        passes_outside(&toml, &unit, 1);
+        agrees_within_its_bound(&toml, &core);
+        passes_outside(&toml, &core, 1);
     }
 }
 
 /// Golden model and built-in simulator agree on every clock, and no error is beyond the bound.
-fn agrees_within_its_bound(toml: &str, unit: &Unit) {
-    let bound = unit.contract.bound();
-    let outcome = unit
+fn agrees_within_its_bound(toml: &str, core: &Core) {
+    let bound = core.contract.bound();
+    let outcome = core
         .lockstep(7)
         .and_then(|lockstep| lockstep.run(POINTS, &|_| ()))
         .unwrap_or_else(|error| panic!("{error:?}\n{toml}"));
@@ -86,9 +86,9 @@ fn agrees_within_its_bound(toml: &str, unit: &Unit) {
 }
 
 /// Verilator and Icarus Verilog have no remarks on the Verilog, and the bench passes.
-fn passes_outside(toml: &str, unit: &Unit, seed: u64) {
+fn passes_outside(toml: &str, core: &Core, seed: u64) {
     let check = || {
-        let emitted = Emitted::new(unit, BENCH_POINTS, seed);
+        let emitted = Emitted::new(core, BENCH_POINTS, seed);
         let place = tempfile::tempdir().expect("a directory");
         write(place.path(), &emitted.rtl());
         assert_lint_clean(place.path(), &emitted.name);

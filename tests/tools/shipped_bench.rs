@@ -8,8 +8,8 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
+use crate::common::cores::Files;
 use crate::common::tools::{LIMIT, assert_bench_passes};
-use crate::common::units::Files;
 use glint::tools::{Simulator, run_bench};
 
 /// A fault: the core, what stands once in its datapath, and what takes its place.

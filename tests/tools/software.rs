@@ -4,16 +4,16 @@ use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
 
-use glint::core::Unit;
+use glint::core::Core;
 use glint::golden::{Contract, Operand};
 use glint::hdl::netlist::Role;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use rayon::prelude::*;
 
+use crate::common::cores::{Emitted, configuration_with};
 use crate::common::sample::sampled;
 use crate::common::tools::{LIMIT, tool};
-use crate::common::units::{Emitted, configuration_with};
 
 /// Points that are compared of each configuration.
 const POINTS: usize = 1_000_000;
@@ -56,7 +56,7 @@ fn the_model_is_the_golden_model_at_random_points() {
     sampled("models in C", DEFAULTS, SAMPLE).into_par_iter().for_each(|name| {
         let model = Model::new(&format!("configs/{name}.toml"));
         let mut random = ChaCha8Rng::seed_from_u64(1);
-        let contract = model.unit.contract.as_ref();
+        let contract = model.core.contract.as_ref();
         let mut operands = Vec::new();
         let mut count = 0;
         while count < POINTS {
@@ -72,7 +72,7 @@ fn the_model_is_the_golden_model_at_random_points() {
 fn the_model_is_the_golden_model_at_every_combination() {
     sampled("reduced models in C", DEFAULTS, SAMPLE).into_par_iter().for_each(|name| {
         let model = Model::new(&format!("configs/reduced/{name}.toml"));
-        let contract = model.unit.contract.as_ref();
+        let contract = model.core.contract.as_ref();
         let mut operands = vec![Vec::new()];
         for operand in contract.operands() {
             let (low, high) = operand.domain;
@@ -103,10 +103,10 @@ fn a_faulty_model_is_noticed() {
 fn values_become_operands_as_formats_say() {
     let model = Model::new("configs/quad_cosine.toml");
     let values = [-1e30, -3.7, -2.0, -1.5, -0.25, -1e-9, 0.0, 1e-8, 0.75, 1.0, 1.999, 2.0, 7e7];
-    let name = &model.unit.config.name;
+    let name = &model.core.config.name;
     let mut text = format!("#include <stdio.h>\n#include \"{name}_model.h\"\nint main(void) {{\n");
     let mut expected = String::new();
-    for operand in model.unit.contract.operands() {
+    for operand in model.core.contract.operands() {
         for value in values {
             let call = format!("{name}_{}_from({value:?})", operand.name);
             writeln!(text, "printf(\"%lld\\n\", (long long){call});").expect("text");
@@ -141,7 +141,7 @@ fn the_example_in_python_computes_the_manifests_example() {
         compiled.unwrap_or_else(|error| panic!("{error:#}"));
         let printed = tool("python").run_to_success([format!("{name}_model.py")], place, LIMIT);
         let printed = printed.unwrap_or_else(|error| panic!("{error:#}"));
-        let example = model.unit.example().expect("an example");
+        let example = model.core.example().expect("an example");
         let first: Vec<String> = example.outputs.iter().map(|it| it.raw.to_string()).collect();
         assert_eq!(printed.lines().next(), Some(first.join(" ").as_str()), "{printed}");
     });
@@ -149,35 +149,35 @@ fn the_example_in_python_computes_the_manifests_example() {
 
 /// A configuration with its model in C in a directory.
 struct Model {
-    unit: Unit,
+    core: Core,
     place: tempfile::TempDir,
 }
 
 impl Model {
     fn new(config: &str) -> Self {
-        let unit = configuration_with(config, SOFTWARE);
+        let core = configuration_with(config, SOFTWARE);
         let place = tempfile::tempdir().expect("a directory");
-        let emitted = Emitted::new(&unit, 1, 1);
+        let emitted = Emitted::new(&core, 1, 1);
         let software = emitted.files.iter().filter(|file| file.path.starts_with("software/"));
         for file in software {
             fs::write(place.path().join(file.name()), &file.contents).expect("written");
         }
-        Self { unit, place }
+        Self { core, place }
     }
 
     fn is_line(&self) -> bool {
-        self.unit.contract.length().is_some()
+        self.core.contract.length().is_some()
     }
 
     fn assert_equal(&self, operands: &[Vec<i64>]) {
         let (found, expected) = (self.run(operands), self.expected(operands));
-        assert_eq!(found.len(), expected.len(), "{}: results", self.unit.config.name);
+        assert_eq!(found.len(), expected.len(), "{}: results", self.core.config.name);
         let differs = found.iter().zip(&expected).position(|(found, expected)| found != expected);
         if let Some(at) = differs {
-            let outputs = self.unit.contract.outputs().len();
+            let outputs = self.core.contract.outputs().len();
             panic!(
                 "{}: result {} is {}, not {}",
-                self.unit.config.name,
+                self.core.config.name,
                 at / outputs,
                 found[at],
                 expected[at]
@@ -187,7 +187,7 @@ impl Model {
 
     /// What the golden model says, result by result.
     fn expected(&self, operands: &[Vec<i64>]) -> Vec<i64> {
-        let contract = self.unit.contract.as_ref();
+        let contract = self.core.contract.as_ref();
         let of_point = |operands: &Vec<i64>| {
             let mut results = Vec::new();
             for index in 0..results_of(contract, operands) {
@@ -200,7 +200,7 @@ impl Model {
 
     /// What the model in C says.
     fn run(&self, operands: &[Vec<i64>]) -> Vec<i64> {
-        let (name, place) = (&self.unit.config.name, self.place.path());
+        let (name, place) = (&self.core.config.name, self.place.path());
         fs::write(place.join("driver.c"), self.driver()).expect("written");
         let model = format!("{name}_model.c");
         let arguments = FLAGS.into_iter().chain(["-fno-sanitize-recover=all", "-o", "driver"]);
@@ -218,8 +218,8 @@ impl Model {
 
     /// A program that reads operands and writes results, 64 bits each in the contract's order.
     fn driver(&self) -> String {
-        let (name, contract) = (&self.unit.config.name, self.unit.contract.as_ref());
-        let ports = self.unit.design.inputs();
+        let (name, contract) = (&self.core.config.name, self.core.contract.as_ref());
+        let ports = self.core.design.inputs();
         let count = ports.filter(|port| matches!(port.role, Role::Operand { .. })).count();
         assert_eq!(count, contract.operands().len(), "{name}: every operand is the contract's");
         let mut text = format!(
@@ -278,10 +278,10 @@ fn draw(contract: &dyn Contract, random: &mut ChaCha8Rng) -> Vec<i64> {
         low + (random.next_u64() % (high - low + 1) as u64) as i64
     };
     let mut operands: Vec<i64> = contract.operands().iter().map(&mut any).collect();
-    let mut unit = || (f64::from(random.next_u32()) + 0.5) / f64::from(u32::MAX);
-    if unit() < 0.5 {
-        let n = libm::floor(libm::pow(1000.0, unit()));
-        let f = unit();
+    let mut core = || (f64::from(random.next_u32()) + 0.5) / f64::from(u32::MAX);
+    if core() < 0.5 {
+        let n = libm::floor(libm::pow(1000.0, core()));
+        let f = core();
         let gamma = libm::acos(libm::pow(f, 1.0 / n));
         if let Some(control) = contract.highlight().and_then(|it| it.at(gamma, n)) {
             for (at, raw) in control.into_iter().enumerate() {

@@ -12,9 +12,9 @@ use glint::package::{self, EmitInputs};
 use glint::synth::{Area, Figures, Flow, Subject, Target};
 use serde_json::Value;
 
+use crate::common::cores::configuration;
 use crate::common::sample::sampled;
 use crate::common::tools::LIMIT;
-use crate::common::units::configuration;
 
 /// Pairs of a configuration and a target whose areas are measured again.
 const PAIRS: usize = 4;

@@ -8,10 +8,10 @@
 use std::collections::BTreeSet;
 use std::fs;
 
+use crate::common::cores::{Emitted, configuration, configurations};
 use crate::common::netlist::{self, POINTS, synthesise};
 use crate::common::sample::sampled;
 use crate::common::tools::{LIMIT, tool};
-use crate::common::units::{Emitted, configuration, configurations};
 use glint::hdl::netlist::{Design, Driver, Op, Rom};
 use glint::tools::gates;
 use glint::tools::synthesis::{self, FAMILIES, Family, Kinds, Usage};

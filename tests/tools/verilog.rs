@@ -5,10 +5,10 @@
 //! bit in what it expects, and in what the device's ROMs hold.
 
 use crate::common::bench::{Bench, with_flipped_bit};
+use crate::common::cores::{Emitted, Files, all_configurations, configuration, write};
 use crate::common::sample::sampled;
 use crate::common::tools::assert_lint_clean;
-use crate::common::units::{Emitted, Files, all_configurations, configuration, write};
-use glint::core::Unit;
+use glint::core::Core;
 use glint::hdl::netlist::{Design, Driver, RomId};
 use glint::hdl::sim::Simulator;
 use glint::tools::Simulator as External;
@@ -28,8 +28,8 @@ const COLUMNS: usize = 100;
 
 #[test]
 fn every_configuration_is_clean_verilog() {
-    all_configurations().par_iter().for_each(|(path, unit)| {
-        let emitted = Emitted::new(unit, 4, SEED);
+    all_configurations().par_iter().for_each(|(path, core)| {
+        let emitted = Emitted::new(core, 4, SEED);
         let place = tempfile::tempdir().expect("a directory");
         write(place.path(), &emitted.rtl());
         assert_lint_clean(place.path(), &emitted.name);
@@ -62,35 +62,35 @@ fn every_configuration_is_clean_verilog() {
 
 #[test]
 fn every_configuration_passes_in_icarus() {
-    all_configurations().par_iter().for_each(|(_, unit)| {
-        let (emitted, bench) = build(unit, External::Icarus);
+    all_configurations().par_iter().for_each(|(_, core)| {
+        let (emitted, bench) = build(core, External::Icarus);
         bench.assert_passes();
-        notices_every_output(unit, &emitted, &bench);
+        notices_every_output(core, &emitted, &bench);
         // Which word tells is known by the microprogram.
-        if unit.design.pipeline.is_none() {
-            notices_every_rom(unit, &emitted, &bench);
+        if core.design.pipeline.is_none() {
+            notices_every_rom(core, &emitted, &bench);
         }
     });
 }
 
 #[test]
 fn configurations_pass_in_verilator() {
-    sampled("Verilator", all_configurations(), BUILT).par_iter().for_each(|(_, unit)| {
-        let (_, bench) = build(unit, External::Verilator);
+    sampled("Verilator", all_configurations(), BUILT).par_iter().for_each(|(_, core)| {
+        let (_, bench) = build(core, External::Verilator);
         bench.assert_passes();
     });
 }
 
 #[test]
 fn a_bench_fails_in_verilator_too() {
-    let unit = configuration("configs/rough.toml");
-    let (emitted, bench) = build(&unit, External::Verilator);
-    notices_every_output(&unit, &emitted, &bench);
-    notices_every_rom(&unit, &emitted, &bench);
+    let core = configuration("configs/rough.toml");
+    let (emitted, bench) = build(&core, External::Verilator);
+    notices_every_output(&core, &emitted, &bench);
+    notices_every_rom(&core, &emitted, &bench);
 }
 
-fn build(unit: &Unit, simulator: External) -> (Emitted, Bench) {
-    let emitted = Emitted::new(unit, POINTS, SEED);
+fn build(core: &Core, simulator: External) -> (Emitted, Bench) {
+    let emitted = Emitted::new(core, POINTS, SEED);
     let bench = Bench::build(simulator, &emitted.simulated(), &emitted.bench());
     (emitted, bench)
 }
@@ -101,28 +101,28 @@ fn memory<'a>(files: &'a Files, name: &str) -> &'a str {
 }
 
 /// One wrong bit in one expected word, of each output in turn, fails the bench.
-fn notices_every_output(unit: &Unit, emitted: &Emitted, bench: &Bench) {
+fn notices_every_output(core: &Core, emitted: &Emitted, bench: &Bench) {
     let files = emitted.simulated();
     let name = format!("{}_expected.mem", emitted.name);
     let expected = memory(&files, &name);
-    let vectors = unit.vectors(POINTS, SEED).expect("vectors");
+    let vectors = core.vectors(POINTS, SEED).expect("vectors");
     let last = vectors.expected.len() - 1;
     // From the low end: the outputs of a word stand in port order from the top.
-    let outputs: Vec<_> = unit.design.outputs().collect();
+    let outputs: Vec<_> = core.design.outputs().collect();
     let mut low = 0;
     for port in outputs.into_iter().rev() {
         bench.replace(&name, &with_flipped_bit(expected, last, low));
-        bench.assert_fails(&format!("a wrong {}", unit.design.net(port.net).name));
-        low += unit.design.width(port.net);
+        bench.assert_fails(&format!("a wrong {}", core.design.net(port.net).name));
+        low += core.design.width(port.net);
     }
     bench.replace(&name, expected);
     bench.assert_passes();
 }
 
 /// One wrong bit in one word of a ROM, of each ROM in turn, fails the bench.
-fn notices_every_rom(unit: &Unit, emitted: &Emitted, bench: &Bench) {
+fn notices_every_rom(core: &Core, emitted: &Emitted, bench: &Bench) {
     let files = emitted.simulated();
-    let design = &unit.design;
+    let design = &core.design;
     for (at, rom) in design.roms.iter().enumerate() {
         let name = format!("{}_{}.mem", emitted.name, rom.name);
         let contents = memory(&files, &name);
@@ -130,7 +130,7 @@ fn notices_every_rom(unit: &Unit, emitted: &Emitted, bench: &Bench) {
             // Word 1 carries on with word 2; its lowest bit is what makes it do so, or end.
             (1, 0)
         } else {
-            (telling_word(unit, RomId(at as u32)), design.width(rom.data) - 1)
+            (telling_word(core, RomId(at as u32)), design.width(rom.data) - 1)
         };
         bench.replace(&name, &with_flipped_bit(contents, word, bit));
         bench.assert_fails(&format!("a wrong bit in word {word} of {name}"));
@@ -141,10 +141,10 @@ fn notices_every_rom(unit: &Unit, emitted: &Emitted, bench: &Bench) {
 
 /// A word of a ROM whose top bit is seen on the outputs over the bench's stimulus: of those the one that is
 /// addressed most often while the microprogram runs.
-fn telling_word(unit: &Unit, id: RomId) -> usize {
-    let design: &Design = &unit.design;
+fn telling_word(core: &Core, id: RomId) -> usize {
+    let design: &Design = &core.design;
     let rom = design.rom(id);
-    let vectors = unit.vectors(POINTS, SEED).expect("vectors");
+    let vectors = core.vectors(POINTS, SEED).expect("vectors");
     assert!(matches!(design.net(rom.data).driver, Driver::Rom(driver) if driver == id));
     let busy = design.register(design.control.run).q;
     let mut reads = vec![0; rom.words.len()];

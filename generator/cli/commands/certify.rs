@@ -49,8 +49,8 @@ pub fn certify(
     let mut list = Vec::new();
     let mut whole = true;
     for one in &loaded {
-        let contract = one.unit.contract.as_ref();
-        let stated = match statements(&one.unit.design, contract) {
+        let contract = one.core.contract.as_ref();
+        let stated = match statements(&one.core.design, contract) {
             Ok(stated) => stated,
             Err(step) => {
                 whole = false;
@@ -73,7 +73,7 @@ pub fn certify(
         bar.finish_and_clear();
         let checked = checked.into_iter().collect::<Result<Vec<_>>>()?;
         if let Some(out) = &request.out {
-            write(&out.join(&one.unit.config.name), &one.path, &stated, &checked)?;
+            write(&out.join(&one.core.config.name), &one.path, &stated, &checked)?;
         }
         let bound = contract.bound().units;
         let open: Vec<(&Statement, &str)> = stated

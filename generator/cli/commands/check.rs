@@ -54,11 +54,11 @@ pub fn everything(registry: &Registry, output: Output, details: bool) -> Result<
 }
 
 fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<Finding> {
-    let lockstep = one.unit.lockstep(TEST_SEED)?;
+    let lockstep = one.core.lockstep(TEST_SEED)?;
     let outcome = lockstep.run(TEST_POINTS, &|points| bar.inc(points))?;
-    let bound = one.unit.contract.bound();
+    let bound = one.core.contract.bound();
     let faults = outcome.faults(&bound);
-    Ok(Finding { timing: one.unit.timing()?, bound, outcome, faults })
+    Ok(Finding { timing: one.core.timing()?, bound, outcome, faults })
 }
 
 /// The columns of the table, which is the last thing on the screen but for the line that counts.
@@ -100,12 +100,12 @@ fn print(loaded: &[Loaded], findings: &[Finding], details: bool) -> Result<()> {
         let worst = finding.outcome.worst.as_ref();
         vec![
             short(&one.path).to_owned(),
-            one.unit.device.name.to_owned(),
+            one.core.device.name.to_owned(),
             clocks.map_or_else(|| "varies".to_owned(), |clocks| clocks.to_string()),
             text::grouped(finding.outcome.points),
             text::grouped(finding.outcome.clocks),
             format!("{}, {}", finding.outcome.registers, finding.outcome.outputs),
-            text::grouped(one.unit.design.rom_bits()),
+            text::grouped(one.core.design.rom_bits()),
             format!("{:.3}", finding.bound.units),
             worst.map_or_else(|| "-".to_owned(), |worst| format!("{:.3}", worst.units)),
             verdict(&finding.bound, &finding.faults).to_owned(),

@@ -12,7 +12,7 @@ use super::load;
 use crate::cli::failure::Usage as WrongUsage;
 use crate::cli::{Output, progress};
 use crate::config::{Config, Schema, Value};
-use crate::core::Unit;
+use crate::core::Core;
 use crate::evidence::comparison::{self, Accuracy, Multiplier};
 use crate::golden::contract;
 use crate::registry::{Device, Registry};
@@ -37,7 +37,7 @@ pub struct CompareRequest {
 struct Entry {
     /// The name of the device, or the path of the configuration.
     label: String,
-    unit: Unit,
+    core: Core,
     figures: Figures,
     /// By family; empty without synthesis.
     usage: Vec<Result<Usage, String>>,
@@ -62,14 +62,14 @@ pub fn compare(
         bail!(WrongUsage("--csv and --json are two ways to print the same: give one".to_owned()));
     }
     let mut notes = Vec::new();
-    let mut units = Vec::new();
+    let mut cores = Vec::new();
     for device in registry.devices() {
         let config = with_widths(device, &request.widths, &mut notes);
-        units.push((device.name.to_owned(), Unit::new(*device, config)?));
+        cores.push((device.name.to_owned(), Core::new(*device, config)?));
     }
     if !configs.is_empty() {
         let named = load(registry, configs)?;
-        units.extend(named.into_iter().map(|one| (one.path, one.unit)));
+        cores.extend(named.into_iter().map(|one| (one.path, one.core)));
     }
     let yosys = match request.synthesis.then(|| Tool::find("yosys")) {
         None => None,
@@ -80,26 +80,26 @@ pub fn compare(
         }
     };
     let families = if yosys.is_some() { FAMILIES.len() } else { 0 };
-    let bar = progress::bar(output, (units.len() * (1 + families)) as u64, "devices weighed");
+    let bar = progress::bar(output, (cores.len() * (1 + families)) as u64, "devices weighed");
     let n = f64::from(request.exponent);
-    let figures: Vec<Figures> = units
+    let figures: Vec<Figures> = cores
         .par_iter()
-        .map(|(label, unit)| {
-            let figures = figures(unit, n);
+        .map(|(label, core)| {
+            let figures = figures(core, n);
             bar.inc(1);
             figures.with_context(|| format!("`{label}`"))
         })
         .collect::<Result<_>>()?;
     let mut usage = match &yosys {
-        None => vec![Vec::new(); units.len()],
-        Some(yosys) => synthesise(&units, yosys, request.time_limit, &|| bar.inc(1))?,
+        None => vec![Vec::new(); cores.len()],
+        Some(yosys) => synthesise(&cores, yosys, request.time_limit, &|| bar.inc(1))?,
     };
     bar.finish_and_clear();
-    let entries: Vec<Entry> = units
+    let entries: Vec<Entry> = cores
         .into_iter()
         .zip(figures)
         .zip(usage.drain(..))
-        .map(|(((label, unit), figures), usage)| Entry { label, unit, figures, usage })
+        .map(|(((label, core), figures), usage)| Entry { label, core, figures, usage })
         .collect();
     for entry in &entries {
         if entry.figures.accuracy.is_none() {
@@ -147,32 +147,32 @@ fn with_widths(device: &Device, widths: &[(&'static str, i64)], notes: &mut Vec<
     config
 }
 
-fn figures(unit: &Unit, n: f64) -> Result<Figures> {
-    let contract = unit.contract.as_ref();
+fn figures(core: &Core, n: f64) -> Result<Figures> {
+    let contract = core.contract.as_ref();
     Ok(Figures {
         accuracy: comparison::accuracy(contract, n),
-        clocks_per_point: comparison::clocks_per_point(&unit.design, contract, n)?,
-        multipliers: comparison::multipliers(&unit.design),
+        clocks_per_point: comparison::clocks_per_point(&core.design, contract, n)?,
+        multipliers: comparison::multipliers(&core.design),
     })
 }
 
 /// What every unit takes in every family: an outcome, or what went wrong.
 fn synthesise(
-    units: &[(String, Unit)],
+    cores: &[(String, Core)],
     yosys: &Tool,
     limit: Duration,
     done: &(dyn Fn() + Sync),
 ) -> Result<Vec<Vec<Result<Usage, String>>>> {
-    let files: Vec<Vec<(String, String)>> = units
+    let files: Vec<Vec<(String, String)>> = cores
         .iter()
-        .map(|(label, unit)| unit.verilog().with_context(|| format!("`{label}`")))
+        .map(|(label, core)| core.verilog().with_context(|| format!("`{label}`")))
         .collect::<Result<_>>()?;
-    let runs: Vec<Result<Usage, String>> = (0..units.len() * FAMILIES.len())
+    let runs: Vec<Result<Usage, String>> = (0..cores.len() * FAMILIES.len())
         .into_par_iter()
         .map(|at| {
             let (one, family) = (at / FAMILIES.len(), &FAMILIES[at % FAMILIES.len()]);
-            let (label, unit) = &units[one];
-            let usage = synthesis::synthesise(yosys, &files[one], &unit.config.name, family, limit);
+            let (label, core) = &cores[one];
+            let usage = synthesis::synthesise(yosys, &files[one], &core.config.name, family, limit);
             done();
             usage.map_err(|error| format!("{label}, {}: {error:#}", family.title))
         })
@@ -182,7 +182,7 @@ fn synthesise(
 
 /// Why a configuration has no errors to show.
 fn outside(entry: &Entry, n: u32) -> String {
-    let operands = entry.unit.contract.operands();
+    let operands = entry.core.contract.operands();
     let exponent = operands.iter().find(|operand| operand.name == contract::EXPONENT);
     let label = &entry.label;
     match exponent {

@@ -69,7 +69,7 @@ fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result
     let mut holds = true;
     let mut list = Vec::new();
     for (one, outcome) in loaded.iter().zip(&outcomes) {
-        let bound = one.unit.contract.bound();
+        let bound = one.core.contract.bound();
         let faults = outcome.faults(&bound);
         holds &= faults.is_empty();
         if output.json {
@@ -93,7 +93,7 @@ fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result
                 place(one, worst)
             ));
         }
-        if one.unit.contract.highlight().is_some() {
+        if one.core.contract.highlight().is_some() {
             spread::print(&outcome.histogram);
         }
         for fault in faults {
@@ -116,7 +116,7 @@ fn run(
     request: &CosimRequest,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Outcome> {
-    let lockstep = one.unit.lockstep(request.seed)?;
+    let lockstep = one.core.lockstep(request.seed)?;
     let Some(path) = &request.vcd else {
         return lockstep.run(points, progress);
     };
@@ -125,7 +125,7 @@ fn run(
 
 /// The operands of the largest error, as values.
 pub fn place(one: &Loaded, worst: &Worst) -> String {
-    let operands = one.unit.contract.operands();
+    let operands = one.core.contract.operands();
     let values: Vec<String> = worst
         .operands
         .iter()
@@ -149,9 +149,9 @@ pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, faults: &[String]
         .map(|term| json!({ "key": term.key, "what": term.what, "units": term.units }))
         .collect();
     Ok(json!({
-        "device": one.unit.device.name,
+        "device": one.core.device.name,
         "config": one.path,
-        "name": one.unit.config.name,
+        "name": one.core.config.name,
         "points": outcome.points,
         "clocks": outcome.clocks,
         "registers": outcome.registers,
@@ -162,8 +162,8 @@ pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, faults: &[String]
             "output": worst.output,
             "operands": worst.operands.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
         })),
-        "f": one.unit.contract.highlight().map(|_| spread::as_json(&outcome.histogram)),
-        "rom_bits": one.unit.design.rom_bits(),
+        "f": one.core.contract.highlight().map(|_| spread::as_json(&outcome.histogram)),
+        "rom_bits": one.core.design.rom_bits(),
         "holds": faults.is_empty(),
         "verdict": verdict(bound, faults),
         "faults": faults,

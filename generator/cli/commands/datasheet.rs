@@ -60,8 +60,8 @@ pub fn datasheet(
     // Before the work: whether everything can be written, and which records there are.
     let mut proofs = Vec::new();
     for one in &loaded {
-        let (unit, contract) = (&one.unit, one.unit.contract.as_ref());
-        proofs.push(Record::find(&request.proofs, &unit.contract_digest(), contract)?);
+        let (core, contract) = (&one.core, one.core.contract.as_ref());
+        proofs.push(Record::find(&request.proofs, &core.contract_digest(), contract)?);
         store::may_write(&path(request, one, single), Seal::Markup, request.force)?;
     }
     let mut notes = Vec::new();
@@ -80,7 +80,7 @@ pub fn datasheet(
     let mut report = Vec::new();
     for (one, proof) in loaded.iter().zip(proofs) {
         let subject = Subject {
-            unit: &one.unit,
+            core: &one.core,
             path: &one.path,
             proof,
             synthesis: yosys.as_ref().map(|yosys| (yosys, limit)),
@@ -108,7 +108,7 @@ pub fn datasheet(
 fn path(request: &DatasheetArguments, one: &Loaded, single: bool) -> PathBuf {
     match single {
         true => request.out.clone(),
-        false => request.out.join(format!("{}.html", one.unit.config.name)),
+        false => request.out.join(format!("{}.html", one.core.config.name)),
     }
 }
 
@@ -117,7 +117,7 @@ fn tell(output: Output, report: &[(&Loaded, String, Written)], notes: &[String])
         let files = report.iter().map(|(one, path, written)| {
             json!({
                 "config": one.path,
-                "name": one.unit.config.name,
+                "name": one.core.config.name,
                 "file": path,
                 "written": *written == Written::Replaced,
             })

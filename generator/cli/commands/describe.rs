@@ -22,9 +22,9 @@ pub fn describe(
     let loaded = load_sequential(registry, configs, "describe")?;
     let mut report = Vec::new();
     for (at, one) in loaded.iter().enumerate() {
-        let page = one.unit.page(&one.path);
+        let page = one.core.page(&one.path);
         let page = page.with_context(|| format!("`{}`", one.path))?;
-        let name = &one.unit.config.name;
+        let name = &one.core.config.name;
         let written = match out {
             Some(out) => {
                 let written = store::write_sealed(

@@ -27,7 +27,7 @@ pub fn eval(
     batch: Option<&Path>,
 ) -> Result<bool> {
     let one = load_one(registry, &registry.schemas(), config)?;
-    let given = operands::given(one.unit.contract.operands(), settings).map_err(Usage)?;
+    let given = operands::given(one.core.contract.operands(), settings).map_err(Usage)?;
     match batch {
         Some(path) if path == config => {
             bail!(Usage("configuration and --batch are one file".to_owned()))
@@ -65,15 +65,15 @@ fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
 
 /// One point, with every signal of the golden model.
 fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
-    let contract = one.unit.contract.as_ref();
+    let contract = one.core.contract.as_ref();
     let operands = contract.operands();
     let raw = operands::completed(operands, given);
-    let mut model = (one.unit.device.model)(&one.unit.config);
+    let mut model = (one.core.device.model)(&one.core.config);
     let signals = signals(model.as_mut(), operands, &raw)?;
     let outside = outside(operands, &raw);
     let (f, exact) = formula(contract, &raw);
     let value_of = |name: &str, bits: u64| {
-        let net = one.unit.design.find(name).map(|id| one.unit.design.net(id));
+        let net = one.core.design.find(name).map(|id| one.core.design.net(id));
         net.map_or((i128::from(bits), bits as f64, String::new()), |net| {
             let raw = net.format.raw(bits);
             (raw, net.format.to_f64(raw), net.format.to_string())

@@ -49,8 +49,8 @@ pub fn exhaustive(
     let mut list = Vec::new();
     let mut holds = true;
     for one in &loaded {
-        let job = one.unit.job()?;
-        let mut state = State::new(&one.unit.fingerprint(), request.shard.unwrap_or(Shard::WHOLE));
+        let job = one.core.job()?;
+        let mut state = State::new(&one.core.fingerprint(), request.shard.unwrap_or(Shard::WHOLE));
         if let Some(path) = &request.resume
             && let Some(found) = read(path)?
         {
@@ -85,14 +85,14 @@ pub fn merge(
 ) -> Result<bool> {
     let loaded = load(registry, &[config.to_path_buf()])?;
     let one = &loaded[0];
-    let job = one.unit.job()?;
+    let job = one.core.job()?;
     let names: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
     let states = files
         .iter()
         .map(|path| read(path)?.with_context(|| format!("there is no `{}`", path.display())))
         .collect::<Result<Vec<_>>>()?;
     ensure!(
-        states.iter().any(|state| state.digest == one.unit.fingerprint()),
+        states.iter().any(|state| state.digest == one.core.fingerprint()),
         "these shards are not of `{}` as it stands, or of another build of Glint",
         one.path
     );

@@ -36,7 +36,7 @@ pub fn generate(
             let paths: Vec<&str> = files.iter().map(|file| file.path.as_str()).collect();
             report.push(json!({
                 "config": one.path,
-                "name": one.unit.config.name,
+                "name": one.core.config.name,
                 "written": written == Written::Replaced,
                 "files": paths,
             }));
@@ -75,14 +75,14 @@ pub fn all_files(output: Output, loaded: &[Loaded]) -> Result<Vec<Vec<OutputFile
 
 /// Every file of a configuration, with its bench.
 fn files(one: &Loaded) -> Result<Vec<OutputFile>> {
-    let vectors = one.unit.shipped_vectors();
+    let vectors = one.core.shipped_vectors();
     let vectors = vectors.with_context(|| format!("`{}`", one.path))?;
-    one.unit.files(&one.path, vectors).with_context(|| format!("`{}`", one.path))
+    one.core.files(&one.path, vectors).with_context(|| format!("`{}`", one.path))
 }
 
 /// Writes the files of a configuration, and the driver that its bench in Python shares with others.
 pub fn write(out: &Path, one: &Loaded, files: &[OutputFile], force: bool) -> Result<Written> {
-    let written = store::write(out, &one.unit.config.name, files, force)
+    let written = store::write(out, &one.core.config.name, files, force)
         .with_context(|| format!("`{}` was not generated", one.path))?;
     let driver = package::driver();
     let path = out.join(&driver.path);
@@ -103,7 +103,7 @@ fn compare(
         all.push(driver.path);
     }
     for (one, files) in loaded.iter().zip(made) {
-        all.extend(store::differences(out, &one.unit.config.name, files)?);
+        all.extend(store::differences(out, &one.core.config.name, files)?);
     }
     if output.json {
         tables::print_json(&json!({ "ok": all.is_empty(), "different": all }));

@@ -32,7 +32,7 @@ impl Reproducer {
     /// It cannot be written.
     pub fn of_run(one: &Loaded, mismatch: &Mismatch) -> Result<Self> {
         let (vcd, from) = window(one, mismatch);
-        let lockstep = one.unit.lockstep(mismatch.seed)?;
+        let lockstep = one.core.lockstep(mismatch.seed)?;
         let outcome = traced(&lockstep, &vcd, u64::MAX, from)?;
         Ok(Self {
             vcd,
@@ -100,7 +100,7 @@ fn window(one: &Loaded, mismatch: &Mismatch) -> (PathBuf, u64) {
 
 /// The file for the waveform of a difference, in the working directory.
 pub fn waveform_of(one: &Loaded) -> PathBuf {
-    PathBuf::from(format!("{}_mismatch.vcd", one.unit.config.name))
+    PathBuf::from(format!("{}_mismatch.vcd", one.core.config.name))
 }
 
 /// The clock at which the waveform of a difference begins that ends at `clock`.

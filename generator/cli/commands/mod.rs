@@ -45,7 +45,7 @@ use super::failure::{self, Several, Usage};
 use crate::base::diagnostic::Diagnostics;
 use crate::base::input;
 use crate::config;
-use crate::core::Unit;
+use crate::core::Core;
 use crate::golden::Bound;
 use crate::registry::Registry;
 
@@ -56,7 +56,7 @@ const CONFIGS: &str = "configs";
 struct Loaded {
     /// As the command line names it, with `/`.
     path: String,
-    unit: Unit,
+    core: Core,
 }
 
 /// The configurations named, or all in `configs/`, sorted.
@@ -99,13 +99,13 @@ fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
     }
     for (at, one) in loaded.iter().enumerate() {
         if let Some(other) =
-            loaded[..at].iter().find(|other| other.unit.config.name == one.unit.config.name)
+            loaded[..at].iter().find(|other| other.core.config.name == one.core.config.name)
         {
             failed.push(anyhow!(
                 "`{}` and `{}` both name their module `{}`; set another `name` in one of them",
                 other.path,
                 one.path,
-                one.unit.config.name
+                one.core.config.name
             ));
         }
     }
@@ -115,7 +115,7 @@ fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
 /// As [`load`], for a command that speaks of microprograms: pipelines are left out unless they are named.
 fn load_sequential(registry: &Registry, named: &[PathBuf], command: &str) -> Result<Vec<Loaded>> {
     let (pipelines, loaded): (Vec<Loaded>, Vec<Loaded>) =
-        load(registry, named)?.into_iter().partition(|one| one.unit.design.pipeline.is_some());
+        load(registry, named)?.into_iter().partition(|one| one.core.design.pipeline.is_some());
     match pipelines.first().filter(|_| !named.is_empty()) {
         None => Ok(loaded),
         Some(one) => bail!(
@@ -132,7 +132,7 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
         .device(&config.device)
         .with_context(|| format!("no device `{}`", config.device))?;
     let name = path.display().to_string().replace('\\', "/");
-    let unit = Unit::new(*device, config).map_err(|error| {
+    let core = Core::new(*device, config).map_err(|error| {
         // What the configuration asks for and the description cannot give is a fault of the configuration.
         let faults = error.downcast_ref::<Diagnostics>().map_or(&[][..], |faults| &faults.0);
         for fault in faults {
@@ -145,7 +145,7 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
             false => problems.into(),
         }
     })?;
-    Ok(Loaded { path: name, unit })
+    Ok(Loaded { path: name, core })
 }
 
 /// The verdict on a configuration whose outputs are right, within a bound that keeps the accuracy contract.
@@ -169,12 +169,12 @@ fn verdict(bound: &Bound, faults: &[String]) -> &'static str {
 impl Loaded {
     /// Warns when the configuration misses the accuracy contract; refuses it when it is strict.
     fn contract(&self) -> Result<()> {
-        let bound = self.unit.contract.bound();
+        let bound = self.core.contract.bound();
         if bound.units >= 1.0 {
             let limit = bound.limiting().map_or_else(String::new, |term| {
                 format!("; most of it, {:.3}, is of `{}` ({})", term.units, term.key, term.what)
             });
-            let advice = match self.unit.advice() {
+            let advice = match self.core.advice() {
                 Some(advice) => format!("; {advice}"),
                 None => "; no single key that it depends on brings it down".to_owned(),
             };
@@ -182,12 +182,12 @@ impl Loaded {
                 "{}: outside the accuracy contract: the error bound is {:.3} units, not below 1{limit}{advice}",
                 self.path, bound.units
             );
-            if self.unit.config.strict {
+            if self.core.config.strict {
                 bail!("{message}; `strict = true` refuses that");
             }
             failure::warn(&message);
         }
-        for remark in self.unit.contract.remarks() {
+        for remark in self.core.contract.remarks() {
             failure::warn(&format!("{}: {remark}", self.path));
         }
         Ok(())

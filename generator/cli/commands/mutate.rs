@@ -79,7 +79,7 @@ pub fn mutate(
             }
         };
     }
-    let faults: Vec<Faults> = loaded.iter().map(|one| Faults::of(&one.unit.design)).collect();
+    let faults: Vec<Faults> = loaded.iter().map(|one| Faults::of(&one.core.design)).collect();
     if request.list {
         list(output, &loaded, &faults);
         return Ok(true);
@@ -87,7 +87,7 @@ pub fn mutate(
     let texts: Vec<Option<(Text, Vec<TextFault>)>> = loaded
         .iter()
         .map(|one| {
-            let text = || Text::of(&one.unit).with_context(|| format!("`{}`", one.path));
+            let text = || Text::of(&one.core).with_context(|| format!("`{}`", one.path));
             let with_faults = |text: Text| {
                 let faults = text.faults();
                 (text, faults)
@@ -101,7 +101,7 @@ pub fn mutate(
     let bar = progress::bar(output, total as u64, "faults planted");
     let mut scores = Vec::new();
     for (((one, faults), text), record) in loaded.iter().zip(&faults).zip(&texts).zip(records) {
-        let found = mutate::run(&one.unit, faults.iter(), &|| bar.inc(1));
+        let found = mutate::run(&one.core, faults.iter(), &|| bar.inc(1));
         let netlist = Score::of(&found.with_context(|| format!("`{}`", one.path))?);
         let verilog = match text {
             Some((text, faults)) => {
@@ -114,7 +114,7 @@ pub fn mutate(
         let scored = Scored {
             glint: env!("CARGO_PKG_VERSION"),
             config: one.path.clone(),
-            device: one.unit.device.name,
+            device: one.core.device.name,
             netlist,
             verilog,
         };
@@ -156,23 +156,23 @@ fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) {
 
 /// One fault, with what reproduces it.
 fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
-    let faults = Faults::of(&one.unit.design);
+    let faults = Faults::of(&one.core.design);
     let Some(fault) = faults.find(id) else {
         bail!(Usage(format!(
             "`{}` has no fault `{id}`; `glint mutate {} --list` names them",
             one.path, one.path
         )));
     };
-    let found = mutate::run(&one.unit, [fault], &|| ())?;
+    let found = mutate::run(&one.core, [fault], &|| ())?;
     let found = found.into_iter().next().context("a fault without a verdict")?;
     let verdict = &found.verdict;
     let mut waveform = None;
     if let Verdict::Caught(_, Difference { held, mismatch }) = verdict {
-        let mutant = fault.planted(&one.unit.design);
-        let model = (one.unit.device.model)(&one.unit.config);
-        let lockstep = Lockstep::new(&mutant, model, one.unit.contract.as_ref(), mismatch.seed)?;
+        let mutant = fault.planted(&one.core.design);
+        let model = (one.core.device.model)(&one.core.config);
+        let lockstep = Lockstep::new(&mutant, model, one.core.contract.as_ref(), mismatch.seed)?;
         let lockstep = lockstep.holding(held);
-        let path = PathBuf::from(format!("{}_mutant.vcd", one.unit.config.name));
+        let path = PathBuf::from(format!("{}_mutant.vcd", one.core.config.name));
         let from = first_clock(mismatch.clock);
         traced(&lockstep, &path, u64::MAX, from)?;
         waveform = Some((path, from, mismatch.clock));
@@ -241,7 +241,7 @@ fn records(loaded: &[Loaded], request: &MutateRequest) -> Result<Vec<Option<OwnF
     std::fs::create_dir_all(directory)
         .with_context(|| format!("cannot make the directory `{}`", directory.display()))?;
     let record = |one: &Loaded| {
-        let name = format!("{}.json", one.unit.config.name);
+        let name = format!("{}.json", one.core.config.name);
         OwnFile::new(directory, &name, OwnFile::JSON).map(Some)
     };
     loaded.iter().map(record).collect()

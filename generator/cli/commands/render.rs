@@ -14,7 +14,7 @@ use crate::cli::destination::Destination;
 use crate::cli::failure::{self, Usage};
 use crate::cli::{Output, progress, tables};
 use crate::config::Config;
-use crate::core::{self, Unit};
+use crate::core::{self, Core};
 use crate::registry::Registry;
 use crate::render::{
     self, BuiltIn, Difference, Light, Material, Mesh, Object, Relief, Rendered, Scene, Settings,
@@ -130,8 +130,8 @@ enum ShapeName {
 
 /// `glint render`.
 pub fn render(registry: &Registry, output: Output, arguments: &RenderArguments) -> Result<bool> {
-    let (name, unit) = unit(registry, arguments.config.as_deref())?;
-    let settings = settings(&unit, arguments)?;
+    let (name, core) = core(registry, arguments.config.as_deref())?;
+    let settings = settings(&core, arguments)?;
     if let Some(extension) = arguments.out.extension()
         && !extension.eq_ignore_ascii_case("png")
     {
@@ -140,7 +140,7 @@ pub fn render(registry: &Registry, output: Output, arguments: &RenderArguments) 
             arguments.out.display()
         )));
     }
-    let scene = scene(arguments, render::walks_lines(unit.contract.as_ref()))?;
+    let scene = scene(arguments, render::walks_lines(core.contract.as_ref()))?;
     render::check(&settings, &scene).map_err(|error| Usage(error.to_string()))?;
     let destination = Destination::open(&arguments.out)?;
     let through = match arguments.through {
@@ -153,42 +153,42 @@ pub fn render(registry: &Registry, output: Output, arguments: &RenderArguments) 
     };
     let bar = progress::bar(output, u64::from(settings.size.1), "rows rendered");
     bar.tick();
-    let mut engine = unit.engine(through)?;
-    let rendered = render::render(&unit, engine.as_mut(), &scene, &settings, &mut |rows| {
+    let mut engine = core.engine(through)?;
+    let rendered = render::render(&core, engine.as_mut(), &scene, &settings, &mut |rows| {
         bar.set_position(rows);
     })?;
     bar.finish_and_clear();
-    let picture = rendered.whole(unit.device.name).png()?;
+    let picture = rendered.whole(core.device.name).png()?;
     let cannot = || format!("cannot write `{}`", arguments.out.display());
     let mut file = destination.file()?;
     file.write_all(&picture).with_context(cannot)?;
     destination.commit()?;
-    tell(output, arguments, &name, &unit, &scene, &settings, &rendered);
+    tell(output, arguments, &name, &core, &scene, &settings, &rendered);
     Ok(true)
 }
 
 /// What the configuration asks for, with its name for people.
-fn unit(registry: &Registry, config: Option<&Path>) -> Result<(String, Unit)> {
+fn core(registry: &Registry, config: Option<&Path>) -> Result<(String, Core)> {
     if let Some(path) = config {
         let one = load_one(registry, &registry.schemas(), path)?;
-        return Ok((one.path, one.unit));
+        return Ok((one.path, one.core));
     }
     let device = registry.devices().first();
     let device = *device.context("there is no device")?;
     let schema = (device.schema)();
     let config = Config::defaults(&schema, &device.name.replace('-', "_"));
-    let unit = Unit::new(device, config)?;
-    Ok((format!("the defaults of `{}`", device.name), unit))
+    let core = Core::new(device, config)?;
+    Ok((format!("the defaults of `{}`", device.name), core))
 }
 
-fn settings(unit: &Unit, arguments: &RenderArguments) -> Result<Settings> {
-    let (least, most) = render::exponents(unit.contract.as_ref()).unwrap_or((0, i64::MAX));
+fn settings(core: &Core, arguments: &RenderArguments) -> Result<Settings> {
+    let (least, most) = render::exponents(core.contract.as_ref()).unwrap_or((0, i64::MAX));
     let exponent =
-        arguments.exponent.unwrap_or_else(|| render::usual_exponent(unit.contract.as_ref()));
+        arguments.exponent.unwrap_or_else(|| render::usual_exponent(core.contract.as_ref()));
     if !(least..=most).contains(&i64::from(exponent)) {
         bail!(Usage(format!(
             "--exponent {exponent}: `{}` takes {least} to {most}",
-            unit.config.name
+            core.config.name
         )));
     }
     Ok(Settings {
@@ -274,7 +274,7 @@ fn tell(
     output: Output,
     arguments: &RenderArguments,
     name: &str,
-    unit: &Unit,
+    core: &Core,
     scene: &Scene,
     settings: &Settings,
     rendered: &Rendered,
@@ -292,7 +292,7 @@ fn tell(
     let path = arguments.out.display().to_string();
     let through = arguments.through.to_possible_value();
     let through = through.map_or_else(String::new, |value| value.get_name().to_owned());
-    let bound = unit.contract.bound().units;
+    let bound = core.contract.bound().units;
     let (width, height) = settings.size;
     if output.json {
         let comparison = rendered.comparison.as_ref().map(|comparison| {
@@ -308,7 +308,7 @@ fn tell(
         tables::print_json(&json!({
             "ok": true,
             "config": arguments.config.as_ref().map(|_| name),
-            "device": unit.device.name,
+            "device": core.device.name,
             "out": path,
             "through": through,
             "width": width,

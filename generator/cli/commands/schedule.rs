@@ -17,7 +17,7 @@ pub fn schedule(registry: &Registry, output: Output, configs: &[PathBuf]) -> Res
     let mut list = Vec::new();
     let mut shown = 0;
     for one in load(registry, configs)? {
-        let Some(pipeline) = &one.unit.design.pipeline else {
+        let Some(pipeline) = &one.core.design.pipeline else {
             if configs.is_empty() {
                 continue;
             }
@@ -56,7 +56,7 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
         vec![
             number.to_string(),
             stage.microinstructions.join("; "),
-            computed(&one.unit.design, pipeline, number).join(", "),
+            computed(&one.core.design, pipeline, number).join(", "),
             format!("{:.2}", stage.logic_ns),
             format!("{:.2}", stage.slack_ns),
             stage.register_bits.to_string(),
@@ -97,7 +97,7 @@ fn as_json(one: &Loaded, pipeline: &Pipeline) -> Value {
         json!({
             "stage": number,
             "microinstructions": stage.microinstructions,
-            "computes": computed(&one.unit.design, pipeline, number),
+            "computes": computed(&one.core.design, pipeline, number),
             "logic_ns": stage.logic_ns,
             "slack_ns": stage.slack_ns,
             "register_bits": stage.register_bits,
@@ -105,7 +105,7 @@ fn as_json(one: &Loaded, pipeline: &Pipeline) -> Value {
     });
     json!({
         "config": one.path,
-        "name": one.unit.config.name,
+        "name": one.core.config.name,
         "target": pipeline.target,
         "clock_mhz": pipeline.clock_mhz,
         "latency": pipeline.stages.len(),

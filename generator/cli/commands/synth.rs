@@ -98,7 +98,7 @@ pub fn synth(registry: &Registry, output: Output, request: &SynthArguments) -> R
     let (flows, notes) = flows(request)?;
     let mut records = Vec::new();
     for one in &loaded {
-        let file = format!("{}.json", one.unit.config.name);
+        let file = format!("{}.json", one.core.config.name);
         let record = request.out.as_ref().map(|out| OwnFile::new(out, &file, OwnFile::JSON));
         records.push(record.transpose()?);
     }
@@ -171,12 +171,12 @@ fn measure<'a>(
     request: &SynthArguments,
     done: &(dyn Fn(u64) + Sync),
 ) -> Result<Measured<'a>> {
-    let unit = &one.unit;
+    let core = &one.core;
     let clocks_per_point =
-        comparison::clocks_per_point(&unit.design, unit.contract.as_ref(), EXPONENT)?;
-    let files = unit.verilog()?;
+        comparison::clocks_per_point(&core.design, core.contract.as_ref(), EXPONENT)?;
+    let files = core.verilog()?;
     let subject = Subject {
-        design: &unit.design,
+        design: &core.design,
         files: &files,
         seeds: request.seeds,
         limit: Duration::from_secs(request.time_limit),
@@ -185,7 +185,7 @@ fn measure<'a>(
         let digest = flow.digest(&subject);
         let cache = (!request.no_cache).then(|| Cache::beside(&one.path)).flatten();
         if let Some(figures) =
-            cache.as_ref().and_then(|cache| cache.find(unit, flow.target(), &digest))
+            cache.as_ref().and_then(|cache| cache.find(core, flow.target(), &digest))
         {
             done(Flow::steps(flow.target(), request.seeds));
             return Ok(figures);
@@ -193,7 +193,7 @@ fn measure<'a>(
         let figures = flow.measure(&subject, &|| done(1));
         let figures = figures.with_context(|| format!("`{}`", one.path))?;
         if let Some(cache) = Cache::beside(&one.path) {
-            cache.keep(unit, &digest, &figures);
+            cache.keep(core, &digest, &figures);
         }
         Ok(figures)
     });
@@ -205,15 +205,15 @@ impl Measured<'_> {
         Record {
             glint: env!("CARGO_PKG_VERSION"),
             config: &self.one.path,
-            name: &self.one.unit.config.name,
-            device: self.one.unit.device.name,
+            name: &self.one.core.config.name,
+            device: self.one.core.device.name,
             clocks_per_point: self.clocks_per_point,
             targets: self.figures.iter().map(|figures| self.recorded(figures)).collect(),
         }
     }
 
     fn recorded<'f>(&self, figures: &'f Figures) -> Recorded<'f> {
-        let design = &self.one.unit.design;
+        let design = &self.one.core.design;
         Recorded {
             figures,
             netlist: Features::new(design, figures.target),

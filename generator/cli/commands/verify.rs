@@ -65,7 +65,7 @@ pub fn verify(
     // Before the work: a directory that cannot be written is known now.
     std::fs::create_dir_all(&request.out)
         .with_context(|| format!("cannot make the directory `{}`", request.out.display()))?;
-    let files = loaded.iter().map(|one| Files::new(&request.out, &one.unit.config.name));
+    let files = loaded.iter().map(|one| Files::new(&request.out, &one.core.config.name));
     let files = files.collect::<Result<Vec<_>>>()?;
     let mut list = Vec::new();
     let mut verified = true;
@@ -97,7 +97,7 @@ fn one_configuration(
         without_tools: request.without_tools,
         time_limit: request.time_limit,
     };
-    let subject = Subject { path: &one.path, unit: &one.unit, effort, proofs: &request.proofs };
+    let subject = Subject { path: &one.path, core: &one.core, effort, proofs: &request.proofs };
     let mut answers: Vec<Answer> = Vec::new();
     for leg in LEGS {
         if leg.is_outside() && request.without_tools {

@@ -17,7 +17,7 @@ const SAME: f64 = 1e-9;
 /// What a check found.
 #[derive(Clone, Debug, Deserialize)]
 pub struct Record {
-    /// Tells what was checked: [`crate::core::Unit::contract_digest`].
+    /// Tells what was checked: [`crate::core::Core::contract_digest`].
     #[serde(default)]
     configuration: String,
     axes: Vec<RecordedAxis>,

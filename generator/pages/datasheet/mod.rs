@@ -11,7 +11,7 @@ mod waves;
 
 use anyhow::Result;
 
-use crate::core::{Through, Unit};
+use crate::core::{Core, Through};
 use crate::cosim::exhaustive::Record;
 use crate::evidence::curves::{self, DeviceCurves};
 use crate::evidence::hardware::{self, FamilyUsage, Synthesis};
@@ -29,7 +29,7 @@ const SAMPLES: u32 = 2;
 /// What a datasheet is about.
 pub struct Subject<'a> {
     /// The configuration.
-    pub unit: &'a Unit,
+    pub core: &'a Core,
     /// As the command line names it, `configs/<name>.toml`.
     pub path: &'a str,
     /// The record of its exhaustive check, where there is one.
@@ -79,27 +79,27 @@ pub fn steps(synthesis: bool) -> usize {
 /// # Errors
 /// The device never ends, or synthesis fails.
 pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datasheet> {
-    let unit = subject.unit;
-    let contract = unit.contract.as_ref();
+    let core = subject.core;
+    let contract = core.contract.as_ref();
     let synthesis = || -> Result<_> {
         let Some(synthesis) = subject.synthesis else {
             return Ok(None);
         };
-        let usage = hardware::usage(unit, synthesis, done)?;
+        let usage = hardware::usage(core, synthesis, done)?;
         Ok(Some((synthesis.0.version()?, usage)))
     };
     let pictures = || -> Result<_> {
-        let highlight = render::draws(unit).then(|| highlight(unit)).transpose()?;
+        let highlight = render::draws(core).then(|| highlight(core)).transpose()?;
         done();
-        Ok((highlight, curves::configuration(&unit.device, contract, done)))
+        Ok((highlight, curves::configuration(&core.device, contract, done)))
     };
     let (synthesis, pictures) = rayon::join(synthesis, pictures);
     let (highlight, curves) = pictures?;
     let measured = Measured {
-        timing: unit.timing()?,
-        example: unit.example()?,
-        line: unit.line()?,
-        waves: Waves::record(unit)?,
+        timing: core.timing()?,
+        example: core.example()?,
+        line: core.line()?,
+        waves: Waves::record(core)?,
         curves,
         highlight,
         synthesis: synthesis?,
@@ -108,8 +108,8 @@ pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datashee
 }
 
 /// A ball in the light that pictures have by default.
-fn highlight(unit: &Unit) -> Result<Highlight> {
-    let contract = unit.contract.as_ref();
+fn highlight(core: &Core) -> Result<Highlight> {
+    let contract = core.contract.as_ref();
     let exponent = render::usual_exponent(contract);
     let settings = Settings {
         size: (SIDE, SIDE),
@@ -124,11 +124,11 @@ fn highlight(unit: &Unit) -> Result<Highlight> {
         lights: Light::usual(),
         relief: None,
     };
-    let mut engine = unit.engine(Through::Golden)?;
-    let rendered = render::render(unit, engine.as_mut(), &scene, &settings, &mut |_| ())?;
+    let mut engine = core.engine(Through::Golden)?;
+    let rendered = render::render(core, engine.as_mut(), &scene, &settings, &mut |_| ())?;
     let difference = rendered.comparison.as_ref().map(|comparison| &comparison.difference);
     Ok(Highlight {
-        png: rendered.whole(unit.device.name).png()?,
+        png: rendered.whole(core.device.name).png()?,
         exponent,
         psnr: difference.and_then(|difference| difference.psnr),
         largest: difference.map_or(0, |difference| difference.largest),

@@ -83,18 +83,18 @@ struct HighlightView {
 /// # Errors
 /// A chart that cannot be plotted, or a template that fails to print.
 pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
-    let unit = subject.unit;
-    let design = &unit.design;
+    let core = subject.core;
+    let design = &core.design;
     let about = &design.about;
-    let contract = unit.contract.as_ref();
-    let schema = (unit.device.schema)();
+    let contract = core.contract.as_ref();
+    let schema = (core.device.schema)();
     let bound = contract.bound();
     let inputs = PageInputs {
         path: subject.path,
-        config: &unit.config,
+        config: &core.config,
         schema: &schema,
         contract,
-        advice: unit.advice(),
+        advice: core.advice(),
         timing: &measured.timing,
         example: &measured.example,
         line: measured.line.as_ref(),
@@ -154,8 +154,8 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         }),
         synthesis: measured.synthesis.as_ref(),
         instance: package::instance(design)?,
-        keys: TableView::new("Keys of the configuration", &account::keys(&schema, &unit.config)),
-        toml: unit.config.to_toml(&schema),
+        keys: TableView::new("Keys of the configuration", &account::keys(&schema, &core.config)),
+        toml: core.config.to_toml(&schema),
     };
     let mut text = page.render()?;
     text.push('\n');
@@ -164,8 +164,8 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
 
 /// What one wants to know first.
 fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)> {
-    let design = &subject.unit.design;
-    let contract = subject.unit.contract.as_ref();
+    let design = &subject.core.design;
+    let contract = subject.core.contract.as_ref();
     let clocks = |clocks: Option<u32>| clocks.map_or("by data".to_owned(), |it| it.to_string());
     let timing = &measured.timing;
     let outputs = contract.outputs().len();

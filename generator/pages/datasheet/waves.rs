@@ -4,7 +4,7 @@ use anyhow::Result;
 use serde_json::{Value, json};
 
 use crate::base::fixed::Format;
-use crate::core::Unit;
+use crate::core::Core;
 use crate::cosim::trial;
 use crate::hdl::netlist::{Design, Driver, Handshake, NetId, RegisterKind, Role};
 use crate::package::sealed_json;
@@ -76,14 +76,14 @@ impl Waves {
     ///
     /// # Errors
     /// A device that never ends.
-    pub fn record(unit: &Unit) -> Result<Self> {
-        let design = &unit.design;
+    pub fn record(core: &Core) -> Result<Self> {
+        let design = &core.design;
         let Handshake { start, busy, valid, done, .. } = design.handshake()?;
         let address = design.register(design.control.address).q;
         let probes = probes(design, [start, busy, valid, done]);
         let mut nets: Vec<NetId> = probes.iter().map(|probe| probe.net).collect();
         nets.extend([address, busy, valid]);
-        let clocks = trial::record(design, unit.contract.as_ref(), &nets)?;
+        let clocks = trial::record(design, core.contract.as_ref(), &nets)?;
         let column = |at: usize| -> Vec<u64> { clocks.iter().map(|values| values[at]).collect() };
         let [words, busy, valid] = [0, 1, 2].map(|at| column(probes.len() + at));
 

@@ -5,8 +5,8 @@ mod build;
 
 use std::panic::Location;
 
+use crate::common::cores::{Files, write};
 use crate::common::tools::{assert_lint_clean, yosys};
-use crate::common::units::{Files, write};
 use build::{Call, build, calls};
 use glint::hdl::netlist::Design;
 use glint::hdl::sim::Simulator;

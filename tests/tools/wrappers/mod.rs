@@ -3,9 +3,9 @@
 use std::fs;
 use std::path::Path;
 
+use crate::common::cores::{Emitted, all_configurations, configuration_between, write};
 use crate::common::tools::{LIMIT, assert_lint_clean, tool};
-use crate::common::units::{Emitted, all_configurations, configuration_between, write};
-use glint::core::Unit;
+use glint::core::Core;
 use glint::tools::prove;
 use rayon::prelude::*;
 
@@ -16,18 +16,18 @@ const STREAM: &str = "stream = true\nuser_bits = 9\n";
 const PROVED: [&str; 3] = ["cosine_power", "quad_cosine", "cosine_power_pipelined"];
 
 /// Every configuration with these keys in its table `interface`.
-fn with_interface(keys: &str) -> Vec<(String, Unit)> {
-    let with = |(path, _): (String, Unit)| {
-        let unit = configuration_between(&path, keys);
-        (path, unit)
+fn with_interface(keys: &str) -> Vec<(String, Core)> {
+    let with = |(path, _): (String, Core)| {
+        let core = configuration_between(&path, keys);
+        (path, core)
     };
     all_configurations().into_iter().map(with).collect()
 }
 
 #[test]
 fn streams_are_clean_verilog() {
-    with_interface(STREAM).par_iter().for_each(|(path, unit)| {
-        let emitted = Emitted::new(unit, 1, 1);
+    with_interface(STREAM).par_iter().for_each(|(path, core)| {
+        let emitted = Emitted::new(core, 1, 1);
         let place = tempfile::tempdir().expect("a directory");
         write(place.path(), &emitted.rtl());
         assert_lint_clean(place.path(), &format!("{}_axis", emitted.name));
@@ -109,9 +109,9 @@ fn fault_breaks_the_proof(name: &str, keys: &str, wrapper: &str, right: &str, wr
 
 /// The wrapper of a configuration, and what is proved of it, in a directory of their own.
 fn proof(name: &str, keys: &str) -> tempfile::TempDir {
-    let unit = configuration_between(&format!("configs/{name}.toml"), keys);
+    let core = configuration_between(&format!("configs/{name}.toml"), keys);
     let place = tempfile::tempdir().expect("a directory");
-    for file in Emitted::new(&unit, 1, 1).files {
+    for file in Emitted::new(&core, 1, 1).files {
         fs::write(place.path().join(file.name()), &file.contents).expect("written");
     }
     place
@@ -120,20 +120,20 @@ fn proof(name: &str, keys: &str) -> tempfile::TempDir {
 /// Source and sink of cocotbext-axi.
 #[test]
 fn streams_carry_every_point() {
-    with_interface(STREAM).par_iter().for_each(|(path, unit)| {
-        let place = emitted(unit);
+    with_interface(STREAM).par_iter().for_each(|(path, core)| {
+        let place = emitted(core);
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/tools/wrappers/stream.py");
-        let run = tool("python").run([script, &unit.config.name], place.path(), LIMIT);
+        let run = tool("python").run([script, &core.config.name], place.path(), LIMIT);
         let run = run.unwrap_or_else(|error| panic!("{error:#}"));
-        let says = format!("PASS {}: 6 tests, 0 failed", unit.config.name);
+        let says = format!("PASS {}: 6 tests, 0 failed", core.config.name);
         assert!(run.status.success() && run.output.contains(&says), "{path}:\n{}", run.output);
     });
 }
 
 /// The files of a configuration below a directory of their own.
-fn emitted(unit: &Unit) -> tempfile::TempDir {
+fn emitted(core: &Core) -> tempfile::TempDir {
     let place = tempfile::tempdir().expect("a directory");
-    for file in Emitted::new(unit, 1, 1).files {
+    for file in Emitted::new(core, 1, 1).files {
         let path: &Path = &place.path().join(&file.path);
         fs::create_dir_all(path.parent().expect("a directory")).expect("a directory");
         fs::write(path, &file.contents).expect("written");
@@ -146,11 +146,11 @@ const BUSES: [(&str, &str); 2] =
     [("registers = \"axi-lite\"\n", "axil"), ("registers = \"wishbone\"\n", "wb")];
 
 /// Every default configuration of a core that computes a point at a time by a microprogram, on each bus.
-fn on_buses() -> Vec<(String, Unit, &'static str)> {
-    let points = |unit: &Unit| unit.design.pipeline.is_none() && unit.contract.length().is_none();
+fn on_buses() -> Vec<(String, Core, &'static str)> {
+    let points = |core: &Core| core.design.pipeline.is_none() && core.contract.length().is_none();
     let paths: Vec<String> = all_configurations()
         .into_iter()
-        .filter(|(path, unit)| points(unit) && !path.contains("studies"))
+        .filter(|(path, core)| points(core) && !path.contains("studies"))
         .map(|(path, _)| path)
         .collect();
     let of_bus = |(keys, bus): (&str, &'static str)| {
@@ -162,8 +162,8 @@ fn on_buses() -> Vec<(String, Unit, &'static str)> {
 
 #[test]
 fn registers_are_clean_verilog() {
-    on_buses().par_iter().for_each(|(path, unit, bus)| {
-        let emitted = Emitted::new(unit, 1, 1);
+    on_buses().par_iter().for_each(|(path, core, bus)| {
+        let emitted = Emitted::new(core, 1, 1);
         let place = tempfile::tempdir().expect("a directory");
         write(place.path(), &emitted.rtl());
         assert_lint_clean(place.path(), &format!("{}_{bus}", emitted.name));
@@ -245,12 +245,12 @@ fn faults_break_the_proofs_of_registers() {
 /// The masters of cocotbext-axi and cocotbext-wishbone.
 #[test]
 fn registers_start_cores_and_give_their_results() {
-    on_buses().par_iter().for_each(|(path, unit, bus)| {
-        let place = emitted(unit);
+    on_buses().par_iter().for_each(|(path, core, bus)| {
+        let place = emitted(core);
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/tools/wrappers/registers.py");
-        let run = tool("python").run([script, &unit.config.name, bus], place.path(), LIMIT);
+        let run = tool("python").run([script, &core.config.name, bus], place.path(), LIMIT);
         let run = run.unwrap_or_else(|error| panic!("{error:#}"));
-        let says = format!("PASS {}: 8 tests, 0 failed", unit.config.name);
+        let says = format!("PASS {}: 8 tests, 0 failed", core.config.name);
         assert!(run.status.success() && run.output.contains(&says), "{path}:\n{}", run.output);
     });
 }
@@ -299,8 +299,8 @@ fn main() {
 
 #[test]
 fn registers_for_software() {
-    let unit = configuration_between("configs/cosine_power.toml", BUSES[1].0);
-    let place = emitted(&unit);
+    let core = configuration_between("configs/cosine_power.toml", BUSES[1].0);
+    let place = emitted(&core);
     let place = &place.path().join("software/cosine_power");
     fs::write(place.join("main.c"), CONVERSIONS).expect("written");
     fs::write(place.join("main.rs"), RUST_CONVERSIONS).expect("written");

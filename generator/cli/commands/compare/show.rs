@@ -44,7 +44,7 @@ pub fn show(
 
 /// Over what the errors of a device are, that has more operands than the angle and n; none of others.
 fn at_rest(entry: &Entry) -> Option<String> {
-    let contract = entry.unit.contract.as_ref();
+    let contract = entry.core.contract.as_ref();
     let control = contract.operands().iter().filter(|operand| !operand.colour);
     let is_other = |name: &str| ![contract::COSINE, contract::EXPONENT].contains(&name);
     if !contract.operands().iter().any(|operand| operand.name == contract::COSINE) {
@@ -108,7 +108,7 @@ fn print_errors(request: &CompareRequest, entries: &[Entry]) {
                     .map(|error| format!("{error:.6}")),
             ),
         }
-        row.push(format!("{:.3}", entry.unit.contract.bound().units));
+        row.push(format!("{:.3}", entry.core.contract.bound().units));
         row
     });
     tables::print(&columns, rows);
@@ -139,7 +139,7 @@ fn print_hardware(entries: &[Entry]) {
         let mut row = vec![
             entry.label.clone(),
             clocks(entry.figures.clocks_per_point),
-            text::grouped(entry.unit.design.rom_bits()),
+            text::grouped(entry.core.design.rom_bits()),
             sizes(&entry.figures.multipliers),
         ];
         for usage in &entry.usage {
@@ -208,7 +208,7 @@ fn as_csv(request: &CompareRequest, entries: &[Entry]) -> Vec<Vec<String>> {
     let row = |entry: &Entry| {
         let mut row = vec![
             entry.label.clone(),
-            entry.unit.device.name.to_owned(),
+            entry.core.device.name.to_owned(),
             request.exponent.to_string(),
         ];
         match &entry.figures.accuracy {
@@ -221,9 +221,9 @@ fn as_csv(request: &CompareRequest, entries: &[Entry]) -> Vec<Vec<String>> {
             ),
         }
         row.extend([
-            entry.unit.contract.bound().units.to_string(),
+            entry.core.contract.bound().units.to_string(),
             entry.figures.clocks_per_point.to_string(),
-            entry.unit.design.rom_bits().to_string(),
+            entry.core.design.rom_bits().to_string(),
             sizes(&entry.figures.multipliers),
         ]);
         for usage in &entry.usage {
@@ -265,15 +265,15 @@ fn as_json(
 }
 
 fn entry_json(entry: &Entry) -> Value {
-    let unit = &entry.unit;
-    let schema = (unit.device.schema)();
+    let core = &entry.core;
+    let schema = (core.device.schema)();
     let mut value = json!({
         "name": entry.label,
-        "device": unit.device.name,
-        "toml": unit.config.to_toml(&schema),
-        "bound_units": unit.contract.bound().units,
+        "device": core.device.name,
+        "toml": core.config.to_toml(&schema),
+        "bound_units": core.contract.bound().units,
         "clocks_per_point": entry.figures.clocks_per_point,
-        "rom_bits": unit.design.rom_bits(),
+        "rom_bits": core.design.rom_bits(),
     });
     value["errors"] = entry.figures.accuracy.as_ref().map_or(Value::Null, |it| {
         let spread = |spread: Spread| json!({ "largest": spread.largest, "mean": spread.mean });

@@ -80,10 +80,10 @@ pub fn benches(
 /// The emitted bench in an external simulator. The expected values are those on which golden model
 /// and built-in simulator agree.
 fn bench(one: &Loaded, which: Simulator, points: u64, request: &CosimRequest) -> Result<Run> {
-    let vectors = one.unit.vectors(points, request.seed)?;
+    let vectors = one.core.vectors(points, request.seed)?;
     let clocks = vectors.inputs.len();
-    let files = package::sources(one.unit.files(&one.path, vectors)?);
-    let top = format!("{}_tb", one.unit.config.name);
+    let files = package::sources(one.core.files(&one.path, vectors)?);
+    let top = format!("{}_tb", one.core.config.name);
     let outcome = run_bench(which, &files, &top, request.time_limit)?;
     let mismatch = BenchDifference::first(&outcome.transcript).map(|difference| {
         let from = first_clock(difference.clock);

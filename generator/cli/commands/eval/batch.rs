@@ -51,7 +51,7 @@ fn columns<'a>(
     given: &[Option<i64>],
     headings: impl Iterator<Item = &'a str>,
 ) -> Result<Vec<usize>> {
-    let known = one.unit.contract.operands();
+    let known = one.core.contract.operands();
     let mut columns: Vec<usize> = Vec::new();
     for heading in headings {
         let at = operands::position(known, heading).map_err(|fault| anyhow!("{fault}"))?;
@@ -69,7 +69,7 @@ fn row(
     columns: &[usize],
     record: &csv::StringRecord,
 ) -> Result<Row, String> {
-    let contract = one.unit.contract.as_ref();
+    let contract = one.core.contract.as_ref();
     let known = contract.operands();
     let mut given = given.to_vec();
     for (&at, text) in columns.iter().zip(record) {
@@ -88,7 +88,7 @@ fn row(
 }
 
 fn print_csv(one: &Loaded, rows: &[Row]) -> Result<()> {
-    let contract = one.unit.contract.as_ref();
+    let contract = one.core.contract.as_ref();
     let mut writer = Writer::from_writer(Vec::new());
     let mut headings: Vec<String> =
         contract.operands().iter().map(|operand| operand.name.clone()).collect();
@@ -119,7 +119,7 @@ fn print_csv(one: &Loaded, rows: &[Row]) -> Result<()> {
 }
 
 fn print_json(one: &Loaded, rows: &[Row]) {
-    let contract = one.unit.contract.as_ref();
+    let contract = one.core.contract.as_ref();
     let points = rows.iter().map(|row| {
         let operands = contract.operands().iter().zip(&row.operands);
         let operands: Map<String, Value> =

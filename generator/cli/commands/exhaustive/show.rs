@@ -51,7 +51,7 @@ pub fn report(
     state: &State,
     list: &mut Vec<Value>,
 ) -> Result<bool> {
-    let contract = one.unit.contract.as_ref();
+    let contract = one.core.contract.as_ref();
     let mut proof = Proof::new(contract, state.f.peak, state.colours.peak);
     let found = found(one, job, state)?;
     if let Some((difference, _)) = &found {
@@ -89,7 +89,7 @@ fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &State) {
         .map(|(axis, value)| format!("{}={value}", axis.name))
         .collect();
     let verdict = match state.shard == Shard::WHOLE {
-        true => proof.verdict(one.unit.contract.as_ref()).to_owned(),
+        true => proof.verdict(one.core.contract.as_ref()).to_owned(),
         false if proof.faults.is_empty() => {
             "holds so far; `glint merge` joins the shards".to_owned()
         }
@@ -98,7 +98,7 @@ fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &State) {
     tables::print_line(&format!(
         "  {} (bound {:.3}): {verdict}",
         proof.words(&format!(", at raw {}", at.join(" "))),
-        one.unit.contract.bound().units,
+        one.core.contract.bound().units,
     ));
     for fault in &proof.faults {
         tables::print_line(&format!("  FAILS: {fault}"));
@@ -128,8 +128,8 @@ fn as_json(
         .collect();
     let mut value = json!({
         "config": one.path,
-        "device": one.unit.device.name,
-        "configuration": one.unit.contract_digest(),
+        "device": one.core.device.name,
+        "configuration": one.core.contract_digest(),
         "axes": axes,
         "not_covered": places.sweep().omits,
         "evaluations": places.count(),
@@ -142,9 +142,9 @@ fn as_json(
         },
         "colour_units": proof.colours.error,
         "together": proof.together(),
-        "bound": one.unit.contract.bound().units,
+        "bound": one.core.contract.bound().units,
         "holds": proof.faults.is_empty(),
-        "verdict": proof.verdict(one.unit.contract.as_ref()),
+        "verdict": proof.verdict(one.core.contract.as_ref()),
         "faults": proof.faults,
     });
     if let Some(clocks) = &job.clocks {

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::base::input;
 use crate::cli::staged;
-use crate::core::Unit;
+use crate::core::Core;
 use crate::synth::{Figures, Target};
 
 /// The folder beside configurations, which may be deleted at any time.
@@ -30,19 +30,19 @@ impl Cache {
             .then(|| Self(Path::new(path).parent().unwrap_or(Path::new("")).join(FOLDER)))
     }
 
-    fn file(&self, unit: &Unit, target: Target) -> PathBuf {
-        self.0.join(format!("{}.{target}.json", unit.config.name))
+    fn file(&self, core: &Core, target: Target) -> PathBuf {
+        self.0.join(format!("{}.{target}.json", core.config.name))
     }
 
     /// The figures of a measurement with this digest.
-    pub fn find(&self, unit: &Unit, target: Target, digest: &str) -> Option<Figures> {
-        let text = fs::read_to_string(self.file(unit, target)).ok()?;
+    pub fn find(&self, core: &Core, target: Target, digest: &str) -> Option<Figures> {
+        let text = fs::read_to_string(self.file(core, target)).ok()?;
         let entry: Entry = serde_json::from_str(&text).ok()?;
         (entry.digest == digest).then_some(entry.figures)
     }
 
     /// Keeps figures, if the folder can be written: a cache that cannot be kept is no error.
-    pub fn keep(&self, unit: &Unit, digest: &str, figures: &Figures) {
+    pub fn keep(&self, core: &Core, digest: &str, figures: &Figures) {
         let entry = Entry {
             glint: env!("CARGO_PKG_VERSION").to_owned(),
             digest: digest.to_owned(),
@@ -50,7 +50,7 @@ impl Cache {
         };
         let text = serde_json::to_string_pretty(&entry);
         if let (Ok(text), Ok(())) = (text, fs::create_dir_all(&self.0)) {
-            let _ = staged::replace(&self.file(unit, figures.target), text.as_bytes());
+            let _ = staged::replace(&self.file(core, figures.target), text.as_bytes());
         }
     }
 }

@@ -31,7 +31,7 @@ pub fn print(measured: &[Measured], notes: &[String]) {
     tables::print(&columns, rows);
     for one in measured {
         for figures in &one.figures {
-            let about = format!("{}, {}", one.one.unit.config.name, figures.device);
+            let about = format!("{}, {}", one.one.core.config.name, figures.device);
             if !figures.critical_path.is_empty() {
                 tables::print_line(&format!("{about}: {}", path(&figures.critical_path)));
             }
@@ -65,7 +65,7 @@ fn row(one: &Measured, figures: &Figures) -> Vec<String> {
     let per = |units: Option<u64>| Some(rate? / units.filter(|units| *units > 0)? as f64);
     let frequency = figures.frequency;
     vec![
-        one.one.unit.config.name.clone(),
+        one.one.core.config.name.clone(),
         figures.target.to_string(),
         count(area.luts),
         count(area.dsps),
@@ -107,8 +107,8 @@ pub fn as_json(measured: &[Measured], notes: &[String]) {
         });
         json!({
             "config": one.one.path,
-            "name": one.one.unit.config.name,
-            "device": one.one.unit.device.name,
+            "name": one.one.core.config.name,
+            "device": one.one.core.device.name,
             "clocks_per_point": one.clocks_per_point,
             "targets": targets.collect::<Vec<Value>>(),
         })

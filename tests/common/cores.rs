@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 
 use glint::config;
-use glint::core::Unit;
+use glint::core::Core;
 use glint::package::{OutputFile, sources};
 use glint::registry::{Device, Registry};
 
@@ -18,8 +18,8 @@ pub type Files = Vec<(String, String)>;
 ///
 /// # Panics
 /// There are none, or one of them is wrong.
-pub fn configurations() -> Vec<(String, Unit)> {
-    let sequential = |(_, unit): &(String, Unit)| unit.design.pipeline.is_none();
+pub fn configurations() -> Vec<(String, Core)> {
+    let sequential = |(_, core): &(String, Core)| core.design.pipeline.is_none();
     all_configurations().into_iter().filter(sequential).collect()
 }
 
@@ -27,13 +27,13 @@ pub fn configurations() -> Vec<(String, Unit)> {
 ///
 /// # Panics
 /// There are none, or one of them is wrong.
-pub fn all_configurations() -> Vec<(String, Unit)> {
+pub fn all_configurations() -> Vec<(String, Core)> {
     let mut paths: Vec<String> =
         ["configs", "configs/studies"].into_iter().flat_map(configurations_in).collect();
     paths.sort();
     let with_unit = |path: String| {
-        let unit = configuration(&path);
-        (path, unit)
+        let core = configuration(&path);
+        (path, core)
     };
     paths.into_iter().map(with_unit).collect()
 }
@@ -54,19 +54,19 @@ fn configurations_in(directory: &str) -> Vec<String> {
 ///
 /// # Panics
 /// It is wrong.
-pub fn configuration(path: &str) -> Unit {
+pub fn configuration(path: &str) -> Core {
     let registry = Registry::catalogue();
     let config = config::read(Path::new(path), &registry.schemas())
         .unwrap_or_else(|problems| panic!("{problems}"));
     let device = *registry.device(&config.device).expect("a device");
-    Unit::new(device, config).unwrap_or_else(|error| panic!("{path}: {error:?}"))
+    Core::new(device, config).unwrap_or_else(|error| panic!("{path}: {error:?}"))
 }
 
 /// The configuration of that path with more TOML at its end.
 ///
 /// # Panics
 /// It is wrong.
-pub fn configuration_with(path: &str, more: &str) -> Unit {
+pub fn configuration_with(path: &str, more: &str) -> Core {
     let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"));
     parsed(path, &format!("{text}{more}"))
 }
@@ -75,30 +75,30 @@ pub fn configuration_with(path: &str, more: &str) -> Unit {
 ///
 /// # Panics
 /// It is wrong.
-pub fn configuration_between(path: &str, interface: &str) -> Unit {
+pub fn configuration_between(path: &str, interface: &str) -> Core {
     let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"));
     let own = text.split("\n[interface]\n").next().unwrap_or_default();
     parsed(path, &format!("{own}\n[interface]\n{interface}"))
 }
 
-fn parsed(path: &str, text: &str) -> Unit {
+fn parsed(path: &str, text: &str) -> Core {
     let registry = Registry::catalogue();
     let config = config::parse(path, text, &registry.schemas())
         .unwrap_or_else(|problems| panic!("{problems}"));
     let device = *registry.device(&config.device).expect("a device");
-    Unit::new(device, config).unwrap_or_else(|error| panic!("{path}: {error:?}"))
+    Core::new(device, config).unwrap_or_else(|error| panic!("{path}: {error:?}"))
 }
 
 /// A valid configuration drawn at random, as TOML for messages, and its unit.
 ///
 /// # Panics
 /// The description does not make a design of it.
-pub fn random(device: Device, seed: u64) -> (String, Unit) {
+pub fn random(device: Device, seed: u64) -> (String, Core) {
     let schema = (device.schema)();
     let config = config::sample(&schema, seed);
     let toml = format!("{}, seed {seed}\n{}", device.name, config.to_toml(&schema));
-    let unit = Unit::new(device, config).unwrap_or_else(|error| panic!("{error:?}\n{toml}"));
-    (toml, unit)
+    let core = Core::new(device, config).unwrap_or_else(|error| panic!("{error:?}\n{toml}"));
+    (toml, core)
 }
 
 /// The files of a configuration whose bench runs over so many points.
@@ -112,11 +112,11 @@ pub struct Emitted {
 impl Emitted {
     /// # Panics
     /// Golden model and built-in simulator differ, or the design cannot be written.
-    pub fn new(unit: &Unit, points: u64, seed: u64) -> Self {
-        let name = unit.config.name.clone();
-        let files = unit
+    pub fn new(core: &Core, points: u64, seed: u64) -> Self {
+        let name = core.config.name.clone();
+        let files = core
             .vectors(points, seed)
-            .and_then(|vectors| unit.files(&format!("configs/{name}.toml"), vectors))
+            .and_then(|vectors| core.files(&format!("configs/{name}.toml"), vectors))
             .unwrap_or_else(|error| panic!("{name}: {error:?}"));
         Self { files, name }
     }
