@@ -45,8 +45,8 @@ ${ line }$
     // Prints the word of the microprogram that is executed.
     task ${ names.write_word }$;
         case (${ address }$)
-<%- for word in words %>
-            ${ word.label }$: $write("word ${ word.address }$ (${ word.name }$)");
+<%- for it in microprogram %>
+            ${ it.label }$: $write("word ${ it.address }$ (${ it.name }$)");
 <%- endfor %>
             default: $write("no word");
         endcase

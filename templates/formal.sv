@@ -71,9 +71,9 @@ ${ line }$
         if (busy) begin
             // Every computation ends: with what is left in a word at most, it is not too late.
             assert (${ age.name }$ <= ${ bounded.most }$);
-            case (${ bounded.word }$)
-<%- for word in bounded.words %>
-                ${ word.label }$: assert (${ word.end }$ <= ${ bounded.most }$);
+            case (${ bounded.address }$)
+<%- for latest in bounded.latest %>
+                ${ latest.label }$: assert (${ latest.end }$ <= ${ bounded.most }$);
 <%- endfor %>
             endcase
         end

@@ -51,14 +51,14 @@ impl<'a> Alone<'a> {
     /// # Errors
     /// A simulation that does not settle, or a VCD that cannot be written.
     pub(super) fn clock(&mut self) -> Result<Vec<u64>> {
-        let word = self.simulator.value(self.pairing.address);
+        let address = self.simulator.value(self.pairing.address);
         let inputs = self.stream.clock(self.pairing).to_vec();
         for (at, &bits) in inputs.iter().enumerate() {
             self.simulator.set(at, bits);
         }
         self.simulator.clock()?;
         let simulated = |net| self.simulator.value(net);
-        let mismatch = self.stream.mismatch(self.pairing, word, simulated);
+        let mismatch = self.stream.mismatch(self.pairing, address, simulated);
         if mismatch.is_some() {
             self.stream.seen.mismatch = mismatch;
         } else {

@@ -71,16 +71,16 @@ pub struct Mismatch {
     pub golden: u64,
     /// What the simulated hardware says.
     pub simulated: u64,
-    /// The word of the microprogram that was executed at the edge.
-    pub word: String,
+    /// What was executed at the edge: ``microinstruction `count` ``, or the signal's stage of a pipeline, `stage 3`.
+    pub during: String,
 }
 
 impl fmt::Display for Mismatch {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(
             f,
-            "word `{}`: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
-            self.word, self.signal, self.simulated, self.golden
+            "{}: `{}` is {:#x} in the simulated hardware and {:#x} in the golden model",
+            self.during, self.signal, self.simulated, self.golden
         )
     }
 }

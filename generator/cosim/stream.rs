@@ -119,25 +119,26 @@ impl Stream {
     }
 
     /// The first signal on which simulation and model differ after the latest clock if they
-    /// do. `word` was executed at the edge.
+    /// do. The microinstruction at `address` was executed at the edge.
     pub(super) fn mismatch(
         &self,
         pairing: &Pairing,
-        word: u64,
+        address: u64,
         simulated: impl Fn(NetId) -> u64,
     ) -> Option<Mismatch> {
         let pairs = pairing.compared.iter().zip(self.predicted());
         let differs = |(&net, &golden): (&NetId, &u64)| simulated(net) != golden;
         let at = pairs.clone().position(differs)?;
-        let words = &pairing.design.control.words;
-        let word = usize::try_from(word).ok().and_then(|word| words.get(word));
+        let microprogram = &pairing.design.control.microprogram;
+        let executed = usize::try_from(address).ok().and_then(|at| microprogram.get(at));
         Some(Mismatch {
             seed: self.seed(),
             clock: self.seen.clocks,
             signal: pairing.model.signals()[at].clone(),
             golden: self.predicted()[at],
             simulated: simulated(pairing.compared[at]),
-            word: word.map_or_else(String::new, |word| word.name.clone()),
+            during: executed
+                .map_or_else(String::new, |it| format!("microinstruction `{}`", it.name)),
         })
     }
 

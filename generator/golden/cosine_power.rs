@@ -251,7 +251,7 @@ mod tests {
         assert_eq!(f(2, 0, 1), 0);
     }
 
-    /// One point with m = 8 followed clock by clock: words 0, 1, 2, 3, 3, 4 and idle.
+    /// One point with m = 8 followed clock by clock: microinstructions 0, 1, 2, 3, 3, 4 and idle.
     #[test]
     fn a_point_clock_by_clock() {
         let mut model = clocked(&small(8));

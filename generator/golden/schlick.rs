@@ -166,7 +166,7 @@ mod tests {
         assert_eq!(f(31, 9), 15);
     }
 
-    /// One point followed clock by clock: words 0, 1, 2 four times, 3 and idle.
+    /// One point followed clock by clock: microinstructions 0, 1, 2 four times, 3 and idle.
     #[test]
     fn a_point_clock_by_clock() {
         let mut model = clocked(&small());

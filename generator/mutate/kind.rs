@@ -36,7 +36,7 @@ pub enum Kind {
     Reset,
     /// A bit of the microprogram is inverted.
     ControlBit,
-    /// Two words of the microprogram change places.
+    /// Two microinstructions change places.
     ControlWords,
     /// A bit of the lower half of a table's word is inverted.
     RomBit,

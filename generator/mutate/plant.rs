@@ -9,7 +9,7 @@ use crate::hdl::netlist::{Design, Driver, Net, NetId, Op, RegId, RomId};
 impl Fault {
     /// The design with this fault.
     ///
-    /// It is a design for simulation and emission: the intervals of its nets are those of the sound one.
+    /// It is a design for simulation and emission: the intervals of its nets are those of the fault-free one.
     pub fn planted(&self, design: &Design) -> Design {
         let mut mutant = design.clone();
         match &self.site {
@@ -139,7 +139,7 @@ fn plant_words(design: &mut Design, id: RomId, words: &[(usize, u64)]) {
         let fields = design.control.fields.iter();
         let widths: Vec<u32> = fields.map(|field| design.width(field.net)).collect();
         for &(at, word) in words {
-            design.control.words[at].values = microcode::unpack(&widths, word);
+            design.control.microprogram[at].values = microcode::unpack(&widths, word);
         }
     }
 }

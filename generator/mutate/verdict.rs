@@ -22,7 +22,7 @@ pub enum Check {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum How {
-    /// By induction over the words of the microprogram.
+    /// By induction over the microprogram.
     Induction,
     /// By every combination of the values around it.
     Exhaustion,

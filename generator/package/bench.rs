@@ -33,7 +33,7 @@ struct Bench {
     results: Vec<Output>,
     /// None without a microprogram.
     address: Option<String>,
-    words: Vec<Word>,
+    microprogram: Vec<Microinstruction>,
 }
 
 /// The bench's own names, none of which a port has.
@@ -54,8 +54,8 @@ struct Output {
     select: String,
 }
 
-/// A word of the microprogram.
-struct Word {
+/// A microinstruction.
+struct Microinstruction {
     label: String,
     address: usize,
     name: String,
@@ -135,16 +135,16 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
     }
     let address = design.registers.get(design.control.address.index()).map(|register| register.q);
     let address_width = address.map_or(1, |address| design.width(address));
-    let words: Vec<_> = design
+    let microprogram: Vec<_> = design
         .control
-        .words
+        .microprogram
         .iter()
         .enumerate()
-        .map(|(at, word)| Word {
+        .map(|(at, it)| Microinstruction {
             label: literal(at as u64, address_width),
             address: at,
             // Within a string literal of Verilog.
-            name: ascii(&word.name).replace('\\', "/").replace('"', "'").replace('%', "%%"),
+            name: ascii(&it.name).replace('\\', "/").replace('"', "'").replace('%', "%%"),
         })
         .collect();
     let declarations: Vec<_> = design
@@ -188,7 +188,7 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
             let address = &design.net(address).name;
             format!("{}.{}.{address}", variables.dut, naming.control_instance)
         }),
-        words,
+        microprogram,
         names: variables,
     }
 }

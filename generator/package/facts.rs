@@ -1,4 +1,4 @@
-//! What a device is, as plain facts: ports, fields and words of the microprogram, ROMs.
+//! What a device is, as plain facts: ports, fields, microprogram, ROMs.
 //!
 //! The manifest writes them as JSON, the page as tables.
 
@@ -43,7 +43,7 @@ pub struct Field<'a> {
     pub name: &'a str,
     /// What it turns: `select`, `enable`, `flag` or `sequence`.
     pub kind: &'static str,
-    /// Its lowest bit in the word.
+    /// Its lowest bit in the control word.
     pub low: u32,
     /// In bits.
     pub width: u32,
@@ -55,10 +55,10 @@ pub struct Field<'a> {
     pub lines: &'a [u16],
 }
 
-/// A word of the microprogram.
+/// A microinstruction.
 #[derive(Serialize)]
-pub struct Word<'a> {
-    /// Its number.
+pub struct Microinstruction<'a> {
+    /// Its address.
     pub address: usize,
     /// What it does.
     pub name: &'a str,
@@ -69,7 +69,7 @@ pub struct Word<'a> {
     pub sequence: Sequence<'a>,
 }
 
-/// Where control goes after a word.
+/// Where control goes after a microinstruction.
 #[derive(Serialize)]
 #[serde(untagged)]
 pub enum Sequence<'a> {
@@ -77,15 +77,15 @@ pub enum Sequence<'a> {
     Plain(&'static str),
     /// Around a loop.
     Loop {
-        /// The word to go to.
+        /// The address to go to.
         loop_to: usize,
         /// The net that must be 1 for that.
         #[serde(rename = "while")]
         condition: &'a str,
     },
-    /// Over some words.
+    /// Over some microinstructions.
     Jump {
-        /// The word to go to.
+        /// The address to go to.
         jump_to: usize,
         /// The net that must be 1 for that.
         #[serde(rename = "if")]
@@ -216,19 +216,19 @@ pub fn fields(design: &Design) -> Vec<Field<'_>> {
         .collect()
 }
 
-/// The words of the microprogram.
-pub fn words(design: &Design) -> Vec<Word<'_>> {
+/// The microinstructions, from address 0.
+pub fn microprogram(design: &Design) -> Vec<Microinstruction<'_>> {
     let control = &design.control;
     let names = || control.fields.iter().map(|field| field.name.as_str());
     control
-        .words
+        .microprogram
         .iter()
         .enumerate()
-        .map(|(address, word)| Word {
+        .map(|(address, it)| Microinstruction {
             address,
-            name: &word.name,
-            fields: names().zip(word.values.iter().copied()).collect(),
-            sequence: match &word.sequence {
+            name: &it.name,
+            fields: names().zip(it.values.iter().copied()).collect(),
+            sequence: match &it.sequence {
                 netlist::Sequence::Next => Sequence::Plain("next"),
                 netlist::Sequence::WaitStart => Sequence::Plain("wait for start"),
                 netlist::Sequence::End => Sequence::Plain("end"),

@@ -67,17 +67,17 @@ struct Exact {
 struct Bounded {
     /// What the proof sees of the inside: declarations.
     inside: Vec<String>,
-    word: String,
+    address: String,
     most: String,
-    words: Vec<Word>,
+    latest: Vec<Latest>,
     /// In the clock of `done` there is a result.
     ends_with_result: bool,
     /// The clock of the first result, where one follows another from then on to the end.
     first: Option<String>,
 }
 
-/// A word of the microprogram.
-struct Word {
+/// The latest end of a computation, seen from a microinstruction.
+struct Latest {
     label: String,
     /// The age at which the computation ends, if it takes as long as it can.
     end: String,
@@ -133,7 +133,7 @@ pub fn files(
     let exact = exact(timing);
     let bounded = match exact {
         Some(_) => None,
-        None => termination::words(design).zip(termination::latest_done(design)),
+        None => termination::remaining(design).zip(termination::latest_done(design)),
     };
     let depth = match &exact {
         // An induction that is longer than a computation has seen its start.
@@ -165,7 +165,7 @@ pub fn files(
         .chain(design.ports.iter().map(|port| port_name(port.net)))
         .map(|name| format!(".{name}({name})"))
         .collect();
-    let waits = design.control.words.iter().any(|word| word.sequence == Sequence::WaitStart);
+    let waits = design.control.microprogram.iter().any(|it| it.sequence == Sequence::WaitStart);
     // A few steps with much state between them z3 solves at once when they are unrolled; many it
     // solves faster when they are not.
     let unroll = exact.is_none();
@@ -184,7 +184,7 @@ pub fn files(
             done: age.literal(clocks[1]),
             last: age.literal(start - 1),
         }),
-        bounded: bounded.zip(age.as_ref()).map(|((words, most), age)| Bounded {
+        bounded: bounded.zip(age.as_ref()).map(|((left, most), age)| Bounded {
             // Results follow one another without a pause, once the first is there.
             first: match timing.valid_to_valid {
                 Some(1) => timing.start_to_valid.map(|first| age.literal(first)),
@@ -192,7 +192,7 @@ pub fn files(
             },
             ends_with_result: !inputs.computations.is_empty()
                 && inputs.computations.iter().all(Computation::ends_with_result),
-            ..bounded_view(design, naming, &instance, &mut names, (&words, most), age)
+            ..bounded_view(design, naming, &instance, &mut names, (&left, most), age)
         }),
         age: age.as_ref().map(|age| AgeView {
             range: range(age.width),
@@ -217,14 +217,14 @@ pub fn files(
     ])
 }
 
-/// How the end of every computation is proved: in each word the age and what is left at most are no more
+/// How the end of every computation is proved: in each microinstruction the age and what is left at most are no more
 /// than the whole.
 fn bounded_view(
     design: &Design,
     naming: &Naming,
     instance: &str,
     names: &mut Names,
-    (words, most): (&[Left], u32),
+    (left, most): (&[Left], u32),
     age: &Age,
 ) -> Bounded {
     // A net of the inside under a name of the wrapper; Yosys joins the two when it flattens.
@@ -236,10 +236,10 @@ fn bounded_view(
         inside.push(format!("wire {range} {name} = \\{path} ;"));
     };
     let address = design.register(design.control.address).q;
-    let word = names.fresh("word");
-    seen(Unit::Control, address, word.clone());
+    let executed = names.fresh("word");
+    seen(Unit::Control, address, executed.clone());
     let mut counters: Vec<(RegId, String)> = Vec::new();
-    for counter in words.iter().filter_map(|left| left.counter) {
+    for counter in left.iter().filter_map(|left| left.counter) {
         if counters.iter().all(|(other, _)| *other != counter) {
             let q = design.register(counter).q;
             let name = names.fresh(&design.net(q).name);
@@ -260,13 +260,13 @@ fn bounded_view(
         }
     };
     let address_width = design.width(address);
-    let words = words
+    let latest = left
         .iter()
         .enumerate()
-        .map(|(at, left)| Word { label: literal(at as u64, address_width), end: end(left) });
+        .map(|(at, left)| Latest { label: literal(at as u64, address_width), end: end(left) });
     Bounded {
-        words: words.collect(),
-        word,
+        latest: latest.collect(),
+        address: executed,
         most: age.literal(most),
         first: None,
         ends_with_result: false,

@@ -220,7 +220,7 @@ fn control(design: &Design) -> Value {
         "address": name(control.address),
         "rom": design.rom(control.rom).name,
         "fields": facts::fields(design),
-        "words": facts::words(design),
+        "words": facts::microprogram(design),
     })
 }
 

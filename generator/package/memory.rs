@@ -58,11 +58,12 @@ pub fn contents(design: &Design, id: RomId) -> Result<String> {
 /// What there is to say of a word.
 fn note(design: &Design, id: RomId, address: usize) -> Option<String> {
     let given = design.rom(id).comments.get(address);
-    let word = || {
-        let word = design.control.words.get(address).filter(|_| is_control_rom(design, id))?;
-        Some(&word.name)
+    let name = || {
+        let executed =
+            design.control.microprogram.get(address).filter(|_| is_control_rom(design, id))?;
+        Some(&executed.name)
     };
-    given.or_else(word).map(|text| ascii(text))
+    given.or_else(name).map(|text| ascii(text))
 }
 
 /// The names of the fields, in the order of the digits below.

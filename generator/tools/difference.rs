@@ -14,8 +14,8 @@ use crate::package::{WINDOW_FILE, window};
 pub struct BenchDifference {
     /// The clock of the bench, from 0.
     pub clock: u64,
-    /// The word of the microprogram that is executed in it.
-    pub word: String,
+    /// What is executed in it, ``microinstruction `result` ``; empty for a pipeline.
+    pub during: String,
     /// The output.
     pub signal: String,
     /// Its value, in hexadecimal; x and z are possible.
@@ -30,17 +30,19 @@ impl BenchDifference {
         transcript.lines().find_map(Self::of_line)
     }
 
-    /// `clock 9, word 3 (result): red_out is 1f, expected 20`.
+    /// `clock 9, word 3 (result): red_out is 1f, expected 20`, or of a pipeline
+    /// `clock 9: red_out is 1f, expected 20`.
     fn of_line(line: &str) -> Option<Self> {
-        let (clock, rest) = line.strip_prefix("clock ")?.split_once(", ")?;
-        // A word's name may have anything in it.
-        let (word, rest) = rest.rsplit_once(": ")?;
+        let rest = line.strip_prefix("clock ")?;
+        let (clock, rest) = rest.split_at(rest.find([',', ':'])?);
+        // A microinstruction's name may have anything in it.
+        let (executed, rest) = rest.rsplit_once(": ")?;
         let (signal, rest) = rest.split_once(" is ")?;
         let (simulated, expected) = rest.split_once(", expected ")?;
-        let name = word.split_once('(').and_then(|(_, name)| name.strip_suffix(')'));
+        let name = executed.split_once('(').and_then(|(_, name)| name.strip_suffix(')'));
         Some(Self {
             clock: clock.parse().ok()?,
-            word: name.unwrap_or_default().to_owned(),
+            during: name.map_or_else(String::new, |name| format!("microinstruction `{name}`")),
             signal: signal.to_owned(),
             simulated: simulated.to_owned(),
             expected: expected.to_owned(),

@@ -31,13 +31,13 @@ pub const DESIGN: Leg = Leg {
         let (design, bound) = (&subject.core.design, subject.core.contract.bound());
         let finding = Finding::new(
             Verdict::Proved,
-            "all nets, registers, ROMs and words of the microprogram".to_owned(),
+            "all nets, registers, ROMs and microinstructions".to_owned(),
             format!(
                 "{}, {}, {} and {} obey the rules. The stated bound on an output is {:.3} units.",
                 counted(design.nets.len(), "net"),
                 counted(design.registers.len(), "register"),
                 counted(design.roms.len(), "ROM"),
-                counted(design.control.words.len(), "word"),
+                counted(design.control.microprogram.len(), "microinstruction"),
                 bound.units,
             ),
             Vec::new(),

@@ -198,8 +198,8 @@ fn a_fault_that_one_combination_shows_is_found() {
     assert_eq!(found.place, place);
     assert_eq!(found.mismatch.signal, "red_out");
     assert_eq!(found.mismatch.golden ^ found.mismatch.simulated, 1);
-    // Word 3 is the result's. It begins with the edge that ends word 2, three clocks after that of `start`.
-    assert!(found.mismatch.word.starts_with("intensity"), "{found:?}");
+    // Microinstruction 3 is the result's. It begins with the edge that ends 2, three clocks after that of `start`.
+    assert!(found.mismatch.during.starts_with("microinstruction `intensity"), "{found:?}");
     assert_eq!(found.clock, 3);
     // No other combination differs.
     let block = place / (clocks.count() / clocks.blocks());
@@ -291,7 +291,7 @@ fn a_difference_leaves_all_that_it_takes_to_have_it_again() {
     };
     assert_eq!((run["ok"].as_bool(), text(one, "signal").as_str()), (Some(false), "red_out"));
     assert_eq!(bits(one, "golden") ^ bits(one, "simulated"), 1);
-    assert!(text(one, "word").starts_with("intensity"), "{one}");
+    assert!(text(one, "during").starts_with("microinstruction `intensity"), "{one}");
     let vcd = fs::read_to_string(place.path().join(text(one, "vcd"))).expect("a waveform");
     assert!(vcd.contains("red_out"), "{vcd}");
     // The command that it names finds the same, alone.
@@ -299,7 +299,7 @@ fn a_difference_leaves_all_that_it_takes_to_have_it_again() {
     let (seed, clock) = (one["seed"].as_u64(), one["clock"].as_u64());
     let said = wrong(place.path(), &again);
     let wanted = format!(
-        "seed {}, after clock {}, word `intensity",
+        "seed {}, after clock {}, microinstruction `intensity",
         seed.expect("a seed"),
         clock.expect("a clock")
     );

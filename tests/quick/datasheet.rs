@@ -281,7 +281,7 @@ fn has_every_word(path: &str, document: &Document, core: &Core) {
     let width = core.design.width(core.design.rom(control.rom).data);
     let bits: String = of_class(document, "bit").map(text).collect();
     let words = &core.design.rom(control.rom).words;
-    let expected: String = words[..control.words.len()]
+    let expected: String = words[..control.microprogram.len()]
         .iter()
         .map(|word| format!("{word:0width$b}", width = width as usize))
         .collect();

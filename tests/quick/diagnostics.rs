@@ -153,7 +153,7 @@ fn clashing_fields() {
     assert_eq!(
         found,
         [
-            "word `both`: `second.pick(a_reg)` clashes with `first.pick(a_reg)`: they share select lines"
+            "microinstruction `both`: `second.pick(a_reg)` clashes with `first.pick(a_reg)`: they share select lines"
         ]
     );
 }
@@ -170,31 +170,39 @@ fn picks_of_what_a_mux_does_not_pass_on() {
 }
 
 #[test]
-fn words_out_of_order() {
+fn microinstructions_out_of_order() {
     let found = program(|_, load| {
         vec![step("idle", []), step("end", [load.clone(), end()]), step("after", [load])]
     });
-    assert_eq!(found, ["word `after` cannot be reached"]);
+    assert_eq!(found, ["microinstruction `after` cannot be reached"]);
 
     let found = program(|_, load| vec![step("idle", []), step("load", [load])]);
-    assert_eq!(found, ["the last word, `load`, does not end"]);
+    assert_eq!(found, ["the last microinstruction, `load`, does not end"]);
 
     let found = program(|_, load| vec![step("idle", [load.clone()]), step("load", [load, end()])]);
-    assert_eq!(found, ["word `idle` turns `y_load`, but the device also waits for start in it"]);
+    assert_eq!(
+        found,
+        ["microinstruction `idle` sets `y_load`, but the device also waits for start in it"]
+    );
 
     let found = program(|_, load| vec![step("idle", []), step("two ways", [load, next(), end()])]);
-    assert_eq!(found, ["word `two ways` goes on in two ways"]);
+    assert_eq!(found, ["microinstruction `two ways` states two successors"]);
 
     let found = program(|_, load| {
         vec![step("idle", []), step("twice", [load.clone()]), step("twice", [load, end()])]
     });
-    assert_eq!(found, ["two words are named `twice`"]);
+    assert_eq!(found, ["two microinstructions are named `twice`"]);
 
     let found = program(|_, _| vec![step("idle", []), step("end", [end()])]);
-    assert_eq!(found, ["no word turns `y_load`"]);
+    assert_eq!(found, ["no microinstruction sets `y_load`"]);
 
     let found = program(|_, load| vec![step("only", [load, end()])]);
-    assert_eq!(found, ["a microprogram has at least two words: where it waits, and where it ends"]);
+    assert_eq!(
+        found,
+        [
+            "a microprogram needs at least two microinstructions: one that waits for start, one that ends"
+        ]
+    );
 
     let found = program(|d, load| {
         let bit = d.operand("more", Format::BIT);
@@ -204,7 +212,10 @@ fn words_out_of_order() {
             step("end", [end()]),
         ]
     });
-    assert_eq!(found, ["word `load` goes to `nowhere`, but no word has that name"]);
+    assert_eq!(
+        found,
+        ["microinstruction `load` goes to `nowhere`, but no microinstruction has that name"]
+    );
 }
 
 #[test]
@@ -236,12 +247,15 @@ fn products_taken_under_another_selection() {
         step("wrong", [first.pick(b.q()), y.load()]),
         step("end", [end()]),
     ]);
-    assert_eq!(finish(d), ["word `wrong` loads `y` with the product of (a), but selects (b)"]);
+    assert_eq!(
+        finish(d),
+        ["microinstruction `wrong` loads `y` with the product of (a), but selects (b)"]
+    );
 }
 
 #[test]
 fn products_held_from_another_selection() {
-    let words = |settled: bool| {
+    let found = |settled: bool| {
         let d = Designer::new("device");
         let a = d.operand("a", BYTE);
         let b = d.operand("b", BYTE);
@@ -250,7 +264,7 @@ fn products_held_from_another_selection() {
         let second = d.bus("second", select, [a.q(), b.q()]).held();
         let product = d.shared_mul("product", &first, &second);
         let y = d.register("y", Format::unsigned(0, 16));
-        // The lines that choose between two products are themselves lines of a word.
+        // The lines that choose between two products are themselves lines of a microinstruction.
         let squares = [product.of(a.q(), a.q()), product.of(b.q(), b.q())];
         y.takes(d.choose("square", select.out().bit(0), squares));
         d.output("y_out", y.q());
@@ -263,10 +277,12 @@ fn products_held_from_another_selection() {
         ]);
         finish(d)
     };
-    assert_eq!(words(true), Vec::<String>::new());
+    assert_eq!(found(true), Vec::<String>::new());
     assert_eq!(
-        words(false),
-        ["word `load` loads `y` with the product of (b), but word `settle` before it selects (a)"]
+        found(false),
+        [
+            "microinstruction `load` loads `y` with the product of (b), but microinstruction `settle` before it selects (a)"
+        ]
     );
 }
 
@@ -364,7 +380,7 @@ fn valid_that_follows_a_signal() {
     assert_eq!(follows(3, || vec![end()]), Vec::<String>::new());
     assert_eq!(
         follows(1, || vec![valid(), end()]),
-        ["word `result` raises valid, which follows a signal in this design"]
+        ["microinstruction `result` raises valid, which follows a signal in this design"]
     );
     let found = mistakes(|d| {
         d.valid_after(d.operand("a", BYTE).q(), 1);
@@ -380,7 +396,7 @@ fn valid_that_follows_a_signal() {
 }
 
 #[test]
-fn a_jump_around_words() {
+fn a_jump_around_microinstructions() {
     let jumps = |to: &'static str| {
         program(|d, load| {
             let x = d.operand("a", Format::BIT);
@@ -393,7 +409,10 @@ fn a_jump_around_words() {
         })
     };
     assert_eq!(jumps("result"), Vec::<String>::new());
-    assert_eq!(jumps("nowhere"), ["word `first` goes to `nowhere`, but no word has that name"]);
+    assert_eq!(
+        jumps("nowhere"),
+        ["microinstruction `first` goes to `nowhere`, but no microinstruction has that name"]
+    );
 }
 
 #[test]
@@ -430,14 +449,14 @@ fn formats_that_no_net_can_have() {
 }
 
 #[test]
-fn valid_in_the_word_that_loads_the_result() {
+fn valid_in_the_microinstruction_that_loads_the_result() {
     let early = program(|_, load| {
         vec![step("idle", []), step("load", [load, valid()]), step("end", [end()])]
     });
     assert_eq!(
         early,
         [
-            "word `load` raises valid and loads `y`, which `y_out` shows from the next word on: valid belongs there"
+            "microinstruction `load` raises valid and loads `y`, which `y_out` shows from the next microinstruction on: valid belongs there"
         ]
     );
     // A result that is shown while the next is loaded was loaded before.
@@ -474,14 +493,14 @@ fn a_loop_that_nothing_ends() {
     assert_eq!(
         on_operand,
         [
-            "word `again` goes back to `begin` while `more` is 1, and no word of the loop changes `n_reg`: it never ends, or is no loop"
+            "microinstruction `again` goes back to `begin` while `more` is 1, and no microinstruction of the loop changes `n_reg`: it never ends, or is no loop"
         ]
     );
     let on_constant = looped(|d| d.raw_constant("steady", 1, Format::BIT));
     assert_eq!(
         on_constant,
         [
-            "word `again` goes back to `begin` while `steady` is 1, which is constant: it never ends, or is no loop"
+            "microinstruction `again` goes back to `begin` while `steady` is 1, which is constant: it never ends, or is no loop"
         ]
     );
     // What the loop loads may end it.
@@ -584,8 +603,8 @@ fn signals_of_another_designer() {
     assert_eq!(
         found,
         [
-            "word `load`: `there.load` is of the designer of `other`, and not of that of `device`",
-            "word `again`: a condition is of the designer of `other`, and not of that of `device`"
+            "microinstruction `load`: `there.load` belongs to the designer of `other`, not to that of `device`",
+            "microinstruction `again`: a condition belongs to the designer of `other`, not to that of `device`"
         ]
     );
 }

@@ -83,7 +83,7 @@ impl Bench {
                 assert_eq!(clock, 4 + points.len(), "done with the last point");
                 return points;
             }
-            let last = self.core.design.control.words.len() as u64 - 1;
+            let last = self.core.design.control.microprogram.len() as u64 - 1;
             let in_last_word = self.value("word_address") == last;
             assert_eq!(self.value("done"), u64::from(in_last_word));
             self.clock();

@@ -59,7 +59,7 @@ fn the_clocks_before_a_difference_can_be_seen_in_both_simulators() {
     for (simulator, unit) in [(Simulator::Icarus, 1), (Simulator::Verilator, 1000)] {
         let transcript = run(simulator, wrong.clone()).transcript;
         let found = BenchDifference::first(&transcript).expect("a difference");
-        assert_eq!((found.clock, found.word.as_str()), (5, "idle 100%"));
+        assert_eq!((found.clock, found.during.as_str()), (5, "microinstruction `idle 100%`"));
         let values = (found.signal.as_str(), found.simulated.as_str(), found.expected.as_str());
         assert_eq!(values, ("y_out", "9", "8"));
         let files = files(wrong.clone());

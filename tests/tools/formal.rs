@@ -23,19 +23,19 @@ fn every_configuration_is_proved() {
 /// A fault, and the file of which it is: what stands there, and what stands there instead.
 type Fault = (&'static str, &'static str, &'static str);
 
-/// Of every device, whatever its words.
+/// Of every device, whatever its microprogram.
 const OF_ALL: [Fault; 9] = [
     // A start that is not remembered, and one that is taken while busy.
     ("_control.v", "run ? go_on : start", "run ? go_on : 1'b0"),
     ("_control.v", "run ? go_on : start", "go_on | start"),
-    // The initial set leaves the word, or the run, as it was.
+    // The initial set leaves the address, or the run, as it was.
     (
         "_control.v",
         "        if (!rst_n) begin\n            word_address",
         "        if (1'b0) begin\n            word_address",
     ),
     ("_control.v", "run <= 1'b0;", "run <= run;"),
-    // A word that is not there.
+    // A microinstruction that is not there.
     ("_control.v", "following_word = word_address + ", "following_word = word_address - "),
     // A handshake that says something else.
     ("_control.v", "assign busy = run;", "assign busy = run | start;"),
@@ -152,13 +152,13 @@ fn assert_breaks(core: &glint::core::Core, (file, right, wrong): &Fault) {
     assert!(proof.is_err(), "`{wrong}` in {name} is proved");
 }
 
-/// The lowest bit of a word lets the program go on; the one above it is `valid` in `rough`.
+/// The lowest bit of a control word lets the program go on; the one above it is `valid` in `rough`.
 #[test]
 fn a_wrong_bit_of_sequencing_breaks_the_proof() {
     let bits = [("rough", 0), ("rough", 1), ("lyon", 0), ("quad_cosine", 0)];
     bits.par_iter().for_each(|&(config, bit)| {
         let core = configuration(&format!("configs/{config}.toml"));
-        (0..core.design.control.words.len()).into_par_iter().for_each(|word| {
+        (0..core.design.control.microprogram.len()).into_par_iter().for_each(|word| {
             let (place, name) = emitted(&core);
             let path = place.path().join(format!("{name}_control.mem"));
             let text = fs::read_to_string(&path).expect("a file");

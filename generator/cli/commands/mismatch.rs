@@ -86,7 +86,7 @@ pub fn as_json(mismatch: &Mismatch) -> Value {
     json!({
         "seed": mismatch.seed,
         "clock": mismatch.clock,
-        "word": mismatch.word,
+        "during": mismatch.during,
         "signal": mismatch.signal,
         "golden": format!("{:#x}", mismatch.golden),
         "simulated": format!("{:#x}", mismatch.simulated),

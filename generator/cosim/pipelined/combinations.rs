@@ -161,7 +161,7 @@ impl<const L: usize> Walk<'_, '_, L> {
                     signal: setup.design.net(net).name.clone(),
                     golden,
                     simulated,
-                    word: format!("stage {}", setup.pipeline.stage_of[net.index()]),
+                    during: format!("stage {}", setup.pipeline.stage_of[net.index()]),
                 };
                 differ.push((mismatch, self.clocks - point.taken));
             }

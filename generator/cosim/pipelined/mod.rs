@@ -383,7 +383,7 @@ impl<const L: usize> Group<L> {
                     signal: setup.design.net(net).name.clone(),
                     golden,
                     simulated: simulated[number],
-                    word: format!("stage {}", setup.pipeline.stage_of[net.index()]),
+                    during: format!("stage {}", setup.pipeline.stage_of[net.index()]),
                 });
             }
         }

@@ -68,10 +68,10 @@ impl Reference {
         let checkpoints = &pipeline.checkpoints;
         let registers =
             checkpoints.iter().map(|it| signal(&it.register)).collect::<Result<Vec<_>>>()?;
-        let words = checkpoints.iter().map(|it| it.word + 1).max().unwrap_or(0);
-        let mut due = vec![Vec::new(); words];
+        let length = checkpoints.iter().map(|it| it.address + 1).max().unwrap_or(0);
+        let mut due = vec![Vec::new(); length];
         for (at, checkpoint) in checkpoints.iter().enumerate() {
-            due[checkpoint.word].push((checkpoint.visit, at));
+            due[checkpoint.address].push((checkpoint.visit, at));
         }
         Ok(Self {
             inputs: vec![0; model.inputs().len()],
@@ -83,7 +83,7 @@ impl Reference {
             address: signal("word_address")?,
             results: results.iter().map(|&net| signal(name(net))).collect::<Result<_>>()?,
             registers,
-            visits: vec![0; words],
+            visits: vec![0; length],
             due,
             model: model.boxed_clone(),
         })
@@ -112,14 +112,14 @@ impl Reference {
             if values[self.busy] == 0 {
                 return Ok(expected);
             }
-            let word = values[self.address] as usize;
-            if let Some(due) = self.due.get(word) {
+            let address = values[self.address] as usize;
+            if let Some(due) = self.due.get(address) {
                 for &(visit, at) in due {
-                    if visit == self.visits[word] {
+                    if visit == self.visits[address] {
                         expected.registers[at] = Some(values[self.registers[at]]);
                     }
                 }
-                self.visits[word] += 1;
+                self.visits[address] += 1;
             }
             if values[self.valid] == 1 && expected.results.is_empty() {
                 expected.results.extend(self.results.iter().map(|&at| values[at]));

@@ -101,8 +101,8 @@ impl<D: Datapath> Clocked<D> {
     #[inline]
     fn settle(&mut self) {
         let it = &*self.fixed;
-        let Handshake { run, word } = self.handshake;
-        let here = &it.program[word as usize];
+        let Handshake { run, address } = self.handshake;
+        let here = &it.program[address as usize];
         for &flag in &it.flags {
             self.state[flag] = 0;
         }
@@ -115,7 +115,7 @@ impl<D: Datapath> Clocked<D> {
             clocks => self.pulses >> (clocks - 1) & 1 == 1,
         };
         let done = run && matches!(here.next, Next::End);
-        let handshake = [valid.into(), run.into(), done.into(), run.into(), word.into()];
+        let handshake = [valid.into(), run.into(), done.into(), run.into(), address.into()];
         let (first, then) = self.values.split_at_mut(HANDSHAKE.len());
         first.copy_from_slice(&handshake);
         for (value, &(slot, mask)) in then.iter_mut().zip(&it.shown) {
@@ -136,13 +136,13 @@ impl<D: Datapath> Model for Clocked<D> {
     fn clock(&mut self, inputs: &[u64]) {
         let it = &*self.fixed;
         let (rst_n, start) = (inputs[0] & 1 == 1, inputs[1] & 1 == 1);
-        let here = &it.program[self.handshake.word as usize];
+        let here = &it.program[self.handshake.address as usize];
         it.datapath.edge(&mut self.state);
         let after = match here.next {
             Next::Following => After::Next,
             Next::RepeatWhile(condition) if condition(&it.datapath, &self.state) => After::Again,
             Next::SkipIf(count, condition) if condition(&it.datapath, &self.state) => {
-                After::To(self.handshake.word + 1 + count)
+                After::To(self.handshake.address + 1 + count)
             }
             Next::RepeatWhile(_) | Next::SkipIf(..) => After::Next,
             Next::End => After::End,

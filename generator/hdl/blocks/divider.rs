@@ -13,8 +13,8 @@ use crate::hdl::dsl::{Counter, Designer, Mux, Register, Setting, Signal};
 /// A quotient of 1.0 comes out as `1.0 − ulp`, all ones, and so does the quotient by 0. A device that
 /// does not want the latter keeps the divisor above 0.
 ///
-/// A division takes a word that [loads](Self::load) and Q executions of a word that
-/// [steps](Self::step), which is one word under a loop:
+/// A division takes a microinstruction that [loads](Self::load) and Q executions of a microinstruction that
+/// [steps](Self::step), which is one microinstruction in a loop:
 ///
 /// ```
 /// use glint::hdl::blocks::divider::Divider;
@@ -115,7 +115,7 @@ impl<'d> Divider<'d> {
         self.quotient.q()
     }
 
-    /// The knobs: dividend and divisor are taken at the end of the word.
+    /// The knobs: dividend and divisor are taken at the end of the microinstruction.
     #[track_caller]
     pub fn load(&self) -> [Setting; 4] {
         [
@@ -126,7 +126,7 @@ impl<'d> Divider<'d> {
         ]
     }
 
-    /// The knobs: the next bit enters the quotient at the end of the word.
+    /// The knobs: the next bit enters the quotient at the end of the microinstruction.
     #[track_caller]
     pub fn step(&self) -> [Setting; 4] {
         [
@@ -137,7 +137,7 @@ impl<'d> Divider<'d> {
         ]
     }
 
-    /// The condition under which the word that steps is executed once more.
+    /// The condition under which the microinstruction that steps is executed once more.
     pub fn more(&self) -> Signal<'d> {
         self.more
     }

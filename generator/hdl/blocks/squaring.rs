@@ -1,7 +1,7 @@
 //! Repeated squaring: a register raised to a power of two under a counter.
 //!
-//! The first squaring takes its operand from elsewhere and is a word of its own; all others are one
-//! word, executed again and again. The multiplier and the muxes before it are the device's.
+//! The first squaring takes its operand from elsewhere and is a microinstruction of its own; all others are one
+//! microinstruction, executed again and again. The multiplier and the muxes before it are the device's.
 
 use crate::base::fixed::Format;
 use crate::hdl::dsl::{Counter, Designer, Mux, Register, Setting, Signal, Step, loop_while, step};
@@ -45,7 +45,7 @@ impl<'d> Squarings<'d> {
         (squarings, counter, load_other)
     }
 
-    /// The knobs that load the counter, in a word before the second squaring.
+    /// The knobs that load the counter, in a microinstruction before the second squaring.
     #[track_caller]
     pub fn load(&self) -> Vec<Setting> {
         let pick = self.start.map(|(mux, squarings)| mux.pick(squarings));
@@ -53,7 +53,7 @@ impl<'d> Squarings<'d> {
         pick.into_iter().chain(load).collect()
     }
 
-    /// The words: `register` takes the square of a base, then its own, until all are done.
+    /// The microinstructions: `register` takes the square of a base, then its own, until all are done.
     ///
     /// `first` are the knobs that bring the square of the base to the register, `again` those that
     /// bring the register's own.
@@ -70,13 +70,13 @@ impl<'d> Squarings<'d> {
         if let Some(remaining) = self.counter {
             let one = self.designer.raw_constant("one_left", 1, remaining.q().format());
             let more = self.designer.less("more", one, remaining.q()).doc("not the last squaring");
-            let word = format!("{name} <- {name}^2");
+            let square = format!("{name} <- {name}^2");
             let settings = again.into_iter().chain([
                 register.load(),
                 remaining.count(),
-                loop_while(more, &word),
+                loop_while(more, &square),
             ]);
-            steps.push(step(&word, settings));
+            steps.push(step(&square, settings));
         }
         steps
     }

@@ -26,7 +26,7 @@
 //!     step("result", [valid(), end()]),
 //! ]);
 //! let design = d.finish().unwrap();
-//! assert_eq!(design.control.words.len(), 3);
+//! assert_eq!(design.control.microprogram.len(), 3);
 //! ```
 //!
 //! Mistakes are collected, not thrown: [`Designer::finish`] reports all of them, each with the names
@@ -86,7 +86,7 @@ pub(crate) struct Inner {
     design: Design,
     views: HashMap<NetId, View>,
     program: Option<Program>,
-    /// What `valid` follows, and how many clocks later, when no word raises it.
+    /// What `valid` follows, and how many clocks later, when no microinstruction raises it.
     valid: Option<(NetId, u32)>,
     /// The numbers of the lines of `valid_word` and of `go_on` in the source's figure.
     sequencer_lines: Option<[u16; 2]>,
@@ -276,7 +276,7 @@ impl Designer {
         self.signal(id)
     }
 
-    /// The microprogram. Word 0 is where the device waits for `start`; it is executed once more after
+    /// The microprogram. Microinstruction 0 is where the device waits for `start`; it is executed once more after
     /// it, so that operands written together with `start` have settled.
     #[track_caller]
     pub fn microprogram(&self, steps: impl IntoIterator<Item = Step>) {
@@ -287,8 +287,8 @@ impl Designer {
     }
 
     /// Lets `valid` follow `signal`, one bit, `clocks` clocks later: for a datapath with registers between
-    /// what a word starts and the outputs, so that a result may come out in every clock. No word raises
-    /// [`valid`] then. The words that the last result needs to come out stand at the end of the
+    /// what a microinstruction starts and the outputs, so that a result may come out in every clock. No microinstruction raises
+    /// [`valid`] then. The microinstructions that the last result needs to come out stand at the end of the
     /// microprogram, so that the device is busy until then; a reset drops results that are on their way.
     #[track_caller]
     pub fn valid_after(&self, signal: Signal<'_>, clocks: u32) {
@@ -301,7 +301,7 @@ impl Designer {
     }
 
     /// The numbers, in the source's figure, of two lines that every control unit has: the one by which
-    /// a word sets `valid`, and the one by which it lets the program go on.
+    /// a microinstruction sets `valid`, and the one by which it lets the program go on.
     pub fn sequencer_lines(&self, valid: u16, go_on: u16) {
         self.inner.borrow_mut().sequencer_lines = Some([valid, go_on]);
     }

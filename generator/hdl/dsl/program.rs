@@ -1,4 +1,4 @@
-//! The microprogram: words that turn knobs, and the sequencer that runs them.
+//! The microprogram: microinstructions that turn knobs, and the sequencer that runs them.
 
 use std::panic::Location;
 
@@ -7,11 +7,11 @@ use crate::base::diagnostic::{Diagnostic, SourceLocation};
 use crate::base::fixed::Format;
 use crate::hdl::netlist::microcode;
 use crate::hdl::netlist::{
-    Control, Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role, Rom as NetRom, RomId,
-    Sequence, Unit, Word,
+    Control, Driver, FieldId, FieldKind, Microinstruction, NetId, Op, RegisterKind, Role,
+    Rom as NetRom, RomId, Sequence, Unit,
 };
 
-/// What one word does to one knob, or to the sequence.
+/// What one microinstruction does to one knob, or to the sequence.
 #[derive(Clone)]
 pub struct Setting {
     kind: Kind,
@@ -112,38 +112,38 @@ impl Setting {
     }
 }
 
-/// Keeps the selections of the word before, where the word does not say otherwise.
+/// Keeps the selections of the microinstruction before, where the microinstruction does not say otherwise.
 #[track_caller]
 pub fn hold() -> Setting {
     Setting::sequence(Kind::Hold)
 }
 
-/// The results are on the outputs: `valid` is high in this word.
+/// The results are on the outputs: `valid` is high in this microinstruction.
 #[track_caller]
 pub fn valid() -> Setting {
     Setting::sequence(Kind::Valid)
 }
 
-/// On to the next word; what a word does that does not say otherwise.
+/// On to the next microinstruction; what a microinstruction does that does not say otherwise.
 #[track_caller]
 pub fn next() -> Setting {
     Setting::sequence(Kind::Next)
 }
 
-/// Stays in this word until `start` is high; the device is not busy meanwhile. Word 0 always does.
+/// Stays in this microinstruction until `start` is high; the device is not busy meanwhile. Microinstruction 0 always does.
 #[track_caller]
 pub fn wait_for_start() -> Setting {
     Setting::sequence(Kind::WaitForStart)
 }
 
-/// Back to the word named `to` while `condition`, one bit, is 1; then on to the next word.
+/// Back to the microinstruction named `to` while `condition`, one bit, is 1; then on to the next microinstruction.
 #[track_caller]
 pub fn loop_while(condition: Signal<'_>, to: &str) -> Setting {
     let kind = Kind::LoopWhile { condition: condition.id(), to: to.to_owned() };
     Setting { of: Some(origin(condition.designer())), ..Setting::sequence(kind) }
 }
 
-/// On to the word named `to` when `condition`, one bit, is 1; else to the next word: a way around words
+/// On to the microinstruction named `to` when `condition`, one bit, is 1; else to the next microinstruction: a way around microinstructions
 /// that there may be nothing to do for, as a loop whose body need not run even once.
 #[track_caller]
 pub fn jump_if(condition: Signal<'_>, to: &str) -> Setting {
@@ -151,13 +151,13 @@ pub fn jump_if(condition: Signal<'_>, to: &str) -> Setting {
     loop_while(condition, to)
 }
 
-/// The last word: `done` is high in it, and the device is idle after it.
+/// The last microinstruction: `done` is high in it, and the device is idle after it.
 #[track_caller]
 pub fn end() -> Setting {
     Setting::sequence(Kind::End)
 }
 
-/// A word of the microprogram.
+/// A microinstruction of the microprogram.
 #[derive(Clone)]
 pub struct Step {
     name: String,
@@ -165,7 +165,7 @@ pub struct Step {
     location: SourceLocation,
 }
 
-/// A word with a name and what it turns. Muxes that are not mentioned pass on their first input;
+/// A microinstruction with a name and what it turns. Muxes that are not mentioned pass on their first input;
 /// registers that are not mentioned keep their value.
 #[track_caller]
 pub fn step(name: &str, settings: impl IntoIterator<Item = Setting>) -> Step {
@@ -193,12 +193,13 @@ struct SequenceFields {
     go_on: FieldId,
 }
 
-/// Lowers the program: words, control ROM, sequencer, and the outputs of the handshake.
+/// Lowers the program: microinstructions, control ROM, sequencer, and the outputs of the handshake.
 pub(crate) fn assemble(d: &Designer, program: &Program) {
     let steps = &program.steps;
     if steps.len() < 2 {
         d.report(Diagnostic::new(
-            "a microprogram has at least two words: where it waits, and where it ends".to_owned(),
+            "a microprogram needs at least two microinstructions: one that waits for start, one that ends"
+                .to_owned(),
             program.location,
         ));
         return;
@@ -220,9 +221,9 @@ pub(crate) fn assemble(d: &Designer, program: &Program) {
     let (conditions, targets) = distinct(&loops);
     let address_width = usize::BITS - (steps.len() - 1).leading_zeros();
     let sequence_field = |name: &str, width: u32| d.add_field(name, width, FieldKind::Sequence);
-    let by_word = d.with(|inner| inner.valid.is_none());
+    let by_field = d.with(|inner| inner.valid.is_none());
     let fields = SequenceFields {
-        valid: by_word.then(|| d.add_field("valid_word", 1, FieldKind::Flag)),
+        valid: by_field.then(|| d.add_field("valid_word", 1, FieldKind::Flag)),
         wait: waits.then(|| sequence_field("wait_word", 1)),
         again: (!loops.is_empty()).then(|| sequence_field("loop_word", 1)),
         condition: (conditions.len() > 1).then(|| {
@@ -244,8 +245,8 @@ pub(crate) fn assemble(d: &Designer, program: &Program) {
     }
     let line = lines.map(|[_, go_on]| go_on);
     describe(fields.go_on, "0 in the last word", line);
-    let words = words(d, steps, &sequences, &fields, &conditions);
-    sequencer(d, program, words, &fields, &conditions, &targets, address_width);
+    let microinstructions = microinstructions(d, steps, &sequences, &fields, &conditions);
+    sequencer(d, program, microinstructions, &fields, &conditions, &targets, address_width);
 }
 
 /// Whether a setting is of another designer, which is reported: its numbers would mean other nets and fields here.
@@ -262,7 +263,7 @@ fn foreign(d: &Designer, steps: &[Step]) -> bool {
                 _ => "a condition".to_owned(),
             };
             let message = format!(
-                "word `{}`: {what} is of the designer of `{name}`, and not of that of `{}`",
+                "microinstruction `{}`: {what} belongs to the designer of `{name}`, not to that of `{}`",
                 step.name, own.1
             );
             d.report(Diagnostic::new(message, setting.location));
@@ -287,7 +288,7 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
     for setting in &step.settings {
         let sequence = match &setting.kind {
             Kind::Next => Sequence::Next,
-            // Word 0 waits anyhow.
+            // Microinstruction 0 waits anyhow.
             Kind::WaitForStart if std::ptr::eq(step, &steps[0]) => Sequence::Next,
             Kind::WaitForStart => Sequence::WaitStart,
             Kind::End => Sequence::End,
@@ -296,7 +297,7 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
                     let name = d.net(*condition).name;
                     d.report(Diagnostic::new(
                         format!(
-                            "word `{}`: the condition `{name}` has more than one bit",
+                            "microinstruction `{}`: the condition `{name}` has more than one bit",
                             step.name
                         ),
                         setting.location,
@@ -307,7 +308,7 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
                     None => {
                         d.report(Diagnostic::new(
                             format!(
-                                "word `{}` goes to `{to}`, but no word has that name",
+                                "microinstruction `{}` goes to `{to}`, but no microinstruction has that name",
                                 step.name
                             ),
                             setting.location,
@@ -323,7 +324,7 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
         {
             d.report(
                 Diagnostic::new(
-                    format!("word `{}` goes on in two ways", step.name),
+                    format!("microinstruction `{}` states two successors", step.name),
                     setting.location,
                 )
                 .note("the other way".to_owned(), place),
@@ -334,28 +335,31 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
     found.map_or(Sequence::Next, |(sequence, _)| sequence)
 }
 
-fn words(
+fn microinstructions(
     d: &Designer,
     steps: &[Step],
     sequences: &[Sequence],
     fields: &SequenceFields,
     conditions: &[NetId],
-) -> Vec<Word> {
+) -> Vec<Microinstruction> {
     let kinds: Vec<FieldKind> = d
         .with(|inner| inner.design.control.fields.iter().map(|field| field.kind.clone()).collect());
-    let mut words: Vec<Word> = Vec::new();
+    let mut microinstructions: Vec<Microinstruction> = Vec::new();
     for (step, sequence) in steps.iter().zip(sequences) {
         if let Some(first) = steps.iter().find(|other| other.name == step.name)
             && !std::ptr::eq(first, step)
         {
             d.report(
-                Diagnostic::new(format!("two words are named `{}`", step.name), step.location)
-                    .note("the first".to_owned(), first.location),
+                Diagnostic::new(
+                    format!("two microinstructions are named `{}`", step.name),
+                    step.location,
+                )
+                .note("the first".to_owned(), first.location),
             );
         }
         let mut values = vec![0; kinds.len()];
         if step.settings.iter().any(|setting| matches!(setting.kind, Kind::Hold))
-            && let Some(before) = words.last()
+            && let Some(before) = microinstructions.last()
         {
             for (at, kind) in kinds.iter().enumerate() {
                 if matches!(kind, FieldKind::Select(_)) {
@@ -372,7 +376,7 @@ fn words(
                     None => {
                         d.report(Diagnostic::new(
                             format!(
-                                "word `{}` raises valid, which follows a signal in this design",
+                                "microinstruction `{}` raises valid, which follows a signal in this design",
                                 step.name
                             ),
                             setting.location,
@@ -387,7 +391,7 @@ fn words(
             {
                 d.report(
                     Diagnostic::new(
-                        format!("word `{}`: `{what}` clashes with `{other_what}`: they share select lines", step.name),
+                        format!("microinstruction `{}`: `{what}` clashes with `{other_what}`: they share select lines", step.name),
                         setting.location,
                     )
                     .note("the other".to_owned(), place),
@@ -416,21 +420,21 @@ fn words(
                 assign(fields.target, *to as u64);
             }
         }
-        words.push(Word {
+        microinstructions.push(Microinstruction {
             name: step.name.clone(),
             values,
             sequence: sequence.clone(),
             location: step.location,
         });
     }
-    words
+    microinstructions
 }
 
 /// The sequencer: address counter, run flag, control ROM, and the outputs of the handshake.
 fn sequencer(
     d: &Designer,
     program: &Program,
-    words: Vec<Word>,
+    microinstructions: Vec<Microinstruction>,
     fields: &SequenceFields,
     conditions: &[NetId],
     targets: &[usize],
@@ -440,7 +444,7 @@ fn sequencer(
         |name: &str, format: Format, op: Op| d.signal(d.add_named(name, format, Driver::Op(op)));
     let bit = |name: &str, cell: Op| op(name, Format::BIT, cell);
     let wide = Format::unsigned(address_width as i32, 0);
-    let last_word = words.len() as i128 - 1;
+    let last_word = microinstructions.len() as i128 - 1;
     let run = d.run;
     let start = d.start;
     let go_on = d.field_net(fields.go_on).id();
@@ -450,7 +454,7 @@ fn sequencer(
     let address = d.add_register("word_address", wide, (0, last_word), RegisterKind::Sequencer);
     d.set_doc(address, "the word that is executed");
     let following = op("following_word", wide, Op::Add { a: address, b: one.id(), carry: None });
-    // Where control goes while the program goes on: around a loop, or to the following word.
+    // Where control goes while the program goes on: around a loop, or to the following microinstruction.
     let mut onward = following;
     if let Some(again) = fields.again {
         let condition = match (fields.condition, conditions) {
@@ -507,7 +511,7 @@ fn sequencer(
     };
     let valid = bit("valid", Op::Relabel(source));
     d.set_doc(valid.id(), "the results are on the outputs");
-    control_rom(d, program, words, address);
+    control_rom(d, program, microinstructions, address);
 
     d.port(valid.id(), Role::Valid);
     d.port(busy.id(), Role::Busy);
@@ -554,12 +558,20 @@ fn valid_line(d: &Designer) -> NetId {
     source
 }
 
-fn control_rom(d: &Designer, program: &Program, words: Vec<Word>, address: NetId) {
+fn control_rom(
+    d: &Designer,
+    program: &Program,
+    microinstructions: Vec<Microinstruction>,
+    address: NetId,
+) {
     let fields = d.with(|inner| inner.design.control.fields.clone());
     let widths: Vec<u32> = fields.iter().map(|field| d.net(field.net).format.width()).collect();
-    let packed: Vec<u64> =
-        words.iter().map(|word| microcode::pack(&widths, &word.values)).collect();
-    let comments = words.iter().map(|word| word.name.clone()).collect();
+    let packed: Vec<u64> = microinstructions
+        .iter()
+        .map(|microinstruction| microcode::pack(&widths, &microinstruction.values))
+        .collect();
+    let comments =
+        microinstructions.iter().map(|microinstruction| microinstruction.name.clone()).collect();
     let width: u32 = widths.iter().sum();
     let format = Format::unsigned(width as i32, 0);
     let rom = d.with(|inner| RomId(inner.design.roms.len() as u32));
@@ -585,6 +597,7 @@ fn control_rom(d: &Designer, program: &Program, words: Vec<Word>, address: NetId
             _ => unreachable!("the sequencer's registers drive their nets"),
         };
         let (address, run) = (register(address), register(d.run));
-        inner.design.control = Control { fields, words, rom, address, run };
+        inner.design.control =
+            Control { fields, microprogram: microinstructions, rom, address, run };
     });
 }

@@ -93,7 +93,7 @@ impl Designer {
         Operand { port: self.signal(port), strobe: self.signal(strobe), q: self.signal(q) }
     }
 
-    /// A register of the datapath, loaded in the words that say so; its field is `<name>_load`.
+    /// A register of the datapath, loaded in the microinstructions that say so; its field is `<name>_load`.
     ///
     /// It has no reset, and an operand cannot have its name, because both would own `<name>_load`.
     #[track_caller]
@@ -144,7 +144,7 @@ impl Designer {
         self.select(&format!("{line}_own"), &choices)
     }
 
-    /// An output of the device that words raise.
+    /// An output of the device that microinstructions raise.
     #[track_caller]
     pub fn flag(&self, name: &str) -> Flag<'_> {
         let field = self.add_field(&format!("{name}_flag"), 1, FieldKind::Flag);
@@ -155,7 +155,7 @@ impl Designer {
 
     /// A counter that counts down, with fields `<name>_load` and `<name>_count`.
     ///
-    /// `load` takes the value of `start`; `count` subtracts one. Both in one word: `load` wins.
+    /// `load` takes the value of `start`; `count` subtracts one. Both in one microinstruction: `load` wins.
     #[track_caller]
     pub fn down_counter<'d>(&'d self, name: &str, start: Signal<'d>) -> Counter<'d> {
         let start = self.own(start);
@@ -250,7 +250,7 @@ impl<'d> Register<'d> {
         self.q.format()
     }
 
-    /// The load line: 1 in the words that load the register.
+    /// The load line: 1 in the microinstructions that load the register.
     pub fn loading(self) -> Signal<'d> {
         self.q.designer().field_net(self.field)
     }
@@ -275,7 +275,7 @@ impl<'d> Register<'d> {
         }
     }
 
-    /// The knob: the register takes its data at the end of the word.
+    /// The knob: the register takes its data at the end of the microinstruction.
     #[track_caller]
     pub fn load(self) -> Setting {
         Setting::field(self.q.designer(), self.field, 1, format!("{}.load", self.q.name()))
@@ -350,7 +350,7 @@ impl<'d> Select<'d> {
     }
 }
 
-/// An output of the device that words raise.
+/// An output of the device that microinstructions raise.
 #[derive(Clone, Copy)]
 pub struct Flag<'d> {
     designer: &'d Designer,
@@ -358,7 +358,7 @@ pub struct Flag<'d> {
 }
 
 impl Flag<'_> {
-    /// The knob: the output is high in this word.
+    /// The knob: the output is high in this microinstruction.
     #[track_caller]
     pub fn raise(self) -> Setting {
         let name = self.designer.field_net(self.field).name();
@@ -380,7 +380,7 @@ impl<'d> Counter<'d> {
         self.q
     }
 
-    /// The count line: 1 in the words that count.
+    /// The count line: 1 in the microinstructions that count.
     pub fn counting(self) -> Signal<'d> {
         self.q.designer().field_net(self.count)
     }
@@ -394,13 +394,13 @@ impl<'d> Counter<'d> {
         self
     }
 
-    /// The knob: takes the start value at the end of the word.
+    /// The knob: takes the start value at the end of the microinstruction.
     #[track_caller]
     pub fn load(self) -> Setting {
         Setting::field(self.q.designer(), self.load, 1, format!("{}.load", self.q.name()))
     }
 
-    /// The knob: one less at the end of the word.
+    /// The knob: one less at the end of the microinstruction.
     #[track_caller]
     pub fn count(self) -> Setting {
         Setting::field(self.q.designer(), self.count, 1, format!("{}.count", self.q.name()))

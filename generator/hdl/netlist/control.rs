@@ -1,18 +1,18 @@
-//! The control unit: fields, words, and where control goes.
+//! The control unit: fields, microinstructions, and where control goes.
 
 use super::{Design, NetId, RegId, RomId};
 use crate::base::diagnostic::SourceLocation;
 
-/// The control unit: an address counter, a run flag and a ROM of words.
+/// The control unit: an address counter, a run flag and a ROM of microinstructions.
 ///
 /// Idle, the address is 0 and `run` is 0. `start` sets `run`; from then on every clock executes the
-/// word at the address and moves on as the word's [`Sequence`] says.
+/// microinstruction at the address and moves on as the microinstruction's [`Sequence`] says.
 #[derive(Clone, Debug)]
 pub struct Control {
     /// Most significant first, as in the ROM word.
     pub fields: Vec<Field>,
     /// One for each address, from 0.
-    pub words: Vec<Word>,
+    pub microprogram: Vec<Microinstruction>,
     /// The control ROM.
     pub rom: RomId,
     /// The counter that addresses it.
@@ -47,9 +47,9 @@ pub enum FieldKind {
     Sequence,
 }
 
-/// A word of the microprogram.
+/// A microinstruction of the microprogram.
 #[derive(Clone, Debug)]
-pub struct Word {
+pub struct Microinstruction {
     /// What it does.
     pub name: String,
     /// The value of each field, in the order of [`Control::fields`].
@@ -60,18 +60,18 @@ pub struct Word {
     pub location: SourceLocation,
 }
 
-/// Where control goes after a word.
+/// Where control goes after a microinstruction.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Sequence {
-    /// To the next word.
+    /// To the next microinstruction.
     Next,
-    /// Stays until `start` is high, then to the next word. The device is not busy here.
+    /// Stays until `start` is high, then to the next microinstruction. The device is not busy here.
     WaitStart,
-    /// To word `to`, back or ahead, while `condition` is 1, else to the next word.
+    /// To microinstruction `to`, back or ahead, while `condition` is 1, else to the next microinstruction.
     LoopWhile {
         /// One bit of the datapath.
         condition: NetId,
-        /// A word number.
+        /// Its address.
         to: usize,
     },
     /// To idle.
@@ -83,18 +83,18 @@ impl Control {
     pub fn none() -> Self {
         Self {
             fields: Vec::new(),
-            words: Vec::new(),
+            microprogram: Vec::new(),
             rom: RomId(u32::MAX),
             address: RegId(u32::MAX),
             run: RegId(u32::MAX),
         }
     }
 
-    /// The words that can follow word `at`, in ascending order; the number of words itself where the last
-    /// one does not end. Idle, the device stays in word 0.
+    /// The microinstructions that can follow microinstruction `at`, in ascending order; the number of microinstructions itself where the last
+    /// one does not end. Idle, the device stays in microinstruction 0.
     pub fn successors(&self, at: usize) -> Vec<usize> {
         let next = at + 1;
-        let mut successors = match self.words[at].sequence {
+        let mut successors = match self.microprogram[at].sequence {
             Sequence::Next => vec![next],
             Sequence::WaitStart => vec![at, next],
             Sequence::LoopWhile { to, .. } => vec![to.min(next), to.max(next)],
@@ -107,13 +107,13 @@ impl Control {
         successors
     }
 
-    /// The words from which control comes to word `at` in `clocks` clocks, in ascending order.
+    /// The microinstructions from which control comes to microinstruction `at` in `clocks` clocks, in ascending order.
     pub fn predecessors(&self, at: usize, clocks: u32) -> Vec<usize> {
         let leads = |from: usize, after: &[usize]| {
             self.successors(from).iter().any(|to| after.contains(to))
         };
         (0..clocks).fold(vec![at], |after, _| {
-            (0..self.words.len()).filter(|&from| leads(from, &after)).collect()
+            (0..self.microprogram.len()).filter(|&from| leads(from, &after)).collect()
         })
     }
 }

@@ -2,14 +2,14 @@
 //!
 //! Up to the first microinstruction whose successor an operand decides, every computation executes the same
 //! ones in the same clocks, whatever the operands: by induction over the clocks, since until then the control
-//! word is the same. It is assumed that a register which decides is loaded in each computation before it does.
+//! microinstruction is the same. It is assumed that a register which decides is loaded in each computation before it does.
 
 use super::{Design, Driver, NetId, Role, Sequence};
 
 /// The microinstructions whose successor depends on an operand, by number.
 pub fn decided_by_data(design: &Design) -> Vec<usize> {
-    let words = design.control.words.iter().enumerate();
-    let decided = words.filter(|(_, word)| match word.sequence {
+    let microprogram = design.control.microprogram.iter().enumerate();
+    let decided = microprogram.filter(|(_, microinstruction)| match microinstruction.sequence {
         Sequence::LoopWhile { condition, .. } => {
             registers_from_control(design, condition).is_none()
         }
@@ -25,8 +25,8 @@ pub fn delay_of_valid(design: &Design) -> Option<u32> {
     registers_from_control(design, valid.net)
 }
 
-/// The registers between the control word and a net on the shortest way, or all that there are if the control
-/// word has no influence; `None` if an operand has.
+/// The registers between the control word and a net on the shortest way, or all that there are if the control word
+/// has no influence; `None` if an operand has.
 fn registers_from_control(design: &Design, net: NetId) -> Option<u32> {
     let mut seen = vec![net];
     let mut front = vec![net];

@@ -59,8 +59,8 @@ impl fmt::Display for Design {
             }
             f.write_char('\n')?;
         }
-        for (at, word) in self.control.words.iter().enumerate() {
-            writeln!(f, "word {at} {:?} {:?} {:?}", word.name, word.values, word.sequence)?;
+        for (at, it) in self.control.microprogram.iter().enumerate() {
+            writeln!(f, "microinstruction {at} {:?} {:?} {:?}", it.name, it.values, it.sequence)?;
         }
         Ok(())
     }

@@ -13,8 +13,8 @@ use super::{Design, Driver, NetId, Op, RegId, Register, RegisterKind, Sequence};
 ///
 /// A device that waits for `start` in the middle of its program stays as it is: its operands change there.
 pub fn register_held(design: &mut Design) {
-    let words = &design.control.words;
-    if words.iter().any(|word| word.sequence == Sequence::WaitStart) {
+    let microprogram = &design.control.microprogram;
+    if microprogram.iter().any(|it| it.sequence == Sequence::WaitStart) {
         return;
     }
     for (net, readers) in Steady::of(design).best() {

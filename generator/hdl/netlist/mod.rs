@@ -28,7 +28,7 @@ mod verify;
 use crate::base::diagnostic::SourceLocation;
 use crate::base::fixed::Format;
 pub use cell::Op;
-pub use control::{Control, Field, FieldKind, Sequence, Word};
+pub use control::{Control, Field, FieldKind, Microinstruction, Sequence};
 pub use decisions::{decided_by_data, delay_of_valid};
 pub use eval::Interpreter;
 pub use handshake::Handshake;
@@ -212,7 +212,7 @@ pub enum Role {
     InReady,
     /// Output `side_out`: what came in with the point whose results are on the outputs.
     SideOut,
-    /// Output: high exactly in the words that set it; results are then on the outputs.
+    /// Output: high exactly in the microinstructions that set it; results are then on the outputs.
     Valid,
     /// Output: high from the clock after start to the end.
     Busy,

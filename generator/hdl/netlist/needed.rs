@@ -2,7 +2,7 @@
 
 use std::collections::{HashSet, VecDeque};
 
-use super::{Design, Driver, NetId, Op, Word};
+use super::{Design, Driver, Microinstruction, NetId, Op};
 use crate::base::fixed::mask;
 
 /// For each net the clock, counted from that of the first microinstruction of a computation, in which its value
@@ -16,15 +16,15 @@ pub fn needed(design: &Design) -> Vec<usize> {
         needed: vec![usize::MAX; design.nets.len()],
         seen: HashSet::new(),
     };
-    let words = 0..design.control.words.len();
+    let addresses = 0..design.control.microprogram.len();
     for port in design.outputs() {
         walk.at_once(port.net);
     }
     for register in &design.registers {
         let (Some(data), Some(enable)) = (register.data, register.enable) else { continue };
         walk.at_once(enable);
-        for at in words.clone() {
-            if turned(design, &design.control.words[at], enable) != Some(0) {
+        for at in addresses.clone() {
+            if turned(design, &design.control.microprogram[at], enable) != Some(0) {
                 walk.from(at, data);
             }
         }
@@ -40,11 +40,11 @@ pub fn needed(design: &Design) -> Vec<usize> {
 }
 
 /// The value of a control line in a microinstruction: a field, or what is made of fields alone.
-pub fn turned(design: &Design, word: &Word, line: NetId) -> Option<u64> {
+pub fn turned(design: &Design, microinstruction: &Microinstruction, line: NetId) -> Option<u64> {
     let net = design.net(line);
-    let of = |line: NetId| turned(design, word, line);
+    let of = |line: NetId| turned(design, microinstruction, line);
     match &net.driver {
-        Driver::Field(field) => Some(word.values[field.index()]),
+        Driver::Field(field) => Some(microinstruction.values[field.index()]),
         Driver::Constant(bits) => Some(*bits),
         Driver::Op(Op::Relabel(a)) => of(*a),
         Driver::Op(Op::Slice { of: a, low }) => Some(of(*a)? >> low & mask(net.format.width())),
@@ -67,7 +67,7 @@ struct Walk<'a> {
 impl Walk<'_> {
     /// `net` matters in every clock.
     fn at_once(&mut self, net: NetId) {
-        (0..self.design.control.words.len()).for_each(|at| self.from(at, net));
+        (0..self.design.control.microprogram.len()).for_each(|at| self.from(at, net));
     }
 
     /// `net` matters in microinstruction `at`.
@@ -84,7 +84,7 @@ impl Walk<'_> {
             match &design.net(net).driver {
                 Driver::Op(Op::Mux { select, inputs }) => {
                     pending.push((at, *select));
-                    match turned(design, &design.control.words[at], *select) {
+                    match turned(design, &design.control.microprogram[at], *select) {
                         Some(chosen) => {
                             let chosen = inputs.get(chosen as usize).or(inputs.last());
                             pending.extend(chosen.map(|&input| (at, input)));
@@ -94,11 +94,11 @@ impl Walk<'_> {
                 }
                 Driver::Register(id) if design.register(*id).enable.is_none() => {
                     let data = design.register(*id).data;
-                    pending.extend(before().filter_map(|word| Some((word, data?))));
+                    pending.extend(before().filter_map(|at| Some((at, data?))));
                 }
                 Driver::Rom(rom) if design.rom(*rom).synchronous => {
                     let address = design.rom(*rom).address;
-                    pending.extend(before().map(|word| (word, address)));
+                    pending.extend(before().map(|at| (at, address)));
                 }
                 _ => {
                     let inputs = design.combinational_inputs(net).into_iter();
@@ -110,7 +110,7 @@ impl Walk<'_> {
 }
 
 fn clocks_to(design: &Design) -> Vec<usize> {
-    let mut clocks = vec![usize::MAX; design.control.words.len()];
+    let mut clocks = vec![usize::MAX; design.control.microprogram.len()];
     let mut pending = VecDeque::from([(0, 0)]);
     while let Some((at, after)) = pending.pop_front() {
         if clocks[at] == usize::MAX {

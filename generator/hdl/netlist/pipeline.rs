@@ -47,7 +47,7 @@ pub struct Checkpoint {
     /// The register, by name.
     pub register: String,
     /// The microinstruction while which it has the value, by its place in the microprogram.
-    pub word: usize,
+    pub address: usize,
     /// How often this was executed before in the same computation.
     pub visit: usize,
     /// The net with the value, in its stage.

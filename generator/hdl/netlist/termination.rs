@@ -1,11 +1,11 @@
 //! How long a computation can take, by its microprogram alone.
 //!
-//! A loop of one word ends because a counter counts down: its condition depends on nothing else. That the
+//! A loop of one microinstruction ends because a counter counts down: its condition depends on nothing else. That the
 //! counter does count in every turn is not assumed anywhere; the formal proof has to show it.
 
 use crate::hdl::netlist::{Design, Driver, NetId, RegId, Sequence};
 
-/// The clocks between a word and the one with `done`, at most.
+/// The clocks between a microinstruction and the one with `done`, at most.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Left {
     /// So many,
@@ -14,19 +14,19 @@ pub struct Left {
     pub counter: Option<RegId>,
 }
 
-/// For each word what is left when it is executed; `None` if a word waits for `start`, or if something
+/// For each microinstruction what is left when it is executed; `None` if a microinstruction waits for `start`, or if something
 /// else than a counter decides about a loop.
-pub fn words(design: &Design) -> Option<Vec<Left>> {
-    let words = &design.control.words;
-    let mut left: Vec<Left> = Vec::with_capacity(words.len());
-    // From the last word, with a place for those before it.
-    for (at, word) in words.iter().enumerate().rev() {
+pub fn remaining(design: &Design) -> Option<Vec<Left>> {
+    let microprogram = &design.control.microprogram;
+    let mut left: Vec<Left> = Vec::with_capacity(microprogram.len());
+    // From the last microinstruction, with a place for those before it.
+    for (at, microinstruction) in microprogram.iter().enumerate().rev() {
         let entering = |to: usize| -> Option<u64> {
-            let Left { clocks, counter } = *left.get(words.len() - 1 - to)?;
+            let Left { clocks, counter } = *left.get(microprogram.len() - 1 - to)?;
             let most = counter.map_or(0, |counter| largest(design, counter));
             Some(1 + clocks + most)
         };
-        let (clocks, counter) = match word.sequence {
+        let (clocks, counter) = match microinstruction.sequence {
             Sequence::End => (0, None),
             Sequence::Next => (entering(at + 1)?, None),
             Sequence::LoopWhile { to, condition } if to == at => {
@@ -45,8 +45,8 @@ pub fn words(design: &Design) -> Option<Vec<Left>> {
 
 /// The number of the clock in which `done` is high, at most.
 pub fn latest_done(design: &Design) -> Option<u32> {
-    // Word 0 is executed in clock 1.
-    let first = *words(design)?.first()?;
+    // Microinstruction 0 is executed in clock 1.
+    let first = *remaining(design)?.first()?;
     let most = first.counter.map_or(0, |counter| largest(design, counter));
     u32::try_from(1 + first.clocks + most).ok()
 }
@@ -87,7 +87,7 @@ mod tests {
 
     type Condition = for<'d> fn(&'d Designer, Signal<'d>, Signal<'d>) -> Signal<'d>;
 
-    /// A counter of three bits goes from the operand to 0 in word 2.
+    /// A counter of three bits goes from the operand to 0 in microinstruction 2.
     fn counted(condition: Condition) -> Design {
         let d = Designer::new("counted");
         let x = d.operand("x", Format::unsigned(3, 0));
@@ -106,7 +106,7 @@ mod tests {
     #[test]
     fn a_counter_bounds_its_loop() {
         let design = counted(|d, turns, _| d.any("more", turns));
-        let left = words(&design).expect("a bound");
+        let left = remaining(&design).expect("a bound");
         let clocks: Vec<u64> = left.iter().map(|left| left.clocks).collect();
         // The result; up to seven turns more and the result; from the first of eight turns; the load.
         assert_eq!(clocks, [10, 9, 1, 0]);
@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn what_else_decides_about_a_loop_bounds_nothing() {
         let design = counted(|d, turns, x| d.or("more", d.any("some", turns), d.any("none", x)));
-        assert_eq!(words(&design), None);
+        assert_eq!(remaining(&design), None);
         assert_eq!(latest_done(&design), None);
     }
 }

@@ -288,13 +288,14 @@ impl Design {
 
     fn microprogram(&self, found: &mut Vec<Diagnostic>) {
         let control = &self.control;
-        let words = &control.words;
-        let mut reached = vec![false; words.len()];
+        let microprogram = &control.microprogram;
+        let mut reached = vec![false; microprogram.len()];
         let mut pending = vec![0];
         while let Some(at) = pending.pop() {
             let Some(reached) = reached.get_mut(at) else {
-                if let Some(last) = words.last() {
-                    let message = format!("the last word, `{}`, does not end", last.name);
+                if let Some(last) = microprogram.last() {
+                    let message =
+                        format!("the last microinstruction, `{}`, does not end", last.name);
                     found.push(Diagnostic::new(message, last.location));
                 }
                 continue;
@@ -303,16 +304,17 @@ impl Design {
                 pending.extend(control.successors(at));
             }
         }
-        for (word, reached) in words.iter().zip(reached) {
+        for (microinstruction, reached) in microprogram.iter().zip(reached) {
             if !reached {
-                let message = format!("word `{}` cannot be reached", word.name);
-                found.push(Diagnostic::new(message, word.location));
+                let message =
+                    format!("microinstruction `{}` cannot be reached", microinstruction.name);
+                found.push(Diagnostic::new(message, microinstruction.location));
             }
         }
-        if let Some(idle) = words.first() {
+        if let Some(idle) = microprogram.first() {
             if idle.sequence != Sequence::Next {
                 let message = format!(
-                    "word `{}` is where the device waits for start; it goes on to the next",
+                    "microinstruction `{}`, in which the device waits for start, must go on to the next",
                     idle.name
                 );
                 found.push(Diagnostic::new(message, idle.location));
@@ -320,7 +322,7 @@ impl Design {
             for (field, value) in control.fields.iter().zip(&idle.values) {
                 if *value != 0 && matches!(field.kind, FieldKind::Enable | FieldKind::Flag) {
                     let message = format!(
-                        "word `{}` turns `{}`, but the device also waits for start in it",
+                        "microinstruction `{}` sets `{}`, but the device also waits for start in it",
                         idle.name, field.name
                     );
                     found.push(Diagnostic::new(message, idle.location));
@@ -328,8 +330,10 @@ impl Design {
             }
         }
         for (at, field) in control.fields.iter().enumerate() {
-            if field.kind == FieldKind::Enable && words.iter().all(|word| word.values[at] == 0) {
-                let message = format!("no word turns `{}`", field.name);
+            if field.kind == FieldKind::Enable
+                && microprogram.iter().all(|microinstruction| microinstruction.values[at] == 0)
+            {
+                let message = format!("no microinstruction sets `{}`", field.name);
                 found.push(Diagnostic::new(message, self.net(field.net).location));
             }
         }

@@ -413,7 +413,7 @@ impl Builder<'_> {
 
     /// What each stage does.
     fn stages(&self, unrolled: &Unrolled) -> Vec<Stage> {
-        let words = &self.sequential.control.words;
+        let microprogram = &self.sequential.control.microprogram;
         (0..self.schedule.latency)
             .map(|stage| {
                 let mut steps: Vec<usize> = self
@@ -429,8 +429,8 @@ impl Builder<'_> {
                 steps.dedup();
                 let mut microinstructions: Vec<String> = Vec::new();
                 for step in steps {
-                    let word = unrolled.steps.get(step).map_or(0, |step| step.word);
-                    let name = &words[word].name;
+                    let address = unrolled.steps.get(step).map_or(0, |step| step.address);
+                    let name = &microprogram[address].name;
                     if microinstructions.last() != Some(name) {
                         microinstructions.push(name.clone());
                     }
@@ -467,7 +467,7 @@ impl Builder<'_> {
                     let register = self.sequential.register(register).q;
                     checkpoints.push(Checkpoint {
                         register: self.sequential.net(register).name.clone(),
-                        word: step.word,
+                        address: step.address,
                         visit: step.visit,
                         net,
                     });

@@ -40,7 +40,7 @@ pub struct Unrolled {
 #[derive(Clone, Debug)]
 pub struct Step {
     /// Its place in the microprogram.
-    pub word: usize,
+    pub address: usize,
     /// How often it was executed before.
     pub visit: usize,
     /// What the architectural registers hold while it is executed, as far as that is determined.
@@ -58,7 +58,7 @@ struct State {
 /// Where an execution stands.
 struct At {
     state: State,
-    word: usize,
+    address: usize,
 }
 
 struct Executor<'a> {
@@ -87,7 +87,7 @@ fn run(design: &Design) -> Result<Unrolled, Diagnostic> {
         .collect();
     let mut executor = Executor {
         design,
-        visits: vec![0; design.control.words.len()],
+        visits: vec![0; design.control.microprogram.len()],
         unrolled: Unrolled {
             graph: Graph::default(),
             operands,
@@ -98,9 +98,10 @@ fn run(design: &Design) -> Result<Unrolled, Diagnostic> {
     };
     let state = executor.power_up();
     let state = executor.start(&state);
-    executor.follow(At { state, word: 0 }, None)?;
+    executor.follow(At { state, address: 0 }, None)?;
     let Some(results) = executor.shown.take() else {
-        let place = design.control.words.last().map_or(design.nets[0].location, |it| it.location);
+        let place =
+            design.control.microprogram.last().map_or(design.nets[0].location, |it| it.location);
         return Err(Diagnostic::new(
             "no microinstruction sets `valid`: a pipeline needs to know when the results are there"
                 .to_owned(),
@@ -136,49 +137,49 @@ impl Executor<'_> {
     fn follow(&mut self, mut at: At, stop: Option<usize>) -> Result<Option<State>, Diagnostic> {
         let design = self.design;
         loop {
-            if stop == Some(at.word) {
+            if stop == Some(at.address) {
                 return Ok(Some(at.state));
             }
-            let word = &design.control.words[at.word];
+            let microinstruction = &design.control.microprogram[at.address];
             let (after, condition) = self.execute(&at)?;
             if self.shown.is_some() {
                 return Ok(None);
             }
-            match word.sequence {
-                Sequence::Next => at = At { state: after, word: at.word + 1 },
+            match microinstruction.sequence {
+                Sequence::Next => at = At { state: after, address: at.address + 1 },
                 Sequence::LoopWhile { to, .. } => {
                     let condition = condition.expect("a loop has a condition");
                     match self.unrolled.graph.constant_of(condition) {
                         Some(taken) => {
-                            let word = if taken == 1 { to } else { at.word + 1 };
-                            at = At { state: after, word };
+                            let address = if taken == 1 { to } else { at.address + 1 };
+                            at = At { state: after, address };
                         }
-                        None if to <= at.word => {
+                        None if to <= at.address => {
                             let free = at.state.registers.clone();
-                            let state = self.turns(after, condition, (to, at.word), &free)?;
-                            at = At { state, word: at.word + 1 };
+                            let state = self.turns(after, condition, (to, at.address), &free)?;
+                            at = At { state, address: at.address + 1 };
                         }
                         None => {
-                            let body = At { state: after.clone(), word: at.word + 1 };
+                            let body = At { state: after.clone(), address: at.address + 1 };
                             let Some(executed) = self.follow(body, Some(to))? else {
                                 return Err(self.cannot(
-                                    at.word,
+                                    at.address,
                                     "is skipped by some points, and shows results",
                                 ));
                             };
                             let state = self.either(condition, &executed, &after);
-                            at = At { state, word: to };
+                            at = At { state, address: to };
                         }
                     }
                 }
                 Sequence::WaitStart => {
                     return Err(
-                        self.cannot(at.word, "waits for `start` in the middle of a computation")
+                        self.cannot(at.address, "waits for `start` in the middle of a computation")
                     );
                 }
                 Sequence::End => {
                     return Err(
-                        self.cannot(at.word, "ends the microprogram before `valid` was set")
+                        self.cannot(at.address, "ends the microprogram before `valid` was set")
                     );
                 }
             }
@@ -206,11 +207,11 @@ impl Executor<'_> {
                     ));
                 }
             }
-            let at = At { state: state.clone(), word: to };
+            let at = At { state: state.clone(), address: to };
             let Some(before) = self.follow(at, Some(last))? else {
                 return Err(self.cannot(last, "is executed under a condition, and shows results"));
             };
-            let (after, again) = self.execute(&At { state: before, word: last })?;
+            let (after, again) = self.execute(&At { state: before, address: last })?;
             let again = again.expect("a loop has a condition");
             state = self.either(condition, &after, &state);
             let label = self.unrolled.graph.node(again).label.clone();
@@ -222,7 +223,9 @@ impl Executor<'_> {
     fn execute(&mut self, at: &At) -> Result<(State, Option<NetId>), Diagnostic> {
         let design = self.design;
         if self.unrolled.steps.len() == MOST_CLOCKS {
-            return Err(self.cannot(at.word, "is part of a computation of more than 4096 clocks"));
+            return Err(
+                self.cannot(at.address, "is part of a computation of more than 4096 clocks")
+            );
         }
         let architectural =
             |kind| matches!(kind, RegisterKind::Architectural | RegisterKind::Operand);
@@ -231,18 +234,18 @@ impl Executor<'_> {
             .filter(|(_, register)| architectural(register.kind))
             .map(|(number, _)| (RegId(number as u32), at.state.registers[number]))
             .collect();
-        let visit = self.visits[at.word];
-        self.visits[at.word] += 1;
+        let visit = self.visits[at.address];
+        self.visits[at.address] += 1;
         self.unrolled.graph.step = self.unrolled.steps.len();
-        self.unrolled.steps.push(Step { word: at.word, visit, registers });
-        let mut clock = Clock::new(self, &at.state, at.word, false);
+        self.unrolled.steps.push(Step { address: at.address, visit, registers });
+        let mut clock = Clock::new(self, &at.state, at.address, false);
         if clock.shows()? {
             let results = clock.results()?;
             let state = at.state.clone();
             self.shown = Some(results);
             return Ok((state, None));
         }
-        let condition = match design.control.words[at.word].sequence {
+        let condition = match design.control.microprogram[at.address].sequence {
             Sequence::LoopWhile { condition, .. } => Some(clock.value(condition)),
             _ => None,
         };
@@ -274,14 +277,14 @@ impl Executor<'_> {
         }
     }
 
-    fn cannot(&self, word: usize, why: &str) -> Diagnostic {
-        let word = &self.design.control.words[word];
+    fn cannot(&self, address: usize, why: &str) -> Diagnostic {
+        let microinstruction = &self.design.control.microprogram[address];
         Diagnostic::new(
             format!(
                 "`{}` cannot be a pipeline: the microinstruction `{}` {why}",
-                self.design.name, word.name
+                self.design.name, microinstruction.name
             ),
-            word.location,
+            microinstruction.location,
         )
     }
 
@@ -310,15 +313,15 @@ impl Executor<'_> {
 struct Clock<'e, 'a> {
     executor: &'e mut Executor<'a>,
     state: &'e State,
-    word: usize,
+    address: usize,
     /// The clock that takes `start`.
     first: bool,
     values: HashMap<NetId, NetId>,
 }
 
 impl<'e, 'a> Clock<'e, 'a> {
-    fn new(executor: &'e mut Executor<'a>, state: &'e State, word: usize, first: bool) -> Self {
-        Self { executor, state, word, first, values: HashMap::new() }
+    fn new(executor: &'e mut Executor<'a>, state: &'e State, address: usize, first: bool) -> Self {
+        Self { executor, state, address, first, values: HashMap::new() }
     }
 
     /// Whether `valid` is high.
@@ -331,7 +334,7 @@ impl<'e, 'a> Clock<'e, 'a> {
         match self.executor.unrolled.graph.constant_of(valid) {
             Some(bit) => Ok(bit == 1),
             None => Err(self.executor.cannot(
-                self.word,
+                self.address,
                 "has `valid` follow a signal: a computation with several results is not unrolled",
             )),
         }
@@ -361,14 +364,14 @@ impl<'e, 'a> Clock<'e, 'a> {
             Driver::Constant(bits) => self.constant(*bits, net.format, &label),
             Driver::Input => self.input(id, net, &label),
             Driver::Field(field) => {
-                let bits = design.control.words[self.word].values[field.index()];
+                let bits = design.control.microprogram[self.address].values[field.index()];
                 self.constant(bits, net.format, &label)
             }
             Driver::Register(register) if *register == design.control.run => {
                 self.constant(u64::from(!self.first), net.format, &label)
             }
             Driver::Register(register) if *register == design.control.address => {
-                self.constant(self.word as u64, net.format, &label)
+                self.constant(self.address as u64, net.format, &label)
             }
             Driver::Register(register) => self.state.registers[register.index()],
             Driver::Rom(rom) if design.rom(*rom).synchronous => self.state.roms[rom.index()],

@@ -10,7 +10,7 @@ use rust_hdl::core::signal::get_signal_id;
 use crate::hdl::netlist::{Design, NetId, Unit};
 use crate::hdl::sim::machine::Machine;
 use crate::hdl::sim::program::Program;
-use crate::hdl::sim::wire::{Direction, Wire, WordName};
+use crate::hdl::sim::wire::{Direction, MicroinstructionName, Wire};
 
 /// `LANES` independent instances of a design as a rust_hdl [`Block`]: rust_hdl clocks and settles
 /// it, checks it and, for lane 0, traces it.
@@ -32,7 +32,7 @@ pub struct Circuit<const LANES: usize = 1> {
     ports: Vec<Observed>,
     control: Vec<Observed>,
     datapath: Vec<Observed>,
-    word: Microprogram,
+    microprogram: Microprogram,
 }
 
 /// A net that rust_hdl sees as an atom.
@@ -46,7 +46,7 @@ struct Observed {
     id: usize,
 }
 
-/// What is needed to tell the name of the word that is executed.
+/// What is needed to tell the name of the microinstruction that is executed.
 #[derive(Debug)]
 struct Microprogram {
     names: Arc<[String]>,
@@ -98,7 +98,7 @@ impl<const LANES: usize> Circuit<LANES> {
             ports,
             control: of_unit(Unit::Control),
             datapath: of_unit(Unit::Datapath),
-            word: Microprogram::new(design),
+            microprogram: Microprogram::new(design),
         };
         circuit.connect_all();
         check_all(&circuit).map_err(|error| anyhow!("rust_hdl refuses the circuit: {error:?}"))?;
@@ -169,12 +169,12 @@ impl<const LANES: usize> Circuit<LANES> {
 impl Microprogram {
     fn new(design: &Design) -> Self {
         let control = &design.control;
-        let names = control.words.iter().map(|word| word.name.clone()).collect();
+        let names = control.microprogram.iter().map(|it| it.name.clone()).collect();
         let registers = &design.registers;
         let state = registers
             .get(control.address.index())
             .zip(registers.get(control.run.index()))
-            .filter(|_| !control.words.is_empty())
+            .filter(|_| !control.microprogram.is_empty())
             .map(|(address, run)| (address.q, run.q));
         Self { names, state, id: get_signal_id() }
     }
@@ -216,16 +216,16 @@ impl<const LANES: usize> Block for Circuit<LANES> {
         self.visit(&self.ports, probe);
         probe.visit_start_namespace("control", self);
         self.visit(&self.control, probe);
-        if let Some((address, run)) = self.word.state {
-            let word = WordName {
-                id: self.word.id,
-                names: &self.word.names,
+        if let Some((address, run)) = self.microprogram.state {
+            let name = MicroinstructionName {
+                id: self.microprogram.id,
+                names: &self.microprogram.names,
                 connected: self.connected,
                 changed: self.changed,
                 address: self.lane(address, 0),
                 run: self.lane(run, 0) == 1,
             };
-            probe.visit_atom("word", &word);
+            probe.visit_atom("microinstruction", &name);
         }
         probe.visit_end_namespace("control", self);
         probe.visit_start_namespace("datapath", self);

@@ -79,9 +79,9 @@ impl Atom for Wire {
     }
 }
 
-/// The name of the microprogram word that is executed, `idle` when none is.
+/// The name of the microinstruction that is executed, `idle` when none is.
 #[derive(Debug)]
-pub(super) struct WordName<'a> {
+pub(super) struct MicroinstructionName<'a> {
     pub id: usize,
     pub names: &'a [String],
     pub connected: bool,
@@ -90,13 +90,13 @@ pub(super) struct WordName<'a> {
     pub run: bool,
 }
 
-impl WordName<'_> {
+impl MicroinstructionName<'_> {
     fn text(&self) -> String {
         let name = usize::try_from(self.address).ok().and_then(|address| self.names.get(address));
         match (self.run, name) {
             (false, _) => "idle".to_owned(),
             (true, Some(name)) => vcd_text(name),
-            (true, None) => format!("word_{}", self.address),
+            (true, None) => format!("microinstruction_{}", self.address),
         }
     }
 }
@@ -107,7 +107,7 @@ fn vcd_text(text: &str) -> String {
     text.chars().map(graphic).collect()
 }
 
-impl Atom for WordName<'_> {
+impl Atom for MicroinstructionName<'_> {
     fn bits(&self) -> usize {
         self.names.len().next_power_of_two().ilog2() as usize
     }
@@ -127,7 +127,7 @@ impl Atom for WordName<'_> {
     fn descriptor(&self) -> TypeDescriptor {
         let names = self.names.iter().map(|name| vcd_text(name));
         TypeDescriptor {
-            name: "word".to_owned(),
+            name: "microinstruction".to_owned(),
             kind: TypeKind::Enum(["idle".to_owned()].into_iter().chain(names).collect()),
         }
     }

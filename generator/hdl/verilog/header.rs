@@ -139,7 +139,7 @@ fn ports(design: &Design) -> Vec<String> {
 /// The microprogram, a word a line.
 fn program(design: &Design) -> Vec<String> {
     let mut lines = vec!["//".to_owned(), "// Microprogram:".to_owned()];
-    for (address, word) in design.control.words.iter().enumerate() {
+    for (address, word) in design.control.microprogram.iter().enumerate() {
         let name = if word.name.is_empty() { "-" } else { &word.name };
         let next = match &word.sequence {
             Sequence::Next => String::new(),

@@ -19,7 +19,7 @@ fn control(design: &Design) -> Vec<String> {
     let name = |register| design.net(design.register(register).q).name.as_str();
     let (address, run) = (name(design.control.address), name(design.control.run));
     let width = design.width(design.register(design.control.address).q);
-    let last = literal(design.control.words.len() as u64 - 1, width);
+    let last = literal(design.control.microprogram.len() as u64 - 1, width);
     vec![
         "always @* if (!$initstate) begin".to_owned(),
         format!("    assert ({address} <= {last});  // no other word is reached"),

@@ -244,7 +244,7 @@ pub(super) fn square(design: &Design, a: NetId, b: NetId) -> bool {
     named(a) == named(b)
 }
 
-/// The bits in which a sum may differ from the sound one's, when its summands, given as what is known in both
+/// The bits in which a sum may differ from the fault-free one's, when its summands, given as what is known in both
 /// and where they may differ, do. A carry differs only where what makes it is not decided by bits that
 /// agree.
 pub(super) fn sum_differs(summands: [(Known, u64); 2], carry: (Known, u64), width: u32) -> u64 {

@@ -1,9 +1,9 @@
 //! Faults that change nothing that is compared, and the proof of it.
 //!
-//! One proof is an induction over clocks. In every word of the microprogram, sound design and mutant are
+//! One proof is an induction over clocks. In every microinstruction, fault-free design and mutant are
 //! evaluated side by side over known bits, with the bits noted in which they may differ. Where neither an
-//! output nor a register that the golden model predicts differs in any word, while registers inside of
-//! blocks may differ as far as the words before have left them so, they never do. The other tries every
+//! output nor a register that the golden model predicts differs in any microinstruction, while registers inside of
+//! blocks may differ as far as those before have left them so, they never do. The other tries every
 //! combination of values around the fault ([`window`]).
 
 mod cut;
@@ -29,18 +29,18 @@ pub(super) struct Prover<'a> {
     windows: Windows<'a>,
 }
 
-/// Where sound design and mutant may differ, after power-up in no bit.
+/// Where fault-free design and mutant may differ, after power-up in no bit.
 #[derive(Clone, Debug, PartialEq)]
 struct State {
     registers: Vec<u64>,
     roms: Vec<u64>,
 }
 
-/// The nets of the mutant in one word.
+/// The nets of the mutant in one microinstruction.
 struct Nets {
     /// What is known of the mutant's.
     known: Vec<Known>,
-    /// The bits that may differ from the sound design's.
+    /// The bits that may differ from those of the fault-free design.
     differ: Vec<u64>,
 }
 
@@ -83,24 +83,24 @@ impl<'a> Prover<'a> {
             }
             _ => {}
         }
-        let words = design.control.words.len();
+        let length = design.control.microprogram.len();
         let nothing =
             State { registers: vec![0; design.registers.len()], roms: vec![0; design.roms.len()] };
-        let mut states = vec![nothing; words];
-        let mut todo: Vec<usize> = (0..words).collect();
-        while let Some(word) = todo.pop() {
-            let nets = self.settle(word, &states[word], site);
+        let mut states = vec![nothing; length];
+        let mut todo: Vec<usize> = (0..length).collect();
+        while let Some(at) = todo.pop() {
+            let nets = self.settle(at, &states[at], site);
             let seen = |(net, bits): (&u64, &u64)| net & bits != 0;
             if nets.differ.iter().zip(&self.compared).any(seen) {
                 return false;
             }
-            let next = self.next(word, &nets, site);
+            let next = self.next(at, &nets, site);
             for (register, differ) in design.registers.iter().zip(&next.registers) {
                 if *differ != 0 && register.kind != RegisterKind::Internal {
                     return false;
                 }
             }
-            for &to in &self.sound.following[word] {
+            for &to in &self.sound.following[at] {
                 let mut joined = states[to].clone();
                 let pairs = joined.registers.iter_mut().zip(&next.registers);
                 pairs.for_each(|(all, more)| *all |= more);
@@ -114,21 +114,21 @@ impl<'a> Prover<'a> {
         true
     }
 
-    fn settle(&self, word: usize, state: &State, site: &Site) -> Nets {
+    fn settle(&self, at: usize, state: &State, site: &Site) -> Nets {
         let design = self.sound.design;
-        let sound = &self.sound.words[word];
+        let sound = &self.sound.nets[at];
         let mut nets = Nets { known: sound.clone(), differ: vec![0; design.nets.len()] };
         for &id in &self.sound.order {
             let width = design.width(id);
             let (mut known, mut differ) = match (&design.net(id).driver, site) {
                 (_, Site::Driver(net, driver)) if *net == id => {
-                    self.replaced(word, id, driver, &nets)
+                    self.replaced(at, id, driver, &nets)
                 }
                 (Driver::Op(op), _)
                     if op.operands().iter().any(|it| nets.differ[it.index()] != 0) =>
                 {
                     let value = |net: NetId| nets.known[net.index()];
-                    (known::cell(design, op, width, &value), self.cell(word, op, width, &nets))
+                    (known::cell(design, op, width, &value), self.cell(at, op, width, &nets))
                 }
                 (Driver::Register(register), _) => {
                     let differ = state.registers[register.index()];
@@ -136,7 +136,7 @@ impl<'a> Prover<'a> {
                 }
                 (Driver::Rom(rom), _) => self.rom(*rom, state, site, &nets, sound[id.index()]),
                 (Driver::Field(field), Site::Words(rom, words)) if *rom == design.control.rom => {
-                    let other = words.iter().find(|(at, _)| *at == word);
+                    let other = words.iter().find(|(address, _)| *address == at);
                     other.map_or((sound[id.index()], 0), |(_, bits)| {
                         let low = design.field_positions()[field.index()];
                         let known = Known::all(bits >> low, width);
@@ -158,11 +158,11 @@ impl<'a> Prover<'a> {
         nets
     }
 
-    /// A net with another driver than in the sound design.
-    fn replaced(&self, word: usize, id: NetId, driver: &Driver, nets: &Nets) -> (Known, u64) {
+    /// A net with another driver than in the fault-free design.
+    fn replaced(&self, at: usize, id: NetId, driver: &Driver, nets: &Nets) -> (Known, u64) {
         let design = self.sound.design;
         let width = design.width(id);
-        let sound = &self.sound.words[word];
+        let sound = &self.sound.nets[at];
         let value = |net: NetId| nets.known[net.index()];
         let known = match driver {
             Driver::Constant(bits) => Known::all(*bits, width),
@@ -181,7 +181,7 @@ impl<'a> Prover<'a> {
     }
 
     /// The bits in which the result of a cell may differ.
-    fn cell(&self, word: usize, op: &Op, width: u32, nets: &Nets) -> u64 {
+    fn cell(&self, at: usize, op: &Op, width: u32, nets: &Nets) -> u64 {
         let design = self.sound.design;
         let differ = |net: &NetId| nets.differ[net.index()];
         let summand = |net: NetId| (nets.known[net.index()], nets.differ[net.index()]);
@@ -217,7 +217,7 @@ impl<'a> Prover<'a> {
                     return known::choices(after, lines, inputs)
                         .fold(0, |all, input| all | differ(&input));
                 }
-                let before = self.sound.words[word][select.index()];
+                let before = self.sound.nets[at][select.index()];
                 let possible = known::choices(before, lines, inputs);
                 let possible = possible.chain(known::choices(after, lines, inputs));
                 let possible: Vec<NetId> = possible.collect();
@@ -265,20 +265,20 @@ impl<'a> Prover<'a> {
     }
 
     /// What may differ after the clock.
-    fn next(&self, word: usize, nets: &Nets, site: &Site) -> State {
+    fn next(&self, at: usize, nets: &Nets, site: &Site) -> State {
         let design = self.sound.design;
         let registers = (0..design.registers.len() as u32).map(RegId);
         State {
-            registers: registers.map(|id| self.taken(word, id, nets, site)).collect(),
+            registers: registers.map(|id| self.taken(at, id, nets, site)).collect(),
             roms: (0..design.roms.len() as u32)
                 .map(|id| self.read(RomId(id), site, nets))
                 .collect(),
         }
     }
 
-    fn taken(&self, word: usize, id: RegId, nets: &Nets, site: &Site) -> u64 {
+    fn taken(&self, at: usize, id: RegId, nets: &Nets, site: &Site) -> u64 {
         let design = self.sound.design;
-        let sound = &self.sound.words[word];
+        let sound = &self.sound.nets[at];
         let register = design.register(id);
         let (q, width) = (register.q.index(), design.width(register.q));
         let Some(data) = register.data.map(NetId::index) else {

@@ -1,17 +1,17 @@
-//! What is known of the sound design in each word of its microprogram.
+//! What is known of the fault-free design in each microinstruction.
 
 use super::interval;
 use super::known::{self, Known};
 use crate::hdl::netlist::{Design, Driver, NetId, Op, Register};
 
-/// What is known in each word, whatever the inputs are.
+/// What is known in each microinstruction, whatever the inputs are.
 pub(super) struct Sound<'a> {
     pub(super) design: &'a Design,
     /// An order of evaluation.
     pub(super) order: Vec<NetId>,
-    /// For each word, each net.
-    pub(super) words: Vec<Vec<Known>>,
-    /// For each word those that may follow it.
+    /// For each microinstruction, each net.
+    pub(super) nets: Vec<Vec<Known>>,
+    /// For each microinstruction those that may follow it.
     pub(super) following: Vec<Vec<usize>>,
     /// For each net the first that has the same driver: the same value.
     pub(super) same: Vec<NetId>,
@@ -21,26 +21,26 @@ impl<'a> Sound<'a> {
     /// `None` for a design with a combinational loop.
     pub(super) fn of(design: &'a Design) -> Option<Self> {
         let order = design.levelise().ok()?;
-        let words = design.control.words.len();
+        let length = design.control.microprogram.len();
         let mut sound = Self {
             design,
             same: same(design, &order),
             order,
-            words: Vec::new(),
-            following: (0..words).map(|word| following(design, word)).collect(),
+            nets: Vec::new(),
+            following: (0..length).map(|at| following(design, at)).collect(),
         };
-        // What registers hold in each word: at power-up 0, in word 0.
-        let mut held: Vec<Option<Vec<Known>>> = vec![None; words];
+        // What registers hold in each microinstruction: at power-up 0, in microinstruction 0.
+        let mut held: Vec<Option<Vec<Known>>> = vec![None; length];
         held[0] = Some(vec![Known::all(0, 64); design.registers.len()]);
         let mut changed = vec![0];
-        while let Some(word) = changed.pop() {
-            let Some(before) = held[word].clone() else {
+        while let Some(at) = changed.pop() {
+            let Some(before) = held[at].clone() else {
                 continue;
             };
-            let nets = sound.settle(word, &before);
+            let nets = sound.settle(at, &before);
             let after: Vec<Known> =
                 design.registers.iter().map(|register| sound.next(register, &nets)).collect();
-            for &to in &sound.following[word] {
+            for &to in &sound.following[at] {
                 let joined = match &held[to] {
                     None => after.clone(),
                     Some(there) => there.iter().zip(&after).map(|(a, b)| a.join(*b)).collect(),
@@ -52,14 +52,14 @@ impl<'a> Sound<'a> {
             }
         }
         let nothing = || vec![Known::NOTHING; design.registers.len()];
-        sound.words = (0..words)
-            .map(|word| sound.settle(word, &held[word].clone().unwrap_or_else(nothing)))
+        sound.nets = (0..length)
+            .map(|at| sound.settle(at, &held[at].clone().unwrap_or_else(nothing)))
             .collect();
         Some(sound)
     }
 
-    /// All nets in a word, with what registers hold.
-    fn settle(&self, word: usize, held: &[Known]) -> Vec<Known> {
+    /// All nets in a microinstruction, with what registers hold.
+    fn settle(&self, at: usize, held: &[Known]) -> Vec<Known> {
         let design = self.design;
         let mut nets = vec![Known::NOTHING; design.nets.len()];
         let mut intervals = vec![(0, 0); design.nets.len()];
@@ -69,11 +69,11 @@ impl<'a> Sound<'a> {
             let known = match &net.driver {
                 Driver::Constant(bits) => Known::all(*bits, width),
                 Driver::Register(register) if *register == design.control.address => {
-                    Known::all(word as u64, width)
+                    Known::all(at as u64, width)
                 }
                 Driver::Register(register) => held[register.index()],
                 Driver::Field(field) => {
-                    Known::all(design.control.words[word].values[field.index()], width)
+                    Known::all(design.control.microprogram[at].values[field.index()], width)
                 }
                 Driver::Rom(rom) => {
                     // At power-up a synchronous ROM shows 0.
@@ -112,11 +112,11 @@ impl<'a> Sound<'a> {
     }
 }
 
-/// The words that may follow a word, reset included, which leads to word 0 from any.
-fn following(design: &Design, word: usize) -> Vec<usize> {
-    let last = design.control.words.len() - 1;
+/// The microinstructions that may follow one, reset included, which leads to microinstruction 0 from any.
+fn following(design: &Design, at: usize) -> Vec<usize> {
+    let last = design.control.microprogram.len() - 1;
     let mut following = vec![0];
-    following.extend(design.control.successors(word).into_iter().map(|to| to.min(last)));
+    following.extend(design.control.successors(at).into_iter().map(|to| to.min(last)));
     following.sort_unstable();
     following.dedup();
     following

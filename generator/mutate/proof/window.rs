@@ -239,7 +239,7 @@ impl<'a> Windows<'a> {
         }
     }
 
-    /// A net in all lanes; what the mutant has of its own stands before what the sound design has.
+    /// A net in all lanes; what the mutant has of its own stands before what the fault-free design has.
     fn evaluate(
         &self,
         net: NetId,

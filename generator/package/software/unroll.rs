@@ -41,7 +41,7 @@ pub struct Stepped {
 /// Results as values of operands, for a core with one result a computation.
 ///
 /// # Errors
-/// A core that has no result, waits for `start` in a word, goes on without a bound, or shows what it kept from an
+/// A core that has no result, waits for `start` in a microinstruction, goes on without a bound, or shows what it kept from an
 /// earlier computation.
 pub fn straight(design: &Design) -> Result<Straight> {
     let mut walk = Walk::new(design)?;
@@ -81,7 +81,7 @@ struct Walk<'d> {
     order: Vec<NetId>,
     graph: Graph,
     sections: Vec<String>,
-    /// For each word the most turns of its loop.
+    /// For each microinstruction the most turns of its loop.
     left: Option<Vec<termination::Left>>,
 }
 
@@ -94,7 +94,7 @@ impl<'d> Walk<'d> {
             order,
             graph: Graph::default(),
             sections: vec!["the clock that takes start".to_owned()],
-            left: termination::words(design),
+            left: termination::remaining(design),
         })
     }
 
@@ -145,8 +145,8 @@ impl<'d> Walk<'d> {
         let valid = design.port(|role| role == Role::Valid).context("it has no output valid")?.net;
         loop {
             ensure!(self.graph.values.len() < MOST_VALUES, "it is too long to be unrolled");
-            let word = self.word(&state)?;
-            self.enter(word, "");
+            let address = self.address(&state)?;
+            self.enter(address, "");
             let clock = self.clock(&state, false)?;
             match self.graph.constant_of(clock.nets[valid.index()]) {
                 Some(0) => {}
@@ -154,7 +154,9 @@ impl<'d> Walk<'d> {
                     let results = design.outputs().filter(|port| port.role == Role::Result);
                     return Ok(results.map(|port| clock.nets[port.net.index()]).collect());
                 }
-                None => bail!("whether it is valid in word {word} depends on its operands"),
+                None => bail!(
+                    "whether it is valid in microinstruction {address} depends on its operands"
+                ),
             }
             let next = self.graph.after(design, &state, &clock)?;
             let address = design.control.address.index();
@@ -164,15 +166,20 @@ impl<'d> Walk<'d> {
                 state = next;
                 continue;
             }
-            let Sequence::LoopWhile { to, condition } = design.control.words[word].sequence else {
-                bail!("what follows word {word} depends on its operands");
+            let Sequence::LoopWhile { to, condition } =
+                design.control.microprogram[address].sequence
+            else {
+                bail!("what follows microinstruction {address} depends on its operands");
             };
-            if to == word {
-                state = self.turns(word, condition, clock, next)?;
+            if to == address {
+                state = self.turns(address, condition, clock, next)?;
             } else {
-                ensure!(to > word, "the loop from word {word} back to word {to} has no bound");
+                ensure!(
+                    to > address,
+                    "the loop from microinstruction {address} back to {to} has no bound"
+                );
                 let select = clock.nets[condition.index()];
-                let on = self.at(&next, word + 1);
+                let on = self.at(&next, address + 1);
                 let on = self.results(on)?;
                 let over = self.at(&next, to);
                 let over = self.results(over)?;
@@ -182,33 +189,34 @@ impl<'d> Walk<'d> {
         }
     }
 
-    /// The state after a loop of one word; `clock` and `next` are of its first turn.
+    /// The state after a loop of one microinstruction; `clock` and `next` are of its first turn.
     fn turns(
         &mut self,
-        word: usize,
+        address: usize,
         condition: NetId,
         mut clock: Clock,
         mut next: State,
     ) -> Result<State> {
         let design = self.design;
-        let counter = self.left.as_ref().and_then(|left| left[word].counter);
-        let counter = counter.with_context(|| format!("the loop in word {word} has no bound"))?;
+        let counter = self.left.as_ref().and_then(|left| left[address].counter);
+        let counter = counter
+            .with_context(|| format!("the loop in microinstruction {address} has no bound"))?;
         let most = mask(design.width(design.register(counter).q));
         let mut turns = Vec::new();
         loop {
             let more = clock.nets[condition.index()];
-            let ended = self.at(&next, word + 1);
+            let ended = self.at(&next, address + 1);
             turns.push((more, ended));
             if turns.len() as u64 > most || self.graph.constant_of(more) == Some(0) {
                 break;
             }
             ensure!(self.graph.values.len() < MOST_VALUES, "it is too long to be unrolled");
-            self.enter(word, &format!(", turn {}", turns.len() + 1));
-            let state = self.at(&next, word);
+            self.enter(address, &format!(", turn {}", turns.len() + 1));
+            let state = self.at(&next, address);
             clock = self.clock(&state, false)?;
             next = self.graph.after(design, &state, &clock)?;
         }
-        self.enter(word, ", what it leaves");
+        self.enter(address, ", what it leaves");
         let (_, mut merged) = turns.pop().context("a loop has a turn")?;
         for (more, ended) in turns.into_iter().rev() {
             for (at, merged) in merged.registers.iter_mut().enumerate() {
@@ -228,28 +236,31 @@ impl<'d> Walk<'d> {
         self.graph.op(Op::Mux { select, inputs: vec![at_0, at_1] }, format)
     }
 
-    /// The state with another word to come.
-    fn at(&mut self, state: &State, word: usize) -> State {
+    /// The state with another microinstruction to come.
+    fn at(&mut self, state: &State, next: usize) -> State {
         let address = self.design.control.address;
         let format = self.design.net(self.design.register(address).q).format;
         let mut state = state.clone();
-        state.registers[address.index()] = self.graph.constant(word as u64, format);
+        state.registers[address.index()] = self.graph.constant(next as u64, format);
         state
     }
 
-    fn word(&self, state: &State) -> Result<usize> {
+    fn address(&self, state: &State) -> Result<usize> {
         let address = state.registers[self.design.control.address.index()];
-        let word = self.graph.constant_of(address).context("the word address is not known")?;
-        let words = &self.design.control.words;
-        let waits = words.get(word as usize).map(|word| &word.sequence);
-        ensure!(waits.is_some(), "there is no word {word}");
-        ensure!(waits != Some(&Sequence::WaitStart), "word {word} waits for start");
-        Ok(word as usize)
+        let address = self
+            .graph
+            .constant_of(address)
+            .context("the address of the microinstruction is not known")?;
+        let microprogram = &self.design.control.microprogram;
+        let waits = microprogram.get(address as usize).map(|it| &it.sequence);
+        ensure!(waits.is_some(), "there is no microinstruction {address}");
+        ensure!(waits != Some(&Sequence::WaitStart), "microinstruction {address} waits for start");
+        Ok(address as usize)
     }
 
-    fn enter(&mut self, word: usize, turn: &str) {
-        let name = &self.design.control.words[word].name;
+    fn enter(&mut self, address: usize, turn: &str) {
+        let name = &self.design.control.microprogram[address].name;
         self.graph.section = self.sections.len();
-        self.sections.push(format!("{word}: {name}{turn}"));
+        self.sections.push(format!("{address}: {name}{turn}"));
     }
 }

@@ -40,7 +40,7 @@ pub struct PageInputs<'a> {
 
 /// The formats, in a sentence.
 pub const FORMATS: &str = "Formats: `uI.F` is unsigned, `sI.F` two's complement, with I integer bits (a sign bit apart) \
-                           and F fraction bits; the value of a word is its integer times 2⁻ᶠ.";
+                           and F fraction bits; the value of a signal is its integer times 2⁻ᶠ.";
 
 /// Whose the numbers of the blocks are.
 pub fn numbering(design: &Design) -> &'static str {
@@ -227,8 +227,8 @@ pub fn fields(design: &Design) -> Table {
     table.without_empty("lines")
 }
 
-/// The microprogram as the patents print theirs: a word a row, a line a column.
-pub fn words(design: &Design) -> Table {
+/// The microprogram as the patents print theirs: a row for each microinstruction, a column for each line.
+pub fn microprogram(design: &Design) -> Table {
     let fields = facts::fields(design);
     let headings: Vec<String> = fields
         .iter()
@@ -237,26 +237,26 @@ pub fn words(design: &Design) -> Table {
             numbers => lines(numbers),
         })
         .collect();
-    let mut columns = vec![("word", Align::Right)];
+    let mut columns = vec![("address", Align::Right)];
     columns.extend(headings.iter().map(|heading| (heading.as_str(), Align::Left)));
     columns.extend([("what it does", Align::Left), ("then", Align::Left)]);
     let mut table = Table::new(&columns);
-    for word in facts::words(design) {
-        let mut cells = vec![word.address.to_string()];
-        for (field, (_, value)) in fields.iter().zip(&word.fields) {
+    for microinstruction in facts::microprogram(design) {
+        let mut cells = vec![microinstruction.address.to_string()];
+        for (field, (_, value)) in fields.iter().zip(&microinstruction.fields) {
             let width = field.width as usize;
             let bits: Vec<String> = format!("{value:0width$b}").chars().map(String::from).collect();
             cells.push(bits.join(" "));
         }
-        cells.push(word.name.to_owned());
-        cells.push(match word.sequence {
+        cells.push(microinstruction.name.to_owned());
+        cells.push(match microinstruction.sequence {
             Sequence::Plain("next") => String::new(),
             Sequence::Plain(what) => what.to_owned(),
             Sequence::Loop { loop_to, condition } => {
-                format!("word {loop_to} while {}", code(condition))
+                format!("to {loop_to} while {}", code(condition))
             }
             Sequence::Jump { jump_to, condition } => {
-                format!("word {jump_to} if {}", code(condition))
+                format!("to {jump_to} if {}", code(condition))
             }
         });
         table.row(cells);

@@ -1,29 +1,29 @@
-//! The microprogram as the patents print theirs: words by control lines.
+//! The microprogram as the patents print theirs: microinstructions by control lines.
 
 use crate::hdl::netlist::{Design, FieldKind};
 use crate::pages::account;
 use crate::pages::markup::html;
 
-/// The table of words and lines.
+/// The table of microinstructions and lines.
 pub struct Microprogram {
     /// Whether the source numbers any line.
     pub numbered: bool,
     /// The fields of the control word, from the top bits.
     pub fields: Vec<FieldView>,
-    /// The words, from address 0.
-    pub words: Vec<WordView>,
+    /// The microinstructions, from address 0.
+    pub rows: Vec<Row>,
 }
 
 /// A field.
 pub struct FieldView {
     /// Its name.
     pub name: String,
-    /// Of each of its lines, the number in the source's figure, or else the bit of the word.
+    /// Of each of its lines, the number in the source's figure, or else the bit of the control word.
     pub lines: Vec<String>,
 }
 
-/// A word.
-pub struct WordView {
+/// A microinstruction.
+pub struct Row {
     /// Its number.
     pub address: usize,
     /// What it does.
@@ -51,17 +51,17 @@ impl Microprogram {
                 },
             }
         });
-        // The column "then" of the page's table of words is the last.
-        let then = account::words(design).rows.into_iter().map(|mut row| row.pop());
-        let words = control.words.iter().zip(then).enumerate();
+        // The column "then" of the page's table is the last.
+        let then = account::microprogram(design).rows.into_iter().map(|mut row| row.pop());
+        let microprogram = control.microprogram.iter().zip(then).enumerate();
         Self {
             numbered,
             fields: fields.collect(),
-            words: words
-                .map(|(address, (word, then))| WordView {
+            rows: microprogram
+                .map(|(address, (it, then))| Row {
                     address,
-                    name: word.name.clone(),
-                    bits: bits(design, &word.values),
+                    name: it.name.clone(),
+                    bits: bits(design, &it.values),
                     then: html(&then.unwrap_or_default()),
                 })
                 .collect(),

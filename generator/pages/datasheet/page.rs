@@ -176,7 +176,7 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
         ("Outputs", outputs.to_string()),
         ("Clocks, start to valid", clocks(timing.start_to_valid)),
         ("Clocks a point", clocks(timing.clocks_per_point())),
-        ("Control words", design.control.words.len().to_string()),
+        ("Microinstructions", design.control.microprogram.len().to_string()),
         ("ROM", format!("{} bits", grouped(design.rom_bits()))),
         ("Register bits", flip_flops.to_string()),
         ("Multipliers", multipliers(design)),
@@ -233,7 +233,7 @@ fn described(measured: &Measured) -> String {
     let at = |clock: Option<u32>| clock.map_or("some".to_owned(), |clock| clock.to_string());
     format!(
         "One computation in {} clocks, simulated: start is high in clock 0, valid first in clock {}, done in clock {}. \
-         Below the handshake are the word of the microprogram, registers and results with their values.",
+         Below the handshake are the microinstruction, registers and results with their values.",
         measured.waves.clocks.last().map_or(0, |last| last + 1),
         at(measured.waves.first("valid")),
         at(measured.waves.first("done")),

@@ -20,7 +20,7 @@ const HEAD: usize = 24;
 const TAIL: usize = 8;
 
 /// The name of the lane that says which microinstruction is executed.
-pub const MICROINSTRUCTION: &str = "word";
+pub const MICROINSTRUCTION: &str = "microinstruction";
 
 /// A computation, clock by clock.
 pub struct Waves {
@@ -85,7 +85,7 @@ impl Waves {
         nets.extend([address, busy, valid]);
         let clocks = trial::record(design, core.contract.as_ref(), &nets)?;
         let column = |at: usize| -> Vec<u64> { clocks.iter().map(|values| values[at]).collect() };
-        let [words, busy, valid] = [0, 1, 2].map(|at| column(probes.len() + at));
+        let [addresses, busy, valid] = [0, 1, 2].map(|at| column(probes.len() + at));
 
         let mut lanes = vec![Lane {
             name: "clk".to_owned(),
@@ -96,7 +96,7 @@ impl Waves {
         let known = valid.iter().position(|&valid| valid == 1).unwrap_or(0);
         for (at, probe) in probes.iter().enumerate() {
             if at == 4 {
-                lanes.push(word_lane(design, &words, &busy));
+                lanes.push(microprogram_lane(design, &addresses, &busy));
             }
             if let Some(lane) = lane(design, probe, &column(at), known) {
                 lanes.push(lane);
@@ -197,23 +197,23 @@ fn lane(design: &Design, probe: &Probe, bits: &[u64], valid: usize) -> Option<La
     })
 }
 
-/// The word of the microprogram, by its name.
-fn word_lane(design: &Design, words: &[u64], busy: &[u64]) -> Lane {
-    let name = |word: u64| match design.control.words.get(word as usize) {
-        Some(found) => format!("{word} {}", found.name),
-        None => word.to_string(),
+/// The microinstruction that is executed, by its name.
+fn microprogram_lane(design: &Design, addresses: &[u64], busy: &[u64]) -> Lane {
+    let name = |address: u64| match design.control.microprogram.get(address as usize) {
+        Some(found) => format!("{address} {}", found.name),
+        None => address.to_string(),
     };
     Lane {
         name: MICROINSTRUCTION.to_owned(),
         number: None,
         shape: Shape::Bus,
-        values: words
+        values: addresses
             .iter()
             .zip(busy)
-            .map(|(&word, &busy)| {
-                Some(match (word, busy) {
+            .map(|(&address, &busy)| {
+                Some(match (address, busy) {
                     (0, 0) => "idle".to_owned(),
-                    _ => name(word),
+                    _ => name(address),
                 })
             })
             .collect(),

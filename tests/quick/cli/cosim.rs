@@ -22,7 +22,7 @@ fn built_in() {
     let one = &value["configurations"][0];
     assert_eq!(one["device"], "rough");
     assert_eq!(one["points"], 50);
-    assert!(one["clocks"].as_u64() >= Some(500), "a point takes ten words: {one}");
+    assert!(one["clocks"].as_u64() >= Some(500), "a point takes ten clocks: {one}");
     let (error, bound) = (&one["largest_error"]["units"], &one["bound"]["units"]);
     assert!(error.as_f64() <= bound.as_f64() && bound.as_f64() < Some(1.0), "{one}");
     // The seed decides.
@@ -78,16 +78,17 @@ fn waveform() {
         let name = port["name"].as_str().unwrap();
         assert_eq!(size(&format!("core.{name}")), port["width"].as_u64(), "{name}");
     }
-    // By the defaults of the configuration, and by the ten words of the patent.
+    // By the defaults of the configuration, and by the ten microinstructions of the patent.
     assert_eq!(size("core.cos_gamma"), Some(21));
     assert_eq!(size("core.datapath.reg11_cos_cos"), Some(23));
     assert_eq!(size("core.control.word_address"), Some(4));
 
-    let (_, word) = found.iter().find(|(path, _)| path == "core.control.word").expect("the word");
+    let (_, executed) =
+        found.iter().find(|(path, _)| path == "core.control.microinstruction").expect("a name");
     let mut seen = BTreeSet::new();
     for command in parser {
         if let Command::ChangeString(code, text) = command.unwrap()
-            && code == word.code
+            && code == executed.code
         {
             seen.insert(text);
         }
@@ -176,8 +177,8 @@ fn what_differs_in_verilog_is_told_with_its_place() {
     assert_eq!(one["vcd"], "core_mismatch.vcd");
     assert_ne!(one["golden"], one["simulated"]);
     assert!(place.read("core_mismatch.vcd").contains("red_out"));
-    let (clock, word) = (&one["clock"], one["word"].as_str().unwrap());
-    let told = format!("FAILS: seed 1, clock {clock}, word `{word}`: `red_out` is ");
+    let (clock, during) = (&one["clock"], one["during"].as_str().unwrap());
+    let told = format!("FAILS: seed 1, clock {clock}, {during}: `red_out` is ");
     let text = run(&[]);
     assert_eq!(text.code, 1, "{text:?}");
     assert!(text.out.contains(&told), "{told}\n{}", text.out);

@@ -4,8 +4,8 @@ use std::panic::Location;
 
 use glint::fixed::{Format, mask};
 use glint::hdl::netlist::{
-    About, Control, Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, Port, RegId,
-    Register, RegisterKind, Role, Rom, RomId, Sequence, Unit, Word,
+    About, Control, Design, Driver, Field, FieldId, FieldKind, Microinstruction, Net, NetId, Op,
+    Port, RegId, Register, RegisterKind, Role, Rom, RomId, Sequence, Unit,
 };
 
 /// Splitmix64.
@@ -186,13 +186,13 @@ impl Build {
         let words: Vec<u64> = (0..WORDS).map(|_| self.random.bits(width as u32)).collect();
         let rom = RomId(self.design.roms.len() as u32);
         self.rom("control", q, Format::unsigned(width, 0), words, false);
-        let word = |at: usize| Word {
+        let word = |at: usize| Microinstruction {
             name: format!("word {at}"),
             values: Vec::new(),
             sequence: Sequence::Next,
             location: Location::caller(),
         };
-        self.design.control.words = (0..WORDS).map(word).collect();
+        self.design.control.microprogram = (0..WORDS).map(word).collect();
         self.design.control.rom = rom;
         self.design.control.address = address;
         self.design.control.run = run;

@@ -125,9 +125,10 @@ fn print(one: &Loaded, run: &Run, points: u64, seed: u64, which: Simulator) {
     let Some(mismatch) = &run.mismatch else {
         return;
     };
-    let BenchDifference { clock, word, signal, simulated, expected } = &mismatch.difference;
+    let BenchDifference { clock, during, signal, simulated, expected } = &mismatch.difference;
+    let during = if during.is_empty() { String::new() } else { format!(", {during}") };
     tables::print_line(&format!(
-        "  FAILS: seed {seed}, clock {clock}, word `{word}`: `{signal}` is {simulated} in {which} and {expected} in the golden model"
+        "  FAILS: seed {seed}, clock {clock}{during}: `{signal}` is {simulated} in {which} and {expected} in the golden model"
     ));
     let window = mismatch.vcd.as_ref().map_or_else(String::new, |vcd| {
         format!("`{vcd}` shows clocks {} to {clock}; ", mismatch.from)
@@ -141,7 +142,7 @@ fn as_json(one: &Loaded, run: &Run, points: u64, request: &CosimRequest) -> Valu
         json!({
             "seed": request.seed,
             "clock": difference.clock,
-            "word": difference.word,
+            "during": difference.during,
             "signal": difference.signal,
             "golden": format!("0x{}", difference.expected),
             "simulated": format!("0x{}", difference.simulated),

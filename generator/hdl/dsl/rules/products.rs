@@ -11,7 +11,7 @@ use crate::hdl::netlist::{Design, Driver, FieldKind, NetId, Op, turned};
 /// products that a selection gives their meaning.
 pub(super) fn check(design: &Design, views: &HashMap<NetId, View>) -> Vec<Diagnostic> {
     let mut checker = Checker { design, views, found: Vec::new() };
-    for at in 0..design.control.words.len() {
+    for at in 0..design.control.microprogram.len() {
         checker.selections(at);
     }
     checker.found
@@ -24,17 +24,17 @@ struct Checker<'a> {
 }
 
 impl Checker<'_> {
-    /// Every register that word `at` loads takes a product that the selection of the word gives; behind
-    /// pipeline registers, that the selections of the words before it give.
+    /// Every register that microinstruction `at` loads takes a product that the selection of the microinstruction gives; behind
+    /// pipeline registers, that the selections of the microinstructions before it give.
     fn selections(&mut self, at: usize) {
         let design = self.design;
-        let words = &design.control.words;
+        let microprogram = &design.control.microprogram;
         for register in &design.registers {
             let Some(Driver::Field(enable)) = register.enable.map(|id| &design.net(id).driver)
             else {
                 continue;
             };
-            let loaded = words[at].values[enable.index()] == 1;
+            let loaded = microprogram[at].values[enable.index()] == 1;
             let Some(data) = register.data.filter(|_| loaded) else {
                 continue;
             };
@@ -46,8 +46,8 @@ impl Checker<'_> {
                 }
                 if let Some(view) = self.views.get(&id)
                     && let Some(wrong) =
-                        design.control.predecessors(now, view.delay).into_iter().find(|&word| {
-                            !view.values.contains(&words[word].values[view.field.index()])
+                        design.control.predecessors(now, view.delay).into_iter().find(|&from| {
+                            !view.values.contains(&microprogram[from].values[view.field.index()])
                         })
                 {
                     let diagnostic = self.wrong_product(at, wrong, register.q, view);
@@ -56,9 +56,9 @@ impl Checker<'_> {
                     break;
                 }
                 if let Driver::Op(Op::Mux { select, inputs }) = &design.net(id).driver
-                    && let Some(chosen) = turned(design, &words[now], *select)
+                    && let Some(chosen) = turned(design, &microprogram[now], *select)
                 {
-                    // Of a mux that the word turns, only the chosen input matters.
+                    // Of a mux that the microinstruction turns, only the chosen input matters.
                     let chosen = inputs.get(chosen as usize).or(inputs.last());
                     pending.extend(chosen.map(|&input| (now, input)));
                     continue;
@@ -67,7 +67,7 @@ impl Checker<'_> {
                     Driver::Register(of) if design.register(*of).enable.is_none() => {
                         let data = design.register(*of).data;
                         let before = design.control.predecessors(now, 1).into_iter();
-                        pending.extend(before.filter_map(|word| Some((word, data?))));
+                        pending.extend(before.filter_map(|from| Some((from, data?))));
                     }
                     _ => {
                         let inputs = design.combinational_inputs(id).into_iter();
@@ -78,7 +78,7 @@ impl Checker<'_> {
         }
     }
 
-    /// Word `at` loads `register`, but the selection of word `under` is wrong for that.
+    /// Microinstruction `at` loads `register`, but the selection of microinstruction `under` is wrong for that.
     fn wrong_product(&self, at: usize, under: usize, register: NetId, view: &View) -> Diagnostic {
         let field = &self.design.control.fields[view.field.index()];
         let choice = |value: u64| match &field.kind {
@@ -88,15 +88,15 @@ impl Checker<'_> {
             _ => "nothing",
         };
         let wanted: Vec<&str> = view.values.iter().map(|&value| choice(value)).collect();
-        let words = &self.design.control.words;
-        let (word, under) = (&words[at], &words[under]);
+        let microprogram = &self.design.control.microprogram;
+        let (microinstruction, under) = (&microprogram[at], &microprogram[under]);
         let selector = match view.delay {
             0 => String::new(),
-            _ => format!("word `{}` before it ", under.name),
+            _ => format!("microinstruction `{}` before it ", under.name),
         };
         let message = format!(
-            "word `{}` loads `{}` with the product of ({}), but {selector}selects ({})",
-            word.name,
+            "microinstruction `{}` loads `{}` with the product of ({}), but {selector}selects ({})",
+            microinstruction.name,
             self.design.net(register).name,
             wanted.join(") or ("),
             choice(under.values[view.field.index()]),

@@ -19,10 +19,11 @@ pub(super) fn check(design: &Design) -> Vec<Diagnostic> {
 fn early(design: &Design) -> Vec<Diagnostic> {
     let control = &design.control;
     let valid = design.port(|role| role == Role::Valid).map(|port| port.net);
-    let raises =
-        |at: usize| valid.is_some_and(|valid| turned(design, &control.words[at], valid) == Some(1));
+    let raises = |at: usize| {
+        valid.is_some_and(|valid| turned(design, &control.microprogram[at], valid) == Some(1))
+    };
     let mut found = Vec::new();
-    for at in (0..control.words.len()).filter(|&at| raises(at)) {
+    for at in (0..control.microprogram.len()).filter(|&at| raises(at)) {
         for port in design.ports.iter().filter(|port| port.role == Role::Result) {
             let shown =
                 cone(design, at, port.net).into_iter().filter_map(|id| register(design, id));
@@ -32,15 +33,16 @@ fn early(design: &Design) -> Vec<Diagnostic> {
                 continue;
             };
             let q = design.net(design.register(register).q);
-            let word = &control.words[at];
+            let microinstruction = &control.microprogram[at];
             let message = format!(
-                "word `{}` raises valid and loads `{}`, which `{}` shows from the next word on: valid belongs there",
-                word.name,
+                "microinstruction `{}` raises valid and loads `{}`, which `{}` shows from the next microinstruction on: valid belongs there",
+                microinstruction.name,
                 q.name,
                 design.net(port.net).name
             );
             found.push(
-                Diagnostic::new(message, word.location).note("the register".to_owned(), q.location),
+                Diagnostic::new(message, microinstruction.location)
+                    .note("the register".to_owned(), q.location),
             );
             break;
         }
@@ -56,21 +58,21 @@ fn register(design: &Design, id: NetId) -> Option<RegId> {
     }
 }
 
-/// Whether word `at` loads a register, as far as the word alone says so. One without an enable loads always.
+/// Whether microinstruction `at` loads a register, as far as the microinstruction alone says so. One without an enable loads always.
 fn loads(design: &Design, at: usize, register: RegId) -> Option<u64> {
     match design.register(register).enable {
-        Some(enable) => turned(design, &design.control.words[at], enable),
+        Some(enable) => turned(design, &design.control.microprogram[at], enable),
         None => Some(1),
     }
 }
 
-/// Whether control comes from the first word to word `at` through words that do not load the register.
+/// Whether control comes from the first microinstruction to microinstruction `at` through microinstructions that do not load the register.
 fn comes_without_load(design: &Design, at: usize, register: RegId) -> bool {
     let goes = |from: usize| loads(design, from, register) == Some(0);
     at == 0 || goes(0) && reached(&design.control, 0, goes).contains(&at)
 }
 
-/// The words to which control comes from word `from`, which is one of them, going on from those that `goes` holds for.
+/// The microinstructions to which control comes from microinstruction `from`, which is one of them, going on from those that `goes` holds for.
 fn reached(control: &Control, from: usize, goes: impl Fn(usize) -> bool) -> HashSet<usize> {
     let mut reached = HashSet::from([from]);
     let mut pending = vec![from];
@@ -83,8 +85,8 @@ fn reached(control: &Control, from: usize, goes: impl Fn(usize) -> bool) -> Hash
     reached
 }
 
-/// The nets on which a net depends within the clock of word `at`, and itself. Of a mux that the word turns, only the
-/// chosen input counts; fields are what the word says.
+/// The nets on which a net depends within the clock of microinstruction `at`, and itself. Of a mux that the microinstruction turns, only the
+/// chosen input counts; fields are what the microinstruction says.
 fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
     let mut seen = HashSet::new();
     let mut pending = vec![net];
@@ -95,7 +97,7 @@ fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
         match &design.net(id).driver {
             Driver::Field(_) => {}
             Driver::Op(Op::Mux { select, inputs }) => {
-                match turned(design, &design.control.words[at], *select) {
+                match turned(design, &design.control.microprogram[at], *select) {
                     Some(chosen) => pending.extend(inputs.get(chosen as usize).or(inputs.last())),
                     None => pending.extend(design.combinational_inputs(id)),
                 }
@@ -106,23 +108,24 @@ fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
     seen
 }
 
-/// Loops whose condition depends only on what no word of the loop changes, and that have no other way out.
+/// Loops whose condition depends only on what no microinstruction of the loop changes, and that have no other way out.
 fn endless(design: &Design) -> Vec<Diagnostic> {
     let control = &design.control;
     let mut found = Vec::new();
-    for (at, word) in control.words.iter().enumerate() {
-        let Sequence::LoopWhile { condition, to } = word.sequence else { continue };
+    for (at, microinstruction) in control.microprogram.iter().enumerate() {
+        let Sequence::LoopWhile { condition, to } = microinstruction.sequence else { continue };
         if to > at {
             continue;
         }
-        // The words from which control comes back to this one.
+        // The microinstructions from which control comes back to this one.
         let within = reached(control, to, |now| now != at);
         let body: Vec<usize> = within
             .iter()
             .copied()
             .filter(|&from| reached(control, from, |now| within.contains(&now)).contains(&at))
             .collect();
-        let waits = |now: &usize| *now == 0 || control.words[*now].sequence == Sequence::WaitStart;
+        let waits =
+            |now: &usize| *now == 0 || control.microprogram[*now].sequence == Sequence::WaitStart;
         let leaves = |now: &usize| {
             *now != at && control.successors(*now).iter().any(|next| !body.contains(next))
         };
@@ -140,22 +143,22 @@ fn endless(design: &Design) -> Vec<Diagnostic> {
         held.sort_unstable();
         let why = match held[..] {
             [] => "which is constant".to_owned(),
-            _ => format!("and no word of the loop changes `{}`", held.join("`, `")),
+            _ => format!("and no microinstruction of the loop changes `{}`", held.join("`, `")),
         };
         let condition = design.net(condition);
         let message = format!(
-            "word `{}` goes back to `{}` while `{}` is 1, {why}: it never ends, or is no loop",
-            word.name, control.words[to].name, condition.name
+            "microinstruction `{}` goes back to `{}` while `{}` is 1, {why}: it never ends, or is no loop",
+            microinstruction.name, control.microprogram[to].name, condition.name
         );
         found.push(
-            Diagnostic::new(message, word.location)
+            Diagnostic::new(message, microinstruction.location)
                 .note("the condition".to_owned(), condition.location),
         );
     }
     found
 }
 
-/// Whether a net that ends a cone may change while the words of a loop are executed.
+/// Whether a net that ends a cone may change while the microinstructions of a loop are executed.
 fn changes(design: &Design, body: &[usize], id: NetId) -> bool {
     match design.net(id).driver {
         Driver::Input => true,

@@ -4,8 +4,8 @@ use std::panic::Location;
 
 use crate::base::fixed::{Format, mask};
 use crate::hdl::netlist::{
-    About, Control, Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, Port, RegId,
-    Register, RegisterKind, Role, Rom, RomId, Sequence, Unit, Word,
+    About, Control, Design, Driver, Field, FieldId, FieldKind, Microinstruction, Net, NetId, Op,
+    Port, RegId, Register, RegisterKind, Role, Rom, RomId, Sequence, Unit,
 };
 
 /// A design under construction. It has the input port `rst_n`, number 0.
@@ -128,8 +128,8 @@ impl Build {
         net
     }
 
-    pub fn word(&mut self, name: &str) {
-        self.design.control.words.push(Word {
+    pub fn microinstruction(&mut self, name: &str) {
+        self.design.control.microprogram.push(Microinstruction {
             name: name.to_owned(),
             values: Vec::new(),
             sequence: Sequence::Next,

@@ -75,8 +75,8 @@ fn design() -> Design {
     b.design.control.rom = RomId(0);
     b.design.control.address = RegId(0);
     b.design.control.run = RegId(1);
-    b.word("cos·cos, first");
-    b.word("end");
+    b.microinstruction("cos·cos, first");
+    b.microinstruction("end");
     b.design
 }
 
@@ -127,7 +127,7 @@ fn names_widths_and_values() {
             ("probe.control.other_address", 1),
             ("probe.control.run", 1),
             ("probe.control.select", 2),
-            ("probe.control.word", 0),
+            ("probe.control.microinstruction", 0),
             ("probe.control.word_address", 1),
             ("probe.data", 32),
             ("probe.datapath.one", 1),
@@ -164,14 +164,14 @@ fn names_widths_and_values() {
         let (_, values) = times.iter().find(|(at, _)| *at == time).unwrap();
         values[name].clone()
     };
-    assert_eq!(until(5000, "probe.control.word"), "idle");
+    assert_eq!(until(5000, "probe.control.microinstruction"), "idle");
     assert_eq!(until(15000, "probe.data"), "0".repeat(32));
     assert_eq!(until(20000, "probe.data"), format!("{}01", "1".repeat(30)));
     assert_eq!(until(20000, "probe.datapath.wide"), format!("{:064b}", 9));
-    assert_eq!(until(20000, "probe.control.word"), "idle");
-    assert_eq!(until(25000, "probe.control.word"), "end");
+    assert_eq!(until(20000, "probe.control.microinstruction"), "idle");
+    assert_eq!(until(25000, "probe.control.microinstruction"), "end");
     assert_eq!(until(25000, "probe.control.select"), "10");
-    assert_eq!(until(35000, "probe.control.word"), "cos_cos,_first");
+    assert_eq!(until(35000, "probe.control.microinstruction"), "cos_cos,_first");
     assert_eq!(until(35000, "probe.control.select"), "01");
     for (time, clock) in [(10000, "0"), (15000, "1"), (20000, "0"), (25000, "1")] {
         assert_eq!(until(time, "probe.clk"), clock);

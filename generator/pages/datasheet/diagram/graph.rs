@@ -151,7 +151,7 @@ impl<'a> Builder<'a> {
     fn control(&mut self) -> usize {
         let control = &self.design.control;
         let rom = self.design.rom(control.rom);
-        let (words, width) = (control.words.len(), self.design.width(rom.data));
+        let (words, width) = (control.microprogram.len(), self.design.width(rom.data));
         let at = self.add(Node {
             form: Form::Control,
             number: rom.block,
@@ -169,8 +169,8 @@ impl<'a> Builder<'a> {
 
     /// What the sequencer looks at.
     fn conditions(&mut self, control: usize) {
-        for word in &self.design.control.words {
-            if let Sequence::LoopWhile { condition, .. } = word.sequence {
+        for microinstruction in &self.design.control.microprogram {
+            if let Sequence::LoopWhile { condition, .. } = microinstruction.sequence {
                 for net in self.blocks.sources([condition]) {
                     self.wire(net, control);
                 }
