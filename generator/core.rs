@@ -48,7 +48,7 @@ pub enum Through {
     Verilog(tools::Simulator, Duration),
 }
 
-/// A configuration with its design.
+/// A configuration with everything that is made of it.
 pub struct Core {
     /// The device.
     pub device: Device,

@@ -68,12 +68,12 @@ pub struct Linear {
 }
 
 impl Linear {
-    /// For a length.
+    /// The number for a length.
     pub fn at(self, length: i64) -> i64 {
         self.constant + self.each * length
     }
 
-    /// With the length by its name, as in `4 + length`.
+    /// The formula with the length by its name, as `4 + length`.
     pub fn text(self, length: &str) -> String {
         match self.each {
             0 => self.constant.to_string(),
@@ -99,7 +99,7 @@ pub struct Accuracy {
 }
 
 impl Accuracy {
-    /// What a contract says.
+    /// The promise of a contract.
     pub fn new(contract: &dyn Contract) -> Self {
         let operands = contract.operands();
         let colours = operands.iter().filter(|operand| operand.colour);

@@ -1,4 +1,4 @@
-//! What everything else is written with.
+//! Fixed-point formats, diagnostics, names, text and input: what all other modules use.
 
 pub mod diagnostic;
 pub mod fixed;

@@ -30,10 +30,10 @@ use crate::registry::Registry;
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
-    /// Of the main job: say of each configuration what was compared, and where the largest error is
+    /// Main job only: print for each configuration what was compared, and where the largest error is
     #[arg(long)]
     details: bool,
-    /// Threads of whatever uses several [default: the number of processors]
+    /// How many threads to use at most [default: the number of processors]
     #[arg(long, value_name = "N", global = true, value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     #[command(flatten)]
@@ -51,8 +51,8 @@ Examples:
   glint mutate my_core.toml                     are faults noticed? Plants thousands, one at a time
   glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
   glint describe my_core.toml                   ports, blocks, microprogram, accuracy: a page
-  glint datasheet my_core.toml                  the same as a product guide in HTML, with diagrams and plots
-  glint synth my_core.toml                      area, frequency and critical path on FPGAs and in cells
+  glint datasheet my_core.toml                  the same as a product guide in HTML
+  glint synth my_core.toml                      area, frequency and critical path
   glint compare --exponent 100                  all devices side by side
   glint verify my_core.toml                     every proof and test there is, and a page about it
   glint render my_core.toml --out sphere.png    a picture through the bit-accurate device
@@ -64,20 +64,20 @@ enum Command {
     /// Write Verilog, ROM contents, manifest, FuseSoC core and test bench
     ///
     /// Each configuration gets the directories `rtl_out/<name>/` and `testbench/<name>/`, and with
-    /// `package.software` also `software/<name>/`. They are replaced as a whole or not at all. Files that Glint did not write, or that were edited since, are left alone
-    /// unless --force is given.
+    /// `package.software` also `software/<name>/`. They are replaced as a whole or not at all. Files that Glint did not
+    /// write, or that were edited since, are left alone unless --force is given.
     #[command(after_help = "\
 Examples:
   glint generate                              everything in configs/, into rtl_out/ and testbench/
   glint generate my_core.toml --out build     one configuration, into build/
-  glint generate --check                      is what is there up to date? Writes nothing")]
+  glint generate --check                      are the files up to date? Writes nothing")]
     Generate {
         #[command(flatten)]
         configs: Configs,
-        /// Where `rtl_out/` and `testbench/` are
+        /// The directory in which `rtl_out/` and `testbench/` are made
         #[arg(long, value_name = "DIR", default_value = ".")]
         out: PathBuf,
-        /// Write nothing; fail if what is there differs from what would be written
+        /// Write nothing; fail if a file differs from what would be written
         #[arg(long)]
         check: bool,
         /// Replace files that Glint did not write or that were edited since
@@ -91,12 +91,12 @@ Examples:
   glint cosim my_core.toml --points 1000000 --seed 7      more points, another stimulus
   glint cosim my_core.toml --simulator icarus --json      the emitted Verilog, result for scripts
   glint cosim my_core.toml --points 20 --vcd wave.vcd     a waveform for a viewer
-  glint cosim my_core.toml --exhaustive                   the accuracy contract, every control operand
-  glint cosim configs/reduced/rough.toml --exhaustive     and every combination of operands, every clock")]
+  glint cosim my_core.toml --exhaustive                   the accuracy contract, all operands
+  glint cosim configs/reduced/rough.toml --exhaustive     and every combination, every clock")]
     Cosim {
         #[command(flatten)]
         configs: Configs,
-        /// Results to check of each configuration [default: 100000, or 200 with an external simulator]
+        /// Results to check for each configuration [default: 100000, or 200 with an external simulator]
         #[arg(long, value_name = "N", value_parser = count)]
         points: Option<u64>,
         /// Seed of the stimulus
@@ -105,24 +105,25 @@ Examples:
         /// What simulates the hardware
         #[arg(long, value_enum, default_value_t = Simulator::RustHdl)]
         simulator: Simulator,
-        /// Prove the accuracy contract instead: f over all control operands, every word f with every colour;
-        /// and, if the operands have at most 26 bits, every register on every clock for every combination
+        /// Prove the accuracy contract instead: f for every combination of control operands, and every f with every
+        /// colour. If all operands together have at most 26 bits, also compare every register on every clock for
+        /// every combination of operands
         #[arg(long, conflicts_with_all = ["points", "seed", "simulator", "vcd"])]
         exhaustive: bool,
-        /// With --exhaustive: keep what is done in FILE, and go on from there
+        /// With --exhaustive: save progress in FILE, and continue from it
         #[arg(long, value_name = "FILE", requires = "exhaustive")]
         resume: Option<PathBuf>,
-        /// With --exhaustive: part i of N of the work, for a job array; `glint merge` joins the parts
+        /// With --exhaustive: do part I of N, for a job array; `glint merge` joins the parts
         #[arg(long, value_name = "I/N", requires = "exhaustive", requires = "resume")]
         shard: Option<Shard>,
-        /// Write a waveform of one configuration (built-in simulator)
+        /// Write a waveform (VCD) of one configuration (built-in simulator only)
         #[arg(long, value_name = "FILE")]
         vcd: Option<PathBuf>,
-        /// Seconds after which an external simulator is given up
+        /// Time limit of an external simulator, in seconds
         #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
         time_limit: u64,
     },
-    /// Join the parts of a divided `cosim --exhaustive`
+    /// Join the parts of a `cosim --exhaustive` that was divided by --shard
     #[command(after_help = "\
 Example, on four machines and then on one:
   glint cosim my_core.toml --exhaustive --shard 1/4 --resume part1.json
@@ -137,21 +138,21 @@ Example, on four machines and then on one:
     /// Plant faults one at a time, and show which of them the tests notice
     ///
     /// Stuck and inverted bits, swapped mux inputs, wrong operators, constants, enables, every bit of every control
-    /// word, a sample of ROM words: each is put into the netlist, and the default test of `cosim` is run on it. A
-    /// mutant is caught, or proved to change nothing that is compared, or undecided. Which of them the bench that is
-    /// shipped with the core notices by itself is counted apart. The exit code is 0 if at most 1 % of each
-    /// configuration's are undecided.
+    /// word, a sample of ROM words: each fault is put into the netlist, and the default test of `cosim` is run on this
+    /// mutant. The mutant is caught, or proved to change nothing that is compared, or undecided. How many of them the
+    /// core's own bench notices is counted as well. The exit code is 0 if at most 1 % of the faults of each
+    /// configuration are undecided.
     #[command(after_help = "\
 Examples:
   glint mutate my_core.toml                               the score, and what is undecided
   glint mutate my_core.toml --list                        the names of all faults
-  glint mutate my_core.toml --only 'result[3]:inverted'   one of them: where it shows, and a waveform
+  glint mutate my_core.toml --only 'result[3]:inverted'   one fault: where it shows, a waveform
   glint mutate my_core.toml --full                        the emitted Verilog too
   glint mutate --out mutation                             a record of each configuration in configs/")]
     Mutate {
         #[command(flatten)]
         configs: Configs,
-        /// Name the faults, and plant none
+        /// List the faults, and plant none
         #[arg(long, conflicts_with_all = ["only", "out"])]
         list: bool,
         /// Plant this fault alone; where it is caught, write the waveform around it
@@ -163,7 +164,7 @@ Examples:
         /// Write the record of each configuration, `<name>.json`, into this directory
         #[arg(long, value_name = "DIR")]
         out: Option<PathBuf>,
-        /// Seconds after which a run of an outside tool is given up
+        /// Time limit of each run of an outside tool, in seconds
         #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
         time_limit: u64,
     },
@@ -177,12 +178,12 @@ Examples:
     Eval {
         /// A configuration
         config: PathBuf,
-        /// Operands: `cos_gamma=0.99` is a value, `cos_gamma=#1038090` a raw integer. What is not given is
-        /// taken from the middle of its domain, colours from the top
+        /// Operands: `cos_gamma=0.99` is a value, `cos_gamma=#1038090` a raw integer. An operand that is not
+        /// given is the middle of its domain, a colour the largest
         #[arg(value_name = "OPERAND=VALUE")]
         operands: Vec<String>,
-        /// Many points: CSV with the names of operands in its first row, - for standard input; the results are CSV,
-        /// or with --json a list. Operands of the command line hold for all rows
+        /// Compute many points: a CSV file with the names of operands in its first row, or - for standard input. The
+        /// results are CSV, or with --json a list. Operands on the command line hold for all rows
         #[arg(long, value_name = "FILE.csv")]
         batch: Option<PathBuf>,
     },
@@ -207,8 +208,9 @@ Examples:
     },
     /// Show the stages of a pipeline
     ///
-    /// What each stage computes, for which microinstructions, how long the longest way through it takes by the delays
-    /// of the target, what is left of the clock, and the bits of the registers that end it.
+    /// For each stage: which microinstructions it is made of, what it computes, the delay of its longest path by the
+    /// delays of the target, the slack (what the clock period leaves beside that and a register's own delay), and the
+    /// bits of the registers behind it.
     #[command(after_help = "\
 Examples:
   glint schedule my_pipeline.toml
@@ -221,12 +223,12 @@ Examples:
     ///
     /// iCE40 (UP5K) and ECP5 by Yosys and nextpnr over several seeds, Xilinx 7 by Yosys (area alone), 0.18 µm standard cells by
     /// Yosys and OpenSTA (before layout; a gate is a NAND2X1). Registers stand around the core, so that pins do not count; the
-    /// delay of a DSP block is never left out. Points a second are the median frequency over the clocks a
-    /// point. The critical path is told in the names of the description. What was measured is kept in `.glint/` beside the
-    /// configuration until Verilog or tools change.
+    /// delay of a DSP block always counts. Points a second are the median frequency divided by the clocks a
+    /// point. The critical path has the names of the description. Results are cached in `.glint/` beside the
+    /// configuration, until the Verilog or the tools change.
     #[command(after_help = "\
 Examples:
-  glint synth my_core.toml                            every target whose tools are there
+  glint synth my_core.toml                            every target whose tools are installed
   glint synth my_core.toml --target ecp5 --seeds 11   one of them, more seeds
   glint synth --json                                  everything in configs/, for scripts
   glint synth --out synthesis                         a record of each configuration in configs/")]
@@ -234,27 +236,27 @@ Examples:
     /// Find the smallest configuration of a device for an error
     ///
     /// The proved bound of the accuracy contract decides, so that the answer keeps the error for every operand of the domain.
-    /// Keys that change neither ports nor formula are searched; formats, domain and what the device computes are the wish, and
-    /// `--set` says them. Area and clock are estimates that were fitted to synthesis; `glint synth` measures the answer.
+    /// Keys that change neither ports nor formula are searched. Formats, domain and formula stay at their defaults, or as
+    /// `--set` states them. Area and clock are estimates that were fitted to synthesis; `glint synth` measures the answer.
     #[command(after_help = "\
 Examples:
-  glint tune cosine-power --error 0.75                     an error of 3/4 of the outputs' last bit, on ECP5
+  glint tune cosine-power --error 0.75                     3/4 of the outputs' last bit, on ECP5
   glint tune blinn --error 0.0005 --unit f --target ice40
   glint tune rough --error 0.9 --set cosine.fraction=16 --set exponent.bits=7 --out small_rough.toml
-  glint tune gauss --error 0.001 --unit f --csv            the front between error and area")]
+  glint tune gauss --error 0.001 --unit f --csv            the trade-off of error and area")]
     Tune(Box<commands::TuneArguments>),
     /// Prove the error bound of a contract with Gappa, from the netlist and the microprogram
     ///
-    /// One computation is unrolled into its values. Each way that saturations, clamps and tables can go becomes a
-    /// statement on real numbers with roundings: the output differs from the contract's formula by the bound at
-    /// most. Gappa proves each; the ways together cover the whole domain, so that the contract is proved where all
-    /// are. With --coq each proof is checked again, by the kernel of Coq. A device that cannot be stated so says which
-    /// step is in the way, and ends with exit code 1.
+    /// One computation is unrolled into its values. Each case of saturations, clamps and tables becomes a statement on
+    /// real numbers with roundings: the output differs from the contract's formula by the bound at most. Gappa proves
+    /// each statement. The cases cover the whole domain, so that the contract is proved if all of them are. With --coq
+    /// the kernel of Coq checks each proof again. If a device has a step that cannot be stated so, the command names it,
+    /// and the exit code is 1.
     #[command(after_help = "\
 Examples:
   glint certify configs/cosine_power.toml
-  glint certify configs/cosine_power.toml --out proofs/certificates   also the scripts, to be read and run again
-  glint certify configs/cosine_power.toml --coq                      needs coqc and Gappa's library for Coq")]
+  glint certify configs/cosine_power.toml --out certificates   the scripts too
+  glint certify configs/cosine_power.toml --coq                needs coqc, and Gappa's library for it")]
     Certify {
         #[command(flatten)]
         configs: Configs,
@@ -264,7 +266,7 @@ Examples:
         /// Have Coq check each of Gappa's proofs
         #[arg(long)]
         coq: bool,
-        /// Seconds after which a proof is given up
+        /// Time limit of each proof, in seconds
         #[arg(long, value_name = "SECONDS", default_value_t = 60)]
         time_limit: u64,
     },
@@ -272,7 +274,7 @@ Examples:
     ///
     /// A page as a vendor's product guide: figures at a glance, block diagram, ports and formats, a worked
     /// example, a timing diagram from simulation, the microprogram by control lines, latency and throughput, the error
-    /// bound with its proof and plots, a rendered highlight, an instance in Verilog, and where everything comes from. With
+    /// bound with its proof and plots, a rendered highlight, an instance in Verilog, and the sources. With
     /// Yosys on PATH it says what the device takes of iCE40, ECP5 and Xilinx 7, which takes a minute or more. A file
     /// that Glint did not write, or that was edited since, is left alone unless --force is given.
     #[command(after_help = "\
@@ -282,10 +284,10 @@ Examples:
   glint datasheet my_core.toml --out core.html          one page, under this name
   glint datasheet configs/rough.toml --wavedrom         also datasheets/rough.wavedrom.json")]
     Datasheet(commands::DatasheetArguments),
-    /// Weigh all devices against cos^n gamma at one exponent, side by side
+    /// Compare all devices with cos^n gamma at one exponent, side by side
     ///
-    /// Every device is compared with the defaults of its configuration, in which the widths below are
-    /// replaced where it has such a key; configurations that you name stand beside them as they are. Errors are those
+    /// Every device has its default configuration, with the widths below where it has such a key. Configurations
+    /// that you name are compared as they are. Errors are those
     /// of the reflectance f, the largest and the mean over gamma = 0 to 90 degrees, as a whole and by cause: the
     /// source's formula, the quantised operands, the fixed point. With Yosys on PATH, LUTs, DSP
     /// blocks and block RAMs of iCE40, ECP5 and Xilinx 7 are shown too, which takes a minute or more.
@@ -296,7 +298,7 @@ Examples:
   glint compare --exponent 20 my_core.toml --csv     your configuration beside the devices
   glint compare --cosine-fraction 16 --json          coarser cosines, for scripts")]
     Compare {
-        /// Configurations that stand beside the devices
+        /// Configurations to compare with the devices
         #[arg(value_name = "CONFIG")]
         configs: Vec<PathBuf>,
         /// The specular exponent n
@@ -317,11 +319,11 @@ Examples:
         /// Do not ask Yosys what the devices take
         #[arg(long)]
         no_synthesis: bool,
-        /// Seconds after which a run of Yosys is given up
+        /// Time limit of each run of Yosys, in seconds
         #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
         time_limit: u64,
     },
-    /// Draw a picture whose highlights the device computes, bit by bit
+    /// Draw a picture whose highlights are bit-accurate results of the device
     ///
     /// Ambient and diffuse light are f64, and so is all geometry; the specular term of every sample and light
     /// is a result of the device. Without a configuration it is the first device of `glint list` with its
@@ -335,27 +337,27 @@ Examples:
   glint render core.toml --compare --out beside.png     device, Blinn in f64, and their difference
   glint render core.toml --through verilator --out same.png")]
     Render(Box<commands::RenderArguments>),
-    /// Measure all devices and the seeds' claims, and write a page about them
+    /// Measure all devices and the claims of their sources, and write a page about them
     ///
     /// Writes report.html, one page that needs no network, and report.json with all its figures: error curves of
-    /// every device, the plots that the seeds describe, and the ledger of their claims, each with its verdict. Both are
-    /// the same whenever they are made with the same tools. With Yosys on PATH, W and Schlick's function are synthesised.
+    /// every device, the plots that the source documents (seeds 000 to 002) describe, and their claims, each with a
+    /// verdict. The same tools give the same files. With Yosys on PATH, W and Schlick's function are synthesised.
     #[command(after_help = "\
 Examples:
   glint report                            report/report.html and report/report.json
-  glint report --out build --benchmark    also times W against Schlick's function: build/benchmark.json
-  glint report --json                     the ledger, for scripts")]
+  glint report --out build --benchmark    also build/benchmark.json: W timed against Schlick
+  glint report --json                     the claims, for scripts")]
     Report {
         /// Where the files go
         #[arg(long, value_name = "DIR", default_value = "report")]
         out: PathBuf,
-        /// Time W against Schlick's function; the timings stand apart from the other figures
+        /// Also time W against Schlick's function, into a file of its own
         #[arg(long)]
         benchmark: bool,
         /// Do not ask Yosys what W and Schlick's function take
         #[arg(long)]
         no_synthesis: bool,
-        /// Seconds after which a run of Yosys is given up
+        /// Time limit of each run of Yosys, in seconds
         #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
         time_limit: u64,
     },
@@ -389,11 +391,11 @@ Examples:
         /// Where records of `cosim --exhaustive --json` are, which stand for a long proof of the accuracy contract
         #[arg(long, value_name = "DIR", default_value = "proofs")]
         proofs: PathBuf,
-        /// Seconds after which a run of an outside tool is given up
+        /// Time limit of each run of an outside tool, in seconds
         #[arg(long, value_name = "SECONDS", default_value_t = 3600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
         time_limit: u64,
     },
-    /// Name the devices, and the configurations in configs/
+    /// List the devices, and the configurations in configs/
     #[command(after_help = "\
 Example:
   glint list --json")]
@@ -403,7 +405,7 @@ Example:
 Example:
   glint new rough --name my_core > my_core.toml")]
     New {
-        /// A device, as `glint list` names it
+        /// A device of `glint list`
         device: String,
         /// The name of the top module [default: the device's, with _ for -]
         #[arg(long)]

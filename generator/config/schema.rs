@@ -42,7 +42,7 @@ pub enum Kind {
     Integer { min: i64, max: i64 },
     /// A finite number, both limits included. A file may write it as an integer.
     Number { min: f64, max: f64 },
-    /// One of some words. If all of them are decimal integers, a file writes an integer.
+    /// A key whose value is one of some texts. If all of them are decimal integers, a file writes an integer.
     Choice(&'static [&'static str]),
     /// `true` or `false`.
     Flag,
@@ -77,7 +77,7 @@ impl Key {
         Self::new(name, Kind::Number { min, max }, Value::Number(default), doc)
     }
 
-    /// One of some words. With options that are all decimal integers, as `["2", "4"]`, a file
+    /// A key whose value is one of some texts. With options that are all decimal integers, as `["2", "4"]`, a file
     /// writes an integer, and [`Config::integer`] reads it as one.
     pub fn choice(
         name: &'static str,

@@ -23,7 +23,7 @@ enum Architecture<'a> {
 use Architecture::{Pipelined as Pipe, Sequential as Core};
 
 impl<'a> Lockstep<'a> {
-    /// Pairs them by the names of ports and registers.
+    /// Model and simulator of a design, paired by the names of ports and registers.
     ///
     /// # Errors
     /// A name of one side that the other does not have.

@@ -46,7 +46,7 @@ pub(super) struct Sequential<'a> {
 }
 
 impl<'a> Sequential<'a> {
-    /// Pairs them by the names of ports and registers.
+    /// Model and simulator of a design, paired by the names of ports and registers.
     ///
     /// # Errors
     /// A name of one side that the other does not have.

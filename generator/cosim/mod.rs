@@ -1,5 +1,4 @@
-//! Co-simulation: stimulus, golden model against built-in simulator, external simulators,
-//! synthesis.
+//! Co-simulation: stimulus, and golden model against built-in simulator, clock by clock and exhaustively.
 
 mod alone;
 mod architecture;

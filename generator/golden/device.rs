@@ -107,7 +107,7 @@ impl<D: Datapath> Device<D> {
     }
 }
 
-/// What a device stands for.
+/// The formula that a device approximates, with the proved bound of its error.
 pub trait Formula: Send + Sync {
     /// The outputs in f64, unrounded, for the values (not raw) of the operands, in the order of the frame.
     fn exact(&self, operands: &[f64]) -> Vec<f64>;

@@ -1,8 +1,8 @@
-//! From a checked [`Design`] to files: Verilog, ROM contents, manifest, FuseSoC cores, test bench, and
-//! the page for people.
+//! From a checked [`Design`] to files: Verilog, ROM contents, manifest, FuseSoC cores, benches,
+//! formal wrappers, bus wrappers and the model in C.
 //!
-//! Names and expressions become strings first (`plan`, `expression`), views collect them, and
-//! the templates in `templates/` print views and decide nothing. Emission is pure: it returns files
+//! Names and expressions become strings first (`hdl::verilog`), views collect them, and the templates in
+//! `templates/` print views and decide nothing. Emission is pure: it returns files
 //! and writes none, and the same design gives the same bytes.
 
 mod bench;

@@ -37,7 +37,7 @@ pub struct DatasheetArguments {
     /// Do not ask Yosys what the device takes
     #[arg(long)]
     no_synthesis: bool,
-    /// Seconds after which a run of Yosys is given up
+    /// Time limit of each run of Yosys, in seconds
     #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     time_limit: u64,
 }

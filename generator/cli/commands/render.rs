@@ -30,16 +30,16 @@ const LARGEST_FILE: u64 = 4 << 30;
 pub struct RenderArguments {
     /// A configuration [default: the first device with its defaults]
     config: Option<PathBuf>,
-    /// The picture, a PNG file
+    /// The PNG file to write
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
     /// What computes the specular term
     #[arg(long, value_enum, default_value_t = Through::Golden)]
     through: Through,
-    /// Beside it the picture of Blinn's cos^n in f64, and their difference, with its largest value and PSNR
+    /// Add the picture with Blinn's cos^n in f64 and the difference of both; print its largest value and PSNR
     #[arg(long)]
     compare: bool,
-    /// Pixels
+    /// Width and height in pixels
     #[arg(long, value_name = "WxH", default_value = "640x480", value_parser = size)]
     size: (u32, u32),
     /// Samples along each side of a pixel
@@ -51,14 +51,13 @@ pub struct RenderArguments {
     /// Show the mesh of a Wavefront OBJ file; where it has no normals, they are computed
     #[arg(long, value_name = "FILE")]
     mesh: Option<PathBuf>,
-    /// Of a mesh without normals: edges of more than so many degrees stay sharp; 180 smooths every edge, 0 none but flat
-    /// ones
+    /// For a mesh without normals: edges with a larger angle stay sharp; 180 smooths every edge, 0 only flat ones
     #[arg(long, value_name = "DEGREES", default_value_t = render::CREASE, requires = "mesh", value_parser = crease)]
     crease: f64,
-    /// A height map, a grey PNG file: it perturbs the normals, by dgamma where the device takes that
+    /// A height map, a grey PNG file, which perturbs the normals: through dgamma if the device has that operand
     #[arg(long, value_name = "FILE")]
     height: Option<PathBuf>,
-    /// How high white stands over black, in per cent of the radius of what is shown
+    /// The height of white over black, in per cent of the radius of the object
     #[arg(
         long,
         value_name = "PERCENT",
@@ -67,7 +66,7 @@ pub struct RenderArguments {
         requires = "height"
     )]
     height_depth: f64,
-    /// How often the height map is repeated
+    /// How many times the height map is repeated
     #[arg(long, value_name = "TIMES", default_value_t = 4.0, requires = "height")]
     height_repeat: f64,
     /// A light: the direction toward it and its colour, x right, y up, z to the front [default: a white one
@@ -86,22 +85,22 @@ pub struct RenderArguments {
     /// The share of the light in the ambient term, 0 to 1
     #[arg(long, value_name = "SHARE", default_value_t = Material::usual(0).ambient, value_parser = share)]
     ambient: f64,
-    /// The colour of things in ambient and diffuse light, each 0 to 1
+    /// The colour of objects in ambient and diffuse light, each component 0 to 1
     #[arg(long, value_name = "R,G,B", value_parser = colour)]
     colour: Option<Vector>,
-    /// The colour around them
+    /// The colour of the background
     #[arg(long, value_name = "R,G,B", default_value = "0.05,0.06,0.08", value_parser = colour)]
     background: Vector,
-    /// Where the camera stands [default: in front, a little above, so that everything is seen]
+    /// Where the camera stands [default: in front, a little above, so that everything is visible]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
     camera: Option<Vector>,
-    /// What it looks at [default: the middle of everything]
+    /// The point that it looks at [default: the middle of everything]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
     target: Option<Vector>,
-    /// The angle from the lower to the upper edge, in degrees, 1 to 150
+    /// The vertical field of view, in degrees, 1 to 150
     #[arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = field)]
     fov: f64,
-    /// Seconds after which an external simulator is given up
+    /// Time limit of an external simulator, in seconds
     #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     time_limit: u64,
 }

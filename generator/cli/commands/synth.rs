@@ -31,13 +31,13 @@ const LIBERTY: &str = "/usr/share/qflow/tech/osu018/osu018_stdcells.lib";
 pub struct SynthArguments {
     #[command(flatten)]
     configs: Configs,
-    /// What to measure for; may be repeated [default: every target whose tools are there]
+    /// The technology to measure for; may be repeated [default: every target whose tools are installed]
     #[arg(long = "target", value_name = "TARGET", value_enum)]
     targets: Vec<Target>,
     /// Runs of place and route, of which the median counts
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u32).range(1..=1000))]
     seeds: u32,
-    /// Runs of tools at the same time [default: the number of threads]
+    /// How many tools to run at the same time [default: the number of threads]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
     /// Measure again what is in the cache, `.glint/` beside each configuration
@@ -46,10 +46,10 @@ pub struct SynthArguments {
     /// Write the figures of each configuration, `<name>.json`, into this directory
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
-    /// Describes the standard cells
+    /// The Liberty file of the standard cells
     #[arg(long, value_name = "FILE.lib", default_value = LIBERTY)]
     liberty: PathBuf,
-    /// Seconds after which a run of a tool is given up
+    /// Time limit of each run of a tool, in seconds
     #[arg(long, value_name = "SECONDS", default_value_t = 3600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
     time_limit: u64,
 }

@@ -22,7 +22,7 @@ use crate::tune::{self, Answer, Candidate, Objective, Unit, Wish};
 /// What `tune` was asked for.
 #[derive(Args)]
 pub struct TuneArguments {
-    /// A device, as `glint list` names it
+    /// A device of `glint list`
     device: String,
     /// The largest error
     #[arg(long, value_name = "E")]
@@ -30,28 +30,28 @@ pub struct TuneArguments {
     /// What the error is measured in: the reflectance f, 0 to 1, or the outputs' least significant bit
     #[arg(long, value_enum, default_value_t = Unit::Output)]
     unit: Unit,
-    /// What the core is for
+    /// The technology that area and clock are estimated for
     #[arg(long, value_name = "TARGET", value_enum, default_value_t = Target::Ecp5)]
     target: Target,
-    /// What is to be small
+    /// What to minimise
     #[arg(long, value_enum, default_value_t = Objective::Area)]
     objective: Objective,
-    /// The slowest clock, by the estimate
+    /// The clock that the core must reach, by the estimate
     #[arg(long, value_name = "MHZ")]
     clock: Option<f64>,
-    /// A key that is part of the wish: a format, the domain, or one that is not to be changed; may be repeated
+    /// A key with the value that it must have: a format, the domain, or any other; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
     /// The name of the module [default: the device's, with _ for -]
     #[arg(long)]
     name: Option<String>,
-    /// Write the configuration to a file that is not there yet
+    /// Write the configuration to a new file
     #[arg(long, value_name = "FILE.toml")]
     out: Option<PathBuf>,
-    /// Draw the front, area over error, into a file that is not there yet
+    /// Plot area over error into a new file
     #[arg(long, value_name = "FILE.svg")]
     plot: Option<PathBuf>,
-    /// Print the front as CSV, for spreadsheets
+    /// Print the trade-off of error and area as CSV
     #[arg(long)]
     csv: bool,
 }

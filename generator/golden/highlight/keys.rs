@@ -26,7 +26,7 @@ pub struct Keys {
 }
 
 impl Keys {
-    /// What a configuration says.
+    /// The keys of a configuration.
     pub fn new(config: &Config) -> Self {
         Self {
             cosine_fraction: keys::bits(config, "cosine.fraction"),
@@ -64,7 +64,7 @@ impl Keys {
         Format::unsigned(0, self.intensity_fraction as i32)
     }
 
-    /// What multiplies by f.
+    /// The products of f with the colours.
     pub fn products(&self) -> Products {
         Products::colours(self.f_format(), self.colour_bits, self.output_rounding)
     }

@@ -116,7 +116,7 @@ pub struct Highlight {
 }
 
 impl Highlight {
-    /// With these control operands, in the order in which the reflectance takes them.
+    /// The contract of a reflectance with these control operands, in the order in which it takes them.
     pub fn new(
         reflectance: impl Reflectance + 'static,
         control: Vec<Operand>,
@@ -127,12 +127,12 @@ impl Highlight {
         Self { reflectance: Box::new(reflectance), products, operands }
     }
 
-    /// From cos γ and n.
+    /// The contract of a reflectance with the control operands cos γ and n.
     pub fn of_cosine(reflectance: impl Reflectance + 'static, keys: &Keys) -> Self {
         Self::new(reflectance, keys.operands(), keys.products())
     }
 
-    /// How many operands determine f: the first.
+    /// The number of control operands, which come first.
     pub fn control(&self) -> usize {
         self.operands.len() - self.products.operands.len()
     }

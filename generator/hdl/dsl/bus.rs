@@ -122,7 +122,7 @@ impl Designer {
 }
 
 impl<'d> Bus<'d> {
-    /// The knob: passes `input` on. It must be one of the inputs.
+    /// The setting with which the mux passes `input` on. It must be one of the inputs.
     #[track_caller]
     pub fn pick(&self, input: Signal<'d>) -> Setting {
         Setting::pick_of(self.designer, self.field, &self.name, input, &self.inputs)
@@ -141,14 +141,14 @@ impl<'d> Bus<'d> {
         Self { out, delay: self.delay + 1, ..self }
     }
 
-    /// The block number in the source's figure.
+    /// States the block number in the source's figure.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         let _ = self.out.block(number);
         self
     }
 
-    /// One line for the reader of the Verilog.
+    /// States a comment of one line for the reader of the Verilog.
     #[must_use]
     pub fn doc(self, line: &str) -> Self {
         let _ = self.out.doc(line);
@@ -247,14 +247,14 @@ impl<'d> SharedProduct<'d> {
         self.out.wiring("view", format, range, op)
     }
 
-    /// The block number in the source's figure.
+    /// States the block number in the source's figure.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         let _ = self.out.block(number);
         self
     }
 
-    /// One line for the reader of the Verilog.
+    /// States a comment of one line for the reader of the Verilog.
     #[must_use]
     pub fn doc(self, line: &str) -> Self {
         let _ = self.out.doc(line);

@@ -6,9 +6,9 @@
 //! unnoticed: sums and products are exact, and bits are given up only by [`Designer::narrow`], which
 //! states rounding and overflow.
 //!
-//! What a microprogram can turn are the knobs of the blocks, and nothing else: [`Mux::pick`],
-//! [`Register::load`], [`Flag::raise`], [`Counter::load`] and [`Counter::count`]. Each knob is a field of
-//! the control word; fields stand in the word in the order in which the blocks were created.
+//! A microinstruction ([`step`]) is a list of settings, which the blocks make: [`Mux::pick`],
+//! [`Register::load`], [`Flag::raise`], [`Counter::load`] and [`Counter::count`]. Each stands for a field of
+//! the control word; fields stand there in the order in which the blocks were created.
 //!
 //! ```
 //! use glint::dsl::{Designer, end, step, valid};
@@ -144,7 +144,7 @@ impl Designer {
         designer
     }
 
-    /// What the header of the emitted Verilog, the manifest and the documentation say of the device.
+    /// States what the header of the emitted Verilog, the manifest and the documentation say of the device.
     pub fn about(&self, about: About) {
         self.inner.borrow_mut().design.about = about;
     }
@@ -300,7 +300,7 @@ impl Designer {
         }
     }
 
-    /// The numbers, in the source's figure, of two lines that every control unit has: the one by which
+    /// States the numbers, in the source's figure, of two lines that every control unit has: the one by which
     /// a microinstruction sets `valid`, and the one by which it lets the program go on.
     pub fn sequencer_lines(&self, valid: u16, go_on: u16) {
         self.inner.borrow_mut().sequencer_lines = Some([valid, go_on]);
@@ -581,21 +581,21 @@ impl<'d> Rom<'d> {
         self.designer.signal(data)
     }
 
-    /// The block number in the source's figure.
+    /// States the block number in the source's figure.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         self.designer.with(|inner| inner.design.roms[self.id.index()].block = Some(number));
         self
     }
 
-    /// What an entry means; a line of the ROM's comment.
+    /// Adds a line to the ROM's comment: what an entry means.
     #[must_use]
     pub fn doc(self, line: &str) -> Self {
         self.designer.with(|inner| inner.design.roms[self.id.index()].doc.push(line.to_owned()));
         self
     }
 
-    /// A comment for each word.
+    /// States a comment for each word.
     #[must_use]
     pub fn comments(self, comments: Vec<String>) -> Self {
         self.designer.with(|inner| inner.design.roms[self.id.index()].comments = comments);

@@ -1,4 +1,4 @@
-//! The microprogram: microinstructions that turn knobs, and the sequencer that runs them.
+//! The microprogram: microinstructions as lists of settings, and the sequencer that executes them.
 
 use std::panic::Location;
 
@@ -11,11 +11,11 @@ use crate::hdl::netlist::{
     Rom as NetRom, RomId, Sequence, Unit,
 };
 
-/// What one microinstruction does to one knob, or to the sequence.
+/// What a microinstruction says of one field, or of its successor.
 #[derive(Clone)]
 pub struct Setting {
     kind: Kind,
-    /// The designer whose knob or condition it is; none where it speaks of neither.
+    /// The designer whose field or condition it is; none where it has neither.
     of: Option<Origin>,
     location: SourceLocation,
 }
@@ -112,38 +112,38 @@ impl Setting {
     }
 }
 
-/// Keeps the selections of the microinstruction before, where the microinstruction does not say otherwise.
+/// The setting that keeps the selections of the microinstruction before, but for those that are stated.
 #[track_caller]
 pub fn hold() -> Setting {
     Setting::sequence(Kind::Hold)
 }
 
-/// The results are on the outputs: `valid` is high in this microinstruction.
+/// The setting that says that the results are on the outputs: `valid` is high in this microinstruction.
 #[track_caller]
 pub fn valid() -> Setting {
     Setting::sequence(Kind::Valid)
 }
 
-/// On to the next microinstruction; what a microinstruction does that does not say otherwise.
+/// The setting that goes on to the next microinstruction, which is also the default.
 #[track_caller]
 pub fn next() -> Setting {
     Setting::sequence(Kind::Next)
 }
 
-/// Stays in this microinstruction until `start` is high; the device is not busy meanwhile. Microinstruction 0 always does.
+/// The setting that stays in this microinstruction until `start` is high; the device is not busy meanwhile. Microinstruction 0 always does.
 #[track_caller]
 pub fn wait_for_start() -> Setting {
     Setting::sequence(Kind::WaitForStart)
 }
 
-/// Back to the microinstruction named `to` while `condition`, one bit, is 1; then on to the next microinstruction.
+/// The setting that goes back to the microinstruction named `to` while `condition`, one bit, is 1; then on to the next microinstruction.
 #[track_caller]
 pub fn loop_while(condition: Signal<'_>, to: &str) -> Setting {
     let kind = Kind::LoopWhile { condition: condition.id(), to: to.to_owned() };
     Setting { of: Some(origin(condition.designer())), ..Setting::sequence(kind) }
 }
 
-/// On to the microinstruction named `to` when `condition`, one bit, is 1; else to the next microinstruction: a way around microinstructions
+/// The setting that goes on to the microinstruction named `to` when `condition`, one bit, is 1; else to the next microinstruction: a way around microinstructions
 /// that there may be nothing to do for, as a loop whose body need not run even once.
 #[track_caller]
 pub fn jump_if(condition: Signal<'_>, to: &str) -> Setting {
@@ -151,7 +151,7 @@ pub fn jump_if(condition: Signal<'_>, to: &str) -> Setting {
     loop_while(condition, to)
 }
 
-/// The last microinstruction: `done` is high in it, and the device is idle after it.
+/// The setting of the last microinstruction: `done` is high in it, and the device is idle after it.
 #[track_caller]
 pub fn end() -> Setting {
     Setting::sequence(Kind::End)
@@ -165,7 +165,7 @@ pub struct Step {
     location: SourceLocation,
 }
 
-/// A microinstruction with a name and what it turns. Muxes that are not mentioned pass on their first input;
+/// A microinstruction with its name and settings. Muxes that are not mentioned pass on their first input;
 /// registers that are not mentioned keep their value.
 #[track_caller]
 pub fn step(name: &str, settings: impl IntoIterator<Item = Setting>) -> Step {

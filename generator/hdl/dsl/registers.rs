@@ -208,14 +208,14 @@ impl<'d> Operand<'d> {
         self.q
     }
 
-    /// The number of the register in the source's figure.
+    /// States the number of the register in the source's figure.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         let _ = self.q.block(number);
         self
     }
 
-    /// The numbers of the data input and of the write strobe in the source's figure.
+    /// States the numbers of the data input and of the write strobe in the source's figure.
     #[must_use]
     pub fn inputs(self, data: u16, strobe: u16) -> Self {
         let _ = self.port.block(data);
@@ -223,7 +223,7 @@ impl<'d> Operand<'d> {
         self
     }
 
-    /// One line for the reader of the Verilog.
+    /// States a comment of one line for the reader of the Verilog.
     #[must_use]
     pub fn doc(self, line: &str) -> Self {
         let _ = self.port.doc(line);
@@ -275,20 +275,20 @@ impl<'d> Register<'d> {
         }
     }
 
-    /// The knob: the register takes its data at the end of the microinstruction.
+    /// The setting with which the register takes its data at the end of the microinstruction.
     #[track_caller]
     pub fn load(self) -> Setting {
         Setting::field(self.q.designer(), self.field, 1, format!("{}.load", self.q.name()))
     }
 
-    /// The block number in the source's figure.
+    /// States the block number in the source's figure.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         let _ = self.q.block(number);
         self
     }
 
-    /// The number of the load line in the source's figure.
+    /// States the number of the load line in the source's figure.
     #[must_use]
     pub fn line(self, number: u16) -> Self {
         self.q
@@ -297,7 +297,7 @@ impl<'d> Register<'d> {
         self
     }
 
-    /// One line for the reader of the Verilog.
+    /// States a comment of one line for the reader of the Verilog.
     #[must_use]
     pub fn doc(self, line: &str) -> Self {
         let _ = self.q.doc(line);
@@ -313,7 +313,7 @@ pub struct Select<'d> {
 }
 
 impl<'d> Select<'d> {
-    /// The lines themselves, for a mux in the datapath that some of them turn too.
+    /// The lines themselves, for a mux in the datapath that some of them control too.
     pub fn out(self) -> Signal<'d> {
         self.designer.field_net(self.field)
     }
@@ -322,7 +322,7 @@ impl<'d> Select<'d> {
         self.field
     }
 
-    /// The numbers of the lines in the source's figure, most significant first.
+    /// States the numbers of the lines in the source's figure, most significant first.
     #[must_use]
     pub fn lines(self, numbers: &[u16]) -> Self {
         self.designer
@@ -358,7 +358,7 @@ pub struct Flag<'d> {
 }
 
 impl Flag<'_> {
-    /// The knob: the output is high in this microinstruction.
+    /// The setting with which the output is high in this microinstruction.
     #[track_caller]
     pub fn raise(self) -> Setting {
         let name = self.designer.field_net(self.field).name();
@@ -385,7 +385,7 @@ impl<'d> Counter<'d> {
         self.q.designer().field_net(self.count)
     }
 
-    /// The number of the count line in the source's figure.
+    /// States the number of the count line in the source's figure.
     #[must_use]
     pub fn line(self, number: u16) -> Self {
         self.q
@@ -394,26 +394,26 @@ impl<'d> Counter<'d> {
         self
     }
 
-    /// The knob: takes the start value at the end of the microinstruction.
+    /// The setting with which the counter takes its start value at the end of the microinstruction.
     #[track_caller]
     pub fn load(self) -> Setting {
         Setting::field(self.q.designer(), self.load, 1, format!("{}.load", self.q.name()))
     }
 
-    /// The knob: one less at the end of the microinstruction.
+    /// The setting with which the counter is one less at the end of the microinstruction.
     #[track_caller]
     pub fn count(self) -> Setting {
         Setting::field(self.q.designer(), self.count, 1, format!("{}.count", self.q.name()))
     }
 
-    /// The block number in the source's figure.
+    /// States the block number in the source's figure.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         let _ = self.q.block(number);
         self
     }
 
-    /// One line for the reader of the Verilog.
+    /// States a comment of one line for the reader of the Verilog.
     #[must_use]
     pub fn doc(self, line: &str) -> Self {
         let _ = self.q.doc(line);

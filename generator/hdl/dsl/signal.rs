@@ -39,14 +39,14 @@ impl<'d> Signal<'d> {
         self.designer.with(|inner| inner.design.net(self.id).range)
     }
 
-    /// The block number in the source's figure.
+    /// States the block number in the source's figure.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         self.designer.with(|inner| inner.design.nets[self.id.index()].block = Some(number));
         self
     }
 
-    /// One line for the reader of the Verilog.
+    /// States a comment of one line for the reader of the Verilog.
     #[must_use]
     pub fn doc(self, line: &str) -> Self {
         self.designer.set_doc(self.id, line);
@@ -414,7 +414,7 @@ impl Designer {
         self.mux_of(name, select, &inputs)
     }
 
-    /// A mux that the microprogram turns, with a select field of its own, `<name>_select`.
+    /// A mux that the microprogram controls, with a select field of its own, `<name>_select`.
     ///
     /// The inputs have one point ([`Signal::with_fraction`] aligns them; [`Designer::bus`] carries
     /// any); integer bits and signs may differ.
@@ -534,18 +534,18 @@ pub struct Mux<'d> {
 }
 
 impl<'d> Mux<'d> {
-    /// What the mux passes on.
+    /// The output of the mux.
     pub fn out(self) -> Signal<'d> {
         self.out
     }
 
-    /// The knob: passes `input` on. It must be one of the mux's inputs.
+    /// The setting with which the mux passes `input` on. It must be one of the mux's inputs.
     #[track_caller]
     pub fn pick(self, input: Signal<'d>) -> Setting {
         Setting::pick(self.out.designer(), self.field, &self.out.name(), input)
     }
 
-    /// The block number in the source's figure.
+    /// States the block number in the source's figure.
     #[must_use]
     pub fn block(self, number: u16) -> Self {
         let _ = self.out.block(number);
@@ -557,7 +557,7 @@ impl<'d> Mux<'d> {
         self.out.designer().field_net(self.field)
     }
 
-    /// The number of the select line in the source's figure.
+    /// States the number of the select line in the source's figure.
     #[must_use]
     pub fn line(self, number: u16) -> Self {
         self.out
@@ -566,7 +566,7 @@ impl<'d> Mux<'d> {
         self
     }
 
-    /// One line for the reader of the Verilog.
+    /// States a comment of one line for the reader of the Verilog.
     #[must_use]
     pub fn doc(self, line: &str) -> Self {
         let _ = self.out.doc(line);
