@@ -47,7 +47,7 @@ module ${ name }$_axis #(
     input  wire m_axis_tready
 );
 
-    // What waits for the core.
+    // The operands that wait for the core.
     reg  waiting;
     reg  [${ in_high }$:0] operands;
     reg  [USER_WIDTH-1:0] operands_user;
@@ -55,7 +55,7 @@ module ${ name }$_axis #(
     reg  operands_last;
 <%- endif %>
 
-    // What goes with the <% if line.is_some() %>line<% else %>point<% endif %> that the core computes.
+    // tuser of the <% if line.is_some() %>line<% else %>point<% endif %> that the core computes.
     reg  [USER_WIDTH-1:0] user;
 <%- if line.is_none() %>
     reg  last;
@@ -114,7 +114,7 @@ module ${ name }$_axis #(
 <%- if let Some(line) = line %>
 
     // The buffer. Points are numbered, modulo twice its places: the next to be read and to be
-    // written, and the first of the next line. What is between read_at and next_line has a place.
+    // written, and the first of the next line. Points from read_at to next_line have a place.
     reg  [${ line.width }$:0] read_at;
     reg  [${ line.width }$:0] write_at;
     reg  [${ line.width }$:0] next_line;
@@ -192,7 +192,7 @@ module ${ name }$_axis #(
 <%- endif %>
 <%- if !unused.is_empty() %>
 
-    // What nothing needs: bits above operands, and outputs of the core.
+    // Unused: bits above operands, and outputs of the core.
 <%- for line in unused %>
 ${ line }$
 <%- endfor %>

@@ -106,7 +106,7 @@ module ${ name }$_axis #(
     end
 <%- if !unused.is_empty() %>
 
-    // What nothing needs: bits above operands, and outputs of the core.
+    // Unused: bits above operands, and outputs of the core.
 <%- for line in unused %>
 ${ line }$
 <%- endfor %>

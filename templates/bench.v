@@ -42,13 +42,13 @@ ${ line }$
     );
 <%- if let Some(address) = address %>
 
-    // Prints the word of the microprogram that is executed.
-    task ${ names.write_word }$;
+    // Prints the microinstruction that is executed.
+    task ${ names.write_microinstruction }$;
         case (${ address }$)
 <%- for it in microprogram %>
-            ${ it.label }$: $write("word ${ it.address }$ (${ it.name }$)");
+            ${ it.label }$: $write("microinstruction ${ it.address }$ (${ it.name }$)");
 <%- endfor %>
-            default: $write("no word");
+            default: $write("no microinstruction");
         endcase
     endtask
 <%- endif %>

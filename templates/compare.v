@@ -3,7 +3,7 @@
                     if (${ names.errors }$ <= REPORTED) begin
                         $write("clock %0d<% if address.is_some() %>, <% endif %>", ${ names.clock }$);
 <%- if address.is_some() %>
-                        ${ names.write_word }$;
+                        ${ names.write_microinstruction }$;
 <%- endif %>
                         $display(": ${ output.name }$ is %h, expected %h", ${ output.name }$, ${ output.select }$);
                     end

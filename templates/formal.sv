@@ -1,4 +1,4 @@
-// ${ name }$: what is proved of the handshake of ${ module }$
+// ${ name }$: properties of the handshake of ${ module }$
 //
 // For formal tools alone: every input is free. To prove it, from a directory that holds the files
 // of both folders:
@@ -27,7 +27,7 @@ ${ line }$
 <%- endfor %>
     );
 
-    // The initial set comes first; the state before it is arbitrary.
+    // The reset comes first; the state before it is arbitrary.
     always @* if ($initstate) assume (!rst_n);
 <%- if let Some(age) = age %>
 
@@ -37,7 +37,7 @@ ${ line }$
 <%- endif %>
 <%- if let Some(bounded) = bounded %>
 
-    // The word that is executed, and what counts the turns of loops.
+    // The microinstruction that is executed, and the counters of loops.
 <%- for line in bounded.inside %>
     ${ line }$
 <%- endfor %>
@@ -45,14 +45,14 @@ ${ line }$
 
     always @(posedge clk) if (!$initstate) begin
         if (!$past(rst_n)) begin
-            // Idle after the initial set, whatever was before.
+            // Idle after reset, whatever the state was before.
             assert (!busy && !done);
 <%- if straight %>
         end else if (!$past(busy)) begin
             // Idle until start, busy from the clock after it.
             assert (busy == $past(start));
         end else begin
-            // Busy to the clock of done.
+            // Busy up to the clock of done.
             assert (busy == !$past(done));
 <%- endif %>
         end
@@ -69,7 +69,7 @@ ${ line }$
 <%- endif %>
 <%- if let Some(bounded) = bounded %>
         if (busy) begin
-            // Every computation ends: with what is left in a word at most, it is not too late.
+            // Every computation ends in time: its clocks so far, and the most that can follow.
             assert (${ age.name }$ <= ${ bounded.most }$);
             case (${ bounded.address }$)
 <%- for latest in bounded.latest %>

@@ -181,7 +181,7 @@ class Core:
         return core
 
     async def reset(self) -> None:
-        """A clock of the initial set."""
+        """A clock of reset."""
         await self.clock(rst_n=0)
 
     async def clock(

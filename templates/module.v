@@ -22,7 +22,7 @@ ${ line }$
 <%- include "groups.v" %>
 <%- if !unused.is_empty() %>
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
 <%- for line in unused %>
 ${ line }$
 <%- endfor %>

@@ -32,7 +32,7 @@ ${ line }$
 <%- endfor %>
 <%- if !unused.is_empty() %>
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
 <%- for line in unused %>
 ${ line }$
 <%- endfor %>

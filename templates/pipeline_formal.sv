@@ -27,7 +27,7 @@ ${ line }$
 <%- endfor %>
     );
 
-    // The initial set comes first; the state before it is arbitrary.
+    // The reset comes first; the state before it is arbitrary.
     always @* if ($initstate) assume (!rst_n);
 
     // Which stage of the pipeline has a point.
@@ -40,7 +40,7 @@ ${ line }$
 <%- endfor %>
     };
 
-    // The same of a queue, which all points move through together, unless a result waits.
+    // The same for a queue beside it: all points in it move together, unless a result waits.
     wire ${ moves }$ = ${ moves_when }$;
     reg  [${ stages }$:1] ${ queue }$;
     always @(posedge clk) begin

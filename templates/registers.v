@@ -127,7 +127,7 @@ module ${ name }$_registers (
 <%- endmatch %>
     assign read_answer = read & ~(read_result & under_way);
 
-    // What nothing needs.
+    // Unused bits.
 <%- for line in unused %>
 ${ line }$
 <%- endfor %>

@@ -181,7 +181,7 @@ class Core:
         return core
 
     async def reset(self) -> None:
-        """A clock of the initial set."""
+        """A clock of reset."""
         await self.clock(rst_n=0)
 
     async def clock(
@@ -576,4 +576,4 @@ def run(name: str) -> None:
     sys.exit(1 if failed or not tests else 0)
 
 
-# sha256 39c23adf0fcdc0fcd3e8e202c0358b51845778370abf512125f70950a9c38168
+# sha256 b9808b6dbbaba9f1874e5c0a7c9d7cf5058dfbc06b93f6768111a5138b204d0f

@@ -93,8 +93,8 @@ fn about() -> About {
              -90 (included) to 90 degrees."
                 .to_owned(),
             "A stretched angle is no angle on a circle: it must not wrap around within a line. With angle.integer = 7 \
-             the word holds 128 right angles either way; what a host can set up reaches 3*sqrt(n/2), that is 68 for n \
-             = 1000. Beyond, the word wraps around, in model and hardware alike."
+             the register holds 128 right angles either way; what a host can set up reaches 3*sqrt(n/2), that is 68 for n \
+             = 1000. Beyond, the register wraps around, in model and hardware alike."
                 .to_owned(),
             "The default has 22 fraction bits of the angle: over the longest line, of 4095 intervals, the host's roundings of delta_zeta and \
              zeta_start add up to at most 2^11 ulps. The formula falls by at most 1.58 in a right angle, so that an \

@@ -411,7 +411,7 @@ pub fn notes() -> Vec<String> {
          gives what cos gamma = 1.0 gives: all ones, an ulp below 1.0."
             .to_owned(),
         "Writes while busy are ignored. The outputs follow the register of f and the colour registers: they \
-         hold from valid until a colour is written or the next computation reaches its word 4."
+         hold from valid until a colour is written or the next computation reaches microinstruction 4."
             .to_owned(),
     ]
 }

@@ -166,16 +166,16 @@ fn by_shift<'d>(d: &'d Designer, config: &Config, distance: Signal<'d>) -> Scale
     let input = d.mux("shift_input", [small, doubled]).doc("loads or shifts");
     register.takes(input.out());
     let more = d.any("more_shifts", counter.q()).doc("not the last shift");
-    let word = "shift_register <- 2 * shift_register";
+    let name = "shift_register <- 2 * shift_register";
     let load = [input.pick(small), register.load()];
     let shift_on: [Setting; 4] =
-        [input.pick(doubled), register.load(), counter.count(), loop_while(more, word)];
+        [input.pick(doubled), register.load(), counter.count(), loop_while(more, name)];
     Scaled {
         value: register.q(),
         steps: vec![
             step("operands dx, dy, dz", []),
             step("shift_register <- D^2 / (4*power)", load.into_iter().chain(load_shift)),
-            step(word, shift_on),
+            step(name, shift_on),
         ],
         squarings,
     }
@@ -252,12 +252,12 @@ fn about(config: &Config) -> About {
         ),
         source: "US 5 739 820, Fig. 7C and 7D, the first analogue in seed 000".to_owned(),
         notes: vec![
-            "The seed lists the parts; the wiring is our reading. For unit vectors D^2 = 2*(1 - cos gamma), so that this \
+            "The seed lists the parts; the wiring is an interpretation. For unit vectors D^2 = 2*(1 - cos gamma), so that this \
              is the function of cosine-power, reached without a scalar product."
                 .to_owned(),
             scaling.to_owned(),
             format!(
-                "Valid is {}{} clocks after start: a word each for D^2, scaling, base and result, and one for each squaring \
+                "Valid is {}{} clocks after start: one each for D^2, scaling, base and result, and one for each squaring \
                  after the first{}.",
                 common::squarings(config) + 4,
                 if shift { " + shift" } else { "" },

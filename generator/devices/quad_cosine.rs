@@ -183,7 +183,7 @@ fn about() -> About {
             .to_owned(),
         source: "Seed 000, the claimed device: quadruple cosine".to_owned(),
         notes: vec![
-            "Angles are in right angles: 1.0 is 90 degrees. The word holds one turn and wraps around where \
+            "Angles are in right angles: 1.0 is 90 degrees. The register holds one turn and wraps around where \
              angles do, so no line overflows it. The intensity is 0 where the angle is not in -90 (included) to 90 \
              degrees, and where the stretched angle is 90 degrees or more."
                 .to_owned(),
@@ -198,7 +198,7 @@ fn about() -> About {
                 .to_owned(),
             "The patent's counter 5 is written by its strobe and used up by a line. Here the operand length keeps its \
              value and loads the counter with the first point, so that a line can be repeated by start alone. A length \
-             of 0 makes one point: the word that adds is left out, as the patent's borrow from an empty counter \
+             of 0 makes one point: the microinstruction that adds is left out, as the patent's borrow from an empty counter \
              leaves it out."
                 .to_owned(),
             "The default has 26 fraction bits of the angle: over the longest line, of 4095 intervals, the host's roundings of delta_zeta and \

@@ -185,7 +185,7 @@ fn about(config: &Config) -> About {
         formula: "out = colour * max(0, c + a(n) * (c^2 - c)), c = cos(gamma)".to_owned(),
         source: "UA 20998, the analogue in seed 001".to_owned(),
         notes: vec![
-            "Below its zero at c = 1 - 1/a(n) the parabola is clamped to 0. The seed has no clamp, but no negative words \
+            "Below its zero at c = 1 - 1/a(n) the parabola is clamped to 0. The seed has no clamp, but no negative numbers \
              either."
                 .to_owned(),
             format!(

@@ -302,16 +302,16 @@ fn about(config: &Config) -> About {
         "Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1; the control \
          ROM is its table 1, bit for bit."
             .to_owned(),
-        "Muxes 8 and 9 are followed by registers: the multiplier takes what the word before selected, which \
-         the patent's settling words have left the time for; a synchronous ROM 18 is addressed with dgamma a \
-         word before line 47 says so."
+        "Muxes 8 and 9 are followed by registers: the multiplier takes what the microinstruction before \
+         selected. The patent's settling microinstructions leave the time for that. A synchronous ROM 18 is addressed \
+         with dgamma one microinstruction before line 47 says so."
             .to_owned(),
         "Writes while busy are ignored. The outputs follow register 13 and the colour registers: they hold \
-         from valid until a colour is written or the next computation reaches its word 5."
+         from valid until a colour is written or the next computation reaches microinstruction 5."
             .to_owned(),
     ];
     notes.push(if patent {
-        "Words are fractions modulo 1.0, as in the patent: every '- 1' is a missing carry, n loses its low \
+        "Numbers are fractions modulo 1.0, as in the patent: every '- 1' is a missing carry, n loses its low \
          bit, and nothing is clamped."
             .to_owned()
     } else {

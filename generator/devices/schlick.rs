@@ -112,7 +112,7 @@ fn about(config: &Config) -> About {
              cannot occur: the divisor is 0 for cos gamma = 0 and n = 0 alone, and cos gamma = 0 adds an ulp to \
              it, so that this gives 0 too."
                 .to_owned(),
-            "The seed prints the fraction as cos/n - n*cos + cos, its bar lost; the denominator is \
+            "The seed prints the fraction as cos/n - n*cos + cos, without the fraction bar; the denominator is \
              n - n*cos + cos."
                 .to_owned(),
             "Writes while busy are ignored. The outputs follow the quotient and the colour registers: they hold \

@@ -179,8 +179,8 @@ fn about(config: &Config) -> About {
         source: "UA 30041, the prototype in seed 001".to_owned(),
         notes: vec![
             "The seed multiplies by n; for cos^n to be approximated it must be n/2, which is wiring.".to_owned(),
-            "\"- 1\" and \"+ 1\" are 1.0 here. The seed's adder 1 adds a word of ones and its adder 2 a carry: an ulp \
-             down and up, which stands for 1.0 in words modulo 1.0 only."
+            "\"- 1\" and \"+ 1\" are 1.0 here. The seed's adder 1 adds all ones and its adder 2 a carry: an ulp \
+             down and up, which stands for 1.0 only where numbers are modulo 1.0."
                 .to_owned(),
             "The seed does not say what ROM(n) holds: here it holds the smallest f that is shown. Nothing passes where \
              the base is negative, whose square would rise again."

@@ -45,7 +45,7 @@ struct Variables {
     errors: String,
     was_reset: String,
     dut: String,
-    write_word: String,
+    write_microinstruction: String,
 }
 
 /// An output and its place in the expected word.
@@ -113,7 +113,7 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
         errors: names.fresh("errors"),
         was_reset: names.fresh("was_reset"),
         dut: names.fresh("dut"),
-        write_word: names.fresh("write_word"),
+        write_microinstruction: names.fresh("write_microinstruction"),
     };
     let total = |ports: &[&Port]| ports.iter().map(|port| design.width(port.net)).sum::<u32>();
     let inputs: Vec<_> = design.inputs().collect();

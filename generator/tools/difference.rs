@@ -30,7 +30,7 @@ impl BenchDifference {
         transcript.lines().find_map(Self::of_line)
     }
 
-    /// `clock 9, word 3 (result): red_out is 1f, expected 20`, or of a pipeline
+    /// `clock 9, microinstruction 3 (result): red_out is 1f, expected 20`, or of a pipeline
     /// `clock 9: red_out is 1f, expected 20`.
     fn of_line(line: &str) -> Option<Self> {
         let rest = line.strip_prefix("clock ")?;

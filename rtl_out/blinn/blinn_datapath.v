@@ -53,9 +53,12 @@ module blinn_datapath #(
     reg                exp2_bend_offset2_upper;
     reg                exp2_bend_offset3_upper;
     reg         [15:0] exp2_x;                   // u0.16
-    reg         [4:0]  octave_held;              // octave, a clock later: the operands are held
-    reg                octave_any_held;          // octave_any, a clock later: the operands are held
-    reg                facing_held;              // facing, a clock later: the operands are held
+    // octave, delayed by a clock: the operands do not change
+    reg         [4:0]  octave_held;
+    // octave_any, delayed by a clock: the operands do not change
+    reg                octave_any_held;
+    // facing, delayed by a clock: the operands do not change
+    reg                facing_held;
     reg         [44:0] curve_word;
     reg         [14:0] exp2_bend_value_word;     // u-4.19
     reg  signed [9:0]  exp2_bend_offset1_word;   // s-10.19
@@ -322,7 +325,7 @@ module blinn_datapath #(
         facing_held <= facing;
     end
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, octave_by1[19], product[2:0], product[36:34], exp2_mantissa[1:0],
             red_product[14:0], green_product[14:0], blue_product[14:0]};
 

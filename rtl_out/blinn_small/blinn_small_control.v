@@ -17,7 +17,7 @@ module blinn_small_control #(
     parameter CONTROL_FILE = "blinn_small_control.mem"
 ) (
     input  wire clk,
-    input  wire rst_n,             // initial set, active low
+    input  wire rst_n,             // reset, active low
     input  wire start,             // begins a computation when not busy
     output wire valid,             // the results are on the outputs
     output wire busy,              // high from the clock after start to the end
@@ -31,14 +31,14 @@ module blinn_small_control #(
 
     // Registers
     reg        run;           // a microprogram is running
-    reg  [2:0] word_address;  // the word that is executed
+    reg  [2:0] word_address;  // the microinstruction that is executed
 
     assign busy = run;  // high from the clock after start to the end
     wire not_busy = ~busy;
     assign idle = not_busy;  // operands may be written
 
-    // ROM control: the microprogram, a word a line: operand_select, decay_load, halvings_load,
-    // reflectance_load, valid_word, go_on
+    // ROM control: the microprogram, a line for each microinstruction; fields: operand_select,
+    // decay_load, halvings_load, reflectance_load, valid_word, go_on
     reg [5:0] control_rom [0:5];
     initial $readmemb(CONTROL_FILE, control_rom);
     wire [5:0] control_word = control_rom[word_address];
@@ -47,8 +47,8 @@ module blinn_small_control #(
     assign decay_load = control_word[4];
     assign halvings_load = control_word[3];
     assign reflectance_load = control_word[2];
-    wire valid_word = control_word[1];  // the word sets valid
-    wire go_on = control_word[0];  // 0 in the last word
+    wire valid_word = control_word[1];  // the microinstruction sets valid
+    wire go_on = control_word[0];  // 0 in the last microinstruction
     wire [2:0] following_word = word_address + 3'd1;
     wire [2:0] next_word = go_on ? following_word : 3'd0;
     wire next_run = run ? go_on : start;
@@ -74,7 +74,7 @@ module blinn_small_control #(
 
 `ifdef FORMAL
     always @* if (!$initstate) begin
-        assert (word_address <= 3'd5);  // no other word is reached
+        assert (word_address <= 3'd5);  // no other address is reached
         if (!run) assert (word_address == 3'd0);
     end
 `endif

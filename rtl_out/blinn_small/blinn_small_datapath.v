@@ -53,9 +53,12 @@ module blinn_small_datapath #(
     reg                exp2_bend_offset2_upper;
     reg                exp2_bend_offset3_upper;
     reg         [12:0] exp2_x;                   // u0.13
-    reg         [4:0]  octave_held;              // octave, a clock later: the operands are held
-    reg                octave_any_held;          // octave_any, a clock later: the operands are held
-    reg                facing_held;              // facing, a clock later: the operands are held
+    // octave, delayed by a clock: the operands do not change
+    reg         [4:0]  octave_held;
+    // octave_any, delayed by a clock: the operands do not change
+    reg                octave_any_held;
+    // facing, delayed by a clock: the operands do not change
+    reg                facing_held;
     reg         [37:0] curve_word;
     reg         [10:0] exp2_bend_value_word;     // u-4.15
     reg  signed [6:0]  exp2_bend_offset1_word;   // s-9.15
@@ -316,7 +319,7 @@ module blinn_small_datapath #(
         facing_held <= facing;
     end
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, octave_by1[19], product[2:0], product[35:31], red_product[12:0],
             green_product[12:0], blue_product[12:0]};
 

@@ -6,10 +6,10 @@
 //
 // Latency: valid 7 clocks after start, the next start 8 clocks after start.
 //
-// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit
-// apart) and F fraction bits; the value of a word is its integer times 2^-F.
+// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
+// fraction bits; the value of a signal is its integer times 2^-F.
 //
-//  rst_n                    initial set, active low, synchronous
+//  rst_n                    reset, active low, synchronous
 //  start                    begins a computation when the device is not busy
 //  cos_gamma        u1.20   operand, written by cos_gamma_write
 //  exponent         u10.0   operand, written by exponent_write
@@ -45,7 +45,7 @@ module cosine_power #(
     parameter CONTROL_FILE = "cosine_power_control.mem"
 ) (
     input  wire        clk,
-    input  wire        rst_n,            // initial set, active low
+    input  wire        rst_n,            // reset, active low
     input  wire        start,            // begins a computation when not busy
     // u1.20: cosine of the angle between normal and half vector
     input  wire [20:0] cos_gamma,

@@ -40,13 +40,13 @@ module cosine_power_axis #(
     input  wire m_axis_tready
 );
 
-    // What waits for the core.
+    // The operands that wait for the core.
     reg  waiting;
     reg  [63:0] operands;
     reg  [USER_WIDTH-1:0] operands_user;
     reg  operands_last;
 
-    // What goes with the point that the core computes.
+    // tuser of the point that the core computes.
     reg  [USER_WIDTH-1:0] user;
     reg  last;
 
@@ -151,7 +151,7 @@ module cosine_power_axis #(
         end
     end
 
-    // What nothing needs: bits above operands, and outputs of the core.
+    // Unused: bits above operands, and outputs of the core.
     wire unused = &{1'b0, core_done, operands[23:21], operands[39:34]};
 endmodule
 

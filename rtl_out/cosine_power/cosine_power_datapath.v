@@ -45,8 +45,9 @@ module cosine_power_datapath (
     reg  [7:0]  blue_reg;         // intensity of the light times k_s
     reg  [15:0] accumulator;      // u0.16: n/m*(1 - cos gamma), then the powers of W's base
     reg  [1:0]  remaining;        // squarings to come
-    reg  [20:0] complement_held;  // u1.20: complement, a clock later: the operands are held
-    reg         facing_held;      // facing, a clock later: the operands are held
+    // u1.20: complement, delayed by a clock: the operands do not change
+    reg  [20:0] complement_held;
+    reg         facing_held;      // facing, delayed by a clock: the operands do not change
 
     wire cos_gamma_over = cos_gamma[20];
     wire [20:0] cos_gamma_at_most = cos_gamma_over ? COS_GAMMA_MOST : cos_gamma;  // u1.20
@@ -159,7 +160,7 @@ module cosine_power_datapath (
         facing_held <= facing;
     end
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, product[7:0], product[36:32], red_product[14:0], green_product[14:0],
             blue_product[14:0]};
 

@@ -208,7 +208,7 @@ module cosine_power_registers (
     wire read_result = (read_word >= 4'd13) & (read_word <= 4'd13);
     assign read_answer = read & ~(read_result & under_way);
 
-    // What nothing needs.
+    // Unused bits.
     wire unused = &{1'b0, write_data, write_bytes, core_valid};
 endmodule
 

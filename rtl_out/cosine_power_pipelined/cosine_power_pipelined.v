@@ -5,12 +5,12 @@
 // Source: Seed 002, the paper's W(n, gamma) with zeta = n/m
 //
 // Pipeline: a point every clock, its results 10 clocks later; stages for 130 MHz on ecp5. While
-// out_valid is high and out_ready low, nothing moves, and in_ready is low.
+// out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
-// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit
-// apart) and F fraction bits; the value of a word is its integer times 2^-F.
+// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
+// fraction bits; the value of a signal is its integer times 2^-F.
 //
-//  rst_n              initial set, active low, synchronous
+//  rst_n              reset, active low, synchronous
 //  in_valid           a point is offered: the operands are its own
 //  cos_gamma  u1.20   operand
 //  exponent   u10.0   operand
@@ -41,7 +41,7 @@
 
 module cosine_power_pipelined (
     input  wire        clk,
-    input  wire        rst_n,      // initial set, active low: no point is on its way after it
+    input  wire        rst_n,      // reset, active low: drops the points on their way
     input  wire        in_valid,   // the operands are those of a point
     input  wire [20:0] cos_gamma,  // u1.20: cosine of the angle between normal and half vector
     input  wire [9:0]  exponent,   // specular exponent n
@@ -340,7 +340,7 @@ module cosine_power_pipelined (
     assign green_out = green_intensity_s10;  // intensity on the output
     assign blue_out = blue_intensity_s10;  // intensity on the output
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, product_s2[7:0], product_s2[30], product_2_s4[15:0], product_3_s5[15:0],
             product_4_s6[15:0], product_5_s7[15:0], red_product_s8[14:0], green_product_s8[14:0],
             blue_product_s8[14:0]};

@@ -111,7 +111,7 @@ module cosine_power_pipelined_axis #(
         end
     end
 
-    // What nothing needs: bits above operands, and outputs of the core.
+    // Unused: bits above operands, and outputs of the core.
     wire unused = &{1'b0, s_axis_tdata[23:21], s_axis_tdata[39:34]};
 endmodule
 

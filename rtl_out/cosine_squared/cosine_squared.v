@@ -6,10 +6,10 @@
 //
 // Latency: valid 4 clocks after start, then a result every clock, as many as the operands say.
 //
-// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit
-// apart) and F fraction bits; the value of a word is its integer times 2^-F.
+// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
+// fraction bits; the value of a signal is its integer times 2^-F.
 //
-//  rst_n                     initial set, active low, synchronous
+//  rst_n                     reset, active low, synchronous
 //  start                     begins a computation when the device is not busy
 //  amplitude         u8.0    operand, written by amplitude_write
 //  delta_zeta        s7.22   operand, written by delta_zeta_write
@@ -28,8 +28,9 @@
 // is not in -90 (included) to 90 degrees.
 //
 // A stretched angle is no angle on a circle: it must not wrap around within a line. With
-// angle.integer = 7 the word holds 128 right angles either way; what a host can set up reaches
-// 3*sqrt(n/2), that is 68 for n = 1000. Beyond, the word wraps around, in model and hardware alike.
+// angle.integer = 7 the register holds 128 right angles either way; what a host can set up reaches
+// 3*sqrt(n/2), that is 68 for n = 1000. Beyond, the register wraps around, in model and hardware
+// alike.
 //
 // The default has 22 fraction bits of the angle: over the longest line, of 4095 intervals, the
 // host's roundings of delta_zeta and zeta_start add up to at most 2^11 ulps. The formula falls by
@@ -57,7 +58,7 @@ module cosine_squared #(
     parameter COSINE_FILE = "cosine_squared_cosine.mem"
 ) (
     input  wire               clk,
-    input  wire               rst_n,             // initial set, active low
+    input  wire               rst_n,             // reset, active low
     input  wire               start,             // begins a computation when not busy
     // input 15: intensity of the light times k_s, at the highest point of the highlight
     input  wire        [7:0]  amplitude,

@@ -131,7 +131,7 @@ module cosine_squared_datapath #(
         end
     end
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, intensity_product[8:0]};
 
 `ifdef FORMAL

@@ -53,7 +53,8 @@ module gauss_datapath #(
     reg                exp2_bend_offset2_upper;
     reg                exp2_bend_offset3_upper;
     reg         [15:0] exp2_x;                   // u0.16
-    reg                facing_held;              // facing, a clock later: the operands are held
+    // facing, delayed by a clock: the operands do not change
+    reg                facing_held;
     reg         [44:0] curve_word;
     reg         [14:0] exp2_bend_value_word;     // u-4.19
     reg  signed [9:0]  exp2_bend_offset1_word;   // s-10.19
@@ -295,7 +296,7 @@ module gauss_datapath #(
         facing_held <= facing;
     end
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, product[6:0], product[37:34], exp2_mantissa[1:0], red_product[14:0],
             green_product[14:0], blue_product[14:0]};
 

@@ -5,12 +5,13 @@
 // Source: Seed 002, the fourth function that it weighs
 //
 // Pipeline: a point every clock, its results 15 clocks later; stages for 130 MHz on ecp5. While
-// out_valid is high and out_ready low, nothing moves, and in_ready is low.
+// out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
-// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit
-// apart) and F fraction bits; the value of a word is its integer times 2^-F.
+// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
+// fraction bits; the value of a signal is its integer times 2^-F. With negative I the first
+// fraction bits are always 0 and left out.
 //
-//  rst_n              initial set, active low, synchronous
+//  rst_n              reset, active low, synchronous
 //  in_valid           a point is offered: the operands are its own
 //  cos_gamma  u1.20   operand
 //  exponent   u10.0   operand
@@ -54,7 +55,7 @@ module gauss_pipelined #(
     parameter EXP2_BEND_OFFSET3_FILE = "gauss_pipelined_exp2_bend_offset3.mem"
 ) (
     input  wire        clk,
-    input  wire        rst_n,      // initial set, active low: no point is on its way after it
+    input  wire        rst_n,      // reset, active low: drops the points on their way
     input  wire        in_valid,   // the operands are those of a point
     input  wire [20:0] cos_gamma,  // u1.20: cosine of the angle between normal and half vector
     input  wire [9:0]  exponent,   // specular exponent n
@@ -704,7 +705,7 @@ module gauss_pipelined #(
     assign green_out = green_intensity_s15;  // intensity on the output
     assign blue_out = blue_intensity_s15;  // intensity on the output
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, product_s4[11:0], product_2_s7[6:0], exp2_mantissa_s10[1:0],
             red_product_s13[14:0], green_product_s13[14:0], blue_product_s13[14:0]};
 endmodule

@@ -4,10 +4,11 @@
 //
 // Source: US 5 739 820, Fig. 7C and 7D, the first analogue in seed 000
 //
-// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit
-// apart) and F fraction bits; the value of a word is its integer times 2^-F.
+// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
+// fraction bits; the value of a signal is its integer times 2^-F. With negative I the first
+// fraction bits are always 0 and left out.
 //
-//  rst_n                initial set, active low, synchronous
+//  rst_n                reset, active low, synchronous
 //  start                begins a computation when the device is not busy
 //  dx           s1.16   operand, written by dx_write
 //  dy           s1.16   operand, written by dy_write
@@ -23,14 +24,14 @@
 //  green_out    u8.0    result
 //  blue_out     u8.0    result
 //
-// The seed lists the parts; the wiring is our reading. For unit vectors D^2 = 2*(1 - cos gamma), so
-// that this is the function of cosine-power, reached without a scalar product.
+// The seed lists the parts; the wiring is an interpretation. For unit vectors D^2 = 2*(1 - cos
+// gamma), so that this is the function of cosine-power, reached without a scalar product.
 //
 // The shift register shifts one place a clock under the counter, shift + 1 times, which then counts
 // the squarings. The host loads shift = log2 n, rounded: beta is within a factor of 1.42 of
 // n/(2*power).
 //
-// Valid is 8 + shift clocks after start: a word each for D^2, scaling, base and result, and one for
+// Valid is 8 + shift clocks after start: one each for D^2, scaling, base and result, and one for
 // each squaring after the first and for each place shifted after the first.
 //
 // The formula knows no side that faces away: where cos gamma <= 0, that is D^2 >= 2, f is not 0 for
@@ -51,7 +52,7 @@ module lyon #(
     parameter CONTROL_FILE = "lyon_control.mem"
 ) (
     input  wire               clk,
-    input  wire               rst_n,        // initial set, active low
+    input  wire               rst_n,        // reset, active low
     input  wire               start,        // begins a computation when not busy
     input  wire signed [17:0] dx,           // s1.16: x of N - H, normal less half vector
     input  wire               dx_write,     // writes dx

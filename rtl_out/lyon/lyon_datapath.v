@@ -55,11 +55,11 @@ module lyon_datapath (
     reg         [7:0]  green_reg;         // intensity of the light times k_s
     reg         [7:0]  blue_reg;          // intensity of the light times k_s
     reg         [15:0] accumulator;       // u0.16: the powers of the base, in the end f
-    // s3.32: multiplier1, a clock later: the operands are held
+    // s3.32: multiplier1, delayed by a clock: the operands do not change
     reg  signed [35:0] multiplier1_held;
-    // s3.32: multiplier2, a clock later: the operands are held
+    // s3.32: multiplier2, delayed by a clock: the operands do not change
     reg  signed [35:0] multiplier2_held;
-    // s3.32: multiplier3, a clock later: the operands are held
+    // s3.32: multiplier3, delayed by a clock: the operands do not change
     reg  signed [35:0] multiplier3_held;
 
     wire dx_load = dx_write & idle;
@@ -182,7 +182,7 @@ module lyon_datapath (
         multiplier3_held <= multiplier3;
     end
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, adder2[11:0], adder2[36], multiplier4[15:0], red_product[14:0],
             green_product[14:0], blue_product[14:0]};
 

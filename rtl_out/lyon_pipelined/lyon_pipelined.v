@@ -5,12 +5,12 @@
 // Source: US 5 739 820, Fig. 7C and 7D, the first analogue in seed 000
 //
 // Pipeline: a point every clock, its results 15 clocks later; stages for 130 MHz on ecp5. While
-// out_valid is high and out_ready low, nothing moves, and in_ready is low.
+// out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
-// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit
-// apart) and F fraction bits; the value of a word is its integer times 2^-F.
+// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
+// fraction bits; the value of a signal is its integer times 2^-F.
 //
-//  rst_n              initial set, active low, synchronous
+//  rst_n              reset, active low, synchronous
 //  in_valid           a point is offered: the operands are its own
 //  dx         s1.16   operand
 //  dy         s1.16   operand
@@ -26,8 +26,8 @@
 //  green_out  u8.0    result
 //  blue_out   u8.0    result
 //
-// The seed lists the parts; the wiring is our reading. For unit vectors D^2 = 2*(1 - cos gamma), so
-// that this is the function of cosine-power, reached without a scalar product.
+// The seed lists the parts; the wiring is an interpretation. For unit vectors D^2 = 2*(1 - cos
+// gamma), so that this is the function of cosine-power, reached without a scalar product.
 //
 // The shift register shifts one place a clock under the counter, shift + 1 times, which then counts
 // the squarings. The host loads shift = log2 n, rounded: beta is within a factor of 1.42 of
@@ -46,8 +46,7 @@
 
 module lyon_pipelined (
     input  wire               clk,
-    // initial set, active low: no point is on its way after it
-    input  wire               rst_n,
+    input  wire               rst_n,      // reset, active low: drops the points on their way
     input  wire               in_valid,   // the operands are those of a point
     input  wire signed [17:0] dx,         // s1.16: x of N - H, normal less half vector
     input  wire signed [17:0] dy,         // s1.16: y of N - H, normal less half vector
@@ -710,7 +709,7 @@ module lyon_pipelined (
     assign green_out = green_intensity_s15;  // intensity on the output
     assign blue_out = blue_intensity_s15;  // intensity on the output
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, adder2_s2[11:0], adder2_s2[36], shift_register_32_s8[9:0],
             multiplier4_s9[15:0], multiplier4_2_s10[15:0], multiplier4_3_s11[15:0],
             multiplier4_4_s12[15:0], red_product_s13[14:0], green_product_s13[14:0],

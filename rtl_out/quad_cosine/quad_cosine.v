@@ -7,10 +7,10 @@
 //
 // Latency: valid 4 clocks after start, then a result every clock, as many as the operands say.
 //
-// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit
-// apart) and F fraction bits; the value of a word is its integer times 2^-F.
+// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
+// fraction bits; the value of a signal is its integer times 2^-F.
 //
-//  rst_n                     initial set, active low, synchronous
+//  rst_n                     reset, active low, synchronous
 //  start                     begins a computation when the device is not busy
 //  amplitude         u8.0    operand, written by amplitude_write
 //  delta_zeta        s1.26   operand, written by delta_zeta_write
@@ -25,7 +25,7 @@
 //  write_angle               status
 //  intensity_out     u8.0    result
 //
-// Angles are in right angles: 1.0 is 90 degrees. The word holds one turn and wraps around where
+// Angles are in right angles: 1.0 is 90 degrees. The register holds one turn and wraps around where
 // angles do, so no line overflows it. The intensity is 0 where the angle is not in -90 (included)
 // to 90 degrees, and where the stretched angle is 90 degrees or more.
 //
@@ -41,8 +41,8 @@
 //
 // The patent's counter 5 is written by its strobe and used up by a line. Here the operand length
 // keeps its value and loads the counter with the first point, so that a line can be repeated by
-// start alone. A length of 0 makes one point: the word that adds is left out, as the patent's
-// borrow from an empty counter leaves it out.
+// start alone. A length of 0 makes one point: the microinstruction that adds is left out, as the
+// patent's borrow from an empty counter leaves it out.
 //
 // The default has 26 fraction bits of the angle: over the longest line, of 4095 intervals, the
 // host's roundings of delta_zeta and zeta_start add up to at most 2^11 ulps. The formula falls by
@@ -69,7 +69,7 @@ module quad_cosine #(
     parameter COSINE_FILE = "quad_cosine_cosine.mem"
 ) (
     input  wire               clk,
-    input  wire               rst_n,             // initial set, active low
+    input  wire               rst_n,             // reset, active low
     input  wire               start,             // begins a computation when not busy
     // input 15: intensity of the light times k_s, at the highest point of the highlight
     input  wire        [7:0]  amplitude,

@@ -38,12 +38,12 @@ module quad_cosine_axis #(
     input  wire m_axis_tready
 );
 
-    // What waits for the core.
+    // The operands that wait for the core.
     reg  waiting;
     reg  [103:0] operands;
     reg  [USER_WIDTH-1:0] operands_user;
 
-    // What goes with the line that the core computes.
+    // tuser of the line that the core computes.
     reg  [USER_WIDTH-1:0] user;
 
     wire busy;
@@ -109,7 +109,7 @@ module quad_cosine_axis #(
     );
 
     // The buffer. Points are numbered, modulo twice its places: the next to be read and to be
-    // written, and the first of the next line. What is between read_at and next_line has a place.
+    // written, and the first of the next line. Points from read_at to next_line have a place.
     reg  [12:0] read_at;
     reg  [12:0] write_at;
     reg  [12:0] next_line;
@@ -147,7 +147,7 @@ module quad_cosine_axis #(
         end
     end
 
-    // What nothing needs: bits above operands, and outputs of the core.
+    // Unused: bits above operands, and outputs of the core.
     wire unused = &{1'b0, core_done, core_count, core_accumulate, core_write_angle, operands[39:36],
             operands[71:68], operands[87:84], operands[103:98]};
 endmodule

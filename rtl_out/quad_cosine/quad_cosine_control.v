@@ -2,8 +2,8 @@
 //
 // Microprogram:
 //    0  operands
-//    1  angle <- zeta_start: first point  (to word 3 if empty)
-//    2  angle <- angle + delta_zeta: next point  (to word 2 while more)
+//    1  angle <- zeta_start: first point  (to 3 if empty)
+//    2  angle <- angle + delta_zeta: next point  (to 2 while more)
 //    3  last point a clock away
 //    4  last point on the output  (end)
 //
@@ -16,7 +16,7 @@ module quad_cosine_control #(
     parameter CONTROL_FILE = "quad_cosine_control.mem"
 ) (
     input  wire clk,
-    input  wire rst_n,                // initial set, active low
+    input  wire rst_n,                // reset, active low
     input  wire start,                // begins a computation when not busy
     input  wire empty,                // a line of one point
     input  wire more,                 // not the last interval
@@ -32,7 +32,7 @@ module quad_cosine_control #(
 
     // Registers
     reg        run;           // a microprogram is running
-    reg  [2:0] word_address;  // the word that is executed
+    reg  [2:0] word_address;  // the microinstruction that is executed
     reg        valid_in_1;    // a result is a clock away
     reg        valid_in_0;    // a result has come through the datapath
 
@@ -40,8 +40,9 @@ module quad_cosine_control #(
     wire not_busy = ~busy;
     assign idle = not_busy;  // operands may be written
 
-    // ROM control: the microprogram, a word a line: angle_load, angle_source_select,
-    // intervals_load, intervals_count, loop_word, loop_condition, loop_target, go_on
+    // ROM control: the microprogram, a line for each microinstruction; fields: angle_load,
+    // angle_source_select, intervals_load, intervals_count, loop_word, loop_condition, loop_target,
+    // go_on
     reg [9:0] control_rom [0:4];
     initial $readmemb(CONTROL_FILE, control_rom);
     wire [9:0] control_word = control_rom[word_address];
@@ -53,7 +54,7 @@ module quad_cosine_control #(
     wire loop_word = control_word[5];
     wire loop_condition = control_word[4];
     wire [2:0] loop_target = control_word[3:1];
-    wire go_on = control_word[0];  // 0 in the last word
+    wire go_on = control_word[0];  // 0 in the last microinstruction
     wire [2:0] following_word = word_address + 3'd1;
     wire condition = loop_condition ? more : empty;
     wire loop_back = loop_word & condition;
@@ -86,7 +87,7 @@ module quad_cosine_control #(
 
 `ifdef FORMAL
     always @* if (!$initstate) begin
-        assert (word_address <= 3'd4);  // no other word is reached
+        assert (word_address <= 3'd4);  // no other address is reached
         if (!run) assert (word_address == 3'd0);
     end
 `endif

@@ -172,7 +172,7 @@ module quad_cosine_datapath #(
         end
     end
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, scaled_angle[19:0], intensity_product[8:0]};
 
 `ifdef FORMAL

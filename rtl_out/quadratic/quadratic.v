@@ -6,10 +6,11 @@
 //
 // Latency: valid 4 clocks after start, the next start 5 clocks after start.
 //
-// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit
-// apart) and F fraction bits; the value of a word is its integer times 2^-F.
+// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
+// fraction bits; the value of a signal is its integer times 2^-F. With negative I the first
+// fraction bits are always 0 and left out.
 //
-//  rst_n                    initial set, active low, synchronous
+//  rst_n                    reset, active low, synchronous
 //  start                    begins a computation when the device is not busy
 //  exponent         u10.0   operand, written by exponent_write
 //  cos_gamma        u1.20   operand, written by cos_gamma_write
@@ -24,7 +25,7 @@
 //  blue_out         u8.0    result
 //
 // Below its zero at c = 1 - 1/a(n) the parabola is clamped to 0. The seed has no clamp, but no
-// negative words either.
+// negative numbers either.
 //
 // The seed does not say what ROM(n) holds. Against cos^n over n = 1 ... 1000 the formula itself is
 // off by up to 0.3673 with a(n) = n - 1 (at n = 1000), and by up to 0.1431 with the minimax a(n)
@@ -47,7 +48,7 @@ module quadratic #(
     parameter COEFFICIENT_FILE = "quadratic_coefficient.mem"
 ) (
     input  wire        clk,
-    input  wire        rst_n,            // initial set, active low
+    input  wire        rst_n,            // reset, active low
     input  wire        start,            // begins a computation when not busy
     input  wire [9:0]  exponent,         // input 1: specular exponent n
     input  wire        exponent_write,   // input 1: writes exponent

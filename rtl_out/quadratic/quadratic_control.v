@@ -15,7 +15,7 @@ module quadratic_control #(
     parameter CONTROL_FILE = "quadratic_control.mem"
 ) (
     input  wire clk,
-    input  wire rst_n,            // initial set, active low
+    input  wire rst_n,            // reset, active low
     input  wire start,            // begins a computation when not busy
     output wire valid,            // the results are on the outputs
     output wire busy,             // high from the clock after start to the end
@@ -27,22 +27,22 @@ module quadratic_control #(
 
     // Registers
     reg        run;           // a microprogram is running
-    reg  [1:0] word_address;  // the word that is executed
+    reg  [1:0] word_address;  // the microinstruction that is executed
 
     assign busy = run;  // high from the clock after start to the end
     wire not_busy = ~busy;
     assign idle = not_busy;  // operands may be written
 
-    // ROM control: the microprogram, a word a line: difference_load, intensity_load, valid_word,
-    // go_on
+    // ROM control: the microprogram, a line for each microinstruction; fields: difference_load,
+    // intensity_load, valid_word, go_on
     reg [3:0] control_rom [0:3];
     initial $readmemb(CONTROL_FILE, control_rom);
     wire [3:0] control_word = control_rom[word_address];
 
     assign difference_load = control_word[3];
     assign intensity_load = control_word[2];
-    wire valid_word = control_word[1];  // the word sets valid
-    wire go_on = control_word[0];  // 0 in the last word
+    wire valid_word = control_word[1];  // the microinstruction sets valid
+    wire go_on = control_word[0];  // 0 in the last microinstruction
     wire [1:0] following_word = word_address + 2'd1;
     wire [1:0] next_word = go_on ? following_word : 2'd0;
     wire next_run = run ? go_on : start;
@@ -68,7 +68,7 @@ module quadratic_control #(
 
 `ifdef FORMAL
     always @* if (!$initstate) begin
-        assert (word_address <= 2'd3);  // no other word is reached
+        assert (word_address <= 2'd3);  // no other address is reached
         if (!run) assert (word_address == 2'd0);
     end
 `endif

@@ -40,7 +40,7 @@ module quadratic_datapath #(
     reg         [7:0]  blue_reg;          // register 5: intensity of the light times k_s
     reg  signed [17:0] difference;        // s-2.19: c^2 - c, from -0.25 to 0
     reg         [15:0] intensity;         // u0.16: the reflectance f
-    // u2.40: multiplier5, a clock later: the operands are held
+    // u2.40: multiplier5, delayed by a clock: the operands do not change
     reg         [41:0] multiplier5_held;
     reg         [17:0] coefficient_word;  // u10.8
 
@@ -139,7 +139,7 @@ module quadratic_datapath #(
         multiplier5_held <= multiplier5;
     end
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, adder1[20:0], adder1[41:39], multiplier1[36], adder2[10:0],
             red_product[14:0], green_product[14:0], blue_product[14:0]};
 

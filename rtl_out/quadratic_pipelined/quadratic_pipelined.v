@@ -6,12 +6,13 @@
 // Source: UA 20998, the analogue in seed 001
 //
 // Pipeline: a point every clock, its results 9 clocks later; stages for 130 MHz on ecp5. While
-// out_valid is high and out_ready low, nothing moves, and in_ready is low.
+// out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
-// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit
-// apart) and F fraction bits; the value of a word is its integer times 2^-F.
+// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
+// fraction bits; the value of a signal is its integer times 2^-F. With negative I the first
+// fraction bits are always 0 and left out.
 //
-//  rst_n              initial set, active low, synchronous
+//  rst_n              reset, active low, synchronous
 //  in_valid           a point is offered: the operands are its own
 //  exponent   u10.0   operand
 //  cos_gamma  u1.20   operand
@@ -26,7 +27,7 @@
 //  blue_out   u8.0    result
 //
 // Below its zero at c = 1 - 1/a(n) the parabola is clamped to 0. The seed has no clamp, but no
-// negative words either.
+// negative numbers either.
 //
 // The seed does not say what ROM(n) holds. Against cos^n over n = 1 ... 1000 the formula itself is
 // off by up to 0.3673 with a(n) = n - 1 (at n = 1000), and by up to 0.1431 with the minimax a(n)
@@ -45,7 +46,7 @@ module quadratic_pipelined #(
     parameter COEFFICIENT_FILE = "quadratic_pipelined_coefficient.mem"
 ) (
     input  wire        clk,
-    input  wire        rst_n,      // initial set, active low: no point is on its way after it
+    input  wire        rst_n,      // reset, active low: drops the points on their way
     input  wire        in_valid,   // the operands are those of a point
     input  wire [9:0]  exponent,   // input 1: specular exponent n
     // input 2, u1.20: c, the cosine of the angle between normal and half vector
@@ -376,7 +377,7 @@ module quadratic_pipelined #(
     assign green_out = green_intensity_s9;  // output 2: intensity on the output
     assign blue_out = blue_intensity_s9;  // output 3: intensity on the output
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, adder1_s3[20:0], adder1_s3[41:39], multiplier1_s5[36], adder2_s5[10:0],
             red_product_s7[14:0], green_product_s7[14:0], blue_product_s7[14:0]};
 endmodule

@@ -71,7 +71,8 @@ module rough_datapath #(
     reg         [13:0] sine_rest_held;       // u0.14
     reg  signed [23:0] mux8_held;            // s23.0: what the microinstruction before selected
     reg         [21:0] mux9_held;            // what the microinstruction before selected
-    reg                facing_held;          // facing, a clock later: the operands are held
+    // facing, delayed by a clock: the operands do not change
+    reg                facing_held;
     reg         [34:0] sine_word;
 
     wire cos_gamma_over = cos_gamma[20];
@@ -300,7 +301,7 @@ module rough_datapath #(
         facing_held <= facing;
     end
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, sine_rise[9:0], multiplier10[44], line_or_square[15:0], red_product[14:0],
             green_product[14:0], blue_product[14:0]};
 

@@ -5,12 +5,13 @@
 // Source: UA 60139, claim 1, figures 1, 2 and 4
 //
 // Pipeline: a point every clock, its results 18 clocks later; stages for 130 MHz on ecp5. While
-// out_valid is high and out_ready low, nothing moves, and in_ready is low.
+// out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
-// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit
-// apart) and F fraction bits; the value of a word is its integer times 2^-F.
+// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
+// fraction bits; the value of a signal is its integer times 2^-F. With negative I the first
+// fraction bits are always 0 and left out.
 //
-//  rst_n                    initial set, active low, synchronous
+//  rst_n                    reset, active low, synchronous
 //  in_valid                 a point is offered: the operands are its own
 //  cos_gamma        u1.20   operand
 //  cos_dgamma       u1.20   operand
@@ -29,9 +30,9 @@
 // Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1; the control
 // ROM is its table 1, bit for bit.
 //
-// Muxes 8 and 9 are followed by registers: the multiplier takes what the word before selected,
-// which the patent's settling words have left the time for; a synchronous ROM 18 is addressed with
-// dgamma a word before line 47 says so.
+// Muxes 8 and 9 are followed by registers: the multiplier takes what the microinstruction before
+// selected. The patent's settling microinstructions leave the time for that. A synchronous ROM 18
+// is addressed with dgamma one microinstruction before line 47 says so.
 //
 // Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.
 //
@@ -44,7 +45,7 @@ module rough_pipelined #(
     parameter SINE_FILE = "rough_pipelined_sine.mem"
 ) (
     input  wire        clk,
-    input  wire        rst_n,            // initial set, active low: no point is on its way after it
+    input  wire        rst_n,            // reset, active low: drops the points on their way
     input  wire        in_valid,         // the operands are those of a point
     // input 55, u1.20: cosine of the angle between normal and half vector
     input  wire [20:0] cos_gamma,
@@ -913,7 +914,7 @@ module rough_pipelined #(
     assign green_out = green_intensity_s18;  // output 41: intensity on the output
     assign blue_out = blue_intensity_s18;  // output 42: intensity on the output
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, sine_rise_s4[9:0], multiplier10_s2[17:0], multiplier10_s2[41],
             sine_rise_2_s4[9:0], multiplier10_2_s8[21:0], multiplier10_3_s11[6:0],
             multiplier10_4_s14[15:0], reg13_result_2_s15[16], red_product_s16[14:0],

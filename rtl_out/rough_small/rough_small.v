@@ -6,10 +6,11 @@
 //
 // Latency: valid 9 clocks after start, the next start 11 clocks after start.
 //
-// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit
-// apart) and F fraction bits; the value of a word is its integer times 2^-F.
+// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
+// fraction bits; the value of a signal is its integer times 2^-F. With negative I the first
+// fraction bits are always 0 and left out.
 //
-//  rst_n                          initial set, active low, synchronous
+//  rst_n                          reset, active low, synchronous
 //  start                          begins a computation when the device is not busy
 //  cos_gamma              u1.18   operand, written by cos_gamma_write
 //  cos_dgamma             u1.18   operand, written by cos_dgamma_write
@@ -28,12 +29,12 @@
 // Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1; the control
 // ROM is its table 1, bit for bit.
 //
-// Muxes 8 and 9 are followed by registers: the multiplier takes what the word before selected,
-// which the patent's settling words have left the time for; a synchronous ROM 18 is addressed with
-// dgamma a word before line 47 says so.
+// Muxes 8 and 9 are followed by registers: the multiplier takes what the microinstruction before
+// selected. The patent's settling microinstructions leave the time for that. A synchronous ROM 18
+// is addressed with dgamma one microinstruction before line 47 says so.
 //
 // Writes while busy are ignored. The outputs follow register 13 and the colour registers: they hold
-// from valid until a colour is written or the next computation reaches its word 5.
+// from valid until a colour is written or the next computation reaches microinstruction 5.
 //
 // Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.
 //
@@ -47,7 +48,7 @@ module rough_small #(
     parameter SINE_FILE = "rough_small_sine.mem"
 ) (
     input  wire        clk,
-    input  wire        rst_n,                  // initial set, active low
+    input  wire        rst_n,                  // reset, active low
     input  wire        start,                  // begins a computation when not busy
     // input 55, u1.18: cosine of the angle between normal and half vector
     input  wire [18:0] cos_gamma,

@@ -21,7 +21,7 @@ module rough_small_control #(
     parameter CONTROL_FILE = "rough_small_control.mem"
 ) (
     input  wire       clk,
-    input  wire       rst_n,                 // initial set, active low
+    input  wire       rst_n,                 // reset, active low
     input  wire       start,                 // begins a computation when not busy
     output wire       valid,                 // the results are on the outputs
     output wire       busy,                  // high from the clock after start to the end
@@ -37,15 +37,15 @@ module rough_small_control #(
 
     // Registers
     reg        run;           // a microprogram is running
-    reg  [3:0] word_address;  // the word that is executed
+    reg  [3:0] word_address;  // the microinstruction that is executed
 
     assign busy = run;  // high from the clock after start to the end
     wire not_busy = ~busy;
     assign idle = not_busy;  // operands may be written
 
-    // ROM control: the microprogram, a word a line: operand_select, mux17_select,
-    // reg19_sin_gamma_load, reg11_cos_cos_load, reg12_sin_sin_load, reg13_result_load, valid_word,
-    // go_on
+    // ROM control: the microprogram, a line for each microinstruction; fields: operand_select,
+    // mux17_select, reg19_sin_gamma_load, reg11_cos_cos_load, reg12_sin_sin_load,
+    // reg13_result_load, valid_word, go_on
     reg [8:0] control_rom [0:9];
     initial $readmemb(CONTROL_FILE, control_rom);
     wire [8:0] control_word = control_rom[word_address];
@@ -56,8 +56,8 @@ module rough_small_control #(
     assign reg11_cos_cos_load = control_word[4];  // line 49
     assign reg12_sin_sin_load = control_word[3];  // line 50
     assign reg13_result_load = control_word[2];  // line 51
-    wire valid_word = control_word[1];  // line 43: the word sets valid
-    wire go_on = control_word[0];  // line 44: 0 in the last word
+    wire valid_word = control_word[1];  // line 43: the microinstruction sets valid
+    wire go_on = control_word[0];  // line 44: 0 in the last microinstruction
     wire [3:0] following_word = word_address + 4'd1;
     wire [3:0] next_word = go_on ? following_word : 4'd0;
     wire next_run = run ? go_on : start;
@@ -83,7 +83,7 @@ module rough_small_control #(
 
 `ifdef FORMAL
     always @* if (!$initstate) begin
-        assert (word_address <= 4'd9);  // no other word is reached
+        assert (word_address <= 4'd9);  // no other address is reached
         if (!run) assert (word_address == 4'd0);
     end
 `endif

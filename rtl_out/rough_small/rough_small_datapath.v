@@ -71,7 +71,8 @@ module rough_small_datapath #(
     reg         [11:0] sine_rest_held;       // u0.12
     reg  signed [21:0] mux8_held;            // s21.0: what the microinstruction before selected
     reg         [19:0] mux9_held;            // what the microinstruction before selected
-    reg                facing_held;          // facing, a clock later: the operands are held
+    // facing, delayed by a clock: the operands do not change
+    reg                facing_held;
     reg         [31:0] sine_word;
 
     wire cos_gamma_over = cos_gamma[18];
@@ -294,7 +295,7 @@ module rough_small_datapath #(
         facing_held <= facing;
     end
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, sine_rise[8:0], multiplier10[40], line_or_square[13:0], red_product[12:0],
             green_product[12:0], blue_product[12:0]};
 

@@ -6,10 +6,10 @@
 //
 // Latency: valid 13 clocks after start, the next start 14 clocks after start.
 //
-// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit
-// apart) and F fraction bits; the value of a word is its integer times 2^-F.
+// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
+// fraction bits; the value of a signal is its integer times 2^-F.
 //
-//  rst_n                    initial set, active low, synchronous
+//  rst_n                    reset, active low, synchronous
 //  start                    begins a computation when the device is not busy
 //  cos_gamma        u1.20   operand, written by cos_gamma_write
 //  exponent         u10.0   operand, written by exponent_write
@@ -31,8 +31,8 @@
 // cannot occur: the divisor is 0 for cos gamma = 0 and n = 0 alone, and cos gamma = 0 adds an ulp
 // to it, so that this gives 0 too.
 //
-// The seed prints the fraction as cos/n - n*cos + cos, its bar lost; the denominator is n - n*cos +
-// cos.
+// The seed prints the fraction as cos/n - n*cos + cos, without the fraction bar; the denominator is
+// n - n*cos + cos.
 //
 // Writes while busy are ignored. The outputs follow the quotient and the colour registers: they
 // hold from valid until a colour is written or the next computation begins.
@@ -46,7 +46,7 @@ module schlick #(
     parameter CONTROL_FILE = "schlick_control.mem"
 ) (
     input  wire        clk,
-    input  wire        rst_n,            // initial set, active low
+    input  wire        rst_n,            // reset, active low
     input  wire        start,            // begins a computation when not busy
     // u1.20: cosine of the angle between normal and half vector
     input  wire [20:0] cos_gamma,

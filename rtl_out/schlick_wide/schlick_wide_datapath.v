@@ -47,7 +47,8 @@ module schlick_wide_datapath (
     reg  [29:0] quotient_remainder;
     reg  [13:0] quotient;            // u0.14: the quotient, which bits enter at the bottom
     reg  [3:0]  quotient_remaining;  // bits to come after the next
-    reg  [20:0] complement_held;     // u1.20: complement, a clock later: the operands are held
+    // u1.20: complement, delayed by a clock: the operands do not change
+    reg  [20:0] complement_held;
 
     wire cos_gamma_over = cos_gamma[20];
     wire [20:0] cos_gamma_at_most = cos_gamma_over ? COS_GAMMA_MOST : cos_gamma;  // u1.20
@@ -153,7 +154,7 @@ module schlick_wide_datapath (
         complement_held <= complement;
     end
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, denominator[30], quotient_left[31:30], red_product[12:0],
             green_product[12:0], blue_product[12:0]};
 

@@ -6,10 +6,10 @@
 //
 // Latency: valid 4 clocks after start, the next start 5 clocks after start.
 //
-// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit
-// apart) and F fraction bits; the value of a word is its integer times 2^-F.
+// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
+// fraction bits; the value of a signal is its integer times 2^-F.
 //
-//  rst_n                    initial set, active low, synchronous
+//  rst_n                    reset, active low, synchronous
 //  start                    begins a computation when the device is not busy
 //  cos_gamma        u1.20   operand, written by cos_gamma_write
 //  exponent         u10.0   operand, written by exponent_write
@@ -25,8 +25,8 @@
 //
 // The seed multiplies by n; for cos^n to be approximated it must be n/2, which is wiring.
 //
-// "- 1" and "+ 1" are 1.0 here. The seed's adder 1 adds a word of ones and its adder 2 a carry: an
-// ulp down and up, which stands for 1.0 in words modulo 1.0 only.
+// "- 1" and "+ 1" are 1.0 here. The seed's adder 1 adds all ones and its adder 2 a carry: an ulp
+// down and up, which stands for 1.0 only where numbers are modulo 1.0.
 //
 // The seed does not say what ROM(n) holds: here it holds the smallest f that is shown. Nothing
 // passes where the base is negative, whose square would rise again.
@@ -49,7 +49,7 @@ module threshold #(
     parameter LEVELS_FILE = "threshold_levels.mem"
 ) (
     input  wire        clk,
-    input  wire        rst_n,            // initial set, active low
+    input  wire        rst_n,            // reset, active low
     input  wire        start,            // begins a computation when not busy
     // input 1, u1.20: cosine of the angle between normal and half vector
     input  wire [20:0] cos_gamma,

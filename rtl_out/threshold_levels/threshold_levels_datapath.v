@@ -136,7 +136,7 @@ module threshold_levels_datapath #(
         end
     end
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, multiplier1[4:0], multiplier2[15:0], red_product[14:0],
             green_product[14:0], blue_product[14:0]};
 

@@ -6,12 +6,12 @@
 // Source: UA 30041, the prototype in seed 001
 //
 // Pipeline: a point every clock, its results 9 clocks later; stages for 130 MHz on ecp5. While
-// out_valid is high and out_ready low, nothing moves, and in_ready is low.
+// out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
-// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit
-// apart) and F fraction bits; the value of a word is its integer times 2^-F.
+// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
+// fraction bits; the value of a signal is its integer times 2^-F.
 //
-//  rst_n              initial set, active low, synchronous
+//  rst_n              reset, active low, synchronous
 //  in_valid           a point is offered: the operands are its own
 //  cos_gamma  u1.20   operand
 //  exponent   u10.0   operand
@@ -27,8 +27,8 @@
 //
 // The seed multiplies by n; for cos^n to be approximated it must be n/2, which is wiring.
 //
-// "- 1" and "+ 1" are 1.0 here. The seed's adder 1 adds a word of ones and its adder 2 a carry: an
-// ulp down and up, which stands for 1.0 in words modulo 1.0 only.
+// "- 1" and "+ 1" are 1.0 here. The seed's adder 1 adds all ones and its adder 2 a carry: an ulp
+// down and up, which stands for 1.0 only where numbers are modulo 1.0.
 //
 // The seed does not say what ROM(n) holds: here it holds the smallest f that is shown. Nothing
 // passes where the base is negative, whose square would rise again.
@@ -47,7 +47,7 @@ module threshold_pipelined #(
     parameter LEVELS_FILE = "threshold_pipelined_levels.mem"
 ) (
     input  wire        clk,
-    input  wire        rst_n,      // initial set, active low: no point is on its way after it
+    input  wire        rst_n,      // reset, active low: drops the points on their way
     input  wire        in_valid,   // the operands are those of a point
     // input 1, u1.20: cosine of the angle between normal and half vector
     input  wire [20:0] cos_gamma,
@@ -354,7 +354,7 @@ module threshold_pipelined #(
     assign green_out = green_intensity_s9;  // output 2: intensity on the output
     assign blue_out = blue_intensity_s9;  // output 3: intensity on the output
 
-    // Bits that nothing needs, among them those that narrowing drops.
+    // Unused bits, among them those that narrowing drops.
     wire unused = &{1'b0, multiplier1_s2[4:0], multiplier2_s4[15:0], red_product_s7[14:0],
             green_product_s7[14:0], blue_product_s7[14:0]};
 endmodule

@@ -1,4 +1,4 @@
-// cosine_power_formal: what is proved of the handshake of cosine_power
+// cosine_power_formal: properties of the handshake of cosine_power
 //
 // For formal tools alone: every input is free. To prove it, from a directory that holds the files
 // of both folders:
@@ -56,7 +56,7 @@ module cosine_power_formal (
         .blue_out(blue_out)
     );
 
-    // The initial set comes first; the state before it is arbitrary.
+    // The reset comes first; the state before it is arbitrary.
     always @* if ($initstate) assume (!rst_n);
 
     // Clocks since start.
@@ -65,13 +65,13 @@ module cosine_power_formal (
 
     always @(posedge clk) if (!$initstate) begin
         if (!$past(rst_n)) begin
-            // Idle after the initial set, whatever was before.
+            // Idle after reset, whatever the state was before.
             assert (!busy && !done);
         end else if (!$past(busy)) begin
             // Idle until start, busy from the clock after it.
             assert (busy == $past(start));
         end else begin
-            // Busy to the clock of done.
+            // Busy up to the clock of done.
             assert (busy == !$past(done));
         end
         if (done) assert (busy);

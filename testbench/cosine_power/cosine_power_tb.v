@@ -72,15 +72,15 @@ module cosine_power_tb #(
         .blue_out(blue_out)
     );
 
-    // Prints the word of the microprogram that is executed.
-    task write_word;
+    // Prints the microinstruction that is executed.
+    task write_microinstruction;
         case (dut.control.word_address)
-            3'd0: $write("word 0 (operands 1 - cos gamma, n/m)");
-            3'd1: $write("word 1 (accumulator <- n/m * (1 - cos gamma))");
-            3'd2: $write("word 2 (accumulator <- base^2)");
-            3'd3: $write("word 3 (accumulator <- accumulator^2)");
-            3'd4: $write("word 4 (result)");
-            default: $write("no word");
+            3'd0: $write("microinstruction 0 (operands 1 - cos gamma, n/m)");
+            3'd1: $write("microinstruction 1 (accumulator <- n/m * (1 - cos gamma))");
+            3'd2: $write("microinstruction 2 (accumulator <- base^2)");
+            3'd3: $write("microinstruction 3 (accumulator <- accumulator^2)");
+            3'd4: $write("microinstruction 4 (result)");
+            default: $write("no microinstruction");
         endcase
     endtask
 
@@ -97,7 +97,7 @@ module cosine_power_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": valid is %h, expected %h", valid, want[26]);
                     end
                 end
@@ -105,7 +105,7 @@ module cosine_power_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": busy is %h, expected %h", busy, want[25]);
                     end
                 end
@@ -113,7 +113,7 @@ module cosine_power_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": done is %h, expected %h", done, want[24]);
                     end
                 end
@@ -123,7 +123,7 @@ module cosine_power_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": red_out is %h, expected %h", red_out, want[23:16]);
                     end
                 end
@@ -131,7 +131,7 @@ module cosine_power_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": green_out is %h, expected %h", green_out, want[15:8]);
                     end
                 end
@@ -139,7 +139,7 @@ module cosine_power_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": blue_out is %h, expected %h", blue_out, want[7:0]);
                     end
                 end

@@ -74,16 +74,16 @@ module gauss_tb #(
         .blue_out(blue_out)
     );
 
-    // Prints the word of the microprogram that is executed.
-    task write_word;
+    // Prints the microinstruction that is executed.
+    task write_microinstruction;
         case (dut.control.word_address)
-            3'd0: $write("word 0 (segment of the decay addressed by cos gamma)");
-            3'd1: $write("word 1 (decay <- base + slope * rest)");
-            3'd2: $write("word 2 (halvings <- n * decay)");
-            3'd3: $write("word 3 (tables of 2^-x addressed by the fraction)");
-            3'd4: $write("word 4 (reflectance <- 2^-halvings)");
-            3'd5: $write("word 5 (result)");
-            default: $write("no word");
+            3'd0: $write("microinstruction 0 (segment of the decay addressed by cos gamma)");
+            3'd1: $write("microinstruction 1 (decay <- base + slope * rest)");
+            3'd2: $write("microinstruction 2 (halvings <- n * decay)");
+            3'd3: $write("microinstruction 3 (tables of 2^-x addressed by the fraction)");
+            3'd4: $write("microinstruction 4 (reflectance <- 2^-halvings)");
+            3'd5: $write("microinstruction 5 (result)");
+            default: $write("no microinstruction");
         endcase
     endtask
 
@@ -100,7 +100,7 @@ module gauss_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": valid is %h, expected %h", valid, want[42]);
                     end
                 end
@@ -108,7 +108,7 @@ module gauss_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": busy is %h, expected %h", busy, want[41]);
                     end
                 end
@@ -116,7 +116,7 @@ module gauss_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": done is %h, expected %h", done, want[40]);
                     end
                 end
@@ -126,7 +126,7 @@ module gauss_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": f_out is %h, expected %h", f_out, want[39:24]);
                     end
                 end
@@ -134,7 +134,7 @@ module gauss_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": red_out is %h, expected %h", red_out, want[23:16]);
                     end
                 end
@@ -142,7 +142,7 @@ module gauss_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": green_out is %h, expected %h", green_out, want[15:8]);
                     end
                 end
@@ -150,7 +150,7 @@ module gauss_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": blue_out is %h, expected %h", blue_out, want[7:0]);
                     end
                 end

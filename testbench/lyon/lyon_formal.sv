@@ -1,4 +1,4 @@
-// lyon_formal: what is proved of the handshake of lyon
+// lyon_formal: properties of the handshake of lyon
 //
 // For formal tools alone: every input is free. To prove it, from a directory that holds the files
 // of both folders:
@@ -64,14 +64,14 @@ module lyon_formal (
         .blue_out(blue_out)
     );
 
-    // The initial set comes first; the state before it is arbitrary.
+    // The reset comes first; the state before it is arbitrary.
     always @* if ($initstate) assume (!rst_n);
 
     // Clocks since start.
     reg [6:0] age;
     always @(posedge clk) age <= busy ? age + 7'd1 : 7'd1;
 
-    // The word that is executed, and what counts the turns of loops.
+    // The microinstruction that is executed, and the counters of loops.
     (* hierconn *) wire [2:0] \dut.control.word_address ;
     wire [2:0] word = \dut.control.word_address ;
     (* hierconn *) wire [3:0] \dut.datapath.remaining ;
@@ -79,19 +79,19 @@ module lyon_formal (
 
     always @(posedge clk) if (!$initstate) begin
         if (!$past(rst_n)) begin
-            // Idle after the initial set, whatever was before.
+            // Idle after reset, whatever the state was before.
             assert (!busy && !done);
         end else if (!$past(busy)) begin
             // Idle until start, busy from the clock after it.
             assert (busy == $past(start));
         end else begin
-            // Busy to the clock of done.
+            // Busy up to the clock of done.
             assert (busy == !$past(done));
         end
         if (done) assert (busy);
         if (valid) assert (busy);
         if (busy) begin
-            // Every computation ends: with what is left in a word at most, it is not too late.
+            // Every computation ends in time: its clocks so far, and the most that can follow.
             assert (age <= 7'd36);
             case (word)
                 3'd0: assert (age + 7'd35 <= 7'd36);

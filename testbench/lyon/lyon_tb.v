@@ -80,16 +80,16 @@ module lyon_tb #(
         .blue_out(blue_out)
     );
 
-    // Prints the word of the microprogram that is executed.
-    task write_word;
+    // Prints the microinstruction that is executed.
+    task write_microinstruction;
         case (dut.control.word_address)
-            3'd0: $write("word 0 (operands dx, dy, dz)");
-            3'd1: $write("word 1 (shift_register <- D^2 / (4*power))");
-            3'd2: $write("word 2 (shift_register <- 2 * shift_register)");
-            3'd3: $write("word 3 (accumulator <- base^2)");
-            3'd4: $write("word 4 (accumulator <- accumulator^2)");
-            3'd5: $write("word 5 (result)");
-            default: $write("no word");
+            3'd0: $write("microinstruction 0 (operands dx, dy, dz)");
+            3'd1: $write("microinstruction 1 (shift_register <- D^2 / (4*power))");
+            3'd2: $write("microinstruction 2 (shift_register <- 2 * shift_register)");
+            3'd3: $write("microinstruction 3 (accumulator <- base^2)");
+            3'd4: $write("microinstruction 4 (accumulator <- accumulator^2)");
+            3'd5: $write("microinstruction 5 (result)");
+            default: $write("no microinstruction");
         endcase
     endtask
 
@@ -106,7 +106,7 @@ module lyon_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": valid is %h, expected %h", valid, want[26]);
                     end
                 end
@@ -114,7 +114,7 @@ module lyon_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": busy is %h, expected %h", busy, want[25]);
                     end
                 end
@@ -122,7 +122,7 @@ module lyon_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": done is %h, expected %h", done, want[24]);
                     end
                 end
@@ -132,7 +132,7 @@ module lyon_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": red_out is %h, expected %h", red_out, want[23:16]);
                     end
                 end
@@ -140,7 +140,7 @@ module lyon_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": green_out is %h, expected %h", green_out, want[15:8]);
                     end
                 end
@@ -148,7 +148,7 @@ module lyon_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": blue_out is %h, expected %h", blue_out, want[7:0]);
                     end
                 end

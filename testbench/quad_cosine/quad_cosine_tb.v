@@ -74,15 +74,15 @@ module quad_cosine_tb #(
         .intensity_out(intensity_out)
     );
 
-    // Prints the word of the microprogram that is executed.
-    task write_word;
+    // Prints the microinstruction that is executed.
+    task write_microinstruction;
         case (dut.control.word_address)
-            3'd0: $write("word 0 (operands)");
-            3'd1: $write("word 1 (angle <- zeta_start: first point)");
-            3'd2: $write("word 2 (angle <- angle + delta_zeta: next point)");
-            3'd3: $write("word 3 (last point a clock away)");
-            3'd4: $write("word 4 (last point on the output)");
-            default: $write("no word");
+            3'd0: $write("microinstruction 0 (operands)");
+            3'd1: $write("microinstruction 1 (angle <- zeta_start: first point)");
+            3'd2: $write("microinstruction 2 (angle <- angle + delta_zeta: next point)");
+            3'd3: $write("microinstruction 3 (last point a clock away)");
+            3'd4: $write("microinstruction 4 (last point on the output)");
+            default: $write("no microinstruction");
         endcase
     endtask
 
@@ -100,7 +100,7 @@ module quad_cosine_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": valid is %h, expected %h", valid, want[13]);
                     end
                 end
@@ -108,7 +108,7 @@ module quad_cosine_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": busy is %h, expected %h", busy, want[12]);
                     end
                 end
@@ -116,7 +116,7 @@ module quad_cosine_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": done is %h, expected %h", done, want[11]);
                     end
                 end
@@ -126,7 +126,7 @@ module quad_cosine_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": count is %h, expected %h", count, want[10]);
                     end
                 end
@@ -134,7 +134,7 @@ module quad_cosine_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": accumulate is %h, expected %h", accumulate, want[9]);
                     end
                 end
@@ -142,7 +142,7 @@ module quad_cosine_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": write_angle is %h, expected %h", write_angle, want[8]);
                     end
                 end
@@ -150,7 +150,7 @@ module quad_cosine_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": intensity_out is %h, expected %h", intensity_out, want[7:0]);
                     end
                 end

@@ -46,7 +46,7 @@ module quadratic_pipelined_formal (
         .blue_out(blue_out)
     );
 
-    // The initial set comes first; the state before it is arbitrary.
+    // The reset comes first; the state before it is arbitrary.
     always @* if ($initstate) assume (!rst_n);
 
     // Which stage of the pipeline has a point.
@@ -71,7 +71,7 @@ module quadratic_pipelined_formal (
         \dut.valid_s1
     };
 
-    // The same of a queue, which all points move through together, unless a result waits.
+    // The same for a queue beside it: all points in it move together, unless a result waits.
     wire moves = out_ready | ~out_valid;
     reg  [9:1] queue;
     always @(posedge clk) begin

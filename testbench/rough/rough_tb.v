@@ -80,20 +80,20 @@ module rough_tb #(
         .blue_out(blue_out)
     );
 
-    // Prints the word of the microprogram that is executed.
-    task write_word;
+    // Prints the microinstruction that is executed.
+    task write_microinstruction;
         case (dut.control.word_address)
-            4'd0: $write("word 0 (operands cos gamma, cos dgamma; sine of gamma addressed)");
-            4'd1: $write("word 1 (19 <- sin gamma; 11 <- cos gamma * cos dgamma)");
-            4'd2: $write("word 2 (operands sin dgamma, sin gamma)");
-            4'd3: $write("word 3 (12 <- sin gamma * sin dgamma)");
-            4'd4: $write("word 4 (operands adder 15, n/2)");
-            4'd5: $write("word 5 (13 <- n/2 * (cos(gamma +- dgamma) - 1))");
-            4'd6: $write("word 6 (operands adder 16, adder 16)");
-            4'd7: $write("word 7 (13 <- (... + 1)^2)");
-            4'd8: $write("word 8 (valid: intensities on the outputs)");
-            4'd9: $write("word 9 (end: clears the triggers and counter 29)");
-            default: $write("no word");
+            4'd0: $write("microinstruction 0 (operands cos gamma, cos dgamma; sine of gamma addressed)");
+            4'd1: $write("microinstruction 1 (19 <- sin gamma; 11 <- cos gamma * cos dgamma)");
+            4'd2: $write("microinstruction 2 (operands sin dgamma, sin gamma)");
+            4'd3: $write("microinstruction 3 (12 <- sin gamma * sin dgamma)");
+            4'd4: $write("microinstruction 4 (operands adder 15, n/2)");
+            4'd5: $write("microinstruction 5 (13 <- n/2 * (cos(gamma +- dgamma) - 1))");
+            4'd6: $write("microinstruction 6 (operands adder 16, adder 16)");
+            4'd7: $write("microinstruction 7 (13 <- (... + 1)^2)");
+            4'd8: $write("microinstruction 8 (valid: intensities on the outputs)");
+            4'd9: $write("microinstruction 9 (end: clears the triggers and counter 29)");
+            default: $write("no microinstruction");
         endcase
     endtask
 
@@ -111,7 +111,7 @@ module rough_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": valid is %h, expected %h", valid, want[26]);
                     end
                 end
@@ -119,7 +119,7 @@ module rough_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": busy is %h, expected %h", busy, want[25]);
                     end
                 end
@@ -127,7 +127,7 @@ module rough_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": done is %h, expected %h", done, want[24]);
                     end
                 end
@@ -137,7 +137,7 @@ module rough_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": red_out is %h, expected %h", red_out, want[23:16]);
                     end
                 end
@@ -145,7 +145,7 @@ module rough_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": green_out is %h, expected %h", green_out, want[15:8]);
                     end
                 end
@@ -153,7 +153,7 @@ module rough_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": blue_out is %h, expected %h", blue_out, want[7:0]);
                     end
                 end

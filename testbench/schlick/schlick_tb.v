@@ -72,14 +72,14 @@ module schlick_tb #(
         .blue_out(blue_out)
     );
 
-    // Prints the word of the microprogram that is executed.
-    task write_word;
+    // Prints the microinstruction that is executed.
+    task write_microinstruction;
         case (dut.control.word_address)
-            2'd0: $write("word 0 (operands cos gamma, n)");
-            2'd1: $write("word 1 (cos gamma by n*(1 - cos gamma) + cos gamma)");
-            2'd2: $write("word 2 (next bit of the quotient)");
-            2'd3: $write("word 3 (result)");
-            default: $write("no word");
+            2'd0: $write("microinstruction 0 (operands cos gamma, n)");
+            2'd1: $write("microinstruction 1 (cos gamma by n*(1 - cos gamma) + cos gamma)");
+            2'd2: $write("microinstruction 2 (next bit of the quotient)");
+            2'd3: $write("microinstruction 3 (result)");
+            default: $write("no microinstruction");
         endcase
     endtask
 
@@ -96,7 +96,7 @@ module schlick_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": valid is %h, expected %h", valid, want[26]);
                     end
                 end
@@ -104,7 +104,7 @@ module schlick_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": busy is %h, expected %h", busy, want[25]);
                     end
                 end
@@ -112,7 +112,7 @@ module schlick_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": done is %h, expected %h", done, want[24]);
                     end
                 end
@@ -122,7 +122,7 @@ module schlick_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": red_out is %h, expected %h", red_out, want[23:16]);
                     end
                 end
@@ -130,7 +130,7 @@ module schlick_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": green_out is %h, expected %h", green_out, want[15:8]);
                     end
                 end
@@ -138,7 +138,7 @@ module schlick_tb #(
                     errors = errors + 1;
                     if (errors <= REPORTED) begin
                         $write("clock %0d, ", clock);
-                        write_word;
+                        write_microinstruction;
                         $display(": blue_out is %h, expected %h", blue_out, want[7:0]);
                     end
                 end

@@ -85,13 +85,13 @@ fn true_vectors_pass_and_every_wrong_output_fails_in_both_simulators() {
             ("done", 3, "1 (say 'square')"),
             ("y_out", 5, "0 (idle 100%)"),
         ];
-        for (output, clock, word) in outputs {
+        for (output, clock, executed) in outputs {
             let mut wrong = vectors();
             let at = ["valid", "busy", "done", "y_out"].iter().position(|name| *name == output);
             wrong.expected[clock][at.unwrap_or_default()] ^= 1;
             let outcome = run(simulator, wrong);
             assert!(!outcome.passed, "{simulator}, {output}:\n{}", outcome.transcript);
-            let place = format!("clock {clock}, word {word}: {output} is ");
+            let place = format!("clock {clock}, microinstruction {executed}: {output} is ");
             assert!(outcome.transcript.contains(&place), "{place}\n{}", outcome.transcript);
             assert!(outcome.transcript.contains("FAIL squarer: 1 differences in 6 clocks"));
         }

@@ -10,7 +10,7 @@ pub fn schema() -> Schema {
     Schema {
         device: "rough",
         keys: vec![
-            Key::choice("arithmetic", "exact", &["exact", "patent"], "exact: words with an integer position. patent: words modulo 1.0, as in UA 60139."),
+            Key::choice("arithmetic", "exact", &["exact", "patent"], "exact: numbers with an integer position. patent: numbers modulo 1.0, as in UA 60139."),
             Key::flag("clamp", true, "Clamp a negative n/2*(cos - 1) + 1 to 0; without it a ring appears around the highlight.").only_when(exact.0, exact.1),
             common::cosine_fraction(20),
             common::cosine_signed().only_when(exact.0, exact.1),

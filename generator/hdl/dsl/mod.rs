@@ -131,7 +131,7 @@ impl Designer {
         };
         let reset = designer.add_named("rst_n", Format::BIT, Driver::Input);
         designer.port(reset, Role::Reset);
-        designer.set_doc(reset, "initial set, active low");
+        designer.set_doc(reset, "reset, active low");
         designer.start = designer.add_named("start", Format::BIT, Driver::Input);
         designer.port(designer.start, Role::Start);
         designer.set_doc(designer.start, "begins a computation when not busy");

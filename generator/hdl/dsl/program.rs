@@ -241,10 +241,10 @@ pub(crate) fn assemble(d: &Designer, program: &Program) {
         });
     };
     if let Some(valid) = fields.valid {
-        describe(valid, "the word sets valid", lines.map(|[valid, _]| valid));
+        describe(valid, "the microinstruction sets valid", lines.map(|[valid, _]| valid));
     }
     let line = lines.map(|[_, go_on]| go_on);
-    describe(fields.go_on, "0 in the last word", line);
+    describe(fields.go_on, "0 in the last microinstruction", line);
     let microinstructions = microinstructions(d, steps, &sequences, &fields, &conditions);
     sequencer(d, program, microinstructions, &fields, &conditions, &targets, address_width);
 }
@@ -452,7 +452,7 @@ fn sequencer(
     let one = d.raw_constant("one_word", 1, wide);
 
     let address = d.add_register("word_address", wide, (0, last_word), RegisterKind::Sequencer);
-    d.set_doc(address, "the word that is executed");
+    d.set_doc(address, "the microinstruction that is executed");
     let following = op("following_word", wide, Op::Add { a: address, b: one.id(), carry: None });
     // Where control goes while the program goes on: around a loop, or to the following microinstruction.
     let mut onward = following;
@@ -577,7 +577,10 @@ fn control_rom(
     let rom = d.with(|inner| RomId(inner.design.roms.len() as u32));
     let data = d.add_named("control_word", format, Driver::Rom(rom));
     let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
-    let doc = vec![format!("the microprogram, a word a line: {}", names.join(", "))];
+    let doc = vec![format!(
+        "the microprogram, a line for each microinstruction; fields: {}",
+        names.join(", ")
+    )];
     d.with(|inner| {
         inner.design.roms.push(NetRom {
             name: "control".to_owned(),

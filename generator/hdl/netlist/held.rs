@@ -266,7 +266,7 @@ fn add_register(design: &mut Design, net: NetId) -> NetId {
     let (q, id) = (NetId(design.nets.len() as u32), RegId(design.registers.len() as u32));
     // It holds 0 from power-up to the first clock.
     let range = (of.range.0.min(0), of.range.1.max(0));
-    let doc = format!("{}, a clock later: the operands are held", of.name);
+    let doc = format!("{}, delayed by a clock: the operands do not change", of.name);
     let driver = Driver::Register(id);
     design.nets.push(super::Net { name, range, driver, block: None, doc, named: true, ..of });
     design.registers.push(Register {

@@ -189,7 +189,7 @@ pub struct Port {
 /// The part that a port plays in the handshake.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// Input `rst_n`: initial set, active low, synchronous.
+    /// Input `rst_n`: reset, active low, synchronous.
     Reset,
     /// Input `start`: begins a computation when the device is not busy.
     Start,

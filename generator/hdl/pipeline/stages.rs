@@ -175,12 +175,7 @@ impl Builder<'_> {
 
     /// The inputs.
     fn ports(&mut self, unrolled: &Unrolled, options: &Options) {
-        self.port(
-            "rst_n",
-            1,
-            Role::Reset,
-            "initial set, active low: no point is on its way after it",
-        );
+        self.port("rst_n", 1, Role::Reset, "reset, active low: drops the points on their way");
         self.port("in_valid", 1, Role::InValid, "the operands are those of a point");
         for (at, &operand) in unrolled.operands.iter().enumerate() {
             let net = self.sequential.net(operand).clone();

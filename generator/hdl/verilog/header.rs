@@ -28,13 +28,7 @@ pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
         Some(pipeline) => lines.extend(paragraph(&stages(pipeline))),
     }
     lines.push("//".to_owned());
-    lines.push(
-        "// Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit"
-            .into(),
-    );
-    lines.push(
-        "// apart) and F fraction bits; the value of a word is its integer times 2^-F.".into(),
-    );
+    lines.extend(comment(0, &formats(design)));
     lines.extend(ports(design));
     for note in &about.notes {
         lines.extend(paragraph(note));
@@ -92,14 +86,25 @@ fn latency(timing: &Timing) -> Vec<String> {
 fn stages(pipeline: &Pipeline) -> String {
     let (clocks, clock) = (pipeline.stages.len(), pipeline.clock_mhz);
     let stall = if pipeline.stall {
-        "While out_valid is high and out_ready low, nothing moves, and in_ready is low."
+        "While out_valid is high and out_ready low, all points stay where they are, and in_ready is low."
     } else {
-        "Nothing holds it: results are there for one clock."
+        "It does not stall: results are on the outputs for one clock."
     };
     format!(
         "Pipeline: a point every clock, its results {clocks} clocks later; stages for {clock:.0} MHz on {}. {stall}",
         pipeline.target
     )
+}
+
+/// What the formats say.
+fn formats(design: &Design) -> String {
+    let mut text = "Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F \
+                    fraction bits; the value of a signal is its integer times 2^-F."
+        .to_owned();
+    if design.nets.iter().any(|net| net.format.int < 0) {
+        text += " With negative I the first fraction bits are always 0 and left out.";
+    }
+    text
 }
 
 /// The ports with format and role, in columns.
@@ -110,7 +115,7 @@ fn ports(design: &Design) -> Vec<String> {
     for port in &design.ports {
         let net = design.net(port.net);
         let role = match port.role {
-            Role::Reset => "initial set, active low, synchronous".to_owned(),
+            Role::Reset => "reset, active low, synchronous".to_owned(),
             Role::Start => "begins a computation when the device is not busy".to_owned(),
             Role::Operand { strobe } => format!("operand, written by {}", name(strobe)),
             Role::Strobe => continue,
@@ -136,18 +141,18 @@ fn ports(design: &Design) -> Vec<String> {
     lines
 }
 
-/// The microprogram, a word a line.
+/// The microprogram, a line for each microinstruction.
 fn program(design: &Design) -> Vec<String> {
     let mut lines = vec!["//".to_owned(), "// Microprogram:".to_owned()];
-    for (address, word) in design.control.microprogram.iter().enumerate() {
-        let name = if word.name.is_empty() { "-" } else { &word.name };
-        let next = match &word.sequence {
+    for (address, it) in design.control.microprogram.iter().enumerate() {
+        let name = if it.name.is_empty() { "-" } else { &it.name };
+        let next = match &it.sequence {
             Sequence::Next => String::new(),
             Sequence::WaitStart => "  (waits for start)".to_owned(),
             Sequence::End => "  (end)".to_owned(),
             Sequence::LoopWhile { condition, to } => {
                 let when = if *to > address { "if" } else { "while" };
-                format!("  (to word {to} {when} {})", design.net(*condition).name)
+                format!("  (to {to} {when} {})", design.net(*condition).name)
             }
         };
         lines.push(format!("//   {address:2}  {}{next}", super::text::ascii(name)));

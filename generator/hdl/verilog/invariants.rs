@@ -14,7 +14,7 @@ pub fn invariants(design: &Design, naming: &Naming, unit: Unit) -> Vec<String> {
     lines.into_iter().map(|line| format!("    {line}")).collect()
 }
 
-/// From the first clock on, which has the initial set.
+/// From the first clock on, which has the reset.
 fn control(design: &Design) -> Vec<String> {
     let name = |register| design.net(design.register(register).q).name.as_str();
     let (address, run) = (name(design.control.address), name(design.control.run));
@@ -22,7 +22,7 @@ fn control(design: &Design) -> Vec<String> {
     let last = literal(design.control.microprogram.len() as u64 - 1, width);
     vec![
         "always @* if (!$initstate) begin".to_owned(),
-        format!("    assert ({address} <= {last});  // no other word is reached"),
+        format!("    assert ({address} <= {last});  // no other address is reached"),
         format!("    if (!{run}) assert ({address} == {});", literal(0, width)),
         "end".to_owned(),
     ]
