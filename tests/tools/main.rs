@@ -25,4 +25,5 @@ mod software;
 mod synth;
 mod synthesis;
 mod verilog;
+mod video;
 mod wrappers;
