@@ -44,12 +44,15 @@ ${ line }$
 
     // Prints the microinstruction that is executed.
     task ${ names.write_microinstruction }$;
-        case (${ address }$)
+        begin
+            $write("microinstruction ");
+            case (${ address }$)
 <%- for it in microprogram %>
-            ${ it.label }$: $write("microinstruction ${ it.address }$ (${ it.name }$)");
+                ${ it.label }$: $write("${ it.address }$ (${ it.name }$)");
 <%- endfor %>
-            default: $write("no microinstruction");
-        endcase
+                default: $write("unknown");
+            endcase
+        end
     endtask
 <%- endif %>
 

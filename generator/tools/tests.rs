@@ -219,16 +219,17 @@ fn the_version_is_the_first_line() {
 #[test]
 fn the_first_difference_is_read() {
     let line = "clock 12, microinstruction 3 (say: 100% (result)): red_out is 1x, expected 20";
-    let transcript =
-        format!("VCD info\n{line}\nclock 13, no microinstruction: busy is 0, expected 1\nFAIL x\n");
+    let transcript = format!(
+        "VCD info\n{line}\nclock 13, microinstruction unknown: busy is 0, expected 1\nFAIL x\n"
+    );
     let found = BenchDifference::first(&transcript).unwrap();
     assert_eq!((found.clock, found.during.as_str()), (12, "microinstruction `say: 100% (result)`"));
     assert_eq!(
         (found.signal.as_str(), found.simulated.as_str(), found.expected.as_str()),
         ("red_out", "1x", "20")
     );
-    let lost =
-        BenchDifference::first("clock 13, no microinstruction: busy is 0, expected 1").unwrap();
+    let lost = BenchDifference::first("clock 13, microinstruction unknown: busy is 0, expected 1")
+        .unwrap();
     assert_eq!((lost.during.as_str(), lost.signal.as_str()), ("", "busy"));
     let pipeline = BenchDifference::first("clock 14: out_valid is 1, expected 0").unwrap();
     assert_eq!((pipeline.clock, pipeline.during.as_str()), (14, ""));

@@ -76,15 +76,18 @@ module blinn_small_tb #(
 
     // Prints the microinstruction that is executed.
     task write_microinstruction;
-        case (dut.control.word_address)
-            3'd0: $write("microinstruction 0 (segment of the decay addressed by cos gamma)");
-            3'd1: $write("microinstruction 1 (decay <- base + slope * rest)");
-            3'd2: $write("microinstruction 2 (halvings <- n * decay)");
-            3'd3: $write("microinstruction 3 (tables of 2^-x addressed by the fraction)");
-            3'd4: $write("microinstruction 4 (reflectance <- 2^-halvings)");
-            3'd5: $write("microinstruction 5 (result)");
-            default: $write("no microinstruction");
-        endcase
+        begin
+            $write("microinstruction ");
+            case (dut.control.word_address)
+                3'd0: $write("0 (segment of the decay addressed by cos gamma)");
+                3'd1: $write("1 (decay <- base + slope * rest)");
+                3'd2: $write("2 (halvings <- n * decay)");
+                3'd3: $write("3 (tables of 2^-x addressed by the fraction)");
+                3'd4: $write("4 (reflectance <- 2^-halvings)");
+                3'd5: $write("5 (result)");
+                default: $write("unknown");
+            endcase
+        end
     endtask
 
     initial begin

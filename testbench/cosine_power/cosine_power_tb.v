@@ -74,14 +74,17 @@ module cosine_power_tb #(
 
     // Prints the microinstruction that is executed.
     task write_microinstruction;
-        case (dut.control.word_address)
-            3'd0: $write("microinstruction 0 (operands 1 - cos gamma, n/m)");
-            3'd1: $write("microinstruction 1 (accumulator <- n/m * (1 - cos gamma))");
-            3'd2: $write("microinstruction 2 (accumulator <- base^2)");
-            3'd3: $write("microinstruction 3 (accumulator <- accumulator^2)");
-            3'd4: $write("microinstruction 4 (result)");
-            default: $write("no microinstruction");
-        endcase
+        begin
+            $write("microinstruction ");
+            case (dut.control.word_address)
+                3'd0: $write("0 (operands 1 - cos gamma, n/m)");
+                3'd1: $write("1 (accumulator <- n/m * (1 - cos gamma))");
+                3'd2: $write("2 (accumulator <- base^2)");
+                3'd3: $write("3 (accumulator <- accumulator^2)");
+                3'd4: $write("4 (result)");
+                default: $write("unknown");
+            endcase
+        end
     endtask
 
     initial begin

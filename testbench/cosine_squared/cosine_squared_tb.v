@@ -72,14 +72,17 @@ module cosine_squared_tb #(
 
     // Prints the microinstruction that is executed.
     task write_microinstruction;
-        case (dut.control.word_address)
-            3'd0: $write("microinstruction 0 (operands)");
-            3'd1: $write("microinstruction 1 (angle <- zeta_start: first point)");
-            3'd2: $write("microinstruction 2 (angle <- angle + delta_zeta: next point)");
-            3'd3: $write("microinstruction 3 (last point a clock away)");
-            3'd4: $write("microinstruction 4 (last point on the output)");
-            default: $write("no microinstruction");
-        endcase
+        begin
+            $write("microinstruction ");
+            case (dut.control.word_address)
+                3'd0: $write("0 (operands)");
+                3'd1: $write("1 (angle <- zeta_start: first point)");
+                3'd2: $write("2 (angle <- angle + delta_zeta: next point)");
+                3'd3: $write("3 (last point a clock away)");
+                3'd4: $write("4 (last point on the output)");
+                default: $write("unknown");
+            endcase
+        end
     endtask
 
     initial begin

@@ -82,15 +82,18 @@ module lyon_tb #(
 
     // Prints the microinstruction that is executed.
     task write_microinstruction;
-        case (dut.control.word_address)
-            3'd0: $write("microinstruction 0 (operands dx, dy, dz)");
-            3'd1: $write("microinstruction 1 (shift_register <- D^2 / (4*power))");
-            3'd2: $write("microinstruction 2 (shift_register <- 2 * shift_register)");
-            3'd3: $write("microinstruction 3 (accumulator <- base^2)");
-            3'd4: $write("microinstruction 4 (accumulator <- accumulator^2)");
-            3'd5: $write("microinstruction 5 (result)");
-            default: $write("no microinstruction");
-        endcase
+        begin
+            $write("microinstruction ");
+            case (dut.control.word_address)
+                3'd0: $write("0 (operands dx, dy, dz)");
+                3'd1: $write("1 (shift_register <- D^2 / (4*power))");
+                3'd2: $write("2 (shift_register <- 2 * shift_register)");
+                3'd3: $write("3 (accumulator <- base^2)");
+                3'd4: $write("4 (accumulator <- accumulator^2)");
+                3'd5: $write("5 (result)");
+                default: $write("unknown");
+            endcase
+        end
     endtask
 
     initial begin

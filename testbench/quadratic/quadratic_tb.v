@@ -74,13 +74,16 @@ module quadratic_tb #(
 
     // Prints the microinstruction that is executed.
     task write_microinstruction;
-        case (dut.control.word_address)
-            2'd0: $write("microinstruction 0 (operands; ROM(n) addressed)");
-            2'd1: $write("microinstruction 1 (difference <- c^2 - c)");
-            2'd2: $write("microinstruction 2 (intensity <- c + a(n) * difference, not below 0)");
-            2'd3: $write("microinstruction 3 (result)");
-            default: $write("no microinstruction");
-        endcase
+        begin
+            $write("microinstruction ");
+            case (dut.control.word_address)
+                2'd0: $write("0 (operands; ROM(n) addressed)");
+                2'd1: $write("1 (difference <- c^2 - c)");
+                2'd2: $write("2 (intensity <- c + a(n) * difference, not below 0)");
+                2'd3: $write("3 (result)");
+                default: $write("unknown");
+            endcase
+        end
     endtask
 
     initial begin

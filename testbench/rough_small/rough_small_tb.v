@@ -82,19 +82,22 @@ module rough_small_tb #(
 
     // Prints the microinstruction that is executed.
     task write_microinstruction;
-        case (dut.control.word_address)
-            4'd0: $write("microinstruction 0 (operands cos gamma, cos dgamma; sine of gamma addressed)");
-            4'd1: $write("microinstruction 1 (19 <- sin gamma; 11 <- cos gamma * cos dgamma)");
-            4'd2: $write("microinstruction 2 (operands sin dgamma, sin gamma)");
-            4'd3: $write("microinstruction 3 (12 <- sin gamma * sin dgamma)");
-            4'd4: $write("microinstruction 4 (operands adder 15, n/2)");
-            4'd5: $write("microinstruction 5 (13 <- n/2 * (cos(gamma +- dgamma) - 1))");
-            4'd6: $write("microinstruction 6 (operands adder 16, adder 16)");
-            4'd7: $write("microinstruction 7 (13 <- (... + 1)^2)");
-            4'd8: $write("microinstruction 8 (valid: intensities on the outputs)");
-            4'd9: $write("microinstruction 9 (end: clears the triggers and counter 29)");
-            default: $write("no microinstruction");
-        endcase
+        begin
+            $write("microinstruction ");
+            case (dut.control.word_address)
+                4'd0: $write("0 (operands cos gamma, cos dgamma; sine of gamma addressed)");
+                4'd1: $write("1 (19 <- sin gamma; 11 <- cos gamma * cos dgamma)");
+                4'd2: $write("2 (operands sin dgamma, sin gamma)");
+                4'd3: $write("3 (12 <- sin gamma * sin dgamma)");
+                4'd4: $write("4 (operands adder 15, n/2)");
+                4'd5: $write("5 (13 <- n/2 * (cos(gamma +- dgamma) - 1))");
+                4'd6: $write("6 (operands adder 16, adder 16)");
+                4'd7: $write("7 (13 <- (... + 1)^2)");
+                4'd8: $write("8 (valid: intensities on the outputs)");
+                4'd9: $write("9 (end: clears the triggers and counter 29)");
+                default: $write("unknown");
+            endcase
+        end
     endtask
 
     initial begin

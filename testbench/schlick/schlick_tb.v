@@ -74,13 +74,16 @@ module schlick_tb #(
 
     // Prints the microinstruction that is executed.
     task write_microinstruction;
-        case (dut.control.word_address)
-            2'd0: $write("microinstruction 0 (operands cos gamma, n)");
-            2'd1: $write("microinstruction 1 (cos gamma by n*(1 - cos gamma) + cos gamma)");
-            2'd2: $write("microinstruction 2 (next bit of the quotient)");
-            2'd3: $write("microinstruction 3 (result)");
-            default: $write("no microinstruction");
-        endcase
+        begin
+            $write("microinstruction ");
+            case (dut.control.word_address)
+                2'd0: $write("0 (operands cos gamma, n)");
+                2'd1: $write("1 (cos gamma by n*(1 - cos gamma) + cos gamma)");
+                2'd2: $write("2 (next bit of the quotient)");
+                2'd3: $write("3 (result)");
+                default: $write("unknown");
+            endcase
+        end
     endtask
 
     initial begin
