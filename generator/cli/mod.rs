@@ -214,10 +214,17 @@ Examples:
     #[command(after_help = "\
 Examples:
   glint schedule my_pipeline.toml
+  glint schedule my_pipeline.toml --svg drawings   a drawing of the stages, drawings/<name>.svg
   glint schedule my_pipeline.toml --json")]
     Schedule {
         #[command(flatten)]
         configs: Configs,
+        /// Draw the stages too, a file for each configuration
+        #[arg(long, value_name = "DIR")]
+        svg: Option<PathBuf>,
+        /// Replace drawings that Glint did not write or that were edited since
+        #[arg(long, requires = "svg")]
+        force: bool,
     },
     /// Measure area and frequency by synthesis, placement and routing
     ///
@@ -554,8 +561,8 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             let request = commands::CertifyRequest { out, coq, time_limit };
             commands::certify(registry, output, &configs.configs, &request)
         }
-        Some(Command::Schedule { configs }) => {
-            commands::schedule(registry, output, &configs.configs)
+        Some(Command::Schedule { configs, svg, force }) => {
+            commands::schedule(registry, output, &configs.configs, svg.as_deref(), force)
         }
         Some(Command::Synth(arguments)) => commands::synth(registry, output, &arguments),
         Some(Command::Tune(arguments)) => commands::tune(registry, output, &arguments),

@@ -16,6 +16,7 @@ mod random;
 pub mod search;
 mod stimulus;
 mod stream;
+mod through;
 mod together;
 pub mod trial;
 

@@ -3,10 +3,11 @@
 
 use anyhow::{Context, Result, ensure};
 
+use super::through::Through;
 use super::{Points, Random};
 use crate::base::fixed::Format;
 use crate::golden::{Contract, Operand};
-use crate::hdl::netlist::{self, Design, Handshake, NetId, Role};
+use crate::hdl::netlist::{self, Design, Handshake, NetId};
 use crate::hdl::sim::Simulator;
 use crate::package::{Computation, LineClocks, Linear, Quantity, Shown, Timing, WorkedExample};
 
@@ -21,6 +22,12 @@ const SHORT: i64 = 9;
 
 /// The longest line of which the clocks are measured, beyond the shortest.
 const LONG: i64 = 1000;
+
+/// Points of a recording of a pipeline.
+const POINTS: usize = 3;
+
+/// Clocks for which the first result of such a recording waits.
+const PAUSE: usize = 2;
 
 /// Hints of a contract that are tried for a worked example.
 const TRIES: u32 = 256;
@@ -310,6 +317,22 @@ pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Resul
     Ok(clocks)
 }
 
+/// What nets carry in each clock while three points go through a pipeline, the first of them that of [`example`]: see
+/// [`Through::record`].
+///
+/// # Errors
+/// Those of [`timing`].
+pub fn record_points(
+    design: &Design,
+    contract: &dyn Contract,
+    nets: &[NetId],
+) -> Result<Vec<Vec<u64>>> {
+    let (mut random, points) = (Random::new(1), Points::new(contract));
+    let mut list = vec![example_operands(contract)];
+    list.resize_with(POINTS, || points.of_domain(&mut random));
+    Through::new(design, contract)?.record(&list, PAUSE, nets, LIMIT)
+}
+
 /// Sees the simulator in each clock, before its rising edge.
 type Watch<'a> = &'a mut dyn FnMut(&mut Simulator) -> Result<()>;
 
@@ -320,10 +343,21 @@ fn run(
     operands: &[i64],
     watch: Watch<'_>,
 ) -> Result<Trial> {
-    let mut simulator: Simulator = Simulator::new(design)?;
     if design.pipeline.is_some() {
-        return through(design, contract, operands, watch, &mut simulator);
+        let nets = results(design, contract);
+        let (clock, outputs) = Through::new(design, contract)?.one(operands, &nets, LIMIT)?;
+        return Ok(Trial {
+            timing: Timing {
+                start_to_valid: Some(clock),
+                start_to_done: Some(clock),
+                start_to_start: Some(1),
+                ..Timing::default()
+            },
+            results: vec![(clock, outputs)],
+            decision: None,
+        });
     }
+    let mut simulator: Simulator = Simulator::new(design)?;
     let Handshake { valid, done, busy, .. } = design.handshake()?;
     let input = |name: &str| {
         let at = design.inputs().position(|port| design.net(port.net).name == name);
@@ -369,50 +403,4 @@ fn run(
         simulator.clock()?;
     }
     anyhow::bail!("`{}` does not end within {LIMIT} clocks", design.name)
-}
-
-/// Sends one point through a pipeline. The next could follow in the next clock; clock 0 takes the point.
-fn through(
-    design: &Design,
-    contract: &dyn Contract,
-    operands: &[i64],
-    watch: Watch<'_>,
-    simulator: &mut Simulator,
-) -> Result<Trial> {
-    let input = |name: &str| {
-        let at = design.inputs().position(|port| design.net(port.net).name == name);
-        at.with_context(|| format!("no input `{name}`"))
-    };
-    let of_role = |role: Role| design.inputs().position(|port| port.role == role);
-    let valid = design.port(|role| role == Role::Valid).context("no output `out_valid`")?.net;
-    let in_valid = of_role(Role::InValid).context("no input `in_valid`")?;
-    simulator.clock()?;
-    simulator.set(input("rst_n")?, 1);
-    if let Some(ready) = of_role(Role::OutReady) {
-        simulator.set(ready, 1);
-    }
-    for (operand, &raw) in contract.operands().iter().zip(operands) {
-        simulator.set(input(&operand.name)?, operand.format.bits(i128::from(raw)));
-    }
-    simulator.set(in_valid, 1);
-    let nets = results(design, contract);
-    for clock in 0..LIMIT {
-        watch(simulator)?;
-        if simulator.value(valid) == 1 {
-            let outputs = nets.iter().map(|&net| simulator.value(net)).collect();
-            return Ok(Trial {
-                timing: Timing {
-                    start_to_valid: Some(clock),
-                    start_to_done: Some(clock),
-                    start_to_start: Some(1),
-                    ..Timing::default()
-                },
-                results: vec![(clock, outputs)],
-                decision: None,
-            });
-        }
-        simulator.clock()?;
-        simulator.set(in_valid, 0);
-    }
-    anyhow::bail!("`{}` shows no result within {LIMIT} clocks", design.name)
 }

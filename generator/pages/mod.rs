@@ -9,6 +9,7 @@ mod markdown;
 mod markup;
 pub mod plots;
 pub mod report;
+pub mod stages;
 
 pub use account::PageInputs;
 pub use markdown::page;

@@ -5,9 +5,10 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use crate::common::cores::{configuration, configurations};
+use crate::common::cores::{all_configurations, configuration, configurations};
 use glint::core::Core;
 use glint::cosim::exhaustive::Record;
+use glint::hdl::netlist::Driver;
 use glint::package::{Seal, is_sealed};
 use glint::pages::datasheet::{Datasheet, Subject, datasheet};
 use roxmltree::{Document, Node, ParsingOptions};
@@ -286,6 +287,75 @@ fn has_every_word(path: &str, document: &Document, core: &Core) {
         .map(|word| format!("{word:0width$b}", width = width as usize))
         .collect();
     assert_eq!(bits, expected, "{path}");
+}
+
+#[test]
+fn every_pipeline_has_its_page() {
+    let all = all_configurations().into_iter();
+    for (path, core) in all.filter(|(_, core)| core.design.pipeline.is_some()) {
+        let made = make(&path, &core);
+        let document = parse(&made.page);
+        needs_nothing_else(&path, &made.page, &document);
+        is_accessible(&path, &document);
+        assert!(is_sealed(made.page.as_bytes(), Seal::Markup), "{path}");
+        assert!(!made.page.contains("<code>start</code>"), "{path}");
+        let name = &core.config.name;
+        let verilog = fs::read_to_string(format!("rtl_out/{name}/{name}.v")).expect("Verilog");
+        has_the_values_of_the_stages(&path, &document, &core);
+        has_the_latency_of_the_header(&path, &made.wavedrom, &verilog);
+    }
+}
+
+/// Every value that a register of the sequential core has stands in the drawing, and the registers of every stage.
+fn has_the_values_of_the_stages(path: &str, document: &Document, core: &Core) {
+    let mut pictures = elements(document, "svg").filter(|svg| {
+        let label = svg.attribute("aria-labelledby").unwrap_or_default();
+        label.starts_with("stage-diagram")
+    });
+    let picture = pictures.next().expect("a drawing of the stages");
+    let texts = picture.descendants().filter(|node| node.tag_name().name() == "text");
+    let drawn: BTreeSet<String> =
+        texts.filter_map(|it| text(it).rsplit(' ').next().map(str::to_owned)).collect();
+    let pipeline = core.design.pipeline.as_ref().expect("a pipeline");
+    for checkpoint in &pipeline.checkpoints {
+        let name = &core.design.net(checkpoint.net).name;
+        let value = name.rsplit_once("_s").map_or(name.as_str(), |(value, _)| value);
+        if matches!(core.design.net(checkpoint.net).driver, Driver::Op(_)) {
+            assert!(drawn.contains(value), "{path}: `{name}` is not drawn");
+        }
+    }
+    let bits: u32 = pipeline.stages.iter().map(|stage| stage.register_bits).sum();
+    let registers = core.design.registers.iter();
+    assert_eq!(bits, registers.map(|it| core.design.width(it.q)).sum::<u32>(), "{path}");
+    for stage in &pipeline.stages {
+        let bits = format!("{} register bits", stage.register_bits);
+        assert!(picture.descendants().any(|node| node.text() == Some(&bits)), "{path}: {bits}");
+    }
+}
+
+fn has_the_latency_of_the_header(path: &str, wavedrom: &str, verilog: &str) {
+    let header = verilog.lines().map_while(|line| line.strip_prefix("//"));
+    let header: String = header.collect();
+    let (before, _) = header.split_once(" clocks later").expect("the latency");
+    let latency: usize =
+        before.rsplit(' ').next().and_then(|it| it.parse().ok()).expect("a number");
+    let waves: Value = serde_json::from_str(wavedrom).expect("JSON");
+    let wave = |signal: &str| {
+        let lanes = waves["signal"].as_array().expect("signals");
+        let lane = lanes.iter().find(|lane| lane["name"] == signal);
+        lane.unwrap_or_else(|| panic!("{path}: no lane `{signal}`"))["wave"]
+            .as_str()
+            .expect("a wave")
+            .to_owned()
+    };
+    // Two points, a bubble and a point; nothing after them.
+    assert!(wave("in_valid").starts_with("1.010"), "{path}: {}", wave("in_valid"));
+    assert_eq!(wave("out_valid").find('1'), Some(latency), "{path}");
+    // The first result waits for two clocks, and in_ready follows.
+    let waits = format!("{}0.1", wave("out_ready").split('0').next().unwrap_or_default());
+    assert!(wave("out_ready").starts_with(&waits), "{path}: {}", wave("out_ready"));
+    assert_eq!(wave("out_ready").find('0'), Some(latency), "{path}");
+    assert_eq!(wave("in_ready"), wave("out_ready"), "{path}");
 }
 
 #[test]

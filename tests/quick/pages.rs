@@ -3,15 +3,18 @@
 
 use std::collections::BTreeSet;
 use std::fs;
+use std::path::Path;
 
 use crate::common::cores::{configuration, configurations};
 use glint::registry::Registry;
 
-/// The modules of the default configurations.
+/// The modules of the default configurations, and of their pipelines.
 fn names() -> Vec<String> {
     let catalogue = Registry::catalogue();
     let devices = catalogue.devices().iter();
-    devices.map(|device| device.name.replace('-', "_")).collect()
+    let cores = devices.map(|device| device.name.replace('-', "_"));
+    let both = cores.flat_map(|core| [format!("{core}_pipelined"), core]);
+    both.filter(|name| Path::new(&format!("configs/{name}.toml")).exists()).collect()
 }
 
 #[test]

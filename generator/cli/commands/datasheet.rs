@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 use clap::Args;
 use serde_json::json;
 
-use super::{Loaded, load_sequential};
+use super::{Loaded, load};
 use crate::cli::failure::Usage;
 use crate::cli::store::{self, Written};
 use crate::cli::{Configs, Output, progress, tables};
@@ -48,7 +48,7 @@ pub fn datasheet(
     output: Output,
     request: &DatasheetArguments,
 ) -> Result<bool> {
-    let loaded = load_sequential(registry, &request.configs.configs, "datasheet")?;
+    let loaded = load(registry, &request.configs.configs)?;
     let single = request.out.extension().is_some_and(|it| it.eq_ignore_ascii_case("html"));
     if single && loaded.len() != 1 {
         bail!(Usage(format!(

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use anyhow::{Context, Result};
 use serde_json::json;
 
-use super::load_sequential;
+use super::load;
 use crate::cli::store::{self, Written};
 use crate::cli::{Output, tables};
 use crate::package::Seal;
@@ -19,7 +19,7 @@ pub fn describe(
     out: Option<&Path>,
     force: bool,
 ) -> Result<bool> {
-    let loaded = load_sequential(registry, configs, "describe")?;
+    let loaded = load(registry, configs)?;
     let mut report = Vec::new();
     for (at, one) in loaded.iter().enumerate() {
         let page = one.core.page(&one.path);

@@ -1,18 +1,26 @@
 //! `schedule`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use anyhow::{Result, bail};
+use anyhow::{Context, Result, bail};
 use serde_json::{Value, json};
 
 use super::{Loaded, load, paths};
 use crate::cli::tables::Column;
-use crate::cli::{Output, tables};
-use crate::hdl::netlist::{Design, Driver, Net, Pipeline};
+use crate::cli::{Output, store, tables};
+use crate::hdl::netlist::{Design, Pipeline, value_name};
+use crate::package::{Seal, sealed};
+use crate::pages::stages;
 use crate::registry::Registry;
 
 /// `glint schedule`.
-pub fn schedule(registry: &Registry, output: Output, configs: &[PathBuf]) -> Result<bool> {
+pub fn schedule(
+    registry: &Registry,
+    output: Output,
+    configs: &[PathBuf],
+    svg: Option<&Path>,
+    force: bool,
+) -> Result<bool> {
     let named = paths(configs)?;
     let mut list = Vec::new();
     let mut shown = 0;
@@ -27,6 +35,12 @@ pub fn schedule(registry: &Registry, output: Output, configs: &[PathBuf]) -> Res
             );
         };
         shown += 1;
+        if let Some(directory) = svg {
+            let drawing = sealed(stages::svg(&one.core.design, pipeline)?, Seal::Markup);
+            let path = directory.join(format!("{}.svg", one.core.config.name));
+            store::write_sealed(&path, &drawing, Seal::Markup, force)
+                .with_context(|| format!("`{}` was not drawn", one.path))?;
+        }
         if output.json {
             list.push(as_json(&one, pipeline));
         } else {
@@ -73,23 +87,9 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
     tables::print(&columns, rows);
 }
 
-/// The values that a stage makes, by name.
-fn computed<'a>(design: &'a Design, pipeline: &Pipeline, number: usize) -> Vec<&'a str> {
-    let made = |net: &Net, stage: usize| match net.driver {
-        Driver::Op(_) => stage == number,
-        // The word of a block memory is there a stage after its address.
-        Driver::Rom(rom) => stage == number + usize::from(design.rom(rom).synchronous),
-        _ => false,
-    };
-    let suffix = |name: &'a str| name.rsplit_once("_s").map_or(name, |(value, _)| value);
-    design
-        .iter()
-        .zip(&pipeline.stage_of)
-        .filter(|((id, net), stage)| {
-            net.named && !pipeline.handshake.contains(id) && made(net, **stage)
-        })
-        .map(|((_, net), _)| suffix(&net.name))
-        .collect()
+/// The values that a stage computes, by name.
+fn computed<'a>(design: &'a Design, pipeline: &'a Pipeline, stage: usize) -> Vec<&'a str> {
+    pipeline.computed(design, stage).map(|net| value_name(&net.name)).collect()
 }
 
 fn as_json(one: &Loaded, pipeline: &Pipeline) -> Value {

@@ -1,6 +1,6 @@
 //! What a design says of itself that is a pipeline.
 
-use super::NetId;
+use super::{Design, Driver, Net, NetId};
 
 /// What a design is that takes a point every clock.
 #[derive(Clone, Debug)]
@@ -52,4 +52,30 @@ pub struct Checkpoint {
     pub visit: usize,
     /// The net with the value, in its stage.
     pub net: NetId,
+}
+
+impl Pipeline {
+    /// The named nets whose logic is in a stage, in the order of the design's nets; the handshake is none of them.
+    pub fn computed<'a>(
+        &'a self,
+        design: &'a Design,
+        stage: usize,
+    ) -> impl Iterator<Item = &'a Net> {
+        let made = move |net: &Net, at: usize| match net.driver {
+            Driver::Op(_) => at == stage,
+            // The word of a block memory is there a stage after its address.
+            Driver::Rom(rom) => at == stage + usize::from(design.rom(rom).synchronous),
+            _ => false,
+        };
+        let nets = design.iter().zip(&self.stage_of);
+        let nets = nets.filter(move |((id, net), at)| {
+            net.named && !self.handshake.contains(id) && made(net, **at)
+        });
+        nets.map(|((_, net), _)| net)
+    }
+}
+
+/// The name of a pipeline's value, from that of a net with it: without the stage.
+pub fn value_name(net: &str) -> &str {
+    net.rsplit_once("_s").map_or(net, |(value, _)| value)
 }

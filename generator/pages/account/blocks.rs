@@ -114,7 +114,7 @@ impl fmt::Display for Kind {
 }
 
 fn is_control(design: &Design, rom: &Rom) -> bool {
-    rom.data == design.rom(design.control.rom).data
+    design.roms.get(design.control.rom.index()).is_some_and(|control| control.data == rom.data)
 }
 
 /// The blocks of a design, with the wiring between them left out.

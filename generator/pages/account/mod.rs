@@ -9,7 +9,7 @@ use crate::base::fixed::Format;
 use crate::config::{Config, Key, Schema, Value, shared_keys};
 use crate::evidence::advice::Advice;
 use crate::golden::{Bound, Contract, Values};
-use crate::hdl::netlist::Design;
+use crate::hdl::netlist::{Design, Pipeline};
 use crate::hdl::verilog::naming::Naming;
 use crate::package::facts::{self, Sequence};
 use crate::package::{LineClocks, Linear, Quantity, Timing, WorkedExample};
@@ -157,7 +157,7 @@ pub fn ports(design: &Design) -> Table {
             doc.to_owned(),
         ]);
     }
-    table.without_empty(NUMBER)
+    table.without_empty(NUMBER).without_empty("written by")
 }
 
 /// The ROMs, that of the microprogram among them.
@@ -279,6 +279,30 @@ pub fn clocks(timing: &Timing, line: Option<&LineClocks>) -> Table {
     }
     row("`done` is high", timing.start_to_done, line.map(|line| line.done));
     row("the next `start` is taken", timing.start_to_start, line.map(|line| line.next_start));
+    table
+}
+
+/// How points enter and leave a pipeline, in sentences.
+pub fn handshake(pipeline: &Pipeline) -> &'static str {
+    match pipeline.stall {
+        true => {
+            "A point is taken in each clock in which `in_valid` and `in_ready` are high: the operands of that clock are its \
+             own. Its results are taken in the clock in which `out_valid` and `out_ready` are high. While `out_valid` is high \
+             and `out_ready` low, no point moves, and `in_ready` is low."
+        }
+        false => {
+            "A point is taken in each clock in which `in_valid` is high: the operands of that clock are its own. Its results \
+             are on the outputs for one clock, that in which `out_valid` is high."
+        }
+    }
+}
+
+/// When what happens after a pipeline takes a point.
+pub fn pipeline_clocks(pipeline: &Pipeline) -> Table {
+    let mut table = Table::new(&[("event", Align::Left), ("clock", Align::Right)]);
+    table.row(["the next point is taken".to_owned(), "1".to_owned()]);
+    let latency = pipeline.stages.len().to_string();
+    table.row(["the results are on the outputs".to_owned(), latency]);
     table
 }
 

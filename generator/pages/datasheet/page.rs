@@ -18,6 +18,7 @@ use crate::pages::account::{self, PageInputs, blocks, short};
 use crate::pages::figure::{Figure, figures};
 use crate::pages::formula;
 use crate::pages::markup::html;
+use crate::pages::stages;
 
 /// The clock at which rates are told, in MHz: what a small FPGA reaches.
 const CLOCK: f64 = 25.0;
@@ -34,15 +35,12 @@ struct Page<'a> {
     notes: Vec<String>,
     glance: Vec<(&'static str, String)>,
     diagram: String,
-    numbering: &'static str,
     formats: String,
     ports: TableView,
     domain: TableView,
     example: TableView,
-    blocks: TableView,
-    roms: TableView,
-    fields: TableView,
-    microprogram: Microprogram,
+    program: Program,
+    roms: Option<TableView>,
     clocks: TableView,
     throughput: String,
     timing: String,
@@ -60,6 +58,37 @@ struct Page<'a> {
     instance: String,
     keys: TableView,
     toml: String,
+}
+
+/// What brings the computation about.
+enum Program {
+    Microprogram {
+        microprogram: Microprogram,
+        fields: TableView,
+        numbering: &'static str,
+        blocks: TableView,
+    },
+    Pipeline {
+        stages: TableView,
+        handshake: String,
+    },
+}
+
+impl Program {
+    fn new(design: &Design) -> Self {
+        match &design.pipeline {
+            None => Self::Microprogram {
+                microprogram: Microprogram::new(design),
+                fields: TableView::new("Fields of the control word", &account::fields(design)),
+                numbering: account::numbering(design),
+                blocks: TableView::new("Blocks", &blocks::table(design)),
+            },
+            Some(pipeline) => Self::Pipeline {
+                stages: TableView::new("Stages", &stages::table(design, pipeline)),
+                handshake: html(account::handshake(pipeline)),
+            },
+        }
+    }
 }
 
 struct ProofView {
@@ -110,22 +139,33 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         source: html(&about.source),
         notes: about.notes.iter().map(|note| html(note)).collect(),
         glance: glance(subject, measured),
-        diagram: diagram::drawing(design).svg()?,
-        numbering: account::numbering(design),
+        diagram: match &design.pipeline {
+            None => diagram::drawing(design),
+            Some(pipeline) => stages::drawing(design, pipeline),
+        }
+        .svg()?,
         formats: html(account::FORMATS),
         ports: TableView::new("Ports", &account::ports(design)),
         domain: TableView::new("Domain of the operands", &account::domain(design, contract)),
         example: TableView::new("A worked example", &account::example(contract, &measured.example)),
-        blocks: TableView::new("Blocks", &blocks::table(design)),
-        roms: TableView::new("ROMs", &account::roms(design)),
-        fields: TableView::new("Fields of the control word", &account::fields(design)),
-        microprogram: Microprogram::new(design),
+        program: Program::new(design),
+        roms: (!design.roms.is_empty()).then(|| TableView::new("ROMs", &account::roms(design))),
         clocks: TableView::new(
             "Clocks",
-            &account::clocks(&measured.timing, measured.line.as_ref()),
+            &match &design.pipeline {
+                None => account::clocks(&measured.timing, measured.line.as_ref()),
+                Some(pipeline) => account::pipeline_clocks(pipeline),
+            },
         ),
-        throughput: throughput(&measured.timing),
-        timing: timing::drawing(&measured.waves, described(measured)).svg()?,
+        throughput: match &design.pipeline {
+            None => throughput(&measured.timing),
+            Some(pipeline) => format!(
+                "A point takes a clock: {} million points a second at {} MHz, the clock that the stages are made for.",
+                short(pipeline.clock_mhz),
+                short(pipeline.clock_mhz)
+            ),
+        },
+        timing: timing::drawing(&measured.waves, described(design, measured)).svg()?,
         wavedrom_link: format!("data:application/json;base64,{}", STANDARD.encode(&wavedrom)),
         wavedrom,
         accuracy: html(&account::accuracy(contract)),
@@ -174,9 +214,18 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
     let mut glance = vec![
         ("Largest error of an output", format!("{:.3} units, proven", contract.bound().units)),
         ("Outputs", outputs.to_string()),
-        ("Clocks, start to valid", clocks(timing.start_to_valid)),
+        match &design.pipeline {
+            None => ("Clocks, start to valid", clocks(timing.start_to_valid)),
+            Some(pipeline) => ("Latency in clocks", pipeline.stages.len().to_string()),
+        },
         ("Clocks a point", clocks(timing.clocks_per_point())),
-        ("Microinstructions", design.control.microprogram.len().to_string()),
+        match &design.pipeline {
+            None => ("Microinstructions", design.control.microprogram.len().to_string()),
+            Some(pipeline) => {
+                let clock = format!("{} MHz on {}", short(pipeline.clock_mhz), pipeline.target);
+                ("Stages made for", clock)
+            }
+        },
         ("ROM", format!("{} bits", grouped(design.rom_bits()))),
         ("Register bits", flip_flops.to_string()),
         ("Multipliers", multipliers(design)),
@@ -229,7 +278,14 @@ fn throughput(timing: &Timing) -> String {
 }
 
 /// What the timing diagram shows, for those who do not see it.
-fn described(measured: &Measured) -> String {
+fn described(design: &Design, measured: &Measured) -> String {
+    if design.pipeline.is_some() {
+        return format!(
+            "Points through the pipeline, simulated: the first is taken in clock 0, its results are on the outputs from clock {} \
+             on. One clock has no point; where the pipeline can be held back, the first results wait.",
+            measured.waves.first("out_valid").map_or("some".to_owned(), |clock| clock.to_string())
+        );
+    }
     let at = |clock: Option<u32>| clock.map_or("some".to_owned(), |clock| clock.to_string());
     format!(
         "One computation in {} clocks, simulated: start is high in clock 0, valid first in clock {}, done in clock {}. \

@@ -1,4 +1,4 @@
-//! The waveform of one computation, from the built-in simulator: lanes of values, and WaveDrom's JSON of them.
+//! The waveform of one computation, or of points through a pipeline, from the built-in simulator: lanes of values, and WaveDrom's JSON of them.
 
 use anyhow::Result;
 use serde_json::{Value, json};
@@ -22,10 +22,12 @@ const TAIL: usize = 8;
 /// The name of the lane that says which microinstruction is executed.
 pub const MICROINSTRUCTION: &str = "microinstruction";
 
-/// A computation, clock by clock.
+/// A recording, clock by clock.
 pub struct Waves {
     /// The name of the module.
     pub name: String,
+    /// What is to be seen, in some words.
+    pub what: &'static str,
     /// The clocks that are shown, from 0; a number that is not one more than that before follows a gap.
     pub clocks: Vec<usize>,
     /// One below the other.
@@ -72,11 +74,55 @@ enum Meaning {
 }
 
 impl Waves {
-    /// Simulates the worked example.
+    /// Simulates the worked example; of a pipeline, points behind one another, the first of them that of the example.
     ///
     /// # Errors
     /// A device that never ends.
     pub fn record(core: &Core) -> Result<Self> {
+        match core.design.pipeline {
+            None => Self::computation(core),
+            Some(_) => Self::points(core),
+        }
+    }
+
+    /// The handshake of a pipeline, operands while they are offered, results while they are shown.
+    fn points(core: &Core) -> Result<Self> {
+        let design = &core.design;
+        let of = |wanted: &[Role]| {
+            let ports = design.ports.iter().filter(|port| wanted.contains(&port.role));
+            ports.map(|port| port.net).collect::<Vec<_>>()
+        };
+        let (offer, shown) = (of(&[Role::InValid]), of(&[Role::Valid]));
+        let input = [offer.clone(), of(&[Role::InReady]), of(&[Role::Point])].concat();
+        let output =
+            [shown.clone(), of(&[Role::OutReady]), of(&[Role::Result, Role::Status])].concat();
+        let nets = [input, output].concat();
+        let clocks = trial::record_points(design, core.contract.as_ref(), &nets)?;
+        let column = |net: NetId| nets.iter().position(|&other| other == net);
+        let mut lanes = vec![clock_lane(clocks.len())];
+        for (at, &net) in nets.iter().enumerate() {
+            let port = design.ports.iter().find(|port| port.net == net);
+            // Data mean something with their valid bit alone.
+            let valid = match port.map(|port| port.role) {
+                Some(Role::Point) => column(offer[0]),
+                Some(Role::Result | Role::Status) => column(shown[0]),
+                _ => None,
+            };
+            let format = design.net(net).format;
+            let value = |clock: &Vec<u64>| {
+                valid.is_none_or(|valid| clock[valid] == 1).then(|| text(format, clock[at]))
+            };
+            lanes.push(Lane {
+                name: design.net(net).name.clone(),
+                number: design.net(net).block,
+                shape: shape(format),
+                values: clocks.iter().map(value).collect(),
+            });
+        }
+        Ok(Self::cut(design, "points through the pipeline", clocks.len(), lanes))
+    }
+
+    fn computation(core: &Core) -> Result<Self> {
         let design = &core.design;
         let Handshake { start, busy, valid, done, .. } = design.handshake()?;
         let address = design.register(design.control.address).q;
@@ -87,12 +133,7 @@ impl Waves {
         let column = |at: usize| -> Vec<u64> { clocks.iter().map(|values| values[at]).collect() };
         let [addresses, busy, valid] = [0, 1, 2].map(|at| column(probes.len() + at));
 
-        let mut lanes = vec![Lane {
-            name: "clk".to_owned(),
-            number: None,
-            shape: Shape::Clock,
-            values: vec![None; clocks.len()],
-        }];
+        let mut lanes = vec![clock_lane(clocks.len())];
         let known = valid.iter().position(|&valid| valid == 1).unwrap_or(0);
         for (at, probe) in probes.iter().enumerate() {
             if at == 4 {
@@ -102,11 +143,16 @@ impl Waves {
                 lanes.push(lane);
             }
         }
-        let shown = shown(clocks.len());
+        Ok(Self::cut(design, "one computation", clocks.len(), lanes))
+    }
+
+    /// The clocks that are shown of so many.
+    fn cut(design: &Design, what: &'static str, clocks: usize, mut lanes: Vec<Lane>) -> Self {
+        let shown = shown(clocks);
         for lane in &mut lanes {
             lane.values = shown.iter().map(|&at| lane.values[at].take()).collect();
         }
-        Ok(Self { name: design.name.clone(), clocks: shown, lanes })
+        Self { name: design.name.clone(), what, clocks: shown, lanes }
     }
 
     /// The first clock in which a signal is 1.
@@ -124,7 +170,7 @@ impl Waves {
         let signal: Vec<Value> = self.lanes.iter().map(|lane| self.signal(lane)).collect();
         sealed_json(json!({
             "signal": signal,
-            "head": { "text": format!("{}: one computation", self.name), "tick": 0 },
+            "head": { "text": format!("{}: {}", self.name, self.what), "tick": 0 },
         }))
     }
 
@@ -169,6 +215,14 @@ fn probes(design: &Design, handshake: [NetId; 4]) -> Vec<Probe> {
         .collect()
 }
 
+fn clock_lane(clocks: usize) -> Lane {
+    Lane { name: "clk".to_owned(), number: None, shape: Shape::Clock, values: vec![None; clocks] }
+}
+
+fn shape(format: Format) -> Shape {
+    if format.width() == 1 { Shape::Bit } else { Shape::Bus }
+}
+
 /// The lane of a probe; none for a register that the computation leaves alone.
 fn lane(design: &Design, probe: &Probe, bits: &[u64], valid: usize) -> Option<Lane> {
     let net = design.net(probe.net);
@@ -189,10 +243,7 @@ fn lane(design: &Design, probe: &Probe, bits: &[u64], valid: usize) -> Option<La
     Some(Lane {
         name: net.name.clone(),
         number: net.block,
-        shape: match format.width() {
-            1 => Shape::Bit,
-            _ => Shape::Bus,
-        },
+        shape: shape(format),
         values: bits.iter().enumerate().map(value).collect(),
     })
 }
@@ -260,6 +311,7 @@ mod tests {
         };
         let waves = Waves {
             name: "core".to_owned(),
+            what: "one computation",
             clocks: vec![0, 1, 7, 8],
             lanes: vec![
                 lane("clk", Shape::Clock, [None; 4]),

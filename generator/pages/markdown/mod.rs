@@ -6,6 +6,7 @@ use anyhow::Result;
 use askama::Template;
 
 use super::account::{self, PageInputs};
+use super::stages;
 use crate::hdl::netlist::Design;
 use crate::package::seal::{Seal, sealed};
 use prose::{prose, table};
@@ -21,10 +22,8 @@ struct Page<'a> {
     notes: Vec<String>,
     ports: String,
     numbering: &'static str,
-    blocks: String,
+    program: Program,
     roms: String,
-    fields: String,
-    microprogram: String,
     clocks: String,
     accuracy: String,
     terms: String,
@@ -35,6 +34,28 @@ struct Page<'a> {
     example: String,
     keys: String,
     config: &'a str,
+}
+
+/// What brings the computation about, as tables.
+enum Program {
+    Microprogram { blocks: String, fields: String, microprogram: String },
+    Pipeline { stages: String, handshake: &'static str },
+}
+
+impl Program {
+    fn new(design: &Design) -> Self {
+        match &design.pipeline {
+            None => Self::Microprogram {
+                blocks: table(&account::blocks::table(design)),
+                fields: table(&account::fields(design)),
+                microprogram: table(&account::microprogram(design)),
+            },
+            Some(pipeline) => Self::Pipeline {
+                stages: table(&stages::table(design, pipeline)),
+                handshake: account::handshake(pipeline),
+            },
+        }
+    }
 }
 
 /// The page of a design, ending with a newline.
@@ -53,11 +74,12 @@ pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
         notes: about.notes.iter().map(|note| prose(note)).collect(),
         ports: table(&account::ports(design)),
         numbering: account::numbering(design),
-        blocks: table(&account::blocks::table(design)),
-        roms: table(&account::roms(design)),
-        fields: table(&account::fields(design)),
-        microprogram: table(&account::microprogram(design)),
-        clocks: table(&account::clocks(inputs.timing, inputs.line)),
+        program: Program::new(design),
+        roms: if design.roms.is_empty() { String::new() } else { table(&account::roms(design)) },
+        clocks: table(&match &design.pipeline {
+            None => account::clocks(inputs.timing, inputs.line),
+            Some(pipeline) => account::pipeline_clocks(pipeline),
+        }),
         accuracy: account::accuracy(inputs.contract),
         terms: table(&account::terms(&bound)),
         limit: prose(&account::limit(inputs)),

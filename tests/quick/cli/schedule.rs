@@ -49,3 +49,22 @@ fn what_is_proposed_can_be_reached() {
     let shown = place.glint(["schedule", "core.toml", "--json"]);
     assert_eq!(shown.code, 0, "{shown:?}");
 }
+
+#[test]
+fn the_drawing_is_a_file_of_its_own_and_no_other_is_overwritten() {
+    let text = "device = \"schlick\"\narchitecture = \"pipelined\"\n";
+    let place = Place::with("core.toml", text);
+    let draw = ["schedule", "core.toml", "--svg", "out"];
+    place.done(draw);
+    let drawn = place.read("out/core.svg");
+    let document = roxmltree::Document::parse(&drawn).expect("XML");
+    assert_eq!(document.root_element().tag_name().name(), "svg");
+    for load in ["url(", "@import", "href"] {
+        assert!(!drawn.contains(load), "{load}");
+    }
+    place.done(draw);
+    assert_eq!(place.read("out/core.svg"), drawn);
+    place.write("out/core.svg", "mine");
+    place.glint(draw).refused(1, &["core.svg", "--force"]);
+    assert_eq!(place.read("out/core.svg"), "mine");
+}
