@@ -6,7 +6,7 @@ use anyhow::{Context, Result, ensure};
 use super::through::Through;
 use super::{Points, Random};
 use crate::base::fixed::Format;
-use crate::golden::{Contract, Operand};
+use crate::golden::{Contract, Highlight, Operand};
 use crate::hdl::netlist::{self, Design, Handshake, NetId};
 use crate::hdl::sim::Simulator;
 use crate::package::{Computation, LineClocks, Linear, Quantity, Shown, Timing, WorkedExample};
@@ -276,12 +276,34 @@ fn example_operands(contract: &dyn Contract) -> Vec<i64> {
             };
             let f = highlight.reference(&highlight.point(&values[..control], 0));
             if (0.4..0.8).contains(&f) {
+                slow_down(contract, highlight, &mut values);
                 return values;
             }
         }
         values[at] = typical;
     }
     values
+}
+
+/// Of a line: lowers what f does not depend on at its first point until f at its middle is a quarter of that.
+fn slow_down(contract: &dyn Contract, highlight: &Highlight, values: &mut [i64]) {
+    let length =
+        contract.operands().iter().position(|it| contract.length() == Some(it.name.as_str()));
+    let Some(middle) = length.map(|at| values[at] as u64 / 2) else { return };
+    let control = highlight.control();
+    let f =
+        |values: &[i64], index| highlight.reference(&highlight.point(&values[..control], index));
+    let first = f(values, 0);
+    for at in (0..control).filter(|&at| contract.operands()[at].format.frac > 0) {
+        let typical = values[at];
+        let low = contract.operands()[at].domain.0.max(0);
+        while f(values, 0) == first && f(values, middle) < first / 4.0 && values[at] > low {
+            values[at] = (values[at] - values[at] / 5 - 1).max(low);
+        }
+        if f(values, 0) != first {
+            values[at] = typical;
+        }
+    }
 }
 
 /// The first operands that the contract hints at for which no output is 0 or at an end of its format.

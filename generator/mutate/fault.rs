@@ -80,7 +80,8 @@ impl Faults {
         let mut faults = Self::default();
         // The environment's part, and what the fields of the control word name bit by bit.
         let reset = design.port(|role| role == Role::Reset).map(|port| port.net);
-        let left_out = [reset, Some(design.rom(design.control.rom).data)];
+        let control = design.roms.get(design.control.rom.index()).map(|rom| rom.data);
+        let left_out = [reset, control];
         for (id, net) in design.iter() {
             if !left_out.contains(&Some(id)) {
                 faults.bits(id, net);

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 
-use super::coverage::{Coverage, Operands};
+use super::coverage::{Coverage, Operands, Place};
 use super::fault::{Fault, Site};
 use super::held::{self, Tried};
 use super::plant;
@@ -43,6 +43,7 @@ pub fn run<'f>(
         tested: Coverage::of(&core.design, &lockstep, core::TEST_POINTS)?,
         beyond: OnceLock::new(),
         shipped: Shipped::of(core)?,
+        latency: core.design.pipeline.as_ref().map_or(0, |it| it.stages.len() as u64),
     };
     let faults: Vec<&Fault> = faults.into_iter().collect();
     faults
@@ -66,6 +67,8 @@ struct Bench<'a> {
     /// Which words a longer test reads, once one is asked for that the default test does not read.
     beyond: OnceLock<Coverage>,
     shipped: Shipped,
+    /// Points that may be on their way together.
+    latency: u64,
 }
 
 impl Bench<'_> {
@@ -125,6 +128,9 @@ impl Bench<'_> {
                     return Ok(directed(difference));
                 }
             }
+            if let Some(mismatch) = self.beyond_shows(mutant, rom, word)? {
+                return Ok(directed(Difference { held: Vec::new(), mismatch }));
+            }
             let tried = match addressing {
                 Some(held) => held::all(self.core, mutant, held)?,
                 None => Tried::Nothing,
@@ -159,6 +165,26 @@ impl Bench<'_> {
         Ok(readings)
     }
 
+    /// Of a pipeline, which has no registers that keep the operands of a reading: the streams of a longer test that
+    /// read a word, where the default test does not.
+    fn beyond_shows(&self, mutant: &Design, rom: RomId, word: usize) -> Result<Option<Mismatch>> {
+        if self.latency == 0 || !self.tested.places(rom, word).is_empty() {
+            return Ok(None);
+        }
+        for place in self.beyond()?.places(rom, word) {
+            let lockstep = self.lockstep(mutant, place.seed)?;
+            if let Some(mismatch) = lockstep.run_alone(self.end(place))?.mismatch {
+                return Ok(Some(mismatch));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The results of a stream to the end of the computation after one that reads a word.
+    fn end(&self, place: &Place) -> u64 {
+        place.points + 2 + self.latency
+    }
+
     fn lockstep<'d>(&'d self, mutant: &'d Design, seed: u64) -> Result<Lockstep<'d>> {
         let contract = self.core.contract.as_ref();
         Lockstep::new(mutant, self.model.boxed_clone(), contract, seed)
@@ -172,14 +198,13 @@ impl Bench<'_> {
         }
     }
 
-    /// Where the default test reads the words at fault: a seed, and the results to the end of the computation
-    /// after the one that reads.
+    /// Where the default test reads the words at fault: a seed, and the results up to where it shows.
     fn places(&self, site: &Site) -> Vec<(u64, u64)> {
         let Some((rom, words)) = self.words(site) else {
             return Vec::new();
         };
         let places = words.iter().flat_map(|&(word, _)| self.tested.places(rom, word));
-        places.map(|place| (place.seed, place.points + 2)).collect()
+        places.map(|place| (place.seed, self.end(place))).collect()
     }
 
     fn beyond(&self) -> Result<&Coverage> {

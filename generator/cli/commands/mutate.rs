@@ -9,7 +9,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::mismatch::{self, first_clock, traced};
-use super::{Loaded, load_sequential};
+use super::{Loaded, load};
 use crate::cli::failure::Usage;
 use crate::cli::own_file::OwnFile;
 use crate::cli::tables::Column;
@@ -70,7 +70,7 @@ pub fn mutate(
     configs: &[PathBuf],
     request: &MutateRequest,
 ) -> Result<bool> {
-    let loaded = load_sequential(registry, configs, "mutate")?;
+    let loaded = load(registry, configs)?;
     if let Some(id) = &request.only {
         return match &loaded[..] {
             [one] => only(output, one, id),

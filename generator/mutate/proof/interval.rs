@@ -32,6 +32,10 @@ pub(super) fn of(
     match &net.driver {
         Driver::Constant(bits) => (net.format.raw(*bits), net.format.raw(*bits)),
         Driver::Register(register) if trusted(design, design.register(*register)) => net.range,
+        // The stage before comes before it in the order of evaluation; at power-up and after a reset it holds 0.
+        Driver::Register(register) if design.pipeline.is_some() => {
+            design.register(*register).data.map_or(all, |data| fits(hull(of(data), (0, 0))))
+        }
         Driver::Rom(rom) => {
             let raw = design.rom(*rom).words.iter().map(|&word| net.format.raw(word));
             let raw = raw.map(|raw| (raw, raw));

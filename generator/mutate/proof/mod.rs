@@ -51,7 +51,9 @@ impl<'a> Prover<'a> {
         let outputs = design.outputs().map(|port| port.net);
         let registers = design.registers.iter();
         let registers = registers.filter(|register| register.kind != RegisterKind::Internal);
-        for net in outputs.chain(registers.map(|register| register.q)) {
+        let checkpoints = design.pipeline.iter().flat_map(|pipeline| &pipeline.checkpoints);
+        let checkpoints = checkpoints.map(|checkpoint| checkpoint.net);
+        for net in outputs.chain(registers.map(|register| register.q)).chain(checkpoints) {
             compared[net.index()] = mask(design.width(net));
         }
         let sound = Sound::of(design)?;
@@ -83,7 +85,7 @@ impl<'a> Prover<'a> {
             }
             _ => {}
         }
-        let length = design.control.microprogram.len();
+        let length = self.sound.nets.len();
         let nothing =
             State { registers: vec![0; design.registers.len()], roms: vec![0; design.roms.len()] };
         let mut states = vec![nothing; length];
@@ -251,6 +253,10 @@ impl<'a> Prover<'a> {
         let rom = self.sound.design.rom(id);
         let mut differ = match nets.differ[rom.address.index()] {
             0 => 0,
+            // No more than the words do, where every address has one.
+            _ if rom.words.len() == 1 << self.sound.design.width(rom.address) => {
+                rom.words.iter().fold(0, |differ, word| differ | (word ^ rom.words[0]))
+            }
             _ => u64::MAX,
         };
         if let Site::Words(at_fault, words) = site

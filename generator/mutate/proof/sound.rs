@@ -1,4 +1,5 @@
-//! What is known of the fault-free design in each microinstruction.
+//! What is known of the fault-free design in each microinstruction; a pipeline, which has none, is taken as one that follows
+//! itself.
 
 use super::interval;
 use super::known::{self, Known};
@@ -20,8 +21,12 @@ pub(super) struct Sound<'a> {
 impl<'a> Sound<'a> {
     /// `None` for a design with a combinational loop.
     pub(super) fn of(design: &'a Design) -> Option<Self> {
-        let order = design.levelise().ok()?;
-        let length = design.control.microprogram.len();
+        let mut order = design.levelise().ok()?;
+        if let Some(pipeline) = &design.pipeline {
+            // Registers behind the logic of the stage before.
+            order.sort_by_key(|net| pipeline.stage_of[net.index()]);
+        }
+        let length = design.control.microprogram.len().max(1);
         let mut sound = Self {
             design,
             same: same(design, &order),
@@ -114,7 +119,9 @@ impl<'a> Sound<'a> {
 
 /// The microinstructions that may follow one, reset included, which leads to microinstruction 0 from any.
 fn following(design: &Design, at: usize) -> Vec<usize> {
-    let last = design.control.microprogram.len() - 1;
+    let Some(last) = design.control.microprogram.len().checked_sub(1) else {
+        return vec![at];
+    };
     let mut following = vec![0];
     following.extend(design.control.successors(at).into_iter().map(|to| to.min(last)));
     following.sort_unstable();
