@@ -29,7 +29,7 @@ async def worked_example(dut: Any) -> None:
     """The example of the manifest, by hand."""
     core = await glint_cocotb.Core.after_reset(dut)
     shown = await core.compute(
-        delta_zeta=8388607,  # 1.999999761581421
+        delta_zeta=96711,  # 0.02305769920349121
         zeta_start=2336533,  # 0.5570728778839111
         length=20,
         amplitude=255,

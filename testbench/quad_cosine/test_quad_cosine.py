@@ -29,7 +29,7 @@ async def worked_example(dut: Any) -> None:
     """The example of the manifest, by hand."""
     core = await glint_cocotb.Core.after_reset(dut)
     shown = await core.compute(
-        delta_zeta=2097151,  # 0.031249985098838806
+        delta_zeta=687192,  # 0.010239958763122559
         zeta_start=12679313,  # 0.1889364868402481
         exponent=20,
         length=20,
