@@ -371,15 +371,15 @@ Examples:
     /// Verify configurations by every means that Glint has, and write a page about each
     ///
     /// Writes `DIR/<name>.html`, one page that needs no network, and `DIR/<name>.json` with the same for scripts: what was
-    /// shown, by which leg, over which domain, with which tools, and what is left open. Both are the same whenever they are
-    /// made with the same tools, but for the page's last section: how long each leg took, which `DIR/<name>.timings.json` has too.
-    /// The exit code is 0 only if every leg that covers the configuration, and that --without-tools does not leave out,
+    /// shown, by which check, over which domain, with which tools, and what is left open. Both are the same whenever they are
+    /// made with the same tools, but for the page's last section: how long each check took, which `DIR/<name>.timings.json` has too.
+    /// The exit code is 0 only if every check that covers the configuration, and that --without-tools does not leave out,
     /// was run and holds: a tool that is missing leaves the verification incomplete. So does a proof of the accuracy
     /// contract that takes more than some seconds, unless --full makes it or its record is in --proofs: that is found
     /// by the configuration's digest and checked again in part.
     #[command(after_help = "\
 Examples:
-  glint verify my_core.toml                       every leg, in a minute or two
+  glint verify my_core.toml                       every check, in a minute or two
   glint verify my_core.toml --full                the whole proof, all faults: minutes to hours
   glint verify my_core.toml --without-tools       what needs no simulator, solver or synthesiser
   glint verify --json                             everything in configs/, for scripts")]
@@ -389,7 +389,7 @@ Examples:
         /// Do everything, however long it takes
         #[arg(long)]
         full: bool,
-        /// Only the legs that need no tool outside Glint
+        /// Only the checks that need no tool outside Glint
         #[arg(long)]
         without_tools: bool,
         /// Where the files go

@@ -1,10 +1,10 @@
-//! Legs that need nothing but Glint.
+//! Checks that need nothing but Glint.
 
 use std::ops::ControlFlow;
 
 use anyhow::Result;
 
-use super::{Finding, Leg, Subject, Verdict};
+use super::{Check, Finding, Subject, Verdict};
 use crate::base::text::{counted, grouped};
 use crate::core::{TEST_POINTS, TEST_SEED};
 use crate::cosim::exhaustive::{Job, Proof, Record as Recorded, Shard, State};
@@ -21,7 +21,7 @@ const EVALUATIONS: u64 = 1 << 28;
 const AGAIN: u64 = 1 << 24;
 
 /// The description, as it was built.
-pub const DESIGN: Leg = Leg {
+pub const DESIGN: Check = Check {
     id: "design",
     title: "Design rules",
     question: "Is every net driven once, every width explicit, every value within its interval, and is there no loop?",
@@ -52,7 +52,7 @@ pub const DESIGN: Leg = Leg {
 };
 
 /// Golden model and simulation.
-pub const LOCKSTEP: Leg = Leg {
+pub const LOCKSTEP: Check = Check {
     id: "lockstep",
     title: "Golden model against simulation",
     question: "Has every register and output the value that the golden model predicts, on every clock?",
@@ -92,7 +92,7 @@ fn lockstep(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
 }
 
 /// The accuracy contract.
-pub const CONTRACT: Leg = Leg {
+pub const CONTRACT: Check = Check {
     id: "contract",
     title: "Golden model against the formula",
     question: "Is no output further from the formula in f64 than the stated bound, for any operands?",
@@ -183,7 +183,7 @@ fn without_record(subject: &Subject<'_>, evaluations: u64) -> Finding {
 }
 
 /// Every combination of operands.
-pub const CLOCKS: Leg = Leg {
+pub const CLOCKS: Check = Check {
     id: "clocks",
     title: "Golden model against simulation, every operand",
     question: "Has every register and output the value that the golden model predicts, on every clock, for every combination of operands?",
@@ -213,7 +213,7 @@ pub const CLOCKS: Leg = Leg {
 };
 
 /// Faults in the netlist.
-pub const MUTATION: Leg = Leg {
+pub const MUTATION: Check = Check {
     id: "mutation",
     title: "Faults in the netlist",
     question: "Does the test notice each of the faults that are planted in the netlist, one at a time?",

@@ -1,7 +1,7 @@
-//! Everything that shows that a configuration does what it says, leg by leg, and a page about it.
+//! Everything that shows that a configuration does what it says, check by check, and a page about it.
 //!
-//! A [`Leg`] asks one question, with the tools that it names, and gives a [`Finding`]: the answer, over
-//! which domain it holds, and what it leaves open. The legs are independent of each other: none is told what
+//! A [`Check`] asks one question, with the tools that it names, and gives a [`Finding`]: the answer, over
+//! which domain it holds, and what it leaves open. The checks are independent of each other: none is told what
 //! another found. What they found is the same whenever it is found with the same tools; how long it
 //! took stands apart, in [`Timing`].
 
@@ -44,7 +44,7 @@ pub struct Effort {
     pub time_limit: Duration,
 }
 
-/// What a leg says.
+/// What a check says.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Verdict {
@@ -54,11 +54,11 @@ pub enum Verdict {
     Passed,
     /// It does not hold.
     Failed,
-    /// The leg says nothing of this configuration, or was left out on purpose; why is said.
+    /// The check says nothing of this configuration, or was left out on purpose; why is said.
     NotCovered,
     /// It was run, and its test is too weak to say that it holds.
     Undecided,
-    /// The leg could not be run to its end: a tool is missing, it reached a limit, or it takes more than this
+    /// The check could not be run to its end: a tool is missing, it reached a limit, or it takes more than this
     /// effort allows.
     #[default]
     NotRun,
@@ -78,7 +78,7 @@ impl Verdict {
     }
 }
 
-/// What a leg found.
+/// What a check found.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Finding {
     /// What it says.
@@ -87,7 +87,7 @@ pub struct Finding {
     pub domain: String,
     /// The outcome in a sentence or two.
     pub words: String,
-    /// What the leg leaves undecided; may be empty.
+    /// What the check leaves undecided; may be empty.
     pub open: String,
     /// The record that stands for a part of the work, by its file.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -111,7 +111,7 @@ impl Finding {
         }
     }
 
-    /// Of a leg that says nothing here.
+    /// Of a check that says nothing here.
     fn without(verdict: Verdict, why: String) -> Self {
         Self { verdict, words: why, ..Self::default() }
     }
@@ -121,11 +121,11 @@ impl Finding {
     }
 }
 
-/// What a leg does, with its tools; it tells the steps that are done.
+/// What a check does, with its tools; it tells the steps that are done.
 type Run = fn(&Subject<'_>, &[Tool], &(dyn Fn(u64) + Sync)) -> Result<Finding>;
 
 /// One question about a configuration.
-pub struct Leg {
+pub struct Check {
     /// For scripts.
     pub id: &'static str,
     /// For people.
@@ -139,8 +139,8 @@ pub struct Leg {
     run: Run,
 }
 
-/// All legs: first those that need nothing but Glint.
-pub const LEGS: [&Leg; 12] = [
+/// All checks: first those that need nothing but Glint.
+pub const CHECKS: [&Check; 12] = [
     &inside::DESIGN,
     &inside::LOCKSTEP,
     &inside::CLOCKS,
@@ -155,7 +155,7 @@ pub const LEGS: [&Leg; 12] = [
     &outside::GATES,
 ];
 
-impl Leg {
+impl Check {
     /// Whether it needs a tool outside Glint.
     pub fn is_outside(&self) -> bool {
         !self.tools.is_empty()
@@ -181,12 +181,12 @@ impl Leg {
 
     fn answer(&self, tools: Vec<String>, finding: Finding, took: Duration) -> Answer {
         Answer {
-            leg: self.id,
+            check: self.id,
             title: self.title,
             question: self.question,
             tools,
             finding,
-            timing: Timing { leg: self.id, seconds: took.as_secs_f64() },
+            timing: Timing { check: self.id, seconds: took.as_secs_f64() },
         }
     }
 
@@ -214,14 +214,14 @@ impl Leg {
     }
 }
 
-/// A leg and what it found.
+/// A check and what it found.
 #[derive(Clone, Debug, Serialize)]
 pub struct Answer {
-    /// [`Leg::id`].
-    pub leg: &'static str,
-    /// [`Leg::title`].
+    /// [`Check::id`].
+    pub check: &'static str,
+    /// [`Check::title`].
     pub title: &'static str,
-    /// [`Leg::question`].
+    /// [`Check::question`].
     pub question: &'static str,
     /// Versions of the tools outside Glint.
     pub tools: Vec<String>,
@@ -233,22 +233,22 @@ pub struct Answer {
     pub timing: Timing,
 }
 
-/// How long a leg took.
+/// How long a check took.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Timing {
-    /// [`Leg::id`].
-    pub leg: &'static str,
+    /// [`Check::id`].
+    pub check: &'static str,
     /// Seconds on the clock on the wall.
     pub seconds: f64,
 }
 
-/// What all legs say together.
+/// What all checks say together.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Conclusion {
-    /// Every leg that covers the configuration was run, and all of them hold.
+    /// Every check that covers the configuration was run, and all of them hold.
     Verified,
-    /// Nothing failed, but a leg could not be run, or decides nothing.
+    /// Nothing failed, but a check could not be run, or decides nothing.
     Incomplete,
     /// Something does not hold.
     Failed,
@@ -290,15 +290,15 @@ pub struct Record {
     pub configuration: String,
     /// Whether everything was done, however long it takes.
     pub full: bool,
-    /// What all legs say together.
+    /// What all checks say together.
     pub conclusion: Conclusion,
     /// In the order in which they were run.
-    pub legs: Vec<Answer>,
+    pub checks: Vec<Answer>,
 }
 
 impl Record {
-    /// Of the answers of all legs.
-    pub fn new(subject: &Subject<'_>, legs: Vec<Answer>) -> Self {
+    /// Of the answers of all checks.
+    pub fn new(subject: &Subject<'_>, checks: Vec<Answer>) -> Self {
         Self {
             glint: env!("CARGO_PKG_VERSION"),
             config: subject.path.to_owned(),
@@ -306,8 +306,8 @@ impl Record {
             device: subject.core.device.name,
             configuration: subject.core.digest(),
             full: subject.effort.full,
-            conclusion: Conclusion::of(&legs),
-            legs,
+            conclusion: Conclusion::of(&checks),
+            checks,
         }
     }
 }

@@ -1,11 +1,11 @@
-//! Legs that run tools outside Glint, on the emitted files.
+//! Checks that run tools outside Glint, on the emitted files.
 
 use std::fs;
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 
-use super::{Finding, Leg, Subject, Verdict};
+use super::{Check, Finding, Subject, Verdict};
 use crate::base::text::grouped;
 use crate::base::transient::Directory;
 use crate::core::BENCH_SEED;
@@ -24,7 +24,7 @@ const COCOTB_VERSION: &str = "2.1.0";
 const GATE_POINTS: u64 = 40;
 
 /// The emitted text.
-pub const LINT: Leg = Leg {
+pub const LINT: Check = Check {
     id: "lint",
     title: "Lint",
     question: "Have linters at their strictest nothing to say about the emitted Verilog?",
@@ -58,7 +58,7 @@ pub const LINT: Leg = Leg {
 };
 
 /// The emitted Verilog in Icarus Verilog.
-pub const ICARUS: Leg = Leg {
+pub const ICARUS: Check = Check {
     id: "icarus",
     title: "Emitted Verilog in Icarus Verilog",
     question: "Does the emitted Verilog give, on every clock, the outputs on which golden model and simulation agree?",
@@ -68,7 +68,7 @@ pub const ICARUS: Leg = Leg {
 };
 
 /// The emitted Verilog in Verilator.
-pub const VERILATOR: Leg = Leg {
+pub const VERILATOR: Check = Check {
     id: "verilator",
     title: "Emitted Verilog in Verilator",
     question: ICARUS.question,
@@ -99,7 +99,7 @@ fn bench(subject: &Subject<'_>, simulator: Simulator) -> Result<Finding> {
 }
 
 /// What the device takes of FPGAs.
-pub const SYNTHESIS: Leg = Leg {
+pub const SYNTHESIS: Check = Check {
     id: "synthesis",
     title: "Synthesis",
     question: "Is the emitted Verilog synthesised for each family of FPGAs, and what does it take?",
@@ -129,7 +129,7 @@ pub const SYNTHESIS: Leg = Leg {
 };
 
 /// Properties of the emitted Verilog.
-pub const FORMAL: Leg = Leg {
+pub const FORMAL: Check = Check {
     id: "formal",
     title: "Proof of the handshake",
     question: "Do valid, busy and done come exactly when they should, for all inputs and from any state, and are operands stable meanwhile?",
@@ -166,7 +166,7 @@ pub const FORMAL: Leg = Leg {
 };
 
 /// The emitted Verilog driven from Python.
-pub const COCOTB: Leg = Leg {
+pub const COCOTB: Check = Check {
     id: "cocotb",
     title: "Emitted Verilog driven from Python",
     question: "Does the core do what its manifest says, for a bench in Python that knows nothing else of it?",
@@ -220,7 +220,7 @@ fn place(subject: &Subject<'_>) -> Result<Directory> {
 }
 
 /// The synthesised netlists.
-pub const GATES: Leg = Leg {
+pub const GATES: Check = Check {
     id: "gates",
     title: "Netlists at gate level",
     question: "Do the netlists that synthesis makes for FPGAs, ROM contents and all, pass the bench of their source?",

@@ -15,7 +15,7 @@ struct Page<'a> {
     record: &'a Record,
     class: &'static str,
     counts: Vec<(&'static str, &'static str, usize)>,
-    legs: Vec<View<'a>>,
+    checks: Vec<View<'a>>,
     timings: Vec<(&'static str, String)>,
 }
 
@@ -30,8 +30,8 @@ struct View<'a> {
 /// A template that fails.
 pub fn page(record: &Record, timings: &[Timing]) -> Result<String> {
     let count = |verdict: Verdict| {
-        let legs = record.legs.iter();
-        let count = legs.filter(|it| it.finding.verdict == verdict).count();
+        let checks = record.checks.iter();
+        let count = checks.filter(|it| it.finding.verdict == verdict).count();
         (class(verdict), verdict.words(), count)
     };
     let all = [
@@ -42,7 +42,7 @@ pub fn page(record: &Record, timings: &[Timing]) -> Result<String> {
         Verdict::Undecided,
         Verdict::NotRun,
     ];
-    let legs = record.legs.iter();
+    let checks = record.checks.iter();
     let page = Page {
         marker: MARKER,
         record,
@@ -52,11 +52,11 @@ pub fn page(record: &Record, timings: &[Timing]) -> Result<String> {
             Conclusion::Failed => "failed",
         },
         counts: all.map(count).into_iter().filter(|it| it.2 > 0).collect(),
-        legs: legs
+        checks: checks
             .clone()
             .map(|answer| View { answer, class: class(answer.finding.verdict) })
             .collect(),
-        timings: legs
+        timings: checks
             .zip(timings)
             .map(|(answer, timing)| (answer.title, format!("{:.1}", timing.seconds)))
             .collect(),

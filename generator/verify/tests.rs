@@ -1,14 +1,14 @@
-//! A fault is found by the leg that looks for it, and by no other.
+//! A fault is found by the check that looks for it, and by no other.
 
 use std::path::Path;
 use std::time::Duration;
 
-use super::{Conclusion, Effort, Finding, LEGS, Record, Subject, Verdict};
+use super::{Conclusion, Effort, Finding, CHECKS, Record, Subject, Verdict};
 use crate::config;
 use crate::core::Core;
 use crate::registry::Registry;
 
-/// A narrow device, of which every leg says something.
+/// A narrow device, of which every check says something.
 fn core() -> Core {
     let registry = Registry::catalogue();
     let text = include_str!("../../configs/reduced/rough.toml");
@@ -17,18 +17,18 @@ fn core() -> Core {
     Core::new(device, config).expect("a design")
 }
 
-/// What the legs that need nothing but Glint say.
+/// What the checks that need nothing but Glint say.
 fn verified(core: &Core) -> Record {
     let effort = Effort { full: false, without_tools: true, time_limit: Duration::from_secs(1) };
     let subject = Subject { path: "core.toml", core, effort, proofs: Path::new("proofs") };
-    let legs = LEGS.iter().filter(|leg| !leg.is_outside());
-    let answers = legs.map(|leg| leg.run(&subject, &|_| ())).collect();
+    let checks = CHECKS.iter().filter(|check| !check.is_outside());
+    let answers = checks.map(|check| check.run(&subject, &|_| ())).collect();
     Record::new(&subject, answers)
 }
 
-fn finding<'a>(record: &'a Record, leg: &str) -> &'a Finding {
-    let answer = record.legs.iter().find(|answer| answer.leg == leg);
-    &answer.expect("a leg").finding
+fn finding<'a>(record: &'a Record, check: &str) -> &'a Finding {
+    let answer = record.checks.iter().find(|answer| answer.check == check);
+    &answer.expect("a check").finding
 }
 
 #[test]

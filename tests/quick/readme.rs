@@ -201,10 +201,10 @@ fn faults_in_the_netlists() {
 /// The lines of `glint verify` that come from records.
 #[test]
 fn what_verify_says_of_cosine_power() {
-    let rows = table("README.md", "| leg of `glint verify");
-    let over = |leg: &str| {
-        let row = rows.iter().find(|row| row[0] == leg);
-        row.unwrap_or_else(|| panic!("no row {leg}"))[2].clone()
+    let rows = table("README.md", "| check of `glint verify");
+    let over = |check: &str| {
+        let row = rows.iter().find(|row| row[0] == check);
+        row.unwrap_or_else(|| panic!("no row {check}"))[2].clone()
     };
     let proof = &json("proofs/cosine_power.json")["configurations"][0];
     let [evaluations, products] =

@@ -1,4 +1,4 @@
-//! Leg 2: the emitted Verilog under Icarus Verilog and under Verilator.
+//! Check 2: the emitted Verilog under Icarus Verilog and under Verilator.
 //!
 //! The expected values of a bench are those on which the golden model and the built-in simulator
 //! agree; it compares every output on every clock. That a bench can fail is tested with one wrong

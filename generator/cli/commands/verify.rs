@@ -10,13 +10,13 @@ use super::{Loaded, load};
 use crate::cli::own_file::OwnFile;
 use crate::cli::{Output, progress, tables};
 use crate::registry::Registry;
-use crate::verify::{Answer, Conclusion, Effort, LEGS, Record, Subject, Timing, Verdict, page};
+use crate::verify::{Answer, CHECKS, Conclusion, Effort, Record, Subject, Timing, Verdict, page};
 
 /// What `verify` was asked for.
 pub struct VerifyRequest {
     /// Everything, however long it takes.
     pub full: bool,
-    /// Only the legs that need no tool outside Glint.
+    /// Only the checks that need no tool outside Glint.
     pub without_tools: bool,
     /// Where the files go.
     pub out: PathBuf,
@@ -99,13 +99,13 @@ fn one_configuration(
     };
     let subject = Subject { path: &one.path, core: &one.core, effort, proofs: &request.proofs };
     let mut answers: Vec<Answer> = Vec::new();
-    for leg in LEGS {
-        if leg.is_outside() && request.without_tools {
-            answers.push(leg.left_out("--without-tools leaves it out."));
+    for check in CHECKS {
+        if check.is_outside() && request.without_tools {
+            answers.push(check.left_out("--without-tools leaves it out."));
             continue;
         }
-        let bar = progress::bar(output, leg.steps(&subject), leg.title);
-        let answer = leg.run(&subject, &|steps| bar.inc(steps));
+        let bar = progress::bar(output, check.steps(&subject), check.title);
+        let answer = check.run(&subject, &|steps| bar.inc(steps));
         bar.finish_and_clear();
         if !output.json {
             print(one, &answer);
@@ -116,9 +116,9 @@ fn one_configuration(
     Ok((Record::new(&subject, answers), timings))
 }
 
-/// What all legs say together: what was left out, what could not be run, and the command that completes it.
+/// What all checks say together: what was left out, what could not be run, and the command that completes it.
 fn print_conclusion(one: &Loaded, record: &Record) {
-    let with = |verdict| record.legs.iter().filter(move |it| it.finding.verdict == verdict);
+    let with = |verdict| record.checks.iter().filter(move |it| it.finding.verdict == verdict);
     let titles = |verdict| with(verdict).map(|answer| answer.title).collect::<Vec<_>>().join(", ");
     let words = record.conclusion.words();
     tables::print_line(&match record.conclusion {
@@ -138,12 +138,12 @@ fn print_conclusion(one: &Loaded, record: &Record) {
     }
     match with(Verdict::NotCovered).count() {
         0 => (),
-        1 => tables::print_line("  1 leg above says nothing of it"),
-        count => tables::print_line(&format!("  {count} legs above say nothing of it")),
+        1 => tables::print_line("  1 check above says nothing of it"),
+        count => tables::print_line(&format!("  {count} checks above say nothing of it")),
     }
 }
 
-/// A leg in a few lines, as soon as it has ended.
+/// A check in a few lines, as soon as it has ended.
 fn print(one: &Loaded, answer: &Answer) {
     let finding = &answer.finding;
     let domain = match finding.domain.is_empty() {

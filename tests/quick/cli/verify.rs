@@ -7,7 +7,7 @@ use crate::place::{COSINE_POWER, Place, Run};
 
 const WITHOUT_TOOLS: [&str; 3] = ["verify", "core.toml", "--without-tools"];
 
-/// With a configuration that is narrow enough for every leg.
+/// With a configuration that is narrow enough for every check.
 fn place() -> Place {
     let narrow = include_str!("../../../configs/reduced/schlick.toml");
     Place::with("core.toml", narrow.replace("schlick_reduced", "core"))
@@ -17,13 +17,14 @@ fn record(place: &Place, name: &str) -> Value {
     serde_json::from_str(&place.read(name)).expect("JSON")
 }
 
-/// The verdicts of a record, by leg.
+/// The verdicts of a record, by check.
 fn verdicts(record: &Value) -> Vec<(&str, &str)> {
-    let legs = record["legs"].as_array().expect("legs");
-    legs.iter()
-        .map(|leg| {
-            let name = leg["leg"].as_str().expect("a leg");
-            (name, leg["verdict"].as_str().expect("a verdict"))
+    let checks = record["checks"].as_array().expect("checks");
+    checks
+        .iter()
+        .map(|check| {
+            let name = check["check"].as_str().expect("a check");
+            (name, check["verdict"].as_str().expect("a verdict"))
         })
         .collect()
 }
@@ -126,8 +127,8 @@ fn a_record_stands_for_the_sweep_of_a_contract() {
     assert_eq!(run.code, 0, "{run:?}");
     assert!(run.out.contains("by the record `proofs/under_any_name.json`"), "{}", run.out);
     let found = record(&place, "verification/core.json");
-    let legs = found["legs"].as_array().expect("legs");
-    let contract = legs.iter().find(|leg| leg["leg"] == "contract").expect("a leg");
+    let checks = found["checks"].as_array().expect("checks");
+    let contract = checks.iter().find(|check| check["check"] == "contract").expect("a check");
     assert_eq!(contract["verdict"], "proved");
     assert_eq!(contract["record"], "proofs/under_any_name.json");
 
