@@ -45,7 +45,6 @@ pub struct Tally {
     /// How many were proved equivalent, by proof.
     pub equivalent: BTreeMap<How, usize>,
     /// How many are neither.
-    #[serde(rename = "open")]
     pub undecided: usize,
     /// How many the shipped bench notices by itself, and how many it does not though a check does.
     pub shipped: usize,
@@ -93,10 +92,8 @@ pub struct Score {
     /// By kind.
     pub kinds: BTreeMap<Kind, Tally>,
     /// The ids of those that are undecided.
-    #[serde(rename = "open")]
     pub undecided: Vec<String>,
     /// The ids of those that the default test misses and stimulus that is directed at them does not.
-    #[serde(rename = "aimed")]
     pub directed: Vec<String>,
     /// The ids of those that were proved equivalent.
     pub equivalent: BTreeMap<How, Vec<String>>,
@@ -150,7 +147,6 @@ pub struct TextScore {
     /// The ids of those that are proved equivalent.
     pub equivalent: Vec<String>,
     /// The ids of the others.
-    #[serde(rename = "open")]
     pub undecided: Vec<String>,
     /// What the shipped bench notices by itself of those that it or a longer one notices.
     pub shipped: Share,

@@ -14,7 +14,6 @@ pub enum Check {
     /// The default test: golden model against built-in simulator.
     Cosim,
     /// Operands held where the words at fault are read.
-    #[serde(rename = "aimed")]
     Directed,
 }
 

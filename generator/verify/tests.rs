@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use super::{Conclusion, Effort, Finding, CHECKS, Record, Subject, Verdict};
+use super::{CHECKS, Conclusion, Effort, Finding, Record, Subject, Verdict};
 use crate::config;
 use crate::core::Core;
 use crate::registry::Registry;

@@ -16,7 +16,7 @@ module cosine_power_tb #(
     parameter STIMULUS_FILE = "cosine_power_stimulus.mem",
     parameter EXPECTED_FILE = "cosine_power_expected.mem"
 );
-    localparam CLOCKS     = 1028;
+    localparam CLOCKS     = 1100;
     localparam KNOWN_FROM = 12;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

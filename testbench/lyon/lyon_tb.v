@@ -16,7 +16,7 @@ module lyon_tb #(
     parameter STIMULUS_FILE = "lyon_stimulus.mem",
     parameter EXPECTED_FILE = "lyon_expected.mem"
 );
-    localparam CLOCKS     = 1632;
+    localparam CLOCKS     = 2016;
     localparam KNOWN_FROM = 22;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

@@ -16,7 +16,7 @@ module schlick_tb #(
     parameter STIMULUS_FILE = "schlick_stimulus.mem",
     parameter EXPECTED_FILE = "schlick_expected.mem"
 );
-    localparam CLOCKS     = 1606;
+    localparam CLOCKS     = 1704;
     localparam KNOWN_FROM = 18;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

@@ -16,7 +16,7 @@ module schlick_wide_tb #(
     parameter STIMULUS_FILE = "schlick_wide_stimulus.mem",
     parameter EXPECTED_FILE = "schlick_wide_expected.mem"
 );
-    localparam CLOCKS     = 2016;
+    localparam CLOCKS     = 2142;
     localparam KNOWN_FROM = 22;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

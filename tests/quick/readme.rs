@@ -151,38 +151,39 @@ fn what_the_choices_cost() {
     }
 }
 
-/// Of a record of `glint mutate`: planted, caught by each test, proved equivalent, open.
+/// Of a record of `glint mutate`: planted, caught by each test, proved equivalent, undecided.
 fn faults(all: &Value) -> (u64, BTreeMap<String, u64>, u64, u64) {
     let each = |value: &Value| -> BTreeMap<String, u64> {
         let of = value.as_object().expect("an object").iter();
         of.map(|(name, count)| (name.clone(), number(count))).collect()
     };
     let equivalent = each(&all["equivalent"]).values().sum();
-    (number(&all["planted"]), each(&all["caught"]), equivalent, number(&all["open"]))
+    (number(&all["planted"]), each(&all["caught"]), equivalent, number(&all["undecided"]))
 }
 
 #[test]
 fn faults_in_the_netlists() {
-    let share =
-        |open: u64, planted: u64| format!("{open} ({:.2} %)", 100.0 * open as f64 / planted as f64);
+    let share = |undecided: u64, planted: u64| {
+        format!("{undecided} ({:.2} %)", 100.0 * undecided as f64 / planted as f64)
+    };
     let mut sum = [0; 5];
     for row in table("docs/verification.md", "| configuration | faults | default test |") {
-        let (planted, default, rest, equivalent, open) = if row[0] == "all" {
+        let (planted, default, rest, equivalent, undecided) = if row[0] == "all" {
             (sum[0], sum[1], sum[2], sum[3], sum[4])
         } else {
             let record = json(&format!("mutation/{}.json", row[0]));
-            let (planted, caught, equivalent, open) = faults(&record["netlist"]["all"]);
+            let (planted, caught, equivalent, undecided) = faults(&record["netlist"]["all"]);
             let default = caught.get("cosim").copied().unwrap_or(0);
             let rest = caught.values().sum::<u64>() - default;
-            let counts = [planted, default, rest, equivalent, open];
+            let counts = [planted, default, rest, equivalent, undecided];
             sum.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
-            (planted, default, rest, equivalent, open)
+            (planted, default, rest, equivalent, undecided)
         };
         let expected = [planted, default, rest, equivalent].map(grouped);
         assert_eq!(row[1..5], expected, "{}", row[0]);
-        assert_eq!(row[5], share(open, planted), "{}", row[0]);
+        assert_eq!(row[5], share(undecided, planted), "{}", row[0]);
     }
-    let [planted, default, rest, equivalent, open] = sum;
+    let [planted, default, rest, equivalent, undecided] = sum;
     let (planted, caught) = (planted, default + rest);
     let readme = read("README.md").replace('\n', " ");
     for said in [
@@ -191,8 +192,8 @@ fn faults_in_the_netlists() {
             grouped(planted),
             grouped(caught)
         ),
-        format!("{} proved equivalent and {} open", grouped(equivalent), grouped(open)),
-        format!("({:.2} %)", 100.0 * open as f64 / planted as f64),
+        format!("{} proved equivalent and {} undecided", grouped(equivalent), grouped(undecided)),
+        format!("({:.2} %)", 100.0 * undecided as f64 / planted as f64),
     ] {
         assert!(readme.contains(&said), "README.md does not say: {said}");
     }
@@ -213,17 +214,19 @@ fn what_verify_says_of_cosine_power() {
         over("golden model against the formula"),
         format!("{evaluations} evaluations of f and {products} colour products")
     );
-    let (planted, caught, equivalent, open) =
+    let (planted, caught, equivalent, undecided) =
         faults(&json("mutation/cosine_power.json")["netlist"]["all"]);
     let caught: u64 = caught.values().sum();
     let planted = grouped(planted);
     assert_eq!(
         over("faults in the netlist"),
-        format!("{planted} faults: {caught} caught, {equivalent} proved equivalent, {open} open")
+        format!(
+            "{planted} faults: {caught} caught, {equivalent} proved equivalent, {undecided} undecided"
+        )
     );
 }
 
-/// Faults in the emitted text: planted, noticed by lint and by the bench, equivalent, open; and the share that is open
+/// Faults in the emitted text: planted, noticed by lint and by the bench, equivalent, undecided; and the share that is undecided
 /// of all, those in the netlist too.
 #[test]
 fn faults_in_the_verilog() {
@@ -233,20 +236,20 @@ fn faults_in_the_verilog() {
             sum
         } else {
             let record = json(&format!("mutation/{}.json", row[0]));
-            let (netlist, _, _, open) = faults(&record["netlist"]["all"]);
+            let (netlist, _, _, undecided) = faults(&record["netlist"]["all"]);
             let verilog = &record["verilog"];
             let [planted, lint, bench] =
                 ["planted", "lint", "bench"].map(|key| number(&verilog[key]));
-            let [equivalent, left] = ["equivalent", "open"]
+            let [equivalent, left] = ["equivalent", "undecided"]
                 .map(|key| verilog[key].as_array().expect("a list").len() as u64);
-            [planted, lint, bench, equivalent, left, planted + netlist, left + open]
+            [planted, lint, bench, equivalent, left, planted + netlist, left + undecided]
         };
         if row[0] != "all" {
             sum.iter_mut().zip(counts).for_each(|(sum, count)| *sum += count);
         }
-        let [planted, lint, bench, equivalent, left, all, open] = counts;
+        let [planted, lint, bench, equivalent, left, all, undecided] = counts;
         assert_eq!(row[1..6], [planted, lint, bench, equivalent, left].map(grouped), "{}", row[0]);
-        let share = format!("{:.2} %", 100.0 * open as f64 / all as f64);
+        let share = format!("{:.2} %", 100.0 * undecided as f64 / all as f64);
         assert_eq!(row[6], share, "{}", row[0]);
     }
 }

@@ -4,14 +4,16 @@
 //! random reach neither every word of a table nor both sides of every comparison. Out of a pool of
 //! computations some are chosen, by what they do in the design:
 //!
-//! - for each word of a ROM that any of them reads, and every other bit of its upper half, one whose results differ when
-//!   the bit is inverted; of lines, which read a word a clock, those that read it;
+//! - for each word of a ROM that any of them reads, and every bit of its upper half, one whose results differ when the
+//!   bit is inverted, or one near them that is searched for; of lines, which read a word a clock, those that read it;
+//! - every combination of the ends of the control operands;
 //! - for each bit of each net, each input of a mux, each outcome of a comparison and what else is watched, some
 //!   that do it with bright results, some with dim ones, some in the dark.
 //!
 //! Nothing here depends on time or on threads: the same design gives the same computations.
 
 mod features;
+mod memories;
 mod pool;
 mod side_by_side;
 mod words;
@@ -56,7 +58,8 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Vec<
     let mut watch = Watch::new(&observed);
     let mut candidates = Vec::new();
     let pool = pool::pool(contract);
-    let watched = pool.drawn.chunks(LANES).map(|batch| (batch, true));
+    let watched = [&pool.corners, &pool.drawn].into_iter().flat_map(|all| all.chunks(LANES));
+    let watched = watched.map(|batch| (batch, true));
     let others = [&pool.readers, &pool.sweeps].into_iter().flat_map(|all| all.chunks(LANES));
     let batches = watched.chain(others.map(|batch| (batch, false)));
     for (batch, watched) in batches {
@@ -70,22 +73,25 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Vec<
             candidates.push(Candidate { operands: operands.clone(), shown, class, features, read });
         }
     }
-    let line = contract.length().is_some();
-    let mut chosen = match line {
-        true => Vec::new(),
-        false => words::chosen(design, contract, &candidates)?,
-    };
-    let sweeping = pool.sweeps.len();
-    if line {
+    let mut chosen: Vec<usize> = (0..pool.corners.len()).collect();
+    if contract.length().is_some() {
         let bright = candidates.iter_mut().filter(|candidate| candidate.class + 1 == CLASSES);
         let first = watch.count() as u32;
         bright.for_each(|it| it.features.extend(it.read.iter().map(|word| first + word)));
-        chosen = sweeps(&candidates[candidates.len() - sweeping..]);
-        chosen.iter_mut().for_each(|at| *at += candidates.len() - sweeping);
+        let sweeping = candidates.len() - pool.sweeps.len();
+        chosen.extend(sweeps(&candidates[sweeping..]).into_iter().map(|at| sweeping + at));
     }
+    let is_line = |at: &&usize| candidates[**at].shown.clocks > words::LONGEST;
+    let known =
+        chosen.iter().filter(is_line).flat_map(|&at| candidates[at].read.iter().copied()).collect();
+    let of_words = words::chosen(design, contract, &candidates, &known)?;
+    chosen.extend(of_words.chosen);
+    chosen.sort_unstable();
+    chosen.dedup();
     let words: usize = design.roms.iter().map(|rom| rom.words.len()).sum();
     choose(&candidates, watch.count(), watch.count() + words, &mut chosen);
-    Ok(chosen.into_iter().map(|at| candidates[at].operands.clone()).collect())
+    let chosen = chosen.into_iter().map(|at| candidates[at].operands.clone());
+    Ok(chosen.chain(of_words.found).collect())
 }
 
 /// Of lines that read table after table, those of which most words are new.

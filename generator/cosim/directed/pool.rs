@@ -6,8 +6,9 @@ use crate::golden::{Contract, Highlight};
 /// Points that are drawn as those of the default test are.
 const DRAWN: usize = 1024;
 
-/// Points drawn evenly, with the other operands such that they are seen: they read words far from the peak.
-const SHOWN: usize = 1536;
+/// Points with the other operands such that they are seen. Half are drawn evenly and read words far from the peak, the
+/// others by their distance from the ends of the domains: tables have a word for each octave of it.
+const SHOWN: usize = 2560;
 
 /// Every value of an operand without a fraction is a point, and the edges of the highlight there, if it has no more
 /// values than this.
@@ -24,8 +25,16 @@ const LONGEST: i64 = 1023;
 /// Where the formula is seen best.
 const VALUE: f64 = 0.6;
 
+/// The control operands are combined at the ends of their formats too if that gives no more points than this.
+const MOST_CORNERS: usize = 128;
+
+/// The length of a line there.
+const CORNER_LENGTH: i64 = 2;
+
 /// Computations to choose from.
 pub struct Pool {
+    /// Those with every control operand at an end of its domain or of its format.
+    pub corners: Vec<Vec<i64>>,
     /// Those that are watched in all that they do.
     pub drawn: Vec<Vec<i64>>,
     /// Those that read words.
@@ -55,8 +64,11 @@ pub fn pool(contract: &dyn Contract) -> Pool {
         }
     };
     if contract.length().is_none() {
-        for _ in 0..SHOWN {
+        for number in 0..SHOWN {
             let mut values = points.evenly(&mut random);
+            if number % 2 == 1 {
+                near_ends(&points, &mut random, &mut values);
+            }
             bright(&mut values);
             points.show(&mut values[..control]);
             readers.push(values);
@@ -91,7 +103,55 @@ pub fn pool(contract: &dyn Contract) -> Pool {
         drawn.sort_by_key(|values| values[length]);
         readers.sort_by_key(|values| values[length]);
     }
-    Pool { drawn, readers, sweeps }
+    Pool { corners: corners(&points, &bright), drawn, readers, sweeps }
+}
+
+/// Moves operands with a fraction toward the ends of their domains, most to the upper, where a cosine is that of no angle.
+fn near_ends(points: &Points<'_>, random: &mut Random, values: &mut [i64]) {
+    for (value, operand) in values.iter_mut().zip(points.operands()) {
+        let (low, high) = operand.domain;
+        let off = random.magnitude(high.abs_diff(low)) as i64;
+        match random.below(4) {
+            _ if operand.format.frac <= 0 => {}
+            0 | 1 => *value = high.saturating_sub(off),
+            2 => *value = low.saturating_add(off),
+            _ => {}
+        }
+    }
+}
+
+/// Every combination of the ends of the control operands' domains, and of their formats if those are not too many.
+fn corners(points: &Points<'_>, bright: &dyn Fn(&mut [i64])) -> Vec<Vec<i64>> {
+    let ends = |with_format: bool| -> Vec<Vec<i64>> {
+        let of = points.operands().iter().enumerate().map(|(at, operand)| {
+            let (low, high) = operand.domain;
+            if operand.colour {
+                return vec![high];
+            }
+            if points.length() == Some(at) {
+                return vec![high.min(CORNER_LENGTH)];
+            }
+            let format = operand.format;
+            let mut ends = vec![low, high];
+            if with_format {
+                ends.extend([format.min_raw() as i64, format.max_raw() as i64]);
+            }
+            ends.sort_unstable();
+            ends.dedup();
+            ends
+        });
+        of.collect()
+    };
+    let count = |ends: &[Vec<i64>]| ends.iter().map(Vec::len).product::<usize>();
+    let ends = Some(ends(true)).filter(|ends| count(ends) <= MOST_CORNERS).unwrap_or(ends(false));
+    let mut corners = vec![Vec::new()];
+    for ends in ends {
+        let with = |corner: Vec<i64>| ends.iter().map(move |&end| [&corner[..], &[end]].concat());
+        corners = corners.into_iter().flat_map(with).collect();
+    }
+    corners.truncate(MOST_CORNERS);
+    corners.iter_mut().for_each(|corner| bright(corner));
+    corners
 }
 
 /// Lines from the peak to the edge of the highlight, which read the words of a table one after another: for the first

@@ -2,6 +2,7 @@
 
 use anyhow::{Context, Result, bail};
 
+use super::memories::Memories;
 use crate::base::fixed::mask;
 use crate::golden::Contract;
 use crate::hdl::netlist::{Design, NetId, Role};
@@ -36,6 +37,8 @@ pub struct SideBySide {
     valid: NetId,
     busy: NetId,
     results: Vec<NetId>,
+    /// Of a design whose lanes have tables of their own.
+    copies: Option<Memories>,
 }
 
 impl SideBySide {
@@ -78,7 +81,43 @@ impl SideBySide {
             valid: one(Role::Valid)?,
             busy: one(Role::Busy)?,
             results: contract.outputs().iter().map(|it| named(&it.name)).collect::<Result<_>>()?,
+            copies: None,
         })
+    }
+
+    /// With tables for each lane, which are in the design.
+    ///
+    /// # Errors
+    /// They are those of another design.
+    pub fn with_copies(mut self, design: &Design, copies: Memories) -> Result<Self> {
+        let port = design.inputs().position(|port| port.net == copies.lane);
+        let port = port.context("no port for the lane")?;
+        (0..LANES).for_each(|lane| self.inputs[port][lane] = lane as u64);
+        self.copies = Some(copies);
+        Ok(self)
+    }
+
+    /// As [`SideBySide::run`], of each lane with these bits of a word inverted. Words are numbered through all ROMs.
+    ///
+    /// # Errors
+    /// Those of [`SideBySide::run`].
+    pub fn run_with(
+        &mut self,
+        computations: &[&[i64]],
+        word: u32,
+        faults: &[u64],
+    ) -> Result<Vec<Shown>> {
+        self.invert(word, faults);
+        let shown = self.run(computations.iter().copied(), |_, _| ());
+        self.invert(word, faults);
+        shown
+    }
+
+    fn invert(&mut self, word: u32, faults: &[u64]) {
+        let Some(copies) = &self.copies else { return };
+        for (lane, &bits) in faults.iter().enumerate() {
+            copies.invert(&mut self.machine, lane, word, bits);
+        }
     }
 
     /// Runs computations with these raw operands to their ends, as many as there are lanes or fewer. `see` is shown

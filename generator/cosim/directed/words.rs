@@ -7,57 +7,65 @@ use std::sync::Arc;
 use anyhow::Result;
 
 use super::Candidate;
-use super::side_by_side::{LANES, SideBySide};
+use super::memories::Memories;
+use super::side_by_side::{LANES, Shown, SideBySide};
+use crate::cosim::{Points, Random};
 use crate::golden::Contract;
 use crate::hdl::netlist::Design;
 use crate::hdl::sim::{Machine, Program};
 
-/// Of the upper half of a word every other bit is tried: what notices it mostly notices the next, which weighs more.
-const STEP: usize = 2;
+/// Readers of a word that take more clocks than this are not asked: lines that read a table from end to end.
+pub const LONGEST: u32 = 64;
 
-/// Of the candidates, those that together notice every fault that any of them does: a bit of the upper half of a word
-/// is inverted while those that read the word run.
+/// Where no reader of a word notices a fault, so many times others are tried that are near readers.
+const ROUNDS: usize = 6;
+
+/// What notices faults in words.
+#[derive(Default)]
+pub struct Chosen {
+    /// Of the candidates, by number.
+    pub chosen: BTreeSet<usize>,
+    /// Others, by their operands.
+    pub found: Vec<Vec<i64>>,
+}
+
+/// Computations that notice every bit of the upper half of a word, inverted, that any of the candidates notices or one
+/// near them that is searched for; of all words but those in `known`.
+///
+/// # Errors
+/// A design that cannot be simulated.
 pub fn chosen(
     design: &Design,
     contract: &dyn Contract,
     candidates: &[Candidate],
-) -> Result<Vec<usize>> {
-    let machine = Machine::new(Arc::new(Program::new(design)?));
-    let mut device = SideBySide::new(design, contract, machine)?;
-    let readers = readers(candidates);
-    let mut chosen = BTreeSet::new();
-    let mut first = 0;
+    known: &BTreeSet<u32>,
+) -> Result<Chosen> {
+    let mut copied = design.clone();
+    let memories = Memories::copied(&mut copied);
+    let machine = Machine::new(Arc::new(Program::new(&copied)?));
+    let device = SideBySide::new(&copied, contract, machine)?.with_copies(&copied, memories)?;
+    let points = Points::new(contract);
+    let random = Random::new(3);
+    let mut search = Search { device, points, random, candidates, result: Chosen::default() };
+    let mut widths = Vec::new();
     for (at, rom) in design.roms.iter().enumerate() {
-        let words = first as u32..(first + rom.words.len()) as u32;
-        first += rom.words.len();
-        if at == design.control.rom.index() {
-            continue;
-        }
-        let width = design.width(rom.data);
-        let faults = readers.range(words).flat_map(|(word, readers)| {
-            (width / 2..width).step_by(STEP).map(move |bit| (*word, 1 << bit, readers))
-        });
-        for (word, bit, readers) in faults {
-            device.machine.invert(word as usize, bit);
-            let operands = readers.iter().map(|&at| candidates[at].operands.as_slice());
-            let shown = device.run(operands, |_, _| ())?;
-            device.machine.invert(word as usize, bit);
-            let pairs = readers.iter().zip(shown);
-            let noticing: Vec<usize> = pairs
-                .filter(|(at, shown)| candidates[**at].shown != *shown)
-                .map(|(at, _)| *at)
-                .collect();
-            if !noticing.iter().any(|at| chosen.contains(at)) {
-                chosen.extend(noticing.first());
-            }
+        let width = if at == design.control.rom.index() { 0 } else { design.width(rom.data) };
+        widths.extend(std::iter::repeat_n(width, rom.words.len()));
+    }
+    for (word, readers) in readers(candidates) {
+        let width = widths[word as usize];
+        let upper = (width / 2..width).fold(0, |bits, bit| bits | 1 << bit);
+        if !known.contains(&word) {
+            search.word(word, upper, &readers)?;
         }
     }
-    Ok(chosen.into_iter().collect())
+    Ok(search.result)
 }
 
 /// For each word the brightest of its readers, as many as there are lanes.
 fn readers(candidates: &[Candidate]) -> BTreeMap<u32, Vec<usize>> {
     let mut order: Vec<usize> = (0..candidates.len()).collect();
+    order.retain(|&at| candidates[at].shown.clocks <= LONGEST);
     order.sort_by_key(|&at| Reverse(candidates[at].class));
     let mut readers: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
     for at in order {
@@ -69,4 +77,122 @@ fn readers(candidates: &[Candidate]) -> BTreeMap<u32, Vec<usize>> {
         }
     }
     readers
+}
+
+struct Search<'a> {
+    device: SideBySide,
+    points: Points<'a>,
+    random: Random,
+    candidates: &'a [Candidate],
+    result: Chosen,
+}
+
+impl Search<'_> {
+    /// Chooses what notices these bits of a word.
+    fn word(&mut self, word: u32, mut left: u64, readers: &[usize]) -> Result<()> {
+        let candidates = self.candidates;
+        let chosen = readers.iter().filter(|at| self.result.chosen.contains(at));
+        for at in chosen.copied().collect::<Vec<_>>() {
+            left &= !self.noticed(word, left, &candidates[at].operands, &candidates[at].shown)?;
+        }
+        let mut nearest: Vec<&[i64]> =
+            readers.iter().map(|&at| candidates[at].operands.as_slice()).collect();
+        let all = nearest.clone();
+        // What notices the lowest bit mostly notices those above it, which weigh more.
+        let mut unnoticed = 0;
+        while left & !unnoticed != 0 {
+            let bit = lowest(left & !unnoticed);
+            let shown = self.run(&all, word, bit)?;
+            let pairs = readers.iter().zip(&shown);
+            let differs = pairs.filter(|(at, shown)| candidates[**at].shown != **shown);
+            let noticing: Vec<usize> = differs.map(|(at, _)| *at).collect();
+            let Some(&first) = noticing.first() else {
+                unnoticed |= bit;
+                continue;
+            };
+            nearest = noticing.iter().map(|&at| candidates[at].operands.as_slice()).collect();
+            self.result.chosen.insert(first);
+            let Candidate { operands, shown, .. } = &candidates[first];
+            left &= !(bit | self.noticed(word, left, operands, shown)?);
+        }
+        let mut rounds = 0;
+        while left != 0 && rounds < ROUNDS {
+            let tried = self.near(&nearest);
+            let operands: Vec<&[i64]> = tried.iter().map(Vec::as_slice).collect();
+            let fault_free = self.run(&operands, word, 0)?;
+            let bit = highest(left);
+            let shown = self.run(&operands, word, bit)?;
+            match fault_free.iter().zip(&shown).position(|(right, shown)| right != shown) {
+                Some(at) => {
+                    left &= !(bit | self.noticed(word, left, &tried[at], &fault_free[at])?);
+                    self.result.found.push(tried[at].clone());
+                }
+                None => rounds += 1,
+            }
+        }
+        Ok(())
+    }
+
+    /// What computations show with bits of a word inverted.
+    fn run(&mut self, computations: &[&[i64]], word: u32, bits: u64) -> Result<Vec<Shown>> {
+        let faults: Vec<u64> = vec![bits; computations.len()];
+        self.device.run_with(computations, word, &faults)
+    }
+
+    /// Those of some bits of a word which a computation notices, one inverted at a time. It shows this without a fault.
+    fn noticed(&mut self, word: u32, bits: u64, operands: &[i64], right: &Shown) -> Result<u64> {
+        let bits: Vec<u64> =
+            (0..u64::BITS).map(|bit| bits & 1 << bit).filter(|&bit| bit != 0).collect();
+        let mut noticed = 0;
+        for faults in bits.chunks(LANES) {
+            let shown = self.device.run_with(&vec![operands; faults.len()], word, faults)?;
+            let pairs = faults.iter().zip(shown).filter(|(_, shown)| shown != right);
+            noticed |= pairs.fold(0, |bits, (bit, _)| bits | bit);
+        }
+        Ok(noticed)
+    }
+
+    /// Computations near these: each control operand as it is, or moved by a random magnitude within its domain, or,
+    /// without a fraction, drawn anew; half of them are then moved to where the formula has some value. The colours are
+    /// the brightest.
+    fn near(&mut self, readers: &[&[i64]]) -> Vec<Vec<i64>> {
+        let Self { points, random, .. } = self;
+        let operands = points.operands();
+        let control = operands.iter().filter(|operand| !operand.colour).count();
+        let mut moved = |lane: usize| {
+            let pairs = operands.iter().zip(readers[lane % readers.len()]).enumerate();
+            let values = pairs.map(|(at, (operand, &raw))| {
+                let (low, high) = operand.domain;
+                if operand.colour {
+                    return high;
+                }
+                if points.length() == Some(at) {
+                    return raw;
+                }
+                if operand.format.frac <= 0 && random.once_in(2) {
+                    return random.within(low, high);
+                }
+                let off = random.magnitude(high.abs_diff(low)) as i64;
+                match random.below(4) {
+                    0 => raw.saturating_add(off).clamp(low, high),
+                    1 => raw.saturating_sub(off).clamp(low, high),
+                    _ => raw,
+                }
+            });
+            let mut values: Vec<i64> = values.collect();
+            if lane.is_multiple_of(2) {
+                points.to_value(&mut values[..control], random.unit());
+            }
+            values
+        };
+        (0..LANES).map(&mut moved).collect()
+    }
+}
+
+fn lowest(bits: u64) -> u64 {
+    bits & bits.wrapping_neg()
+}
+
+fn highest(bits: u64) -> u64 {
+    1 << bits.ilog2()
 }
