@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 
-use crate::config::Config;
+use crate::config::{Config, Key};
 use crate::cosim::batch::{Engine, Golden, RustHdl, Verilog};
 use crate::cosim::exhaustive::{Clocks, Job, Places};
 use crate::cosim::{Lockstep, directed, trial};
@@ -82,9 +82,19 @@ impl Core {
     /// Tells what a proof of the accuracy contract depends on from others: the device, and its own keys that are not at
     /// their defaults. A key that comes later, at its default, leaves the digest as it is. SHA-256 in hexadecimal.
     pub fn contract_digest(&self) -> String {
+        self.digest_of((self.device.schema)().keys.iter())
+    }
+
+    /// Tells this core, whatever its name, from others: as [`Core::contract_digest`], with the keys that all devices share.
+    /// A pipeline has another than the sequential core.
+    pub fn core_digest(&self) -> String {
+        self.digest_of((self.device.schema)().all_keys())
+    }
+
+    fn digest_of<'k>(&self, keys: impl Iterator<Item = &'k Key>) -> String {
         let schema = (self.device.schema)();
         let mut text = format!("device = {}\n", self.device.name);
-        for key in &schema.keys {
+        for key in keys {
             let value = self.config.value(key.name);
             if *value != key.default && self.config.applies(&schema, key.name) {
                 text += &format!("{} = {}\n", key.name, value.toml());

@@ -1,8 +1,11 @@
-//! What the user gives to be read: files, or standard input.
+//! What the user gives to be read: files, standard input, or records in a directory.
 
 use std::fs::{self, File};
-use std::io::{self, Read};
-use std::path::Path;
+use std::io::{self, ErrorKind, Read};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use serde::de::DeserializeOwned;
 
 /// The path that stands for standard input.
 pub const STDIN: &str = "-";
@@ -24,4 +27,31 @@ pub fn open(path: &Path) -> io::Result<Box<dyn Read>> {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, message));
     }
     Ok(Box::new(File::open(path)?))
+}
+
+/// The records in a directory: its files `*.json` that are a `T`, in the order of their names. Other files are left
+/// alone, and a directory that is not there has none.
+///
+/// # Errors
+/// The directory or a file in it cannot be read.
+pub fn records<T: DeserializeOwned>(directory: &Path) -> Result<Vec<(PathBuf, T)>> {
+    let entries = match fs::read_dir(directory) {
+        Ok(entries) => entries,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Vec::new()),
+        Err(error) => {
+            return Err(error).with_context(|| format!("cannot read `{}`", directory.display()));
+        }
+    };
+    let mut paths = entries
+        .map(|entry| entry.map(|entry| entry.path()))
+        .collect::<io::Result<Vec<_>>>()
+        .with_context(|| format!("cannot read `{}`", directory.display()))?;
+    paths.retain(|path| path.extension().is_some_and(|it| it == "json") && path.is_file());
+    paths.sort();
+    let mut records = Vec::new();
+    for path in paths {
+        let bytes = fs::read(&path).with_context(|| format!("cannot read `{}`", path.display()))?;
+        records.extend(serde_json::from_slice(&bytes).ok().map(|record| (path, record)));
+    }
+    Ok(records)
 }

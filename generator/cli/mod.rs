@@ -281,8 +281,9 @@ Examples:
     ///
     /// A page as a vendor's product guide: figures at a glance, block diagram, ports and formats, a worked
     /// example, a timing diagram from simulation, the microprogram by control lines, latency and throughput, the error
-    /// bound with its proof and plots, a rendered highlight, an instance in Verilog, and the sources. With
-    /// Yosys on PATH it says what the device takes of iCE40, ECP5 and Xilinx 7, which takes a minute or more. A file
+    /// bound with its proof and plots, a rendered highlight, an instance in Verilog, and the sources. Area,
+    /// frequency, points a second and longest paths are those of a record of `glint synth`; without one it says what Yosys,
+    /// if on PATH, makes of the device for iCE40, ECP5 and Xilinx 7, which takes a minute or more. A file
     /// that Glint did not write, or that was edited since, is left alone unless --force is given.
     #[command(after_help = "\
 Examples:
@@ -296,8 +297,9 @@ Examples:
     /// Every device has its default configuration, with the widths below where it has such a key. Configurations
     /// that you name are compared as they are. Errors are those
     /// of the reflectance f, the largest and the mean over gamma = 0 to 90 degrees, as a whole and by cause: the
-    /// source's formula, the quantised operands, the fixed point. With Yosys on PATH, LUTs, DSP
-    /// blocks and block RAMs of iCE40, ECP5 and Xilinx 7 are shown too, which takes a minute or more.
+    /// source's formula, the quantised operands, the fixed point. LUTs, DSP blocks and block RAMs of iCE40, ECP5 and
+    /// Xilinx 7, frequencies and points a second come from records of `glint synth`; without a record Yosys is asked for
+    /// the former, if it is on PATH, which takes a minute or more.
     #[command(after_help = "\
 Examples:
   glint compare --exponent 100                       errors, clocks, ROM and synthesis at n = 100
@@ -323,6 +325,9 @@ Examples:
         /// Print CSV, for spreadsheets
         #[arg(long)]
         csv: bool,
+        /// Where records of `synth --out` are; that of a configuration is found by its digest
+        #[arg(long, value_name = "DIR", default_value = crate::synth::DIRECTORY)]
+        figures: PathBuf,
         /// Do not ask Yosys what the devices take
         #[arg(long)]
         no_synthesis: bool,
@@ -574,6 +579,7 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             cosine_fraction,
             intensity_fraction,
             csv,
+            figures,
             no_synthesis,
             time_limit,
         }) => {
@@ -587,6 +593,7 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
                 exponent,
                 widths: widths.into_iter().filter_map(given).collect(),
                 csv,
+                figures,
                 synthesis: !no_synthesis,
                 time_limit: std::time::Duration::from_secs(time_limit),
             };

@@ -102,6 +102,15 @@ impl Figures {
     }
 }
 
+impl Area {
+    /// What an FPGA has for it; none of cells.
+    pub fn usage(&self) -> Option<Usage> {
+        let flip_flops = self.flip_flops;
+        let (luts, dsps, block_rams) = (self.luts?, self.dsps?, self.block_rams?);
+        Some(Usage { luts, dsps, block_rams, flip_flops })
+    }
+}
+
 impl From<Usage> for Area {
     fn from(usage: Usage) -> Self {
         Self {

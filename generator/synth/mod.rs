@@ -11,6 +11,7 @@ mod harness;
 mod ice40;
 mod netlist;
 mod place;
+mod record;
 
 use std::ffi::OsStr;
 use std::fmt;
@@ -26,6 +27,7 @@ use crate::tools::Tool;
 use crate::tools::synthesis::FAMILIES;
 pub use figures::{Area, Figures, Frequency, Step};
 use place::Place;
+pub use record::{DIRECTORY, Rate, Record};
 
 /// What a core is measured for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

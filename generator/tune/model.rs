@@ -4,14 +4,14 @@
 //! fitted by `benches/tune/fit` to the records in `synthesis/`. The clock is the longest path by the delays of
 //! the pipelines' targets, which were measured.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::hdl::netlist::{Design, Driver, NetId, Op};
 use crate::hdl::pipeline::{self, TARGETS};
 use crate::synth::Target;
 
 /// What a netlist is made of, as far as look-up tables are concerned.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Features {
     /// Bits of sums, differences and comparisons.
     pub adder: f64,

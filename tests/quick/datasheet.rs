@@ -11,6 +11,7 @@ use glint::cosim::exhaustive::Record;
 use glint::hdl::netlist::Driver;
 use glint::package::{Seal, is_sealed};
 use glint::pages::datasheet::{Datasheet, Subject, datasheet};
+use glint::synth;
 use roxmltree::{Document, Node, ParsingOptions};
 use serde_json::Value;
 
@@ -21,6 +22,8 @@ fn make(path: &str, core: &Core) -> Datasheet {
         core,
         path,
         proof: proof.unwrap_or_else(|error| panic!("{path}: {error:?}")),
+        figures: synth::Record::find(Path::new(synth::DIRECTORY), &core.core_digest())
+            .unwrap_or_else(|error| panic!("{path}: {error:?}")),
         synthesis: None,
     };
     datasheet(&subject, &|| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"))
@@ -287,6 +290,35 @@ fn has_every_word(path: &str, document: &Document, core: &Core) {
         .map(|word| format!("{word:0width$b}", width = width as usize))
         .collect();
     assert_eq!(bits, expected, "{path}");
+}
+
+/// What `synthesis/cosine_power.json` says of ECP5, over eight clocks a point.
+#[test]
+fn area_and_speed_are_those_of_the_record() {
+    let path = "configs/cosine_power.toml";
+    let page = make(path, &configuration(path)).page;
+    let document = parse(&page);
+    let mut tables = elements(&document, "div");
+    let table = tables.find(|div| div.attribute("aria-label") == Some("Area and speed"));
+    let rows = table.expect("a table").descendants().filter(|node| node.tag_name().name() == "tr");
+    let rows = rows.map(|row| row.children().filter(Node::is_element).map(text).collect());
+    let rows: Vec<Vec<String>> = rows.collect();
+    let row = rows.iter().find(|row| row[0].starts_with("ECP5")).expect("ECP5");
+    let record = fs::read_to_string("synthesis/cosine_power.json").expect("a record");
+    let record: Value = serde_json::from_str(&record).expect("JSON");
+    let targets = record["targets"].as_array().expect("targets");
+    let ecp5 = targets.iter().find(|it| it["target"] == "ecp5").expect("ECP5");
+    let counts =
+        ["luts", "dsps", "block_rams", "flip_flops"].map(|it| ecp5["area"][it].to_string());
+    assert_eq!(row[1..5], counts);
+    let median = ecp5["frequency"]["median"].as_f64().expect("a frequency");
+    assert!(row[6].starts_with(&format!("{median:.1} (")), "{row:?}");
+    let points = median / 8.0;
+    let luts = ecp5["area"]["luts"].as_f64().expect("a count");
+    assert_eq!(row[7..9], [format!("{points:.1}"), format!("{:.1}", 1000.0 * points / luts)]);
+    for step in ecp5["critical_path"].as_array().expect("a path") {
+        assert!(page.contains(step["name"].as_str().expect("a name")), "{step}");
+    }
 }
 
 #[test]

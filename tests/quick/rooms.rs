@@ -33,7 +33,7 @@ const ROOMS: [(&str, &str); 25] = [
     ("evidence", "config golden hdl/netlist tools cosim registry core"),
     (
         "pages",
-        "base config golden hdl/netlist hdl/verilog package tools cosim core render evidence",
+        "base config golden hdl/netlist hdl/verilog package tools synth cosim core render evidence",
     ),
     ("verify", "base golden package tools cosim core mutate"),
     (

@@ -16,8 +16,9 @@ use crate::core::Core;
 use crate::evidence::comparison::{self, Accuracy, Multiplier};
 use crate::golden::contract;
 use crate::registry::{Device, Registry};
+use crate::synth::Record;
 use crate::tools::Tool;
-use crate::tools::synthesis::{self, FAMILIES, Usage};
+use crate::tools::synthesis::{self, FAMILIES, Family, Usage};
 
 /// What `compare` was asked for.
 pub struct CompareRequest {
@@ -27,8 +28,10 @@ pub struct CompareRequest {
     pub widths: Vec<(&'static str, i64)>,
     /// Print CSV.
     pub csv: bool,
-    /// Ask Yosys what the devices take.
+    /// Ask Yosys what the devices take of which there is no record.
     pub synthesis: bool,
+    /// The directory with records of `synth`.
+    pub figures: PathBuf,
     /// After which a run of Yosys is given up.
     pub time_limit: Duration,
 }
@@ -39,8 +42,10 @@ struct Entry {
     label: String,
     core: Core,
     figures: Figures,
-    /// By family; empty without synthesis.
+    /// By family; empty where nothing is known.
     usage: Vec<Result<Usage, String>>,
+    /// What `synth` has measured of it.
+    record: Option<Record>,
 }
 
 /// What is known of a configuration without a tool.
@@ -71,7 +76,13 @@ pub fn compare(
         let named = load(registry, configs)?;
         cores.extend(named.into_iter().map(|one| (one.path, one.core)));
     }
-    let yosys = match request.synthesis.then(|| Tool::find("yosys")) {
+    let records: Vec<Option<Record>> = cores
+        .iter()
+        .map(|(_, core)| Record::find(&request.figures, &core.core_digest()))
+        .collect::<Result<_>>()?;
+    let mut usage: Vec<_> = records.iter().map(|it| recorded(it.as_ref())).collect();
+    let missing = usage.iter().filter(|usage| usage.is_empty()).count();
+    let yosys = match (request.synthesis && missing > 0).then(|| Tool::find("yosys")) {
         None => None,
         Some(Ok(yosys)) => Some(yosys),
         Some(Err(missing)) => {
@@ -80,7 +91,8 @@ pub fn compare(
         }
     };
     let families = if yosys.is_some() { FAMILIES.len() } else { 0 };
-    let bar = progress::bar(output, (cores.len() * (1 + families)) as u64, "devices weighed");
+    let steps = cores.len() + missing * families;
+    let bar = progress::bar(output, steps as u64, "devices weighed");
     let n = f64::from(request.exponent);
     let figures: Vec<Figures> = cores
         .par_iter()
@@ -90,16 +102,24 @@ pub fn compare(
             figures.with_context(|| format!("`{label}`"))
         })
         .collect::<Result<_>>()?;
-    let mut usage = match &yosys {
-        None => vec![Vec::new(); cores.len()],
-        Some(yosys) => synthesise(&cores, yosys, request.time_limit, &|| bar.inc(1))?,
-    };
+    if let Some(yosys) = &yosys {
+        let unknown = cores.iter().zip(&mut usage).filter(|(_, usage)| usage.is_empty());
+        let (unknown, places): (Vec<_>, Vec<_>) = unknown.unzip();
+        let found = synthesise(&unknown, yosys, request.time_limit, &|| bar.inc(1))?;
+        places.into_iter().zip(found).for_each(|(place, found)| *place = found);
+    }
     bar.finish_and_clear();
     let entries: Vec<Entry> = cores
         .into_iter()
         .zip(figures)
-        .zip(usage.drain(..))
-        .map(|(((label, core), figures), usage)| Entry { label, core, figures, usage })
+        .zip(usage.into_iter().zip(records))
+        .map(|(((label, core), figures), (usage, record))| Entry {
+            label,
+            core,
+            figures,
+            usage,
+            record,
+        })
         .collect();
     for entry in &entries {
         if entry.figures.accuracy.is_none() {
@@ -156,9 +176,19 @@ fn figures(core: &Core, n: f64) -> Result<Figures> {
     })
 }
 
-/// What every unit takes in every family: an outcome, or what went wrong.
+/// What a record says of every family; nothing where it leaves one out.
+fn recorded(record: Option<&Record>) -> Vec<Result<Usage, String>> {
+    let usage = |family: &Family| {
+        let mut targets = record?.targets.iter();
+        targets.find(|figures| figures.target.name() == family.name)?.area.usage()
+    };
+    let all: Option<Vec<Usage>> = FAMILIES.iter().map(usage).collect();
+    all.into_iter().flatten().map(Ok).collect()
+}
+
+/// What every core takes in every family: an outcome, or what went wrong.
 fn synthesise(
-    cores: &[(String, Core)],
+    cores: &[&(String, Core)],
     yosys: &Tool,
     limit: Duration,
     done: &(dyn Fn() + Sync),
@@ -171,7 +201,7 @@ fn synthesise(
         .into_par_iter()
         .map(|at| {
             let (one, family) = (at / FAMILIES.len(), &FAMILIES[at % FAMILIES.len()]);
-            let (label, core) = &cores[one];
+            let (label, core) = cores[one];
             let usage = synthesis::synthesise(yosys, &files[one], &core.config.name, family, limit);
             done();
             usage.map_err(|error| format!("{label}, {}: {error:#}", family.title))

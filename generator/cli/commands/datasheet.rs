@@ -15,6 +15,7 @@ use crate::cosim::exhaustive::Record;
 use crate::package::Seal;
 use crate::pages::datasheet::{self, Subject};
 use crate::registry::Registry;
+use crate::synth;
 use crate::tools::Tool;
 
 /// What `datasheet` was asked for.
@@ -28,13 +29,16 @@ pub struct DatasheetArguments {
     /// Where records of `cosim --exhaustive --json` are; that of the configuration is found by its digest
     #[arg(long, value_name = "DIR", default_value = "proofs")]
     proofs: PathBuf,
+    /// Where records of `synth --out` are; that of the configuration is found by its digest
+    #[arg(long, value_name = "DIR", default_value = synth::DIRECTORY)]
+    figures: PathBuf,
     /// Write the timing diagram for WaveDrom too, beside the page
     #[arg(long)]
     wavedrom: bool,
     /// Replace files that Glint did not write or that were edited since
     #[arg(long)]
     force: bool,
-    /// Do not ask Yosys what the device takes
+    /// Do not ask Yosys what a device takes of which there is no record
     #[arg(long)]
     no_synthesis: bool,
     /// Time limit of each run of Yosys, in seconds
@@ -58,10 +62,11 @@ pub fn datasheet(
         )));
     }
     // Before the work: whether everything can be written, and which records there are.
-    let mut proofs = Vec::new();
+    let mut records = Vec::new();
     for one in &loaded {
         let (core, contract) = (&one.core, one.core.contract.as_ref());
-        proofs.push(Record::find(&request.proofs, &core.contract_digest(), contract)?);
+        let proof = Record::find(&request.proofs, &core.contract_digest(), contract)?;
+        records.push((proof, synth::Record::find(&request.figures, &core.core_digest())?));
         store::may_write(&path(request, one, single), Seal::Markup, request.force)?;
     }
     let mut notes = Vec::new();
@@ -74,15 +79,17 @@ pub fn datasheet(
         }
     };
     let limit = Duration::from_secs(request.time_limit);
-    let steps = loaded.len() * datasheet::steps(yosys.is_some());
+    let steps = records.iter().map(|(_, it)| datasheet::steps(yosys.is_some() && it.is_none()));
+    let steps: usize = steps.sum();
     let bar = progress::bar(output, steps as u64, "datasheets");
     bar.tick();
     let mut report = Vec::new();
-    for (one, proof) in loaded.iter().zip(proofs) {
+    for (one, (proof, figures)) in loaded.iter().zip(records) {
         let subject = Subject {
             core: &one.core,
             path: &one.path,
             proof,
+            figures,
             synthesis: yosys.as_ref().map(|yosys| (yosys, limit)),
         };
         let made = datasheet::datasheet(&subject, &|| bar.inc(1));

@@ -16,7 +16,7 @@ use crate::cli::own_file::OwnFile;
 use crate::cli::{Configs, Output, progress, tables};
 use crate::evidence::comparison;
 use crate::registry::Registry;
-use crate::synth::{Figures, Flow, Subject, TARGETS, Target};
+use crate::synth::{Figures, Flow, Rate, Record, Subject, TARGETS, Target};
 use crate::tune::{Cost, Features};
 use cache::Cache;
 
@@ -69,17 +69,6 @@ struct Measured<'a> {
     one: &'a Loaded,
     clocks_per_point: f64,
     figures: Vec<Figures>,
-}
-
-/// The record of a configuration.
-#[derive(Serialize)]
-struct Record<'a> {
-    glint: &'static str,
-    config: &'a str,
-    name: &'a str,
-    device: &'a str,
-    clocks_per_point: f64,
-    targets: Vec<Recorded<'a>>,
 }
 
 /// Figures with what the netlist is made of, to which the estimates of `tune` are fitted.
@@ -201,12 +190,14 @@ fn measure<'a>(
 }
 
 impl Measured<'_> {
-    fn record(&self) -> Record<'_> {
+    fn record(&self) -> Record<Recorded<'_>> {
+        let core = &self.one.core;
         Record {
-            glint: env!("CARGO_PKG_VERSION"),
-            config: &self.one.path,
-            name: &self.one.core.config.name,
-            device: self.one.core.device.name,
+            glint: env!("CARGO_PKG_VERSION").to_owned(),
+            config: self.one.path.clone(),
+            name: core.config.name.clone(),
+            device: core.device.name.to_owned(),
+            core: core.core_digest(),
             clocks_per_point: self.clocks_per_point,
             targets: self.figures.iter().map(|figures| self.recorded(figures)).collect(),
         }
@@ -221,8 +212,7 @@ impl Measured<'_> {
         }
     }
 
-    /// Points a second, in millions.
-    fn rate(&self, figures: &Figures) -> Option<f64> {
-        Some(figures.frequency?.median / self.clocks_per_point)
+    fn rate(&self, figures: &Figures) -> Option<Rate> {
+        Rate::new(figures, self.clocks_per_point)
     }
 }

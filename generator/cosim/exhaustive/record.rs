@@ -1,14 +1,13 @@
 //! The record of an exhaustive check, as `glint cosim --exhaustive --json` writes it: found by what it was
 //! made of, and checked again in part.
 
-use std::fs;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::Result;
 use serde::Deserialize;
 
 use super::{Peak, Places, Proof};
+use crate::base::input;
 use crate::golden::{Axis, Contract, Values};
 
 /// How near a recorded figure must come to that of today.
@@ -81,26 +80,7 @@ impl Record {
     /// # Errors
     /// The directory or a file in it cannot be read; the record's sweep or bound are not those of the contract.
     pub fn find(directory: &Path, digest: &str, contract: &dyn Contract) -> Result<Option<Self>> {
-        let entries = match fs::read_dir(directory) {
-            Ok(entries) => entries,
-            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-            Err(error) => {
-                return Err(error)
-                    .with_context(|| format!("cannot read `{}`", directory.display()));
-            }
-        };
-        let mut paths = entries
-            .map(|entry| entry.map(|entry| entry.path()))
-            .collect::<Result<Vec<_>, _>>()
-            .with_context(|| format!("cannot read `{}`", directory.display()))?;
-        paths.retain(|path| path.extension().is_some_and(|it| it == "json") && path.is_file());
-        paths.sort();
-        for path in paths {
-            let bytes =
-                fs::read(&path).with_context(|| format!("cannot read `{}`", path.display()))?;
-            let Ok(report) = serde_json::from_slice::<Report>(&bytes) else {
-                continue;
-            };
+        for (path, report) in input::records::<Report>(directory)? {
             let found = report.configurations.into_iter().find(|it| it.configuration == digest);
             if let Some(found) = found {
                 let found = Self { path, ..found };

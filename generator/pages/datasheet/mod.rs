@@ -3,6 +3,7 @@
 //! Everything on it comes from the design, the golden model and simulation; nothing knows a device by name.
 
 mod diagram;
+mod measured;
 mod microprogram;
 mod page;
 mod table;
@@ -17,6 +18,7 @@ use crate::evidence::curves::{self, DeviceCurves};
 use crate::evidence::hardware::{self, FamilyUsage, Synthesis};
 use crate::package::{LineClocks, Timing, WorkedExample};
 use crate::render::{self, BACKGROUND, BuiltIn, Light, Material, Scene, Settings, View};
+use crate::synth;
 use crate::tools::synthesis::FAMILIES;
 use waves::Waves;
 
@@ -34,7 +36,9 @@ pub struct Subject<'a> {
     pub path: &'a str,
     /// The record of its exhaustive check, where there is one.
     pub proof: Option<Record>,
-    /// What is to synthesise it; without it the page says how to.
+    /// What `glint synth` has measured of it, where there is a record.
+    pub figures: Option<synth::Record>,
+    /// What is to synthesise it where there is none; without it the page says how to.
     pub synthesis: Option<Synthesis<'a>>,
 }
 
@@ -82,7 +86,7 @@ pub fn datasheet(subject: &Subject, done: &(dyn Fn() + Sync)) -> Result<Datashee
     let core = subject.core;
     let contract = core.contract.as_ref();
     let synthesis = || -> Result<_> {
-        let Some(synthesis) = subject.synthesis else {
+        let Some(synthesis) = subject.synthesis.filter(|_| subject.figures.is_none()) else {
             return Ok(None);
         };
         let usage = hardware::usage(core, synthesis, done)?;

@@ -5,6 +5,7 @@ use askama::Template;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
+use super::measured::{self, RecordView};
 use super::microprogram::Microprogram;
 use super::table::TableView;
 use super::{Measured, Subject, diagram, timing};
@@ -54,6 +55,7 @@ struct Page<'a> {
     remarks: Vec<String>,
     figures: Vec<Figure<'a>>,
     highlight: Option<HighlightView>,
+    record: Option<RecordView>,
     synthesis: Option<&'a (String, Vec<FamilyUsage>)>,
     instance: String,
     keys: TableView,
@@ -192,6 +194,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
             },
             gain: highlight.gain,
         }),
+        record: subject.figures.as_ref().map(RecordView::new),
         synthesis: measured.synthesis.as_ref(),
         instance: package::instance(design)?,
         keys: TableView::new("Keys of the configuration", &account::keys(&schema, &core.config)),
@@ -232,6 +235,15 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
     ];
     if let Some(highlight) = contract.highlight() {
         glance.insert(1, ("Word f", highlight.f_format().to_string()));
+    }
+    if let Some((figures, frequency, rate)) = subject.figures.as_ref().and_then(measured::fastest) {
+        glance.push((
+            "Points a second",
+            format!(
+                "{:.1} million at {:.1} MHz ({})",
+                rate.points, frequency.median, figures.device
+            ),
+        ));
     }
     if let Some((_, usage)) = &measured.synthesis
         && let Some(usage) = usage.first()

@@ -144,6 +144,42 @@ fn an_exponent_outside_the_domain_is_a_dash_and_a_note() {
     assert_eq!(entry(&value, "schlick")["errors"], Value::Null);
 }
 
+/// The record of a device in `synthesis/`; frequency over clocks a point, eight of `cosine-power`, are points a second.
+#[test]
+fn figures_of_a_record_stand_beside_its_device() {
+    let directory = format!("{}/synthesis", env!("CARGO_MANIFEST_DIR"));
+    let record = std::fs::read_to_string(format!("{directory}/cosine_power.json")).expect("it");
+    let record: Value = serde_json::from_str(&record).expect("JSON");
+    let targets = record["targets"].as_array().expect("targets");
+    let ecp5 = targets.iter().find(|it| it["target"] == "ecp5").expect("figures for ECP5");
+    let value = compared(&["core.toml", "--figures", &directory]);
+    let speed = &entry(&value, "cosine-power")["speed"]["ecp5"];
+    assert_eq!(speed["mhz"], ecp5["frequency"]);
+    let points = ecp5["frequency"]["median"].as_f64().expect("a frequency") / 8.0;
+    let told = |key: &str| speed[key].as_f64().expect("a number");
+    assert!((told("million_points_per_second") - points).abs() < 1e-9, "{speed}");
+    for (key, count) in [("lut", "luts"), ("dsp", "dsps")] {
+        let share = points / ecp5["area"][count].as_f64().expect("a count");
+        let told = told(&format!("million_points_per_second_per_{key}"));
+        assert!((told - share).abs() < 1e-9, "{speed}");
+    }
+    // Another core, and no record.
+    assert_eq!(entry(&value, "core.toml").get("speed"), None);
+    assert_eq!(entry(&compared(&[]), "cosine-power").get("speed"), None);
+
+    let text = compare(&["--figures", &directory]).out;
+    let row = format!("{points:.1}");
+    let rows = text.lines().filter(|line| line.starts_with("| cosine-power | ECP5"));
+    assert!(rows.count() == 1 && text.contains(&row), "{text}");
+    let csv = compare(&["--figures", &directory, "--csv"]).out;
+    let heading: Vec<&str> = csv.lines().next().expect("a heading").split(',').collect();
+    let at = heading.iter().position(|it| *it == "ecp5_mhz").expect("a column");
+    // From the right: an earlier field has commas inside.
+    let line = csv.lines().find(|line| line.starts_with("cosine-power,")).expect("a row");
+    let field = line.rsplit(',').nth(heading.len() - 1 - at).expect("a field");
+    assert_eq!(field, ecp5["frequency"]["median"].to_string());
+}
+
 #[test]
 fn comma_separated() {
     let place = Place::with("a, \"b\".toml", format!("{COSINE_POWER}name = \"mine\"\n"));

@@ -1,5 +1,6 @@
 //! A comparison as tables, as CSV and as JSON.
 
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{CompareRequest, Entry};
@@ -8,6 +9,7 @@ use crate::cli::tables::Column;
 use crate::cli::{Output, failure, tables};
 use crate::evidence::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, Multiplier, Spread};
 use crate::golden::contract;
+use crate::synth::{Frequency, Rate, Record, TARGETS, Target};
 use crate::tools::synthesis::{FAMILIES, Usage};
 
 /// Prints everything in the form that was asked for.
@@ -34,6 +36,7 @@ pub fn show(
     }
     print_errors(request, entries);
     print_hardware(entries);
+    print_speed(entries);
     for note in entries.iter().filter_map(at_rest).chain(notes.iter().cloned()) {
         tables::print_line(&format!("Note: {note}."));
     }
@@ -142,11 +145,8 @@ fn print_hardware(entries: &[Entry]) {
             text::grouped(entry.core.design.rom_bits()),
             sizes(&entry.figures.multipliers),
         ];
-        for usage in &entry.usage {
-            match usage {
-                Ok(usage) => row.extend(numbers(usage).map(|(_, number)| number.to_string())),
-                Err(_) => row.extend(["-"; 3].map(str::to_owned)),
-            }
+        if synthesised {
+            row.extend(taken(entry, "-"));
         }
         row
     });
@@ -166,6 +166,65 @@ fn print_hardware(entries: &[Entry]) {
             "By Yosys, before placement; block RAMs are of 4 kbit in iCE40 and of 18 kbit in the others.",
         );
     }
+}
+
+/// What a device takes of all families, with `unknown` where that is not known.
+fn taken(entry: &Entry, unknown: &str) -> Vec<String> {
+    let of = |at: usize| entry.usage.get(at).and_then(|usage| usage.as_ref().ok());
+    let families = (0..FAMILIES.len()).flat_map(|at| match of(at) {
+        Some(usage) => numbers(usage).map(|(_, number)| number.to_string()),
+        None => [unknown; 3].map(str::to_owned),
+    });
+    families.collect()
+}
+
+/// The targets for which a frequency was measured, with the core's rate there.
+fn speeds(entry: &Entry) -> impl Iterator<Item = (Target, Frequency, Rate)> {
+    let figures = entry.record.iter().flat_map(|record| &record.targets);
+    figures.filter_map(|it| {
+        Some((it.target, it.frequency?, Rate::new(it, entry.figures.clocks_per_point)?))
+    })
+}
+
+fn print_speed(entries: &[Entry]) {
+    if entries.iter().all(|entry| entry.record.is_none()) {
+        return;
+    }
+    let columns = [
+        Column::words("device"),
+        Column::words("target"),
+        Column::numbers("MHz"),
+        Column::numbers("lowest to highest").dispensable(1),
+        Column::numbers("M points/s"),
+        Column::numbers("k/s per LUT"),
+        Column::numbers("M/s per DSP"),
+    ];
+    let per = |number: Option<f64>, scale: f64| {
+        number.map_or_else(|| "-".to_owned(), |it| format!("{:.1}", it * scale))
+    };
+    let rows = entries.iter().flat_map(|entry| {
+        speeds(entry).map(|(target, frequency, rate)| {
+            vec![
+                entry.label.clone(),
+                target.title().to_owned(),
+                format!("{:.1}", frequency.median),
+                format!("{:.1} to {:.1}", frequency.lowest, frequency.highest),
+                format!("{:.1}", rate.points),
+                per(rate.per_lut, 1000.0),
+                per(rate.per_dsp, 1.0),
+            ]
+        })
+    });
+    tables::print_line("");
+    tables::print(&columns, rows);
+    let mut tools: Vec<&str> =
+        entries.iter().filter_map(|entry| entry.record.as_ref()).flat_map(Record::tools).collect();
+    tools.sort_unstable();
+    tools.dedup();
+    tables::print_line(&format!(
+        "Measured by `glint synth` with registers around the core, the median of several runs of place and route: {}.",
+        tools.join(", ")
+    ));
 }
 
 /// Whole clocks as an integer.
@@ -205,6 +264,12 @@ fn as_csv(request: &CompareRequest, entries: &[Entry]) -> Vec<Vec<String>> {
                 .extend(["luts", "dsps", "block_rams"].map(|it| format!("{}_{it}", family.name)));
         }
     }
+    let measured = entries.iter().any(|entry| entry.record.is_some());
+    if measured {
+        for target in TARGETS {
+            heading.extend(["mhz", "million_points_per_second"].map(|it| format!("{target}_{it}")));
+        }
+    }
     let row = |entry: &Entry| {
         let mut row = vec![
             entry.label.clone(),
@@ -226,10 +291,16 @@ fn as_csv(request: &CompareRequest, entries: &[Entry]) -> Vec<Vec<String>> {
             entry.core.design.rom_bits().to_string(),
             sizes(&entry.figures.multipliers),
         ]);
-        for usage in &entry.usage {
-            match usage {
-                Ok(usage) => row.extend(numbers(usage).map(|(_, number)| number.to_string())),
-                Err(_) => row.extend(vec![String::new(); 3]),
+        if synthesised {
+            row.extend(taken(entry, ""));
+        }
+        if measured {
+            for target in TARGETS {
+                let (mhz, points) = speeds(entry).find(|(of, ..)| *of == target).map_or_else(
+                    || (String::new(), String::new()),
+                    |(_, frequency, rate)| (frequency.median.to_string(), rate.points.to_string()),
+                );
+                row.extend([mhz, points]);
             }
         }
         row
@@ -244,6 +315,15 @@ fn csv_field(field: &str) -> String {
     } else {
         field.to_owned()
     }
+}
+
+/// For scripts.
+#[derive(Serialize)]
+struct Speed {
+    #[serde(rename = "mhz")]
+    frequency: Frequency,
+    #[serde(flatten)]
+    rate: Rate,
 }
 
 fn as_json(
@@ -292,6 +372,13 @@ fn entry_json(entry: &Entry) -> Value {
         };
         let families = FAMILIES.iter().map(|family| family.name.to_owned());
         value["synthesis"] = Value::Object(families.zip(entry.usage.iter().map(taken)).collect());
+    }
+    if entry.record.is_some() {
+        let speed = |(target, frequency, rate): (Target, Frequency, Rate)| {
+            let told = Speed { frequency, rate };
+            (target.name().to_owned(), json!(told))
+        };
+        value["speed"] = Value::Object(speeds(entry).map(speed).collect());
     }
     value
 }

@@ -1,10 +1,11 @@
 //! Figures of synthesis for people and for scripts.
 
+use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::Measured;
+use super::{Measured, Recorded};
 use crate::cli::tables::{self, Column};
-use crate::synth::{Figures, Step};
+use crate::synth::{Figures, Rate, Step};
 
 /// What stands where there is nothing to tell.
 const NONE: &str = "–";
@@ -62,7 +63,6 @@ fn row(one: &Measured, figures: &Figures) -> Vec<String> {
     let decimal =
         |number: Option<f64>| number.map_or_else(|| NONE.to_owned(), |it| format!("{it:.2}"));
     let rate = one.rate(figures);
-    let per = |units: Option<u64>| Some(rate? / units.filter(|units| *units > 0)? as f64);
     let frequency = figures.frequency;
     vec![
         one.one.core.config.name.clone(),
@@ -81,9 +81,9 @@ fn row(one: &Measured, figures: &Figures) -> Vec<String> {
             .trim_end_matches('0')
             .trim_end_matches('.')
             .to_owned(),
-        decimal(rate),
-        decimal(per(area.luts).map(|it| it * 1000.0)),
-        decimal(per(area.dsps)),
+        decimal(rate.map(|it| it.points)),
+        decimal(rate.and_then(|it| it.per_lut).map(|it| it * 1000.0)),
+        decimal(rate.and_then(|it| it.per_dsp)),
     ]
 }
 
@@ -94,16 +94,18 @@ fn path(steps: &[Step]) -> String {
     format!("{} ns", steps.join(" → "))
 }
 
+#[derive(Serialize)]
+struct Told<'a> {
+    #[serde(flatten)]
+    recorded: Recorded<'a>,
+    #[serde(flatten)]
+    rate: Option<Rate>,
+}
+
 pub fn as_json(measured: &[Measured], notes: &[String]) {
     let all = measured.iter().map(|one| {
         let targets = one.figures.iter().map(|figures| {
-            let mut value = json!(one.recorded(figures));
-            let rate = one.rate(figures);
-            let per = |units: Option<u64>| Some(rate? / units.filter(|units| *units > 0)? as f64);
-            value["million_points_per_second"] = json!(rate);
-            value["million_points_per_second_per_lut"] = json!(per(figures.area.luts));
-            value["million_points_per_second_per_dsp"] = json!(per(figures.area.dsps));
-            value
+            json!(Told { recorded: one.recorded(figures), rate: one.rate(figures) })
         });
         json!({
             "config": one.one.path,

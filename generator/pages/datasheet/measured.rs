@@ -1,0 +1,85 @@
+//! The record of `glint synth`: area, frequency and rate on each target, and the longest paths.
+
+use super::table::TableView;
+use crate::pages::account::{Align, Table};
+use crate::synth::{Figures, Frequency, Rate, Record, Step};
+
+/// What stands where a target has no such thing, or nothing was measured.
+const NONE: &str = "–";
+
+/// The record as the page prints it.
+pub struct RecordView {
+    pub table: TableView,
+    /// A target, and its longest path.
+    pub paths: Vec<(String, String)>,
+    /// Why a target has no frequency.
+    pub untimed: Vec<(String, String)>,
+    pub tools: String,
+}
+
+impl RecordView {
+    pub fn new(record: &Record) -> Self {
+        let mut table = Table::new(&[
+            ("target", Align::Left),
+            ("LUT", Align::Right),
+            ("DSP", Align::Right),
+            ("RAM", Align::Right),
+            ("FF", Align::Right),
+            ("gates", Align::Right),
+            ("MHz", Align::Right),
+            ("M points/s", Align::Right),
+            ("k/s per LUT", Align::Right),
+            ("M/s per DSP", Align::Right),
+        ]);
+        table.rows = record.targets.iter().map(|it| row(it, record.clocks_per_point)).collect();
+        let of = |figures: &Figures, text: String| (figures.device.clone(), text);
+        let timed = record.targets.iter().filter(|it| !it.critical_path.is_empty());
+        let untimed = record.targets.iter();
+        Self {
+            table: TableView::new("Area and speed", &table),
+            paths: timed.map(|it| of(it, path(&it.critical_path))).collect(),
+            untimed: untimed.filter_map(|it| Some(of(it, it.untimed.clone()?))).collect(),
+            tools: record.tools().join(", "),
+        }
+    }
+}
+
+/// The frequency and the rate on the target where points come fastest of those that are FPGAs, for a reader in a hurry.
+pub fn fastest(record: &Record) -> Option<(&Figures, Frequency, Rate)> {
+    let timed = record
+        .targets
+        .iter()
+        .filter(|it| it.area.luts.is_some())
+        .filter_map(|it| Some((it, it.frequency?, Rate::new(it, record.clocks_per_point)?)));
+    timed.max_by(|a, b| a.2.points.total_cmp(&b.2.points))
+}
+
+fn row(figures: &Figures, clocks_per_point: f64) -> Vec<String> {
+    let area = &figures.area;
+    let known = |text: Option<String>| text.unwrap_or_else(|| NONE.to_owned());
+    let count = |number: Option<u64>| known(number.map(|it| it.to_string()));
+    let decimal = |number: Option<f64>| known(number.map(|it| format!("{it:.1}")));
+    let rate = Rate::new(figures, clocks_per_point);
+    vec![
+        figures.device.clone(),
+        count(area.luts),
+        count(area.dsps),
+        count(area.block_rams),
+        area.flip_flops.to_string(),
+        known(area.gates.map(|it| format!("{it:.0}"))),
+        known(figures.frequency.map(|it| match it.runs {
+            1 => format!("{:.1}", it.median),
+            _ => format!("{:.1} ({:.1}–{:.1})", it.median, it.lowest, it.highest),
+        })),
+        decimal(rate.map(|it| it.points)),
+        decimal(rate.and_then(|it| it.per_lut).map(|it| it * 1000.0)),
+        decimal(rate.and_then(|it| it.per_dsp)),
+    ]
+}
+
+/// `first → second 3.1 → third 7.9 ns`.
+fn path(steps: &[Step]) -> String {
+    let steps: Vec<String> =
+        steps.iter().map(|step| format!("{} {:.1}", step.name, step.ns)).collect();
+    format!("{} ns", steps.join(" → "))
+}
