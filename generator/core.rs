@@ -85,10 +85,12 @@ impl Core {
         self.digest_of((self.device.schema)().keys.iter())
     }
 
-    /// Tells this core, whatever its name, from others: as [`Core::contract_digest`], with the keys that all devices share.
-    /// A pipeline has another than the sequential core.
+    /// Tells this core, whatever its name, from others: as [`Core::contract_digest`], with the architecture. What stands around
+    /// the core and beside it makes no other core.
     pub fn core_digest(&self) -> String {
-        self.digest_of((self.device.schema)().all_keys())
+        let schema = (self.device.schema)();
+        let around = |key: &&Key| ["interface", "package"].contains(&key.table_and_leaf().0);
+        self.digest_of(schema.all_keys().filter(|key| !around(key)))
     }
 
     fn digest_of<'k>(&self, keys: impl Iterator<Item = &'k Key>) -> String {
