@@ -1,5 +1,8 @@
 //! Standard cells of 0.18 µm, before layout: Yosys with a liberty file, and OpenSTA for the delay.
 //!
+//! Nets of a large fan-out are buffered, and cells sized: without, the clock enable of a pipeline takes longer than everything that
+//! it enables.
+//!
 //! The library is that of Oklahoma State University for 0.18 µm, in the typical corner, as Debian's `qflow-tech-osu018` has it. A gate is
 //! the area of its NAND2X1.
 
@@ -19,6 +22,14 @@ const DEVICE: &str = "OSU 0.18 µm, typical corner, before layout";
 const NETLIST: &str = "cells.v";
 const STATISTICS: &str = "cells.txt";
 const GATE: &str = "NAND2X1";
+const CONSTRAINTS: &str = "cells.constr";
+
+/// What a port drives, in pF. That there are constraints makes Yosys buffer nets and size cells.
+const LOAD: &str = "set_load 0.1 [all_outputs]\n";
+
+/// How Yosys maps to the cells of `cells.lib`, without the top module.
+pub const MAPPING: &str =
+    "dfflibmap -liberty cells.lib; abc -liberty cells.lib -constr cells.constr; opt_clean -purge";
 
 /// Makes sure that there is a library.
 ///
@@ -51,11 +62,9 @@ pub fn measure(
     let library = "cells.lib";
     fs::write(place.path().join(library), text)
         .context("cannot write the library for synthesis")?;
-    let map = |top: &str| {
-        format!(
-            "synth -flatten -top {top}; dfflibmap -liberty {library}; abc -liberty {library}; opt_clean -purge"
-        )
-    };
+    fs::write(place.path().join(CONSTRAINTS), LOAD)
+        .context("cannot write the constraints for synthesis")?;
+    let map = |top: &str| format!("synth -flatten -top {top}; {MAPPING}");
     let name = &subject.design.name;
     let commands = [
         place.read_core(),

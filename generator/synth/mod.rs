@@ -132,6 +132,9 @@ impl Flow {
     pub fn digest(&self, subject: &Subject) -> String {
         let mut text = format!("{} {} {}\n", self.target, subject.seeds, env!("CARGO_PKG_VERSION"));
         text += &self.versions.join("\n");
+        if self.target == Target::Osu018 {
+            text += cells::MAPPING;
+        }
         for (name, contents) in subject.files {
             text += &format!("\n{name} {}", package::digest(contents.as_bytes()));
         }
