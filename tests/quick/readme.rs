@@ -1,13 +1,19 @@
 //! The tables of README.md and docs/verification.md say what Glint and its records say today.
 //!
-//! What only outside tools know (area, frequency, speed) is not here.
+//! What only outside tools know (area, frequency) is that of the records in `synthesis/`, which are of today's netlists; how
+//! fast simulators are is not here.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
+use std::path::Path;
 
+use glint::base::input;
 use glint::core::Core;
 use glint::evidence::comparison::{accuracy, clocks_per_point};
 use glint::registry::Registry;
+use glint::synth::{self, Figures, Frequency, Rate, Record, Target};
+use glint::tune::Features;
+use serde::Deserialize;
 use serde_json::Value;
 
 use crate::common::cores::configuration;
@@ -126,6 +132,127 @@ fn choosing_a_device() {
                 core.design.rom_bits().to_string(),
             ],
             "{device}"
+        );
+    }
+}
+
+/// What Yosys makes of the devices, by family.
+#[test]
+fn areas_of_the_devices() {
+    let rows = table("README.md", "| device | largest error of f");
+    let recorded = rows.iter().filter_map(|row| {
+        let name = module(row[0].split(' ').next().expect("a name"));
+        fs::exists(path(&name)).expect("readable").then(|| (row, record(&name)))
+    });
+    for (row, record) in recorded {
+        for (target, cell) in [Target::Ice40, Target::Ecp5, Target::Xilinx7].iter().zip(&row[6..]) {
+            assert_eq!(*cell, area(figures(&record, *target)), "{}, {target}", row[0]);
+        }
+    }
+}
+
+#[test]
+fn area_and_speed() {
+    let rows = table("README.md", "| configuration | clocks a point |");
+    for row in &rows {
+        let record = record(&row[0]);
+        let clocks = format!("{:.3}", record.clocks_per_point);
+        let mut expected = vec![clocks.trim_end_matches('0').trim_end_matches('.').to_owned()];
+        let rate = |figures: &Figures| Rate::new(figures, record.clocks_per_point);
+        let one = |number: Option<f64>| number.map_or("–".to_owned(), |it| format!("{it:.1}"));
+        let ice40 = figures(&record, Target::Ice40);
+        expected.push(one(ice40.frequency.map(|it| it.median)));
+        expected.push(one(rate(ice40).map(|it| it.points)));
+        let ecp5 = figures(&record, Target::Ecp5);
+        let frequency = ecp5.frequency.expect("a frequency");
+        let Frequency { lowest, median, highest, .. } = frequency;
+        expected.push(format!("{median:.1} ({lowest:.1}–{highest:.1})"));
+        let rate_there = rate(ecp5);
+        expected.push(one(rate_there.map(|it| it.points)));
+        expected.push(one(rate_there.and_then(|it| it.per_lut).map(|it| 1000.0 * it)));
+        expected.push(one(rate_there.and_then(|it| it.per_dsp)));
+        let cells = figures(&record, Target::Osu018);
+        expected.push(grouped(cells.area.gates.expect("gates") as u64));
+        expected.push(one(rate(cells).map(|it| it.points)));
+        assert_eq!(row[1..], expected, "{}", row[0]);
+    }
+    let listed: BTreeSet<&str> = rows.iter().map(|row| row[0].as_str()).collect();
+    let records = input::records::<Record>(Path::new(synth::DIRECTORY)).expect("records");
+    let recorded: BTreeSet<&str> = records.iter().map(|(_, it)| it.name.as_str()).collect();
+    assert_eq!(listed, recorded);
+}
+
+/// A record stands for the netlist that it was made of: the sums of what that consists of are today's, within a
+/// twentieth. `glint synth CONFIG --out synthesis` makes it anew.
+#[test]
+fn records_of_synthesis_are_of_todays_netlists() {
+    let records = input::records::<Record<Recorded>>(Path::new(synth::DIRECTORY)).expect("records");
+    assert!(!records.is_empty());
+    for (path, record) in records {
+        let path = path.display();
+        let core = configuration(&record.config);
+        assert_eq!(core.core_digest(), record.core, "{path}: another configuration");
+        for Recorded { target, netlist } in record.targets {
+            let Features { adder, mux, logic, rom, product } = Features::new(&core.design, target);
+            let now = [adder, mux, logic, rom, product];
+            let Features { adder, mux, logic, rom, product } = netlist;
+            let then = [adder, mux, logic, rom, product];
+            let (now, then): (f64, f64) = (now.iter().sum(), then.iter().sum());
+            assert!((now - then).abs() <= 0.05 * then, "{path}, {target}: {now}, was {then}");
+        }
+    }
+}
+
+/// Of a record, what its netlist consisted of.
+#[derive(Deserialize)]
+struct Recorded {
+    target: Target,
+    netlist: Features,
+}
+
+/// The record of a configuration.
+fn path(name: &str) -> String {
+    format!("{}/{name}.json", synth::DIRECTORY)
+}
+
+fn record(name: &str) -> Record {
+    let path = path(name);
+    serde_json::from_str(&read(&path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+fn figures(record: &Record, target: Target) -> &Figures {
+    record.of(target).unwrap_or_else(|| panic!("{}: no figures for {target}", record.name))
+}
+
+/// LUT, DSP, RAM.
+fn area(figures: &Figures) -> String {
+    let usage = figures.area.usage().expect("an FPGA");
+    format!("{}, {}, {}", usage.luts, usage.dsps, usage.block_rams)
+}
+
+/// Rows of Glint's own devices: gates and rate of the records in `benches/literature/`, and the error against cosⁿγ at n = 20,
+/// over γ = 0…90°.
+#[test]
+fn beside_the_literature() {
+    let rows = table("README.md", "| unit | what it computes | gates |");
+    let directory = Path::new("benches/literature");
+    for (_, record) in input::records::<Record>(directory).expect("records") {
+        let row = rows.iter().find(|row| row[0] == record.name);
+        let row = row.unwrap_or_else(|| panic!("no row {}", record.name));
+        let cells = figures(&record, Target::Osu018);
+        let core = configuration(&record.config);
+        assert_eq!(core.core_digest(), record.core, "{}: another configuration", record.name);
+        let error = accuracy(core.contract.as_ref(), 20.0).expect("a highlight").whole.largest;
+        let rate = Rate::new(cells, record.clocks_per_point).expect("a frequency");
+        assert_eq!(
+            row[2..5],
+            [
+                grouped(cells.area.gates.expect("gates") as u64),
+                format!("{:.1}", rate.points),
+                format!("{error:.5}")
+            ],
+            "{}",
+            record.name
         );
     }
 }
