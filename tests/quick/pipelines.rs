@@ -4,8 +4,10 @@
 //! another point.
 
 use glint::hdl::netlist::{Driver, NetId, Role};
+use glint::mutate::{self, Fault, Faults, Verdict};
 
-use crate::common::cores::all_configurations;
+use crate::common::cores::{all_configurations, configuration_with};
+use crate::common::sample::sampled;
 
 #[test]
 fn values_of_a_stage_are_made_of_values_of_this_stage_and_all_registers_move_together() {
@@ -62,4 +64,27 @@ fn values_of_a_stage_are_made_of_values_of_this_stage_and_all_registers_move_tog
         }
     }
     assert_eq!(seen, 8, "pipelines");
+}
+
+/// Of a narrow pipeline: what every point shows is caught, and of a sample of all faults most, the rest proved.
+#[test]
+fn faults_of_a_pipeline_are_noticed_or_proved() {
+    let core =
+        configuration_with("configs/reduced/cosine_power.toml", "architecture = \"pipelined\"\n");
+    let faults = Faults::of(&core.design);
+    let shows = ["valid_s1:no-reset", "valid_s2[0]:inverted", "red_out[0]:inverted"];
+    let shows = shows.iter().filter_map(|id| faults.find(id)).collect::<Vec<&Fault>>();
+    assert!(shows.len() >= 2, "ids have changed");
+    let sample = sampled("faults of a pipeline", faults.iter(), 250);
+    let known = shows.len();
+    let planted: Vec<&Fault> = shows.into_iter().chain(sample).collect();
+    let found = mutate::run(&core, planted, &|| ()).expect("they can be simulated");
+    for found in &found[..known] {
+        assert!(matches!(found.verdict, Verdict::Caught(..)), "{}", found.fault.id);
+    }
+    let undecided = found.iter().filter(|it| it.verdict == Verdict::Undecided);
+    let undecided: Vec<&str> = undecided.map(|it| it.fault.id.as_str()).collect();
+    assert!(undecided.len() * 50 < found.len(), "{undecided:?}");
+    let caught = found.iter().filter(|it| matches!(it.verdict, Verdict::Caught(..))).count();
+    assert!(caught * 2 > found.len(), "{caught} of {}", found.len());
 }
