@@ -4,7 +4,7 @@
 //! nothing with it and is held against it.
 
 use super::{Design, Driver, NetId, Op, RomId};
-use crate::base::fixed::mask;
+use crate::base::fixed::{Format, mask};
 
 fn one<const N: usize>(a: &[u64; N], cell: impl Fn(u64) -> u64) -> [u64; N] {
     std::array::from_fn(|lane| cell(a[lane]))
@@ -20,26 +20,27 @@ fn signed(width: u32) -> impl Fn(u64) -> i64 {
     move |bits| (bits << drop) as i64 >> drop
 }
 
-/// The result of a cell `width` bits wide as [`Op`] documents it, for `N` independent sets of operands. `of`
-/// gives the bit patterns of an operand.
+/// The result of a cell `width` bits wide as [`Op`] documents it, for `N` independent sets of operands. `format`
+/// gives the format of an operand, `of` its bit patterns.
 pub fn cell<'a, const N: usize>(
-    design: &Design,
     op: &Op,
     width: u32,
+    format: &impl Fn(NetId) -> Format,
     of: &impl Fn(NetId) -> &'a [u64; N],
 ) -> [u64; N] {
     let all = mask(width);
-    let is_signed = |net: NetId| design.net(net).format.signed;
+    let is_signed = |net: NetId| format(net).signed;
+    let width_of = |net: NetId| format(net).width();
     match op {
         Op::Relabel(a) => *of(*a),
         Op::Extend(a) if is_signed(*a) => {
-            let number = signed(design.width(*a));
+            let number = signed(width_of(*a));
             one(of(*a), |a| number(a) as u64 & all)
         }
         Op::Extend(a) => *of(*a),
         Op::Slice { of: a, low } => one(of(*a), |a| a >> low & all),
         Op::Concat(parts) => parts.iter().fold([0; N], |sum, part| {
-            let width = design.width(*part);
+            let width = width_of(*part);
             two(&sum, of(*part), |sum, part| sum.checked_shl(width).unwrap_or(0) | part)
         }),
         Op::Not(a) => one(of(*a), |a| !a & all),
@@ -53,19 +54,19 @@ pub fn cell<'a, const N: usize>(
         }
         Op::Sub(a, b) => two(of(*a), of(*b), |a, b| a.wrapping_sub(b) & all),
         Op::Mul(a, b) if is_signed(*a) => {
-            let (x, y) = (signed(design.width(*a)), signed(design.width(*b)));
+            let (x, y) = (signed(width_of(*a)), signed(width_of(*b)));
             two(of(*a), of(*b), |a, b| x(a).wrapping_mul(y(b)) as u64 & all)
         }
         Op::Mul(a, b) => two(of(*a), of(*b), |a, b| a.wrapping_mul(b) & all),
         Op::Equal(a, b) => two(of(*a), of(*b), |a, b| u64::from(a == b)),
         Op::Less(a, b) if is_signed(*a) => {
-            let number = signed(design.width(*a));
+            let number = signed(width_of(*a));
             two(of(*a), of(*b), |a, b| u64::from(number(a) < number(b)))
         }
         Op::Less(a, b) => two(of(*a), of(*b), |a, b| u64::from(a < b)),
         Op::Any(a) => one(of(*a), |a| u64::from(a != 0)),
         Op::All(a) => {
-            let whole = mask(design.width(*a));
+            let whole = mask(width_of(*a));
             one(of(*a), |a| u64::from(a == whole))
         }
         Op::Mux { select, inputs } => {
@@ -112,6 +113,7 @@ impl<'a> Interpreter<'a> {
             self.values[port.net.index()] = [bits & mask(design.width(port.net))];
         }
         let positions = design.field_positions();
+        let format = |net: NetId| design.net(net).format;
         for &id in &self.order {
             let width = design.width(id);
             let bits = match &design.net(id).driver {
@@ -121,7 +123,7 @@ impl<'a> Interpreter<'a> {
                     word >> positions[field.index()]
                 }
                 Driver::Rom(rom) if !design.rom(*rom).synchronous => self.read(*rom),
-                Driver::Op(op) => cell(design, op, width, &|net| &self.values[net.index()])[0],
+                Driver::Op(op) => cell(op, width, &format, &|net| &self.values[net.index()])[0],
                 Driver::Undriven | Driver::Input | Driver::Register(_) | Driver::Rom(_) => continue,
             };
             self.values[id.index()] = [bits & mask(width)];

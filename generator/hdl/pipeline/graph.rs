@@ -7,9 +7,8 @@
 use std::collections::HashMap;
 use std::panic::Location;
 
-use super::value::evaluate;
 use crate::base::fixed::{Format, mask};
-use crate::hdl::netlist::{NetId, Op, RomId};
+use crate::hdl::netlist::{NetId, Op, RomId, eval};
 
 /// The smallest and the largest raw value.
 pub type Interval = (i128, i128);
@@ -222,11 +221,12 @@ impl Graph {
 
     /// A node that already is what the cell would give, or one that is less.
     fn fold(&mut self, op: &Op, format: Format, label: &Label) -> Option<NetId> {
-        let operands = op.operands();
-        let known: Option<Vec<u64>> = operands.iter().map(|&id| self.constant_of(id)).collect();
+        let known = op.operands().into_iter();
+        let known: Option<HashMap<NetId, [u64; 1]>> =
+            known.map(|id| Some((id, [self.constant_of(id)?]))).collect();
         if let Some(values) = known {
-            let formats: Vec<Format> = operands.iter().map(|&id| self.node(id).format).collect();
-            let bits = evaluate(op, format, &values, &formats);
+            let formats = |id: NetId| self.node(id).format;
+            let [bits] = eval::cell(op, format.width(), &formats, &|id| &values[&id]);
             return Some(self.constant(bits, format, label));
         }
         let width = format.width();

@@ -14,7 +14,6 @@ mod target;
 #[cfg(test)]
 mod tests;
 mod unroll;
-mod value;
 
 use crate::base::diagnostic::{Diagnostic, Diagnostics};
 use crate::config::Config;

@@ -3,9 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::graph::{Cell, Graph};
-use super::value::evaluate;
-use crate::base::fixed::Format;
-use crate::hdl::netlist::NetId;
+use crate::hdl::netlist::{NetId, eval};
 
 /// All combinations of so many bits are tried.
 const MOST_BITS: u32 = 16;
@@ -35,15 +33,15 @@ pub fn ever(graph: &Graph, condition: NetId, free: &[NetId]) -> Option<bool> {
     if bits > MOST_BITS {
         return None;
     }
-    let mut values: HashMap<NetId, u64> = HashMap::new();
+    let mut values: HashMap<NetId, [u64; 1]> = HashMap::new();
     for number in 0..1u64 << bits {
         let mut rest = number;
         for (&leaf, &width) in leaves.iter().zip(&widths) {
-            values.insert(leaf, rest & crate::base::fixed::mask(width));
+            values.insert(leaf, [rest & crate::base::fixed::mask(width)]);
             rest >>= width;
         }
         let within = |&id: &NetId| {
-            let (node, bits) = (graph.node(id), values[&id]);
+            let (node, [bits]) = (graph.node(id), values[&id]);
             (node.range.0..=node.range.1).contains(&node.format.raw(bits))
         };
         if !leaves.iter().all(within) {
@@ -53,18 +51,15 @@ pub fn ever(graph: &Graph, condition: NetId, free: &[NetId]) -> Option<bool> {
             let node = graph.node(id);
             let bits = match &node.cell {
                 Cell::Op(op) => {
-                    let operands = op.operands();
-                    let formats: Vec<Format> =
-                        operands.iter().map(|&id| graph.node(id).format).collect();
-                    let operands: Vec<u64> = operands.iter().map(|id| values[id]).collect();
-                    evaluate(op, node.format, &operands, &formats)
+                    let format = |net: NetId| graph.node(net).format;
+                    eval::cell(op, node.format.width(), &format, &|net| &values[&net])
                 }
-                Cell::Constant(bits) => *bits,
+                Cell::Constant(bits) => [*bits],
                 _ => unreachable!("leaves are not inside"),
             };
             values.insert(id, bits);
         }
-        if values[&condition] == 1 {
+        if values[&condition] == [1] {
             return Some(true);
         }
     }

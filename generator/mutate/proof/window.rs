@@ -253,7 +253,10 @@ impl<'a> Windows<'a> {
         };
         match driver {
             Driver::Constant(bits) => [*bits; LANES],
-            Driver::Op(op) => eval::cell(self.design, op, self.design.width(net), &of),
+            Driver::Op(op) => {
+                let format = |net: NetId| self.design.net(net).format;
+                eval::cell(op, self.design.width(net), &format, &of)
+            }
             // A source is in the cut, and has its values.
             _ => *of(net),
         }
