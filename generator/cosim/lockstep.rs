@@ -14,9 +14,8 @@ use anyhow::{Result, bail};
 use rayon::prelude::*;
 
 use super::alone::Alone;
-use super::outcome::{Course, Outcome, Seen, Worst};
+use super::outcome::{Course, Outcome, Seen, share, stream_seed};
 use super::pairing::Pairing;
-use super::random::Random;
 use super::together::Together;
 use crate::golden::{Contract, Model};
 use crate::hdl::netlist::Design;
@@ -126,31 +125,12 @@ impl<'a> Sequential<'a> {
     fn stream(&self, points: u64, streams: u64, number: u64) -> Course {
         Course::Random {
             seed: stream_seed(self.seed, number),
-            points: points / streams + u64::from(number < points % streams),
+            points: share(points, streams, number),
         }
     }
 
-    /// What streams showed together, up to the first that differs.
     fn outcome(&self, streams: impl IntoIterator<Item = Seen>) -> Outcome {
-        let mut outcome = Outcome {
-            registers: self.pairing.registers(),
-            outputs: self.pairing.outputs.len(),
-            ..Outcome::default()
-        };
-        for seen in streams {
-            outcome.points += seen.points;
-            outcome.clocks += seen.clocks;
-            outcome.histogram.merge(&seen.histogram);
-            let units = |worst: &Option<Worst>| worst.as_ref().map_or(-1.0, |worst| worst.units);
-            if units(&seen.worst) > units(&outcome.worst) {
-                outcome.worst = seen.worst;
-            }
-            if seen.mismatch.is_some() {
-                outcome.mismatch = seen.mismatch;
-                break;
-            }
-        }
-        outcome
+        Outcome::of(self.pairing.registers(), self.pairing.outputs.len(), streams)
     }
 
     /// As [`Sequential::run`], in one stream.
@@ -263,15 +243,5 @@ fn streams(points: u64, longest: u64) -> u64 {
         ..FEWEST_STREAMS => 1,
         most @ ..STREAMS => most,
         _ => STREAMS * (points / (STREAMS * MANY_POINTS.max(fewest))).max(1),
-    }
-}
-
-/// The seed of a stream; the first has that of the run.
-fn stream_seed(seed: u64, number: u64) -> u64 {
-    if number == 0 {
-        seed
-    } else {
-        // Drawn, so that the streams are at distant places of the generator's cycle.
-        Random::new(seed ^ number.wrapping_mul(0xd134_2543_de82_ef95)).bits()
     }
 }

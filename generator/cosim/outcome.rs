@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::histogram::Histogram;
+use super::random::Random;
 use crate::golden::Bound;
 
 /// What a run showed.
@@ -25,6 +26,29 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// What streams showed together, up to the first that differs; registers and outputs are counts.
+    pub(super) fn of(
+        registers: usize,
+        outputs: usize,
+        streams: impl IntoIterator<Item = Seen>,
+    ) -> Self {
+        let mut outcome = Self { registers, outputs, ..Self::default() };
+        for seen in streams {
+            outcome.points += seen.points;
+            outcome.clocks += seen.clocks;
+            outcome.histogram.merge(&seen.histogram);
+            let units = |worst: &Option<Worst>| worst.as_ref().map_or(-1.0, |worst| worst.units);
+            if units(&seen.worst) > units(&outcome.worst) {
+                outcome.worst = seen.worst;
+            }
+            if seen.mismatch.is_some() {
+                outcome.mismatch = seen.mismatch;
+                break;
+            }
+        }
+        outcome
+    }
+
     /// What does not hold, with a contract whose bound this is.
     pub fn faults(&self, bound: &Bound) -> Vec<String> {
         let mut faults = Vec::new();
@@ -95,6 +119,21 @@ pub(super) struct Seen {
     pub(super) mismatch: Option<Mismatch>,
     /// What the formula says of the latest result.
     pub(super) exact: Vec<[f64; 2]>,
+}
+
+/// The seed of a stream; the first has that of the run.
+pub(super) fn stream_seed(seed: u64, number: u64) -> u64 {
+    if number == 0 {
+        seed
+    } else {
+        // Drawn, so that the streams are at distant places of the generator's cycle.
+        Random::new(seed ^ number.wrapping_mul(0xd134_2543_de82_ef95)).bits()
+    }
+}
+
+/// The points of stream `number` of a run of `points`.
+pub(super) fn share(points: u64, streams: u64, number: u64) -> u64 {
+    points / streams + u64::from(number < points % streams)
 }
 
 /// What a stream goes through.

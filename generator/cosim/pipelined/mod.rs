@@ -16,11 +16,9 @@ use std::io::Write;
 use anyhow::{Context, Result, ensure};
 use rayon::prelude::*;
 
-use super::histogram::Histogram;
 use super::lockstep::LANES;
-use super::outcome::{Mismatch, Outcome, Worst};
+use super::outcome::{Mismatch, Outcome, Seen, share, stream_seed};
 use super::points::Points;
-use super::random::Random;
 use crate::golden::{Contract, Model, Operand};
 use crate::hdl::netlist::{Design, NetId, Pipeline, Role};
 use crate::hdl::sim::Simulator;
@@ -157,7 +155,7 @@ impl<'a> Pipelined<'a> {
             .map(|group| {
                 let first = group * LANES as u64;
                 let shares: Vec<(u64, u64)> = (first..streams.min(first + LANES as u64))
-                    .map(|number| (self.stream_seed(number), share(points, streams, number)))
+                    .map(|number| (stream_seed(self.seed, number), share(points, streams, number)))
                     .collect();
                 let seen = self.group(&shares)?;
                 progress(seen.iter().map(|seen| seen.points).sum());
@@ -239,7 +237,7 @@ impl<'a> Pipelined<'a> {
         (0..streams)
             .into_par_iter()
             .map(|number| {
-                let seed = self.stream_seed(number);
+                let seed = stream_seed(self.seed, number);
                 let mut watch = begin(seed);
                 let mut alone = Group::<1>::new(&self.setup, &[seed])?;
                 while !alone.ended(share(points, streams, number)) {
@@ -265,49 +263,9 @@ impl<'a> Pipelined<'a> {
         Ok(group.seen())
     }
 
-    fn stream_seed(&self, number: u64) -> u64 {
-        if number == 0 {
-            self.seed
-        } else {
-            Random::new(self.seed ^ number.wrapping_mul(0xd134_2543_de82_ef95)).bits()
-        }
-    }
-
     fn outcome(&self, streams: impl IntoIterator<Item = Seen>) -> Outcome {
-        let mut outcome = Outcome {
-            registers: self.setup.pipeline.checkpoints.len(),
-            outputs: self.setup.outputs.len(),
-            ..Outcome::default()
-        };
-        for seen in streams {
-            outcome.points += seen.points;
-            outcome.clocks += seen.clocks;
-            outcome.histogram.merge(&seen.histogram);
-            let units = |worst: &Option<Worst>| worst.as_ref().map_or(-1.0, |worst| worst.units);
-            if units(&seen.worst) > units(&outcome.worst) {
-                outcome.worst = seen.worst;
-            }
-            if seen.mismatch.is_some() {
-                outcome.mismatch = seen.mismatch;
-                break;
-            }
-        }
-        outcome
+        Outcome::of(self.setup.pipeline.checkpoints.len(), self.setup.outputs.len(), streams)
     }
-}
-
-/// The points of stream `number`.
-fn share(points: u64, streams: u64, number: u64) -> u64 {
-    points / streams + u64::from(number < points % streams)
-}
-
-/// What a stream showed.
-struct Seen {
-    points: u64,
-    clocks: u64,
-    worst: Option<Worst>,
-    histogram: Histogram,
-    mismatch: Option<Mismatch>,
 }
 
 /// Streams in one simulator.
@@ -398,6 +356,7 @@ impl<const L: usize> Group<L> {
                 worst: lane.worst.take(),
                 histogram: std::mem::take(&mut lane.histogram),
                 mismatch: mismatch.take(),
+                exact: Vec::new(),
             })
             .collect()
     }
