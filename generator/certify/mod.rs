@@ -31,7 +31,7 @@ use formula::Real;
 use hardware::{Hardware, Value, Variables};
 use terms::{Id, Term, Terms, number};
 
-/// An operand of at most so many values is gone through value by value where a table is read by it, or where it is
+/// An operand of at most this number of values is gone through value by value where a table is read by it, or where it is
 /// an exponent of the formula.
 const SPLIT: i64 = 1024;
 

@@ -2,15 +2,15 @@
 
 use anyhow::Result;
 
+use super::binding::Binding;
 use super::combinations::Combinations;
 use super::outcome::{Course, Seen};
-use super::pairing::Pairing;
 use super::stream::Stream;
 use crate::hdl::sim::Simulator;
 
 /// One stream in a simulator of its own.
 pub(super) struct Alone<'a> {
-    pairing: &'a Pairing<'a>,
+    binding: &'a Binding<'a>,
     pub(super) simulator: Simulator,
     stream: Stream,
 }
@@ -20,10 +20,10 @@ impl<'a> Alone<'a> {
     ///
     /// # Errors
     /// A design that cannot be simulated.
-    pub(super) fn new(pairing: &'a Pairing<'a>, course: Course) -> Result<Self> {
-        let simulator: Simulator = Simulator::new(pairing.design)?;
-        let busy = simulator.value(pairing.compared[pairing.busy]) == 1;
-        Ok(Self { stream: Stream::new(pairing, course, busy), simulator, pairing })
+    pub(super) fn new(binding: &'a Binding<'a>, course: Course) -> Result<Self> {
+        let simulator: Simulator = Simulator::new(binding.design)?;
+        let busy = simulator.value(binding.compared[binding.busy]) == 1;
+        Ok(Self { stream: Stream::new(binding, course, busy), simulator, binding })
     }
 
     /// Whether it has all its points, or something differs.
@@ -51,23 +51,23 @@ impl<'a> Alone<'a> {
     /// # Errors
     /// A simulation that does not settle, or a VCD that cannot be written.
     pub(super) fn clock(&mut self) -> Result<Vec<u64>> {
-        let address = self.simulator.value(self.pairing.address);
-        let inputs = self.stream.clock(self.pairing).to_vec();
+        let address = self.simulator.value(self.binding.address);
+        let inputs = self.stream.clock(self.binding).to_vec();
         for (at, &bits) in inputs.iter().enumerate() {
             self.simulator.set(at, bits);
         }
         self.simulator.clock()?;
         let simulated = |net| self.simulator.value(net);
-        let mismatch = self.stream.mismatch(self.pairing, address, simulated);
+        let mismatch = self.stream.mismatch(self.binding, address, simulated);
         if mismatch.is_some() {
             self.stream.seen.mismatch = mismatch;
         } else {
-            self.stream.note(self.pairing);
+            self.stream.note(self.binding);
         }
         Ok(inputs)
     }
 
-    /// All of it; `progress` is told now and then how many points there are more.
+    /// All of it; `progress` is called now and then with the number of points since its last call.
     ///
     /// # Errors
     /// Those of [`Alone::clock`].

@@ -48,7 +48,7 @@ impl<'a> Lockstep<'a> {
         })
     }
 
-    /// The same with lines of no more than so many results.
+    /// The same with lines of at most `results` results.
     #[must_use]
     pub fn with_lines_of(self, results: i64) -> Self {
         Self(match self.0 {
@@ -59,7 +59,7 @@ impl<'a> Lockstep<'a> {
 
     /// Runs until `points` results were seen or something differs, on all threads of rayon's pool.
     ///
-    /// `progress` is told now and then how many points there are more.
+    /// `progress` is called now and then with the number of points since its last call.
     ///
     /// # Errors
     /// A design that cannot be simulated, or does not settle.

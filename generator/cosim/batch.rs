@@ -31,12 +31,12 @@ pub struct Points {
 }
 
 impl Points {
-    /// No point yet; each will have so many operands, those of a [`Contract`] in its order.
+    /// An empty list of points, each of `operands` operands, those of a [`Contract`] in its order.
     pub fn new(operands: usize) -> Self {
         Self { operands, values: Vec::new(), results: vec![0] }
     }
 
-    /// Adds a computation with its raw operands, which shows so many results.
+    /// Adds a computation with its raw operands and the number of its results.
     ///
     /// # Panics
     /// If there are not as many operands as [`Points::new`] said.

@@ -14,8 +14,8 @@ use anyhow::{Result, bail};
 use rayon::prelude::*;
 
 use super::alone::Alone;
+use super::binding::Binding;
 use super::outcome::{Course, Outcome, Seen, share, stream_seed};
-use super::pairing::Pairing;
 use super::together::Together;
 use crate::golden::{Contract, Model};
 use crate::hdl::netlist::Design;
@@ -25,14 +25,16 @@ use crate::package::Vectors;
 /// Streams that share a simulator.
 pub(super) const LANES: usize = 32;
 
-/// Beyond so many streams, which keep two threads busy, there are multiples of it.
+/// The number of streams that keeps two threads busy; of more there are multiples of it.
 const STREAMS: u64 = 2 * LANES as u64;
 
-/// A stream has at least so many points, and so many times those of the longest computation …
+/// The fewest points of a stream.
 const FEWEST_POINTS: u64 = 64;
+
+/// A stream has the points of at least this number of the longest computations.
 const COMPUTATIONS: u64 = 2;
 
-/// … or so many, where there are more than [`STREAMS`].
+/// The fewest points of a stream where there are more than [`STREAMS`].
 const MANY_POINTS: u64 = 1024;
 
 /// A run of fewer streams is not divided.
@@ -40,7 +42,7 @@ const FEWEST_STREAMS: u64 = 8;
 
 /// Golden model and simulator of a design with a microprogram.
 pub(super) struct Sequential<'a> {
-    pairing: Pairing<'a>,
+    binding: Binding<'a>,
     seed: u64,
 }
 
@@ -55,24 +57,24 @@ impl<'a> Sequential<'a> {
         contract: &'a dyn Contract,
         seed: u64,
     ) -> Result<Self> {
-        let pairing = Pairing::new(design, model, contract)?;
-        Ok(Self { pairing, seed })
+        let binding = Binding::new(design, model, contract)?;
+        Ok(Self { binding, seed })
     }
 
     /// The same with some operands held at raw values: the stimulus seldom draws others for them.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
-        Self { pairing: self.pairing.holding(held), ..self }
+        Self { binding: self.binding.holding(held), ..self }
     }
 
     /// Runs until `points` results were seen or something differs, on all threads of rayon's pool.
     ///
-    /// `progress` is told now and then how many points there are more.
+    /// `progress` is called now and then with the number of points since its last call.
     ///
     /// # Errors
     /// A design that cannot be simulated, or does not settle.
     pub fn run(&self, points: u64, progress: &(dyn Fn(u64) + Sync)) -> Result<Outcome> {
-        let streams = streams(points, self.pairing.longest());
+        let streams = streams(points, self.binding.longest());
         if streams == 1 {
             let alone = self.alone(points)?;
             return Ok(self.outcome([alone.run(progress)?]));
@@ -105,7 +107,7 @@ impl<'a> Sequential<'a> {
             return Ok(Vec::new());
         }
         let courses = numbers.map(|number| self.stream(points, streams, number));
-        let mut group = Together::<LANES>::new(&self.pairing, courses)?;
+        let mut group = Together::<LANES>::new(&self.binding, courses)?;
         while !group.ended() && differs.load(Ordering::Relaxed) >= first {
             progress(group.run()?);
         }
@@ -115,10 +117,10 @@ impl<'a> Sequential<'a> {
         group.into_seen()
     }
 
-    /// One stream of so many points under the seed of the run.
+    /// One stream of `points` points under the seed of the run.
     fn alone(&self, points: u64) -> Result<Alone<'_>> {
         let seed = self.seed;
-        Alone::new(&self.pairing, Course::Random { seed, points })
+        Alone::new(&self.binding, Course::Random { seed, points })
     }
 
     /// One of the streams of a run.
@@ -130,7 +132,7 @@ impl<'a> Sequential<'a> {
     }
 
     fn outcome(&self, streams: impl IntoIterator<Item = Seen>) -> Outcome {
-        Outcome::of(self.pairing.registers(), self.pairing.outputs.len(), streams)
+        Outcome::of(self.binding.registers(), self.binding.outputs.len(), streams)
     }
 
     /// As [`Sequential::run`], in one stream.
@@ -153,13 +155,13 @@ impl<'a> Sequential<'a> {
         begin: impl Fn(u64) -> W + Sync,
         note: impl Fn(&mut W, u64, &Simulator) + Sync,
     ) -> Result<Vec<W>> {
-        let streams = streams(points, self.pairing.longest());
+        let streams = streams(points, self.binding.longest());
         (0..streams)
             .into_par_iter()
             .map(|number| {
                 let mut watch = begin(stream_seed(self.seed, number));
                 let course = self.stream(points, streams, number);
-                let mut alone = Alone::new(&self.pairing, course)?;
+                let mut alone = Alone::new(&self.binding, course)?;
                 while !alone.ended() {
                     alone.clock()?;
                     note(&mut watch, alone.seen().points, &alone.simulator);
@@ -178,23 +180,23 @@ impl<'a> Sequential<'a> {
         let mut vectors = Vectors::default();
         self.add(&mut vectors, &mut alone)?;
         if !computations.is_empty() {
-            alone.follow(self.pairing.listed(computations));
+            alone.follow(self.binding.listed(computations));
             self.add(&mut vectors, &mut alone)?;
         }
         Ok(vectors)
     }
 
-    /// The same with lines of no more than so many results.
+    /// The same with lines of at most `results` results.
     #[must_use]
     pub fn with_lines_of(mut self, results: i64) -> Self {
-        self.pairing.shorten(results);
+        self.binding.shorten(results);
         self
     }
 
     /// The clocks of a stream to its end.
     fn add(&self, vectors: &mut Vectors, alone: &mut Alone<'_>) -> Result<()> {
         while !alone.ended() {
-            let outputs = self.pairing.outputs.iter();
+            let outputs = self.binding.outputs.iter();
             let outputs = outputs.map(|&net| alone.simulator.value(net)).collect();
             vectors.expected.push(outputs);
             let before = alone.seen().points;

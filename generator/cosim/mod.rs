@@ -3,13 +3,13 @@
 mod alone;
 mod architecture;
 pub mod batch;
+mod binding;
 mod combinations;
 pub mod directed;
 pub mod exhaustive;
 mod histogram;
 mod lockstep;
 mod outcome;
-mod pairing;
 mod pipelined;
 mod points;
 mod random;

@@ -139,8 +139,8 @@ pub(super) fn share(points: u64, streams: u64, number: u64) -> u64 {
 /// What a stream goes through.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Course {
-    /// So many results under the stimulus of a seed.
+    /// `points` results under the stimulus of a seed.
     Random { seed: u64, points: u64 },
-    /// The combinations of operands at so many places, from the first on.
+    /// The combinations of operands at `count` places, from the first on.
     Combinations { first: u64, count: u64 },
 }

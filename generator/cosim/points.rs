@@ -13,15 +13,15 @@ use crate::golden::{Contract, Highlight, Operand};
 
 use super::random::Random;
 
-/// A point is of one of so many kinds: 0 has any bits, 1 and 2 are corners of the domain, 3 is drawn evenly; the
+/// The number of kinds of points: 0 has any bits, 1 and 2 are corners of the domain, 3 is drawn evenly; the
 /// others are drawn by the value of the formula.
 const KINDS: i64 = 16;
 
 /// Of a device that is no highlight, a point of a higher kind is one that its contract hints at.
 const HINTED: i64 = 7;
 
-/// A line that is not drawn by the value of the formula is no longer than this, all but one in so many: long ones
-/// would crowd out all other points.
+/// A line that is not drawn by the value of the formula has at most `SHORT` intervals, but for one in `LONG`: long
+/// lines would crowd out all other points.
 const SHORT: i64 = 12;
 const LONG: u64 = 64;
 
@@ -43,9 +43,9 @@ pub struct Points<'a> {
     contract: &'a dyn Contract,
     /// Of a device that multiplies by an f: without it there is no value to draw points by.
     highlight: Option<&'a Highlight>,
-    /// With the domains that are drawn from: those of the contract, but of operands that are held.
+    /// With the domains that are drawn from: those of the contract, but for operands that are held.
     operands: Vec<Operand>,
-    /// The first so many determine `f`.
+    /// The number of the first operands, which determine `f`.
     control: usize,
     /// The operand that says how many results a computation has.
     length: Option<usize>,

@@ -24,7 +24,7 @@ pub struct Reached {
     pub colour: i64,
 }
 
-/// The largest error that is reached from so many starts, drawn by a seed: the same on any number of threads. `None`
+/// The largest error that is reached from `starts` starts, drawn by a seed: the same on any number of threads. `None`
 /// for no start.
 pub fn worst(highlight: &Highlight, starts: u64, seed: u64) -> Option<Reached> {
     let points = Points::new(highlight);

@@ -33,11 +33,11 @@ struct Driven {
 
 #[derive(Clone, Copy, PartialEq)]
 enum Phase {
-    /// `rst_n` low for so many clocks more.
+    /// The clocks for which `rst_n` stays low.
     Reset(u32),
     /// Writing; the operands still to be written, as a mask.
     Writing(u64),
-    /// `start` is due after so many idle clocks.
+    /// The idle clocks until `start` is due.
     Starting(u32),
     /// A computation runs; the clocks to its reset, when one is due.
     Running(Option<u64>),

@@ -2,9 +2,9 @@
 
 use std::mem;
 
+use super::binding::Binding;
 use super::combinations::Combinations;
 use super::outcome::{Course, Mismatch, Seen};
-use super::pairing::Pairing;
 use super::stimulus::Stimulus;
 use crate::golden::Model;
 use crate::hdl::netlist::NetId;
@@ -32,19 +32,19 @@ pub(super) struct Stream {
 
 impl Stream {
     /// At power-up, when the device shows `busy`.
-    pub(super) fn new(pairing: &Pairing, course: Course, busy: bool) -> Self {
+    pub(super) fn new(binding: &Binding, course: Course, busy: bool) -> Self {
         let source = match course {
             Course::Random { seed, points } => {
-                Source::Random { stimulus: pairing.stimulus.clone().seeded(seed), seed, points }
+                Source::Random { stimulus: binding.stimulus.clone().seeded(seed), seed, points }
             }
             Course::Combinations { first, count } => {
-                Source::Combinations(pairing.combinations(first, count))
+                Source::Combinations(binding.combinations(first, count))
             }
         };
         Self {
             seen: Seen::default(),
             source,
-            model: pairing.model.boxed_clone(),
+            model: binding.model.boxed_clone(),
             busy,
             index: 0,
             reordered: Vec::new(),
@@ -92,12 +92,12 @@ impl Stream {
 
     /// Clocks the model, and returns the inputs with which that was done.
     #[inline]
-    pub(super) fn clock(&mut self, pairing: &Pairing) -> &[u64] {
+    pub(super) fn clock(&mut self, binding: &Binding) -> &[u64] {
         let inputs = match &mut self.source {
-            Source::Random { stimulus, .. } => stimulus.next(self.busy, &pairing.points),
+            Source::Random { stimulus, .. } => stimulus.next(self.busy, &binding.points),
             Source::Combinations(combinations) => combinations.next(self.busy),
         };
-        match &pairing.order {
+        match &binding.order {
             None => self.model.clock(inputs),
             Some(order) => {
                 self.reordered.clear();
@@ -122,21 +122,21 @@ impl Stream {
     /// do. The microinstruction at `address` was executed at the edge.
     pub(super) fn mismatch(
         &self,
-        pairing: &Pairing,
+        binding: &Binding,
         address: u64,
         simulated: impl Fn(NetId) -> u64,
     ) -> Option<Mismatch> {
-        let pairs = pairing.compared.iter().zip(self.predicted());
+        let pairs = binding.compared.iter().zip(self.predicted());
         let differs = |(&net, &golden): (&NetId, &u64)| simulated(net) != golden;
         let at = pairs.clone().position(differs)?;
-        let microprogram = &pairing.design.control.microprogram;
+        let microprogram = &binding.design.control.microprogram;
         let executed = usize::try_from(address).ok().and_then(|at| microprogram.get(at));
         Some(Mismatch {
             seed: self.seed(),
             clock: self.seen.clocks,
-            signal: pairing.model.signals()[at].clone(),
+            signal: binding.model.signals()[at].clone(),
             golden: self.predicted()[at],
-            simulated: simulated(pairing.compared[at]),
+            simulated: simulated(binding.compared[at]),
             during: executed
                 .map_or_else(String::new, |it| format!("microinstruction `{}`", it.name)),
         })
@@ -144,13 +144,13 @@ impl Stream {
 
     /// Takes note of a result, if there is one, as predicted.
     #[inline]
-    pub(super) fn note(&mut self, pairing: &Pairing) {
+    pub(super) fn note(&mut self, binding: &Binding) {
         let values = self.model.values();
-        let was_busy = mem::replace(&mut self.busy, values[pairing.busy] == 1);
+        let was_busy = mem::replace(&mut self.busy, values[binding.busy] == 1);
         if self.busy && !was_busy {
             self.index = 0;
         }
-        if values[pairing.valid] != 1 {
+        if values[binding.valid] != 1 {
             return;
         }
         self.seen.points += 1;
@@ -161,10 +161,10 @@ impl Stream {
         if self.index == 0 {
             self.operands.clear();
             self.operands.extend(stimulus.accepted());
-            self.inside = pairing.inside(&self.operands);
+            self.inside = binding.inside(&self.operands);
         }
         if self.inside {
-            pairing.measure(&mut self.seen, &self.operands, self.index, values);
+            binding.measure(&mut self.seen, &self.operands, self.index, values);
         } else {
             self.seen.histogram.add_outside();
         }

@@ -3,8 +3,8 @@
 use anyhow::Result;
 
 use super::alone::Alone;
+use super::binding::Binding;
 use super::outcome::{Course, Seen};
-use super::pairing::Pairing;
 use super::stream::Stream;
 use crate::hdl::sim::Simulator;
 
@@ -18,7 +18,7 @@ const AHEAD: usize = 8;
 /// A stream reacts to `busy` as its model predicts it. That is what the simulation does, unless they
 /// differ; and a stream in which anything differs is gone through once more, alone.
 pub(super) struct Together<'a, const LANES: usize> {
-    pairing: &'a Pairing<'a>,
+    binding: &'a Binding<'a>,
     simulator: Simulator<LANES>,
     /// The first are in the first lanes.
     streams: Vec<Stream>,
@@ -42,19 +42,19 @@ impl<'a, const LANES: usize> Together<'a, LANES> {
     /// # Errors
     /// A design that cannot be simulated.
     pub(super) fn new(
-        pairing: &'a Pairing<'a>,
+        binding: &'a Binding<'a>,
         courses: impl IntoIterator<Item = Course>,
     ) -> Result<Self> {
-        let simulator = Simulator::new(pairing.design)?;
-        let busy = simulator.lane(pairing.compared[pairing.busy], 0) == 1;
-        let stream = |course| Stream::new(pairing, course, busy);
+        let simulator = Simulator::new(binding.design)?;
+        let busy = simulator.lane(binding.compared[binding.busy], 0) == 1;
+        let stream = |course| Stream::new(binding, course, busy);
         let clock = || Clock {
             inputs: vec![[0; LANES]; simulator.inputs().len()],
-            predicted: vec![[0; LANES]; pairing.compared.len()],
+            predicted: vec![[0; LANES]; binding.compared.len()],
             compared: [0; LANES],
         };
         Ok(Self {
-            pairing,
+            binding,
             streams: courses.into_iter().take(LANES).map(stream).collect(),
             differ: [false; LANES],
             ahead: std::iter::repeat_with(clock).take(AHEAD).collect(),
@@ -88,21 +88,21 @@ impl<'a, const LANES: usize> Together<'a, LANES> {
                     continue;
                 }
                 clock.compared[lane] = u64::MAX;
-                let inputs = stream.clock(self.pairing);
+                let inputs = stream.clock(self.binding);
                 for (input, &bits) in clock.inputs.iter_mut().zip(inputs) {
                     input[lane] = bits;
                 }
                 for (column, &bits) in clock.predicted.iter_mut().zip(stream.predicted()) {
                     column[lane] = bits;
                 }
-                stream.note(self.pairing);
+                stream.note(self.binding);
             }
             points += stream.seen.points - before;
         }
         for clock in &self.ahead {
             self.simulator.inputs_mut().copy_from_slice(&clock.inputs);
             self.simulator.clock()?;
-            let nets = &self.pairing.compared;
+            let nets = &self.binding.compared;
             let differences = self.simulator.differences(nets, &clock.predicted);
             let lanes = differences.iter().zip(&clock.compared);
             for (differ, (differences, compared)) in self.differ.iter_mut().zip(lanes) {
@@ -120,7 +120,7 @@ impl<'a, const LANES: usize> Together<'a, LANES> {
         let mut all = Vec::new();
         for (stream, differs) in self.streams.into_iter().zip(self.differ) {
             if differs {
-                let alone = Alone::new(self.pairing, stream.course())?;
+                let alone = Alone::new(self.binding, stream.course())?;
                 all.push(alone.run(&|_| ())?);
                 break;
             }

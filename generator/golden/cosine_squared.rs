@@ -161,7 +161,7 @@ impl Reflectance for Arithmetic {
     }
 
     /// A line of one point, its angle stretched by `√(n/2)` as the host does it. What the operand denotes is
-    /// an angle and n together, so no cosine is told of it.
+    /// an angle and n together, so that it has no cosine.
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
         let stretched = (n / 2.0).sqrt() * gamma;
         Some(vec![0, line::raw_angle(&operands[1], stretched), 0])

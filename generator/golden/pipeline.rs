@@ -13,7 +13,7 @@ pub struct Occupancy<P> {
 }
 
 impl<P> Occupancy<P> {
-    /// Of so many stages, without any point.
+    /// A pipeline of `latency` stages without any point.
     pub fn empty(latency: usize) -> Self {
         Self { stages: (0..latency).map(|_| None).collect() }
     }

@@ -18,7 +18,7 @@ use crate::golden::formulas;
 pub enum Scheme {
     /// n − 1.
     Taylor,
-    /// The coefficient of the least largest error, with so many fraction bits.
+    /// The coefficient with the smallest largest error, with this number of fraction bits.
     Minimax { fraction: u32 },
 }
 

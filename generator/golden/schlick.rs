@@ -21,7 +21,7 @@ impl Arithmetic {
     }
 }
 
-/// The first so many bits of the quotient, and the remainder that they leave. A quotient of 1.0 is the
+/// The first `bits` bits of the quotient, and the remainder that they leave. A quotient of 1.0 is the
 /// largest fraction.
 #[inline]
 fn divide(dividend: i64, divisor: i64, bits: u32) -> (i64, i64) {
@@ -36,8 +36,8 @@ pub fn model(config: &Config) -> Box<dyn Model> {
 
 /// The device, clock by clock.
 ///
-/// The divider's registers are told from the division as a whole: after so many bits the quotient ends
-/// in that many bits of the true one, and the remainder is what they leave.
+/// The divider's registers are predicted from the division as a whole: after k steps the quotient ends
+/// in the first k bits of the true one, and the remainder is what these leave.
 struct Device {
     it: Arithmetic,
     cosine: Slot,

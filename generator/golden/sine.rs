@@ -40,7 +40,7 @@ pub struct Piece {
     pub cosines: (f64, f64),
     /// The largest `|table − √(1 − x²)|` among its operands.
     pub error: f64,
-    /// What of it is left with words of unlimited width: how far a bucket's or a segment's sine is from
+    /// The error that is left with words of unlimited width: how far a bucket's or a segment's sine is from
     /// constant or straight.
     pub shape: f64,
 }

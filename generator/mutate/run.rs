@@ -25,7 +25,7 @@ const FIRST_POINTS: u64 = 256;
 const BEYOND_POINTS: u64 = 1_000_000;
 const BEYOND_SEED: u64 = 2;
 
-/// Plants every one of the faults in turn. `progress` is told of each that is done.
+/// Plants every one of the faults in turn. `progress` is called after each.
 ///
 /// # Errors
 /// A mutant that cannot be simulated.

@@ -11,7 +11,7 @@ use crate::core::{Core, TEST_SEED};
 use crate::cosim::Lockstep;
 use crate::registry::Registry;
 
-/// One in so many faults is planted: not a multiple of three, as for each bit there are three.
+/// One in this number of faults is planted: not a multiple of three, as for each bit there are three.
 const EVERY: usize = 29;
 
 /// Points in which most faults show.

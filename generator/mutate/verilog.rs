@@ -2,7 +2,7 @@
 //!
 //! They are planted in the text of the modules, one at a time. Lint must notice, or a bench: the one that is shipped
 //! with the fault-free text, or a longer one, on whose vectors golden model and built-in simulator agree. What the
-//! shipped bench notices by itself is told apart.
+//! shipped bench notices by itself is counted apart.
 //!
 //! No register is put on the other edge of the clock: what it takes is stable by then, so that it carries the
 //! same at every edge that counts, and only timing analysis can tell.

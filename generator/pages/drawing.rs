@@ -57,7 +57,7 @@ pub enum Item {
         /// What it says.
         text: String,
     },
-    /// The items up to [`Item::Close`] belong together, and this is what a pointer over them is told.
+    /// The items up to [`Item::Close`] belong together, and this is their tooltip.
     Open {
         /// Class.
         class: &'static str,

@@ -165,7 +165,7 @@ pub fn check(settings: &Settings, scene: &Scene) -> Result<()> {
     Ok(())
 }
 
-/// Renders a scene; `progress` is told the rows so far.
+/// Renders a scene; `progress` is called with the number of rows so far.
 ///
 /// # Errors
 /// Those of [`check`]; a camera that sees nowhere; operands that a picture cannot supply; and those of the

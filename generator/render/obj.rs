@@ -1,7 +1,7 @@
 //! Wavefront OBJ: the geometry of a mesh.
 //!
 //! Everything but vertices, normals, texture coordinates and faces is passed over: groups, materials,
-//! lines, curves. A reader of its own, because a mistake is told with its line, and because faces whose
+//! lines, curves. A reader of its own, because a mistake is reported with its line, and because faces whose
 //! corners have normals may stand beside faces without.
 
 use anyhow::{Context, Result, anyhow, bail, ensure};

@@ -214,7 +214,7 @@ impl Feed {
         (self.operands.iter().map(raw), beyond)
     }
 
-    /// The raw operands of a line with so many intervals, in a light of the strength `light`, 0 … 1.
+    /// The raw operands of a line with `intervals` intervals, in a light of the strength `light`, 0 … 1.
     ///
     /// A device without an exponent takes the angles times √(n/2).
     ///

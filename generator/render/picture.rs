@@ -136,7 +136,7 @@ impl Difference {
     }
 }
 
-/// One colour over another, which covers it by so many 255ths.
+/// One colour over another; the coverage is in 255ths.
 fn mix(ground: [u8; 3], over: [u8; 3], share: u8) -> [u8; 3] {
     let share = u32::from(share);
     let channel = |at: usize| {

@@ -24,7 +24,7 @@ pub fn torus(major: f64, minor: f64, steps: [u32; 2]) -> Result<Mesh> {
     })
 }
 
-/// A ball, in so many steps around and from pole to pole.
+/// A ball, with this number of steps around and from pole to pole.
 ///
 /// # Errors
 /// Those of [`Mesh::new`].

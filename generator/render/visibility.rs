@@ -48,7 +48,7 @@ pub struct Raster {
 }
 
 impl Raster {
-    /// Of so many samples.
+    /// The number of samples.
     pub fn new(columns: usize, rows: usize, camera: &Camera) -> Self {
         Self { columns, rows, half: camera.half() }
     }

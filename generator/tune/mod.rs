@@ -81,7 +81,7 @@ pub struct Wish {
 }
 
 /// Searches for the smallest configuration. `base` has the keys that are part of the wish; the free ones are changed, but for those
-/// in `fixed`. `progress` is told how many configurations were looked at.
+/// in `fixed`. `progress` is called with the number of configurations that were looked at.
 ///
 /// # Errors
 /// No configuration keeps the wish; the message says which term of the bound, or the clock, is in the way.

@@ -145,7 +145,7 @@ impl<'a> Search<'a> {
         })
     }
 
-    /// The neighbours by so many changes at once.
+    /// The neighbours that differ by this number of changes.
     fn around(&self, candidate: &Candidate, changes: usize) -> Vec<Candidate> {
         let moves = self.space.moves(&candidate.config);
         let single = moves.iter().map(|one| vec![one.clone()]);

@@ -12,7 +12,7 @@ use crate::registry::Device;
 /// Steps by which an integer is changed.
 const STEPS: [i64; 3] = [1, 2, 4];
 
-/// Points at which formulas are compared, drawn over the places that divide each domain into so many parts.
+/// Points at which formulas are compared, drawn from the places that divide each domain into this number of parts.
 const POINTS: u32 = 600;
 const PLACES: i64 = 12;
 

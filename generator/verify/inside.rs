@@ -17,7 +17,7 @@ const POINTS: [u64; 2] = [TEST_POINTS, 100 * TEST_POINTS];
 /// Without full effort a proof has no more evaluations than some seconds allow.
 const EVALUATIONS: u64 = 1 << 28;
 
-/// Of a recorded proof, about so many evaluations of `f` are made again.
+/// About how many evaluations of `f` of a recorded proof are made again.
 const AGAIN: u64 = 1 << 24;
 
 /// The description, as it was built.

@@ -23,7 +23,7 @@ use show::{announce, report};
 /// How often the state is written.
 const SAVE: Duration = Duration::from_secs(5);
 
-/// Cores for which the duration of a proof is told.
+/// Numbers of cores for which the duration of a proof is estimated.
 const CORES: [u32; 3] = [1, 16, 1000];
 
 /// What `cosim --exhaustive` was asked for beside configurations.

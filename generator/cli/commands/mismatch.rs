@@ -1,4 +1,4 @@
-//! A first difference as people and scripts are told of it, with the means to see it again.
+//! A first difference, for people and for scripts, with the means to see it again.
 
 use std::fs::File;
 use std::io::BufWriter;

@@ -153,7 +153,7 @@ fn flows(request: &SynthArguments) -> Result<(Vec<Flow>, Vec<String>)> {
     }
 }
 
-/// Measures a configuration for all targets; `done` is told of steps.
+/// Measures a configuration for all targets; `done` is called after each step.
 fn measure<'a>(
     one: &'a Loaded,
     flows: &[Flow],

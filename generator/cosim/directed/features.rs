@@ -24,7 +24,7 @@ enum Watched {
     Pair(NetId, NetId),
 }
 
-/// What is watched in a design, and what of it the computations in the lanes have done.
+/// What is watched in a design, and which of it the computations in the lanes have done.
 pub struct Watch {
     watched: Vec<Watched>,
     done: Vec<[u64; LANES]>,

@@ -16,16 +16,16 @@ use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::cosim::alone::Alone;
+use crate::cosim::binding::Binding;
 use crate::cosim::combinations::Ports;
 use crate::cosim::lockstep::LANES;
 use crate::cosim::outcome::{Course, Mismatch};
-use crate::cosim::pairing::Pairing;
 use crate::cosim::pipelined::Pipelined;
 use crate::cosim::together::Together;
 use crate::golden::{Contract, Model};
 use crate::hdl::netlist::Design;
 
-/// Beyond so many bits of operands there are too many combinations.
+/// The most bits of operands of which all combinations are gone through.
 pub const MOST_BITS: u32 = 26;
 
 /// Combinations of a lane.
@@ -37,7 +37,7 @@ const BLOCK: u64 = RUN * LANES as u64;
 /// How far the combinations have come.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Steps {
-    /// Blocks of the shard that are done: the first so many.
+    /// The number of blocks of the shard that are done, which are the first.
     pub done: u64,
     /// The first place at which something differs, after which no other is of interest.
     pub differs: Option<u64>,
@@ -81,7 +81,7 @@ pub struct Clocks<'a> {
 /// How combinations go through a design.
 enum Architecture<'a> {
     /// One computation after another.
-    Sequential(Pairing<'a>),
+    Sequential(Binding<'a>),
     /// A point every clock.
     Pipelined(Pipelined<'a>),
 }
@@ -98,9 +98,9 @@ impl<'a> Clocks<'a> {
     ) -> Result<Self> {
         Ok(match &design.pipeline {
             None => {
-                let pairing = Pairing::new(design, model, contract)?;
-                let ports = Arc::clone(&pairing.ports);
-                Self { ports, architecture: Architecture::Sequential(pairing) }
+                let binding = Binding::new(design, model, contract)?;
+                let ports = Arc::clone(&binding.ports);
+                Self { ports, architecture: Architecture::Sequential(binding) }
             }
             Some(pipeline) => Self {
                 ports: Arc::new(Ports::new(design)),
@@ -115,10 +115,10 @@ impl<'a> Clocks<'a> {
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
         match self.architecture {
-            Architecture::Sequential(pairing) => {
-                let pairing = pairing.holding(held);
-                let ports = Arc::clone(&pairing.ports);
-                Self { ports, architecture: Architecture::Sequential(pairing) }
+            Architecture::Sequential(binding) => {
+                let binding = binding.holding(held);
+                let ports = Arc::clone(&binding.ports);
+                Self { ports, architecture: Architecture::Sequential(binding) }
             }
             Architecture::Pipelined(pipelined) => {
                 let mut ports = Ports::new(pipelined.design());
@@ -178,7 +178,7 @@ impl<'a> Clocks<'a> {
     }
 
     /// The first place in some blocks, in ascending order, at which something differs; on all threads of
-    /// rayon's pool. `progress` is told the combinations of each block that is done.
+    /// rayon's pool. `progress` is called with the number of combinations of each block that is done.
     ///
     /// # Errors
     /// A design that cannot be simulated, or does not settle.
@@ -202,9 +202,9 @@ impl<'a> Clocks<'a> {
 
     fn first_of(&self, runs: impl Iterator<Item = (u64, u64)>) -> Result<Option<u64>> {
         match &self.architecture {
-            Architecture::Sequential(pairing) => {
+            Architecture::Sequential(binding) => {
                 let courses = runs.map(|(first, count)| Course::Combinations { first, count });
-                let mut lanes = Together::<LANES>::new(pairing, courses)?;
+                let mut lanes = Together::<LANES>::new(binding, courses)?;
                 while !lanes.ended() {
                     lanes.run()?;
                 }
@@ -228,8 +228,8 @@ impl<'a> Clocks<'a> {
     /// Nothing differs there; those of [`Clocks::check`].
     pub fn difference(&self, place: u64) -> Result<Difference> {
         let (mismatch, clock) = match &self.architecture {
-            Architecture::Sequential(pairing) => {
-                let mut alone = self.alone(pairing, place)?;
+            Architecture::Sequential(binding) => {
+                let mut alone = self.alone(binding, place)?;
                 while !alone.ended() {
                     alone.clock()?;
                 }
@@ -260,8 +260,8 @@ impl<'a> Clocks<'a> {
     /// Those of [`Clocks::difference`]; the file cannot be written.
     pub fn trace(&self, place: u64, from: u64, file: impl Write + Send + 'static) -> Result<()> {
         match &self.architecture {
-            Architecture::Sequential(pairing) => {
-                let mut alone = self.alone(pairing, place)?;
+            Architecture::Sequential(binding) => {
+                let mut alone = self.alone(binding, place)?;
                 while !alone.ended() && alone.seen().clocks < from {
                     alone.clock()?;
                 }
@@ -293,9 +293,9 @@ impl<'a> Clocks<'a> {
     }
 
     /// The same in a simulator of its own.
-    fn alone<'p>(&self, pairing: &'p Pairing<'a>, place: u64) -> Result<Alone<'p>> {
+    fn alone<'p>(&self, binding: &'p Binding<'a>, place: u64) -> Result<Alone<'p>> {
         let (first, count) = self.run_to(place)?;
-        Alone::new(pairing, Course::Combinations { first, count })
+        Alone::new(binding, Course::Combinations { first, count })
     }
 
     /// How long one combination takes on one thread.

@@ -32,7 +32,7 @@ const CHUNK: u64 = 4;
 pub struct Shard {
     /// From 1.
     pub number: u64,
-    /// Of so many.
+    /// The number of shards.
     pub of: u64,
 }
 
@@ -55,7 +55,7 @@ impl Shard {
         self.number - 1 + at * self.of
     }
 
-    /// The next blocks of the shard, which has `count`, when so many are done; how many are done then.
+    /// The next blocks of the shard, which has `count`, after `done` of them; and how many are done then.
     fn chunk(self, done: u64, count: u64) -> (u64, Vec<u64>) {
         let end = (done + CHUNK * rayon::current_num_threads() as u64).min(count);
         (end, (done..end).map(|at| self.block(at)).collect())
@@ -87,7 +87,7 @@ impl FromStr for Shard {
 /// How far one part of a job has come.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Progress {
-    /// Blocks of the shard that are done: the first so many.
+    /// The number of blocks of the shard that are done, which are the first.
     pub done: u64,
     /// The peak of those.
     pub peak: Peak,
@@ -253,7 +253,7 @@ impl<'a> Job<'a> {
     }
 
     /// Goes on from `state` to the end of its shard, or until `look`, which sees the state now and then,
-    /// breaks; `progress` is told the places of each block that is done.
+    /// breaks; `progress` is called with the number of places of each block that is done.
     ///
     /// # Errors
     /// A design that cannot be simulated, or does not settle.

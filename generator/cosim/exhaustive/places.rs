@@ -185,7 +185,7 @@ impl<'a> Places<'a> {
         peak
     }
 
-    /// The peak of some blocks, on all cores; `progress` is told the places of each block that is done.
+    /// The peak of some blocks, on all cores; `progress` is called with the number of places of each block that is done.
     pub fn check(
         &self,
         blocks: impl IntoParallelIterator<Item = u64>,

@@ -11,13 +11,13 @@ use crate::cosim::random::Random;
 use crate::golden::Operand;
 use crate::golden::pipeline::Occupancy;
 
-/// How eager a side of the handshake is: it is ready once in so many clocks.
+/// How eager a side of the handshake is: it is ready once in this number of clocks.
 const PACES: [u64; 4] = [1, 1, 2, 5];
 
 /// Clocks for which a pace is kept.
 const PACE_CLOCKS: u64 = 24;
 
-/// A reset comes once in so many clocks.
+/// A reset comes once in this number of clocks.
 const RESET_CLOCKS: u64 = 1024;
 
 /// A point on its way.

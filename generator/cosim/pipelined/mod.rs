@@ -26,7 +26,7 @@ use crate::package::Vectors;
 use lane::{Lane, Point};
 use reference::{Formula, Reference};
 
-/// A stream has so many points.
+/// The points of a stream.
 const POINTS: u64 = 2048;
 
 /// A pipeline with its golden model.

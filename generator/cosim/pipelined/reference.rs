@@ -6,7 +6,7 @@ use crate::cosim::histogram::Histogram;
 use crate::golden::{Contract, Model};
 use crate::hdl::netlist::{Design, NetId, Pipeline, Role};
 
-/// A computation ends within so many clocks.
+/// The most clocks of a computation.
 const MOST_CLOCKS: usize = 8192;
 
 /// The golden model of the sequential core, run a point at a time.

@@ -136,7 +136,7 @@ impl<D> Microinstruction<D> {
         Self { next: Next::RepeatWhile(condition), ..self }
     }
 
-    /// It passes over so many microinstructions if this holds of the values before the edge.
+    /// It skips the next `count` microinstructions if this holds of the values before the edge.
     pub fn skip_if(self, count: u32, condition: fn(&D, &State) -> bool) -> Self {
         Self { next: Next::SkipIf(count, condition), ..self }
     }
@@ -246,7 +246,7 @@ impl Frame {
         results.map(|it| (it.name.as_str(), it.format))
     }
 
-    /// `valid` comes so many clocks after the microinstructions that say it, through registers that a reset
+    /// `valid` comes this number of clocks after the microinstructions that say it, through registers that a reset
     /// clears.
     pub fn delay_valid(&mut self, clocks: u32) {
         self.valid_delay = clocks;

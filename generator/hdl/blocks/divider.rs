@@ -115,7 +115,7 @@ impl<'d> Divider<'d> {
         self.quotient.q()
     }
 
-    /// The knobs: dividend and divisor are taken at the end of the microinstruction.
+    /// The settings with which dividend and divisor are taken at the end of the microinstruction.
     #[track_caller]
     pub fn load(&self) -> [Setting; 4] {
         [
@@ -126,7 +126,7 @@ impl<'d> Divider<'d> {
         ]
     }
 
-    /// The knobs: the next bit enters the quotient at the end of the microinstruction.
+    /// The settings with which the next bit enters the quotient at the end of the microinstruction.
     #[track_caller]
     pub fn step(&self) -> [Setting; 4] {
         [

@@ -6,7 +6,7 @@
 use crate::base::fixed::Format;
 use crate::hdl::dsl::{Counter, Designer, Mux, Register, Setting, Signal, Step, loop_while, step};
 
-/// So many squarings, and the counter of those to come: `remaining`, where there is more than one.
+/// Squarings of a base, with the counter of those to come, `remaining`, where there is more than one.
 pub struct Squarings<'d> {
     designer: &'d Designer,
     counter: Option<Counter<'d>>,
@@ -25,7 +25,7 @@ impl<'d> Squarings<'d> {
     }
 
     /// `count` squarings under a counter that counts something else too, before them: it is returned
-    /// with the knob that makes it start from `other`.
+    /// with the setting that makes it start from `other`.
     #[track_caller]
     pub fn sharing(
         designer: &'d Designer,
@@ -45,7 +45,7 @@ impl<'d> Squarings<'d> {
         (squarings, counter, load_other)
     }
 
-    /// The knobs that load the counter, in a microinstruction before the second squaring.
+    /// The settings that load the counter, in a microinstruction before the second squaring.
     #[track_caller]
     pub fn load(&self) -> Vec<Setting> {
         let pick = self.start.map(|(mux, squarings)| mux.pick(squarings));
@@ -55,7 +55,7 @@ impl<'d> Squarings<'d> {
 
     /// The microinstructions: `register` takes the square of a base, then its own, until all are done.
     ///
-    /// `first` are the knobs that bring the square of the base to the register, `again` those that
+    /// `first` are the settings that bring the square of the base to the register, `again` those that
     /// bring the register's own.
     #[track_caller]
     pub fn steps(

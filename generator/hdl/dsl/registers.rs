@@ -1,4 +1,4 @@
-//! What holds state, and the knobs that the microprogram turns.
+//! Registers, operands, flags and counters, and the settings that they make for a microinstruction.
 
 use super::{Designer, Setting, Signal};
 use crate::base::fixed::Format;

@@ -5,12 +5,12 @@
 
 use crate::hdl::netlist::{Design, Driver, NetId, RegId, Sequence};
 
-/// The clocks between a microinstruction and the one with `done`, at most.
+/// The most clocks from a microinstruction to the one with `done`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Left {
-    /// So many,
+    /// The clocks that do not depend on a counter.
     pub clocks: u64,
-    /// and one for each that this counter still has to go.
+    /// One clock more for each count that this counter still has to go.
     pub counter: Option<RegId>,
 }
 

@@ -33,7 +33,7 @@ pub enum Cell {
     Op(Op),
 }
 
-/// What a reader is told of a value.
+/// The name, block number and comment of a value.
 #[derive(Clone, Debug)]
 pub struct Label {
     /// The net or register of the sequential design that carries it.

@@ -28,7 +28,7 @@ pub use unroll::{Unrolled, unroll};
 pub enum Goal {
     /// The fewest registers for a clock.
     ClockMhz(f64),
-    /// The fastest clock in so many stages.
+    /// The fastest clock in this number of stages.
     Stages(usize),
 }
 

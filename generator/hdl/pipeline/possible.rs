@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use super::graph::{Cell, Graph};
 use crate::hdl::netlist::{NetId, eval};
 
-/// All combinations of so many bits are tried.
+/// The most bits of which all combinations are tried.
 const MOST_BITS: u32 = 16;
 
 /// Whether `condition`, one bit, is ever 1, whatever the nodes `free` and all leaves are; `None` if it

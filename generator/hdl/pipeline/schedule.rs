@@ -51,7 +51,7 @@ pub struct Problems<'a> {
     block: Vec<bool>,
 }
 
-/// A node stands at least so many stages after another.
+/// A node stands at least this number of stages after another.
 type Difference = (NetId, NetId, usize);
 
 /// Whether a node is another with more bits of its sign, or under another name: made anew wherever it is
@@ -123,7 +123,7 @@ impl<'a> Problems<'a> {
         Ok(self.solve(&differences, latency, period))
     }
 
-    /// The schedule of so many stages with the shortest period. With more than there are of use the
+    /// The schedule of this number of stages with the shortest period. With more than there are of use the
     /// period is that of the slowest operation.
     pub fn for_stages(&self, stages: usize) -> Schedule {
         let fastest = self.fastest().map_or(0.0, |it| it.period);

@@ -10,7 +10,7 @@ use super::unroll::Unrolled;
 use crate::base::fixed::Format;
 use crate::hdl::netlist::{NetId, Op};
 
-/// So many bits of an operand are rows in look-up tables.
+/// The most bits of an operand that become rows in look-up tables.
 const MOST_ROWS: u32 = 4;
 
 /// The same computation with products that the target's multipliers take.

@@ -44,7 +44,7 @@ pub struct Target {
     pub product: f64,
     /// From the clock to the output of a block memory, beyond that of a register.
     pub block: f64,
-    /// ROMs of so many bits are block memories.
+    /// ROMs of at least this number of bits are block memories.
     pub block_bits: u64,
 }
 

@@ -444,7 +444,7 @@ fn mux<W: Word, const LANES: usize>(
     }
 }
 
-/// From so many lanes on it is worth while to compare them all with each number of a mux.
+/// The fewest lanes for which it pays to compare them all with each number of a mux.
 const VECTOR: usize = 8;
 
 /// Of a mux of more inputs than this, each lane is looked up.

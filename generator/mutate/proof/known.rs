@@ -144,7 +144,7 @@ pub(super) fn cell(design: &Design, op: &Op, width: u32, value: &impl Fn(NetId) 
     }
 }
 
-/// The inputs that a mux with so many select lines may take.
+/// The inputs that a mux with `lines` select lines may take.
 pub(super) fn choices(select: Known, lines: u32, inputs: &[NetId]) -> impl Iterator<Item = NetId> {
     let last = inputs.len() - 1;
     // The largest number that the select lines may carry: beyond the last input stands the last.

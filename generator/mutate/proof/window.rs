@@ -19,7 +19,7 @@ const LANES: usize = 512;
 /// A net in all lanes.
 type Lanes = [u64; LANES];
 
-/// At most so many combinations are tried, as a power of two.
+/// The most combinations that are tried, as a power of two.
 const BITS: u32 = 22;
 
 /// Windows of one design.

@@ -72,7 +72,7 @@ pub enum Kind {
     Constant,
     /// Narrowing that saturates.
     Limiter,
-    /// A multiplexer of so many inputs.
+    /// A multiplexer with this number of inputs.
     Mux(usize),
     /// A multiplier of operands that are so wide.
     Multiplier(u32, u32),

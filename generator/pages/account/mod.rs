@@ -52,7 +52,7 @@ pub fn numbering(design: &Design) -> &'static str {
     }
 }
 
-/// How a format is told: a single bit is no number.
+/// How a format is written: a single bit is no number.
 pub fn format_text(format: Format) -> String {
     match format.width() {
         1 => "1 bit".to_owned(),

@@ -280,7 +280,7 @@ fn text(format: Format, bits: u64) -> String {
     }
 }
 
-/// The clocks that are shown of so many.
+/// The clocks that are shown of a computation of `clocks` clocks.
 fn shown(clocks: usize) -> Vec<usize> {
     match clocks {
         0..=MOST => (0..clocks).collect(),

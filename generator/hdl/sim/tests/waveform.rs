@@ -31,7 +31,7 @@ impl Write for Shared {
     }
 }
 
-/// Takes so many bytes, then fails.
+/// Takes this number of bytes, then fails.
 struct Full(usize);
 
 impl Write for Full {

@@ -26,7 +26,7 @@ pub struct Node {
     pub caption: String,
     /// The control lines that turn it, by number or name; may be empty.
     pub control: String,
-    /// What a pointer over it is told.
+    /// Its tooltip.
     pub title: String,
 }
 
@@ -235,7 +235,7 @@ fn caption(block: &Block) -> String {
     }
 }
 
-/// What a pointer over a box is told.
+/// The tooltip of a box.
 fn titled(name: &str, format: &str, doc: &str) -> String {
     match doc {
         "" => format!("{name}, {format}"),

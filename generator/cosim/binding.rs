@@ -1,4 +1,4 @@
-//! What of a golden model belongs to what of a design.
+//! The binding of a golden model to a design: which port or register each signal of the model is.
 
 use std::sync::Arc;
 
@@ -12,8 +12,8 @@ use crate::base::fixed::{Format, MAX_WIDTH, exp2};
 use crate::golden::{Contract, Model, Output, nearer};
 use crate::hdl::netlist::{Design, NetId, RegisterKind};
 
-/// A design and its golden model, paired by the names of ports and registers.
-pub(super) struct Pairing<'a> {
+/// A design and its golden model, bound by the names of ports and registers.
+pub(super) struct Binding<'a> {
     pub(super) design: &'a Design,
     contract: &'a dyn Contract,
     /// At power-up; every stream runs a copy of it.
@@ -56,7 +56,7 @@ impl Quantity {
     }
 }
 
-impl<'a> Pairing<'a> {
+impl<'a> Binding<'a> {
     /// Pairs them.
     ///
     /// # Errors
@@ -143,7 +143,7 @@ impl<'a> Pairing<'a> {
         self
     }
 
-    /// Draws no lines of more than so many results.
+    /// Draws lines of at most `results` results.
     pub(super) fn shorten(&mut self, results: i64) {
         if let Some(length) = self.contract.length() {
             self.points.limit(length, results - 1);
@@ -158,7 +158,7 @@ impl<'a> Pairing<'a> {
         Combinations::new(Arc::new(ports), 0, computations.len() as u64)
     }
 
-    /// The combinations of operands at so many places, from the first on.
+    /// The combinations of operands at `count` places, from the first on.
     pub(super) fn combinations(&self, first: u64, count: u64) -> Combinations {
         Combinations::new(self.ports.clone(), first, count)
     }
