@@ -10,6 +10,7 @@ use std::path::Path;
 use glint::base::input;
 use glint::core::Core;
 use glint::evidence::comparison::{accuracy, clocks_per_point};
+use glint::mutate::GOAL_MEMORY;
 use glint::registry::Registry;
 use glint::synth::{self, Figures, Frequency, Rate, Record, Target};
 use glint::tune::Features;
@@ -324,6 +325,28 @@ fn faults_in_the_netlists() {
     ] {
         assert!(readme.contains(&said), "README.md does not say: {said}");
     }
+}
+
+/// What the shipped bench notices in a netlist, of what any check notices; of the upper bits of ROM words no less than
+/// the goal.
+#[test]
+fn faults_that_shipped_benches_notice() {
+    let cell = |tally: &Value, goal: f64| {
+        if tally.is_null() {
+            return "—".to_owned();
+        }
+        let [noticed, missed] = ["shipped", "missed"].map(|count| number(&tally[count]));
+        let share = noticed as f64 / (noticed + missed) as f64;
+        assert!(share >= goal, "{tally}");
+        format!("{} of {} ({:.1} %)", grouped(noticed), grouped(noticed + missed), 100.0 * share)
+    };
+    let rows = table("docs/verification.md", "| shipped bench | all faults |");
+    for row in &rows {
+        let netlist = &json(&format!("mutation/{}.json", row[0]))["netlist"];
+        assert_eq!(row[1], cell(&netlist["all"], 0.0), "{}", row[0]);
+        assert_eq!(row[2], cell(&netlist["kinds"]["rom-high-bit"], GOAL_MEMORY), "{}", row[0]);
+    }
+    assert!(!rows.is_empty());
 }
 
 /// The lines of `glint verify` that come from records.
