@@ -1,12 +1,8 @@
 //! A design whose tables are there once for each lane of a machine, so that every lane can have a fault of its own.
 
-use super::side_by_side::LANES;
 use crate::base::fixed::Format;
 use crate::hdl::netlist::{Design, Driver, Net, NetId, Op, Port, Role, Unit};
 use crate::hdl::sim::Machine;
-
-/// The width of the number of a lane.
-const LANE_BITS: u32 = LANES.ilog2();
 
 /// Where the words of a design's tables are in the copies of every lane.
 pub struct Memories {
@@ -18,9 +14,10 @@ pub struct Memories {
 }
 
 impl Memories {
-    /// Gives every lane tables of its own; the control ROM is one for all.
-    pub fn copied(design: &mut Design) -> Self {
-        let lane = add(design, "lane", LANE_BITS, Driver::Input);
+    /// Gives each of so many lanes, a power of two, tables of its own; the control ROM is one for all.
+    pub fn copied(design: &mut Design, lanes: usize) -> Self {
+        let lane_bits = lanes.ilog2();
+        let lane = add(design, "lane", lane_bits, Driver::Input);
         design.ports.push(Port { net: lane, role: Role::Strobe });
         let mut roms = Vec::new();
         let (mut first, mut first_here) = (0, 0);
@@ -32,12 +29,12 @@ impl Memories {
                 let bits = design.width(address);
                 apart = 1 << bits;
                 let both = Driver::Op(Op::Concat(vec![lane, address]));
-                let address = add(design, "word_of_lane", bits + LANE_BITS, both);
+                let address = add(design, "word_of_lane", bits + lane_bits, both);
                 let rom = &mut design.roms[at];
                 rom.address = address;
                 rom.comments.clear();
                 rom.words.resize(apart, 0);
-                rom.words = rom.words.repeat(LANES);
+                rom.words = rom.words.repeat(lanes);
             }
             roms.push((first, first_here, apart));
             first += count as u32;
@@ -47,7 +44,13 @@ impl Memories {
     }
 
     /// Inverts bits of a word, numbered through all ROMs of the design, in one lane; the same call takes it back.
-    pub fn invert(&self, machine: &mut Machine<LANES>, lane: usize, word: u32, bits: u64) {
+    pub fn invert<const LANES: usize>(
+        &self,
+        machine: &mut Machine<LANES>,
+        lane: usize,
+        word: u32,
+        bits: u64,
+    ) {
         let after = self.roms.partition_point(|(first, ..)| *first <= word);
         let (first, first_here, apart) = self.roms[after - 1];
         machine.invert(first_here + lane * apart + (word - first) as usize, bits);

@@ -41,7 +41,7 @@ pub fn chosen(
     known: &BTreeSet<u32>,
 ) -> Result<Chosen> {
     let mut copied = design.clone();
-    let memories = Memories::copied(&mut copied);
+    let memories = Memories::copied(&mut copied, LANES);
     let machine = Machine::new(Arc::new(Program::new(&copied)?));
     let device = SideBySide::new(&copied, contract, machine)?.with_copies(&copied, memories)?;
     let points = Points::new(contract);
