@@ -1,33 +1,46 @@
-// Runs the system until its program ends: the picture goes to the file that is named, as PPM.
+// Runs the system until its program ends: its pictures go to shade.ppm and grain.ppm.
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <vector>
 
 #include "Vsoc.h"
 #include "verilated.h"
 
-// The numbers that the program prints: highlights, and clocks by the core, the model and the code by hand.
-static void report(const std::vector<uint32_t>& numbers, uint64_t clocks) {
+namespace {
+
+[[noreturn]] void fail(const char* what) {
+    std::fprintf(stderr, "%s\n", what);
+    std::exit(1);
+}
+
+std::FILE* begin(const char* name) {
+    constexpr unsigned WIDTH = 48, HEIGHT = 48;
+    std::FILE* picture = std::fopen(name, "wb");
+    if (!picture) fail("the pictures cannot be written");
+    std::fprintf(picture, "P6\n%u %u\n255\n", WIDTH, HEIGHT);
+    return picture;
+}
+
+// What the program prints of a series of points: their number, and clocks of the core, the model, and the code by hand.
+void report(const char* series, const uint32_t* numbers) {
     const double points = numbers[0], core = numbers[1] / points;
-    std::printf("%u highlights, %llu clocks in all\n", numbers[0], (unsigned long long)clocks);
-    std::printf("the core:          %6.1f clocks a pixel\n", core);
+    std::printf("%s, %u highlights\n", series, numbers[0]);
+    std::printf("  the core:          %6.1f clocks a pixel\n", core);
     const char* const names[] = {"C by hand:", "the model in C:"};
     for (unsigned way : {0u, 1u}) {
         const double software = numbers[way == 0 ? 3 : 2] / points;
-        std::printf("%-18s %6.1f clocks a pixel, %.1f times those of the core\n", names[way],
-                    software, software / core);
+        std::printf("  %-18s %6.1f clocks a pixel, %.1f times those of the core\n", names[way], software,
+                    software / core);
     }
 }
 
-int main(int argc, char** argv) {
-    constexpr unsigned WIDTH = 48, HEIGHT = 48;
+}  // namespace
+
+int main() {
     constexpr uint64_t MOST = 4'000'000'000;
-    std::FILE* picture = argc == 2 ? std::fopen(argv[1], "wb") : nullptr;
-    if (!picture) {
-        std::fprintf(stderr, "usage: Vsoc PICTURE.ppm, a file that can be written\n");
-        return 2;
-    }
-    std::fprintf(picture, "P6\n%u %u\n255\n", WIDTH, HEIGHT);
+    std::FILE* const shade = begin("shade.ppm");
+    std::FILE* const grain = begin("grain.ppm");
     Vsoc soc;
     std::vector<uint32_t> numbers;
     for (uint64_t clock = 0; clock < MOST; clock++) {
@@ -37,22 +50,22 @@ int main(int argc, char** argv) {
         soc.clk = 1;
         soc.eval();
         if (!soc.rst_n) continue;
-        if (soc.picture_write) std::fputc((int)soc.written, picture);
+        if (soc.shade_write) std::fputc((int)soc.written, shade);
+        if (soc.grain_write) std::fputc((int)soc.written, grain);
         if (soc.number_write) numbers.push_back(soc.written);
-        if (soc.failed) {
-            std::fprintf(stderr, "the processor trapped, or the core refused an access\n");
-            return 1;
-        }
+        if (soc.failed) fail("the processor trapped, or a core refused an access");
         if (soc.end_write) {
-            const bool closed = std::fclose(picture) == 0;
-            if (soc.written != 0 || numbers.size() != 4 || !closed) {
+            if (std::fclose(shade) != 0 || std::fclose(grain) != 0) fail("the pictures cannot be written");
+            if (soc.written != 0 || numbers.size() != 12) {
                 std::fprintf(stderr, "the program ended with exit code %u\n", soc.written);
                 return 1;
             }
-            report(numbers, clock);
+            std::printf("%llu clocks in all\n", (unsigned long long)clock);
+            report("cosine-power", numbers.data());
+            report("rough, where it is smooth", numbers.data() + 4);
+            report("rough, where it is not", numbers.data() + 8);
             return 0;
         }
     }
-    std::fprintf(stderr, "the program does not end\n");
-    return 1;
+    fail("the program does not end");
 }
