@@ -97,4 +97,5 @@ def main():
     pathlib.Path(out).write_bytes(png(WIDTH, rows if bits == 8 else dithered(rows)))
 
 
-main()
+if __name__ == "__main__":
+    main()

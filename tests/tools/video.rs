@@ -1,5 +1,6 @@
 //! The video signal of `examples/video`: what a screen would show is the picture of the model, and boards keep its clocks.
 
+use std::ffi::OsStr;
 use std::path::Path;
 use std::time::Duration;
 
@@ -14,46 +15,58 @@ fn root() -> &'static Path {
 }
 
 /// What a script of the example prints.
-fn script(name: &str, arguments: &[&str], place: &Path) -> String {
+fn script(name: &str, arguments: &[&OsStr]) -> String {
     let glint = format!("GLINT={}", env!("CARGO_BIN_EXE_glint"));
     let script = root().join("examples/video").join(name);
-    let mut all = vec![glint.as_ref(), script.as_os_str()];
-    all.extend(arguments.iter().map(|argument| argument.as_ref() as &std::ffi::OsStr));
-    all.push(place.as_os_str());
+    let all = [glint.as_ref(), script.as_os_str()].into_iter().chain(arguments.iter().copied());
     tool("env").run_to_success(all, root(), LIMIT).unwrap_or_else(|error| panic!("{error:#}"))
 }
 
 #[test]
-fn a_core_shades_under_the_beam() {
-    let place = tempfile::tempdir().expect("a directory");
-    let output = script("run", &[], place.path());
-    for board in ["icebreaker", "ulx3s"] {
+fn cores_shade_under_the_beam() {
+    let signals = ["icebreaker-ball", "ulx3s-ball", "ulx3s-mesh"];
+    for signal in sampled("signals of examples/video", signals, 1) {
+        let place = tempfile::tempdir().expect("a directory");
+        let output = script("run", &[place.path().as_os_str(), "2".as_ref(), signal.as_ref()]);
         let frames = [1, 2].map(|frame| {
-            let equal = format!("{board}, frame {frame}: the pictures are equal, 921600 bytes");
+            let equal = format!("{signal}, frame {frame}: the pictures are equal, 921600 bytes");
             assert!(output.contains(&equal), "{output}");
-            place.path().join(board).join(format!("frame{frame}.ppm"))
+            let path = place.path().join(signal).join(format!("frame{frame}.ppm"));
+            std::fs::read(path).expect("a frame")
         });
-        let [first, second] = frames.each_ref().map(|path| std::fs::read(path).expect("a frame"));
-        assert_ne!(first, second, "{board}: nothing moves");
+        // The light of the ball moves.
+        assert_eq!(frames[0] == frames[1], signal == "ulx3s-mesh", "{signal}");
+        if signal == "ulx3s-ball" {
+            let shown = root().join("docs/images/video.png");
+            let compare = root().join("examples/soc/compare.py");
+            let seen = place.path().join("ulx3s-ball/frame1.ppm");
+            tool("python3").run_to_success([compare, shown, seen], root(), LIMIT).unwrap_or_else(
+                |error| panic!("docs/images/video.png is of another time: {error:#}"),
+            );
+        }
     }
-    // The picture that the README shows.
-    let shown = root().join("docs/images/video.png");
-    let compare = root().join("examples/soc/compare.py");
-    tool("python3")
-        .run_to_success([&compare, &shown, &place.path().join("ulx3s/frame1.ppm")], root(), LIMIT)
-        .unwrap_or_else(|error| panic!("docs/images/video.png is of another time: {error:#}"));
 }
 
 #[test]
-fn a_board_keeps_the_clocks() {
-    for board in sampled("boards of examples/video", ["icebreaker", "ulx3s"], 1) {
+fn boards_keep_the_clocks() {
+    let signals = [("icebreaker", "ball"), ("ulx3s", "ball"), ("ulx3s", "mesh")];
+    for (board, scene) in sampled("bitstreams of examples/video", signals, 1) {
         let place = tempfile::tempdir().expect("a directory");
-        let output = script("bitstream", &[board], place.path());
-        assert!(output.contains("PASS"), "{output}");
-        assert!(!output.contains("FAIL"), "{output}");
+        let output =
+            script("bitstream", &[board.as_ref(), scene.as_ref(), place.path().as_os_str()]);
+        assert!(output.contains("PASS") && !output.contains("FAIL"), "{output}");
         let file = if board == "icebreaker" { "icebreaker.bin" } else { "ulx3s.bit" };
-        let bitstream =
-            std::fs::metadata(place.path().join(board).join(file)).expect("a bitstream");
+        let path = place.path().join(format!("{board}-{scene}")).join(file);
+        let bitstream = std::fs::metadata(path).expect("a bitstream");
         assert!(bitstream.len() > 10_000, "{} bytes", bitstream.len());
     }
+}
+
+#[test]
+fn what_a_board_has_no_room_for_is_refused() {
+    let script = root().join("examples/video/bitstream");
+    let error = tool("bash")
+        .run_to_success([script.as_os_str(), "icebreaker".as_ref(), "mesh".as_ref()], root(), LIMIT)
+        .expect_err("it does not fit");
+    assert!(format!("{error:#}").contains("take ulx3s"), "{error:#}");
 }
