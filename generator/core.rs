@@ -216,7 +216,11 @@ impl Core {
     /// # Errors
     /// The design cannot be written as Verilog.
     pub fn verilog(&self) -> Result<Vec<(String, String)>> {
-        let files = package::emit(&self.design, &EmitInputs::default())?;
+        let around = Surroundings {
+            inline_memories: Surroundings::new(&self.config).inline_memories,
+            ..Surroundings::default()
+        };
+        let files = package::emit(&self.design, &EmitInputs { around, ..EmitInputs::default() })?;
         Ok(package::sources(files))
     }
 

@@ -86,6 +86,8 @@ class Manifest:
     def _words(self, rom: dict[str, Any]) -> list[float]:
         """The words of a ROM of unsigned values; `format` is u<integer bits>.<fraction bits>."""
         fraction_bits = int(rom["format"].rpartition(".")[2])
+        if "words" in rom:  # Of a ROM whose contents stand in the Verilog.
+            return [word / 2**fraction_bits for word in rom["words"]]
         lines = (self.directory / rom["file"]).read_text(encoding="utf-8").splitlines()
         words = [line.partition("//")[0].replace("_", "").strip() for line in lines]
         return [int(word, rom["radix"]) / 2**fraction_bits for word in words if word]

@@ -29,7 +29,16 @@ ${ line }$
 <%- endfor %>
 <%- if !rom.second %>
     reg ${ rom.range }$ ${ rom.memory }$ [0:${ rom.last }$];
-    initial $readmem${ rom.radix }$(${ rom.parameter }$, ${ rom.memory }$);
+<%- match rom.contents %>
+<%- when Contents::File with { radix, parameter } %>
+    initial $readmem${ radix }$(${ parameter }$, ${ rom.memory }$);
+<%- when Contents::Inline with (words) %>
+    initial begin
+<%- for line in words %>
+${ line }$
+<%- endfor %>
+    end
+<%- endmatch %>
 <%- endif %>
 <%- for line in rom.read %>
 ${ line }$

@@ -68,8 +68,8 @@ impl Key {
             Kind::Integer { min, max } => {
                 bare.parse().is_ok_and(|value: i64| (*min..=*max).contains(&value))
             }
-            // Conditions on fractions and lists would hang on how they are written.
-            Kind::Number { .. } | Kind::Integers { .. } => false,
+            // Conditions on fractions, lists and texts would hang on how they are written.
+            Kind::Number { .. } | Kind::Integers { .. } | Kind::Text(_) => false,
         }
     }
 }

@@ -342,6 +342,7 @@ fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Fault>> {
         (Kind::Choice(_), DeValue::String(text)) if !key.kind.is_integer_choice() => {
             Value::Text(text.clone().into_owned())
         }
+        (Kind::Text(_), DeValue::String(text)) => Value::Text(text.clone().into_owned()),
         (Kind::Choice(_), DeValue::Integer(_)) if key.kind.is_integer_choice() => {
             Value::Text(integer(value).ok_or_else(too_large)?.to_string())
         }

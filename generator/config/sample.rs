@@ -69,6 +69,8 @@ fn draw(key: &Key, rng: &mut ChaCha8Rng) -> Value {
             Value::Text(options[index].to_owned())
         }
         Kind::Flag => Value::Flag(rng.next_u32() & 1 == 1),
+        // Any other says as little.
+        Kind::Text(_) => key.default.clone(),
         Kind::Integers { min, max, len_min, len_max } => {
             let len = integer(*len_min as i64, *len_max as i64, rng);
             Value::Integers((0..len).map(|_| integer(*min, *max, rng)).collect())

@@ -3,6 +3,7 @@
 use std::ops::RangeInclusive;
 
 use super::problems::Problems;
+use super::shape::Shape;
 use super::values::{Config, Value, is_integer};
 
 /// The keys of one device, and the conditions between them.
@@ -46,6 +47,8 @@ pub enum Kind {
     Choice(&'static [&'static str]),
     /// `true` or `false`.
     Flag,
+    /// Text of a shape.
+    Text(Shape),
     /// A list of integers; its entries and its length have limits.
     Integers { min: i64, max: i64, len_min: usize, len_max: usize },
 }
@@ -92,6 +95,16 @@ impl Key {
     /// `true` or `false`.
     pub fn flag(name: &'static str, default: bool, doc: &'static str) -> Self {
         Self::new(name, Kind::Flag, Value::Flag(default), doc)
+    }
+
+    /// Text of a shape.
+    pub fn text(
+        name: &'static str,
+        default: &'static str,
+        shape: Shape,
+        doc: &'static str,
+    ) -> Self {
+        Self::new(name, Kind::Text(shape), Value::Text(default.to_owned()), doc)
     }
 
     /// A list of `len` integers, each in a range.

@@ -7,6 +7,7 @@
 use std::sync::LazyLock;
 
 use super::schema::{Key, Schema};
+use super::shape::Shape;
 
 /// The shared keys, in the order in which a written file shows them, after those of the device.
 pub fn shared_keys() -> &'static [Key] {
@@ -81,6 +82,65 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
             "Write software/<name>/: a bit-accurate model of the core in C.",
         )
         .only_when("architecture", "sequential"),
+        Key::choice(
+            "package.memories",
+            "files",
+            &["files", "inline"],
+            "Whether ROM contents are .mem files, or stand in the Verilog, for flows that do not find files.",
+        ),
+        Key::flag(
+            "package.litex",
+            false,
+            "Write software/<name>/<name>_litex.py: the core as a module of LiteX.",
+        )
+        .only_when("package.memories", "inline"),
+        Key::flag(
+            "package.constraints",
+            false,
+            "Write the clock as constraints: <top>.sdc and <top>.xdc.",
+        ),
+        Key::number(
+            "package.clock_mhz",
+            100.0,
+            0.001..=2000.0,
+            "The frequency of the clock in constraints and vendors' projects.",
+        )
+        .only_when("package.constraints", "true"),
+        Key::flag(
+            "package.vivado",
+            false,
+            "Write Tcl for Vivado: <name>_vivado.tcl builds, <name>_vivado_ip.tcl packages IP.",
+        )
+        .only_when("package.constraints", "true"),
+        Key::flag(
+            "package.quartus",
+            false,
+            "Write Tcl for Quartus: <name>_quartus.tcl builds, <top>_hw.tcl is for Platform Designer.",
+        )
+        .only_when("package.constraints", "true"),
+        Key::flag(
+            "package.ip_xact",
+            false,
+            "Write IP-XACT components (IEEE 1685-2014): <top>.xml.",
+        ),
+        Key::text(
+            "package.vendor",
+            "glint",
+            Shape::Name,
+            "The vendor in IP-XACT, Vivado and Platform Designer; a domain name, as a rule.",
+        ),
+        Key::text(
+            "package.version",
+            "0.1.0",
+            Shape::Version,
+            "The version of the core for FuseSoC, IP-XACT, Vivado and Platform Designer.",
+        ),
+        Key::text(
+            "package.licence",
+            "LicenseRef-belongs-to-its-user",
+            Shape::Licence,
+            "The licence of the files for FuseSoC; what Glint generates belongs to its user.",
+        ),
     ]
 });
 

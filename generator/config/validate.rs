@@ -30,6 +30,9 @@ impl Key {
                 .map(|fault| self.with_suggestion(fault, given))
                 .collect(),
             (Kind::Flag, Value::Flag(_)) => Vec::new(),
+            (Kind::Text(shape), Value::Text(given)) => {
+                self.unless(shape.fits(given), || format!("`{name}` cannot be {}", quoted(given)))
+            }
             (Kind::Integers { min, max, len_min, len_max }, Value::Integers(given)) => {
                 let mut faults = self.unless((len_min..=len_max).contains(&&given.len()), || {
                     let plural = if given.len() == 1 { "y" } else { "ies" };
@@ -55,7 +58,7 @@ impl Key {
             Kind::Integer { .. } => "an integer",
             Kind::Number { .. } => "a number",
             Kind::Choice(_) if self.kind.is_integer_choice() => "an integer",
-            Kind::Choice(_) => "a string",
+            Kind::Choice(_) | Kind::Text(_) => "a string",
             Kind::Flag => "true or false",
             Kind::Integers { .. } => "a list of integers",
         };
@@ -108,6 +111,7 @@ impl Key {
                 }
             }
             Kind::Flag => "true or false".to_owned(),
+            Kind::Text(shape) => shape.words().to_owned(),
             Kind::Integers { min, max, len_min, len_max } => match len_min == len_max {
                 true => format!("{len_min} integers from {min} to {max}"),
                 false => format!("{len_min} to {len_max} integers from {min} to {max}"),
@@ -124,6 +128,7 @@ impl Key {
                 options.iter().map(|option| Value::Text((*option).to_owned())).collect()
             }
             Kind::Flag => vec![Value::Flag(false), Value::Flag(true)],
+            Kind::Text(_) => Vec::new(),
             Kind::Integers { min, max, len_min, len_max } => {
                 vec![Value::Integers(vec![*min; *len_min]), Value::Integers(vec![*max; *len_max])]
             }
@@ -336,6 +341,17 @@ impl<'a> Draft<'a> {
         }
     }
 
+    /// The clock of constraints, where it is not given, is that which the pipeline is made for.
+    fn follow_clock(&mut self) {
+        let of_pipeline = self.config.choice("architecture") == "pipelined"
+            && self.config.integer("pipeline.stages") == 0
+            && self.config.flag("package.constraints");
+        if of_pipeline && !self.given.contains("package.clock_mhz") {
+            let clock = self.config.value("pipeline.clock_mhz").clone();
+            self.config.set("package.clock_mhz", clock);
+        }
+    }
+
     /// Checks the conditions between keys, and gives the configuration if nothing is wrong. Keys that were not
     /// given follow from those that were.
     pub(super) fn finish(
@@ -346,6 +362,7 @@ impl<'a> Draft<'a> {
         // While a value is not known, nothing follows from it.
         if self.doubtful.is_empty() {
             self.config = follow(schema, &self.config, &self.given);
+            self.follow_clock();
         }
         check(schema, &self, &mut problems);
         match problems.is_empty() {

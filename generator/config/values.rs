@@ -7,7 +7,7 @@ pub enum Value {
     Integer(i64),
     /// Of [`super::Kind::Number`].
     Number(f64),
-    /// Of [`super::Kind::Choice`].
+    /// Of [`super::Kind::Choice`] and [`super::Kind::Text`].
     Text(String),
     /// Of [`super::Kind::Flag`].
     Flag(bool),
@@ -90,6 +90,17 @@ impl Config {
         match self.value(key) {
             Value::Text(value) => value,
             _ => self.wrong_kind(key, "a choice"),
+        }
+    }
+
+    /// The value of a text.
+    ///
+    /// # Panics
+    /// As [`Config::integer`].
+    pub fn text(&self, key: &str) -> &str {
+        match self.value(key) {
+            Value::Text(value) => value,
+            _ => self.wrong_kind(key, "a text"),
         }
     }
 

@@ -98,9 +98,11 @@ pub enum Sequence<'a> {
 pub struct Rom<'a> {
     /// Its name in the description.
     pub name: &'a str,
-    /// The file of its contents.
-    pub file: &'a str,
-    parameter: &'a str,
+    /// The file of its contents, unless they stand in the Verilog.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub file: Option<&'a str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    parameter: Option<&'a str>,
     /// Words.
     pub depth: usize,
     /// Bits of a word.
@@ -111,7 +113,11 @@ pub struct Rom<'a> {
     pub format: String,
     /// Reads on the clock.
     pub synchronous: bool,
-    radix: u8,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    radix: Option<u8>,
+    /// Its words, where no file has them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    words: Option<&'a [u64]>,
     /// What an entry means.
     pub doc: &'a [String],
     /// The number in the source's figure.
@@ -246,19 +252,21 @@ pub fn microprogram(design: &Design) -> Vec<Microinstruction<'_>> {
 
 /// The ROMs, that of the microprogram among them.
 pub fn roms<'a>(design: &'a Design, naming: &'a Naming) -> Vec<Rom<'a>> {
+    let in_file = !naming.inline;
     let entry = |(at, rom): (usize, &'a netlist::Rom)| {
         let width = design.width(rom.data);
         let binary = is_control_rom(design, RomId(at as u32));
         Rom {
             name: &rom.name,
-            file: &naming.files[at],
-            parameter: &naming.parameters[at],
+            file: in_file.then(|| naming.files[at].as_str()),
+            parameter: in_file.then(|| naming.parameters[at].as_str()),
             depth: rom.words.len(),
             width,
             bits: rom.words.len() as u64 * u64::from(width),
             format: design.net(rom.data).format.to_string(),
             synchronous: rom.synchronous,
-            radix: if binary { 2 } else { 16 },
+            radix: in_file.then_some(if binary { 2 } else { 16 }),
+            words: naming.inline.then_some(&rom.words[..]),
             doc: &rom.doc,
             block: rom.block,
         }

@@ -4,6 +4,8 @@
 use anyhow::Result;
 use askama::Template;
 
+use super::EmitInputs;
+use crate::hdl::netlist::Design;
 use crate::hdl::verilog::text::ascii;
 
 /// The core of the device.
@@ -14,6 +16,8 @@ struct DeviceCore<'a> {
     description: String,
     sources: Sources<'a>,
     testbench: bool,
+    version: &'a str,
+    licence: &'a str,
 }
 
 /// The files of a device beside its core.
@@ -24,6 +28,8 @@ pub struct Sources<'a> {
     pub wrappers: &'a [String],
     /// ROM contents.
     pub memories: &'a [String],
+    /// There are `<name>.xdc` and `<name>.sdc`.
+    pub constrained: bool,
 }
 
 /// The core of the bench.
@@ -31,6 +37,8 @@ pub struct Sources<'a> {
 #[template(path = "testbench.core")]
 struct BenchCore<'a> {
     name: &'a str,
+    version: &'a str,
+    licence: &'a str,
     bench: &'a str,
     vectors: &'a [String],
 }
@@ -39,16 +47,29 @@ struct BenchCore<'a> {
 ///
 /// # Errors
 /// A template that fails to print.
-pub fn device(name: &str, title: &str, sources: Sources, testbench: bool) -> Result<String> {
+pub fn device(
+    design: &Design,
+    inputs: &EmitInputs,
+    sources: Sources,
+    testbench: bool,
+) -> Result<String> {
     // A YAML string in single quotes; a quote in it is doubled.
-    let description = ascii(title).replace('\'', "''");
-    super::render(&DeviceCore { name, description, sources, testbench })
+    let description = ascii(&design.about.title).replace('\'', "''");
+    let (version, licence) = (&inputs.around.version, &inputs.around.licence);
+    let name = &design.name;
+    super::render(&DeviceCore { name, description, sources, testbench, version, licence })
 }
 
 /// `<name>_tb.core`. File names are relative to it.
 ///
 /// # Errors
 /// A template that fails to print.
-pub fn bench(name: &str, bench: &str, vectors: &[String]) -> Result<String> {
-    super::render(&BenchCore { name, bench, vectors })
+pub fn bench(
+    design: &Design,
+    inputs: &EmitInputs,
+    bench: &str,
+    vectors: &[String],
+) -> Result<String> {
+    let (version, licence) = (&inputs.around.version, &inputs.around.licence);
+    super::render(&BenchCore { name: &design.name, version, licence, bench, vectors })
 }

@@ -10,8 +10,15 @@ use super::{Accuracy, Computation, EmitInputs, OutputFile, Quantity, Timing, dig
 use crate::hdl::netlist::{Design, Pipeline, RegId};
 use crate::hdl::verilog::naming::Naming;
 
+/// What a program that reads manifests has to know: a number for what names mean and where they stand. It grows
+/// when something is renamed, moved, or means something else; not when something is added.
+const SCHEMA: u32 = 1;
+
 #[derive(Serialize)]
 struct Manifest<'a> {
+    schema: u32,
+    /// The version of Glint.
+    glint: &'static str,
     name: &'a str,
     device: &'a str,
     title: &'a str,
@@ -62,6 +69,10 @@ pub struct Files<'a> {
     pub testbench: &'a [String],
     /// The model in C, or nothing.
     pub software: &'a [String],
+    /// Timing constraints, or nothing.
+    pub constraints: &'a [String],
+    /// Scripts and descriptions for vendors' tools, or nothing.
+    pub scripts: &'a [String],
 }
 
 /// The manifest as text, with the digests of all `others`.
@@ -77,6 +88,8 @@ pub fn contents(
 ) -> Result<String> {
     let about = &design.about;
     let manifest = Manifest {
+        schema: SCHEMA,
+        glint: env!("CARGO_PKG_VERSION"),
         name: &design.name,
         device: &about.device,
         title: &about.title,
@@ -118,7 +131,12 @@ fn listed(files: &Files) -> Value {
         "cores": files.cores,
         "testbench": files.testbench,
     });
-    for (kind, names) in [("wrappers", files.wrappers), ("software", files.software)] {
+    for (kind, names) in [
+        ("wrappers", files.wrappers),
+        ("software", files.software),
+        ("constraints", files.constraints),
+        ("scripts", files.scripts),
+    ] {
         if !names.is_empty() {
             listed[kind] = json!(names);
         }

@@ -6,7 +6,8 @@ use askama::Template;
 use crate::base::fixed::mask;
 use crate::hdl::netlist::{Design, RomId};
 use crate::hdl::verilog::naming::{is_control_rom, rom_label};
-use crate::hdl::verilog::text::{ascii, comment};
+use crate::hdl::verilog::text::comment;
+use crate::hdl::verilog::words::{in_fields, in_hex, word_note};
 
 #[derive(Template)]
 #[template(path = "rom.mem")]
@@ -47,23 +48,12 @@ pub fn contents(design: &Design, id: RomId) -> Result<String> {
     let words = texts
         .into_iter()
         .enumerate()
-        .map(|(address, text)| match note(design, id, address) {
+        .map(|(address, text)| match word_note(design, id, address) {
             Some(note) => format!("{text} // {address} {note}").trim_end().to_owned(),
             None => text,
         })
         .collect();
     super::render(&Memory { header, words })
-}
-
-/// What there is to say of a word.
-fn note(design: &Design, id: RomId, address: usize) -> Option<String> {
-    let given = design.rom(id).comments.get(address);
-    let name = || {
-        let executed =
-            design.control.microprogram.get(address).filter(|_| is_control_rom(design, id))?;
-        Some(&executed.name)
-    };
-    given.or_else(name).map(|text| ascii(text))
 }
 
 /// The names of the fields, in the order of the digits below.
@@ -86,18 +76,4 @@ fn fields(design: &Design, width: u32) -> Result<Vec<String>> {
         })
         .collect();
     Ok(comment(0, &format!("Fields from the left: {}", names.join(", "))))
-}
-
-fn in_fields(design: &Design, word: u64) -> String {
-    let positions = design.field_positions();
-    let digits = design.control.fields.iter().zip(positions).map(|(field, low)| {
-        let width = design.width(field.net);
-        format!("{:0width$b}", word >> low & mask(width), width = width as usize)
-    });
-    digits.collect::<Vec<_>>().join("_")
-}
-
-/// As many digits as the width needs.
-pub fn in_hex(word: u64, width: u32) -> String {
-    format!("{word:0digits$x}", digits = width.div_ceil(4) as usize)
 }

@@ -21,6 +21,8 @@ mod points_pipeline;
 pub(crate) mod seal;
 mod software;
 mod surroundings;
+mod tops;
+mod vendor;
 mod window;
 mod wrap;
 
@@ -117,7 +119,7 @@ impl EmitInputs {
 pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     ensure!(design.find("clk").is_none(), "`clk` is the clock; no other net can have that name");
     let plan = Plan::new(design)?;
-    let naming = Naming::new(design);
+    let naming = Naming::new(design).inlined(inputs.around.inline_memories);
     let name = &design.name;
     let rtl = match &design.pipeline {
         Some(pipeline) => {
@@ -129,7 +131,7 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     let mut memories = Vec::new();
     for (at, file) in naming.files.iter().enumerate() {
         let id = RomId(at as u32);
-        if !naming.second.contains(&id) {
+        if !naming.inline && !naming.second.contains(&id) {
             memories.push((file.clone(), memory::contents(design, id)?));
         }
     }
@@ -143,7 +145,10 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     if let Some(vectors) = &inputs.vectors {
         testbench = bench::files(design, &naming, vectors)?;
         let names = names_of(&testbench);
-        testbench.push((format!("{name}_tb.core"), fusesoc::bench(name, &names[0], &names[1..])?));
+        testbench.push((
+            format!("{name}_tb.core"),
+            fusesoc::bench(design, inputs, &names[0], &names[1..])?,
+        ));
         let sources = formal::Sources { rtl: &names_of(&rtl), memories: &names_of(&memories) };
         testbench.splice(
             0..0,
@@ -158,16 +163,23 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         }
     }
 
+    let (rtl_names, memory_names) = (names_of(&rtl), names_of(&memories));
+    let wrapper_names = names_of(&wrappers);
+    let tops = tops::tops(design, inputs, registers, &rtl_names, &wrapper_names)?;
+    let map = map.as_ref();
+    let vendor::Vendor { constraints, scripts } =
+        vendor::files(design, inputs, &tops, map.map(|(_, map)| map), &memory_names)?;
     let mut software = match inputs.around.software {
         true => software::files(design, inputs)?,
         false => Vec::new(),
     };
-    if let Some((bus, map)) = &map {
+    if let Some((bus, map)) = map {
         software.extend(software::of_registers(design, inputs, *bus, map)?);
     }
+    if inputs.around.litex {
+        software.push(software::of_litex(design, inputs, &tops)?);
+    }
 
-    let (rtl_names, memory_names) = (names_of(&rtl), names_of(&memories));
-    let wrapper_names = names_of(&wrappers);
     let mut cores = vec![format!("{name}.core")];
     let mut bench_names = names_of(&testbench);
     cores.extend(bench_names.pop());
@@ -178,16 +190,24 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         cores: &cores,
         testbench: &bench_names,
         software: &names_of(&software),
+        constraints: &names_of(&constraints),
+        scripts: &names_of(&scripts),
     };
     let has_bench = !testbench.is_empty();
-    let sources =
-        fusesoc::Sources { rtl: &rtl_names, wrappers: &wrapper_names, memories: &memory_names };
-    let core = fusesoc::device(name, &design.about.title, sources, has_bench)?;
+    let sources = fusesoc::Sources {
+        rtl: &rtl_names,
+        wrappers: &wrapper_names,
+        memories: &memory_names,
+        constrained: !constraints.is_empty(),
+    };
+    let core = fusesoc::device(design, inputs, sources, has_bench)?;
     let mut all: Vec<OutputFile> = rtl
         .into_iter()
         .chain(wrappers)
         .chain(memories)
         .chain([(format!("{name}.core"), core)])
+        .chain(constraints)
+        .chain(scripts)
         .map(|(file, contents)| OutputFile { path: format!("rtl_out/{name}/{file}"), contents })
         .collect();
     for (folder, files) in [("testbench", testbench), ("software", software)] {

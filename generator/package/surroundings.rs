@@ -12,7 +12,7 @@ pub enum Bus {
 }
 
 /// What is put around a core.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surroundings {
     /// The core between two AXI4-Streams.
     pub stream: bool,
@@ -22,6 +22,24 @@ pub struct Surroundings {
     pub registers: Option<Bus>,
     /// A model in C, in `software/<name>/`.
     pub software: bool,
+    /// ROM contents stand in the Verilog.
+    pub inline_memories: bool,
+    /// A module for LiteX.
+    pub litex: bool,
+    /// The clock of constraints, if there are any.
+    pub clock_mhz: Option<f64>,
+    /// Tcl for Vivado.
+    pub vivado: bool,
+    /// Tcl for Quartus.
+    pub quartus: bool,
+    /// Components of IP-XACT.
+    pub ip_xact: bool,
+    /// Who is said to make the core.
+    pub vendor: String,
+    /// Three numbers with dots between them.
+    pub version: String,
+    /// An SPDX expression.
+    pub licence: String,
 }
 
 impl Surroundings {
@@ -36,6 +54,17 @@ impl Surroundings {
                 _ => None,
             },
             software: config.flag("package.software"),
+            inline_memories: config.choice("package.memories") == "inline",
+            litex: config.flag("package.litex"),
+            clock_mhz: config
+                .flag("package.constraints")
+                .then(|| config.number("package.clock_mhz")),
+            vivado: config.flag("package.vivado"),
+            quartus: config.flag("package.quartus"),
+            ip_xact: config.flag("package.ip_xact"),
+            vendor: config.text("package.vendor").to_owned(),
+            version: config.text("package.version").to_owned(),
+            licence: config.text("package.licence").to_owned(),
         }
     }
 }

@@ -94,7 +94,7 @@ extern "C" {
 
 /* What COSINE_POWER_REG_ID and COSINE_POWER_REG_CONFIGURATION read. */
 #define COSINE_POWER_ID 0x474c4e54u
-#define COSINE_POWER_CONFIGURATION 0x92786916u
+#define COSINE_POWER_CONFIGURATION 0x30f154fdu
 
 /* Writes and reads a register. A read of a result waits for the computation that is under way. */
 static inline void cosine_power_write(volatile uint32_t *base, uint32_t offset, uint32_t value)

@@ -99,7 +99,7 @@ pub const RESULTS_BLUE_OUT_MASK: u32 = 0x00ff0000;
 /// What [`REG_ID`] reads.
 pub const ID: u32 = 0x474c4e54;
 /// What [`REG_CONFIGURATION`] reads.
-pub const CONFIGURATION: u32 = 0x92786916;
+pub const CONFIGURATION: u32 = 0x30f154fd;
 
 /// `value * 2^-from` as the nearest multiple of `2^-to`, ties upward, in its units, limited.
 const fn fixed(value: i64, from: u32, to: u32, least: i64, most: i64) -> i64 {

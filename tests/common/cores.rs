@@ -62,22 +62,30 @@ pub fn configuration(path: &str) -> Core {
     Core::new(device, config).unwrap_or_else(|error| panic!("{path}: {error:?}"))
 }
 
-/// The configuration of that path with more TOML at its end.
+/// The configuration of that path with more TOML: a table, whose keys join those that the file has of it.
 ///
 /// # Panics
 /// It is wrong.
 pub fn configuration_with(path: &str, more: &str) -> Core {
     let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"));
-    parsed(path, &format!("{text}{more}"))
+    let text = match more.trim_start().split_once("]\n") {
+        Some((heading, keys)) if text.contains(&format!("\n{heading}]\n")) => {
+            let heading = format!("\n{heading}]\n");
+            text.replacen(&heading, &format!("{heading}{keys}"), 1)
+        }
+        _ => format!("{text}{more}"),
+    };
+    parsed(path, &text)
 }
 
-/// The configuration of that path with other TOML in place of its table `interface`, which stands last.
+/// The configuration of that path with other TOML in place of its tables `package` and `interface`, which stand last.
 ///
 /// # Panics
 /// It is wrong.
 pub fn configuration_between(path: &str, interface: &str) -> Core {
     let text = fs::read_to_string(path).unwrap_or_else(|error| panic!("{path}: {error}"));
     let own = text.split("\n[interface]\n").next().unwrap_or_default();
+    let own = own.split("\n[package]\n").next().unwrap_or_default();
     parsed(path, &format!("{own}\n[interface]\n{interface}"))
 }
 

@@ -14,3 +14,4 @@ pub(crate) mod rows;
 pub(crate) mod text;
 pub(crate) mod top;
 pub(crate) mod view;
+pub(crate) mod words;

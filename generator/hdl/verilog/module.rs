@@ -10,8 +10,9 @@ use super::naming::{Naming, is_control_rom, remark, rom_label};
 use super::plan::{Form, Plan};
 use super::rows::{Row, separated};
 use super::text::{annotated, comment, literal, range, statement};
-use super::view::{Item, Module, RomItem, Section, Spaced};
-use crate::hdl::netlist::{Driver, NetId, Op, RegId, RomId, Unit};
+use super::view::{Contents, Item, Module, RomItem, Section, Spaced};
+use super::words::{in_fields, in_hex, word_note};
+use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId, RomId, Unit};
 
 /// Builds one unit.
 pub struct Builder<'a> {
@@ -248,8 +249,15 @@ impl<'a> Builder<'a> {
             range: range(width),
             memory: self.naming.memories[id.index()].clone(),
             last: rom.words.len().saturating_sub(1),
-            radix: if control { 'b' } else { 'h' },
-            parameter: self.naming.parameters[id.index()].clone(),
+            contents: match self.naming.inline {
+                true => {
+                    Contents::Inline(words(self.plan.design, id, &self.naming.memories[id.index()]))
+                }
+                false => Contents::File {
+                    radix: if control { 'b' } else { 'h' },
+                    parameter: self.naming.parameters[id.index()].clone(),
+                },
+            },
             second: rom.shares.is_some(),
             read: statement(4, &read),
         })
@@ -332,9 +340,25 @@ impl<'a> Builder<'a> {
     }
 }
 
-/// The file parameters of ROMs, with their commas.
+/// A statement a word of a ROM, for an initial block.
+fn words(design: &Design, id: RomId, memory: &str) -> Vec<String> {
+    let rom = design.rom(id);
+    let width = design.width(rom.data);
+    let word = |(address, word): (usize, &u64)| {
+        let value = match is_control_rom(design, id) {
+            true => format!("{width}'b{}", in_fields(design, *word)),
+            false => format!("{width}'h{}", in_hex(*word, width)),
+        };
+        let note = word_note(design, id, address).unwrap_or_default();
+        annotated(&format!("{memory}[{address}] = {value};"), 8, &note)
+    };
+    rom.words.iter().enumerate().flat_map(word).collect()
+}
+
+/// The file parameters of ROMs, with their commas; none where the words stand in the Verilog.
 pub fn parameters(naming: &Naming, roms: &[RomId]) -> Vec<String> {
-    let texts = roms.iter().filter(|rom| !naming.second.contains(rom)).map(|rom| {
+    let roms = roms.iter().filter(|_| !naming.inline);
+    let texts = roms.filter(|rom| !naming.second.contains(rom)).map(|rom| {
         format!("parameter {} = \"{}\"", naming.parameters[rom.index()], naming.files[rom.index()])
     });
     separated(texts.collect())

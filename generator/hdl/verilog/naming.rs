@@ -15,6 +15,8 @@ pub struct Naming {
     pub parameters: Vec<String>,
     /// The file of each ROM.
     pub files: Vec<String>,
+    /// ROM contents stand in the Verilog: there are neither files nor parameters with their names.
+    pub inline: bool,
     /// The ROMs that are the second read port of another, and have its memory.
     pub second: Vec<RomId>,
     /// The localparams of each field's choices, by value.
@@ -45,6 +47,7 @@ impl Naming {
             control_instance,
             datapath_instance,
             memories,
+            inline: false,
             second: numbers.filter(|&rom| design.rom(rom).shares.is_some()).collect(),
             parameters: design
                 .roms
@@ -61,6 +64,11 @@ impl Naming {
             names,
             design: design.name.clone(),
         }
+    }
+
+    /// The same, with ROM contents in the Verilog or not.
+    pub fn inlined(self, inline: bool) -> Self {
+        Self { inline, ..self }
     }
 
     /// The module of a unit.

@@ -58,7 +58,12 @@ fn instance(plan: &Plan, naming: &Naming, unit: Unit, interface: &Interface) -> 
         module: naming.module(unit),
         name: naming.instance(unit).to_owned(),
         parameters: separated(
-            interface.roms.iter().map(|rom| connect(&naming.parameters[rom.index()])).collect(),
+            interface
+                .roms
+                .iter()
+                .filter(|_| !naming.inline)
+                .map(|rom| connect(&naming.parameters[rom.index()]))
+                .collect(),
         ),
         connections: separated(names.map(connect).collect()),
     }

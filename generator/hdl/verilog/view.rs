@@ -75,12 +75,23 @@ pub struct RomItem {
     pub memory: String,
     /// The number of the last word.
     pub last: usize,
-    /// `b` or `h`.
-    pub radix: char,
-    /// The parameter with the file name.
-    pub parameter: String,
+    /// Where its words are.
+    pub contents: Contents,
     /// What reads a word.
     pub read: Vec<String>,
+}
+
+/// Where the words of a memory are.
+pub enum Contents {
+    /// In a file.
+    File {
+        /// `b` or `h`.
+        radix: char,
+        /// The parameter with the file name.
+        parameter: String,
+    },
+    /// Here: statements.
+    Inline(Vec<String>),
 }
 
 /// The top module.

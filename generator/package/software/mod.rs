@@ -4,10 +4,12 @@
 //! knows nothing of the golden model, with which tests compare it.
 
 mod graph;
+mod litex;
 mod model;
 mod print;
 mod registers;
 mod unroll;
 
+pub use litex::file as of_litex;
 pub use model::files;
 pub use registers::files as of_registers;

@@ -1,6 +1,6 @@
 //! What stands between a core and a system: wrappers in Verilog, and what is proved of them.
 
-mod fields;
+pub(super) mod fields;
 mod pipeline;
 mod registers;
 mod stream;

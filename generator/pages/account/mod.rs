@@ -12,7 +12,7 @@ use crate::golden::{Bound, Contract, Values};
 use crate::hdl::netlist::{Design, Pipeline};
 use crate::hdl::verilog::naming::Naming;
 use crate::package::facts::{self, Sequence};
-use crate::package::{LineClocks, Linear, Quantity, Timing, WorkedExample};
+use crate::package::{LineClocks, Linear, Quantity, Surroundings, Timing, WorkedExample};
 pub use table::{Align, Column, Table, code};
 
 /// The heading of the column with the source's numbers.
@@ -161,8 +161,9 @@ pub fn ports(design: &Design) -> Table {
 }
 
 /// The ROMs, that of the microprogram among them.
-pub fn roms(design: &Design) -> Table {
-    let naming = Naming::new(design);
+pub fn roms(design: &Design, config: &Config) -> Table {
+    let inline = Surroundings::new(config).inline_memories;
+    let naming = Naming::new(design).inlined(inline);
     let mut table = Table::new(&[
         ("ROM", Align::Left),
         (NUMBER, Align::Right),
@@ -183,7 +184,7 @@ pub fn roms(design: &Design) -> Table {
             format!("{} × {}", rom.depth, rom.width),
             rom.bits.to_string(),
             reads.to_owned(),
-            code(rom.file),
+            rom.file.map_or_else(|| "in the Verilog".to_owned(), code),
             rom.doc.join(" "),
         ]);
     }

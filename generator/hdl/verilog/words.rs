@@ -1,0 +1,32 @@
+//! The words of ROMs as text.
+
+use super::naming::is_control_rom;
+use super::text::ascii;
+use crate::base::fixed::mask;
+use crate::hdl::netlist::{Design, RomId};
+
+/// What there is to say of a word.
+pub fn word_note(design: &Design, id: RomId, address: usize) -> Option<String> {
+    let given = design.rom(id).comments.get(address);
+    let name = || {
+        let executed =
+            design.control.microprogram.get(address).filter(|_| is_control_rom(design, id))?;
+        Some(&executed.name)
+    };
+    given.or_else(name).map(|text| ascii(text))
+}
+
+/// A word of the control ROM in binary, its fields apart.
+pub fn in_fields(design: &Design, word: u64) -> String {
+    let positions = design.field_positions();
+    let digits = design.control.fields.iter().zip(positions).map(|(field, low)| {
+        let width = design.width(field.net);
+        format!("{:0width$b}", word >> low & mask(width), width = width as usize)
+    });
+    digits.collect::<Vec<_>>().join("_")
+}
+
+/// As many digits as the width needs.
+pub fn in_hex(word: u64, width: u32) -> String {
+    format!("{word:0digits$x}", digits = width.div_ceil(4) as usize)
+}

@@ -1,0 +1,69 @@
+//! The module for LiteX in systems that LiteX builds, with the Verilog simulated by Icarus.
+
+use std::fs;
+use std::path::Path;
+
+use crate::common::tools::{LIMIT, tool};
+use crate::common::cores::{Emitted, configuration_between};
+use glint::tools::{Simulator, run_bench};
+use rayon::prelude::*;
+
+const PACKAGE: &str = "[package]\nmemories = \"inline\"\nlitex = true\n";
+
+/// The Verilog of a system and its bench, pairs of a plain name and its text.
+fn system(name: &str, keys: &str, face: &str) -> Vec<(String, String)> {
+    let keys = format!("{keys}{PACKAGE}");
+    let core = configuration_between(&format!("configs/{name}.toml"), &keys);
+    let place = tempfile::tempdir().expect("a directory");
+    for file in &Emitted::new(&core, 1, 1).files {
+        let path = place.path().join(&file.path);
+        fs::create_dir_all(path.parent().expect("a parent")).expect("a directory");
+        fs::write(path, &file.contents).expect("written");
+    }
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tools/litex/system.py");
+    let script = script.display().to_string();
+    let run = tool("python").run_to_success([&script, ".", name, face], place.path(), LIMIT);
+    run.unwrap_or_else(|error| panic!("{name}, {face}: {error:#}"));
+    let text = |path: &Path| fs::read_to_string(path).expect("text");
+    let sources = text(&place.path().join("sources.txt"));
+    let file = |path: &Path| {
+        let name = path.file_name().expect("a name").to_string_lossy().into_owned();
+        (name, text(path))
+    };
+    let own = ["soc.v", "tb.v"].map(|name| place.path().join(name));
+    own.iter()
+        .map(|path| file(path))
+        .chain(sources.lines().map(|line| file(Path::new(line))))
+        .collect()
+}
+
+#[test]
+fn litex_builds_systems_that_compute() {
+    [
+        ("threshold_levels", "", "core"),
+        ("cosine_power", "registers = \"wishbone\"\n", "registers"),
+        ("threshold_levels", "registers = \"axi-lite\"\n", "registers"),
+        ("cosine_power", "stream = true\n", "stream"),
+        ("cosine_power_pipelined", "stream = true\n", "stream"),
+    ]
+    .into_par_iter()
+    .for_each(|(name, keys, face)| {
+        let files = system(name, keys, face);
+        let outcome = run_bench(Simulator::Icarus, &files, "tb", LIMIT);
+        let outcome = outcome.unwrap_or_else(|error| panic!("{name}, {face}: {error:#}"));
+        assert!(outcome.passed, "{name}, {face}: {}", outcome.transcript);
+        assert!(outcome.transcript.starts_with("PASS: 12 points"), "{}", outcome.transcript);
+    });
+}
+
+#[test]
+fn a_faulty_core_is_noticed_in_litex() {
+    let mut files = system("threshold_levels", "", "core");
+    let datapath = files.iter_mut().find(|(name, _)| name.ends_with("_datapath.v"));
+    let (_, text) = datapath.expect("a datapath");
+    let wrong = text.replacen("assign red_out = ", "assign red_out = 1 ^ ", 1);
+    assert_ne!(*text, wrong);
+    *text = wrong;
+    let outcome = run_bench(Simulator::Icarus, &files, "tb", LIMIT).expect("it runs");
+    assert!(!outcome.passed, "{}", outcome.transcript);
+}
