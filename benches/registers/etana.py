@@ -13,6 +13,7 @@ counts their ends; that block has ports for all of it, and leaves it to whoever 
 import json
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -53,7 +54,10 @@ def measure(name: str, suffix: str) -> None:
     for target in ("ice40", "ecp5"):
         with tempfile.TemporaryDirectory() as directory:
             place = pathlib.Path(directory)
-            own = f"read_verilog -lib {rtl}/{name}.v; read_verilog {rtl}/{name}_{suffix}.v {rtl}/{name}_registers.v"
+            for file in rtl.glob("*.v"):
+                shutil.copy(file, place)
+            own = f"read_verilog -lib {name}_core.v; read_verilog {name}_{suffix}.v {name}_registers.v"
+            (place / f"{name}.v").rename(place / f"{name}_core.v")
             ours = cells(place, own, f"{name}_{suffix}", target)
             run(["peakrdl", "etana", str(rdl), "-o", ".", "--cpuif", BUSES[suffix], "--err-if-bad-addr",
                  "--err-if-bad-rw", "--default-reset", "rst_n"], place)

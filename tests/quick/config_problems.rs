@@ -98,6 +98,38 @@ fn keys_that_every_device_shares_are_read_as_its_own() {
 }
 
 #[test]
+fn keys_for_vendors_tools_are_checked() {
+    let of_package = |keys: &str| of_lamp(&format!("[package]\n{keys}"));
+    assert_eq!(
+        of_package("vivado = true\n"),
+        ["3:10 package.vivado | `package.vivado` has no effect with package.constraints = false \
+          | remove it, or set package.constraints = true"]
+    );
+    assert_eq!(
+        of_package("constraints = true\nclock_mhz = 0\n"),
+        ["4:13 package.clock_mhz | `package.clock_mhz` = 0.0 is out of range \
+          | give a number from 0.001 to 2000.0 (default 100.0)"]
+    );
+    assert_eq!(
+        of_package("litex = true\n"),
+        ["3:9 package.litex | `package.litex` has no effect with package.memories = \"files\" \
+          | remove it, or set package.memories = \"inline\""]
+    );
+    assert_eq!(
+        of_package("vendor = \"a \\\"b\\\" [exit]\"\nversion = \"1.0\"\nlicence = 7\n"),
+        [
+            "3:10 package.vendor | `package.vendor` cannot be \"a \\\"b\\\" [exit]\" \
+             | give a name of at most 60 letters, digits, `.`, `-` and `_`, beginning with a letter (default \"glint\")",
+            "4:11 package.version | `package.version` cannot be \"1.0\" \
+             | give a version of three numbers up to 9999, as \"1.0.0\" (default \"0.1.0\")",
+            "5:11 package.licence | `package.licence` must be a string, not the integer 7 \
+             | give an SPDX licence expression of at most 60 characters, as \"MIT OR Apache-2.0\" \
+             (default \"LicenseRef-belongs-to-its-user\")",
+        ]
+    );
+}
+
+#[test]
 fn an_unknown_bus_is_told_of() {
     assert_eq!(
         of_lamp("[interface]\nregisters = \"wishbon\"\n"),

@@ -4,9 +4,9 @@
 use std::fs;
 use std::path::Path;
 
+use crate::common::cores::{Emitted, configuration_between, configuration_with, write};
 use crate::common::sample::sampled;
 use crate::common::tools::{LIMIT, assert_bench_passes, assert_lint_clean, tool, yosys};
-use crate::common::cores::{Emitted, configuration_between, configuration_with, write};
 use glint::core::Core;
 use glint::tools::Simulator;
 use rayon::prelude::*;
@@ -249,7 +249,8 @@ fn constraints_are_read_by_opensta() {
     for (top, clock) in [("cosine_power", "clk"), ("cosine_power_wb", "wb_clk_i")] {
         let synthesis = format!(
             "read_verilog cosine_power*.v; synth -flatten -top {top}; dfflibmap -liberty {cells}; \
-             abc -liberty {cells}; clean; write_verilog -noattr netlist.v"
+             abc -liberty {cells}; splitnets; opt_clean -purge; \
+             write_verilog -noattr -noexpr -simple-lhs netlist.v"
         );
         yosys_quietly(place.path(), &synthesis);
         let script = format!(
@@ -260,12 +261,10 @@ fn constraints_are_read_by_opensta() {
         let told = tool("sta").run_to_success(["-exit", "read.tcl"], place.path(), LIMIT);
         let told = told.unwrap_or_else(|error| panic!("{error:#}"));
         assert!(told.contains("period 10.000"), "{told}");
-        assert!(!told.to_lowercase().contains("warning"), "{told}");
+        let wrong = ["warning", "error"].iter().any(|word| told.to_lowercase().contains(word));
+        assert!(!wrong, "{told}");
         // Paths from register to register are constrained.
-        assert!(
-            told.contains("_reg") || told.contains("/D") || told.contains("Endpoint"),
-            "{told}"
-        );
+        assert!(told.contains("/D (DFF"), "{told}");
     }
 }
 
@@ -277,7 +276,7 @@ fn yosys_quietly(place: &Path, commands: &str) {
 
 #[test]
 fn rom_contents_in_the_verilog_are_those_of_the_files() {
-    let names = ["blinn", "quad_cosine", "rough", "threshold_levels", "blinn_pipelined"];
+    let names = ["blinn", "quad_cosine", "rough", "threshold", "blinn_pipelined"];
     sampled("ROMs in the Verilog", names, SAMPLE).into_par_iter().for_each(|name| {
         let path = format!("configs/{name}.toml");
         let core = configuration_with(&path, INLINE);
@@ -322,15 +321,18 @@ fn wrong_word(rtl: &[(String, String)]) -> Vec<(String, String)> {
 }
 
 #[test]
-fn synthesis_makes_the_same_of_rom_contents_in_the_verilog() {
+fn synthesis_makes_block_ram_of_rom_contents_in_the_verilog() {
     let cells = |more: &str| {
         let (_, place) = emitted(&configuration_with("configs/rough.toml", more));
         let script = "read_verilog rough*.v; synth_ice40 -dsp -top rough; tee -o stat.txt stat";
         yosys(place.path(), script);
-        fs::read_to_string(place.path().join("stat.txt")).expect("figures")
+        let figures = fs::read_to_string(place.path().join("stat.txt")).expect("figures");
+        // Small ROMs are logic, which comes out a little different where names do.
+        let same = |line: &&str| ["SB_RAM", "SB_MAC", "SB_DFF"].iter().any(|it| line.contains(it));
+        figures.lines().filter(same).collect::<Vec<_>>().join("\n")
     };
     let (files, inline) = (cells(""), cells(INLINE));
-    assert!(files.contains("SB_RAM40_4K"), "{files}");
+    assert!(files.contains("SB_RAM40_4K") && files.contains("SB_DFF"), "{files}");
     assert_eq!(files, inline);
 }
 
@@ -372,8 +374,14 @@ fn fusesoc_sets_up_the_vendors_projects() {
     run(&["--setup", "--target", "quartus"]);
     let project = text_below("quartus", ".tcl");
     assert!(project.contains("cosine_power.sdc") && project.contains("5CEBA4F23C7"), "{project}");
-    run(&["--target", "synth_ecp5"]);
-    assert!(text_below("synth_ecp5", ".json").contains("TRELLIS_FF"));
-    run(&["--setup", "--target", "synth_gowin"]);
-    assert!(text_below("synth_gowin", ".tcl").contains("synth_gowin"));
+    // As far as synthesis: not everybody has the rest.
+    for (target, cell) in [("ecp5", "TRELLIS_FF"), ("gowin", "\"DFF")] {
+        run(&["--setup", "--target", target]);
+        let core = "glint_device_cosine_power_0.1.0";
+        let directory = place.path().join("build").join(core).join(target);
+        let netlist = format!("{core}.json");
+        let made = tool("make").run_to_success([&netlist], &directory, LIMIT);
+        made.unwrap_or_else(|error| panic!("{error:#}"));
+        assert!(text_below(&format!("/{target}/"), ".json").contains(cell), "{target}");
+    }
 }

@@ -8,7 +8,7 @@
 
 # A command, its options, and what it returns.
 proc command {name options {result ""}} {
-    set body [string map [list @NAME@ $name @OPTIONS@ [list $options] @RESULT@ [list $result]] {
+    set body [string map [list @NAME@ $name @OPTIONS@ "{$options}" @RESULT@ [list $result]] {
         foreach word $args {
             if {[string match {-[a-z]*} $word] && $word ni @OPTIONS@} {
                 error "@NAME@ has no option $word"
