@@ -187,7 +187,7 @@ module cosine_power_registers (
         case (read_word)
             4'd0: read_data = 32'h474c4e54;
             4'd1: read_data = 32'h00000100;
-            4'd2: read_data = 32'h92786916;
+            4'd2: read_data = 32'h30f154fd;
             4'd3: read_data = 32'h00000305;
             4'd4: read_data = {30'd0, finished, under_way};
             4'd5: read_data = {20'd0, start_word, 6'd0, start_on_write, 1'b0};

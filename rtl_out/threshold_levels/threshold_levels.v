@@ -44,10 +44,7 @@
 
 `default_nettype none
 
-module threshold_levels #(
-    parameter CONTROL_FILE = "threshold_levels_control.mem",
-    parameter LEVELS_FILE = "threshold_levels_levels.mem"
-) (
+module threshold_levels (
     input  wire        clk,
     input  wire        rst_n,            // reset, active low
     input  wire        start,            // begins a computation when not busy
@@ -75,9 +72,7 @@ module threshold_levels #(
     wire scaled_load;
     wire intensity_load;
 
-    threshold_levels_control #(
-        .CONTROL_FILE(CONTROL_FILE)
-    ) control (
+    threshold_levels_control control (
         .clk(clk),
         .rst_n(rst_n),
         .start(start),
@@ -89,9 +84,7 @@ module threshold_levels #(
         .intensity_load(intensity_load)
     );
 
-    threshold_levels_datapath #(
-        .LEVELS_FILE(LEVELS_FILE)
-    ) datapath (
+    threshold_levels_datapath datapath (
         .clk(clk),
         .cos_gamma(cos_gamma),
         .cos_gamma_write(cos_gamma_write),

@@ -11,9 +11,7 @@
 
 `default_nettype none
 
-module threshold_levels_control #(
-    parameter CONTROL_FILE = "threshold_levels_control.mem"
-) (
+module threshold_levels_control (
     input  wire clk,
     input  wire rst_n,           // reset, active low
     input  wire start,           // begins a computation when not busy
@@ -36,7 +34,12 @@ module threshold_levels_control #(
     // ROM control: the microprogram, a line for each microinstruction; fields: scaled_load,
     // intensity_load, valid_word, go_on
     reg [3:0] control_rom [0:3];
-    initial $readmemb(CONTROL_FILE, control_rom);
+    initial begin
+        control_rom[0] = 4'b0_0_0_1;  // operands; ROM(n) addressed
+        control_rom[1] = 4'b1_0_0_1;  // scaled <- n/2 * (cos gamma - 1)
+        control_rom[2] = 4'b0_1_0_1;  // intensity <- (scaled + 1)^2, or 0 below ROM(n)
+        control_rom[3] = 4'b0_0_1_0;  // result
+    end
     wire [3:0] control_word = control_rom[word_address];
 
     assign scaled_load = control_word[3];

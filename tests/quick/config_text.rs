@@ -101,6 +101,49 @@ registers = \"none\"
 # Write software/<name>/: a bit-accurate model of the core in C.
 # True or false, default false; only with architecture = \"sequential\".
 software = false
+
+# Whether ROM contents are .mem files, or stand in the Verilog, for flows that do not find
+# files.
+# \"files\" or \"inline\", default \"files\".
+memories = \"files\"
+
+# Write software/<name>/<name>_litex.py: the core as a module of LiteX.
+# True or false, default false; only with package.memories = \"inline\".
+# litex = false
+
+# Write the clock as constraints: <top>.sdc and <top>.xdc.
+# True or false, default false.
+constraints = false
+
+# The frequency of the clock in constraints and vendors' projects.
+# A number from 0.001 to 2000.0, default 100.0; only with package.constraints = true.
+# clock_mhz = 100.0
+
+# Write Tcl for Vivado: <name>_vivado.tcl builds, <name>_vivado_ip.tcl packages IP.
+# True or false, default false; only with package.constraints = true.
+# vivado = false
+
+# Write Tcl for Quartus: <name>_quartus.tcl builds, <top>_hw.tcl is for Platform Designer.
+# True or false, default false; only with package.constraints = true.
+# quartus = false
+
+# Write IP-XACT components (IEEE 1685-2014): <top>.xml.
+# True or false, default false.
+ip_xact = false
+
+# The vendor in IP-XACT, Vivado and Platform Designer; a domain name, as a rule.
+# A name of at most 60 letters, digits, `.`, `-` and `_`, beginning with a letter, default
+# \"glint\".
+vendor = \"glint\"
+
+# The version of the core for FuseSoC, IP-XACT, Vivado and Platform Designer.
+# A version of three numbers up to 9999, as \"1.0.0\", default \"0.1.0\".
+version = \"0.1.0\"
+
+# The licence of the files for FuseSoC; what Glint generates belongs to its user.
+# An SPDX licence expression of at most 60 characters, as \"MIT OR Apache-2.0\", default
+# \"LicenseRef-belongs-to-its-user\".
+licence = \"LicenseRef-belongs-to-its-user\"
 ";
     let text = commented(&lamp(), "my_lamp");
     assert_eq!(text, expected);

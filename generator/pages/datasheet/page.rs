@@ -151,7 +151,8 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
         domain: TableView::new("Domain of the operands", &account::domain(design, contract)),
         example: TableView::new("A worked example", &account::example(contract, &measured.example)),
         program: Program::new(design),
-        roms: (!design.roms.is_empty()).then(|| TableView::new("ROMs", &account::roms(design, &core.config))),
+        roms: (!design.roms.is_empty())
+            .then(|| TableView::new("ROMs", &account::roms(design, &core.config))),
         clocks: TableView::new(
             "Clocks",
             &match &design.pipeline {

@@ -75,7 +75,11 @@ pub fn page(design: &Design, inputs: &PageInputs) -> Result<String> {
         ports: table(&account::ports(design)),
         numbering: account::numbering(design),
         program: Program::new(design),
-        roms: if design.roms.is_empty() { String::new() } else { table(&account::roms(design, inputs.config)) },
+        roms: if design.roms.is_empty() {
+            String::new()
+        } else {
+            table(&account::roms(design, inputs.config))
+        },
         clocks: table(&match &design.pipeline {
             None => account::clocks(inputs.timing, inputs.line),
             Some(pipeline) => account::pipeline_clocks(pipeline),

@@ -1,0 +1,184 @@
+// threshold_levels_axil_formal: what is proved of threshold_levels_axil
+//
+// For formal tools alone: every input is free, the master's too. In place of the registers stands
+// anything that answers requests at any time. To prove it, from a directory that holds the files of
+// both folders:
+//   $ yosys -q threshold_levels_axil_formal.ys
+//   $ yosys-smtbmc -s z3 --unroll -t 3 threshold_levels_axil_formal.smt2
+//   $ yosys-smtbmc -s z3 --unroll -i -t 2 threshold_levels_axil_formal.smt2
+//
+// Generated files belong to their user, without conditions.
+
+`default_nettype none
+
+module threshold_levels_registers (
+    input wire clk,
+    input wire rst_n,
+    input wire write,
+    input wire [5:2] write_at,
+    input wire [31:0] write_data,
+    input wire [3:0] write_bytes,
+    output wire write_answer,
+    output wire write_error,
+    input wire read,
+    input wire [5:2] read_at,
+    output wire read_answer,
+    output wire read_error,
+    output wire [31:0] read_data,
+    output wire irq
+);
+    (* anyseq *) reg answers_write;
+    (* anyseq *) reg answers_read;
+    (* anyseq *) reg [34:0] any;
+    assign write_answer = write & answers_write;
+    assign read_answer = read & answers_read;
+    assign {irq, write_error, read_error, read_data} = any;
+endmodule
+
+module threshold_levels_axil_formal (
+    input wire aclk,
+    input wire aresetn,
+    input wire [5:0] s_axil_awaddr,
+    input wire [2:0] s_axil_awprot,
+    input wire s_axil_awvalid,
+    input wire [31:0] s_axil_wdata,
+    input wire [3:0] s_axil_wstrb,
+    input wire s_axil_wvalid,
+    input wire s_axil_bready,
+    input wire [5:0] s_axil_araddr,
+    input wire [2:0] s_axil_arprot,
+    input wire s_axil_arvalid,
+    input wire s_axil_rready
+);
+    wire s_axil_awready;
+    wire s_axil_wready;
+    wire [1:0] s_axil_bresp;
+    wire s_axil_bvalid;
+    wire s_axil_arready;
+    wire [31:0] s_axil_rdata;
+    wire [1:0] s_axil_rresp;
+    wire s_axil_rvalid;
+    wire irq;
+
+    threshold_levels_axil dut (
+        .aclk(aclk),
+        .aresetn(aresetn),
+        .s_axil_awaddr(s_axil_awaddr),
+        .s_axil_awprot(s_axil_awprot),
+        .s_axil_awvalid(s_axil_awvalid),
+        .s_axil_awready(s_axil_awready),
+        .s_axil_wdata(s_axil_wdata),
+        .s_axil_wstrb(s_axil_wstrb),
+        .s_axil_wvalid(s_axil_wvalid),
+        .s_axil_wready(s_axil_wready),
+        .s_axil_bresp(s_axil_bresp),
+        .s_axil_bvalid(s_axil_bvalid),
+        .s_axil_bready(s_axil_bready),
+        .s_axil_araddr(s_axil_araddr),
+        .s_axil_arprot(s_axil_arprot),
+        .s_axil_arvalid(s_axil_arvalid),
+        .s_axil_arready(s_axil_arready),
+        .s_axil_rdata(s_axil_rdata),
+        .s_axil_rresp(s_axil_rresp),
+        .s_axil_rvalid(s_axil_rvalid),
+        .s_axil_rready(s_axil_rready),
+        .irq(irq)
+    );
+
+    // What the proof sees of the inside.
+    (* hierconn *) wire \dut.write_address_waits ;
+    (* hierconn *) wire \dut.write_data_waits ;
+    (* hierconn *) wire \dut.read_waits ;
+    (* hierconn *) wire \dut.write ;
+    (* hierconn *) wire \dut.read ;
+    (* hierconn *) wire [5:2] \dut.write_at ;
+    (* hierconn *) wire [31:0] \dut.write_data ;
+    (* hierconn *) wire [3:0] \dut.write_bytes ;
+    (* hierconn *) wire [5:2] \dut.read_at ;
+    (* hierconn *) wire \dut.write_answer ;
+    (* hierconn *) wire \dut.write_error ;
+    (* hierconn *) wire \dut.read_answer ;
+    (* hierconn *) wire \dut.read_error ;
+    (* hierconn *) wire [31:0] \dut.read_data ;
+
+    // The reset comes first; the state before it is arbitrary.
+    always @* if ($initstate) assume (!aresetn);
+
+    // Requests taken and answers given, modulo more than there can be under way.
+    reg [1:0] addresses;
+    reg [1:0] words;
+    reg [1:0] answers;
+    reg [1:0] reads;
+    reg [1:0] results;
+    always @(posedge aclk) begin
+        if (!aresetn) begin
+            addresses <= 0;
+            words <= 0;
+            answers <= 0;
+            reads <= 0;
+            results <= 0;
+        end else begin
+            addresses <= addresses + (s_axil_awvalid && s_axil_awready);
+            words <= words + (s_axil_wvalid && s_axil_wready);
+            answers <= answers + (s_axil_bvalid && s_axil_bready);
+            reads <= reads + (s_axil_arvalid && s_axil_arready);
+            results <= results + (s_axil_rvalid && s_axil_rready);
+        end
+    end
+
+    always @* if (!$initstate) begin
+        // Every request is answered once: what has no answer yet is waiting, or offered.
+        assert (addresses == answers + s_axil_bvalid + dut.write_address_waits);
+        assert (words == answers + s_axil_bvalid + dut.write_data_waits);
+        assert (reads == results + s_axil_rvalid + dut.read_waits);
+        // One of each kind waits at most.
+        assert (!(s_axil_awready && dut.write_address_waits));
+        assert (!(s_axil_wready && dut.write_data_waits));
+        assert (!(s_axil_arready && dut.read_waits));
+        // A request reaches the registers as soon as there is room for its answer.
+        if (dut.write_address_waits && dut.write_data_waits && !s_axil_bvalid) assert (dut.write);
+        if (dut.read_waits && !s_axil_rvalid) assert (dut.read);
+    end
+
+    always @(posedge aclk) if (!$initstate && $past(!$initstate)) begin
+        if ($past(aresetn)) begin
+            // An offer stays, as it is, until it is taken.
+            if ($past(s_axil_bvalid && !s_axil_bready)) begin
+                assert (s_axil_bvalid && s_axil_bresp == $past(s_axil_bresp));
+            end
+            if ($past(s_axil_rvalid && !s_axil_rready)) begin
+                assert (s_axil_rvalid && s_axil_rresp == $past(s_axil_rresp));
+                assert (s_axil_rdata == $past(s_axil_rdata));
+            end
+            // An answer of the registers is offered in the next clock, as it is.
+            if ($past(dut.write_answer)) begin
+                assert (s_axil_bvalid && s_axil_bresp == {$past(dut.write_error), 1'b0});
+            end
+            if ($past(dut.read_answer)) begin
+                assert (s_axil_rvalid && s_axil_rresp == {$past(dut.read_error), 1'b0});
+                assert (s_axil_rdata == $past(dut.read_data));
+            end
+            // A request reaches them as it was made, and stays.
+            if ($past(s_axil_awvalid && s_axil_awready)) begin
+                assert (dut.write_at == $past(s_axil_awaddr[5:2]));
+            end else begin
+                assert ($stable(dut.write_at));
+            end
+            if ($past(s_axil_wvalid && s_axil_wready)) begin
+                assert ({dut.write_bytes, dut.write_data} == $past({s_axil_wstrb, s_axil_wdata}));
+            end else begin
+                assert ($stable({dut.write_bytes, dut.write_data}));
+            end
+            if ($past(s_axil_arvalid && s_axil_arready)) begin
+                assert (dut.read_at == $past(s_axil_araddr[5:2]));
+            end else begin
+                assert ($stable(dut.read_at));
+            end
+        end else begin
+            assert (!s_axil_bvalid && !s_axil_rvalid);
+            assert (!s_axil_awready && !s_axil_wready && !s_axil_arready);
+        end
+    end
+endmodule
+
+`default_nettype wire

@@ -1,0 +1,229 @@
+// threshold_levels_registers_formal: what is proved of threshold_levels_registers
+//
+// For formal tools alone: every input is free. In place of the core stands any that is busy from
+// the clock after start to done, with any results. To prove it, from a directory that holds the
+// files of both folders:
+//   $ yosys -q threshold_levels_registers_formal.ys
+//   $ yosys-smtbmc -s z3 --unroll -t 3 threshold_levels_registers_formal.smt2
+//   $ yosys-smtbmc -s z3 --unroll -i -t 2 threshold_levels_registers_formal.smt2
+//
+// Generated files belong to their user, without conditions.
+
+`default_nettype none
+
+module threshold_levels (
+    input wire clk,
+    input wire rst_n,
+    input wire start,
+    input wire [20:0] cos_gamma,
+    input wire cos_gamma_write,
+    input wire [9:0] exponent,
+    input wire exponent_write,
+    input wire [7:0] red,
+    input wire red_write,
+    input wire [7:0] green,
+    input wire green_write,
+    input wire [7:0] blue,
+    input wire blue_write,
+    output wire valid,
+    output wire busy,
+    output wire done,
+    output wire [7:0] red_out,
+    output wire [7:0] green_out,
+    output wire [7:0] blue_out
+);
+    (* anyseq *) reg ends;
+    (* anyseq *) reg [7:0] any_red_out;
+    assign red_out = any_red_out;
+    (* anyseq *) reg [7:0] any_green_out;
+    assign green_out = any_green_out;
+    (* anyseq *) reg [7:0] any_blue_out;
+    assign blue_out = any_blue_out;
+    reg run;
+    assign busy = run;
+    assign valid = done;
+    assign done = run & ends;
+    always @(posedge clk) run <= rst_n & (run ? ~done : start);
+
+    // A computation begins with all of its operands, and when the one before is over.
+    always @* if (!$initstate && start) begin
+        assert (!run);
+        assert (cos_gamma_write);
+        assert (exponent_write);
+        assert (red_write);
+        assert (green_write);
+        assert (blue_write);
+    end
+endmodule
+
+module threshold_levels_registers_formal (
+    input wire clk,
+    input wire rst_n,
+    input wire write,
+    input wire [5:2] write_at,
+    input wire [31:0] write_data,
+    input wire [3:0] write_bytes,
+    input wire read,
+    input wire [5:2] read_at
+);
+    wire write_answer;
+    wire write_error;
+    wire read_answer;
+    wire read_error;
+    wire [31:0] read_data;
+    wire irq;
+
+    threshold_levels_registers dut (
+        .clk(clk),
+        .rst_n(rst_n),
+        .write(write),
+        .write_at(write_at),
+        .write_data(write_data),
+        .write_bytes(write_bytes),
+        .write_answer(write_answer),
+        .write_error(write_error),
+        .read(read),
+        .read_at(read_at),
+        .read_answer(read_answer),
+        .read_error(read_error),
+        .read_data(read_data),
+        .irq(irq)
+    );
+
+    // What the proof sees of the inside.
+    (* hierconn *) wire \dut.start ;
+    (* hierconn *) wire \dut.start_on_write ;
+    (* hierconn *) wire [3:0] \dut.start_word ;
+    (* hierconn *) wire \dut.interrupt_enable ;
+    (* hierconn *) wire \dut.interrupt_pending ;
+    (* hierconn *) wire \dut.finished ;
+    (* hierconn *) wire \dut.core.run ;
+    (* hierconn *) wire \dut.core.ends ;
+    (* hierconn *) wire [20:0] \dut.operand_cos_gamma ;
+    (* hierconn *) wire [20:0] \dut.core.cos_gamma ;
+    (* hierconn *) wire [9:0] \dut.operand_exponent ;
+    (* hierconn *) wire [9:0] \dut.core.exponent ;
+    (* hierconn *) wire [7:0] \dut.operand_red ;
+    (* hierconn *) wire [7:0] \dut.core.red ;
+    (* hierconn *) wire [7:0] \dut.operand_green ;
+    (* hierconn *) wire [7:0] \dut.core.green ;
+    (* hierconn *) wire [7:0] \dut.operand_blue ;
+    (* hierconn *) wire [7:0] \dut.core.blue ;
+
+    // The reset comes first; the state before it is arbitrary.
+    always @* if ($initstate) assume (!rst_n);
+
+    localparam WORDS = 14;
+    wire [31:0] write_word = write_at;
+    wire [31:0] read_word = read_at;
+    wire write_mapped =
+            write_word >= 5 && write_word <= 12;
+    wire is_result =
+            read_word >= 13 && read_word <= 13;
+    wire asks_start = write_mapped && (dut.start_on_write && write_word == dut.start_word
+            || write_word == 5 && write_bytes[0] && write_data[0]);
+
+    always @* if (!$initstate) begin
+        // A request waits only for a computation, which ends; only requests are answered.
+        if (write && !write_answer) assert (asks_start && (dut.start || dut.core.run));
+        if (read && !read_answer) assert (is_result && (dut.start || dut.core.run));
+        if (!write) assert (!write_answer);
+        if (!read) assert (!read_answer);
+        // A result that is read is that of a computation that is over.
+        if (read_answer && is_result) assert (!dut.start && !dut.core.run);
+        // What is not in the map, and nothing else, is an error.
+        assert (write_error == !write_mapped);
+        assert (read_error == (read_word >= WORDS));
+        assert (irq == (dut.interrupt_enable && dut.interrupt_pending));
+        // What was written is what is read, and what the core computes with.
+        assert (dut.core.cos_gamma == dut.operand_cos_gamma);
+        assert (dut.core.exponent == dut.operand_exponent);
+        assert (dut.core.red == dut.operand_red);
+        assert (dut.core.green == dut.operand_green);
+        assert (dut.core.blue == dut.operand_blue);
+        if (read_word == 8) begin
+            assert (read_data[20:0] == dut.operand_cos_gamma);
+        end
+        if (read_word == 9) begin
+            assert (read_data[9:0] == dut.operand_exponent);
+        end
+        if (read_word == 10) begin
+            assert (read_data[7:0] == dut.operand_red);
+        end
+        if (read_word == 11) begin
+            assert (read_data[7:0] == dut.operand_green);
+        end
+        if (read_word == 12) begin
+            assert (read_data[7:0] == dut.operand_blue);
+        end
+    end
+
+    // What was taken in the clock before.
+    reg took;
+    reg [31:0] took_word;
+    always @(posedge clk) begin
+        took <= write_answer && !write_error;
+        took_word <= write_word;
+    end
+    wire took_control = took && took_word == 5;
+    wire took_enable = took && took_word == 6;
+    wire took_pending = took && took_word == 7;
+    always @(posedge clk) if (!$initstate && $past(!$initstate) && $past(rst_n)) begin
+        // A computation starts once for each write that asks for it, and for nothing else.
+        assert (dut.start == $past(write_answer && asks_start));
+        // The registers change where they are written, in those bytes, and nowhere else.
+        assert (dut.start_on_write == (took_control && $past(write_bytes[0])
+                ? $past(write_data[1]) : $past(dut.start_on_write)));
+        assert (dut.start_word == (took_control && $past(write_bytes[1])
+                ? $past(write_data[11:8]) : $past(dut.start_word)));
+        assert (dut.interrupt_enable == (took_enable && $past(write_bytes[0])
+                ? $past(write_data[0]) : $past(dut.interrupt_enable)));
+        assert (dut.interrupt_pending == ($past(dut.core.run && dut.core.ends)
+                || $past(dut.interrupt_pending)
+                && !(took_pending && $past(write_bytes[0] && write_data[0]))));
+        assert (dut.finished == ($past(dut.core.run && dut.core.ends)
+                || $past(dut.finished) && !$past(dut.start)));
+        if (took && took_word == 8 && $past(write_bytes[0])) begin
+            assert (dut.operand_cos_gamma[7:0] == $past(write_data[7:0]));
+        end else begin
+            assert ($stable(dut.operand_cos_gamma[7:0]));
+        end
+        if (took && took_word == 8 && $past(write_bytes[1])) begin
+            assert (dut.operand_cos_gamma[15:8] == $past(write_data[15:8]));
+        end else begin
+            assert ($stable(dut.operand_cos_gamma[15:8]));
+        end
+        if (took && took_word == 8 && $past(write_bytes[2])) begin
+            assert (dut.operand_cos_gamma[20:16] == $past(write_data[20:16]));
+        end else begin
+            assert ($stable(dut.operand_cos_gamma[20:16]));
+        end
+        if (took && took_word == 9 && $past(write_bytes[0])) begin
+            assert (dut.operand_exponent[7:0] == $past(write_data[7:0]));
+        end else begin
+            assert ($stable(dut.operand_exponent[7:0]));
+        end
+        if (took && took_word == 9 && $past(write_bytes[1])) begin
+            assert (dut.operand_exponent[9:8] == $past(write_data[9:8]));
+        end else begin
+            assert ($stable(dut.operand_exponent[9:8]));
+        end
+        if (took && took_word == 10 && $past(write_bytes[0])) begin
+            assert (dut.operand_red == $past(write_data[7:0]));
+        end else begin
+            assert ($stable(dut.operand_red));
+        end
+        if (took && took_word == 11 && $past(write_bytes[0])) begin
+            assert (dut.operand_green == $past(write_data[7:0]));
+        end else begin
+            assert ($stable(dut.operand_green));
+        end
+        if (took && took_word == 12 && $past(write_bytes[0])) begin
+            assert (dut.operand_blue == $past(write_data[7:0]));
+        end else begin
+            assert ($stable(dut.operand_blue));
+        end
+    end
+endmodule
+
+`default_nettype wire
