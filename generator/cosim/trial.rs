@@ -339,8 +339,8 @@ pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Resul
     Ok(clocks)
 }
 
-/// What nets carry in each clock while three points go through a pipeline, the first of them that of [`example`]: see
-/// [`Through::record`].
+/// What nets carry in each clock while three points go through a pipeline, the first of them that of [`example`]: one clock
+/// has no point, and the first result waits, where it can, for two.
 ///
 /// # Errors
 /// Those of [`timing`].
