@@ -124,10 +124,10 @@ fn names_widths_and_values() {
         widths,
         [
             ("probe.clk", 1),
+            ("probe.control.microinstruction", 0),
             ("probe.control.other_address", 1),
             ("probe.control.run", 1),
             ("probe.control.select", 2),
-            ("probe.control.microinstruction", 0),
             ("probe.control.word_address", 1),
             ("probe.data", 32),
             ("probe.datapath.one", 1),
