@@ -364,7 +364,8 @@ class Pipeline:
             return None
         if self._side_out is not None:
             side = int(self._side_out.value)
-            assert side == last[1], f"side_out is {side} with a point that came with {last[1]}, {at}"
+            came = last[1]
+            assert side == came, f"side_out is {side} with a point that came with {came}, {at}"
         shown = self.outputs()
         assert self._waiting in (None, shown), f"{self._waiting} changed while it waited, {at}"
         return shown

@@ -1,4 +1,6 @@
-"""${ name }$ in LiteX: ${ title }$.
+"""${ name }$ in LiteX.
+
+${ title }$.
 
 <%- if core.is_some() %>
 
@@ -52,7 +54,9 @@ class ${ class }$Core(LiteXModule):
         self.control = CSRStorage(
             fields=[CSRField("start", description="Begins a computation.", pulse=True)]
         )
-        self.status = CSRStatus(fields=[CSRField("busy", description="A computation is under way.")])
+        self.status = CSRStatus(
+            fields=[CSRField("busy", description="A computation is under way.")]
+        )
         self.ev = EventManager()
         self.ev.done = EventSourcePulse(description="The end of a computation.")
         self.ev.finalize()

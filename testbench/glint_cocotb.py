@@ -364,7 +364,8 @@ class Pipeline:
             return None
         if self._side_out is not None:
             side = int(self._side_out.value)
-            assert side == last[1], f"side_out is {side} with a point that came with {last[1]}, {at}"
+            came = last[1]
+            assert side == came, f"side_out is {side} with a point that came with {came}, {at}"
         shown = self.outputs()
         assert self._waiting in (None, shown), f"{self._waiting} changed while it waited, {at}"
         return shown
@@ -578,4 +579,4 @@ def run(name: str) -> None:
     sys.exit(1 if failed or not tests else 0)
 
 
-# sha256 614d8f36f62bf633e1c3f46828a04365bce164c3986aa4279f04a18ba1b66ab3
+# sha256 9d87ff4aa718fe19fa2cfb81bd6b0c6e41988860edb4d50dbf75689e35903d4e

@@ -44,10 +44,14 @@ fn a_fault_in_the_design_fails_the_lockstep() {
     assert_eq!(record.conclusion, Conclusion::Failed);
     let lockstep = finding(&record, "lockstep");
     assert_eq!(lockstep.verdict, Verdict::Failed);
-    // Its reproducer: seed, clock, word, signal, both values.
-    for part in
-        ["seed ", "after clock ", "word `", "in the simulated hardware", "in the golden model"]
-    {
+    // Its reproducer: seed, clock, microinstruction, signal, both values.
+    for part in [
+        "seed ",
+        "after clock ",
+        "microinstruction `",
+        "in the simulated hardware",
+        "in the golden model",
+    ] {
         assert!(lockstep.faults[0].contains(part), "{:?}", lockstep.faults);
     }
     // Its sweep leaves values of cos_dgamma out.

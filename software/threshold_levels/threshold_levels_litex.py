@@ -1,4 +1,6 @@
-"""threshold_levels in LiteX: Specular intensity by a parabola's square, above a level of visibility.
+"""threshold_levels in LiteX.
+
+Specular intensity by a parabola's square, above a level of visibility.
 
 ThresholdLevelsCore has a CSR for each operand and each result.
 
@@ -42,7 +44,9 @@ class ThresholdLevelsCore(LiteXModule):
         self.control = CSRStorage(
             fields=[CSRField("start", description="Begins a computation.", pulse=True)]
         )
-        self.status = CSRStatus(fields=[CSRField("busy", description="A computation is under way.")])
+        self.status = CSRStatus(
+            fields=[CSRField("busy", description="A computation is under way.")]
+        )
         self.ev = EventManager()
         self.ev.done = EventSourcePulse(description="The end of a computation.")
         self.ev.finalize()

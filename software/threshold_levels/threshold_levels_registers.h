@@ -114,8 +114,8 @@ static inline uint32_t threshold_levels_bits(uint32_t value, uint32_t mask, unsi
 }
 
 /* value * 2^-from as the nearest multiple of 2^-to, ties upward, in its units; from, to < 64. */
-static inline int64_t threshold_levels_fixed(int64_t value, unsigned from, unsigned to, int64_t least,
-                                       int64_t most)
+static inline int64_t
+threshold_levels_fixed(int64_t value, unsigned from, unsigned to, int64_t least, int64_t most)
 {
     int64_t whole = value;
     if (from > to) {

@@ -29,7 +29,7 @@ pub(super) struct Windows<'a> {
     intervals: Vec<Interval>,
     /// The cells that read a net.
     readers: Vec<Vec<NetId>>,
-    /// Whether something else reads it: a register, a ROM, a port.
+    /// Whether something else reads it: a register, a ROM, a port, a comparison with the golden model.
     sinks: Vec<bool>,
     /// Whether a multiplier reads it.
     multiplied: Vec<bool>,
@@ -58,7 +58,10 @@ impl<'a> Windows<'a> {
         let registers = design.registers.iter();
         let read = registers.flat_map(|register| [register.data, register.enable]);
         let read = read.flatten().chain(design.roms.iter().map(|rom| rom.address));
-        for net in read.chain(design.outputs().map(|port| port.net)) {
+        // What a golden model's register is compared with is seen where it is.
+        let checkpoints = design.pipeline.iter().flat_map(|pipeline| &pipeline.checkpoints);
+        let seen = design.outputs().map(|port| port.net).chain(checkpoints.map(|it| it.net));
+        for net in read.chain(seen) {
             sinks[net.index()] = true;
         }
         Self {
