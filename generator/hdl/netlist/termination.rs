@@ -22,7 +22,7 @@ pub fn remaining(design: &Design) -> Option<Vec<Left>> {
     // From the last microinstruction, with a place for those before it.
     for (at, microinstruction) in microprogram.iter().enumerate().rev() {
         let entering = |to: usize| -> Option<u64> {
-            let Left { clocks, counter } = *left.get(microprogram.len() - 1 - to)?;
+            let Left { clocks, counter } = *left.get((microprogram.len() - 1).checked_sub(to)?)?;
             let most = counter.map_or(0, |counter| largest(design, counter));
             Some(1 + clocks + most)
         };
