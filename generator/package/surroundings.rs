@@ -1,6 +1,6 @@
 //! What a configuration asks for around a core.
 
-use crate::config::Config;
+use crate::config::{Config, Schema};
 
 /// A bus on which registers are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,7 +12,7 @@ pub enum Bus {
 }
 
 /// What is put around a core.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Surroundings {
     /// The core between two AXI4-Streams.
     pub stream: bool,
@@ -40,6 +40,14 @@ pub struct Surroundings {
     pub version: String,
     /// An SPDX expression.
     pub licence: String,
+}
+
+/// What the keys say at their defaults.
+impl Default for Surroundings {
+    fn default() -> Self {
+        let schema = Schema { device: "", keys: Vec::new(), check: |_, _| () };
+        Self::new(&Config::defaults(&schema, ""))
+    }
 }
 
 impl Surroundings {

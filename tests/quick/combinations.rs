@@ -244,11 +244,11 @@ fn quadratic() -> Device {
     *registry.device("quadratic").expect("quadratic")
 }
 
-/// A command line of the wrong device, which the tests below start.
-#[test]
-#[ignore = "the program of other tests"]
-fn program() {
-    let arguments = env::var("GLINT_ARGUMENTS").expect("arguments");
+/// Says to the test below that it is the command line of the wrong device, which it starts.
+const ARGUMENTS: &str = "GLINT_ARGUMENTS";
+
+/// The command line of the wrong device.
+fn program(arguments: &str) {
     let arguments = arguments.split(' ').map(OsString::from);
     let registry = Registry::empty().with(wrong_device());
     let code = glint::cli::run_from(&registry, arguments);
@@ -259,8 +259,9 @@ fn program() {
 fn wrong(directory: &Path, arguments: &str) -> String {
     let program = env::current_exe().expect("this program");
     let mut command = Command::new(program);
-    command.args(["--exact", "combinations::program", "--ignored", "--nocapture"]);
-    command.env("GLINT_ARGUMENTS", arguments);
+    let test = "combinations::a_difference_leaves_all_that_it_takes_to_have_it_again";
+    command.args(["--exact", test, "--nocapture"]);
+    command.env(ARGUMENTS, arguments);
     let Output { status, stdout, stderr } =
         command.current_dir(directory).output().expect("it runs");
     let text = String::from_utf8(stdout).expect("UTF-8");
@@ -278,6 +279,9 @@ fn json(text: &str) -> Value {
 
 #[test]
 fn a_difference_leaves_all_that_it_takes_to_have_it_again() {
+    if let Ok(arguments) = env::var(ARGUMENTS) {
+        return program(&arguments);
+    }
     let place = tempfile::tempdir().expect("a directory");
     let narrow = fs::read(NARROW).expect("a configuration");
     fs::write(place.path().join("core.toml"), narrow).expect("written");

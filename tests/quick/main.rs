@@ -27,6 +27,7 @@ mod readme;
 mod rooms;
 mod rough_microprogram;
 mod shared_products;
+mod software;
 mod spread;
 mod streams;
 mod tune;

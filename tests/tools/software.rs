@@ -288,10 +288,10 @@ fn draw(contract: &dyn Contract, random: &mut ChaCha8Rng) -> Vec<i64> {
         low + (random.next_u64() % (high - low + 1) as u64) as i64
     };
     let mut operands: Vec<i64> = contract.operands().iter().map(&mut any).collect();
-    let mut core = || (f64::from(random.next_u32()) + 0.5) / f64::from(u32::MAX);
-    if core() < 0.5 {
-        let n = libm::floor(libm::pow(1000.0, core()));
-        let f = core();
+    let mut uniform = || (f64::from(random.next_u32()) + 0.5) / f64::from(u32::MAX);
+    if uniform() < 0.5 {
+        let n = libm::floor(libm::pow(1000.0, uniform()));
+        let f = uniform();
         let gamma = libm::acos(libm::pow(f, 1.0 / n));
         if let Some(control) = contract.highlight().and_then(|it| it.at(gamma, n)) {
             for (at, raw) in control.into_iter().enumerate() {

@@ -159,8 +159,8 @@ impl<'d> Walk<'d> {
                 ),
             }
             let next = self.graph.after(design, &state, &clock)?;
-            let address = design.control.address.index();
-            if self.graph.constant_of(next.registers[address]).is_some() {
+            let following = next.registers[design.control.address.index()];
+            if self.graph.constant_of(following).is_some() {
                 let run = next.registers[design.control.run.index()];
                 ensure!(self.graph.constant_of(run) == Some(1), "it ends without a result");
                 state = next;
