@@ -1,8 +1,8 @@
 // ${ name }$_axil_formal: what is proved of ${ name }$_axil
 //
-// For formal tools alone: every input is free, the master's too. In place of the registers stands
-// anything that answers requests at any time. To prove it, from a directory that holds the files of
-// both folders:
+// For formal tools alone. The master keeps to AXI, and does what it likes beside that; in place of
+// the registers stands anything that answers requests at any time. To prove it, from a directory
+// that holds the files of both folders:
 //   $ yosys -q ${ name }$_axil_formal.ys
 //   $ yosys-smtbmc -s z3 --unroll -t 3 ${ name }$_axil_formal.smt2
 //   $ yosys-smtbmc -s z3 --unroll -i -t 2 ${ name }$_axil_formal.smt2
@@ -64,15 +64,9 @@ module ${ name }$_axil_formal (
     );
 
     // What the proof sees of the inside.
-    (* hierconn *) wire \dut.write_address_waits ;
-    (* hierconn *) wire \dut.write_data_waits ;
-    (* hierconn *) wire \dut.read_waits ;
+    (* hierconn *) wire \dut.write_taken ;
     (* hierconn *) wire \dut.write ;
     (* hierconn *) wire \dut.read ;
-    (* hierconn *) wire [${ address_high }$:2] \dut.write_at ;
-    (* hierconn *) wire [31:0] \dut.write_data ;
-    (* hierconn *) wire [3:0] \dut.write_bytes ;
-    (* hierconn *) wire [${ address_high }$:2] \dut.read_at ;
     (* hierconn *) wire \dut.write_answer ;
     (* hierconn *) wire \dut.write_error ;
     (* hierconn *) wire \dut.read_answer ;
@@ -82,12 +76,28 @@ module ${ name }$_axil_formal (
     // The reset comes first; the state before it is arbitrary.
     always @* if ($initstate) assume (!aresetn);
 
+    // What the master offers stays, as it is, until it is taken.
+    always @(posedge aclk) if (!$initstate && $past(aresetn)) begin
+        if ($past(s_axil_awvalid && !s_axil_awready)) begin
+            assume (s_axil_awvalid && $stable(s_axil_awaddr));
+        end
+        if ($past(s_axil_wvalid && !s_axil_wready)) begin
+            assume (s_axil_wvalid && $stable({s_axil_wdata, s_axil_wstrb}));
+        end
+        if ($past(s_axil_arvalid && !s_axil_arready)) begin
+            assume (s_axil_arvalid && $stable(s_axil_araddr));
+        end
+    end
+
     // Requests taken and answers given, modulo more than there can be under way.
     reg [1:0] addresses;
     reg [1:0] words;
     reg [1:0] answers;
     reg [1:0] reads;
     reg [1:0] results;
+    // What the registers answered last.
+    reg write_failed;
+    reg read_failed;
     always @(posedge aclk) begin
         if (!aresetn) begin
             addresses <= 0;
@@ -102,23 +112,35 @@ module ${ name }$_axil_formal (
             reads <= reads + (s_axil_arvalid && s_axil_arready);
             results <= results + (s_axil_rvalid && s_axil_rready);
         end
+        if (dut.write_answer) write_failed <= dut.write_error;
+        if (dut.read_answer) read_failed <= dut.read_error;
     end
 
     always @* if (!$initstate) begin
-        // Every request is answered once: what has no answer yet is waiting, or offered.
-        assert (addresses == answers + s_axil_bvalid + dut.write_address_waits);
-        assert (words == answers + s_axil_bvalid + dut.write_data_waits);
-        assert (reads == results + s_axil_rvalid + dut.read_waits);
-        // One of each kind waits at most.
-        assert (!(s_axil_awready && dut.write_address_waits));
-        assert (!(s_axil_wready && dut.write_data_waits));
-        assert (!(s_axil_arready && dut.read_waits));
-        // A request reaches the registers as soon as there is room for its answer.
-        if (dut.write_address_waits && dut.write_data_waits && !s_axil_bvalid) assert (dut.write);
-        if (dut.read_waits && !s_axil_rvalid) assert (dut.read);
+        // Every request is answered once: what was taken and has no answer yet has one offered.
+        assert (addresses == answers + s_axil_bvalid);
+        assert (words == addresses);
+        assert (reads == results + s_axil_rvalid);
+        // An address is taken with its data, and when there is room for the answer.
+        assert (s_axil_awready == s_axil_wready);
+        if (s_axil_awready) assert (!s_axil_bvalid);
+        if (s_axil_arready) assert (!s_axil_rvalid);
+        // A request reaches the registers as soon as there is room, and once.
+        assert (dut.write == (s_axil_awvalid && s_axil_wvalid && !s_axil_awready
+                && (s_axil_bready || !s_axil_bvalid)));
+        assert (dut.read == (s_axil_arvalid && !s_axil_arready
+                && (s_axil_rready || !s_axil_rvalid)));
+        // The answer is that of the registers.
+        if (dut.write_taken || s_axil_bvalid) assert (s_axil_bresp == {write_failed, 1'b0});
+        if (s_axil_arready || s_axil_rvalid) assert (s_axil_rresp == {read_failed, 1'b0});
     end
 
     always @(posedge aclk) if (!$initstate && $past(!$initstate)) begin
+        // A request is taken in the clock after the registers carried it out.
+        assert (s_axil_awready == $past(aresetn && dut.write_answer));
+        assert (s_axil_arready == $past(aresetn && dut.read_answer));
+        if (s_axil_awready && aresetn) assert (s_axil_awvalid && s_axil_wvalid);
+        if (s_axil_arready && aresetn) assert (s_axil_arvalid);
         if ($past(aresetn)) begin
             // An offer stays, as it is, until it is taken.
             if ($past(s_axil_bvalid && !s_axil_bready)) begin
@@ -128,29 +150,10 @@ module ${ name }$_axil_formal (
                 assert (s_axil_rvalid && s_axil_rresp == $past(s_axil_rresp));
                 assert (s_axil_rdata == $past(s_axil_rdata));
             end
-            // An answer of the registers is offered in the next clock, as it is.
-            if ($past(dut.write_answer)) begin
-                assert (s_axil_bvalid && s_axil_bresp == {$past(dut.write_error), 1'b0});
-            end
-            if ($past(dut.read_answer)) begin
-                assert (s_axil_rvalid && s_axil_rresp == {$past(dut.read_error), 1'b0});
-                assert (s_axil_rdata == $past(dut.read_data));
-            end
-            // A request reaches them as it was made, and stays.
-            if ($past(s_axil_awvalid && s_axil_awready)) begin
-                assert (dut.write_at == $past(s_axil_awaddr[${ address_high }$:2]));
-            end else begin
-                assert ($stable(dut.write_at));
-            end
-            if ($past(s_axil_wvalid && s_axil_wready)) begin
-                assert ({dut.write_bytes, dut.write_data} == $past({s_axil_wstrb, s_axil_wdata}));
-            end else begin
-                assert ($stable({dut.write_bytes, dut.write_data}));
-            end
-            if ($past(s_axil_arvalid && s_axil_arready)) begin
-                assert (dut.read_at == $past(s_axil_araddr[${ address_high }$:2]));
-            end else begin
-                assert ($stable(dut.read_at));
+            // An answer is offered in the clock after the request was taken.
+            if ($past(s_axil_awready)) assert (s_axil_bvalid);
+            if ($past(s_axil_arready)) begin
+                assert (s_axil_rvalid && s_axil_rdata == $past(dut.read_data));
             end
         end else begin
             assert (!s_axil_bvalid && !s_axil_rvalid);

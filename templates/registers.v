@@ -17,7 +17,7 @@ ${ line }$
 module ${ name }$_registers (
     input  wire        clk,
     input  wire        rst_n,         // active low, synchronous
-    // A request is held until it is answered, in the same clock.
+    // A request is held until it is answered, in the clock in which it is carried out.
     input  wire        write,
     input  wire [${ address_high }$:2]  write_at,      // in bytes
     input  wire [31:0] write_data,
@@ -27,8 +27,8 @@ module ${ name }$_registers (
     input  wire        read,
     input  wire [${ address_high }$:2]  read_at,
     output wire        read_answer,
-    output reg         read_error,
-    output reg  [31:0] read_data,
+    output wire        read_error,
+    output wire [31:0] read_data,     // in the clock after the answer
     output wire        irq
 );
 
@@ -54,14 +54,13 @@ module ${ name }$_registers (
 <%- endfor %>
     );
     wire under_way = start | busy;
-
-    wire [${ word_high }$:0] write_word = write_at;
-    wire writable = (write_word >= ${ control }$) & (write_word <= ${ last_operand }$);
-    wire write_start = writable & (write_word == ${ control }$) & write_bytes[0] & write_data[0];
-    wire starts = write_start | (writable & start_on_write & (write_word == start_word));
+<%- for line in writable %>
+${ line }$
+<%- endfor %>
+    wire write_start = (write_at == ${ control }$) & write_bytes[0] & write_data[0];
+    wire starts = write_start | (writable & start_on_write & (write_at == start_word));
     assign write_answer = write & ~(starts & under_way);
     assign write_error = ~writable;
-    wire take = write_answer & writable;
 
     always @(posedge clk) begin
         if (!rst_n) begin
@@ -72,17 +71,17 @@ module ${ name }$_registers (
             interrupt_pending <= 1'b0;
             finished <= 1'b0;
         end else begin
-            start <= take & starts;
-            if (take & (write_word == ${ control }$)) begin
+            start <= write_answer & starts;
+            if (write_answer & (write_at == ${ control }$)) begin
                 if (write_bytes[0]) start_on_write <= write_data[1];
                 if (write_bytes[1]) start_word <= write_data[${ word_high + 8 }$:8];
             end
-            if (take & (write_word == ${ enable }$) & write_bytes[0]) begin
+            if (write_answer & (write_at == ${ enable }$) & write_bytes[0]) begin
                 interrupt_enable <= write_data[0];
             end
             if (done) begin
                 interrupt_pending <= 1'b1;
-            end else if (take & (write_word == ${ pending }$) & write_bytes[0] & write_data[0]) begin
+            end else if (write_answer & (write_at == ${ pending }$) & write_bytes[0] & write_data[0]) begin
                 interrupt_pending <= 1'b0;
             end
             finished <= done | (finished & ~start);
@@ -95,10 +94,10 @@ module ${ name }$_registers (
 <%- for operand in operands %>
             operand_${ operand.name }$ <= ${ operand.zero }$;
 <%- endfor %>
-        end else if (take) begin
+        end else if (write_answer) begin
 <%- for operand in operands %>
 <%- for lane in operand.lanes %>
-            if (write_word == ${ lane.word }$ & write_bytes[${ lane.byte }$]) begin
+            if (write_at == ${ lane.word }$ & write_bytes[${ lane.byte }$]) begin
                 operand_${ operand.name }$${ lane.bits }$ <= write_data${ lane.data }$;
             end
 <%- endfor %>
@@ -106,25 +105,37 @@ module ${ name }$_registers (
         end
     end
 
-    wire [${ word_high }$:0] read_word = read_at;
-    always @* begin
-        read_error = 1'b0;
-        case (read_word)
+    // The register that is read, from the clock of the request: a bit each but for the constants.
+    reg  constant;
+    reg  [1:0] constant_at;
+    reg  [${ last_number }$:4] reads;
+    always @(posedge clk) begin
+        constant <= read_at[${ address_high }$:4] == ${ no_constant }$;
+        constant_at <= read_at[3:2];
 <%- for word in words %>
-            ${ word.index }$: read_data = ${ word.read }$;
+        reads[${ word.number }$] <= read_at == ${ word.index }$;
 <%- endfor %>
-            default: begin
-                read_data = 32'd0;
-                read_error = 1'b1;
-            end
+    end
+    reg  [31:0] constants;
+    always @* begin
+        case (constant_at)
+<%- for value in constants %>
+            2'd${ loop.index0 }$: constants = ${ value }$;
+<%- endfor %>
         endcase
     end
-<%- match last_result %>
-<%- when Some(last) %>
-    wire read_result = (read_word >= ${ first_result }$) & (read_word <= ${ last }$);
-<%- when None %>
-    wire read_result = read_word >= ${ first_result }$;
-<%- endmatch %>
+    assign read_data = ({32{constant}} & constants)
+<%- for word in words %>
+            | ({32{reads[${ word.number }$]}} & ${ word.read }$)<% if loop.last %>;<% endif %>
+<%- endfor %>
+
+<%- for line in readable %>
+${ line }$
+<%- endfor %>
+    assign read_error = ~readable;
+<%- for line in read_result %>
+${ line }$
+<%- endfor %>
     assign read_answer = read & ~(read_result & under_way);
 
     // Unused bits.

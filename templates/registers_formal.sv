@@ -99,14 +99,9 @@ module ${ name }$_registers_formal (
         assert (write_error == !write_mapped);
         assert (read_error == (read_word >= WORDS));
         assert (irq == (dut.interrupt_enable && dut.interrupt_pending));
-        // What was written is what is read, and what the core computes with.
+        // What was written is what the core computes with.
 <%- for operand in operands %>
         assert (dut.core.${ operand.name }$ == dut.operand_${ operand.name }$);
-<%- endfor %>
-<%- for word in operand_words %>
-        if (read_word == ${ word.number }$) begin
-            assert (read_data[${ word.width - 1 }$:0] == dut.operand_${ word.name }$${ word.bits }$);
-        end
 <%- endfor %>
     end
 
@@ -120,6 +115,16 @@ module ${ name }$_registers_formal (
     wire took_control = took && took_word == ${ control_number }$;
     wire took_enable = took && took_word == ${ control_number + 1 }$;
     wire took_pending = took && took_word == ${ control_number + 2 }$;
+    always @(posedge clk) if (!$initstate && $past(!$initstate)) begin
+        // A register is read in the clock after its request; operands are as they were written.
+        if ($past(read_error)) assert (read_data == 0);
+        if ($past(read_answer && is_result)) assert (!dut.core.run);
+<%- for word in operand_words %>
+        if ($past(read_word) == ${ word.number }$) begin
+            assert (read_data[${ word.width - 1 }$:0] == dut.operand_${ word.name }$${ word.bits }$);
+        end
+<%- endfor %>
+    end
     always @(posedge clk) if (!$initstate && $past(!$initstate) && $past(rst_n)) begin
         // A computation starts once for each write that asks for it, and for nothing else.
         assert (dut.start == $past(write_answer && asks_start));

@@ -15,6 +15,9 @@ const WORD: u32 = 32;
 /// `GLNT`, in the first register.
 const ID: u32 = 0x474c_4e54;
 
+/// How many registers never change; they stand first.
+pub const CONSTANTS: u32 = 4;
+
 /// The first register that can be written; [`INTERRUPT_ENABLE`] and [`INTERRUPT_PENDING`] follow.
 pub const CONTROL: u32 = 5;
 

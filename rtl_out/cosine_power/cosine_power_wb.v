@@ -17,7 +17,7 @@ module cosine_power_wb (
     input  wire [5:0]  wb_adr_i,
     input  wire [31:0] wb_dat_i,
     input  wire [3:0]  wb_sel_i,
-    output reg  [31:0] wb_dat_o,
+    output wire [31:0] wb_dat_o,
     output reg         wb_ack_o,
     output reg         wb_err_o,
     output wire        irq
@@ -30,14 +30,12 @@ module cosine_power_wb (
     wire read = request & ~wb_we_i;
     wire read_answer;
     wire read_error;
-    wire [31:0] read_data;
 
     wire answer = write_answer | read_answer;
     wire error = write ? write_error : read_error;
     always @(posedge wb_clk_i) begin
         wb_ack_o <= ~wb_rst_i & answer & ~error;
         wb_err_o <= ~wb_rst_i & answer & error;
-        if (read_answer) wb_dat_o <= read_data;
     end
 
     cosine_power_registers registers (
@@ -53,7 +51,7 @@ module cosine_power_wb (
         .read_at(wb_adr_i[5:2]),
         .read_answer(read_answer),
         .read_error(read_error),
-        .read_data(read_data),
+        .read_data(wb_dat_o),
         .irq(irq)
     );
 

@@ -54,7 +54,7 @@
 module threshold_levels_registers (
     input  wire        clk,
     input  wire        rst_n,         // active low, synchronous
-    // A request is held until it is answered, in the same clock.
+    // A request is held until it is answered, in the clock in which it is carried out.
     input  wire        write,
     input  wire [5:2]  write_at,      // in bytes
     input  wire [31:0] write_data,
@@ -64,8 +64,8 @@ module threshold_levels_registers (
     input  wire        read,
     input  wire [5:2]  read_at,
     output wire        read_answer,
-    output reg         read_error,
-    output reg  [31:0] read_data,
+    output wire        read_error,
+    output wire [31:0] read_data,     // in the clock after the answer
     output wire        irq
 );
 
@@ -110,14 +110,12 @@ module threshold_levels_registers (
         .blue_out(core_blue_out)
     );
     wire under_way = start | busy;
-
-    wire [3:0] write_word = write_at;
-    wire writable = (write_word >= 4'd5) & (write_word <= 4'd12);
-    wire write_start = writable & (write_word == 4'd5) & write_bytes[0] & write_data[0];
-    wire starts = write_start | (writable & start_on_write & (write_word == start_word));
+    wire writable = (write_at == 4'd5) | (write_at[5:3] == 3'd3) | (write_at[5:4] == 2'd2) |
+            (write_at == 4'd12);
+    wire write_start = (write_at == 4'd5) & write_bytes[0] & write_data[0];
+    wire starts = write_start | (writable & start_on_write & (write_at == start_word));
     assign write_answer = write & ~(starts & under_way);
     assign write_error = ~writable;
-    wire take = write_answer & writable;
 
     always @(posedge clk) begin
         if (!rst_n) begin
@@ -128,17 +126,17 @@ module threshold_levels_registers (
             interrupt_pending <= 1'b0;
             finished <= 1'b0;
         end else begin
-            start <= take & starts;
-            if (take & (write_word == 4'd5)) begin
+            start <= write_answer & starts;
+            if (write_answer & (write_at == 4'd5)) begin
                 if (write_bytes[0]) start_on_write <= write_data[1];
                 if (write_bytes[1]) start_word <= write_data[11:8];
             end
-            if (take & (write_word == 4'd6) & write_bytes[0]) begin
+            if (write_answer & (write_at == 4'd6) & write_bytes[0]) begin
                 interrupt_enable <= write_data[0];
             end
             if (done) begin
                 interrupt_pending <= 1'b1;
-            end else if (take & (write_word == 4'd7) & write_bytes[0] & write_data[0]) begin
+            end else if (write_answer & (write_at == 4'd7) & write_bytes[0] & write_data[0]) begin
                 interrupt_pending <= 1'b0;
             end
             finished <= done | (finished & ~start);
@@ -153,59 +151,75 @@ module threshold_levels_registers (
             operand_red <= 8'd0;
             operand_green <= 8'd0;
             operand_blue <= 8'd0;
-        end else if (take) begin
-            if (write_word == 4'd8 & write_bytes[0]) begin
+        end else if (write_answer) begin
+            if (write_at == 4'd8 & write_bytes[0]) begin
                 operand_cos_gamma[7:0] <= write_data[7:0];
             end
-            if (write_word == 4'd8 & write_bytes[1]) begin
+            if (write_at == 4'd8 & write_bytes[1]) begin
                 operand_cos_gamma[15:8] <= write_data[15:8];
             end
-            if (write_word == 4'd8 & write_bytes[2]) begin
+            if (write_at == 4'd8 & write_bytes[2]) begin
                 operand_cos_gamma[20:16] <= write_data[20:16];
             end
-            if (write_word == 4'd9 & write_bytes[0]) begin
+            if (write_at == 4'd9 & write_bytes[0]) begin
                 operand_exponent[7:0] <= write_data[7:0];
             end
-            if (write_word == 4'd9 & write_bytes[1]) begin
+            if (write_at == 4'd9 & write_bytes[1]) begin
                 operand_exponent[9:8] <= write_data[9:8];
             end
-            if (write_word == 4'd10 & write_bytes[0]) begin
+            if (write_at == 4'd10 & write_bytes[0]) begin
                 operand_red <= write_data[7:0];
             end
-            if (write_word == 4'd11 & write_bytes[0]) begin
+            if (write_at == 4'd11 & write_bytes[0]) begin
                 operand_green <= write_data[7:0];
             end
-            if (write_word == 4'd12 & write_bytes[0]) begin
+            if (write_at == 4'd12 & write_bytes[0]) begin
                 operand_blue <= write_data[7:0];
             end
         end
     end
 
-    wire [3:0] read_word = read_at;
+    // The register that is read, from the clock of the request: a bit each but for the constants.
+    reg  constant;
+    reg  [1:0] constant_at;
+    reg  [13:4] reads;
+    always @(posedge clk) begin
+        constant <= read_at[5:4] == 2'd0;
+        constant_at <= read_at[3:2];
+        reads[4] <= read_at == 4'd4;
+        reads[5] <= read_at == 4'd5;
+        reads[6] <= read_at == 4'd6;
+        reads[7] <= read_at == 4'd7;
+        reads[8] <= read_at == 4'd8;
+        reads[9] <= read_at == 4'd9;
+        reads[10] <= read_at == 4'd10;
+        reads[11] <= read_at == 4'd11;
+        reads[12] <= read_at == 4'd12;
+        reads[13] <= read_at == 4'd13;
+    end
+    reg  [31:0] constants;
     always @* begin
-        read_error = 1'b0;
-        case (read_word)
-            4'd0: read_data = 32'h474c4e54;
-            4'd1: read_data = 32'h00000100;
-            4'd2: read_data = 32'h038823a5;
-            4'd3: read_data = 32'h00000305;
-            4'd4: read_data = {30'd0, finished, under_way};
-            4'd5: read_data = {20'd0, start_word, 6'd0, start_on_write, 1'b0};
-            4'd6: read_data = {31'd0, interrupt_enable};
-            4'd7: read_data = {31'd0, interrupt_pending};
-            4'd8: read_data = {11'd0, operand_cos_gamma};
-            4'd9: read_data = {22'd0, operand_exponent};
-            4'd10: read_data = {24'd0, operand_red};
-            4'd11: read_data = {24'd0, operand_green};
-            4'd12: read_data = {24'd0, operand_blue};
-            4'd13: read_data = {8'd0, core_blue_out, core_green_out, core_red_out};
-            default: begin
-                read_data = 32'd0;
-                read_error = 1'b1;
-            end
+        case (constant_at)
+            2'd0: constants = 32'h474c4e54;
+            2'd1: constants = 32'h00000100;
+            2'd2: constants = 32'h038823a5;
+            2'd3: constants = 32'h00000305;
         endcase
     end
-    wire read_result = (read_word >= 4'd13) & (read_word <= 4'd13);
+    assign read_data = ({32{constant}} & constants)
+            | ({32{reads[4]}} & {30'd0, finished, under_way})
+            | ({32{reads[5]}} & {20'd0, start_word, 6'd0, start_on_write, 1'b0})
+            | ({32{reads[6]}} & {31'd0, interrupt_enable})
+            | ({32{reads[7]}} & {31'd0, interrupt_pending})
+            | ({32{reads[8]}} & {11'd0, operand_cos_gamma})
+            | ({32{reads[9]}} & {22'd0, operand_exponent})
+            | ({32{reads[10]}} & {24'd0, operand_red})
+            | ({32{reads[11]}} & {24'd0, operand_green})
+            | ({32{reads[12]}} & {24'd0, operand_blue})
+            | ({32{reads[13]}} & {8'd0, core_blue_out, core_green_out, core_red_out});
+    wire readable = ~read_at[5] | (read_at[5:4] == 2'd2) | (read_at[5:3] == 3'd6);
+    assign read_error = ~readable;
+    wire read_result = (read_at == 4'd13);
     assign read_answer = read & ~(read_result & under_way);
 
     // Unused bits.

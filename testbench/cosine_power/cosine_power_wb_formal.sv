@@ -72,7 +72,7 @@ module cosine_power_wb_formal (
     (* hierconn *) wire \dut.write_error ;
     (* hierconn *) wire \dut.read_answer ;
     (* hierconn *) wire \dut.read_error ;
-    (* hierconn *) wire [31:0] \dut.read_data ;
+    (* hierconn *) wire [31:0] \dut.registers.read_data ;
 
     // The reset comes first; the state before it is arbitrary.
     always @* if ($initstate) assume (wb_rst_i);
@@ -83,6 +83,8 @@ module cosine_power_wb_formal (
         assert (!(wb_ack_o && wb_err_o));
         assert (dut.write == (wb_cyc_i && wb_stb_i && wb_we_i && !answered));
         assert (dut.read == (wb_cyc_i && wb_stb_i && !wb_we_i && !answered));
+        // The data are those of the registers, which show them in the clock after their answer.
+        assert (wb_dat_o == \dut.registers.read_data );
     end
     always @(posedge wb_clk_i) if (!$initstate && $past(!$initstate)) begin
         // An answer is given once, in the clock after that of the registers, and only to a request.
@@ -92,7 +94,6 @@ module cosine_power_wb_formal (
                 || dut.read_answer && dut.read_error)));
         if (answered) assert ($past(wb_cyc_i && wb_stb_i));
         if ($past(answered)) assert (!answered);
-        if ($past(dut.read_answer)) assert (wb_dat_o == $past(dut.read_data));
     end
 endmodule
 

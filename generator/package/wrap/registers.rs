@@ -8,8 +8,8 @@ use super::fields::{packed, results, sink};
 use super::{Wrappers, script};
 use crate::hdl::netlist::{Design, Role};
 use crate::hdl::verilog::rows::separated;
-use crate::hdl::verilog::text::{comment, literal, range};
-use crate::package::map::{self, Map, Part, Placed};
+use crate::hdl::verilog::text::{comment, literal, range, statement};
+use crate::package::map::{self, Map, Part, Placed, Register};
 use crate::package::surroundings::Bus;
 use crate::package::{EmitInputs, render};
 
@@ -34,6 +34,7 @@ struct Lane {
 
 /// A register as it is read.
 struct Word {
+    number: u64,
     index: String,
     read: String,
 }
@@ -56,16 +57,20 @@ struct Registers<'a> {
     address_high: u32,
     word_high: u32,
     operands: Vec<Operand>,
+    /// What is read of the first registers, and of all others.
+    constants: Vec<String>,
     words: Vec<Word>,
+    last_number: u32,
+    no_constant: String,
     result_wires: Vec<String>,
     connections: Vec<String>,
     control: String,
     enable: String,
     pending: String,
     last_operand: String,
-    first_result: String,
-    /// Unless no address lies behind it.
-    last_result: Option<String>,
+    writable: Vec<String>,
+    readable: Vec<String>,
+    read_result: Vec<String>,
     unused: Vec<String>,
 }
 
@@ -191,17 +196,49 @@ fn block<'a>(design: &'a Design, inputs: &'a EmitInputs, map: &Map) -> Registers
         address_high: map.address_bits() - 1,
         word_high: word_bits - 1,
         operands: operands(map),
+        constants: constants(map),
         words: words(design, map),
+        last_number: map.last(),
+        no_constant: literal(0, word_bits - 2),
         result_wires,
         connections: separated(connections.collect()),
         control: place(map::CONTROL),
         enable: place(map::INTERRUPT_ENABLE),
         pending: place(map::INTERRUPT_PENDING),
         last_operand: place(map.last_operand()),
-        first_result: place(map.last_operand() + 1),
-        last_result: (!(map.last() + 1).is_power_of_two()).then(|| place(map.last())),
+        writable: within("writable", "write_at", (map::CONTROL, map.last_operand()), word_bits),
+        readable: within("readable", "read_at", (0, map.last()), word_bits),
+        read_result: within(
+            "read_result",
+            "read_at",
+            (map.last_operand() + 1, map.last()),
+            word_bits,
+        ),
         unused: sink(&unused),
     }
+}
+
+/// Whether an address is one of these places: comparisons of its upper bits, which take no adder as
+/// comparisons of size do.
+fn within(wire: &str, at: &str, (first, last): (u32, u32), word_bits: u32) -> Vec<String> {
+    let mut terms = Vec::new();
+    let mut place = first;
+    while place <= last {
+        let fits = |bits: &u32| place % (1 << bits) == 0 && place + (1 << bits) - 1 <= last;
+        let bits = (0..=word_bits).rev().find(fits).unwrap_or(0);
+        terms.push(match word_bits - bits {
+            0 => "1'b1".to_owned(),
+            1 if place == 0 => format!("~{at}[{}]", word_bits + 1),
+            1 => format!("{at}[{}]", word_bits + 1),
+            upper if bits == 0 => format!("({at} == {})", literal(place.into(), upper)),
+            upper => {
+                let value = literal((place >> bits).into(), upper);
+                format!("({at}[{}:{}] == {value})", word_bits + 1, bits + 2)
+            }
+        });
+        place += 1 << bits;
+    }
+    statement(4, &format!("wire {wire} = {};", terms.join(" | ")))
 }
 
 /// A line a register, and one for each of its bits that have a name of their own.
@@ -263,23 +300,25 @@ fn select(width: u32, low: u32, high: u32) -> String {
     }
 }
 
-/// What is read of each register.
+/// What is read of the registers that never change.
+fn constants(map: &Map) -> Vec<String> {
+    let value = |register: &Register| {
+        let value = register.bits.iter().map(|bits| bits.reset << bits.low).sum::<u64>();
+        format!("32'h{value:08x}")
+    };
+    map.registers[..map::CONSTANTS as usize].iter().map(value).collect()
+}
+
+/// What is read of each other register.
 fn words(design: &Design, map: &Map) -> Vec<Word> {
     let word_bits = map.address_bits() - 2;
     let start_pad = literal(0, 24 - word_bits);
-    let mut reads: Vec<String> = map.registers[..4]
-        .iter()
-        .map(|register| {
-            let value = register.bits.iter().map(|bits| bits.reset << bits.low).sum::<u64>();
-            format!("32'h{value:08x}")
-        })
-        .collect();
-    reads.extend([
+    let mut reads = vec![
         "{30'd0, finished, under_way}".to_owned(),
         format!("{{{start_pad}, start_word, 6'd0, start_on_write, 1'b0}}"),
         "{31'd0, interrupt_enable}".to_owned(),
         "{31'd0, interrupt_pending}".to_owned(),
-    ]);
+    ];
     for operand in &map.operands {
         let parts = operand.parts.iter();
         reads.extend(
@@ -301,8 +340,9 @@ fn words(design: &Design, map: &Map) -> Vec<Word> {
         }
         reads.push(format!("{{{}}}", parts.join(", ")));
     }
-    let word = |(number, read): (u64, String)| Word { index: literal(number, word_bits), read };
-    (0..).zip(reads).map(word).collect()
+    let word =
+        |(number, read): (u64, String)| Word { number, index: literal(number, word_bits), read };
+    (u64::from(map::CONSTANTS)..).zip(reads).map(word).collect()
 }
 
 /// A part of a port in 32 bits, with copies of the sign.

@@ -194,24 +194,27 @@ fn registers_are_proved() {
 }
 
 /// What stands in the registers, and what stands there instead.
-const REGISTER_FAULTS: [(&str, &str); 13] = [
+const REGISTER_FAULTS: [(&str, &str); 15] = [
     // Starts without being asked, twice, or over a computation; waits for no reason.
-    ("start <= take & starts;", "start <= take & starts | start & ~busy;"),
-    ("start <= take & starts;", "start <= write & starts;"),
+    ("start <= write_answer & starts;", "start <= write_answer & starts | start & ~busy;"),
+    ("start <= write_answer & starts;", "start <= write & starts;"),
     ("write & ~(starts & under_way)", "write"),
     ("write & ~(starts & under_way)", "write & ~under_way"),
     ("wire under_way = start | busy;", "wire under_way = busy;"),
     // Results of a computation that is under way.
     ("read & ~(read_result & under_way)", "read"),
     // A map with other places, and one without errors.
-    ("read_error = 1'b1;", "read_error = 1'b0;"),
+    ("assign read_error = ~readable;", "assign read_error = 1'b0;"),
     ("assign write_error = ~writable;", "assign write_error = 1'b0;"),
-    ("(write_word <= 4'd12);", "(write_word <= 4'd13);"),
+    ("(write_at == 4'd12);", "(write_at == 4'd12) | (write_at == 4'd13);"),
+    // Another register than the one that was asked for.
+    ("reads[9] <= read_at == 4'd9;", "reads[9] <= read_at == 4'd8;"),
+    ("reads[9] <= read_at == 4'd9;", "reads[9] <= read & (read_at == 4'd9);"),
     // Bytes and registers that were not written.
-    ("if (write_word == 4'd9 & write_bytes[1])", "if (write_word == 4'd9)"),
-    ("if (write_word == 4'd9 & write_bytes[1])", "if (write_bytes[1])"),
+    ("if (write_at == 4'd9 & write_bytes[1])", "if (write_at == 4'd9)"),
+    ("if (write_at == 4'd9 & write_bytes[1])", "if (write_bytes[1])"),
     // An interrupt that gets lost, and one that stays.
-    ("if (done) begin", "if (done & ~take) begin"),
+    ("if (done) begin", "if (done & ~write_answer) begin"),
     (
         "write_bytes[0] & write_data[0]) begin\n                interrupt_pending",
         "1'b0) begin\n                interrupt_pending",
@@ -219,13 +222,15 @@ const REGISTER_FAULTS: [(&str, &str); 13] = [
 ];
 
 /// And on the buses.
-const BUS_FAULTS: [(&str, &str, &str); 9] = [
-    ("axil", "s_axil_awready <= ~next_write_address_waits;", "s_axil_awready <= 1'b1;"),
-    ("axil", "write_answer | (s_axil_bvalid & ~s_axil_bready)", "write_answer"),
-    ("axil", "write_answer | (s_axil_bvalid & ~s_axil_bready)", "write_answer | s_axil_bvalid"),
-    ("axil", "write_address_waits & write_data_waits & (", "write_address_waits & ("),
+const BUS_FAULTS: [(&str, &str, &str); 11] = [
+    ("axil", "assign s_axil_awready = write_taken;", "assign s_axil_awready = 1'b1;"),
+    ("axil", "write_taken | (s_axil_bvalid & ~s_axil_bready)", "write_taken"),
+    ("axil", "write_taken | (s_axil_bvalid & ~s_axil_bready)", "write_taken | s_axil_bvalid"),
+    ("axil", "s_axil_awvalid & s_axil_wvalid &", "s_axil_awvalid &"),
+    ("axil", "& ~write_taken", ""),
     ("axil", "& (s_axil_rready | ~s_axil_rvalid)", ""),
-    ("axil", "if (take_read) read_at", "if (s_axil_arvalid) read_at"),
+    ("axil", "if (s_axil_arready) s_axil_rdata", "if (read_answer) s_axil_rdata"),
+    ("axil", "if (write_answer) s_axil_bresp", "if (read_answer) s_axil_bresp"),
     ("wb", "& ~wb_ack_o & ~wb_err_o", ""),
     ("wb", "wire error = write ? write_error : read_error;", "wire error = write_error;"),
     ("wb", "wb_cyc_i & wb_stb_i &", "wb_stb_i &"),
