@@ -198,6 +198,11 @@ impl Core {
     /// # Errors
     /// Golden model and simulation do not agree, or the design cannot be written as Verilog.
     pub fn files(&self, config: &str, vectors: Vectors) -> Result<Vec<OutputFile>> {
+        let around = Surroundings::new(&self.config);
+        let sequential = match &self.design.pipeline {
+            Some(_) if around.software => Some(self.device.sequential(&self.config)?),
+            _ => None,
+        };
         let inputs = EmitInputs {
             config: config.to_owned(),
             configuration: self.digest(),
@@ -206,7 +211,8 @@ impl Core {
             accuracy: Some(Accuracy::new(self.contract.as_ref())),
             computations: trial::computations(&self.design, self.contract.as_ref())?,
             vectors: Some(vectors),
-            around: Surroundings::new(&self.config),
+            around,
+            sequential,
         };
         package::emit(&self.design, &inputs)
     }

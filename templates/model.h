@@ -17,6 +17,12 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+<%- if let Some((constant, clocks)) = latency %>
+
+/* Clocks from the one in which the pipeline takes a point to the one that shows its results, unless it is
+ * stalled. */
+#define ${ constant }$ ${ clocks }$
+<%- endif %>
 
 /* The operands; bits above the width of a port are ignored, as the core has none. */
 typedef struct {

@@ -80,8 +80,7 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
             "package.software",
             false,
             "Write software/<name>/: a bit-accurate model of the core in C.",
-        )
-        .only_when("architecture", "sequential"),
+        ),
         Key::choice(
             "package.memories",
             "files",

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use anyhow::{Result, bail, ensure};
+use anyhow::{Result, bail};
 
-use super::EmitInputs;
+use super::{EmitInputs, Unfit};
 use crate::base::fixed::Format;
 use crate::hdl::netlist::{Design, Port, Role};
 use crate::hdl::verilog::text::ascii;
@@ -124,17 +124,20 @@ impl Map {
     /// A core that is no single computation of operands to results, or names that collide in the map.
     pub fn new(design: &Design, inputs: &EmitInputs) -> Result<Self> {
         let name = design.name.as_str();
-        ensure!(
-            design.pipeline.is_none(),
-            "`{name}` is a pipeline, for which a bus is too slow; remove interface.registers, or set \
-             interface.stream = true or architecture = \"sequential\""
-        );
+        if design.pipeline.is_some() {
+            bail!(unfit(
+                format!("`{name}` is a pipeline, for which a bus is too slow"),
+                "remove it, or set interface.stream = true or architecture = \"sequential\"",
+            ));
+        }
         let length = inputs.accuracy.as_ref().and_then(|accuracy| accuracy.length.as_ref());
         if let Some(length) = length {
-            bail!(
-                "`{name}` shows as many results as `{length}` says, which no register can hold; remove \
-                 interface.registers, or set interface.stream = true"
-            );
+            bail!(unfit(
+                format!(
+                    "`{name}` shows as many results as `{length}` says, which no register can hold"
+                ),
+                "remove it, or set interface.stream = true in its place",
+            ));
         }
         design.handshake()?;
         let mut place = FIRST_OPERAND;
@@ -147,10 +150,10 @@ impl Map {
         }
         let last_operand = place - 1;
         let results = results(design, &mut place);
-        ensure!(
-            !operands.is_empty() && !results.is_empty(),
-            "interface.registers needs a core with operands and results; `{name}` has none"
-        );
+        if operands.is_empty() || results.is_empty() {
+            let what = if operands.is_empty() { "operand" } else { "result" };
+            bail!(unfit(format!("`{name}` has no {what} to put into a register"), "remove it"));
+        }
         let mut registers =
             fixed(inputs, (operands.len(), results.len()), (last_operand, place - 1));
         for operand in &operands {
@@ -181,15 +184,19 @@ impl Map {
     fn check(&self, core: &str) -> Result<()> {
         let mut names = BTreeSet::new();
         for register in &self.registers {
-            ensure!(
-                names.insert(&register.name),
-                "two registers of `{core}` are named `{}`; give the operand or the result of that name another \
-                 one in the description, or remove interface.registers",
-                register.name
-            );
+            if !names.insert(&register.name) {
+                bail!(unfit(
+                    format!("two registers of `{core}` are named `{}`", register.name),
+                    "remove it, or give the operand or the result of that name another one in the description",
+                ));
+            }
         }
         Ok(())
     }
+}
+
+fn unfit(message: String, remedy: &str) -> Unfit {
+    Unfit::new("interface.registers", message, remedy)
 }
 
 fn last_place(ports: &[Placed]) -> u32 {

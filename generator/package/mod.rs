@@ -22,6 +22,7 @@ pub(crate) mod seal;
 mod software;
 mod surroundings;
 mod tops;
+mod unfit;
 mod vendor;
 mod window;
 mod wrap;
@@ -45,6 +46,7 @@ pub use instance::instance;
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE};
 pub use seal::{Seal, is_sealed, sealed, sealed_json};
 pub use surroundings::Surroundings;
+pub use unfit::Unfit;
 pub use window::{WINDOW_FILE, window};
 
 /// The bench that computes a list of points, each in less than `limit` clocks: of a pipeline, or of a design with a
@@ -104,6 +106,8 @@ pub struct EmitInputs {
     pub vectors: Option<Vectors>,
     /// What is put around the core.
     pub around: Surroundings,
+    /// Of a pipeline, the design with the microprogram that it computes the same as: the model in C is made of it.
+    pub sequential: Option<Design>,
 }
 
 impl EmitInputs {
@@ -170,7 +174,10 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     let vendor::Vendor { constraints, scripts } =
         vendor::files(design, inputs, &tops, map.map(|(_, map)| map), &memory_names)?;
     let mut software = match inputs.around.software {
-        true => software::files(design, inputs)?,
+        true => {
+            let latency = design.pipeline.as_ref().map(|pipeline| pipeline.stages.len());
+            software::files(inputs.sequential.as_ref().unwrap_or(design), inputs, latency)?
+        }
         false => Vec::new(),
     };
     if let Some((bus, map)) = map {

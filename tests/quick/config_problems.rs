@@ -88,13 +88,6 @@ fn keys_that_every_device_shares_are_read_as_its_own() {
              | give true or false (default false)",
         ]
     );
-    assert_eq!(
-        of_lamp("architecture = \"pipelined\"\n[package]\nsoftware = true\n"),
-        [
-            "4:12 package.software | `package.software` has no effect with architecture = \"pipelined\" \
-          | remove it, or set architecture = \"sequential\""
-        ]
-    );
 }
 
 #[test]

@@ -99,7 +99,7 @@ registers = \"none\"
 
 [package]
 # Write software/<name>/: a bit-accurate model of the core in C.
-# True or false, default false; only with architecture = \"sequential\".
+# True or false, default false.
 software = false
 
 # Whether ROM contents are .mem files, or stand in the Verilog, for flows that do not find

@@ -24,6 +24,7 @@ mod pages;
 mod pipelines;
 mod proofs;
 mod readme;
+mod registers;
 mod rooms;
 mod rough_microprogram;
 mod shared_products;

@@ -1,28 +1,45 @@
-//! The model in C is written for every core with a microprogram; `tests/tools` compiles and runs some.
+//! The model in C is written for every core, pipelines among them; `tests/tools` compiles and runs some.
 
 use std::fs;
 
 use rayon::prelude::*;
+use serde_json::Value;
 
 use crate::common::cores::{Emitted, configuration_with};
 
 #[test]
-fn every_microprogram_becomes_a_model_in_c() {
+fn every_core_becomes_a_model_in_c() {
     let mut paths = Vec::new();
     for directory in ["configs", "configs/studies", "configs/reduced"] {
         for entry in fs::read_dir(directory).expect("a directory") {
             let path = entry.expect("an entry").path();
-            let text = fs::read_to_string(&path).unwrap_or_default();
-            if path.extension().is_some_and(|it| it == "toml") && !text.contains("\"pipelined\"") {
+            if path.extension().is_some_and(|it| it == "toml") {
                 paths.push(path.display().to_string());
             }
         }
     }
-    assert!(paths.len() >= 30, "{paths:?}");
+    assert!(paths.len() >= 38, "{paths:?}");
     paths.into_par_iter().for_each(|path| {
         let core = configuration_with(&path, "\n[package]\nsoftware = true\n");
-        let model = format!("software/{0}/{0}_model.c", core.config.name);
-        let files = Emitted::new(&core, 1, 1).files;
-        assert!(files.iter().any(|file| file.path.ends_with(&model)), "{path}: {model}");
+        let (name, files) = (&core.config.name, Emitted::new(&core, 1, 1).files);
+        let text = |path: &str| {
+            let file = files.iter().find(|file| file.path == path);
+            file.unwrap_or_else(|| panic!("{path}")).contents.as_str()
+        };
+        text(&format!("software/{name}/{name}_model.c"));
+        let header = text(&format!("software/{name}/{name}_model.h"));
+        let manifest = text(&format!("rtl_out/{name}/{name}.json"));
+        let manifest: Value = serde_json::from_str(manifest).expect("JSON");
+        let listed = manifest["files"]["software"].to_string();
+        for file in ["model.h", "model.c", "model.py"] {
+            assert!(listed.contains(&format!("{name}_{file}")), "{listed}");
+        }
+        let stated = header.lines().find_map(|line| line.split_once("_LATENCY "));
+        let latency = &manifest["pipeline"]["latency"];
+        assert_eq!(
+            stated.map(|(_, clocks)| clocks.to_owned()),
+            latency.as_u64().map(|clocks| clocks.to_string()),
+            "{name}"
+        );
     });
 }

@@ -26,6 +26,18 @@ const SAMPLE: usize = 2;
 
 const SOFTWARE: &str = "\n[package]\nsoftware = true\n";
 
+/// Those that are pipelines, too.
+const PIPELINES: [&str; 8] = [
+    "blinn_pipelined",
+    "cosine_power_pipelined",
+    "gauss_pipelined",
+    "lyon_pipelined",
+    "quadratic_pipelined",
+    "rough_pipelined",
+    "schlick_pipelined",
+    "threshold_pipelined",
+];
+
 const DEFAULTS: [&str; 10] = [
     "blinn",
     "cosine_power",
@@ -53,7 +65,9 @@ const FLAGS: [&str; 8] = [
 
 #[test]
 fn the_model_is_the_golden_model_at_random_points() {
-    sampled("models in C", DEFAULTS, SAMPLE).into_par_iter().for_each(|name| {
+    let mut names = sampled("models in C", DEFAULTS, SAMPLE);
+    names.extend(sampled("models of pipelines in C", PIPELINES, 1));
+    names.into_par_iter().for_each(|name| {
         let model = Model::new(&format!("configs/{name}.toml"));
         let mut random = ChaCha8Rng::seed_from_u64(1);
         let contract = model.core.contract.as_ref();

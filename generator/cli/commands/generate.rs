@@ -77,7 +77,7 @@ pub fn all_files(output: Output, loaded: &[Loaded]) -> Result<Vec<Vec<OutputFile
 fn files(one: &Loaded) -> Result<Vec<OutputFile>> {
     let vectors = one.core.shipped_vectors();
     let vectors = vectors.with_context(|| format!("`{}`", one.path))?;
-    one.core.files(&one.path, vectors).with_context(|| format!("`{}`", one.path))
+    one.files(vectors)
 }
 
 /// Writes the files of a configuration, and the driver that its bench in Python shares with others.

@@ -44,9 +44,10 @@ pub use verify::{VerifyRequest, verify};
 use super::failure::{self, Several, Usage};
 use crate::base::diagnostic::Diagnostics;
 use crate::base::input;
-use crate::config;
+use crate::config::{self, Problems};
 use crate::core::Core;
 use crate::golden::Bound;
+use crate::package::{OutputFile, Unfit, Vectors};
 use crate::registry::Registry;
 
 /// Where configurations are when none are named.
@@ -57,6 +58,8 @@ struct Loaded {
     /// As the command line names it, with `/`.
     path: String,
     core: Core,
+    /// No problems, but the places of the keys in the file.
+    places: Problems,
 }
 
 /// The configurations named, or all in `configs/`, sorted.
@@ -127,13 +130,14 @@ fn load_sequential(registry: &Registry, named: &[PathBuf], command: &str) -> Res
 }
 
 fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Result<Loaded> {
-    let (config, mut problems) = config::read_located(path, schemas)?;
+    let (config, places) = config::read_located(path, schemas)?;
     let device = registry
         .device(&config.device)
         .with_context(|| format!("no device `{}`", config.device))?;
     let name = path.display().to_string().replace('\\', "/");
     let core = Core::new(*device, config).map_err(|error| {
         // What the configuration asks for and the description cannot give is a fault of the configuration.
+        let mut problems = places.clone();
         let faults = error.downcast_ref::<Diagnostics>().map_or(&[][..], |faults| &faults.0);
         for fault in faults {
             if let Some((key, remedy)) = &fault.key {
@@ -145,7 +149,7 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
             false => problems.into(),
         }
     })?;
-    Ok(Loaded { path: name, core })
+    Ok(Loaded { path: name, core, places })
 }
 
 /// The verdict on a configuration whose outputs are right, within a bound that keeps the accuracy contract.
@@ -167,6 +171,18 @@ fn verdict(bound: &Bound, faults: &[String]) -> &'static str {
 }
 
 impl Loaded {
+    /// Every file of the configuration. A key that asks for what the core cannot have is shown where the file gives it.
+    fn files(&self, vectors: Vectors) -> Result<Vec<OutputFile>> {
+        self.core.files(&self.path, vectors).map_err(|error| match error.downcast_ref::<Unfit>() {
+            Some(unfit) => {
+                let mut problems = self.places.clone();
+                problems.push(unfit.key, &unfit.message, &unfit.remedy);
+                problems.into()
+            }
+            None => error.context(format!("`{}`", self.path)),
+        })
+    }
+
     /// Warns when the configuration misses the accuracy contract; refuses it when it is strict.
     fn contract(&self) -> Result<()> {
         let bound = self.core.contract.bound();

@@ -1,13 +1,13 @@
 //! `<name>_litex.py`: the core for LiteX, with CSRs, between streams, or with its own registers on a bus.
 
-use anyhow::{Result, ensure};
+use anyhow::{Result, bail};
 use askama::Template;
 
 use crate::hdl::netlist::{Design, Role};
 use crate::hdl::verilog::text::ascii;
 use crate::package::surroundings::Bus;
 use crate::package::tops::{Face, Top, TopPort};
-use crate::package::{EmitInputs, render};
+use crate::package::{EmitInputs, Unfit, render};
 
 #[derive(Template)]
 #[template(path = "litex.py")]
@@ -60,11 +60,16 @@ pub fn file(design: &Design, inputs: &EmitInputs, tops: &[Top]) -> Result<(Strin
         true => None,
         false => find(|face| face == Face::Core).map(|top| driven(design, top)),
     };
-    ensure!(
-        core.is_some() || stream.is_some(),
-        "package.litex needs interface.stream = true for `{name}`, which computes more than a point at a \
-         time; set it, or remove package.litex"
-    );
+    if core.is_none() && stream.is_none() {
+        let what = if is_line { "walks lines" } else { "is a pipeline" };
+        bail!(Unfit::new(
+            "package.litex",
+            format!(
+                "`{name}` {what}, which registers of LiteX cannot drive: its module needs a stream"
+            ),
+            "set interface.stream = true, or remove it",
+        ));
+    }
     let registers = tops.iter().find_map(|top| match top.face {
         Face::Registers(bus) => Some((top, bus)),
         Face::Core | Face::Stream => None,

@@ -11,7 +11,7 @@ use super::unroll::{Stepped, stepped, straight};
 use crate::base::fixed::{Format, mask};
 use crate::hdl::netlist::{Design, NetId, Port, RegId, Role, RomId};
 use crate::hdl::verilog::text::{Names, ascii, constant_name, statement};
-use crate::package::{EmitInputs, WorkedExample, render};
+use crate::package::{EmitInputs, Unfit, WorkedExample, render};
 
 /// An operand or a result in C.
 struct Field {
@@ -32,6 +32,8 @@ struct Header<'a> {
     title: String,
     formula: String,
     regenerate: &'a str,
+    /// Of a pipeline, the upper-case name of its latency, and the clocks.
+    latency: Option<(String, usize)>,
     operands: Vec<Field>,
     results: Vec<Field>,
     line: bool,
@@ -137,12 +139,17 @@ impl Field {
     }
 }
 
-/// The files of `software/<name>/`, pairs of a plain name and contents.
+/// The files of `software/<name>/`, pairs of a plain name and contents. The design has the microprogram; `latency` is that
+/// of the pipeline in its place.
 ///
 /// # Errors
 /// A core of which no function can be made: one that waits for `start` in the middle, has a loop without a bound, or
 /// whose results depend on what it did before.
-pub fn files(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>> {
+pub fn files(
+    design: &Design,
+    inputs: &EmitInputs,
+    latency: Option<usize>,
+) -> Result<Vec<(String, String)>> {
     let name = design.name.as_str();
     let line = inputs.accuracy.as_ref().is_some_and(|accuracy| accuracy.length.is_some());
     let about = &design.about;
@@ -159,7 +166,10 @@ pub fn files(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String
         true => of_line(design, &names),
         false => of_point(design, &names),
     }
-    .with_context(|| format!("`{name}` has no model in C (package.software); leave the key out"))?;
+    .map_err(|error| {
+        let message = format!("`{name}` has no model in C: {error:#}");
+        Unfit::new("package.software", message, "remove it")
+    })?;
     let regenerate = inputs.config.as_str();
     let header = Header {
         name,
@@ -167,6 +177,7 @@ pub fn files(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String
         title: ascii(&about.title).replace("*/", "* /"),
         formula: ascii(&about.formula).replace("*/", "* /"),
         regenerate,
+        latency: latency.map(|clocks| (format!("{}_LATENCY", constant_name(name)), clocks)),
         operands: operands(),
         results: results(),
         line,

@@ -105,3 +105,47 @@ fn nothing_panics() {
         }
     }
 }
+
+/// What a core cannot have is refused where the file asks for it, with a remedy, and nothing is written.
+#[test]
+fn keys_that_do_not_fit_the_core() {
+    let pipelined = "device = \"cosine-power\"\narchitecture = \"pipelined\"\n";
+    let line = "device = \"quad-cosine\"\n";
+    let litex = "[package]\nmemories = \"inline\"\nlitex = true\n";
+    for (head, keys, parts) in [
+        (
+            line,
+            litex,
+            [
+                "core.toml:4:9",
+                "walks lines, which registers of LiteX cannot drive",
+                "set interface.stream = true",
+            ],
+        ),
+        (
+            pipelined,
+            litex,
+            [
+                "core.toml:5:9",
+                "is a pipeline, which registers of LiteX cannot drive",
+                "set interface.stream = true",
+            ],
+        ),
+        (
+            line,
+            "[interface]\nregisters = \"axi-lite\"\n",
+            [
+                "core.toml:3:13",
+                "as many results as `length` says",
+                "remove it, or set interface.stream = true",
+            ],
+        ),
+    ] {
+        let place = Place::with("core.toml", format!("{head}{keys}"));
+        let run = place.glint(["generate", "core.toml", "--out", "out"]);
+        run.refused(1, &parts);
+        assert!(!place.at("out").exists(), "{keys}");
+        let value = place.glint(["generate", "core.toml", "--out", "out", "--json"]).json();
+        assert!(value["problems"][0]["line"].as_u64().is_some(), "{value}");
+    }
+}

@@ -82,7 +82,7 @@ pub fn benches(
 fn bench(one: &Loaded, which: Simulator, points: u64, request: &CosimRequest) -> Result<Run> {
     let vectors = one.core.vectors(points, request.seed)?;
     let clocks = vectors.inputs.len();
-    let files = package::sources(one.core.files(&one.path, vectors)?);
+    let files = package::sources(one.files(vectors)?);
     let top = format!("{}_tb", one.core.config.name);
     let outcome = run_bench(which, &files, &top, request.time_limit)?;
     let mismatch = BenchDifference::first(&outcome.transcript).map(|difference| {
