@@ -6,7 +6,7 @@ use std::path::Path;
 
 use glint::core::Core;
 use glint::golden::{Contract, Operand};
-use glint::hdl::netlist::Role;
+use glint::hdl::netlist::{Port, Role};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use rayon::prelude::*;
@@ -244,7 +244,8 @@ impl Model {
     fn driver(&self) -> String {
         let (name, contract) = (&self.core.config.name, self.core.contract.as_ref());
         let ports = self.core.design.inputs();
-        let count = ports.filter(|port| matches!(port.role, Role::Operand { .. })).count();
+        let operand = |port: &&Port| matches!(port.role, Role::Operand { .. } | Role::Point);
+        let count = ports.filter(operand).count();
         assert_eq!(count, contract.operands().len(), "{name}: every operand is the contract's");
         let mut text = format!(
             "#include <stdio.h>\n#include \"{name}_model.h\"\n\
