@@ -54,6 +54,8 @@ module ${ name }$_registers (
 <%- endfor %>
     );
     wire under_way = start | busy;
+
+    // Control to the last operand.
 <%- for line in writable %>
 ${ line }$
 <%- endfor %>

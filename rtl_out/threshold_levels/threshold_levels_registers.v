@@ -110,6 +110,8 @@ module threshold_levels_registers (
         .blue_out(core_blue_out)
     );
     wire under_way = start | busy;
+
+    // Control to the last operand.
     wire writable = (write_at == 4'd5) | (write_at[5:3] == 3'd3) | (write_at[5:4] == 2'd2) |
             (write_at == 4'd12);
     wire write_start = (write_at == 4'd5) & write_bytes[0] & write_data[0];

@@ -4,6 +4,7 @@ pub(super) mod fields;
 mod pipeline;
 mod registers;
 mod stream;
+mod words;
 
 use anyhow::Result;
 use askama::Template;
