@@ -34,8 +34,8 @@ module threshold_levels_axil (
     output wire        irq
 );
 
-    // A request is carried out while it is offered, and taken in the next clock; its answer comes in
-    // the one after that. It waits until there is room for the answer.
+    // A request is carried out while it is offered, and taken in the next clock; its answer comes
+    // in the one after that. It waits until there is room for the answer.
     reg  write_taken;
     wire write = s_axil_awvalid & s_axil_wvalid & ~write_taken & (s_axil_bready | ~s_axil_bvalid);
     wire write_answer;
