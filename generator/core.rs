@@ -184,10 +184,14 @@ impl Core {
     /// # Errors
     /// Those of [`Core::vectors`].
     pub fn shipped_vectors(&self) -> Result<Vectors> {
+        let contract = self.contract.as_ref();
         if self.design.pipeline.is_some() {
-            return self.vectors(PIPELINE_POINTS, BENCH_SEED);
+            // A pipeline has the datapath of the microprogram that it was made of.
+            let sequential = self.device.sequential(&self.config)?;
+            let directed = directed::computations(&sequential, contract)?;
+            return self.lockstep(BENCH_SEED)?.record(PIPELINE_POINTS, &directed);
         }
-        let directed = directed::computations(&self.design, self.contract.as_ref())?;
+        let directed = directed::computations(&self.design, contract)?;
         let lockstep = self.lockstep(BENCH_SEED)?.with_lines_of(BENCH_LINE);
         let results = if self.contract.length().is_some() { BENCH_LINE as u64 } else { 1 };
         lockstep.record(BENCH_POINTS * results, &directed)

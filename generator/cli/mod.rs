@@ -135,6 +135,17 @@ Example, on four machines and then on one:
         #[arg(value_name = "FILE", required = true)]
         files: Vec<PathBuf>,
     },
+    /// Search for the largest error of an output
+    ///
+    /// From points that the stimulus draws the operands are moved as long as the error grows. What is found is a lower
+    /// limit of the largest error there is, as the bound of the contract is an upper one. The same seed finds the same.
+    /// The exit code is 0 if the bound holds.
+    #[command(after_help = "\
+Examples:
+  glint worst my_core.toml
+  glint worst my_core.toml --starts 1e5 --seed 7      longer, from other points
+  glint worst configs/rough.toml --out proofs/worst   a record; one of a larger error stays")]
+    Worst(commands::WorstArguments),
     /// Plant faults one at a time, and show which of them the tests notice
     ///
     /// Stuck and inverted bits, swapped mux inputs, wrong operators, constants, enables, every bit of every control
@@ -545,6 +556,7 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
             };
             commands::cosim(registry, output, &configs.configs, &request)
         }
+        Some(Command::Worst(arguments)) => commands::worst(registry, output, &arguments),
         Some(Command::Mutate { configs, list, only, full, out, time_limit }) => {
             let request = commands::MutateRequest {
                 list,

@@ -101,14 +101,14 @@ impl<'a> Lockstep<'a> {
 
     /// Stimulus and expected outputs for a bench: the inputs of every clock of one stream of `points`
     /// results, and the outputs before its edge; then those of computations with these raw operands, in the order of
-    /// the contract, one after another (not of a pipeline, which has no computation of its own).
+    /// the contract, one after another.
     ///
     /// # Errors
     /// Golden model and simulation differ; a design that cannot be simulated, or does not settle.
     pub fn record(&self, points: u64, computations: &[Vec<i64>]) -> Result<Vectors> {
         match &self.0 {
             Core(core) => core.record(points, computations),
-            Pipe(pipe) => pipe.record(points),
+            Pipe(pipe) => pipe.record(points, computations),
         }
     }
 

@@ -16,7 +16,7 @@ module blinn_tb #(
     parameter STIMULUS_FILE = "blinn_stimulus.mem",
     parameter EXPECTED_FILE = "blinn_expected.mem"
 );
-    localparam CLOCKS     = 4760;
+    localparam CLOCKS     = 8169;
     localparam KNOWN_FROM = 11;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

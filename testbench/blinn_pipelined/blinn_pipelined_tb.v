@@ -16,7 +16,7 @@ module blinn_pipelined_tb #(
     parameter STIMULUS_FILE = "blinn_pipelined_stimulus.mem",
     parameter EXPECTED_FILE = "blinn_pipelined_expected.mem"
 );
-    localparam CLOCKS     = 3971;
+    localparam CLOCKS     = 6383;
     localparam KNOWN_FROM = 20;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

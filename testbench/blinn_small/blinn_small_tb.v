@@ -16,7 +16,7 @@ module blinn_small_tb #(
     parameter STIMULUS_FILE = "blinn_small_stimulus.mem",
     parameter EXPECTED_FILE = "blinn_small_expected.mem"
 );
-    localparam CLOCKS     = 2086;
+    localparam CLOCKS     = 2394;
     localparam KNOWN_FROM = 11;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

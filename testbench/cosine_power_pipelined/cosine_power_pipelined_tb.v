@@ -16,7 +16,7 @@ module cosine_power_pipelined_tb #(
     parameter STIMULUS_FILE = "cosine_power_pipelined_stimulus.mem",
     parameter EXPECTED_FILE = "cosine_power_pipelined_expected.mem"
 );
-    localparam CLOCKS     = 3644;
+    localparam CLOCKS     = 3797;
     localparam KNOWN_FROM = 13;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

@@ -16,7 +16,7 @@ module cosine_squared_tb #(
     parameter STIMULUS_FILE = "cosine_squared_stimulus.mem",
     parameter EXPECTED_FILE = "cosine_squared_expected.mem"
 );
-    localparam CLOCKS     = 10297;
+    localparam CLOCKS     = 13369;
     localparam KNOWN_FROM = 7;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

@@ -16,7 +16,7 @@ module gauss_tb #(
     parameter STIMULUS_FILE = "gauss_stimulus.mem",
     parameter EXPECTED_FILE = "gauss_expected.mem"
 );
-    localparam CLOCKS     = 4704;
+    localparam CLOCKS     = 7784;
     localparam KNOWN_FROM = 11;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

@@ -16,7 +16,7 @@ module gauss_pipelined_tb #(
     parameter STIMULUS_FILE = "gauss_pipelined_stimulus.mem",
     parameter EXPECTED_FILE = "gauss_pipelined_expected.mem"
 );
-    localparam CLOCKS     = 4191;
+    localparam CLOCKS     = 6231;
     localparam KNOWN_FROM = 18;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

@@ -16,7 +16,7 @@ module lyon_pipelined_tb #(
     parameter STIMULUS_FILE = "lyon_pipelined_stimulus.mem",
     parameter EXPECTED_FILE = "lyon_pipelined_expected.mem"
 );
-    localparam CLOCKS     = 4443;
+    localparam CLOCKS     = 4663;
     localparam KNOWN_FROM = 20;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

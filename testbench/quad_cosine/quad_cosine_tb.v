@@ -16,7 +16,7 @@ module quad_cosine_tb #(
     parameter STIMULUS_FILE = "quad_cosine_stimulus.mem",
     parameter EXPECTED_FILE = "quad_cosine_expected.mem"
 );
-    localparam CLOCKS     = 24557;
+    localparam CLOCKS     = 24444;
     localparam KNOWN_FROM = 8;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

@@ -16,7 +16,7 @@ module quadratic_tb #(
     parameter STIMULUS_FILE = "quadratic_stimulus.mem",
     parameter EXPECTED_FILE = "quadratic_expected.mem"
 );
-    localparam CLOCKS     = 6312;
+    localparam CLOCKS     = 6287;
     localparam KNOWN_FROM = 9;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

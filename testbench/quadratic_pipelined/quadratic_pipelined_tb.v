@@ -16,7 +16,7 @@ module quadratic_pipelined_tb #(
     parameter STIMULUS_FILE = "quadratic_pipelined_stimulus.mem",
     parameter EXPECTED_FILE = "quadratic_pipelined_expected.mem"
 );
-    localparam CLOCKS     = 3918;
+    localparam CLOCKS     = 5970;
     localparam KNOWN_FROM = 12;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

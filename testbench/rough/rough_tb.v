@@ -16,7 +16,7 @@ module rough_tb #(
     parameter STIMULUS_FILE = "rough_stimulus.mem",
     parameter EXPECTED_FILE = "rough_expected.mem"
 );
-    localparam CLOCKS     = 14722;
+    localparam CLOCKS     = 17098;
     localparam KNOWN_FROM = 19;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

@@ -16,7 +16,7 @@ module rough_small_tb #(
     parameter STIMULUS_FILE = "rough_small_stimulus.mem",
     parameter EXPECTED_FILE = "rough_small_expected.mem"
 );
-    localparam CLOCKS     = 9640;
+    localparam CLOCKS     = 9376;
     localparam KNOWN_FROM = 19;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

@@ -16,7 +16,7 @@ module threshold_tb #(
     parameter STIMULUS_FILE = "threshold_stimulus.mem",
     parameter EXPECTED_FILE = "threshold_expected.mem"
 );
-    localparam CLOCKS     = 6064;
+    localparam CLOCKS     = 6304;
     localparam KNOWN_FROM = 9;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

@@ -16,7 +16,7 @@ module threshold_levels_tb #(
     parameter STIMULUS_FILE = "threshold_levels_stimulus.mem",
     parameter EXPECTED_FILE = "threshold_levels_expected.mem"
 );
-    localparam CLOCKS     = 10749;
+    localparam CLOCKS     = 10874;
     localparam KNOWN_FROM = 9;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

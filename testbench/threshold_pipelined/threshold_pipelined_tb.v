@@ -16,7 +16,7 @@ module threshold_pipelined_tb #(
     parameter STIMULUS_FILE = "threshold_pipelined_stimulus.mem",
     parameter EXPECTED_FILE = "threshold_pipelined_expected.mem"
 );
-    localparam CLOCKS     = 3918;
+    localparam CLOCKS     = 5973;
     localparam KNOWN_FROM = 12;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 

@@ -1,4 +1,5 @@
-//! The largest errors that are known where a proof does not cover all operands, `proofs/worst/<name>.json`.
+//! The largest errors that are known where a proof does not cover all operands, `proofs/worst/<name>.json`, and the search
+//! that finds them.
 
 use std::fs;
 
@@ -6,15 +7,22 @@ use crate::common::cores::configuration;
 use glint::cosim::search;
 use serde_json::Value;
 
+fn record(name: &str) -> Value {
+    let path = format!("proofs/worst/{name}.json");
+    let text = fs::read_to_string(&path).unwrap_or_else(|error| panic!("{path}: {error}"));
+    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
 /// By the formula of the claim, in f64, and by hand: the square of n/2·(cos(γ − dγ) − 1) + 1.
 #[test]
 fn the_worst_known_error_of_rough_is_what_its_record_says() {
-    let text = fs::read_to_string("proofs/worst/rough.json").expect("a record");
-    let record: Value = serde_json::from_str(&text).expect("JSON");
+    let record = record("rough");
     let unit = configuration("configs/rough.toml");
     let raw = |name: &str| record["operands"][name].as_i64().expect("a raw operand");
     let control = ["cos_gamma", "cos_dgamma", "exponent", "dgamma_negative"].map(raw);
-    let (colour, output) = (raw("red"), record["output"].as_i64().expect("a raw output"));
+    assert_eq!(control[3], 1, "the formula below is that of γ − dγ");
+    let name = record["output"].as_str().expect("an output").trim_end_matches("_out").to_owned();
+    let (colour, output) = (raw(&name), record["raw"].as_i64().expect("a raw output"));
     let [cos_gamma, cos_dgamma] = [control[0], control[1]].map(|raw| raw as f64 / 1_048_576.0);
     let sines = ((1.0 - cos_gamma * cos_gamma) * (1.0 - cos_dgamma * cos_dgamma)).sqrt();
     let base = control[2] as f64 / 2.0 * (cos_gamma * cos_dgamma + sines - 1.0) + 1.0;
@@ -23,16 +31,35 @@ fn the_worst_known_error_of_rough_is_what_its_record_says() {
     assert_eq!(highlight.colour(highlight.f(&control), colour), output);
     assert!((record["units"].as_f64().expect("a number") - units).abs() < 1e-9, "{units}");
     assert!(units > 0.9428 && units <= unit.contract.bound().units, "{units}");
-    assert!((search::error(highlight, &control, colour) - units).abs() < 1e-9);
+}
+
+/// A record that `glint worst --out proofs/worst` would not take for another configuration's.
+#[test]
+fn records_are_of_todays_contracts() {
+    let files = fs::read_dir("proofs/worst").expect("records");
+    let files: Vec<_> = files.map(|file| file.expect("a file").path()).collect();
+    assert!(!files.is_empty());
+    for file in files {
+        let record = record(file.file_stem().and_then(|stem| stem.to_str()).expect("a name"));
+        let core = configuration(record["config"].as_str().expect("a configuration"));
+        assert_eq!(record["contract"], core.contract_digest(), "{}", file.display());
+        let operands = core.contract.operands().iter();
+        let operands: Vec<i64> = operands
+            .map(|operand| record["operands"][&operand.name].as_i64().expect("a raw operand"))
+            .collect();
+        let units = core.contract.largest_error(&operands);
+        assert_eq!(record["units"].as_f64(), Some(units), "{}", file.display());
+    }
 }
 
 /// A short climb comes beyond all that was drawn at random, and to the same place every time.
 #[test]
 fn what_is_climbed_to_is_beyond_what_is_drawn() {
     let unit = configuration("configs/rough.toml");
-    let highlight = unit.contract.highlight().expect("a highlight");
-    let found = search::worst(highlight, 16, 1).expect("starts");
-    assert_eq!(search::worst(highlight, 16, 1), Some(found.clone()));
-    assert!(found.units > 0.85 && found.units <= unit.contract.bound().units, "{found:?}");
-    assert_eq!(search::error(highlight, &found.control, found.colour), found.units);
+    let contract = unit.contract.as_ref();
+    let found = search::worst(contract, 16, 1, &|| ()).expect("starts");
+    assert_eq!(search::worst(contract, 16, 1, &|| ()), Some(found.clone()));
+    assert!(found.units > 0.85 && found.units <= contract.bound().units, "{found:?}");
+    assert_eq!(contract.largest_error(&found.operands), found.units);
+    assert!((found.raw as f64 - found.exact).abs() == found.units, "{found:?}");
 }

@@ -18,6 +18,7 @@ mod schedule;
 mod synth;
 mod tune;
 mod verify;
+mod worst;
 
 use std::path::{Path, PathBuf};
 
@@ -40,6 +41,7 @@ pub use schedule::schedule;
 pub use synth::{SynthArguments, synth};
 pub use tune::{TuneArguments, tune};
 pub use verify::{VerifyRequest, verify};
+pub use worst::{WorstArguments, worst};
 
 use super::failure::{self, Several, Usage};
 use crate::base::diagnostic::Diagnostics;

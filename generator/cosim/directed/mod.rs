@@ -6,6 +6,7 @@
 //!
 //! - for each word of a ROM that any of them reads, and every bit of its upper half, one whose results differ when the
 //!   bit is inverted, or one near them that is searched for; of lines, which read a word a clock, those that read it;
+//! - of a device that walks lines one to the end of the domain of its length;
 //! - every combination of the ends of the control operands;
 //! - for each bit of each net, each input of a mux, each outcome of a comparison and what else is watched, some
 //!   that do it with bright results, some with dim ones, some in the dark.
@@ -94,13 +95,13 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Vec<
     Ok(chosen.chain(of_words.found).collect())
 }
 
-/// Of lines that read table after table, those of which most words are new.
+/// Of lines that read table after table the first, which is the longest, and those of which most words are new.
 fn sweeps(lines: &[Candidate]) -> Vec<usize> {
     let mut read = HashSet::new();
     let mut chosen = Vec::new();
     for (at, line) in lines.iter().enumerate() {
         let news = line.read.iter().filter(|word| !read.contains(*word)).count();
-        if 2 * news > line.shown.clocks as usize {
+        if at == 0 || 2 * news > line.shown.clocks as usize {
             read.extend(line.read.iter().copied());
             chosen.push(at);
         }

@@ -6,9 +6,10 @@ use crate::golden::{Contract, Highlight};
 /// Points that are drawn as those of the default test are.
 const DRAWN: usize = 1024;
 
-/// Points with the other operands such that they are seen. Half are drawn evenly and read words far from the peak, the
-/// others by their distance from the ends of the domains: tables have a word for each octave of it.
-const SHOWN: usize = 2560;
+/// Points with the other operands such that they are seen. Of three one is drawn evenly and reads words far from the peak,
+/// one by its distance from the ends of the domains, since tables have a word for each octave of it, and one is near the
+/// peak for operands from anywhere in their formats.
+const SHOWN: usize = 3840;
 
 /// Every value of an operand without a fraction is a point, and the edges of the highlight there, if it has no more
 /// values than this.
@@ -19,7 +20,7 @@ const MOST_VALUES: u64 = 4096;
 const FIRST_VALUES: [i64; 6] = [0, 1, 2, 3, 7, 15];
 const LINE_BITS: std::ops::RangeInclusive<u32> = 8..=12;
 
-/// The longest line, in intervals.
+/// The longest line among those that are drawn, in intervals.
 const LONGEST: i64 = 1023;
 
 /// Where the formula is seen best.
@@ -66,8 +67,10 @@ pub fn pool(contract: &dyn Contract) -> Pool {
     if contract.length().is_none() {
         for number in 0..SHOWN {
             let mut values = points.evenly(&mut random);
-            if number % 2 == 1 {
-                near_ends(&points, &mut random, &mut values);
+            match number % 3 {
+                0 => {}
+                1 => near_ends(&points, &mut random, &mut values),
+                _ => anywhere(&points, &mut random, &mut values),
             }
             bright(&mut values);
             points.show(&mut values[..control]);
@@ -120,6 +123,17 @@ fn near_ends(points: &Points<'_>, random: &mut Random, values: &mut [i64]) {
     }
 }
 
+/// Draws operands from their formats, beyond the domains too, and moves them to where the formula has some value. A word
+/// that is read far from the peak alone within the domain is read near it there, and counts for more.
+fn anywhere(points: &Points<'_>, random: &mut Random, values: &mut [i64]) {
+    let control = points.operands().iter().filter(|operand| !operand.colour).count();
+    for (value, operand) in values[..control].iter_mut().zip(points.operands()) {
+        let format = operand.format;
+        *value = random.within(format.min_raw() as i64, format.max_raw() as i64);
+    }
+    points.to_value(&mut values[..control], random.unit());
+}
+
 /// Every combination of the ends of the control operands' domains, and of their formats if those are not too many.
 fn corners(points: &Points<'_>, bright: &dyn Fn(&mut [i64])) -> Vec<Vec<i64>> {
     let ends = |with_format: bool| -> Vec<Vec<i64>> {
@@ -155,7 +169,8 @@ fn corners(points: &Points<'_>, bright: &dyn Fn(&mut [i64])) -> Vec<Vec<i64>> {
 }
 
 /// Lines from the peak to the edge of the highlight, which read the words of a table one after another: for the first
-/// values of each other operand, and for each power of two of intervals.
+/// values of each other operand, and for each power of two of intervals, or the end of the domain if that is less. The
+/// longest are first.
 fn lines(
     highlight: &Highlight,
     points: &Points,

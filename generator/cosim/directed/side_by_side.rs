@@ -26,6 +26,20 @@ pub struct Shown {
     pub results: Vec<(u32, Vec<u64>)>,
 }
 
+impl Shown {
+    /// How much it differs, in the bits of results as numbers; most where the clocks differ.
+    pub fn differs(&self, from: &Self) -> u64 {
+        if self.results.len() != from.results.len() || self.clocks != from.clocks {
+            return u64::MAX;
+        }
+        let outputs = |shown: &Self| -> Vec<u64> {
+            shown.results.iter().flat_map(|(_, outputs)| outputs.iter().copied()).collect()
+        };
+        let pairs = outputs(self).into_iter().zip(outputs(from));
+        pairs.fold(0, |sum: u64, (a, b)| sum.saturating_add(a.abs_diff(b)))
+    }
+}
+
 /// A design whose lanes each run one computation at a time: all operands are written in the clock of `start`, and
 /// while it runs their ports show the complement.
 pub struct SideBySide {

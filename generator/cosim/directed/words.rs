@@ -17,8 +17,13 @@ use crate::hdl::sim::{Machine, Program};
 /// Readers of a word that take more clocks than this are not asked: lines that read a table from end to end.
 pub const LONGEST: u32 = 64;
 
-/// Where no reader of a word notices a fault, so many times others are tried that are near readers.
+/// Where no reader of a word notices a fault, so many times others are tried that are near readers: within the domain,
+/// and then beyond it.
 const ROUNDS: usize = 6;
+const ROUNDS_BEYOND: usize = 6;
+
+/// Of those tried so many remain of which a larger fault in the word shows most: others near them are tried next.
+const KEPT: usize = 8;
 
 /// What notices faults in words.
 #[derive(Default)]
@@ -100,6 +105,8 @@ impl Search<'_> {
         let all = nearest.clone();
         // What notices the lowest bit mostly notices those above it, which weigh more.
         let mut unnoticed = 0;
+        // Of what is noticed at all the least.
+        let mut least = highest(left.max(1));
         while left & !unnoticed != 0 {
             let bit = lowest(left & !unnoticed);
             let shown = self.run(&all, word, bit)?;
@@ -111,24 +118,46 @@ impl Search<'_> {
                 continue;
             };
             nearest = noticing.iter().map(|&at| candidates[at].operands.as_slice()).collect();
+            least = bit;
             self.result.chosen.insert(first);
             let Candidate { operands, shown, .. } = &candidates[first];
             left &= !(bit | self.noticed(word, left, operands, shown)?);
         }
-        let mut rounds = 0;
-        while left != 0 && rounds < ROUNDS {
-            let tried = self.near(&nearest);
+        self.climb(word, left, least, nearest.iter().map(|operands| operands.to_vec()).collect())
+    }
+
+    /// Looks for what notices these bits of a word, from computations that notice another: to where that shows more and
+    /// more. Within the domain some words are read far from any highlight alone, so that at last the operands are taken
+    /// from all of their formats, where the device is what its golden model says too.
+    fn climb(
+        &mut self,
+        word: u32,
+        mut left: u64,
+        mut probe: u64,
+        nearest: Vec<Vec<i64>>,
+    ) -> Result<()> {
+        let mut round = 0;
+        let mut kept: Vec<(u64, Vec<i64>)> = Vec::new();
+        let mut tried = nearest;
+        while left != 0 && round < ROUNDS + ROUNDS_BEYOND {
             let operands: Vec<&[i64]> = tried.iter().map(Vec::as_slice).collect();
             let fault_free = self.run(&operands, word, 0)?;
             let bit = highest(left);
             let shown = self.run(&operands, word, bit)?;
-            match fault_free.iter().zip(&shown).position(|(right, shown)| right != shown) {
-                Some(at) => {
-                    left &= !(bit | self.noticed(word, left, &tried[at], &fault_free[at])?);
-                    self.result.found.push(tried[at].clone());
-                }
-                None => rounds += 1,
+            if let Some(at) = fault_free.iter().zip(&shown).position(|(right, it)| right != it) {
+                left &= !(bit | self.noticed(word, left, &tried[at], &fault_free[at])?);
+                self.result.found.push(tried[at].clone());
+                probe = bit;
+                kept = vec![(1, tried[at].clone())];
+            } else {
+                let shown = self.run(&operands, word, probe)?;
+                let shows = fault_free.iter().zip(&shown).map(|(right, it)| it.differs(right));
+                kept.extend(shows.zip(tried));
+                kept.sort_by_key(|(shows, _)| Reverse(*shows));
+                kept.truncate(KEPT);
+                round += 1;
             }
+            tried = self.near(&kept, round > ROUNDS);
         }
         Ok(())
     }
@@ -152,35 +181,36 @@ impl Search<'_> {
         Ok(noticed)
     }
 
-    /// Computations near these: each control operand as it is, or moved by a random magnitude within its domain, or,
-    /// without a fraction, drawn anew; half of them are then moved to where the formula has some value. The colours are
-    /// the brightest.
-    fn near(&mut self, readers: &[&[i64]]) -> Vec<Vec<i64>> {
+    /// Computations near these: each control operand as it is, or moved by a random magnitude within its domain (within
+    /// its format, if it may be beyond), or, without a fraction, drawn anew; some of them are then moved to where the
+    /// formula has some value. The colours are bright.
+    fn near(&mut self, kept: &[(u64, Vec<i64>)], beyond: bool) -> Vec<Vec<i64>> {
         let Self { points, random, .. } = self;
         let operands = points.operands();
         let control = operands.iter().filter(|operand| !operand.colour).count();
         let mut moved = |lane: usize| {
-            let pairs = operands.iter().zip(readers[lane % readers.len()]).enumerate();
+            let pairs = operands.iter().zip(&kept[lane % kept.len()].1).enumerate();
             let values = pairs.map(|(at, (operand, &raw))| {
-                let (low, high) = operand.domain;
+                let (low, high) = match beyond && !operand.colour {
+                    true => (operand.format.min_raw() as i64, operand.format.max_raw() as i64),
+                    false => operand.domain,
+                };
                 if operand.colour {
-                    return high;
+                    return high - random.magnitude(high.abs_diff(low) / 8) as i64;
                 }
                 if points.length() == Some(at) {
                     return raw;
                 }
-                if operand.format.frac <= 0 && random.once_in(2) {
-                    return random.within(low, high);
-                }
                 let off = random.magnitude(high.abs_diff(low)) as i64;
-                match random.below(4) {
-                    0 => raw.saturating_add(off).clamp(low, high),
-                    1 => raw.saturating_sub(off).clamp(low, high),
+                match random.below(8) {
+                    0 | 1 => raw.saturating_add(off).clamp(low, high),
+                    2 | 3 => raw.saturating_sub(off).clamp(low, high),
+                    4 if operand.format.frac <= 0 => random.within(low, high),
                     _ => raw,
                 }
             });
             let mut values: Vec<i64> = values.collect();
-            if lane.is_multiple_of(2) {
+            if lane.is_multiple_of(4) {
                 points.to_value(&mut values[..control], random.unit());
             }
             values

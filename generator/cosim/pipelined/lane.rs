@@ -1,5 +1,7 @@
 //! One stream of points through a pipeline: what is offered and taken, and what is expected where.
 
+use std::collections::VecDeque;
+
 use anyhow::Result;
 
 use super::Setup;
@@ -36,6 +38,9 @@ pub(super) struct Lane {
     reference: Reference,
     /// What is offered until it is taken.
     offered: Option<Point>,
+    /// Of a stream that goes on with points of a list those that are left, bit patterns: it draws no others, withdraws
+    /// none, and is not reset.
+    listed: Option<VecDeque<Vec<u64>>>,
     pub(super) stages: Occupancy<Point>,
     reset_left: u64,
     pace: (u64, u64),
@@ -56,6 +61,7 @@ impl Lane {
             random: Random::new(seed),
             reference: setup.reference()?,
             offered: None,
+            listed: None,
             stages: Occupancy::empty(setup.latency),
             // Resets are there from power-up on.
             reset_left: 2,
@@ -74,6 +80,18 @@ impl Lane {
         self.seed
     }
 
+    /// Goes on with these points, raw operands in the order of the contract, and then with none.
+    pub(super) fn follow(&mut self, setup: &Setup<'_>, points: &[Vec<i64>]) {
+        let listed = points.iter().map(|raw| self.bits(setup, raw)).collect();
+        self.listed = Some(listed);
+    }
+
+    /// Whether no point is on its way or to be offered.
+    pub(super) fn is_idle(&self) -> bool {
+        let listed = self.listed.as_ref().is_none_or(VecDeque::is_empty);
+        listed && self.offered.is_none() && self.stages.points().next().is_none()
+    }
+
     /// The inputs of the next clock, and what they make of the points.
     pub(super) fn clock(&mut self, setup: &Setup<'_>) -> Result<()> {
         self.clocks += 1;
@@ -83,17 +101,22 @@ impl Lane {
             self.pace_left = PACE_CLOCKS;
         }
         self.pace_left -= 1;
-        if self.reset_left == 0 && self.random.once_in(RESET_CLOCKS) {
+        let drawn = self.listed.is_none();
+        if drawn && self.reset_left == 0 && self.random.once_in(RESET_CLOCKS) {
             self.reset_left = 1 + self.random.below(3);
         }
         let rst_n = self.reset_left == 0;
         self.reset_left = self.reset_left.saturating_sub(1);
         // What is offered stays until it is taken; now and then it is withdrawn.
-        if self.offered.is_some() && self.random.once_in(64) {
+        if drawn && self.offered.is_some() && self.random.once_in(64) {
             self.offered = None;
         }
-        if self.offered.is_none() && self.random.once_in(self.pace.0) {
-            let operands = self.draw(setup);
+        // Of a list nothing is lost to the end of a reset.
+        if self.offered.is_none()
+            && (drawn || rst_n)
+            && self.random.once_in(self.pace.0)
+            && let Some(operands) = self.draw(setup)
+        {
             let expected = self.reference.point(&operands)?;
             let side = self.random.bits() & mask(setup.side.max(1));
             self.offered = Some(Point { operands, side, expected });
@@ -124,10 +147,18 @@ impl Lane {
         Ok(())
     }
 
-    /// Bit patterns for the operands of a point.
-    fn draw(&mut self, setup: &Setup<'_>) -> Vec<u64> {
+    /// Bit patterns for the operands of the next point.
+    fn draw(&mut self, setup: &Setup<'_>) -> Option<Vec<u64>> {
+        if let Some(listed) = &mut self.listed {
+            return listed.pop_front();
+        }
         let mut raw = vec![0; setup.points.operands().len()];
         setup.points.draw(&mut self.random, &mut raw, u64::MAX);
+        Some(self.bits(setup, &raw))
+    }
+
+    /// Raw operands in the order of the contract as bit patterns at the ports. Operands that it does not have are drawn.
+    fn bits(&mut self, setup: &Setup<'_>, raw: &[i64]) -> Vec<u64> {
         let bits = |operand: &Operand| {
             let mut known = setup.points.operands().iter();
             match known.position(|it| it.name == operand.name) {

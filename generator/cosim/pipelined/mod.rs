@@ -177,14 +177,30 @@ impl<'a> Pipelined<'a> {
         Ok(self.outcome(alone.seen()))
     }
 
-    /// Inputs and outputs of every clock of one stream, for a bench.
+    /// Inputs and outputs of every clock of one stream, for a bench: of so many points, and then of those with these raw
+    /// operands, in the order of the contract.
     ///
     /// # Errors
     /// Golden model and simulation differ; a design that cannot be simulated.
-    pub(super) fn record(&self, points: u64) -> Result<Vectors> {
+    pub(super) fn record(&self, points: u64, listed: &[Vec<i64>]) -> Result<Vectors> {
         let mut alone = self.alone()?;
         let mut vectors = Vectors::default();
-        while !alone.ended(points) {
+        self.add(&mut vectors, &mut alone, |alone| alone.ended(points))?;
+        alone.lanes[0].follow(&self.setup, listed);
+        self.add(&mut vectors, &mut alone, |alone| alone.lanes[0].is_idle())?;
+        let mismatch = &alone.mismatches[0];
+        ensure!(mismatch.is_none(), "golden model and simulation differ: {mismatch:?}");
+        Ok(vectors)
+    }
+
+    /// The clocks of a stream until it is at an end, or something differs.
+    fn add(
+        &self,
+        vectors: &mut Vectors,
+        alone: &mut Group<1>,
+        ended: impl Fn(&Group<1>) -> bool,
+    ) -> Result<()> {
+        while !ended(alone) && alone.mismatches[0].is_none() {
             alone.prepare(&self.setup)?;
             alone.simulator.settle()?;
             let outputs = self.setup.outputs.iter();
@@ -196,9 +212,7 @@ impl<'a> Pipelined<'a> {
             }
             alone.edge(&self.setup)?;
         }
-        let mismatch = &alone.mismatches[0];
-        ensure!(mismatch.is_none(), "golden model and simulation differ: {mismatch:?}");
-        Ok(vectors)
+        Ok(())
     }
 
     /// As [`Pipelined::run`], in one stream, of which `file` takes the waveform from clock `from` on.

@@ -72,3 +72,34 @@ fn a_wrong_side_value_is_noticed() {
     let mismatch = lockstep.run_alone(500).unwrap().mismatch.expect("a difference");
     assert_eq!(mismatch.signal, "side_out");
 }
+
+/// Every point of a list comes out, in its order, behind those that are drawn: none is withdrawn or reset.
+#[test]
+fn a_recording_goes_through_every_point_of_a_list() {
+    let registry = Registry::catalogue();
+    let device = registry.device("cosine-power").expect("a device");
+    let config = pipelined(device, &[]);
+    let design = device.design(&config).unwrap_or_else(|wrong| panic!("{wrong}"));
+    let contract = (device.contract)(&config);
+    let lockstep = Lockstep::new(&design, (device.model)(&config), contract.as_ref(), 1).unwrap();
+    // Colours count upward, so that each differs from the one before.
+    let point = |number: i64| -> Vec<i64> {
+        let operands = contract.operands().iter();
+        operands.map(|it| if it.colour { number % 256 } else { it.domain.1 }).collect()
+    };
+    let listed: Vec<Vec<i64>> = (0..300).map(point).collect();
+    let vectors = lockstep.record(40, &listed).unwrap();
+    let names: Vec<&str> = design.inputs().map(|port| design.net(port.net).name.as_str()).collect();
+    let at = |name: &str| names.iter().position(|it| *it == name).expect("a port");
+    let [valid, red, reset] = ["in_valid", "red", "rst_n"].map(at);
+    let outputs: Vec<&str> =
+        design.outputs().map(|port| design.net(port.net).name.as_str()).collect();
+    let ready = outputs.iter().position(|it| *it == "in_ready").expect("a port");
+    let clocks = vectors.inputs.iter().zip(&vectors.expected);
+    let taken = clocks.filter(|(inputs, outputs)| inputs[valid] == 1 && outputs[ready] == 1);
+    let taken: Vec<u64> = taken.map(|(inputs, _)| inputs[red]).collect();
+    let last: Vec<u64> = listed.iter().map(|point| (point[point.len() - 1] % 256) as u64).collect();
+    assert_eq!(taken[taken.len() - 300..], last);
+    let end = &vectors.inputs[vectors.inputs.len() - 300..];
+    assert!(end.iter().all(|inputs| inputs[reset] == 1));
+}

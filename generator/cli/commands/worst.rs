@@ -1,0 +1,175 @@
+//! `worst`.
+
+use std::collections::BTreeMap;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+
+use super::{Loaded, load};
+use crate::base::text;
+use crate::cli::own_file::OwnFile;
+use crate::cli::{Configs, Output, count, progress, tables};
+use crate::cosim::search::{self, Reached};
+use crate::registry::Registry;
+
+/// What `worst` was asked for.
+#[derive(Args)]
+pub struct WorstArguments {
+    #[command(flatten)]
+    configs: Configs,
+    /// How many climbs to begin
+    #[arg(long, value_name = "N", default_value = "1000", value_parser = count)]
+    starts: u64,
+    /// Seed of the points from which they begin
+    #[arg(long, value_name = "S", default_value_t = 1)]
+    seed: u64,
+    /// Write the record of each configuration, `<name>.json`, into this directory; one of a larger error stays
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+}
+
+/// The largest error of a configuration that is known: what a record holds.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Known {
+    /// The version; a record begins with it.
+    glint: String,
+    config: String,
+    /// Tells what the contract depends on from others.
+    contract: String,
+    /// Of the search that found it.
+    starts: u64,
+    seed: u64,
+    /// In output units.
+    units: f64,
+    output: String,
+    /// Raw operands.
+    operands: BTreeMap<String, i64>,
+    /// The output, and what the formula says, in its units.
+    raw: i64,
+    exact: f64,
+}
+
+/// What is said of a configuration.
+#[derive(Serialize)]
+struct Report {
+    #[serde(flatten)]
+    found: Known,
+    /// The error that the contract states, in output units.
+    bound: f64,
+    holds: bool,
+    /// The record, where it stays because its error is no less.
+    recorded: Option<Known>,
+}
+
+/// `glint worst`.
+pub fn worst(registry: &Registry, output: Output, request: &WorstArguments) -> Result<bool> {
+    let loaded = load(registry, &request.configs.configs)?;
+    let records = loaded.iter().map(|one| record(one, request)).collect::<Result<Vec<_>>>()?;
+    let total = request.starts.saturating_mul(loaded.len() as u64);
+    let bar = progress::bar(output, total, "climbs");
+    let mut reports = Vec::new();
+    for (one, record) in loaded.iter().zip(records) {
+        let contract = one.core.contract.as_ref();
+        let found = search::worst(contract, request.starts, request.seed, &|| bar.inc(1));
+        let found = found.with_context(|| format!("`{}` has no output", one.path))?;
+        let bound = contract.bound().units;
+        let (holds, found) = (found.units <= bound, known(one, request, &found));
+        let mut recorded = None;
+        if let Some((file, before)) = record {
+            match before.filter(|before| before.units >= found.units) {
+                Some(before) => recorded = Some(before),
+                None => file.write_json(&found).map(drop)?,
+            }
+        }
+        let report = Report { found, bound, holds, recorded };
+        if !output.json {
+            bar.suspend(|| print(&report));
+        }
+        reports.push(report);
+    }
+    bar.finish_and_clear();
+    let holds = reports.iter().all(|report| report.holds);
+    if output.json {
+        tables::print_json(&json!({ "ok": holds, "configurations": reports }));
+    }
+    Ok(holds)
+}
+
+fn known(one: &Loaded, request: &WorstArguments, found: &Reached) -> Known {
+    let contract = one.core.contract.as_ref();
+    let names = contract.operands().iter().map(|it| it.name.clone());
+    Known {
+        glint: env!("CARGO_PKG_VERSION").to_owned(),
+        config: one.path.clone(),
+        contract: one.core.contract_digest(),
+        starts: request.starts,
+        seed: request.seed,
+        units: found.units,
+        output: contract.outputs()[found.output].name.clone(),
+        operands: names.zip(found.operands.iter().copied()).collect(),
+        raw: found.raw,
+        exact: found.exact,
+    }
+}
+
+fn print(report: &Report) {
+    let Report { found, bound, holds, recorded } = report;
+    let verdict = if *holds { "within" } else { "BEYOND" };
+    tables::print_line(&format!(
+        "{}: {:.4} units, {verdict} the bound of {bound:.4}, by {} from seed {}",
+        found.config,
+        found.units,
+        climbs(found.starts),
+        found.seed
+    ));
+    let operands: Vec<String> =
+        found.operands.iter().map(|(name, raw)| format!("{name}=#{raw}")).collect();
+    tables::print_line(&format!(
+        "  {} is {} for {:.4} at {}",
+        found.output,
+        found.raw,
+        found.exact,
+        operands.join(" ")
+    ));
+    if let Some(recorded) = recorded {
+        tables::print_line(&format!(
+            "  the record stays: {:.4} units, by {} from seed {}",
+            recorded.units,
+            climbs(recorded.starts),
+            recorded.seed
+        ));
+    }
+}
+
+fn climbs(starts: u64) -> String {
+    format!("{} climb{}", text::grouped(starts), if starts == 1 { "" } else { "s" })
+}
+
+/// The record to be, and the one that is there if it is of the same contract.
+fn record(one: &Loaded, request: &WorstArguments) -> Result<Option<(OwnFile, Option<Known>)>> {
+    let Some(directory) = &request.out else { return Ok(None) };
+    std::fs::create_dir_all(directory)
+        .with_context(|| format!("cannot make the directory `{}`", directory.display()))?;
+    let name = format!("{}.json", one.core.config.name);
+    let file = OwnFile::new(directory, &name, OwnFile::JSON)?;
+    let before = read(&directory.join(&name))?;
+    Ok(Some((file, before.filter(|before| before.contract == one.core.contract_digest()))))
+}
+
+fn read(path: &Path) -> Result<Option<Known>> {
+    let text = match std::fs::read_to_string(path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(error) => {
+            return Err(error).with_context(|| format!("cannot read `{}`", path.display()));
+        }
+    };
+    let known: Known = serde_json::from_str(&text)
+        .with_context(|| format!("`{}` is no record of `glint worst`", path.display()))?;
+    ensure!(known.units.is_finite(), "`{}` has no error", path.display());
+    Ok(Some(known))
+}
