@@ -7,7 +7,6 @@
 //! No register is put on the other edge of the clock: what it takes is stable by then, so that it carries the
 //! same at every edge that counts, and only timing analysis can tell.
 
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 use std::sync::LazyLock;
@@ -223,22 +222,6 @@ impl Text {
             }
         }
         faults
-    }
-
-    /// A part of the faults that is spread over the kinds and the text, `most` or fewer.
-    pub fn sample(&self, most: usize) -> Vec<TextFault> {
-        let mut kinds: BTreeMap<&str, Vec<TextFault>> = BTreeMap::new();
-        for fault in self.faults() {
-            kinds.entry(fault.kind).or_default().push(fault);
-        }
-        let share = most.div_ceil(kinds.len().max(1));
-        let mut sample: Vec<TextFault> = Vec::new();
-        for of_kind in kinds.into_values() {
-            let step = of_kind.len().div_ceil(share);
-            sample.extend(of_kind.into_iter().step_by(step.max(1)));
-        }
-        sample.truncate(most);
-        sample
     }
 
     /// What is found of each of the faults.

@@ -87,7 +87,7 @@ pub fn worst(registry: &Registry, output: Output, request: &WorstArguments) -> R
         }
         let report = Report { found, bound, holds, recorded };
         if !output.json {
-            bar.suspend(|| print(&report));
+            bar.suspend(|| print(one, &report));
         }
         reports.push(report);
     }
@@ -116,7 +116,7 @@ fn known(one: &Loaded, request: &WorstArguments, found: &Reached) -> Known {
     }
 }
 
-fn print(report: &Report) {
+fn print(one: &Loaded, report: &Report) {
     let Report { found, bound, holds, recorded } = report;
     let verdict = if *holds { "within" } else { "BEYOND" };
     tables::print_line(&format!(
@@ -126,8 +126,9 @@ fn print(report: &Report) {
         climbs(found.starts),
         found.seed
     ));
+    let operands = one.core.contract.operands().iter();
     let operands: Vec<String> =
-        found.operands.iter().map(|(name, raw)| format!("{name}=#{raw}")).collect();
+        operands.map(|it| format!("{}=#{}", it.name, found.operands[&it.name])).collect();
     tables::print_line(&format!(
         "  {} is {} for {:.4} at {}",
         found.output,

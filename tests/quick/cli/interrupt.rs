@@ -169,9 +169,36 @@ fn every_command_ends_with_its_tools() {
     }
 }
 
+/// A device of few faults, so that those of the netlist are soon done, and those of the Verilog begin.
+const NARROW: &str = "device = \"cosine-power\"
+power = 2
+cosine.fraction = 8
+intensity.fraction = 6
+exponent.bits = 2
+colour.bits = 1
+domain = { exponent_min = 2, exponent_max = 3 }
+";
+
+#[test]
+fn what_faults_of_the_verilog_are_shown_to_ends() {
+    let place = with_endless(&["iverilog", "vvp", "verilator", "yosys"]);
+    place.write("core.toml", NARROW);
+    for signal in [Signal::INT, Signal::TERM] {
+        let arguments = ["mutate", "core.toml", "--full", "--out", "records"];
+        fs::create_dir_all(place.at("records")).expect("a directory");
+        let mut run = Running::start(&place, &arguments);
+        run.until("two sleeping children", |run| {
+            run.processes().iter().filter(|name| *name == "sleep").count() >= 3
+        });
+        run.end(signal, if signal == Signal::INT { 130 } else { 143 });
+    }
+}
+
 #[test]
 fn what_needs_no_tool_ends_too() {
-    for arguments in [&["mutate", "core.toml"][..], &["cosim", "core.toml", "--exhaustive"]] {
+    let worst = ["worst", "core.toml", "--starts", "1e9", "--out", "records"];
+    let commands = [&["mutate", "core.toml"][..], &["cosim", "core.toml", "--exhaustive"], &worst];
+    for arguments in commands {
         let place = Place::with("core.toml", COSINE_POWER);
         let run = Running::start(&place, arguments);
         // The signals are listened to from the start of the program on.

@@ -21,3 +21,4 @@ mod schedule;
 mod synth;
 mod tune;
 mod verify;
+mod worst;
