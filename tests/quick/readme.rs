@@ -270,6 +270,11 @@ fn what_the_choices_cost() {
             "{}",
             row[0]
         );
+        let worst = &json(&format!("proofs/worst/{}.json", row[0]))["units"];
+        let said = row[5].split(' ').next().expect("an error");
+        let digits = said.split_once('.').map_or(0, |(_, digits)| digits.len());
+        let worst = worst.as_f64().expect("an error");
+        assert_eq!(said, format!("{worst:.digits$}"), "{}", row[0]);
         let record = format!("proofs/{}.json", row[0]);
         if row[5].contains(&record) {
             let together = &json(&record)["configurations"][0]["together"];
