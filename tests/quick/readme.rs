@@ -332,31 +332,38 @@ fn faults_in_the_netlists() {
     }
 }
 
+/// Whose bench misses the goal for faults in the Verilog, as docs/verification.md says.
+const SHORT_OF_GOAL: [&str; 1] = ["blinn"];
+
 /// What the shipped bench notices in a netlist, of what any check notices; of the upper bits of ROM words, and of the faults
-/// in the Verilog, no less than the goals.
+/// in the Verilog, no less than the goals, but for what is known to fall short.
 #[test]
 fn faults_that_shipped_benches_notice() {
-    let cell = |noticed: u64, of: u64, goal: f64| {
+    let cell = |noticed: u64, of: u64, reached: Option<(f64, bool)>| {
         let share = noticed as f64 / of as f64;
-        assert!(share >= goal, "{noticed} of {of}");
+        if let Some((goal, reached)) = reached {
+            assert_eq!(share >= goal, reached, "{noticed} of {of}");
+        }
         format!("{} of {} ({:.1} %)", grouped(noticed), grouped(of), 100.0 * share)
     };
-    let tallied = |tally: &Value, goal: f64| match tally.is_null() {
+    let tallied = |tally: &Value, reached: Option<(f64, bool)>| match tally.is_null() {
         true => "—".to_owned(),
         false => {
             let [noticed, missed] = ["shipped", "missed"].map(|count| number(&tally[count]));
-            cell(noticed, noticed + missed, goal)
+            cell(noticed, noticed + missed, reached)
         }
     };
     let rows = table("docs/verification.md", "| shipped bench | netlist |");
     for row in &rows {
         let record = json(&format!("mutation/{}.json", row[0]));
         let netlist = &record["netlist"];
-        assert_eq!(row[1], tallied(&netlist["all"], 0.0), "{}", row[0]);
-        assert_eq!(row[2], tallied(&netlist["kinds"]["rom-high-bit"], GOAL_MEMORY), "{}", row[0]);
+        assert_eq!(row[1], tallied(&netlist["all"], None), "{}", row[0]);
+        let memory = tallied(&netlist["kinds"]["rom-high-bit"], Some((GOAL_MEMORY, true)));
+        assert_eq!(row[2], memory, "{}", row[0]);
         let [noticed, of] =
             ["noticed", "of"].map(|count| number(&record["verilog"]["shipped"][count]));
-        assert_eq!(row[3], cell(noticed, of, GOAL_TEXT), "{}", row[0]);
+        let reached = !SHORT_OF_GOAL.contains(&row[0].as_str());
+        assert_eq!(row[3], cell(noticed, of, Some((GOAL_TEXT, reached))), "{}", row[0]);
     }
     assert_eq!(rows.len(), Registry::catalogue().devices().len());
 }

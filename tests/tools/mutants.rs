@@ -19,7 +19,7 @@ use serde_json::Value;
 const NETLIST_FAULTS: usize = 500;
 
 /// Faults of the Verilog that are planted of each device.
-const TEXT_FAULTS: usize = 8;
+const TEXT_FAULTS: usize = 4;
 
 /// Of the faults that are proved equivalent, about so many a device are given another test.
 const PROVED: usize = 40;
