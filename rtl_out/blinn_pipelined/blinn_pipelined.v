@@ -4,7 +4,7 @@
 //
 // Source: Seeds 000 to 002, the function that all devices approximate
 //
-// Pipeline: a point every clock, its results 17 clocks later; stages for 130 MHz on ecp5. While
+// Pipeline: a point every clock, its results 19 clocks later; stages for 130 MHz on ecp5. While
 // out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
@@ -94,9 +94,11 @@ module blinn_pipelined #(
     reg  valid_s15;  // stage 15 has a point
     reg  valid_s16;  // stage 16 has a point
     reg  valid_s17;  // stage 17 has a point
+    reg  valid_s18;  // stage 18 has a point
+    reg  valid_s19;  // stage 19 has a point
 
-    assign out_valid = valid_s17;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s17;  // every point moves on by a stage
+    assign out_valid = valid_s19;  // the results are on the outputs
+    wire advance = out_ready | ~valid_s19;  // every point moves on by a stage
     assign in_ready = advance;  // a point that is offered is taken in this clock
 
     always @(posedge clk) begin
@@ -118,6 +120,8 @@ module blinn_pipelined #(
             valid_s15 <= 1'b0;
             valid_s16 <= 1'b0;
             valid_s17 <= 1'b0;
+            valid_s18 <= 1'b0;
+            valid_s19 <= 1'b0;
         end else if (advance) begin
             valid_s1 <= in_valid;
             valid_s2 <= valid_s1;
@@ -136,6 +140,8 @@ module blinn_pipelined #(
             valid_s15 <= valid_s14;
             valid_s16 <= valid_s15;
             valid_s17 <= valid_s16;
+            valid_s18 <= valid_s17;
+            valid_s19 <= valid_s18;
         end
     end
 
@@ -145,11 +151,14 @@ module blinn_pipelined #(
     reg  [7:0]  red_s1;            // intensity of the light times k_s
     reg  [7:0]  green_s1;          // intensity of the light times k_s
     reg  [7:0]  blue_s1;           // intensity of the light times k_s
+    reg         octave_top16_s1;
 
     wire cos_gamma_over_s0 = cos_gamma[20];
 
     // u1.20: cosine of the angle between normal and half vector
     wire [20:0] cos_gamma_reg_s0 = cos_gamma_over_s0 ? COS_GAMMA_MOST : cos_gamma;
+
+    wire octave_top16_s0 = |cos_gamma_reg_s0[19:4];
 
     always @(posedge clk) begin
         if (advance) begin
@@ -158,6 +167,7 @@ module blinn_pipelined #(
             red_s1 <= red;
             green_s1 <= green;
             blue_s1 <= blue;
+            octave_top16_s1 <= octave_top16_s0;
         end
     end
 
@@ -167,18 +177,18 @@ module blinn_pipelined #(
     reg  [7:0]  green_s2;          // intensity of the light times k_s
     reg  [7:0]  blue_s2;           // intensity of the light times k_s
     reg  [19:0] octave_by8_s2;
+    reg         octave_top4_s2;
     reg         octave_free16_s2;
     reg         octave_free8_s2;
     reg         facing_s2;         // the surface faces the half vector
     reg         aligned_s2;        // cos gamma is 1.0
-
-    wire octave_top16_s1 = |cos_gamma_reg_s1[19:4];
 
     wire [19:0] octave_by16_s1 = octave_top16_s1 ? cos_gamma_reg_s1[19:0] : {cos_gamma_reg_s1[3:0],
             16'd0};
 
     wire octave_top8_s1 = |octave_by16_s1[19:12];
     wire [19:0] octave_by8_s1 = octave_top8_s1 ? octave_by16_s1 : {octave_by16_s1[11:0], 8'd0};
+    wire octave_top4_s1 = |octave_by8_s1[19:16];
     wire octave_free16_s1 = ~octave_top16_s1;
     wire octave_free8_s1 = ~octave_top8_s1;
     wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
@@ -191,6 +201,7 @@ module blinn_pipelined #(
             green_s2 <= green_s1;
             blue_s2 <= blue_s1;
             octave_by8_s2 <= octave_by8_s1;
+            octave_top4_s2 <= octave_top4_s1;
             octave_free16_s2 <= octave_free16_s1;
             octave_free8_s2 <= octave_free8_s1;
             facing_s2 <= facing_s1;
@@ -199,16 +210,18 @@ module blinn_pipelined #(
     end
 
     // Stage 2: segment of the decay addressed by cos gamma
-    reg  [9:0]  exponent_s3;  // specular exponent n
-    reg  [7:0]  red_s3;       // intensity of the light times k_s
-    reg  [7:0]  green_s3;     // intensity of the light times k_s
-    reg  [7:0]  blue_s3;      // intensity of the light times k_s
-    reg  [18:0] distance_s3;  // 1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half
-    reg  [4:0]  octave_s3;    // leading zeros of cos gamma
-    reg         facing_s3;    // the surface faces the half vector
-    reg         aligned_s3;   // cos gamma is 1.0
+    reg  [9:0]  exponent_s3;         // specular exponent n
+    reg  [7:0]  red_s3;              // intensity of the light times k_s
+    reg  [7:0]  green_s3;            // intensity of the light times k_s
+    reg  [7:0]  blue_s3;             // intensity of the light times k_s
+    reg  [18:0] distance_s3;         // 1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half
+    reg         curve_in_range3_s3;  // u is in range 3 or in one above
+    reg         curve_in_range4_s3;  // u is in range 4 or in one above
+    reg         curve_in_range1_s3;  // u is in range 1 or in one above
+    reg  [4:0]  octave_s3;           // leading zeros of cos gamma
+    reg         facing_s3;           // the surface faces the half vector
+    reg         aligned_s3;          // cos gamma is 1.0
 
-    wire octave_top4_s2 = |octave_by8_s2[19:16];
     wire [19:0] octave_by4_s2 = octave_top4_s2 ? octave_by8_s2 : {octave_by8_s2[15:0], 4'd0};
     wire octave_top2_s2 = |octave_by4_s2[19:18];
     wire [19:0] octave_by2_s2 = octave_top2_s2 ? octave_by4_s2 : {octave_by4_s2[17:0], 2'd0};
@@ -218,6 +231,9 @@ module blinn_pipelined #(
     // 1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half
     wire [18:0] distance_s2 = ~octave_by1_s2[18:0];
 
+    wire curve_in_range3_s2 = |distance_s2[18:11];  // u is in range 3 or in one above
+    wire curve_in_range4_s2 = |distance_s2[18:9];  // u is in range 4 or in one above
+    wire curve_in_range1_s2 = |distance_s2[18:15];  // u is in range 1 or in one above
     wire octave_free4_s2 = ~octave_top4_s2;
     wire octave_free2_s2 = ~octave_top2_s2;
     wire octave_free1_s2 = ~octave_top1_s2;
@@ -233,6 +249,9 @@ module blinn_pipelined #(
             green_s3 <= green_s2;
             blue_s3 <= blue_s2;
             distance_s3 <= distance_s2;
+            curve_in_range3_s3 <= curve_in_range3_s2;
+            curve_in_range4_s3 <= curve_in_range4_s2;
+            curve_in_range1_s3 <= curve_in_range1_s2;
             octave_s3 <= octave_s2;
             facing_s3 <= facing_s2;
             aligned_s3 <= aligned_s2;
@@ -251,8 +270,6 @@ module blinn_pipelined #(
     reg  [44:0] curve_word_s4;
 
     wire curve_in_range2_s3 = |distance_s3[18:13];  // u is in range 2 or in one above
-    wire curve_in_range3_s3 = |distance_s3[18:11];  // u is in range 3 or in one above
-    wire curve_in_range4_s3 = |distance_s3[18:9];  // u is in range 4 or in one above
 
     // u0.13
     wire [12:0] curve_rest4_s3 = curve_in_range4_s3 ? {distance_s3[8:0], 4'd0} : {distance_s3[7:0],
@@ -262,7 +279,6 @@ module blinn_pipelined #(
     wire [12:0] curve_rest3_s3 = curve_in_range3_s3 ? {distance_s3[9:0], 3'd0} : curve_rest4_s3;
 
     wire curve_in_range0_s3 = |distance_s3[18:17];  // u is in range 0 or in one above
-    wire curve_in_range1_s3 = |distance_s3[18:15];  // u is in range 1 or in one above
 
     // u0.13
     wire [12:0] curve_rest1_s3 = curve_in_range1_s3 ? {distance_s3[11:0], 1'b0} :
@@ -458,25 +474,18 @@ module blinn_pipelined #(
     end
 
     // Stage 9: halvings <- n * decay
-    reg  [7:0]  red_s10;              // intensity of the light times k_s
-    reg  [7:0]  green_s10;            // intensity of the light times k_s
-    reg  [7:0]  blue_s10;             // intensity of the light times k_s
-    reg         facing_s10;           // the surface faces the half vector
-    reg         decay_small_s10;      // the decay is below 1/4, and all its bits count
-    reg  [20:0] halvings_coarse_s10;  // u5.16
-    reg  [20:0] halvings_fine_s10;    // u5.16
-    reg         aligned_s10;          // cos gamma is 1.0
+    reg  [7:0]  red_s10;          // intensity of the light times k_s
+    reg  [7:0]  green_s10;        // intensity of the light times k_s
+    reg  [7:0]  blue_s10;         // intensity of the light times k_s
+    reg         facing_s10;       // the surface faces the half vector
+    reg         decay_small_s10;  // the decay is below 1/4, and all its bits count
+    reg  [33:0] product_2_s10;    // its point depends on the operands
+    reg         aligned_s10;      // cos gamma is 1.0
 
     wire [27:0] product_sum_2_s9 = product_upper_2_s9 + {18'd0, product_carried_2_s9};
 
     // its point depends on the operands
     wire [33:0] product_2_s9 = {product_sum_2_s9, product_low_bits_2_s9};
-
-    // u5.16
-    wire [20:0] halvings_coarse_s9 = (|product_2_s9[33:24]) ? 21'h1fffff : product_2_s9[23:3];
-
-    // u5.16
-    wire [20:0] halvings_fine_s9 = (|product_2_s9[33:31]) ? 21'h1fffff : product_2_s9[30:10];
 
     always @(posedge clk) begin
         if (advance) begin
@@ -485,73 +494,27 @@ module blinn_pipelined #(
             blue_s10 <= blue_s9;
             facing_s10 <= facing_s9;
             decay_small_s10 <= decay_small_s9;
-            halvings_coarse_s10 <= halvings_coarse_s9;
-            halvings_fine_s10 <= halvings_fine_s9;
+            product_2_s10 <= product_2_s9;
             aligned_s10 <= aligned_s9;
         end
     end
 
-    // Stage 10: halvings <- n * decay; tables of 2^-x addressed by the fraction; reflectance <-
-    // 2^-halvings
-    reg         [7:0]  red_s11;                      // intensity of the light times k_s
-    reg         [7:0]  green_s11;                    // intensity of the light times k_s
-    reg         [7:0]  blue_s11;                     // intensity of the light times k_s
-    reg                facing_s11;                   // the surface faces the half vector
-    reg         [20:0] halvings_s11;                 // u5.16: n*decay: how often f is half of 1.0
-    reg                exp2_bend_offset1_upper_s11;
-    reg                exp2_bend_offset2_upper_s11;
-    reg         [14:0] exp2_bend_value_word_s11;     // u-4.19
-    reg  signed [9:0]  exp2_bend_offset1_word_s11;   // s-10.19
-    reg  signed [7:0]  exp2_bend_offset2_word_s11;   // s-12.19
-    reg                peak_s11;                     // f is 1.0, less an ulp
+    // Stage 10: halvings <- n * decay
+    reg  [7:0]  red_s11;       // intensity of the light times k_s
+    reg  [7:0]  green_s11;     // intensity of the light times k_s
+    reg  [7:0]  blue_s11;      // intensity of the light times k_s
+    reg         facing_s11;    // the surface faces the half vector
+    reg  [20:0] halvings_s11;  // u5.16: n*decay: how often f is half of 1.0
+    reg         aligned_s11;   // cos gamma is 1.0
+
+    // u5.16
+    wire [20:0] halvings_coarse_s10 = (|product_2_s10[33:24]) ? 21'h1fffff : product_2_s10[23:3];
+
+    // u5.16
+    wire [20:0] halvings_fine_s10 = (|product_2_s10[33:31]) ? 21'h1fffff : product_2_s10[30:10];
 
     // u5.16: n*decay: how often f is half of 1.0
     wire [20:0] halvings_s10 = decay_small_s10 ? halvings_fine_s10 : halvings_coarse_s10;
-
-    wire exp2_bend_offset1_upper_s10 = halvings_s10[8];
-    wire exp2_bend_offset2_upper_s10 = halvings_s10[6];
-
-    // ROM exp2_bend_value: 1 - x/2 - 2^-x at the middle of each of 128 intervals of x, in units of
-    // 2^-19
-    reg [14:0] exp2_bend_value_rom [0:127];
-    initial $readmemh(EXP2_BEND_VALUE_FILE, exp2_bend_value_rom);
-    wire [14:0] exp2_bend_value_word_s10 = exp2_bend_value_rom[halvings_s10[15:9]];
-
-    wire exp2_bend_offset1_mirrored_s10 = ~halvings_s10[7];
-
-    // distance from the middle of the field
-    wire exp2_bend_offset1_distance_s10 = exp2_bend_offset1_upper_s10 ? halvings_s10[7] :
-            exp2_bend_offset1_mirrored_s10;
-
-    wire [6:0] exp2_bend_offset1_address_s10 = {halvings_s10[15:10],
-            exp2_bend_offset1_distance_s10};
-
-    // ROM exp2_bend_offset1: slope of 1 - x/2 - 2^-x over 2^-6 of x, times the distance from the
-    // middle of bits 8 to 7 of x, in units of 2^-19, less a half
-    reg [9:0] exp2_bend_offset1_rom [0:127];
-    initial $readmemh(EXP2_BEND_OFFSET1_FILE, exp2_bend_offset1_rom);
-    wire signed [9:0] exp2_bend_offset1_word_s10 =
-            exp2_bend_offset1_rom[exp2_bend_offset1_address_s10];
-
-    wire [1:0] exp2_bend_offset2_mirrored_s10 = ~halvings_s10[5:4];
-
-    // distance from the middle of the field
-    wire [1:0] exp2_bend_offset2_distance_s10 = exp2_bend_offset2_upper_s10 ? halvings_s10[5:4] :
-            exp2_bend_offset2_mirrored_s10;
-
-    wire [6:0] exp2_bend_offset2_address_s10 = {halvings_s10[15:11],
-            exp2_bend_offset2_distance_s10};
-
-    // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-5 of x, times the distance from the
-    // middle of bits 6 to 4 of x, in units of 2^-19, less a half
-    reg [7:0] exp2_bend_offset2_rom [0:127];
-    initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
-    wire signed [7:0] exp2_bend_offset2_word_s10 =
-            exp2_bend_offset2_rom[exp2_bend_offset2_address_s10];
-
-    wire fades_s10 = |halvings_s10;
-    wire level_s10 = ~fades_s10;
-    wire peak_s10 = aligned_s10 | level_s10;  // f is 1.0, less an ulp
 
     always @(posedge clk) begin
         if (advance) begin
@@ -560,12 +523,7 @@ module blinn_pipelined #(
             blue_s11 <= blue_s10;
             facing_s11 <= facing_s10;
             halvings_s11 <= halvings_s10;
-            exp2_bend_offset1_upper_s11 <= exp2_bend_offset1_upper_s10;
-            exp2_bend_offset2_upper_s11 <= exp2_bend_offset2_upper_s10;
-            exp2_bend_value_word_s11 <= exp2_bend_value_word_s10;
-            exp2_bend_offset1_word_s11 <= exp2_bend_offset1_word_s10;
-            exp2_bend_offset2_word_s11 <= exp2_bend_offset2_word_s10;
-            peak_s11 <= peak_s10;
+            aligned_s11 <= aligned_s10;
         end
     end
 
@@ -574,44 +532,63 @@ module blinn_pipelined #(
     reg         [7:0]  green_s12;                   // intensity of the light times k_s
     reg         [7:0]  blue_s12;                    // intensity of the light times k_s
     reg                facing_s12;                  // the surface faces the half vector
-    reg         [15:0] exp2_x_s12;                  // u0.16
+    reg         [20:0] halvings_s12;                // u5.16: n*decay: how often f is half of 1.0
+    reg         [14:0] exp2_bend_value_word_s12;    // u-4.19
     reg                peak_s12;                    // f is 1.0, less an ulp
-    reg                halvings_bits_2_bits_5_s12;
-    reg                halvings_bits_2_bits_4_s12;
-    reg                halvings_bits_2_bits_3_s12;
-    reg                halvings_bits_2_bits_2_s12;
-    reg                halvings_bits_2_bits_s12;
-    reg  signed [15:0] exp2_bend_offset2_sum_s12;   // s-4.19
-    // s-15.19: what the field adds, less half an ulp
-    reg  signed [4:0]  exp2_bend_offset3_term_s12;
+    // s-10.19: what the field adds, less half an ulp
+    reg  signed [9:0]  exp2_bend_offset1_term_s12;
+    // s-12.19: what the field adds, less half an ulp
+    reg  signed [7:0]  exp2_bend_offset2_term_s12;
 
-    wire [15:0] exp2_x_s11 = halvings_s11[15:0];  // u0.16
-    wire exp2_bend_offset3_upper_s11 = halvings_s11[3];
-    wire [2:0] exp2_bend_offset3_mirrored_s11 = ~halvings_s11[2:0];
+    wire exp2_bend_offset1_upper_s11 = halvings_s11[8];
+    wire exp2_bend_offset2_upper_s11 = halvings_s11[6];
+
+    // ROM exp2_bend_value: 1 - x/2 - 2^-x at the middle of each of 128 intervals of x, in units of
+    // 2^-19
+    reg [14:0] exp2_bend_value_rom [0:127];
+    initial $readmemh(EXP2_BEND_VALUE_FILE, exp2_bend_value_rom);
+    wire [14:0] exp2_bend_value_word_s11 = exp2_bend_value_rom[halvings_s11[15:9]];
+
+    wire exp2_bend_offset1_mirrored_s11 = ~halvings_s11[7];
 
     // distance from the middle of the field
-    wire [2:0] exp2_bend_offset3_distance_s11 = exp2_bend_offset3_upper_s11 ? halvings_s11[2:0] :
-            exp2_bend_offset3_mirrored_s11;
+    wire exp2_bend_offset1_distance_s11 = exp2_bend_offset1_upper_s11 ? halvings_s11[7] :
+            exp2_bend_offset1_mirrored_s11;
 
-    wire [5:0] exp2_bend_offset3_address_s11 = {halvings_s11[15:13],
-            exp2_bend_offset3_distance_s11};
+    wire [6:0] exp2_bend_offset1_address_s11 = {halvings_s11[15:10],
+            exp2_bend_offset1_distance_s11};
 
-    // ROM exp2_bend_offset3: slope of 1 - x/2 - 2^-x over 2^-3 of x, times the distance from the
-    // middle of bits 3 to 0 of x, in units of 2^-19, less a half
-    reg [4:0] exp2_bend_offset3_rom [0:63];
-    initial $readmemh(EXP2_BEND_OFFSET3_FILE, exp2_bend_offset3_rom);
-    wire signed [4:0] exp2_bend_offset3_word_s11 =
-            exp2_bend_offset3_rom[exp2_bend_offset3_address_s11];
+    // ROM exp2_bend_offset1: slope of 1 - x/2 - 2^-x over 2^-6 of x, times the distance from the
+    // middle of bits 8 to 7 of x, in units of 2^-19, less a half
+    reg [9:0] exp2_bend_offset1_rom [0:127];
+    initial $readmemh(EXP2_BEND_OFFSET1_FILE, exp2_bend_offset1_rom);
+    wire signed [9:0] exp2_bend_offset1_word_s11 =
+            exp2_bend_offset1_rom[exp2_bend_offset1_address_s11];
 
+    wire [1:0] exp2_bend_offset2_mirrored_s11 = ~halvings_s11[5:4];
+
+    // distance from the middle of the field
+    wire [1:0] exp2_bend_offset2_distance_s11 = exp2_bend_offset2_upper_s11 ? halvings_s11[5:4] :
+            exp2_bend_offset2_mirrored_s11;
+
+    wire [6:0] exp2_bend_offset2_address_s11 = {halvings_s11[15:11],
+            exp2_bend_offset2_distance_s11};
+
+    // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-5 of x, times the distance from the
+    // middle of bits 6 to 4 of x, in units of 2^-19, less a half
+    reg [7:0] exp2_bend_offset2_rom [0:127];
+    initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
+    wire signed [7:0] exp2_bend_offset2_word_s11 =
+            exp2_bend_offset2_rom[exp2_bend_offset2_address_s11];
+
+    wire fades_s11 = |halvings_s11;
+    wire level_s11 = ~fades_s11;
+    wire peak_s11 = aligned_s11 | level_s11;  // f is 1.0, less an ulp
     wire signed [9:0] exp2_bend_offset1_opposite_s11 = ~exp2_bend_offset1_word_s11;  // s-10.19
 
     // s-10.19: what the field adds, less half an ulp
     wire signed [9:0] exp2_bend_offset1_term_s11 = exp2_bend_offset1_upper_s11 ?
             exp2_bend_offset1_word_s11 : exp2_bend_offset1_opposite_s11;
-
-    // s-4.19
-    wire signed [15:0] exp2_bend_offset1_sum_s11 = {1'b0, exp2_bend_value_word_s11} +
-            {{6{exp2_bend_offset1_term_s11[9]}}, exp2_bend_offset1_term_s11};
 
     wire signed [7:0] exp2_bend_offset2_opposite_s11 = ~exp2_bend_offset2_word_s11;  // s-12.19
 
@@ -619,59 +596,67 @@ module blinn_pipelined #(
     wire signed [7:0] exp2_bend_offset2_term_s11 = exp2_bend_offset2_upper_s11 ?
             exp2_bend_offset2_word_s11 : exp2_bend_offset2_opposite_s11;
 
-    // s-4.19
-    wire signed [15:0] exp2_bend_offset2_sum_s11 = exp2_bend_offset1_sum_s11 +
-            {{8{exp2_bend_offset2_term_s11[7]}}, exp2_bend_offset2_term_s11};
-
-    wire signed [4:0] exp2_bend_offset3_opposite_s11 = ~exp2_bend_offset3_word_s11;  // s-15.19
-
-    // s-15.19: what the field adds, less half an ulp
-    wire signed [4:0] exp2_bend_offset3_term_s11 = exp2_bend_offset3_upper_s11 ?
-            exp2_bend_offset3_word_s11 : exp2_bend_offset3_opposite_s11;
-
     always @(posedge clk) begin
         if (advance) begin
             red_s12 <= red_s11;
             green_s12 <= green_s11;
             blue_s12 <= blue_s11;
             facing_s12 <= facing_s11;
-            exp2_x_s12 <= exp2_x_s11;
+            halvings_s12 <= halvings_s11;
+            exp2_bend_value_word_s12 <= exp2_bend_value_word_s11;
             peak_s12 <= peak_s11;
-            halvings_bits_2_bits_5_s12 <= halvings_s11[16];
-            halvings_bits_2_bits_4_s12 <= halvings_s11[17];
-            halvings_bits_2_bits_3_s12 <= halvings_s11[18];
-            halvings_bits_2_bits_2_s12 <= halvings_s11[19];
-            halvings_bits_2_bits_s12 <= halvings_s11[20];
-            exp2_bend_offset2_sum_s12 <= exp2_bend_offset2_sum_s11;
-            exp2_bend_offset3_term_s12 <= exp2_bend_offset3_term_s11;
+            exp2_bend_offset1_term_s12 <= exp2_bend_offset1_term_s11;
+            exp2_bend_offset2_term_s12 <= exp2_bend_offset2_term_s11;
         end
     end
 
-    // Stage 12: reflectance <- 2^-halvings
-    reg  [7:0]  red_s13;                     // intensity of the light times k_s
-    reg  [7:0]  green_s13;                   // intensity of the light times k_s
-    reg  [7:0]  blue_s13;                    // intensity of the light times k_s
-    reg         facing_s13;                  // the surface faces the half vector
-    reg         peak_s13;                    // f is 1.0, less an ulp
-    reg         halvings_bits_2_bits_5_s13;
-    reg         halvings_bits_2_bits_4_s13;
-    reg         halvings_bits_2_bits_3_s13;
-    reg         halvings_bits_2_bits_2_s13;
-    reg         halvings_bits_2_bits_s13;
-    reg  [16:0] exp2_kept_s13;               // u0.17
+    // Stage 12: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
+    reg         [7:0]  red_s13;                     // intensity of the light times k_s
+    reg         [7:0]  green_s13;                   // intensity of the light times k_s
+    reg         [7:0]  blue_s13;                    // intensity of the light times k_s
+    reg                facing_s13;                  // the surface faces the half vector
+    reg         [15:0] exp2_x_s13;                  // u0.16
+    reg                peak_s13;                    // f is 1.0, less an ulp
+    reg                halvings_bits_2_bits_5_s13;
+    reg                halvings_bits_2_bits_4_s13;
+    reg                halvings_bits_2_bits_3_s13;
+    reg                halvings_bits_2_bits_2_s13;
+    reg                halvings_bits_2_bits_s13;
+    reg  signed [15:0] exp2_bend_offset2_sum_s13;   // s-4.19
+    // s-15.19: what the field adds, less half an ulp
+    reg  signed [4:0]  exp2_bend_offset3_term_s13;
 
-    wire [15:0] exp2_inverse_s12 = ~exp2_x_s12;  // u0.16
+    wire [15:0] exp2_x_s12 = halvings_s12[15:0];  // u0.16
+    wire exp2_bend_offset3_upper_s12 = halvings_s12[3];
+    wire [2:0] exp2_bend_offset3_mirrored_s12 = ~halvings_s12[2:0];
+
+    // distance from the middle of the field
+    wire [2:0] exp2_bend_offset3_distance_s12 = exp2_bend_offset3_upper_s12 ? halvings_s12[2:0] :
+            exp2_bend_offset3_mirrored_s12;
+
+    wire [5:0] exp2_bend_offset3_address_s12 = {halvings_s12[15:13],
+            exp2_bend_offset3_distance_s12};
+
+    // ROM exp2_bend_offset3: slope of 1 - x/2 - 2^-x over 2^-3 of x, times the distance from the
+    // middle of bits 3 to 0 of x, in units of 2^-19, less a half
+    reg [4:0] exp2_bend_offset3_rom [0:63];
+    initial $readmemh(EXP2_BEND_OFFSET3_FILE, exp2_bend_offset3_rom);
+    wire signed [4:0] exp2_bend_offset3_word_s12 =
+            exp2_bend_offset3_rom[exp2_bend_offset3_address_s12];
 
     // s-4.19
-    wire signed [15:0] exp2_bend_offset3_sum_s12 = exp2_bend_offset2_sum_s12 +
-            {{11{exp2_bend_offset3_term_s12[4]}}, exp2_bend_offset3_term_s12};
+    wire signed [15:0] exp2_bend_offset1_sum_s12 = {1'b0, exp2_bend_value_word_s12} +
+            {{6{exp2_bend_offset1_term_s12[9]}}, exp2_bend_offset1_term_s12};
 
-    // u1.19: 2^-x of the fraction x
-    wire [19:0] exp2_mantissa_s12 = {2'd1, exp2_inverse_s12, 2'd0} -
-            {{4{exp2_bend_offset3_sum_s12[15]}}, exp2_bend_offset3_sum_s12};
+    // s-4.19
+    wire signed [15:0] exp2_bend_offset2_sum_s12 = exp2_bend_offset1_sum_s12 +
+            {{8{exp2_bend_offset2_term_s12[7]}}, exp2_bend_offset2_term_s12};
 
-    // u0.17
-    wire [16:0] exp2_kept_s12 = exp2_mantissa_s12[19] ? 17'h1ffff : exp2_mantissa_s12[18:2];
+    wire signed [4:0] exp2_bend_offset3_opposite_s12 = ~exp2_bend_offset3_word_s12;  // s-15.19
+
+    // s-15.19: what the field adds, less half an ulp
+    wire signed [4:0] exp2_bend_offset3_term_s12 = exp2_bend_offset3_upper_s12 ?
+            exp2_bend_offset3_word_s12 : exp2_bend_offset3_opposite_s12;
 
     always @(posedge clk) begin
         if (advance) begin
@@ -679,43 +664,41 @@ module blinn_pipelined #(
             green_s13 <= green_s12;
             blue_s13 <= blue_s12;
             facing_s13 <= facing_s12;
+            exp2_x_s13 <= exp2_x_s12;
             peak_s13 <= peak_s12;
-            halvings_bits_2_bits_5_s13 <= halvings_bits_2_bits_5_s12;
-            halvings_bits_2_bits_4_s13 <= halvings_bits_2_bits_4_s12;
-            halvings_bits_2_bits_3_s13 <= halvings_bits_2_bits_3_s12;
-            halvings_bits_2_bits_2_s13 <= halvings_bits_2_bits_2_s12;
-            halvings_bits_2_bits_s13 <= halvings_bits_2_bits_s12;
-            exp2_kept_s13 <= exp2_kept_s12;
+            halvings_bits_2_bits_5_s13 <= halvings_s12[16];
+            halvings_bits_2_bits_4_s13 <= halvings_s12[17];
+            halvings_bits_2_bits_3_s13 <= halvings_s12[18];
+            halvings_bits_2_bits_2_s13 <= halvings_s12[19];
+            halvings_bits_2_bits_s13 <= halvings_s12[20];
+            exp2_bend_offset2_sum_s13 <= exp2_bend_offset2_sum_s12;
+            exp2_bend_offset3_term_s13 <= exp2_bend_offset3_term_s12;
         end
     end
 
     // Stage 13: reflectance <- 2^-halvings
-    reg  [7:0]  red_s14;             // intensity of the light times k_s
-    reg  [7:0]  green_s14;           // intensity of the light times k_s
-    reg  [7:0]  blue_s14;            // intensity of the light times k_s
-    reg         facing_s14;          // the surface faces the half vector
-    reg         peak_s14;            // f is 1.0, less an ulp
-    reg  [16:0] exp2_shift_by1_s14;  // u0.17
+    reg  [7:0]  red_s14;                        // intensity of the light times k_s
+    reg  [7:0]  green_s14;                      // intensity of the light times k_s
+    reg  [7:0]  blue_s14;                       // intensity of the light times k_s
+    reg         facing_s14;                     // the surface faces the half vector
+    reg         peak_s14;                       // f is 1.0, less an ulp
+    reg         halvings_bits_2_bits_5_s14;
+    reg         halvings_bits_2_bits_4_s14;
+    reg         halvings_bits_2_bits_3_s14;
+    reg         halvings_bits_2_bits_2_s14;
+    reg         halvings_bits_2_bits_s14;
+    reg         exp2_mantissa_kept_bits_s14;
+    reg  [16:0] exp2_mantissa_kept_inside_s14;  // u0.17
 
-    // u0.17
-    wire [16:0] exp2_shift_by16_s13 = halvings_bits_2_bits_s13 ? {16'd0, exp2_kept_s13[16]} :
-            exp2_kept_s13;
+    wire [15:0] exp2_inverse_s13 = ~exp2_x_s13;  // u0.16
 
-    // u0.17
-    wire [16:0] exp2_shift_by8_s13 = halvings_bits_2_bits_2_s13 ? {8'd0, exp2_shift_by16_s13[16:8]}
-            : exp2_shift_by16_s13;
+    // s-4.19
+    wire signed [15:0] exp2_bend_offset3_sum_s13 = exp2_bend_offset2_sum_s13 +
+            {{11{exp2_bend_offset3_term_s13[4]}}, exp2_bend_offset3_term_s13};
 
-    // u0.17
-    wire [16:0] exp2_shift_by4_s13 = halvings_bits_2_bits_3_s13 ? {4'd0, exp2_shift_by8_s13[16:4]} :
-            exp2_shift_by8_s13;
-
-    // u0.17
-    wire [16:0] exp2_shift_by2_s13 = halvings_bits_2_bits_4_s13 ? {2'd0, exp2_shift_by4_s13[16:2]} :
-            exp2_shift_by4_s13;
-
-    // u0.17
-    wire [16:0] exp2_shift_by1_s13 = halvings_bits_2_bits_5_s13 ? {1'b0, exp2_shift_by2_s13[16:1]} :
-            exp2_shift_by2_s13;
+    // u1.19: 2^-x of the fraction x
+    wire [19:0] exp2_mantissa_s13 = {2'd1, exp2_inverse_s13, 2'd0} -
+            {{4{exp2_bend_offset3_sum_s13[15]}}, exp2_bend_offset3_sum_s13};
 
     always @(posedge clk) begin
         if (advance) begin
@@ -724,96 +707,163 @@ module blinn_pipelined #(
             blue_s14 <= blue_s13;
             facing_s14 <= facing_s13;
             peak_s14 <= peak_s13;
-            exp2_shift_by1_s14 <= exp2_shift_by1_s13;
+            halvings_bits_2_bits_5_s14 <= halvings_bits_2_bits_5_s13;
+            halvings_bits_2_bits_4_s14 <= halvings_bits_2_bits_4_s13;
+            halvings_bits_2_bits_3_s14 <= halvings_bits_2_bits_3_s13;
+            halvings_bits_2_bits_2_s14 <= halvings_bits_2_bits_2_s13;
+            halvings_bits_2_bits_s14 <= halvings_bits_2_bits_s13;
+            exp2_mantissa_kept_bits_s14 <= exp2_mantissa_s13[19];
+            exp2_mantissa_kept_inside_s14 <= exp2_mantissa_s13[18:2];
         end
     end
 
     // Stage 14: reflectance <- 2^-halvings
-    reg  [7:0]  red_s15;          // intensity of the light times k_s
-    reg  [7:0]  green_s15;        // intensity of the light times k_s
-    reg  [7:0]  blue_s15;         // intensity of the light times k_s
-    reg  [15:0] reflectance_s15;  // u0.16: f
+    reg  [7:0]  red_s15;             // intensity of the light times k_s
+    reg  [7:0]  green_s15;           // intensity of the light times k_s
+    reg  [7:0]  blue_s15;            // intensity of the light times k_s
+    reg         facing_s15;          // the surface faces the half vector
+    reg         peak_s15;            // f is 1.0, less an ulp
+    reg  [16:0] exp2_shift_by1_s15;  // u0.17
 
-    // u1.16
-    wire [16:0] exp2_rounded_nearest_s14 = {1'b0, exp2_shift_by1_s14[16:1]} + {16'd0,
-            exp2_shift_by1_s14[0]};
+    // u0.17
+    wire [16:0] exp2_kept_s14 = exp2_mantissa_kept_bits_s14 ? 17'h1ffff :
+            exp2_mantissa_kept_inside_s14;
 
-    // u0.16
-    wire [15:0] exp2_rounded_s14 = exp2_rounded_nearest_s14[16] ? 16'hffff :
-            exp2_rounded_nearest_s14[15:0];
+    // u0.17
+    wire [16:0] exp2_shift_by16_s14 = halvings_bits_2_bits_s14 ? {16'd0, exp2_kept_s14[16]} :
+            exp2_kept_s14;
 
-    wire [15:0] lit_s14 = peak_s14 ? 16'hffff : exp2_rounded_s14;  // u0.16
-    wire [15:0] reflectance_s14 = facing_s14 ? lit_s14 : 16'd0;  // u0.16: f
+    // u0.17
+    wire [16:0] exp2_shift_by8_s14 = halvings_bits_2_bits_2_s14 ? {8'd0, exp2_shift_by16_s14[16:8]}
+            : exp2_shift_by16_s14;
+
+    // u0.17
+    wire [16:0] exp2_shift_by4_s14 = halvings_bits_2_bits_3_s14 ? {4'd0, exp2_shift_by8_s14[16:4]} :
+            exp2_shift_by8_s14;
+
+    // u0.17
+    wire [16:0] exp2_shift_by2_s14 = halvings_bits_2_bits_4_s14 ? {2'd0, exp2_shift_by4_s14[16:2]} :
+            exp2_shift_by4_s14;
+
+    // u0.17
+    wire [16:0] exp2_shift_by1_s14 = halvings_bits_2_bits_5_s14 ? {1'b0, exp2_shift_by2_s14[16:1]} :
+            exp2_shift_by2_s14;
 
     always @(posedge clk) begin
         if (advance) begin
             red_s15 <= red_s14;
             green_s15 <= green_s14;
             blue_s15 <= blue_s14;
-            reflectance_s15 <= reflectance_s14;
+            facing_s15 <= facing_s14;
+            peak_s15 <= peak_s14;
+            exp2_shift_by1_s15 <= exp2_shift_by1_s14;
         end
     end
 
-    // Stage 15: result
-    reg  [15:0] reflectance_s16;         // u0.16: f
-    reg  [7:0]  red_product_kept_s16;
-    reg         red_product_bits_s16;
-    reg  [7:0]  green_product_kept_s16;
-    reg         green_product_bits_s16;
-    reg  [7:0]  blue_product_kept_s16;
-    reg         blue_product_bits_s16;
+    // Stage 15: reflectance <- 2^-halvings
+    reg  [7:0]  red_s16;     // intensity of the light times k_s
+    reg  [7:0]  green_s16;   // intensity of the light times k_s
+    reg  [7:0]  blue_s16;    // intensity of the light times k_s
+    reg         facing_s16;  // the surface faces the half vector
+    reg  [15:0] lit_s16;     // u0.16
 
-    // u8.16: an output before it is rounded
-    wire [23:0] red_product_s15 = reflectance_s15 * red_s15;
+    // u1.16
+    wire [16:0] exp2_rounded_nearest_s15 = {1'b0, exp2_shift_by1_s15[16:1]} + {16'd0,
+            exp2_shift_by1_s15[0]};
 
-    // u8.16: an output before it is rounded
-    wire [23:0] green_product_s15 = reflectance_s15 * green_s15;
+    // u0.16
+    wire [15:0] exp2_rounded_s15 = exp2_rounded_nearest_s15[16] ? 16'hffff :
+            exp2_rounded_nearest_s15[15:0];
 
-    // u8.16: an output before it is rounded
-    wire [23:0] blue_product_s15 = reflectance_s15 * blue_s15;
+    wire [15:0] lit_s15 = peak_s15 ? 16'hffff : exp2_rounded_s15;  // u0.16
 
     always @(posedge clk) begin
         if (advance) begin
-            reflectance_s16 <= reflectance_s15;
-            red_product_kept_s16 <= red_product_s15[23:16];
-            red_product_bits_s16 <= red_product_s15[15];
-            green_product_kept_s16 <= green_product_s15[23:16];
-            green_product_bits_s16 <= green_product_s15[15];
-            blue_product_kept_s16 <= blue_product_s15[23:16];
-            blue_product_bits_s16 <= blue_product_s15[15];
+            red_s16 <= red_s15;
+            green_s16 <= green_s15;
+            blue_s16 <= blue_s15;
+            facing_s16 <= facing_s15;
+            lit_s16 <= lit_s15;
         end
     end
 
-    // Stage 16: result
-    reg  [15:0] reflectance_s17;      // u0.16: f
-    reg  [7:0]  red_intensity_s17;
-    reg  [7:0]  green_intensity_s17;
-    reg  [7:0]  blue_intensity_s17;
+    // Stage 16: reflectance <- 2^-halvings
+    reg  [7:0]  red_s17;          // intensity of the light times k_s
+    reg  [7:0]  green_s17;        // intensity of the light times k_s
+    reg  [7:0]  blue_s17;         // intensity of the light times k_s
+    reg  [15:0] reflectance_s17;  // u0.16: f
 
-    wire [7:0] red_intensity_s16 = red_product_kept_s16 + {7'd0, red_product_bits_s16};
-    wire [7:0] green_intensity_s16 = green_product_kept_s16 + {7'd0, green_product_bits_s16};
-    wire [7:0] blue_intensity_s16 = blue_product_kept_s16 + {7'd0, blue_product_bits_s16};
+    wire [15:0] reflectance_s16 = facing_s16 ? lit_s16 : 16'd0;  // u0.16: f
 
     always @(posedge clk) begin
         if (advance) begin
+            red_s17 <= red_s16;
+            green_s17 <= green_s16;
+            blue_s17 <= blue_s16;
             reflectance_s17 <= reflectance_s16;
-            red_intensity_s17 <= red_intensity_s16;
-            green_intensity_s17 <= green_intensity_s16;
-            blue_intensity_s17 <= blue_intensity_s16;
+        end
+    end
+
+    // Stage 17: result
+    reg  [15:0] reflectance_s18;         // u0.16: f
+    reg  [7:0]  red_product_kept_s18;
+    reg         red_product_bits_s18;
+    reg  [7:0]  green_product_kept_s18;
+    reg         green_product_bits_s18;
+    reg  [7:0]  blue_product_kept_s18;
+    reg         blue_product_bits_s18;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] red_product_s17 = reflectance_s17 * red_s17;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] green_product_s17 = reflectance_s17 * green_s17;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] blue_product_s17 = reflectance_s17 * blue_s17;
+
+    always @(posedge clk) begin
+        if (advance) begin
+            reflectance_s18 <= reflectance_s17;
+            red_product_kept_s18 <= red_product_s17[23:16];
+            red_product_bits_s18 <= red_product_s17[15];
+            green_product_kept_s18 <= green_product_s17[23:16];
+            green_product_bits_s18 <= green_product_s17[15];
+            blue_product_kept_s18 <= blue_product_s17[23:16];
+            blue_product_bits_s18 <= blue_product_s17[15];
+        end
+    end
+
+    // Stage 18: result
+    reg  [15:0] reflectance_s19;      // u0.16: f
+    reg  [7:0]  red_intensity_s19;
+    reg  [7:0]  green_intensity_s19;
+    reg  [7:0]  blue_intensity_s19;
+
+    wire [7:0] red_intensity_s18 = red_product_kept_s18 + {7'd0, red_product_bits_s18};
+    wire [7:0] green_intensity_s18 = green_product_kept_s18 + {7'd0, green_product_bits_s18};
+    wire [7:0] blue_intensity_s18 = blue_product_kept_s18 + {7'd0, blue_product_bits_s18};
+
+    always @(posedge clk) begin
+        if (advance) begin
+            reflectance_s19 <= reflectance_s18;
+            red_intensity_s19 <= red_intensity_s18;
+            green_intensity_s19 <= green_intensity_s18;
+            blue_intensity_s19 <= blue_intensity_s18;
         end
     end
 
     // Results
 
-    assign f_out = reflectance_s17;  // u0.16: the reflectance, for a user's own multipliers
-    assign red_out = red_intensity_s17;  // intensity on the output
-    assign green_out = green_intensity_s17;  // intensity on the output
-    assign blue_out = blue_intensity_s17;  // intensity on the output
+    assign f_out = reflectance_s19;  // u0.16: the reflectance, for a user's own multipliers
+    assign red_out = red_intensity_s19;  // intensity on the output
+    assign green_out = green_intensity_s19;  // intensity on the output
+    assign blue_out = blue_intensity_s19;  // intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, octave_by1_s2[19], product_s6[10:0], product_2_s9[2:0],
-            exp2_mantissa_s12[1:0], red_product_s15[14:0], green_product_s15[14:0],
-            blue_product_s15[14:0]};
+    wire unused = &{1'b0, octave_by1_s2[19], product_s6[10:0], product_2_s10[2:0],
+            exp2_mantissa_s13[1:0], red_product_s17[14:0], green_product_s17[14:0],
+            blue_product_s17[14:0]};
 endmodule
 
 `default_nettype wire

@@ -163,19 +163,17 @@ module cosine_power_pipelined (
     end
 
     // Stage 2: accumulator <- n/m * (1 - cos gamma)
-    reg  [7:0]  red_s3;          // intensity of the light times k_s
-    reg  [7:0]  green_s3;        // intensity of the light times k_s
-    reg  [7:0]  blue_s3;         // intensity of the light times k_s
-    reg         facing_s3;       // the surface faces the half vector
-    reg  [15:0] accumulator_s3;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+    reg  [7:0]  red_s3;                       // intensity of the light times k_s
+    reg  [7:0]  green_s3;                     // intensity of the light times k_s
+    reg  [7:0]  blue_s3;                      // intensity of the light times k_s
+    reg         facing_s3;                    // the surface faces the half vector
+    reg         distance_over_s3;
+    reg  [15:0] product_view_kept_inside_s3;  // u0.16
 
     wire [27:0] product_sum_s2 = product_upper_s2 + {18'd0, product_carried_s2};
 
     // the shared product; its point depends on the operands
     wire [30:0] product_s2 = {product_sum_s2, product_low_bits_s2};
-
-    // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_s2 = (|product_s2[29:24]) ? 16'hffff : product_s2[23:8];
 
     always @(posedge clk) begin
         if (advance) begin
@@ -183,15 +181,19 @@ module cosine_power_pipelined (
             green_s3 <= green_s2;
             blue_s3 <= blue_s2;
             facing_s3 <= facing_s2;
-            accumulator_s3 <= accumulator_s2;
+            distance_over_s3 <= |product_s2[29:24];
+            product_view_kept_inside_s3 <= product_s2[23:8];
         end
     end
 
-    // Stage 3: accumulator <- base^2
+    // Stage 3: accumulator <- n/m * (1 - cos gamma); accumulator <- base^2
     reg  [7:0]  red_s4;    // intensity of the light times k_s
     reg  [7:0]  green_s4;  // intensity of the light times k_s
     reg  [7:0]  blue_s4;   // intensity of the light times k_s
     reg  [15:0] base_s4;   // u0.16: base of the power
+
+    // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+    wire [15:0] accumulator_s3 = distance_over_s3 ? 16'hffff : product_view_kept_inside_s3;
 
     wire [15:0] inverse_s3 = ~accumulator_s3;  // u0.16: 1.0 - accumulator, less an ulp
     wire [15:0] base_s3 = facing_s3 ? inverse_s3 : 16'd0;  // u0.16: base of the power

@@ -4,7 +4,7 @@
 //
 // Source: Seed 002, the fourth function that it weighs
 //
-// Pipeline: a point every clock, its results 15 clocks later; stages for 130 MHz on ecp5. While
+// Pipeline: a point every clock, its results 17 clocks later; stages for 130 MHz on ecp5. While
 // out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
@@ -90,9 +90,11 @@ module gauss_pipelined #(
     reg  valid_s13;  // stage 13 has a point
     reg  valid_s14;  // stage 14 has a point
     reg  valid_s15;  // stage 15 has a point
+    reg  valid_s16;  // stage 16 has a point
+    reg  valid_s17;  // stage 17 has a point
 
-    assign out_valid = valid_s15;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s15;  // every point moves on by a stage
+    assign out_valid = valid_s17;  // the results are on the outputs
+    wire advance = out_ready | ~valid_s17;  // every point moves on by a stage
     assign in_ready = advance;  // a point that is offered is taken in this clock
 
     always @(posedge clk) begin
@@ -112,6 +114,8 @@ module gauss_pipelined #(
             valid_s13 <= 1'b0;
             valid_s14 <= 1'b0;
             valid_s15 <= 1'b0;
+            valid_s16 <= 1'b0;
+            valid_s17 <= 1'b0;
         end else if (advance) begin
             valid_s1 <= in_valid;
             valid_s2 <= valid_s1;
@@ -128,28 +132,47 @@ module gauss_pipelined #(
             valid_s13 <= valid_s12;
             valid_s14 <= valid_s13;
             valid_s15 <= valid_s14;
+            valid_s16 <= valid_s15;
+            valid_s17 <= valid_s16;
         end
     end
 
     // Stage 0: segment of the decay addressed by cos gamma
-    reg  [20:0] cos_gamma_reg_s1;  // u1.20: cosine of the angle between normal and half vector
-    reg  [9:0]  exponent_s1;       // specular exponent n
-    reg  [7:0]  red_s1;            // intensity of the light times k_s
-    reg  [7:0]  green_s1;          // intensity of the light times k_s
-    reg  [7:0]  blue_s1;           // intensity of the light times k_s
+    reg  [9:0]  exponent_s1;         // specular exponent n
+    reg  [7:0]  red_s1;              // intensity of the light times k_s
+    reg  [7:0]  green_s1;            // intensity of the light times k_s
+    reg  [7:0]  blue_s1;             // intensity of the light times k_s
+    reg  [19:0] distance_s1;         // 1.0 - cos gamma, less an ulp
+    reg         curve_in_range3_s1;  // u is in range 3 or in one above
+    reg         curve_in_range4_s1;  // u is in range 4 or in one above
+    reg         curve_in_range1_s1;  // u is in range 1 or in one above
+    reg         facing_s1;           // the surface faces the half vector
+    reg         aligned_s1;          // cos gamma is 1.0
 
     wire cos_gamma_over_s0 = cos_gamma[20];
 
     // u1.20: cosine of the angle between normal and half vector
     wire [20:0] cos_gamma_reg_s0 = cos_gamma_over_s0 ? COS_GAMMA_MOST : cos_gamma;
 
+    wire [19:0] distance_s0 = ~cos_gamma_reg_s0[19:0];  // 1.0 - cos gamma, less an ulp
+    wire curve_in_range3_s0 = |distance_s0[19:12];  // u is in range 3 or in one above
+    wire curve_in_range4_s0 = |distance_s0[19:10];  // u is in range 4 or in one above
+    wire curve_in_range1_s0 = |distance_s0[19:16];  // u is in range 1 or in one above
+    wire facing_s0 = |cos_gamma_reg_s0;  // the surface faces the half vector
+    wire aligned_s0 = cos_gamma_reg_s0[20];  // cos gamma is 1.0
+
     always @(posedge clk) begin
         if (advance) begin
-            cos_gamma_reg_s1 <= cos_gamma_reg_s0;
             exponent_s1 <= exponent;
             red_s1 <= red;
             green_s1 <= green;
             blue_s1 <= blue;
+            distance_s1 <= distance_s0;
+            curve_in_range3_s1 <= curve_in_range3_s0;
+            curve_in_range4_s1 <= curve_in_range4_s0;
+            curve_in_range1_s1 <= curve_in_range1_s0;
+            facing_s1 <= facing_s0;
+            aligned_s1 <= aligned_s0;
         end
     end
 
@@ -163,10 +186,7 @@ module gauss_pipelined #(
     reg         aligned_s2;      // cos gamma is 1.0
     reg  [44:0] curve_word_s2;
 
-    wire [19:0] distance_s1 = ~cos_gamma_reg_s1[19:0];  // 1.0 - cos gamma, less an ulp
     wire curve_in_range2_s1 = |distance_s1[19:14];  // u is in range 2 or in one above
-    wire curve_in_range3_s1 = |distance_s1[19:12];  // u is in range 3 or in one above
-    wire curve_in_range4_s1 = |distance_s1[19:10];  // u is in range 4 or in one above
 
     // u0.14
     wire [13:0] curve_rest4_s1 = curve_in_range4_s1 ? {distance_s1[9:0], 4'd0} : {distance_s1[8:0],
@@ -176,7 +196,6 @@ module gauss_pipelined #(
     wire [13:0] curve_rest3_s1 = curve_in_range3_s1 ? {distance_s1[10:0], 3'd0} : curve_rest4_s1;
 
     wire curve_in_range0_s1 = |distance_s1[19:18];  // u is in range 0 or in one above
-    wire curve_in_range1_s1 = |distance_s1[19:16];  // u is in range 1 or in one above
 
     // u0.14
     wire [13:0] curve_rest1_s1 = curve_in_range1_s1 ? {distance_s1[12:0], 1'b0} :
@@ -184,7 +203,6 @@ module gauss_pipelined #(
 
     wire [13:0] curve_rest0_s1 = curve_in_range0_s1 ? distance_s1[13:0] : curve_rest1_s1;  // u0.14
     wire [13:0] curve_rest2_s1 = curve_in_range2_s1 ? curve_rest0_s1 : curve_rest3_s1;  // u0.14
-    wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
 
     wire [6:0] curve_word4_s1 = curve_in_range4_s1 ? {5'd0, distance_s1[11:10]} : {6'd32,
             distance_s1[9]};
@@ -196,7 +214,6 @@ module gauss_pipelined #(
 
     wire [6:0] curve_word0_s1 = curve_in_range0_s1 ? {1'b0, distance_s1[19:14]} : curve_word1_s1;
     wire [6:0] curve_word2_s1 = curve_in_range2_s1 ? curve_word0_s1 : curve_word3_s1;
-    wire aligned_s1 = cos_gamma_reg_s1[20];  // cos gamma is 1.0
 
     // ROM curve: value at the start of a segment (u0.26), then its rise over the segment in units
     // of 2^-24 (19 bits)
@@ -355,25 +372,18 @@ module gauss_pipelined #(
     end
 
     // Stage 7: halvings <- n * decay
-    reg  [7:0]  red_s8;              // intensity of the light times k_s
-    reg  [7:0]  green_s8;            // intensity of the light times k_s
-    reg  [7:0]  blue_s8;             // intensity of the light times k_s
-    reg         facing_s8;           // the surface faces the half vector
-    reg         decay_small_s8;      // the decay is below 1/4, and all its bits count
-    reg  [20:0] halvings_coarse_s8;  // u5.16
-    reg  [20:0] halvings_fine_s8;    // u5.16
-    reg         aligned_s8;          // cos gamma is 1.0
+    reg  [7:0]  red_s8;          // intensity of the light times k_s
+    reg  [7:0]  green_s8;        // intensity of the light times k_s
+    reg  [7:0]  blue_s8;         // intensity of the light times k_s
+    reg         facing_s8;       // the surface faces the half vector
+    reg         decay_small_s8;  // the decay is below 1/4, and all its bits count
+    reg  [33:0] product_2_s8;    // its point depends on the operands
+    reg         aligned_s8;      // cos gamma is 1.0
 
     wire [27:0] product_sum_2_s7 = product_upper_2_s7 + {18'd0, product_lower_s7[15:6]};
 
     // its point depends on the operands
     wire [33:0] product_2_s7 = {product_sum_2_s7, product_lower_s7[5:0]};
-
-    // u5.16
-    wire [20:0] halvings_coarse_s7 = (|product_2_s7[33:28]) ? 21'h1fffff : product_2_s7[27:7];
-
-    // u5.16
-    wire [20:0] halvings_fine_s7 = (|product_2_s7[33:30]) ? 21'h1fffff : product_2_s7[29:9];
 
     always @(posedge clk) begin
         if (advance) begin
@@ -382,71 +392,27 @@ module gauss_pipelined #(
             blue_s8 <= blue_s7;
             facing_s8 <= facing_s7;
             decay_small_s8 <= decay_small_s7;
-            halvings_coarse_s8 <= halvings_coarse_s7;
-            halvings_fine_s8 <= halvings_fine_s7;
+            product_2_s8 <= product_2_s7;
             aligned_s8 <= aligned_s7;
         end
     end
 
-    // Stage 8: halvings <- n * decay; tables of 2^-x addressed by the fraction; reflectance <-
-    // 2^-halvings
-    reg         [7:0]  red_s9;                      // intensity of the light times k_s
-    reg         [7:0]  green_s9;                    // intensity of the light times k_s
-    reg         [7:0]  blue_s9;                     // intensity of the light times k_s
-    reg                facing_s9;                   // the surface faces the half vector
-    reg         [20:0] halvings_s9;                 // u5.16: n*decay: how often f is half of 1.0
-    reg                exp2_bend_offset1_upper_s9;
-    reg                exp2_bend_offset2_upper_s9;
-    reg         [14:0] exp2_bend_value_word_s9;     // u-4.19
-    reg  signed [9:0]  exp2_bend_offset1_word_s9;   // s-10.19
-    reg  signed [7:0]  exp2_bend_offset2_word_s9;   // s-12.19
-    reg                peak_s9;                     // f is 1.0, less an ulp
+    // Stage 8: halvings <- n * decay
+    reg  [7:0]  red_s9;       // intensity of the light times k_s
+    reg  [7:0]  green_s9;     // intensity of the light times k_s
+    reg  [7:0]  blue_s9;      // intensity of the light times k_s
+    reg         facing_s9;    // the surface faces the half vector
+    reg  [20:0] halvings_s9;  // u5.16: n*decay: how often f is half of 1.0
+    reg         aligned_s9;   // cos gamma is 1.0
+
+    // u5.16
+    wire [20:0] halvings_coarse_s8 = (|product_2_s8[33:28]) ? 21'h1fffff : product_2_s8[27:7];
+
+    // u5.16
+    wire [20:0] halvings_fine_s8 = (|product_2_s8[33:30]) ? 21'h1fffff : product_2_s8[29:9];
 
     // u5.16: n*decay: how often f is half of 1.0
     wire [20:0] halvings_s8 = decay_small_s8 ? halvings_fine_s8 : halvings_coarse_s8;
-
-    wire exp2_bend_offset1_upper_s8 = halvings_s8[8];
-    wire exp2_bend_offset2_upper_s8 = halvings_s8[6];
-
-    // ROM exp2_bend_value: 1 - x/2 - 2^-x at the middle of each of 128 intervals of x, in units of
-    // 2^-19
-    reg [14:0] exp2_bend_value_rom [0:127];
-    initial $readmemh(EXP2_BEND_VALUE_FILE, exp2_bend_value_rom);
-    wire [14:0] exp2_bend_value_word_s8 = exp2_bend_value_rom[halvings_s8[15:9]];
-
-    wire exp2_bend_offset1_mirrored_s8 = ~halvings_s8[7];
-
-    // distance from the middle of the field
-    wire exp2_bend_offset1_distance_s8 = exp2_bend_offset1_upper_s8 ? halvings_s8[7] :
-            exp2_bend_offset1_mirrored_s8;
-
-    wire [6:0] exp2_bend_offset1_address_s8 = {halvings_s8[15:10], exp2_bend_offset1_distance_s8};
-
-    // ROM exp2_bend_offset1: slope of 1 - x/2 - 2^-x over 2^-6 of x, times the distance from the
-    // middle of bits 8 to 7 of x, in units of 2^-19, less a half
-    reg [9:0] exp2_bend_offset1_rom [0:127];
-    initial $readmemh(EXP2_BEND_OFFSET1_FILE, exp2_bend_offset1_rom);
-    wire signed [9:0] exp2_bend_offset1_word_s8 =
-            exp2_bend_offset1_rom[exp2_bend_offset1_address_s8];
-
-    wire [1:0] exp2_bend_offset2_mirrored_s8 = ~halvings_s8[5:4];
-
-    // distance from the middle of the field
-    wire [1:0] exp2_bend_offset2_distance_s8 = exp2_bend_offset2_upper_s8 ? halvings_s8[5:4] :
-            exp2_bend_offset2_mirrored_s8;
-
-    wire [6:0] exp2_bend_offset2_address_s8 = {halvings_s8[15:11], exp2_bend_offset2_distance_s8};
-
-    // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-5 of x, times the distance from the
-    // middle of bits 6 to 4 of x, in units of 2^-19, less a half
-    reg [7:0] exp2_bend_offset2_rom [0:127];
-    initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
-    wire signed [7:0] exp2_bend_offset2_word_s8 =
-            exp2_bend_offset2_rom[exp2_bend_offset2_address_s8];
-
-    wire fades_s8 = |halvings_s8;
-    wire level_s8 = ~fades_s8;
-    wire peak_s8 = aligned_s8 | level_s8;  // f is 1.0, less an ulp
 
     always @(posedge clk) begin
         if (advance) begin
@@ -455,12 +421,7 @@ module gauss_pipelined #(
             blue_s9 <= blue_s8;
             facing_s9 <= facing_s8;
             halvings_s9 <= halvings_s8;
-            exp2_bend_offset1_upper_s9 <= exp2_bend_offset1_upper_s8;
-            exp2_bend_offset2_upper_s9 <= exp2_bend_offset2_upper_s8;
-            exp2_bend_value_word_s9 <= exp2_bend_value_word_s8;
-            exp2_bend_offset1_word_s9 <= exp2_bend_offset1_word_s8;
-            exp2_bend_offset2_word_s9 <= exp2_bend_offset2_word_s8;
-            peak_s9 <= peak_s8;
+            aligned_s9 <= aligned_s8;
         end
     end
 
@@ -469,44 +430,61 @@ module gauss_pipelined #(
     reg         [7:0]  green_s10;                   // intensity of the light times k_s
     reg         [7:0]  blue_s10;                    // intensity of the light times k_s
     reg                facing_s10;                  // the surface faces the half vector
+    reg         [20:0] halvings_s10;                // u5.16: n*decay: how often f is half of 1.0
+    reg         [14:0] exp2_bend_value_word_s10;    // u-4.19
     reg                peak_s10;                    // f is 1.0, less an ulp
-    reg                halvings_bits_2_bits_5_s10;
-    reg                halvings_bits_2_bits_4_s10;
-    reg                halvings_bits_2_bits_3_s10;
-    reg                halvings_bits_2_bits_2_s10;
-    reg                halvings_bits_2_bits_s10;
-    reg         [15:0] exp2_inverse_s10;            // u0.16
-    reg  signed [15:0] exp2_bend_offset2_sum_s10;   // s-4.19
-    // s-15.19: what the field adds, less half an ulp
-    reg  signed [4:0]  exp2_bend_offset3_term_s10;
+    // s-10.19: what the field adds, less half an ulp
+    reg  signed [9:0]  exp2_bend_offset1_term_s10;
+    // s-12.19: what the field adds, less half an ulp
+    reg  signed [7:0]  exp2_bend_offset2_term_s10;
 
-    wire [15:0] exp2_x_s9 = halvings_s9[15:0];  // u0.16
-    wire exp2_bend_offset3_upper_s9 = halvings_s9[3];
-    wire [2:0] exp2_bend_offset3_mirrored_s9 = ~halvings_s9[2:0];
+    wire exp2_bend_offset1_upper_s9 = halvings_s9[8];
+    wire exp2_bend_offset2_upper_s9 = halvings_s9[6];
+
+    // ROM exp2_bend_value: 1 - x/2 - 2^-x at the middle of each of 128 intervals of x, in units of
+    // 2^-19
+    reg [14:0] exp2_bend_value_rom [0:127];
+    initial $readmemh(EXP2_BEND_VALUE_FILE, exp2_bend_value_rom);
+    wire [14:0] exp2_bend_value_word_s9 = exp2_bend_value_rom[halvings_s9[15:9]];
+
+    wire exp2_bend_offset1_mirrored_s9 = ~halvings_s9[7];
 
     // distance from the middle of the field
-    wire [2:0] exp2_bend_offset3_distance_s9 = exp2_bend_offset3_upper_s9 ? halvings_s9[2:0] :
-            exp2_bend_offset3_mirrored_s9;
+    wire exp2_bend_offset1_distance_s9 = exp2_bend_offset1_upper_s9 ? halvings_s9[7] :
+            exp2_bend_offset1_mirrored_s9;
 
-    wire [5:0] exp2_bend_offset3_address_s9 = {halvings_s9[15:13], exp2_bend_offset3_distance_s9};
+    wire [6:0] exp2_bend_offset1_address_s9 = {halvings_s9[15:10], exp2_bend_offset1_distance_s9};
 
-    // ROM exp2_bend_offset3: slope of 1 - x/2 - 2^-x over 2^-3 of x, times the distance from the
-    // middle of bits 3 to 0 of x, in units of 2^-19, less a half
-    reg [4:0] exp2_bend_offset3_rom [0:63];
-    initial $readmemh(EXP2_BEND_OFFSET3_FILE, exp2_bend_offset3_rom);
-    wire signed [4:0] exp2_bend_offset3_word_s9 =
-            exp2_bend_offset3_rom[exp2_bend_offset3_address_s9];
+    // ROM exp2_bend_offset1: slope of 1 - x/2 - 2^-x over 2^-6 of x, times the distance from the
+    // middle of bits 8 to 7 of x, in units of 2^-19, less a half
+    reg [9:0] exp2_bend_offset1_rom [0:127];
+    initial $readmemh(EXP2_BEND_OFFSET1_FILE, exp2_bend_offset1_rom);
+    wire signed [9:0] exp2_bend_offset1_word_s9 =
+            exp2_bend_offset1_rom[exp2_bend_offset1_address_s9];
 
-    wire [15:0] exp2_inverse_s9 = ~exp2_x_s9;  // u0.16
+    wire [1:0] exp2_bend_offset2_mirrored_s9 = ~halvings_s9[5:4];
+
+    // distance from the middle of the field
+    wire [1:0] exp2_bend_offset2_distance_s9 = exp2_bend_offset2_upper_s9 ? halvings_s9[5:4] :
+            exp2_bend_offset2_mirrored_s9;
+
+    wire [6:0] exp2_bend_offset2_address_s9 = {halvings_s9[15:11], exp2_bend_offset2_distance_s9};
+
+    // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-5 of x, times the distance from the
+    // middle of bits 6 to 4 of x, in units of 2^-19, less a half
+    reg [7:0] exp2_bend_offset2_rom [0:127];
+    initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
+    wire signed [7:0] exp2_bend_offset2_word_s9 =
+            exp2_bend_offset2_rom[exp2_bend_offset2_address_s9];
+
+    wire fades_s9 = |halvings_s9;
+    wire level_s9 = ~fades_s9;
+    wire peak_s9 = aligned_s9 | level_s9;  // f is 1.0, less an ulp
     wire signed [9:0] exp2_bend_offset1_opposite_s9 = ~exp2_bend_offset1_word_s9;  // s-10.19
 
     // s-10.19: what the field adds, less half an ulp
     wire signed [9:0] exp2_bend_offset1_term_s9 = exp2_bend_offset1_upper_s9 ?
             exp2_bend_offset1_word_s9 : exp2_bend_offset1_opposite_s9;
-
-    // s-4.19
-    wire signed [15:0] exp2_bend_offset1_sum_s9 = {1'b0, exp2_bend_value_word_s9} +
-            {{6{exp2_bend_offset1_term_s9[9]}}, exp2_bend_offset1_term_s9};
 
     wire signed [7:0] exp2_bend_offset2_opposite_s9 = ~exp2_bend_offset2_word_s9;  // s-12.19
 
@@ -514,57 +492,69 @@ module gauss_pipelined #(
     wire signed [7:0] exp2_bend_offset2_term_s9 = exp2_bend_offset2_upper_s9 ?
             exp2_bend_offset2_word_s9 : exp2_bend_offset2_opposite_s9;
 
-    // s-4.19
-    wire signed [15:0] exp2_bend_offset2_sum_s9 = exp2_bend_offset1_sum_s9 +
-            {{8{exp2_bend_offset2_term_s9[7]}}, exp2_bend_offset2_term_s9};
-
-    wire signed [4:0] exp2_bend_offset3_opposite_s9 = ~exp2_bend_offset3_word_s9;  // s-15.19
-
-    // s-15.19: what the field adds, less half an ulp
-    wire signed [4:0] exp2_bend_offset3_term_s9 = exp2_bend_offset3_upper_s9 ?
-            exp2_bend_offset3_word_s9 : exp2_bend_offset3_opposite_s9;
-
     always @(posedge clk) begin
         if (advance) begin
             red_s10 <= red_s9;
             green_s10 <= green_s9;
             blue_s10 <= blue_s9;
             facing_s10 <= facing_s9;
+            halvings_s10 <= halvings_s9;
+            exp2_bend_value_word_s10 <= exp2_bend_value_word_s9;
             peak_s10 <= peak_s9;
-            halvings_bits_2_bits_5_s10 <= halvings_s9[16];
-            halvings_bits_2_bits_4_s10 <= halvings_s9[17];
-            halvings_bits_2_bits_3_s10 <= halvings_s9[18];
-            halvings_bits_2_bits_2_s10 <= halvings_s9[19];
-            halvings_bits_2_bits_s10 <= halvings_s9[20];
-            exp2_inverse_s10 <= exp2_inverse_s9;
-            exp2_bend_offset2_sum_s10 <= exp2_bend_offset2_sum_s9;
-            exp2_bend_offset3_term_s10 <= exp2_bend_offset3_term_s9;
+            exp2_bend_offset1_term_s10 <= exp2_bend_offset1_term_s9;
+            exp2_bend_offset2_term_s10 <= exp2_bend_offset2_term_s9;
         end
     end
 
-    // Stage 10: reflectance <- 2^-halvings
-    reg  [7:0]  red_s11;                     // intensity of the light times k_s
-    reg  [7:0]  green_s11;                   // intensity of the light times k_s
-    reg  [7:0]  blue_s11;                    // intensity of the light times k_s
-    reg         facing_s11;                  // the surface faces the half vector
-    reg         peak_s11;                    // f is 1.0, less an ulp
-    reg         halvings_bits_2_bits_5_s11;
-    reg         halvings_bits_2_bits_4_s11;
-    reg         halvings_bits_2_bits_3_s11;
-    reg         halvings_bits_2_bits_2_s11;
-    reg         halvings_bits_2_bits_s11;
-    reg  [16:0] exp2_kept_s11;               // u0.17
+    // Stage 10: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
+    reg         [7:0]  red_s11;                     // intensity of the light times k_s
+    reg         [7:0]  green_s11;                   // intensity of the light times k_s
+    reg         [7:0]  blue_s11;                    // intensity of the light times k_s
+    reg                facing_s11;                  // the surface faces the half vector
+    reg                peak_s11;                    // f is 1.0, less an ulp
+    reg                halvings_bits_2_bits_5_s11;
+    reg                halvings_bits_2_bits_4_s11;
+    reg                halvings_bits_2_bits_3_s11;
+    reg                halvings_bits_2_bits_2_s11;
+    reg                halvings_bits_2_bits_s11;
+    reg         [15:0] exp2_inverse_s11;            // u0.16
+    reg  signed [15:0] exp2_bend_offset2_sum_s11;   // s-4.19
+    // s-15.19: what the field adds, less half an ulp
+    reg  signed [4:0]  exp2_bend_offset3_term_s11;
+
+    wire [15:0] exp2_x_s10 = halvings_s10[15:0];  // u0.16
+    wire exp2_bend_offset3_upper_s10 = halvings_s10[3];
+    wire [2:0] exp2_bend_offset3_mirrored_s10 = ~halvings_s10[2:0];
+
+    // distance from the middle of the field
+    wire [2:0] exp2_bend_offset3_distance_s10 = exp2_bend_offset3_upper_s10 ? halvings_s10[2:0] :
+            exp2_bend_offset3_mirrored_s10;
+
+    wire [5:0] exp2_bend_offset3_address_s10 = {halvings_s10[15:13],
+            exp2_bend_offset3_distance_s10};
+
+    // ROM exp2_bend_offset3: slope of 1 - x/2 - 2^-x over 2^-3 of x, times the distance from the
+    // middle of bits 3 to 0 of x, in units of 2^-19, less a half
+    reg [4:0] exp2_bend_offset3_rom [0:63];
+    initial $readmemh(EXP2_BEND_OFFSET3_FILE, exp2_bend_offset3_rom);
+    wire signed [4:0] exp2_bend_offset3_word_s10 =
+            exp2_bend_offset3_rom[exp2_bend_offset3_address_s10];
+
+    wire [15:0] exp2_inverse_s10 = ~exp2_x_s10;  // u0.16
 
     // s-4.19
-    wire signed [15:0] exp2_bend_offset3_sum_s10 = exp2_bend_offset2_sum_s10 +
-            {{11{exp2_bend_offset3_term_s10[4]}}, exp2_bend_offset3_term_s10};
+    wire signed [15:0] exp2_bend_offset1_sum_s10 = {1'b0, exp2_bend_value_word_s10} +
+            {{6{exp2_bend_offset1_term_s10[9]}}, exp2_bend_offset1_term_s10};
 
-    // u1.19: 2^-x of the fraction x
-    wire [19:0] exp2_mantissa_s10 = {2'd1, exp2_inverse_s10, 2'd0} -
-            {{4{exp2_bend_offset3_sum_s10[15]}}, exp2_bend_offset3_sum_s10};
+    // s-4.19
+    wire signed [15:0] exp2_bend_offset2_sum_s10 = exp2_bend_offset1_sum_s10 +
+            {{8{exp2_bend_offset2_term_s10[7]}}, exp2_bend_offset2_term_s10};
 
-    // u0.17
-    wire [16:0] exp2_kept_s10 = exp2_mantissa_s10[19] ? 17'h1ffff : exp2_mantissa_s10[18:2];
+    wire signed [4:0] exp2_bend_offset3_opposite_s10 = ~exp2_bend_offset3_word_s10;  // s-15.19
+
+    // s-15.19: what the field adds, less half an ulp
+    wire signed [4:0] exp2_bend_offset3_term_s10 = exp2_bend_offset3_upper_s10 ?
+            exp2_bend_offset3_word_s10 : exp2_bend_offset3_opposite_s10;
 
     always @(posedge clk) begin
         if (advance) begin
@@ -573,43 +563,38 @@ module gauss_pipelined #(
             blue_s11 <= blue_s10;
             facing_s11 <= facing_s10;
             peak_s11 <= peak_s10;
-            halvings_bits_2_bits_5_s11 <= halvings_bits_2_bits_5_s10;
-            halvings_bits_2_bits_4_s11 <= halvings_bits_2_bits_4_s10;
-            halvings_bits_2_bits_3_s11 <= halvings_bits_2_bits_3_s10;
-            halvings_bits_2_bits_2_s11 <= halvings_bits_2_bits_2_s10;
-            halvings_bits_2_bits_s11 <= halvings_bits_2_bits_s10;
-            exp2_kept_s11 <= exp2_kept_s10;
+            halvings_bits_2_bits_5_s11 <= halvings_s10[16];
+            halvings_bits_2_bits_4_s11 <= halvings_s10[17];
+            halvings_bits_2_bits_3_s11 <= halvings_s10[18];
+            halvings_bits_2_bits_2_s11 <= halvings_s10[19];
+            halvings_bits_2_bits_s11 <= halvings_s10[20];
+            exp2_inverse_s11 <= exp2_inverse_s10;
+            exp2_bend_offset2_sum_s11 <= exp2_bend_offset2_sum_s10;
+            exp2_bend_offset3_term_s11 <= exp2_bend_offset3_term_s10;
         end
     end
 
     // Stage 11: reflectance <- 2^-halvings
-    reg  [7:0]  red_s12;                  // intensity of the light times k_s
-    reg  [7:0]  green_s12;                // intensity of the light times k_s
-    reg  [7:0]  blue_s12;                 // intensity of the light times k_s
-    reg         facing_s12;               // the surface faces the half vector
-    reg         peak_s12;                 // f is 1.0, less an ulp
-    reg  [15:0] exp2_shift_by1_kept_s12;  // u0.16
-    reg         exp2_shift_by1_bits_s12;
+    reg  [7:0]  red_s12;                        // intensity of the light times k_s
+    reg  [7:0]  green_s12;                      // intensity of the light times k_s
+    reg  [7:0]  blue_s12;                       // intensity of the light times k_s
+    reg         facing_s12;                     // the surface faces the half vector
+    reg         peak_s12;                       // f is 1.0, less an ulp
+    reg         halvings_bits_2_bits_5_s12;
+    reg         halvings_bits_2_bits_4_s12;
+    reg         halvings_bits_2_bits_3_s12;
+    reg         halvings_bits_2_bits_2_s12;
+    reg         halvings_bits_2_bits_s12;
+    reg         exp2_mantissa_kept_bits_s12;
+    reg  [16:0] exp2_mantissa_kept_inside_s12;  // u0.17
 
-    // u0.17
-    wire [16:0] exp2_shift_by16_s11 = halvings_bits_2_bits_s11 ? {16'd0, exp2_kept_s11[16]} :
-            exp2_kept_s11;
+    // s-4.19
+    wire signed [15:0] exp2_bend_offset3_sum_s11 = exp2_bend_offset2_sum_s11 +
+            {{11{exp2_bend_offset3_term_s11[4]}}, exp2_bend_offset3_term_s11};
 
-    // u0.17
-    wire [16:0] exp2_shift_by8_s11 = halvings_bits_2_bits_2_s11 ? {8'd0, exp2_shift_by16_s11[16:8]}
-            : exp2_shift_by16_s11;
-
-    // u0.17
-    wire [16:0] exp2_shift_by4_s11 = halvings_bits_2_bits_3_s11 ? {4'd0, exp2_shift_by8_s11[16:4]} :
-            exp2_shift_by8_s11;
-
-    // u0.17
-    wire [16:0] exp2_shift_by2_s11 = halvings_bits_2_bits_4_s11 ? {2'd0, exp2_shift_by4_s11[16:2]} :
-            exp2_shift_by4_s11;
-
-    // u0.17
-    wire [16:0] exp2_shift_by1_s11 = halvings_bits_2_bits_5_s11 ? {1'b0, exp2_shift_by2_s11[16:1]} :
-            exp2_shift_by2_s11;
+    // u1.19: 2^-x of the fraction x
+    wire [19:0] exp2_mantissa_s11 = {2'd1, exp2_inverse_s11, 2'd0} -
+            {{4{exp2_bend_offset3_sum_s11[15]}}, exp2_bend_offset3_sum_s11};
 
     always @(posedge clk) begin
         if (advance) begin
@@ -618,96 +603,164 @@ module gauss_pipelined #(
             blue_s12 <= blue_s11;
             facing_s12 <= facing_s11;
             peak_s12 <= peak_s11;
-            exp2_shift_by1_kept_s12 <= exp2_shift_by1_s11[16:1];
-            exp2_shift_by1_bits_s12 <= exp2_shift_by1_s11[0];
+            halvings_bits_2_bits_5_s12 <= halvings_bits_2_bits_5_s11;
+            halvings_bits_2_bits_4_s12 <= halvings_bits_2_bits_4_s11;
+            halvings_bits_2_bits_3_s12 <= halvings_bits_2_bits_3_s11;
+            halvings_bits_2_bits_2_s12 <= halvings_bits_2_bits_2_s11;
+            halvings_bits_2_bits_s12 <= halvings_bits_2_bits_s11;
+            exp2_mantissa_kept_bits_s12 <= exp2_mantissa_s11[19];
+            exp2_mantissa_kept_inside_s12 <= exp2_mantissa_s11[18:2];
         end
     end
 
     // Stage 12: reflectance <- 2^-halvings
-    reg  [7:0]  red_s13;          // intensity of the light times k_s
-    reg  [7:0]  green_s13;        // intensity of the light times k_s
-    reg  [7:0]  blue_s13;         // intensity of the light times k_s
-    reg  [15:0] reflectance_s13;  // u0.16: f
+    reg  [7:0]  red_s13;                  // intensity of the light times k_s
+    reg  [7:0]  green_s13;                // intensity of the light times k_s
+    reg  [7:0]  blue_s13;                 // intensity of the light times k_s
+    reg         facing_s13;               // the surface faces the half vector
+    reg         peak_s13;                 // f is 1.0, less an ulp
+    reg  [15:0] exp2_shift_by1_kept_s13;  // u0.16
+    reg         exp2_shift_by1_bits_s13;
 
-    // u1.16
-    wire [16:0] exp2_rounded_nearest_s12 = {1'b0, exp2_shift_by1_kept_s12} + {16'd0,
-            exp2_shift_by1_bits_s12};
+    // u0.17
+    wire [16:0] exp2_kept_s12 = exp2_mantissa_kept_bits_s12 ? 17'h1ffff :
+            exp2_mantissa_kept_inside_s12;
 
-    // u0.16
-    wire [15:0] exp2_rounded_s12 = exp2_rounded_nearest_s12[16] ? 16'hffff :
-            exp2_rounded_nearest_s12[15:0];
+    // u0.17
+    wire [16:0] exp2_shift_by16_s12 = halvings_bits_2_bits_s12 ? {16'd0, exp2_kept_s12[16]} :
+            exp2_kept_s12;
 
-    wire [15:0] lit_s12 = peak_s12 ? 16'hffff : exp2_rounded_s12;  // u0.16
-    wire [15:0] reflectance_s12 = facing_s12 ? lit_s12 : 16'd0;  // u0.16: f
+    // u0.17
+    wire [16:0] exp2_shift_by8_s12 = halvings_bits_2_bits_2_s12 ? {8'd0, exp2_shift_by16_s12[16:8]}
+            : exp2_shift_by16_s12;
+
+    // u0.17
+    wire [16:0] exp2_shift_by4_s12 = halvings_bits_2_bits_3_s12 ? {4'd0, exp2_shift_by8_s12[16:4]} :
+            exp2_shift_by8_s12;
+
+    // u0.17
+    wire [16:0] exp2_shift_by2_s12 = halvings_bits_2_bits_4_s12 ? {2'd0, exp2_shift_by4_s12[16:2]} :
+            exp2_shift_by4_s12;
+
+    // u0.17
+    wire [16:0] exp2_shift_by1_s12 = halvings_bits_2_bits_5_s12 ? {1'b0, exp2_shift_by2_s12[16:1]} :
+            exp2_shift_by2_s12;
 
     always @(posedge clk) begin
         if (advance) begin
             red_s13 <= red_s12;
             green_s13 <= green_s12;
             blue_s13 <= blue_s12;
-            reflectance_s13 <= reflectance_s12;
+            facing_s13 <= facing_s12;
+            peak_s13 <= peak_s12;
+            exp2_shift_by1_kept_s13 <= exp2_shift_by1_s12[16:1];
+            exp2_shift_by1_bits_s13 <= exp2_shift_by1_s12[0];
         end
     end
 
-    // Stage 13: result
-    reg  [15:0] reflectance_s14;         // u0.16: f
-    reg  [7:0]  red_product_kept_s14;
-    reg         red_product_bits_s14;
-    reg  [7:0]  green_product_kept_s14;
-    reg         green_product_bits_s14;
-    reg  [7:0]  blue_product_kept_s14;
-    reg         blue_product_bits_s14;
+    // Stage 13: reflectance <- 2^-halvings
+    reg  [7:0]  red_s14;     // intensity of the light times k_s
+    reg  [7:0]  green_s14;   // intensity of the light times k_s
+    reg  [7:0]  blue_s14;    // intensity of the light times k_s
+    reg         facing_s14;  // the surface faces the half vector
+    reg  [15:0] lit_s14;     // u0.16
 
-    // u8.16: an output before it is rounded
-    wire [23:0] red_product_s13 = reflectance_s13 * red_s13;
+    // u1.16
+    wire [16:0] exp2_rounded_nearest_s13 = {1'b0, exp2_shift_by1_kept_s13} + {16'd0,
+            exp2_shift_by1_bits_s13};
 
-    // u8.16: an output before it is rounded
-    wire [23:0] green_product_s13 = reflectance_s13 * green_s13;
+    // u0.16
+    wire [15:0] exp2_rounded_s13 = exp2_rounded_nearest_s13[16] ? 16'hffff :
+            exp2_rounded_nearest_s13[15:0];
 
-    // u8.16: an output before it is rounded
-    wire [23:0] blue_product_s13 = reflectance_s13 * blue_s13;
+    wire [15:0] lit_s13 = peak_s13 ? 16'hffff : exp2_rounded_s13;  // u0.16
 
     always @(posedge clk) begin
         if (advance) begin
-            reflectance_s14 <= reflectance_s13;
-            red_product_kept_s14 <= red_product_s13[23:16];
-            red_product_bits_s14 <= red_product_s13[15];
-            green_product_kept_s14 <= green_product_s13[23:16];
-            green_product_bits_s14 <= green_product_s13[15];
-            blue_product_kept_s14 <= blue_product_s13[23:16];
-            blue_product_bits_s14 <= blue_product_s13[15];
+            red_s14 <= red_s13;
+            green_s14 <= green_s13;
+            blue_s14 <= blue_s13;
+            facing_s14 <= facing_s13;
+            lit_s14 <= lit_s13;
         end
     end
 
-    // Stage 14: result
-    reg  [15:0] reflectance_s15;      // u0.16: f
-    reg  [7:0]  red_intensity_s15;
-    reg  [7:0]  green_intensity_s15;
-    reg  [7:0]  blue_intensity_s15;
+    // Stage 14: reflectance <- 2^-halvings
+    reg  [7:0]  red_s15;          // intensity of the light times k_s
+    reg  [7:0]  green_s15;        // intensity of the light times k_s
+    reg  [7:0]  blue_s15;         // intensity of the light times k_s
+    reg  [15:0] reflectance_s15;  // u0.16: f
 
-    wire [7:0] red_intensity_s14 = red_product_kept_s14 + {7'd0, red_product_bits_s14};
-    wire [7:0] green_intensity_s14 = green_product_kept_s14 + {7'd0, green_product_bits_s14};
-    wire [7:0] blue_intensity_s14 = blue_product_kept_s14 + {7'd0, blue_product_bits_s14};
+    wire [15:0] reflectance_s14 = facing_s14 ? lit_s14 : 16'd0;  // u0.16: f
 
     always @(posedge clk) begin
         if (advance) begin
+            red_s15 <= red_s14;
+            green_s15 <= green_s14;
+            blue_s15 <= blue_s14;
             reflectance_s15 <= reflectance_s14;
-            red_intensity_s15 <= red_intensity_s14;
-            green_intensity_s15 <= green_intensity_s14;
-            blue_intensity_s15 <= blue_intensity_s14;
+        end
+    end
+
+    // Stage 15: result
+    reg  [15:0] reflectance_s16;         // u0.16: f
+    reg  [7:0]  red_product_kept_s16;
+    reg         red_product_bits_s16;
+    reg  [7:0]  green_product_kept_s16;
+    reg         green_product_bits_s16;
+    reg  [7:0]  blue_product_kept_s16;
+    reg         blue_product_bits_s16;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] red_product_s15 = reflectance_s15 * red_s15;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] green_product_s15 = reflectance_s15 * green_s15;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] blue_product_s15 = reflectance_s15 * blue_s15;
+
+    always @(posedge clk) begin
+        if (advance) begin
+            reflectance_s16 <= reflectance_s15;
+            red_product_kept_s16 <= red_product_s15[23:16];
+            red_product_bits_s16 <= red_product_s15[15];
+            green_product_kept_s16 <= green_product_s15[23:16];
+            green_product_bits_s16 <= green_product_s15[15];
+            blue_product_kept_s16 <= blue_product_s15[23:16];
+            blue_product_bits_s16 <= blue_product_s15[15];
+        end
+    end
+
+    // Stage 16: result
+    reg  [15:0] reflectance_s17;      // u0.16: f
+    reg  [7:0]  red_intensity_s17;
+    reg  [7:0]  green_intensity_s17;
+    reg  [7:0]  blue_intensity_s17;
+
+    wire [7:0] red_intensity_s16 = red_product_kept_s16 + {7'd0, red_product_bits_s16};
+    wire [7:0] green_intensity_s16 = green_product_kept_s16 + {7'd0, green_product_bits_s16};
+    wire [7:0] blue_intensity_s16 = blue_product_kept_s16 + {7'd0, blue_product_bits_s16};
+
+    always @(posedge clk) begin
+        if (advance) begin
+            reflectance_s17 <= reflectance_s16;
+            red_intensity_s17 <= red_intensity_s16;
+            green_intensity_s17 <= green_intensity_s16;
+            blue_intensity_s17 <= blue_intensity_s16;
         end
     end
 
     // Results
 
-    assign f_out = reflectance_s15;  // u0.16: the reflectance, for a user's own multipliers
-    assign red_out = red_intensity_s15;  // intensity on the output
-    assign green_out = green_intensity_s15;  // intensity on the output
-    assign blue_out = blue_intensity_s15;  // intensity on the output
+    assign f_out = reflectance_s17;  // u0.16: the reflectance, for a user's own multipliers
+    assign red_out = red_intensity_s17;  // intensity on the output
+    assign green_out = green_intensity_s17;  // intensity on the output
+    assign blue_out = blue_intensity_s17;  // intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, product_s4[11:0], product_2_s7[6:0], exp2_mantissa_s10[1:0],
-            red_product_s13[14:0], green_product_s13[14:0], blue_product_s13[14:0]};
+    wire unused = &{1'b0, product_s4[11:0], product_2_s8[6:0], exp2_mantissa_s11[1:0],
+            red_product_s15[14:0], green_product_s15[14:0], blue_product_s15[14:0]};
 endmodule
 
 `default_nettype wire

@@ -139,7 +139,8 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 0: operands cos gamma, cos dgamma; sine of gamma addressed
+    // Stage 0: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma; 11 <- cos
+    // gamma * cos dgamma
     // register 1, u1.20: cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s1;
     // register 2, u1.20: cosine of the angle by which the normal is perturbed
@@ -150,6 +151,8 @@ module rough_pipelined #(
     reg  [7:0]  red_s1;              // register 5: intensity of the light times k_s
     reg  [7:0]  green_s1;            // register 6: intensity of the light times k_s
     reg  [7:0]  blue_s1;             // register 7: intensity of the light times k_s
+    reg  [20:0] complement_s1;       // u1.20: 1.0 - cos
+    reg  [20:0] complement_2_s1;     // u1.20: 1.0 - cos
 
     wire cos_gamma_over_s0 = cos_gamma[20];
 
@@ -161,6 +164,9 @@ module rough_pipelined #(
     // mux 2, u1.20: cosine of the angle by which the normal is perturbed
     wire [20:0] cos_dgamma_reg_s0 = cos_dgamma_over_s0 ? COS_GAMMA_MOST : cos_dgamma;
 
+    wire [20:0] complement_s0 = COS_GAMMA_MOST - cos_gamma_reg_s0;  // u1.20: 1.0 - cos
+    wire [20:0] complement_2_s0 = COS_GAMMA_MOST - cos_dgamma_reg_s0;  // u1.20: 1.0 - cos
+
     always @(posedge clk) begin
         if (advance) begin
             cos_gamma_reg_s1 <= cos_gamma_reg_s0;
@@ -170,6 +176,8 @@ module rough_pipelined #(
             red_s1 <= red;
             green_s1 <= green;
             blue_s1 <= blue;
+            complement_s1 <= complement_s0;
+            complement_2_s1 <= complement_2_s0;
         end
     end
 
@@ -181,19 +189,77 @@ module rough_pipelined #(
     reg  [7:0]  red_s2;                          // register 5: intensity of the light times k_s
     reg  [7:0]  green_s2;                        // register 6: intensity of the light times k_s
     reg  [7:0]  blue_s2;                         // register 7: intensity of the light times k_s
-    reg  [20:0] complement_s2;                   // u1.20: 1.0 - cos
-    reg         sine_in_range8_s2;               // u is in range 8 or in one above
+    reg         sine_in_range4_s2;               // u is in range 4 or in one above
+    reg  [13:0] sine_rest6_s2;                   // u0.14
+    reg  [13:0] sine_rest1_s2;                   // u0.14
     reg         facing_s2;                       // the surface faces the half vector
+    reg  [9:0]  sine_word6_s2;
+    reg  [9:0]  sine_word1_s2;
     reg  [35:0] multiplier10_upper_upper_s2;     // register 10
     reg  [2:0]  multiplier10_upper_low_bits_s2;  // register 10
     reg  [17:0] multiplier10_upper_carried_s2;   // register 10
     reg  [23:0] multiplier10_rows_2_s2;          // register 10
-    reg  [20:0] complement_2_s2;                 // u1.20: 1.0 - cos
-    reg         sine_in_range8_2_s2;             // u is in range 8 or in one above
+    reg         sine_in_range4_2_s2;             // u is in range 4 or in one above
+    reg  [13:0] sine_rest6_2_s2;                 // u0.14
+    reg  [13:0] sine_rest1_2_s2;                 // u0.14
+    reg  [9:0]  sine_word6_2_s2;
+    reg  [9:0]  sine_word1_2_s2;
 
-    wire [20:0] complement_s1 = COS_GAMMA_MOST - cos_gamma_reg_s1;  // u1.20: 1.0 - cos
+    wire sine_in_range4_s1 = |complement_s1[20:10];  // u is in range 4 or in one above
+    wire sine_in_range6_s1 = |complement_s1[20:6];  // u is in range 6 or in one above
+    wire sine_in_range7_s1 = |complement_s1[20:4];  // u is in range 7 or in one above
     wire sine_in_range8_s1 = |complement_s1[20:2];  // u is in range 8 or in one above
+    wire [13:0] sine_rest8_s1 = sine_in_range8_s1 ? {complement_s1[1:0], 12'd0} : 14'd0;  // u0.14
+
+    // u0.14
+    wire [13:0] sine_rest7_s1 = sine_in_range7_s1 ? {complement_s1[2:0], 11'd0} : sine_rest8_s1;
+
+    wire sine_in_range5_s1 = |complement_s1[20:8];  // u is in range 5 or in one above
+
+    // u0.14
+    wire [13:0] sine_rest5_s1 = sine_in_range5_s1 ? {complement_s1[5:0], 8'd0} :
+            {complement_s1[4:0], 9'd0};
+
+    wire [13:0] sine_rest6_s1 = sine_in_range6_s1 ? sine_rest5_s1 : sine_rest7_s1;  // u0.14
+    wire sine_in_range1_s1 = |complement_s1[20:16];  // u is in range 1 or in one above
+    wire sine_in_range2_s1 = |complement_s1[20:14];  // u is in range 2 or in one above
+    wire sine_in_range3_s1 = |complement_s1[20:12];  // u is in range 3 or in one above
+
+    // u0.14
+    wire [13:0] sine_rest3_s1 = sine_in_range3_s1 ? {complement_s1[7:0], 6'd0} :
+            {complement_s1[6:0], 7'd0};
+
+    // u0.14
+    wire [13:0] sine_rest2_s1 = sine_in_range2_s1 ? {complement_s1[8:0], 5'd0} : sine_rest3_s1;
+
+    wire sine_in_range0_s1 = |complement_s1[20:18];  // u is in range 0 or in one above
+
+    // u0.14
+    wire [13:0] sine_rest0_s1 = sine_in_range0_s1 ? complement_s1[13:0] : {complement_s1[9:0],
+            4'd0};
+
+    wire [13:0] sine_rest1_s1 = sine_in_range1_s1 ? sine_rest0_s1 : sine_rest2_s1;  // u0.14
     wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
+
+    wire [9:0] sine_word8_s1 = sine_in_range8_s1 ? {8'd144, complement_s1[3:2]} : {8'd145,
+            complement_s1[1:0]};
+
+    wire [9:0] sine_word7_s1 = sine_in_range7_s1 ? {7'd71, complement_s1[5:3]} : sine_word8_s1;
+
+    wire [9:0] sine_word5_s1 = sine_in_range5_s1 ? {6'd34, complement_s1[9:6]} : {7'd70,
+            complement_s1[7:5]};
+
+    wire [9:0] sine_word6_s1 = sine_in_range6_s1 ? sine_word5_s1 : sine_word7_s1;
+
+    wire [9:0] sine_word3_s1 = sine_in_range3_s1 ? {4'd7, complement_s1[13:8]} : {5'd16,
+            complement_s1[11:7]};
+
+    wire [9:0] sine_word2_s1 = sine_in_range2_s1 ? {3'd2, complement_s1[15:9]} : sine_word3_s1;
+
+    wire [8:0] sine_word0_s1 = sine_in_range0_s1 ? {3'd6, complement_s1[19:14]} : {1'b0,
+            complement_s1[17:10]};
+
+    wire [9:0] sine_word1_s1 = sine_in_range1_s1 ? {1'b0, sine_word0_s1} : sine_word2_s1;
 
     // multiplier 10
     wire [35:0] multiplier10_upper_upper_s1 = cos_dgamma_reg_s1[20:3] * cos_gamma_reg_s1[20:3];
@@ -228,8 +294,66 @@ module rough_pipelined #(
     wire [23:0] multiplier10_rows_2_s1 = {1'b0, multiplier10_rows_s1} + {1'b0,
             multiplier10_row_7_s1, 2'd0};
 
-    wire [20:0] complement_2_s1 = COS_GAMMA_MOST - cos_dgamma_reg_s1;  // u1.20: 1.0 - cos
+    wire sine_in_range4_2_s1 = |complement_2_s1[20:10];  // u is in range 4 or in one above
+    wire sine_in_range6_2_s1 = |complement_2_s1[20:6];  // u is in range 6 or in one above
+    wire sine_in_range7_2_s1 = |complement_2_s1[20:4];  // u is in range 7 or in one above
     wire sine_in_range8_2_s1 = |complement_2_s1[20:2];  // u is in range 8 or in one above
+
+    // u0.14
+    wire [13:0] sine_rest8_2_s1 = sine_in_range8_2_s1 ? {complement_2_s1[1:0], 12'd0} : 14'd0;
+
+    // u0.14
+    wire [13:0] sine_rest7_2_s1 = sine_in_range7_2_s1 ? {complement_2_s1[2:0], 11'd0} :
+            sine_rest8_2_s1;
+
+    wire sine_in_range5_2_s1 = |complement_2_s1[20:8];  // u is in range 5 or in one above
+
+    // u0.14
+    wire [13:0] sine_rest5_2_s1 = sine_in_range5_2_s1 ? {complement_2_s1[5:0], 8'd0} :
+            {complement_2_s1[4:0], 9'd0};
+
+    wire [13:0] sine_rest6_2_s1 = sine_in_range6_2_s1 ? sine_rest5_2_s1 : sine_rest7_2_s1;  // u0.14
+    wire sine_in_range1_2_s1 = |complement_2_s1[20:16];  // u is in range 1 or in one above
+    wire sine_in_range2_2_s1 = |complement_2_s1[20:14];  // u is in range 2 or in one above
+    wire sine_in_range3_2_s1 = |complement_2_s1[20:12];  // u is in range 3 or in one above
+
+    // u0.14
+    wire [13:0] sine_rest3_2_s1 = sine_in_range3_2_s1 ? {complement_2_s1[7:0], 6'd0} :
+            {complement_2_s1[6:0], 7'd0};
+
+    // u0.14
+    wire [13:0] sine_rest2_2_s1 = sine_in_range2_2_s1 ? {complement_2_s1[8:0], 5'd0} :
+            sine_rest3_2_s1;
+
+    wire sine_in_range0_2_s1 = |complement_2_s1[20:18];  // u is in range 0 or in one above
+
+    // u0.14
+    wire [13:0] sine_rest0_2_s1 = sine_in_range0_2_s1 ? complement_2_s1[13:0] :
+            {complement_2_s1[9:0], 4'd0};
+
+    wire [13:0] sine_rest1_2_s1 = sine_in_range1_2_s1 ? sine_rest0_2_s1 : sine_rest2_2_s1;  // u0.14
+
+    wire [9:0] sine_word8_2_s1 = sine_in_range8_2_s1 ? {8'd144, complement_2_s1[3:2]} : {8'd145,
+            complement_2_s1[1:0]};
+
+    wire [9:0] sine_word7_2_s1 = sine_in_range7_2_s1 ? {7'd71, complement_2_s1[5:3]} :
+            sine_word8_2_s1;
+
+    wire [9:0] sine_word5_2_s1 = sine_in_range5_2_s1 ? {6'd34, complement_2_s1[9:6]} : {7'd70,
+            complement_2_s1[7:5]};
+
+    wire [9:0] sine_word6_2_s1 = sine_in_range6_2_s1 ? sine_word5_2_s1 : sine_word7_2_s1;
+
+    wire [9:0] sine_word3_2_s1 = sine_in_range3_2_s1 ? {4'd7, complement_2_s1[13:8]} : {5'd16,
+            complement_2_s1[11:7]};
+
+    wire [9:0] sine_word2_2_s1 = sine_in_range2_2_s1 ? {3'd2, complement_2_s1[15:9]} :
+            sine_word3_2_s1;
+
+    wire [8:0] sine_word0_2_s1 = sine_in_range0_2_s1 ? {3'd6, complement_2_s1[19:14]} : {1'b0,
+            complement_2_s1[17:10]};
+
+    wire [9:0] sine_word1_2_s1 = sine_in_range1_2_s1 ? {1'b0, sine_word0_2_s1} : sine_word2_2_s1;
 
     always @(posedge clk) begin
         if (advance) begin
@@ -238,15 +362,21 @@ module rough_pipelined #(
             red_s2 <= red_s1;
             green_s2 <= green_s1;
             blue_s2 <= blue_s1;
-            complement_s2 <= complement_s1;
-            sine_in_range8_s2 <= sine_in_range8_s1;
+            sine_in_range4_s2 <= sine_in_range4_s1;
+            sine_rest6_s2 <= sine_rest6_s1;
+            sine_rest1_s2 <= sine_rest1_s1;
             facing_s2 <= facing_s1;
+            sine_word6_s2 <= sine_word6_s1;
+            sine_word1_s2 <= sine_word1_s1;
             multiplier10_upper_upper_s2 <= multiplier10_upper_upper_s1;
             multiplier10_upper_low_bits_s2 <= multiplier10_upper_rows_2_s1[2:0];
             multiplier10_upper_carried_s2 <= multiplier10_upper_rows_2_s1[20:3];
             multiplier10_rows_2_s2 <= multiplier10_rows_2_s1;
-            complement_2_s2 <= complement_2_s1;
-            sine_in_range8_2_s2 <= sine_in_range8_2_s1;
+            sine_in_range4_2_s2 <= sine_in_range4_2_s1;
+            sine_rest6_2_s2 <= sine_rest6_2_s1;
+            sine_rest1_2_s2 <= sine_rest1_2_s1;
+            sine_word6_2_s2 <= sine_word6_2_s1;
+            sine_word1_2_s2 <= sine_word1_2_s1;
         end
     end
 
@@ -265,60 +395,7 @@ module rough_pipelined #(
     reg  [34:0] sine_word_s3;
     reg  [34:0] sine_word_2_s3;
 
-    wire sine_in_range4_s2 = |complement_s2[20:10];  // u is in range 4 or in one above
-    wire sine_in_range6_s2 = |complement_s2[20:6];  // u is in range 6 or in one above
-    wire sine_in_range7_s2 = |complement_s2[20:4];  // u is in range 7 or in one above
-    wire [13:0] sine_rest8_s2 = sine_in_range8_s2 ? {complement_s2[1:0], 12'd0} : 14'd0;  // u0.14
-
-    // u0.14
-    wire [13:0] sine_rest7_s2 = sine_in_range7_s2 ? {complement_s2[2:0], 11'd0} : sine_rest8_s2;
-
-    wire sine_in_range5_s2 = |complement_s2[20:8];  // u is in range 5 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest5_s2 = sine_in_range5_s2 ? {complement_s2[5:0], 8'd0} :
-            {complement_s2[4:0], 9'd0};
-
-    wire [13:0] sine_rest6_s2 = sine_in_range6_s2 ? sine_rest5_s2 : sine_rest7_s2;  // u0.14
-    wire sine_in_range1_s2 = |complement_s2[20:16];  // u is in range 1 or in one above
-    wire sine_in_range2_s2 = |complement_s2[20:14];  // u is in range 2 or in one above
-    wire sine_in_range3_s2 = |complement_s2[20:12];  // u is in range 3 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest3_s2 = sine_in_range3_s2 ? {complement_s2[7:0], 6'd0} :
-            {complement_s2[6:0], 7'd0};
-
-    // u0.14
-    wire [13:0] sine_rest2_s2 = sine_in_range2_s2 ? {complement_s2[8:0], 5'd0} : sine_rest3_s2;
-
-    wire sine_in_range0_s2 = |complement_s2[20:18];  // u is in range 0 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest0_s2 = sine_in_range0_s2 ? complement_s2[13:0] : {complement_s2[9:0],
-            4'd0};
-
-    wire [13:0] sine_rest1_s2 = sine_in_range1_s2 ? sine_rest0_s2 : sine_rest2_s2;  // u0.14
     wire [13:0] sine_rest4_s2 = sine_in_range4_s2 ? sine_rest1_s2 : sine_rest6_s2;  // u0.14
-
-    wire [9:0] sine_word8_s2 = sine_in_range8_s2 ? {8'd144, complement_s2[3:2]} : {8'd145,
-            complement_s2[1:0]};
-
-    wire [9:0] sine_word7_s2 = sine_in_range7_s2 ? {7'd71, complement_s2[5:3]} : sine_word8_s2;
-
-    wire [9:0] sine_word5_s2 = sine_in_range5_s2 ? {6'd34, complement_s2[9:6]} : {7'd70,
-            complement_s2[7:5]};
-
-    wire [9:0] sine_word6_s2 = sine_in_range6_s2 ? sine_word5_s2 : sine_word7_s2;
-
-    wire [9:0] sine_word3_s2 = sine_in_range3_s2 ? {4'd7, complement_s2[13:8]} : {5'd16,
-            complement_s2[11:7]};
-
-    wire [9:0] sine_word2_s2 = sine_in_range2_s2 ? {3'd2, complement_s2[15:9]} : sine_word3_s2;
-
-    wire [8:0] sine_word0_s2 = sine_in_range0_s2 ? {3'd6, complement_s2[19:14]} : {1'b0,
-            complement_s2[17:10]};
-
-    wire [9:0] sine_word1_s2 = sine_in_range1_s2 ? {1'b0, sine_word0_s2} : sine_word2_s2;
     wire [9:0] sine_word4_s2 = sine_in_range4_s2 ? sine_word1_s2 : sine_word6_s2;
 
     // adder 10
@@ -337,66 +414,7 @@ module rough_pipelined #(
     // block 11, u1.22: cos gamma * cos dgamma
     wire [22:0] reg11_cos_cos_s2 = multiplier10_s2[40:18];
 
-    wire sine_in_range4_2_s2 = |complement_2_s2[20:10];  // u is in range 4 or in one above
-    wire sine_in_range6_2_s2 = |complement_2_s2[20:6];  // u is in range 6 or in one above
-    wire sine_in_range7_2_s2 = |complement_2_s2[20:4];  // u is in range 7 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest8_2_s2 = sine_in_range8_2_s2 ? {complement_2_s2[1:0], 12'd0} : 14'd0;
-
-    // u0.14
-    wire [13:0] sine_rest7_2_s2 = sine_in_range7_2_s2 ? {complement_2_s2[2:0], 11'd0} :
-            sine_rest8_2_s2;
-
-    wire sine_in_range5_2_s2 = |complement_2_s2[20:8];  // u is in range 5 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest5_2_s2 = sine_in_range5_2_s2 ? {complement_2_s2[5:0], 8'd0} :
-            {complement_2_s2[4:0], 9'd0};
-
-    wire [13:0] sine_rest6_2_s2 = sine_in_range6_2_s2 ? sine_rest5_2_s2 : sine_rest7_2_s2;  // u0.14
-    wire sine_in_range1_2_s2 = |complement_2_s2[20:16];  // u is in range 1 or in one above
-    wire sine_in_range2_2_s2 = |complement_2_s2[20:14];  // u is in range 2 or in one above
-    wire sine_in_range3_2_s2 = |complement_2_s2[20:12];  // u is in range 3 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest3_2_s2 = sine_in_range3_2_s2 ? {complement_2_s2[7:0], 6'd0} :
-            {complement_2_s2[6:0], 7'd0};
-
-    // u0.14
-    wire [13:0] sine_rest2_2_s2 = sine_in_range2_2_s2 ? {complement_2_s2[8:0], 5'd0} :
-            sine_rest3_2_s2;
-
-    wire sine_in_range0_2_s2 = |complement_2_s2[20:18];  // u is in range 0 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest0_2_s2 = sine_in_range0_2_s2 ? complement_2_s2[13:0] :
-            {complement_2_s2[9:0], 4'd0};
-
-    wire [13:0] sine_rest1_2_s2 = sine_in_range1_2_s2 ? sine_rest0_2_s2 : sine_rest2_2_s2;  // u0.14
     wire [13:0] sine_rest4_2_s2 = sine_in_range4_2_s2 ? sine_rest1_2_s2 : sine_rest6_2_s2;  // u0.14
-
-    wire [9:0] sine_word8_2_s2 = sine_in_range8_2_s2 ? {8'd144, complement_2_s2[3:2]} : {8'd145,
-            complement_2_s2[1:0]};
-
-    wire [9:0] sine_word7_2_s2 = sine_in_range7_2_s2 ? {7'd71, complement_2_s2[5:3]} :
-            sine_word8_2_s2;
-
-    wire [9:0] sine_word5_2_s2 = sine_in_range5_2_s2 ? {6'd34, complement_2_s2[9:6]} : {7'd70,
-            complement_2_s2[7:5]};
-
-    wire [9:0] sine_word6_2_s2 = sine_in_range6_2_s2 ? sine_word5_2_s2 : sine_word7_2_s2;
-
-    wire [9:0] sine_word3_2_s2 = sine_in_range3_2_s2 ? {4'd7, complement_2_s2[13:8]} : {5'd16,
-            complement_2_s2[11:7]};
-
-    wire [9:0] sine_word2_2_s2 = sine_in_range2_2_s2 ? {3'd2, complement_2_s2[15:9]} :
-            sine_word3_2_s2;
-
-    wire [8:0] sine_word0_2_s2 = sine_in_range0_2_s2 ? {3'd6, complement_2_s2[19:14]} : {1'b0,
-            complement_2_s2[17:10]};
-
-    wire [9:0] sine_word1_2_s2 = sine_in_range1_2_s2 ? {1'b0, sine_word0_2_s2} : sine_word2_2_s2;
     wire [9:0] sine_word4_2_s2 = sine_in_range4_2_s2 ? sine_word1_2_s2 : sine_word6_2_s2;
 
     // ROM 18: value at the start of a segment (u0.22), then its rise over the segment in units of
@@ -531,22 +549,21 @@ module rough_pipelined #(
     end
 
     // Stage 6: 12 <- sin gamma * sin dgamma
-    reg  [9:0]  exponent_s7;                    // register 3: specular exponent n
+    reg  [9:0]  exponent_s7;                   // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s7;
-    reg  [7:0]  red_s7;                         // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s7;                       // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s7;                        // register 7: intensity of the light times k_s
-    reg         facing_s7;                      // the surface faces the half vector
-    reg  [22:0] reg11_cos_cos_s7;               // register 11, u1.22: cos gamma * cos dgamma
-    reg  [35:0] multiplier10_upper_upper_2_s7;  // register 10
-    reg  [20:0] multiplier10_upper_rows_4_s7;   // register 10
-    reg  [17:0] multiplier10_upper_row_18_s7;   // register 10
-    reg  [24:0] multiplier10_rows_4_s7;         // register 10
-    reg  [21:0] multiplier10_row_18_s7;         // register 10
-
-    // multiplier 10
-    wire [35:0] multiplier10_upper_upper_2_s6 = reg19_sin_gamma_s6[21:4] * sine_value_s6[21:4];
+    reg  [7:0]  red_s7;                        // register 5: intensity of the light times k_s
+    reg  [7:0]  green_s7;                      // register 6: intensity of the light times k_s
+    reg  [7:0]  blue_s7;                       // register 7: intensity of the light times k_s
+    reg         facing_s7;                     // the surface faces the half vector
+    reg  [21:0] reg19_sin_gamma_s7;            // register 19, u0.22: sin gamma
+    reg  [22:0] reg11_cos_cos_s7;              // register 11, u1.22: cos gamma * cos dgamma
+    reg  [17:0] multiplier10_upper_bits_2_s7;  // register 10
+    reg  [19:0] multiplier10_upper_rows_3_s7;  // register 10
+    reg         multiplier10_row_9_s7;         // register 10
+    reg         multiplier10_row_11_s7;        // register 10
+    reg         multiplier10_row_14_s7;        // register 10
+    reg         multiplier10_row_17_s7;        // register 10
 
     // mux 10
     wire [17:0] multiplier10_upper_row_10_s6 = reg19_sin_gamma_s6[0] ? sine_value_s6[21:4] : 18'd0;
@@ -558,26 +575,6 @@ module rough_pipelined #(
     wire [19:0] multiplier10_upper_rows_3_s6 = {2'd0, multiplier10_upper_row_10_s6} + {1'b0,
             multiplier10_upper_row_12_s6, 1'b0};
 
-    // mux 10
-    wire [17:0] multiplier10_upper_row_15_s6 = reg19_sin_gamma_s6[2] ? sine_value_s6[21:4] : 18'd0;
-
-    // adder 10
-    wire [20:0] multiplier10_upper_rows_4_s6 = {1'b0, multiplier10_upper_rows_3_s6} + {1'b0,
-            multiplier10_upper_row_15_s6, 2'd0};
-
-    wire [21:0] multiplier10_row_10_s6 = sine_value_s6[0] ? reg19_sin_gamma_s6 : 22'd0;  // mux 10
-    wire [21:0] multiplier10_row_12_s6 = sine_value_s6[1] ? reg19_sin_gamma_s6 : 22'd0;  // mux 10
-
-    // adder 10
-    wire [23:0] multiplier10_rows_3_s6 = {2'd0, multiplier10_row_10_s6} + {1'b0,
-            multiplier10_row_12_s6, 1'b0};
-
-    wire [21:0] multiplier10_row_15_s6 = sine_value_s6[2] ? reg19_sin_gamma_s6 : 22'd0;  // mux 10
-
-    // adder 10
-    wire [24:0] multiplier10_rows_4_s6 = {1'b0, multiplier10_rows_3_s6} + {1'b0,
-            multiplier10_row_15_s6, 2'd0};
-
     always @(posedge clk) begin
         if (advance) begin
             exponent_s7 <= exponent_s6;
@@ -586,43 +583,67 @@ module rough_pipelined #(
             green_s7 <= green_s6;
             blue_s7 <= blue_s6;
             facing_s7 <= facing_s6;
+            reg19_sin_gamma_s7 <= reg19_sin_gamma_s6;
             reg11_cos_cos_s7 <= reg11_cos_cos_s6;
-            multiplier10_upper_upper_2_s7 <= multiplier10_upper_upper_2_s6;
-            multiplier10_upper_rows_4_s7 <= multiplier10_upper_rows_4_s6;
-            multiplier10_upper_row_18_s7 <= reg19_sin_gamma_s6[3] ? sine_value_s6[21:4] : 18'd0;
-            multiplier10_rows_4_s7 <= multiplier10_rows_4_s6;
-            multiplier10_row_18_s7 <= sine_value_s6[3] ? reg19_sin_gamma_s6 : 22'd0;
+            multiplier10_upper_bits_2_s7 <= sine_value_s6[21:4];
+            multiplier10_upper_rows_3_s7 <= multiplier10_upper_rows_3_s6;
+            multiplier10_row_9_s7 <= sine_value_s6[0];
+            multiplier10_row_11_s7 <= sine_value_s6[1];
+            multiplier10_row_14_s7 <= sine_value_s6[2];
+            multiplier10_row_17_s7 <= sine_value_s6[3];
         end
     end
 
     // Stage 7: 12 <- sin gamma * sin dgamma
-    reg  [9:0]  exponent_s8;                 // register 3: specular exponent n
+    reg  [9:0]  exponent_s8;                    // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s8;
-    reg  [7:0]  red_s8;                      // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s8;                    // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s8;                     // register 7: intensity of the light times k_s
-    reg         facing_s8;                   // the surface faces the half vector
-    reg  [22:0] reg11_cos_cos_s8;            // register 11, u1.22: cos gamma * cos dgamma
-    reg  [39:0] multiplier10_upper_2_s8;     // register 10
-    reg  [3:0]  multiplier10_low_bits_2_s8;  // register 10
-    reg  [21:0] multiplier10_carried_2_s8;   // register 10
+    reg  [7:0]  red_s8;                         // register 5: intensity of the light times k_s
+    reg  [7:0]  green_s8;                       // register 6: intensity of the light times k_s
+    reg  [7:0]  blue_s8;                        // register 7: intensity of the light times k_s
+    reg         facing_s8;                      // the surface faces the half vector
+    reg  [22:0] reg11_cos_cos_s8;               // register 11, u1.22: cos gamma * cos dgamma
+    reg  [35:0] multiplier10_upper_upper_2_s8;  // register 10
+    reg  [21:0] multiplier10_upper_rows_5_s8;   // register 10
+    reg  [24:0] multiplier10_rows_4_s8;         // register 10
+    reg  [21:0] multiplier10_row_18_s8;         // register 10
+
+    // multiplier 10
+    wire [35:0] multiplier10_upper_upper_2_s7 = reg19_sin_gamma_s7[21:4] *
+            multiplier10_upper_bits_2_s7;
+
+    // mux 10
+    wire [17:0] multiplier10_upper_row_15_s7 = reg19_sin_gamma_s7[2] ? multiplier10_upper_bits_2_s7
+            : 18'd0;
+
+    // adder 10
+    wire [20:0] multiplier10_upper_rows_4_s7 = {1'b0, multiplier10_upper_rows_3_s7} + {1'b0,
+            multiplier10_upper_row_15_s7, 2'd0};
+
+    // mux 10
+    wire [17:0] multiplier10_upper_row_18_s7 = reg19_sin_gamma_s7[3] ? multiplier10_upper_bits_2_s7
+            : 18'd0;
 
     // adder 10
     wire [21:0] multiplier10_upper_rows_5_s7 = {1'b0, multiplier10_upper_rows_4_s7} + {1'b0,
             multiplier10_upper_row_18_s7, 3'd0};
 
-    // adder 10
-    wire [35:0] multiplier10_upper_sum_2_s7 = multiplier10_upper_upper_2_s7 + {18'd0,
-            multiplier10_upper_rows_5_s7[21:4]};
+    // mux 10
+    wire [21:0] multiplier10_row_10_s7 = multiplier10_row_9_s7 ? reg19_sin_gamma_s7 : 22'd0;
 
-    // block 10
-    wire [39:0] multiplier10_upper_2_s7 = {multiplier10_upper_sum_2_s7,
-            multiplier10_upper_rows_5_s7[3:0]};
+    // mux 10
+    wire [21:0] multiplier10_row_12_s7 = multiplier10_row_11_s7 ? reg19_sin_gamma_s7 : 22'd0;
 
     // adder 10
-    wire [25:0] multiplier10_rows_5_s7 = {1'b0, multiplier10_rows_4_s7} + {1'b0,
-            multiplier10_row_18_s7, 3'd0};
+    wire [23:0] multiplier10_rows_3_s7 = {2'd0, multiplier10_row_10_s7} + {1'b0,
+            multiplier10_row_12_s7, 1'b0};
+
+    // mux 10
+    wire [21:0] multiplier10_row_15_s7 = multiplier10_row_14_s7 ? reg19_sin_gamma_s7 : 22'd0;
+
+    // adder 10
+    wire [24:0] multiplier10_rows_4_s7 = {1'b0, multiplier10_rows_3_s7} + {1'b0,
+            multiplier10_row_15_s7, 2'd0};
 
     always @(posedge clk) begin
         if (advance) begin
@@ -633,9 +654,10 @@ module rough_pipelined #(
             blue_s8 <= blue_s7;
             facing_s8 <= facing_s7;
             reg11_cos_cos_s8 <= reg11_cos_cos_s7;
-            multiplier10_upper_2_s8 <= multiplier10_upper_2_s7;
-            multiplier10_low_bits_2_s8 <= multiplier10_rows_5_s7[3:0];
-            multiplier10_carried_2_s8 <= multiplier10_rows_5_s7[25:4];
+            multiplier10_upper_upper_2_s8 <= multiplier10_upper_upper_2_s7;
+            multiplier10_upper_rows_5_s8 <= multiplier10_upper_rows_5_s7;
+            multiplier10_rows_4_s8 <= multiplier10_rows_4_s7;
+            multiplier10_row_18_s8 <= multiplier10_row_17_s7 ? reg19_sin_gamma_s7 : 22'd0;
         end
     end
 
@@ -651,11 +673,23 @@ module rough_pipelined #(
     reg  [21:0] reg12_sin_sin_s9;    // register 12, u0.22: sin gamma * sin dgamma
 
     // adder 10
+    wire [35:0] multiplier10_upper_sum_2_s8 = multiplier10_upper_upper_2_s8 + {18'd0,
+            multiplier10_upper_rows_5_s8[21:4]};
+
+    // block 10
+    wire [39:0] multiplier10_upper_2_s8 = {multiplier10_upper_sum_2_s8,
+            multiplier10_upper_rows_5_s8[3:0]};
+
+    // adder 10
+    wire [25:0] multiplier10_rows_5_s8 = {1'b0, multiplier10_rows_4_s8} + {1'b0,
+            multiplier10_row_18_s8, 3'd0};
+
+    // adder 10
     wire [39:0] multiplier10_sum_2_s8 = multiplier10_upper_2_s8 + {18'd0,
-            multiplier10_carried_2_s8};
+            multiplier10_rows_5_s8[25:4]};
 
     // block 10: the shared product; its point depends on the operands
-    wire [43:0] multiplier10_2_s8 = {multiplier10_sum_2_s8, multiplier10_low_bits_2_s8};
+    wire [43:0] multiplier10_2_s8 = {multiplier10_sum_2_s8, multiplier10_rows_5_s8[3:0]};
 
     // block 12, u0.22: sin gamma * sin dgamma
     wire [21:0] reg12_sin_sin_s8 = multiplier10_2_s8[43:22];
@@ -765,12 +799,11 @@ module rough_pipelined #(
     end
 
     // Stage 12: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
-    reg         [7:0]  red_s13;           // register 5: intensity of the light times k_s
-    reg         [7:0]  green_s13;         // register 6: intensity of the light times k_s
-    reg         [7:0]  blue_s13;          // register 7: intensity of the light times k_s
-    reg                facing_s13;        // the surface faces the half vector
-    // register 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
-    reg  signed [16:0] reg13_result_s13;
+    reg         [7:0]  red_s13;     // register 5: intensity of the light times k_s
+    reg         [7:0]  green_s13;   // register 6: intensity of the light times k_s
+    reg         [7:0]  blue_s13;    // register 7: intensity of the light times k_s
+    reg                facing_s13;  // the surface faces the half vector
+    reg  signed [16:0] result_s13;  // s0.16
 
     // s0.16
     wire signed [16:0] result_limited_s12 = (~multiplier10_upper_4_s12[10] &
@@ -781,25 +814,25 @@ module rough_pipelined #(
     wire signed [16:0] result_s12 = (multiplier10_upper_4_s12[10] &
             ~(&multiplier10_upper_4_s12[9:0])) ? MINUS_ONE : result_limited_s12;
 
-    // mux 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
-    wire signed [16:0] reg13_result_s12 = facing_s12 ? result_s12 : MINUS_ONE;
-
     always @(posedge clk) begin
         if (advance) begin
             red_s13 <= red_s12;
             green_s13 <= green_s12;
             blue_s13 <= blue_s12;
             facing_s13 <= facing_s12;
-            reg13_result_s13 <= reg13_result_s12;
+            result_s13 <= result_s12;
         end
     end
 
-    // Stage 13: operands adder 16, adder 16
+    // Stage 13: 13 <- n/2 * (cos(gamma +- dgamma) - 1); operands adder 16, adder 16
     reg  [7:0]  red_s14;      // register 5: intensity of the light times k_s
     reg  [7:0]  green_s14;    // register 6: intensity of the light times k_s
     reg  [7:0]  blue_s14;     // register 7: intensity of the light times k_s
     reg         facing_s14;   // the surface faces the half vector
     reg  [16:0] adder16_s14;  // register 16, u1.16: register 13 + 1.0
+
+    // mux 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
+    wire signed [16:0] reg13_result_s13 = facing_s13 ? result_s13 : MINUS_ONE;
 
     wire [16:0] adder16_s13 = reg13_result_s13 + ONE_2;  // adder 16, u1.16: register 13 + 1.0
 

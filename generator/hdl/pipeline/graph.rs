@@ -73,8 +73,6 @@ pub struct Graph {
     known: HashMap<(Cell, u32, bool), NetId>,
     /// The microinstruction that new nodes belong to.
     pub step: usize,
-    /// Multipliers, each with a node that takes the same operands and had better stand in a later stage.
-    pub apart: Vec<(NetId, NetId)>,
 }
 
 impl Graph {

