@@ -124,78 +124,49 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 0: shift_register <- 2 * shift_register
-    reg  signed [17:0] dx_s1;           // s1.16: x of N - H, normal less half vector
-    reg  signed [17:0] dy_s1;           // s1.16: y of N - H, normal less half vector
-    reg  signed [17:0] dz_s1;           // s1.16: z of N - H, normal less half vector
-    reg         [7:0]  red_s1;          // intensity of the light times k_s
-    reg         [7:0]  green_s1;        // intensity of the light times k_s
-    reg         [7:0]  blue_s1;         // intensity of the light times k_s
-    reg                more_shifts_s1;  // not the last shift
-    reg         [3:0]  remaining_s1;    // shifts, then squarings, to come
-
-    wire more_shifts_s0 = |shift;  // not the last shift
-    wire [3:0] remaining_s0 = shift - remaining_less_one;  // shifts, then squarings, to come
+    // Stage 0: values on their way
+    reg  signed [17:0] dx_s1;     // s1.16: x of N - H, normal less half vector
+    reg  signed [17:0] dy_s1;     // s1.16: y of N - H, normal less half vector
+    reg  signed [17:0] dz_s1;     // s1.16: z of N - H, normal less half vector
+    reg         [3:0]  shift_s1;  // log2 of the specular exponent n, rounded
+    reg         [7:0]  red_s1;    // intensity of the light times k_s
+    reg         [7:0]  green_s1;  // intensity of the light times k_s
+    reg         [7:0]  blue_s1;   // intensity of the light times k_s
 
     always @(posedge clk) begin
         if (advance) begin
             dx_s1 <= dx;
             dy_s1 <= dy;
             dz_s1 <= dz;
+            shift_s1 <= shift;
             red_s1 <= red;
             green_s1 <= green;
             blue_s1 <= blue;
-            more_shifts_s1 <= more_shifts_s0;
-            remaining_s1 <= remaining_s0;
         end
     end
 
-    // Stage 1: operands dx, dy, dz; shift_register <- 2 * shift_register
-    reg         [7:0]  red_s2;            // intensity of the light times k_s
-    reg         [7:0]  green_s2;          // intensity of the light times k_s
-    reg         [7:0]  blue_s2;           // intensity of the light times k_s
-    reg  signed [35:0] multiplier1_s2;    // register 1, s3.32
-    reg  signed [35:0] multiplier2_s2;    // register 2, s3.32
-    reg  signed [35:0] multiplier3_s2;    // register 3, s3.32
-    reg                more_shifts_s2;    // not the last shift
-    reg                more_shifts_3_s2;  // not the last shift
-    reg         [3:0]  remaining_5_s2;    // shifts, then squarings, to come
-    reg                more_shifts_5_s2;  // not the last shift
+    // Stage 1: operands dx, dy, dz
+    reg         [3:0]  shift_s2;        // log2 of the specular exponent n, rounded
+    reg         [7:0]  red_s2;          // intensity of the light times k_s
+    reg         [7:0]  green_s2;        // intensity of the light times k_s
+    reg         [7:0]  blue_s2;         // intensity of the light times k_s
+    reg  signed [35:0] multiplier1_s2;  // register 1, s3.32
+    reg  signed [35:0] multiplier2_s2;  // register 2, s3.32
+    reg  signed [35:0] multiplier3_s2;  // register 3, s3.32
 
     wire signed [35:0] multiplier1_s1 = dx_s1 * dx_s1;  // multiplier 1, s3.32
     wire signed [35:0] multiplier2_s1 = dy_s1 * dy_s1;  // multiplier 2, s3.32
     wire signed [35:0] multiplier3_s1 = dz_s1 * dz_s1;  // multiplier 3, s3.32
-    wire more_shifts_2_s1 = |remaining_s1;  // not the last shift
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_2_s1 = remaining_s1 - remaining_less_one;
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_3_s1 = more_shifts_s1 ? remaining_2_s1 : remaining_s1;
-
-    wire more_shifts_3_s1 = more_shifts_s1 & more_shifts_2_s1;  // not the last shift
-    wire more_shifts_4_s1 = |remaining_3_s1;  // not the last shift
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_4_s1 = remaining_3_s1 - remaining_less_one;
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_5_s1 = more_shifts_3_s1 ? remaining_4_s1 : remaining_3_s1;
-
-    wire more_shifts_5_s1 = more_shifts_3_s1 & more_shifts_4_s1;  // not the last shift
 
     always @(posedge clk) begin
         if (advance) begin
+            shift_s2 <= shift_s1;
             red_s2 <= red_s1;
             green_s2 <= green_s1;
             blue_s2 <= blue_s1;
             multiplier1_s2 <= multiplier1_s1;
             multiplier2_s2 <= multiplier2_s1;
             multiplier3_s2 <= multiplier3_s1;
-            more_shifts_s2 <= more_shifts_s1;
-            more_shifts_3_s2 <= more_shifts_3_s1;
-            remaining_5_s2 <= remaining_5_s1;
-            more_shifts_5_s2 <= more_shifts_5_s1;
         end
     end
 
@@ -205,11 +176,7 @@ module lyon_pipelined (
     reg  [7:0]  blue_s3;              // intensity of the light times k_s
     reg  [23:0] distance_rounded_s3;  // u4.20
     reg         more_shifts_s3;       // not the last shift
-    reg         more_shifts_3_s3;     // not the last shift
-    reg         more_shifts_5_s3;     // not the last shift
-    reg         more_shifts_7_s3;     // not the last shift
-    reg  [3:0]  remaining_9_s3;       // shifts, then squarings, to come
-    reg         more_shifts_9_s3;     // not the last shift
+    reg  [3:0]  remaining_s3;         // shifts, then squarings, to come
 
     // adder 1, s4.32
     wire signed [36:0] adder1_s2 = {multiplier1_s2[35], multiplier1_s2} + {multiplier2_s2[35],
@@ -219,24 +186,8 @@ module lyon_pipelined (
     wire signed [36:0] adder2_s2 = adder1_s2 + {multiplier3_s2[35], multiplier3_s2};
 
     wire [23:0] distance_rounded_s2 = adder2_s2[35:12];  // u4.20
-    wire more_shifts_6_s2 = |remaining_5_s2;  // not the last shift
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_6_s2 = remaining_5_s2 - remaining_less_one;
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_7_s2 = more_shifts_5_s2 ? remaining_6_s2 : remaining_5_s2;
-
-    wire more_shifts_7_s2 = more_shifts_5_s2 & more_shifts_6_s2;  // not the last shift
-    wire more_shifts_8_s2 = |remaining_7_s2;  // not the last shift
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_8_s2 = remaining_7_s2 - remaining_less_one;
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_9_s2 = more_shifts_7_s2 ? remaining_8_s2 : remaining_7_s2;
-
-    wire more_shifts_9_s2 = more_shifts_7_s2 & more_shifts_8_s2;  // not the last shift
+    wire more_shifts_s2 = |shift_s2;  // not the last shift
+    wire [3:0] remaining_s2 = shift_s2 - remaining_less_one;  // shifts, then squarings, to come
 
     always @(posedge clk) begin
         if (advance) begin
@@ -245,82 +196,67 @@ module lyon_pipelined (
             blue_s3 <= blue_s2;
             distance_rounded_s3 <= distance_rounded_s2;
             more_shifts_s3 <= more_shifts_s2;
-            more_shifts_3_s3 <= more_shifts_3_s2;
-            more_shifts_5_s3 <= more_shifts_5_s2;
-            more_shifts_7_s3 <= more_shifts_7_s2;
-            remaining_9_s3 <= remaining_9_s2;
-            more_shifts_9_s3 <= more_shifts_9_s2;
+            remaining_s3 <= remaining_s2;
         end
     end
 
     // Stage 3: shift_register <- 2 * shift_register
-    reg  [7:0]  red_s4;                // intensity of the light times k_s
-    reg  [7:0]  green_s4;              // intensity of the light times k_s
-    reg  [7:0]  blue_s4;               // intensity of the light times k_s
-    reg  [26:0] shift_register_10_s4;  // u1.26: beta*D^2, once it has shifted
-    reg         more_shifts_9_s4;      // not the last shift
-    reg         more_shifts_11_s4;     // not the last shift
-    reg  [3:0]  remaining_13_s4;       // shifts, then squarings, to come
-    reg         more_shifts_13_s4;     // not the last shift
+    reg  [7:0]  red_s4;               // intensity of the light times k_s
+    reg  [7:0]  green_s4;             // intensity of the light times k_s
+    reg  [7:0]  blue_s4;              // intensity of the light times k_s
+    reg  [3:0]  remaining_4_s4;       // shifts, then squarings, to come
+    reg  [26:0] shift_register_8_s4;  // u1.26: beta*D^2, once it has shifted
+    reg         more_shifts_7_s4;     // not the last shift
 
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_s3 = {2'd0, distance_rounded_s3, 1'b0};
 
+    wire more_shifts_2_s3 = |remaining_s3;  // not the last shift
+
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_3_s3 = {1'b0, distance_rounded_s3, 2'd0};
+
+    // shifts, then squarings, to come
+    wire [3:0] remaining_2_s3 = remaining_s3 - remaining_less_one;
 
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_4_s3 = more_shifts_s3 ? shift_register_3_s3 : shift_register_s3;
 
+    wire more_shifts_3_s3 = more_shifts_s3 & more_shifts_2_s3;  // not the last shift
+    wire more_shifts_4_s3 = |remaining_2_s3;  // not the last shift
+
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_5_s3 = {shift_register_4_s3[25:0], 1'b0};
 
+    // shifts, then squarings, to come
+    wire [3:0] remaining_3_s3 = remaining_2_s3 - remaining_less_one;
+
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_6_s3 = more_shifts_3_s3 ? shift_register_5_s3 : shift_register_4_s3;
+
+    wire more_shifts_5_s3 = more_shifts_3_s3 & more_shifts_4_s3;  // not the last shift
+    wire more_shifts_6_s3 = |remaining_3_s3;  // not the last shift
 
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_7_s3 = shift_register_6_s3[26] ? 27'h7ffffff :
             {shift_register_6_s3[25:0], 1'b0};
 
+    // shifts, then squarings, to come
+    wire [3:0] remaining_4_s3 = remaining_3_s3 - remaining_less_one;
+
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_8_s3 = more_shifts_5_s3 ? shift_register_7_s3 : shift_register_6_s3;
 
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_9_s3 = shift_register_8_s3[26] ? 27'h7ffffff :
-            {shift_register_8_s3[25:0], 1'b0};
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_10_s3 = more_shifts_7_s3 ? shift_register_9_s3 : shift_register_8_s3;
-
-    wire more_shifts_10_s3 = |remaining_9_s3;  // not the last shift
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_10_s3 = remaining_9_s3 - remaining_less_one;
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_11_s3 = more_shifts_9_s3 ? remaining_10_s3 : remaining_9_s3;
-
-    wire more_shifts_11_s3 = more_shifts_9_s3 & more_shifts_10_s3;  // not the last shift
-    wire more_shifts_12_s3 = |remaining_11_s3;  // not the last shift
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_12_s3 = remaining_11_s3 - remaining_less_one;
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_13_s3 = more_shifts_11_s3 ? remaining_12_s3 : remaining_11_s3;
-
-    wire more_shifts_13_s3 = more_shifts_11_s3 & more_shifts_12_s3;  // not the last shift
+    wire more_shifts_7_s3 = more_shifts_5_s3 & more_shifts_6_s3;  // not the last shift
 
     always @(posedge clk) begin
         if (advance) begin
             red_s4 <= red_s3;
             green_s4 <= green_s3;
             blue_s4 <= blue_s3;
-            shift_register_10_s4 <= shift_register_10_s3;
-            more_shifts_9_s4 <= more_shifts_9_s3;
-            more_shifts_11_s4 <= more_shifts_11_s3;
-            remaining_13_s4 <= remaining_13_s3;
-            more_shifts_13_s4 <= more_shifts_13_s3;
+            remaining_4_s4 <= remaining_4_s3;
+            shift_register_8_s4 <= shift_register_8_s3;
+            more_shifts_7_s4 <= more_shifts_7_s3;
         end
     end
 
@@ -328,63 +264,60 @@ module lyon_pipelined (
     reg  [7:0]  red_s5;                // intensity of the light times k_s
     reg  [7:0]  green_s5;              // intensity of the light times k_s
     reg  [7:0]  blue_s5;               // intensity of the light times k_s
-    reg  [26:0] shift_register_16_s5;  // u1.26: beta*D^2, once it has shifted
-    reg         more_shifts_15_s5;     // not the last shift
-    reg  [3:0]  remaining_17_s5;       // shifts, then squarings, to come
-    reg         more_shifts_17_s5;     // not the last shift
+    reg  [3:0]  remaining_7_s5;        // shifts, then squarings, to come
+    reg  [26:0] shift_register_14_s5;  // u1.26: beta*D^2, once it has shifted
+    reg         more_shifts_13_s5;     // not the last shift
+
+    wire more_shifts_8_s4 = |remaining_4_s4;  // not the last shift
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_9_s4 = shift_register_8_s4[26] ? 27'h7ffffff :
+            {shift_register_8_s4[25:0], 1'b0};
+
+    // shifts, then squarings, to come
+    wire [3:0] remaining_5_s4 = remaining_4_s4 - remaining_less_one;
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_10_s4 = more_shifts_7_s4 ? shift_register_9_s4 : shift_register_8_s4;
+
+    wire more_shifts_9_s4 = more_shifts_7_s4 & more_shifts_8_s4;  // not the last shift
+    wire more_shifts_10_s4 = |remaining_5_s4;  // not the last shift
 
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_11_s4 = shift_register_10_s4[26] ? 27'h7ffffff :
             {shift_register_10_s4[25:0], 1'b0};
 
+    // shifts, then squarings, to come
+    wire [3:0] remaining_6_s4 = remaining_5_s4 - remaining_less_one;
+
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_12_s4 = more_shifts_9_s4 ? shift_register_11_s4 :
             shift_register_10_s4;
+
+    wire more_shifts_11_s4 = more_shifts_9_s4 & more_shifts_10_s4;  // not the last shift
+    wire more_shifts_12_s4 = |remaining_6_s4;  // not the last shift
 
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_13_s4 = shift_register_12_s4[26] ? 27'h7ffffff :
             {shift_register_12_s4[25:0], 1'b0};
 
+    // shifts, then squarings, to come
+    wire [3:0] remaining_7_s4 = remaining_6_s4 - remaining_less_one;
+
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_14_s4 = more_shifts_11_s4 ? shift_register_13_s4 :
             shift_register_12_s4;
 
-    wire more_shifts_14_s4 = |remaining_13_s4;  // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_15_s4 = shift_register_14_s4[26] ? 27'h7ffffff :
-            {shift_register_14_s4[25:0], 1'b0};
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_14_s4 = remaining_13_s4 - remaining_less_one;
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_16_s4 = more_shifts_13_s4 ? shift_register_15_s4 :
-            shift_register_14_s4;
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_15_s4 = more_shifts_13_s4 ? remaining_14_s4 : remaining_13_s4;
-
-    wire more_shifts_15_s4 = more_shifts_13_s4 & more_shifts_14_s4;  // not the last shift
-    wire more_shifts_16_s4 = |remaining_15_s4;  // not the last shift
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_16_s4 = remaining_15_s4 - remaining_less_one;
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_17_s4 = more_shifts_15_s4 ? remaining_16_s4 : remaining_15_s4;
-
-    wire more_shifts_17_s4 = more_shifts_15_s4 & more_shifts_16_s4;  // not the last shift
+    wire more_shifts_13_s4 = more_shifts_11_s4 & more_shifts_12_s4;  // not the last shift
 
     always @(posedge clk) begin
         if (advance) begin
             red_s5 <= red_s4;
             green_s5 <= green_s4;
             blue_s5 <= blue_s4;
-            shift_register_16_s5 <= shift_register_16_s4;
-            more_shifts_15_s5 <= more_shifts_15_s4;
-            remaining_17_s5 <= remaining_17_s4;
-            more_shifts_17_s5 <= more_shifts_17_s4;
+            remaining_7_s5 <= remaining_7_s4;
+            shift_register_14_s5 <= shift_register_14_s4;
+            more_shifts_13_s5 <= more_shifts_13_s4;
         end
     end
 
@@ -392,61 +325,61 @@ module lyon_pipelined (
     reg  [7:0]  red_s6;                // intensity of the light times k_s
     reg  [7:0]  green_s6;              // intensity of the light times k_s
     reg  [7:0]  blue_s6;               // intensity of the light times k_s
-    reg  [26:0] shift_register_22_s6;  // u1.26: beta*D^2, once it has shifted
-    reg  [3:0]  remaining_21_s6;       // shifts, then squarings, to come
-    reg         more_shifts_21_s6;     // not the last shift
+    reg  [3:0]  remaining_10_s6;       // shifts, then squarings, to come
+    reg  [26:0] shift_register_20_s6;  // u1.26: beta*D^2, once it has shifted
+    reg         more_shifts_19_s6;     // not the last shift
+
+    wire more_shifts_14_s5 = |remaining_7_s5;  // not the last shift
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_15_s5 = shift_register_14_s5[26] ? 27'h7ffffff :
+            {shift_register_14_s5[25:0], 1'b0};
+
+    // shifts, then squarings, to come
+    wire [3:0] remaining_8_s5 = remaining_7_s5 - remaining_less_one;
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_16_s5 = more_shifts_13_s5 ? shift_register_15_s5 :
+            shift_register_14_s5;
+
+    wire more_shifts_15_s5 = more_shifts_13_s5 & more_shifts_14_s5;  // not the last shift
+    wire more_shifts_16_s5 = |remaining_8_s5;  // not the last shift
 
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_17_s5 = shift_register_16_s5[26] ? 27'h7ffffff :
             {shift_register_16_s5[25:0], 1'b0};
 
+    // shifts, then squarings, to come
+    wire [3:0] remaining_9_s5 = remaining_8_s5 - remaining_less_one;
+
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_18_s5 = more_shifts_15_s5 ? shift_register_17_s5 :
             shift_register_16_s5;
 
-    wire more_shifts_18_s5 = |remaining_17_s5;  // not the last shift
+    wire more_shifts_17_s5 = more_shifts_15_s5 & more_shifts_16_s5;  // not the last shift
+    wire more_shifts_18_s5 = |remaining_9_s5;  // not the last shift
 
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_19_s5 = shift_register_18_s5[26] ? 27'h7ffffff :
             {shift_register_18_s5[25:0], 1'b0};
 
     // shifts, then squarings, to come
-    wire [3:0] remaining_18_s5 = remaining_17_s5 - remaining_less_one;
+    wire [3:0] remaining_10_s5 = remaining_9_s5 - remaining_less_one;
 
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_20_s5 = more_shifts_17_s5 ? shift_register_19_s5 :
             shift_register_18_s5;
 
-    // shifts, then squarings, to come
-    wire [3:0] remaining_19_s5 = more_shifts_17_s5 ? remaining_18_s5 : remaining_17_s5;
-
     wire more_shifts_19_s5 = more_shifts_17_s5 & more_shifts_18_s5;  // not the last shift
-    wire more_shifts_20_s5 = |remaining_19_s5;  // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_21_s5 = shift_register_20_s5[26] ? 27'h7ffffff :
-            {shift_register_20_s5[25:0], 1'b0};
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_20_s5 = remaining_19_s5 - remaining_less_one;
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_22_s5 = more_shifts_19_s5 ? shift_register_21_s5 :
-            shift_register_20_s5;
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_21_s5 = more_shifts_19_s5 ? remaining_20_s5 : remaining_19_s5;
-
-    wire more_shifts_21_s5 = more_shifts_19_s5 & more_shifts_20_s5;  // not the last shift
 
     always @(posedge clk) begin
         if (advance) begin
             red_s6 <= red_s5;
             green_s6 <= green_s5;
             blue_s6 <= blue_s5;
-            shift_register_22_s6 <= shift_register_22_s5;
-            remaining_21_s6 <= remaining_21_s5;
-            more_shifts_21_s6 <= more_shifts_21_s5;
+            remaining_10_s6 <= remaining_10_s5;
+            shift_register_20_s6 <= shift_register_20_s5;
+            more_shifts_19_s6 <= more_shifts_19_s5;
         end
     end
 
@@ -454,61 +387,61 @@ module lyon_pipelined (
     reg  [7:0]  red_s7;                // intensity of the light times k_s
     reg  [7:0]  green_s7;              // intensity of the light times k_s
     reg  [7:0]  blue_s7;               // intensity of the light times k_s
-    reg  [3:0]  remaining_25_s7;       // shifts, then squarings, to come
+    reg  [3:0]  remaining_13_s7;       // shifts, then squarings, to come
+    reg  [26:0] shift_register_26_s7;  // u1.26: beta*D^2, once it has shifted
     reg         more_shifts_25_s7;     // not the last shift
-    reg  [26:0] shift_register_28_s7;  // u1.26: beta*D^2, once it has shifted
 
-    wire more_shifts_22_s6 = |remaining_21_s6;  // not the last shift
+    wire more_shifts_20_s6 = |remaining_10_s6;  // not the last shift
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_21_s6 = shift_register_20_s6[26] ? 27'h7ffffff :
+            {shift_register_20_s6[25:0], 1'b0};
+
+    // shifts, then squarings, to come
+    wire [3:0] remaining_11_s6 = remaining_10_s6 - remaining_less_one;
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_22_s6 = more_shifts_19_s6 ? shift_register_21_s6 :
+            shift_register_20_s6;
+
+    wire more_shifts_21_s6 = more_shifts_19_s6 & more_shifts_20_s6;  // not the last shift
+    wire more_shifts_22_s6 = |remaining_11_s6;  // not the last shift
 
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_23_s6 = shift_register_22_s6[26] ? 27'h7ffffff :
             {shift_register_22_s6[25:0], 1'b0};
 
     // shifts, then squarings, to come
-    wire [3:0] remaining_22_s6 = remaining_21_s6 - remaining_less_one;
+    wire [3:0] remaining_12_s6 = remaining_11_s6 - remaining_less_one;
 
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_24_s6 = more_shifts_21_s6 ? shift_register_23_s6 :
             shift_register_22_s6;
 
-    // shifts, then squarings, to come
-    wire [3:0] remaining_23_s6 = more_shifts_21_s6 ? remaining_22_s6 : remaining_21_s6;
-
     wire more_shifts_23_s6 = more_shifts_21_s6 & more_shifts_22_s6;  // not the last shift
-    wire more_shifts_24_s6 = |remaining_23_s6;  // not the last shift
+    wire more_shifts_24_s6 = |remaining_12_s6;  // not the last shift
 
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_25_s6 = shift_register_24_s6[26] ? 27'h7ffffff :
             {shift_register_24_s6[25:0], 1'b0};
 
     // shifts, then squarings, to come
-    wire [3:0] remaining_24_s6 = remaining_23_s6 - remaining_less_one;
+    wire [3:0] remaining_13_s6 = remaining_12_s6 - remaining_less_one;
 
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_26_s6 = more_shifts_23_s6 ? shift_register_25_s6 :
             shift_register_24_s6;
 
-    // shifts, then squarings, to come
-    wire [3:0] remaining_25_s6 = more_shifts_23_s6 ? remaining_24_s6 : remaining_23_s6;
-
     wire more_shifts_25_s6 = more_shifts_23_s6 & more_shifts_24_s6;  // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_27_s6 = shift_register_26_s6[26] ? 27'h7ffffff :
-            {shift_register_26_s6[25:0], 1'b0};
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_28_s6 = more_shifts_25_s6 ? shift_register_27_s6 :
-            shift_register_26_s6;
 
     always @(posedge clk) begin
         if (advance) begin
             red_s7 <= red_s6;
             green_s7 <= green_s6;
             blue_s7 <= blue_s6;
-            remaining_25_s7 <= remaining_25_s6;
+            remaining_13_s7 <= remaining_13_s6;
+            shift_register_26_s7 <= shift_register_26_s6;
             more_shifts_25_s7 <= more_shifts_25_s6;
-            shift_register_28_s7 <= shift_register_28_s6;
         end
     end
 
@@ -518,16 +451,21 @@ module lyon_pipelined (
     reg  [7:0]  blue_s8;               // intensity of the light times k_s
     reg  [26:0] shift_register_32_s8;  // u1.26: beta*D^2, once it has shifted
 
-    wire more_shifts_26_s7 = |remaining_25_s7;  // not the last shift
+    wire more_shifts_26_s7 = |remaining_13_s7;  // not the last shift
+
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_27_s7 = shift_register_26_s7[26] ? 27'h7ffffff :
+            {shift_register_26_s7[25:0], 1'b0};
 
     // shifts, then squarings, to come
-    wire [3:0] remaining_26_s7 = remaining_25_s7 - remaining_less_one;
+    wire [3:0] remaining_14_s7 = remaining_13_s7 - remaining_less_one;
 
-    // shifts, then squarings, to come
-    wire [3:0] remaining_27_s7 = more_shifts_25_s7 ? remaining_26_s7 : remaining_25_s7;
+    // u1.26: beta*D^2, once it has shifted
+    wire [26:0] shift_register_28_s7 = more_shifts_25_s7 ? shift_register_27_s7 :
+            shift_register_26_s7;
 
     wire more_shifts_27_s7 = more_shifts_25_s7 & more_shifts_26_s7;  // not the last shift
-    wire more_shifts_28_s7 = |remaining_27_s7;  // not the last shift
+    wire more_shifts_28_s7 = |remaining_14_s7;  // not the last shift
 
     // u1.26: beta*D^2, once it has shifted
     wire [26:0] shift_register_29_s7 = shift_register_28_s7[26] ? 27'h7ffffff :

@@ -189,6 +189,9 @@ impl Executor<'_> {
     /// Every turn but the first of the loop from `to` to `last`, of which `condition` says whether there
     /// is one; `state` is that after the first. The loop is bounded whatever the registers `free`, with
     /// which it begins, hold.
+    ///
+    /// What the condition is made of goes from turn to turn as if every turn were taken: a turn counts only where those
+    /// before it were taken, and a counter needs no muxes then.
     fn turns(
         &mut self,
         mut state: State,
@@ -196,6 +199,7 @@ impl Executor<'_> {
         (to, last): (usize, usize),
         free: &[NetId],
     ) -> Result<State, Diagnostic> {
+        let mut entry = state.clone();
         loop {
             match possible::ever(&self.unrolled.graph, condition, free) {
                 Some(false) => return Ok(state),
@@ -207,13 +211,19 @@ impl Executor<'_> {
                     ));
                 }
             }
-            let at = At { state: state.clone(), address: to };
+            let at = At { state: entry.clone(), address: to };
             let Some(before) = self.follow(at, Some(last))? else {
                 return Err(self.cannot(last, "is executed under a condition, and shows results"));
             };
             let (after, again) = self.execute(&At { state: before, address: last })?;
             let again = again.expect("a loop has a condition");
             state = self.either(condition, &after, &state);
+            let asked = self.unrolled.graph.cone([again]);
+            for (at, held) in entry.registers.iter_mut().enumerate() {
+                let is_asked = asked.binary_search(held).is_ok();
+                *held = if is_asked { after.registers[at] } else { state.registers[at] };
+            }
+            entry.roms.clone_from(&state.roms);
             let label = self.unrolled.graph.node(again).label.clone();
             condition = self.unrolled.graph.op(Op::And(condition, again), Format::BIT, &label);
         }
