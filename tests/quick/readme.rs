@@ -10,6 +10,7 @@ use std::path::Path;
 use glint::base::input;
 use glint::core::Core;
 use glint::evidence::comparison::{accuracy, clocks_per_point};
+use glint::hdl::netlist::Stage;
 use glint::mutate::{GOAL_MEMORY, GOAL_TEXT};
 use glint::registry::Registry;
 use glint::synth::{self, Figures, Frequency, Rate, Record, Target};
@@ -17,7 +18,7 @@ use glint::tune::Features;
 use serde::Deserialize;
 use serde_json::Value;
 
-use crate::common::cores::configuration;
+use crate::common::cores::{all_configurations, configuration};
 
 /// The exponent of the comparison in README.md.
 const EXPONENT: f64 = 35.0;
@@ -181,6 +182,30 @@ fn area_and_speed() {
     let records = input::records::<Record>(Path::new(synth::DIRECTORY)).expect("records");
     let recorded: BTreeSet<&str> = records.iter().map(|(_, it)| it.name.as_str()).collect();
     assert_eq!(listed, recorded);
+}
+
+/// Stages and register bits of the pipelines; frequencies and DSP blocks are of `benches/pipeline/ecp5.py`.
+#[test]
+fn pipelines() {
+    let place = tempfile::tempdir().expect("a directory");
+    let rows = table("README.md", "| pipeline | stages |");
+    for row in &rows {
+        let path = format!("configs/{}_pipelined.toml", row[0]);
+        let slower = place.path().join(format!("{}.toml", row[0]));
+        let text = read(&path);
+        assert!(text.contains("clock_mhz = 130"), "{path}");
+        fs::write(&slower, text.replace("clock_mhz = 130", "clock_mhz = 60")).expect("written");
+        let stages = |path: &str| configuration(path).design.pipeline.expect("a pipeline").stages;
+        let bits = |stages: &[Stage]| stages.iter().map(|it| u64::from(it.register_bits)).sum();
+        let now = stages(&path);
+        let slower: u64 = bits(&stages(slower.to_str().expect("a path")));
+        let expected = [now.len().to_string(), grouped(bits(&now)), grouped(slower)];
+        assert_eq!([row[1].clone(), row[5].clone(), row[6].clone()], expected, "{path}");
+    }
+    let listed: BTreeSet<String> = rows.iter().map(|row| format!("{}_pipelined", row[0])).collect();
+    let all = all_configurations().into_iter();
+    let all = all.filter(|(_, core)| core.design.pipeline.is_some()).map(|(_, it)| it.config.name);
+    assert_eq!(listed, all.collect());
 }
 
 /// A record stands for the netlist that it was made of: the sums of what that consists of are today's, within a
