@@ -6,7 +6,7 @@ use crate::base::fixed::{Format, mask};
 use crate::hdl::netlist::{NetId, Op, RomId};
 use crate::hdl::pipeline::{Cell, Graph, Interval};
 
-/// More ways than this are not gone through.
+/// More ways than this are not looked at, those that turn out to be none too.
 const MOST: usize = 4096;
 
 /// What is known of values beside where they come from: intervals of raw values by node.
@@ -37,7 +37,9 @@ pub fn cases(
     let cone = graph.cone(results.iter().copied());
     let mut found = Vec::new();
     let mut pending = vec![known.clone()];
+    let mut looked_at = 0;
     while let Some(known) = pending.pop() {
+        looked_at += 1;
         match ranges(graph, words, &cone, &known) {
             Way::Whole(ranges) => found.push(Case { known, ranges }),
             Way::Never => {}
@@ -54,7 +56,7 @@ pub fn cases(
                 }
             }
         }
-        if found.len() + pending.len() > MOST {
+        if looked_at + pending.len() > MOST {
             return Err(format!("there are more than {MOST} ways to go through it"));
         }
     }

@@ -13,10 +13,12 @@ pub mod cases;
 pub mod exact;
 pub mod formula;
 pub mod hardware;
+mod proof;
 pub mod terms;
 
 use std::collections::{BTreeMap, HashMap};
 use std::fmt::Write as _;
+use std::time::{Duration, Instant};
 
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
@@ -29,6 +31,7 @@ use cases::{Case, Known};
 use exact::{Branch, Setting};
 use formula::Real;
 use hardware::{Hardware, Value, Variables};
+pub use proof::{Outcome, prove};
 use terms::{Id, Term, Terms, number};
 
 /// An operand of at most this number of values is gone through value by value where a table is read by it, or where it is
@@ -53,8 +56,13 @@ pub struct Statement {
 /// The statements whose conjunction is the contract of a sequential design.
 ///
 /// # Errors
-/// The step that has no translation, in words.
-pub fn statements(design: &Design, contract: &dyn Contract) -> Result<Vec<Statement>, String> {
+/// The step that has no translation, in words; or that it takes longer than `limit` to say them all.
+pub fn statements(
+    design: &Design,
+    contract: &dyn Contract,
+    limit: Duration,
+) -> Result<Vec<Statement>, String> {
+    let begin = Instant::now();
     let formulas = formulas(contract)?;
     let unrolled = unroll(design).map_err(|error| error.to_string())?;
     let task = Task { design, contract, unrolled: &unrolled, formulas: &formulas };
@@ -68,6 +76,10 @@ pub fn statements(design: &Design, contract: &dyn Contract) -> Result<Vec<Statem
     let mut statements = Vec::new();
     for known in task.split(&known) {
         for case in cases::cases(&unrolled.graph, &words, &results, &known)? {
+            if begin.elapsed() > limit {
+                let so_far = statements.len();
+                return Err(format!("after {} s there are {so_far}, and not all", limit.as_secs()));
+            }
             task.state(&case, &mut statements)?;
         }
     }

@@ -140,12 +140,13 @@ pub struct Check {
 }
 
 /// All checks: first those that need nothing but Glint.
-pub const CHECKS: [&Check; 12] = [
+pub const CHECKS: [&Check; 13] = [
     &inside::DESIGN,
     &inside::LOCKSTEP,
     &inside::CLOCKS,
     &inside::CONTRACT,
     &inside::MUTATION,
+    &outside::CERTIFICATE,
     &outside::LINT,
     &outside::ICARUS,
     &outside::VERILATOR,

@@ -1,6 +1,7 @@
 //! Checks that run tools outside Glint, on the emitted files.
 
 use std::fs;
+use std::time::Duration;
 
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -8,7 +9,8 @@ use rayon::prelude::*;
 use super::{Check, Finding, Subject, Verdict};
 use crate::base::text::grouped;
 use crate::base::transient::Directory;
-use crate::core::BENCH_SEED;
+use crate::certify::{self, Outcome, Statement, statements};
+use crate::core::{BENCH_SEED, Core};
 use crate::package;
 use crate::tools::gates;
 use crate::tools::synthesis::{FAMILIES, Family, synthesise};
@@ -17,11 +19,63 @@ use crate::tools::{LimitReached, Limits, PROOF_LIMITS, Simulator, lint, prove, r
 /// Results of a bench, and with full effort.
 const POINTS: [u64; 2] = [200, 20_000];
 
+/// How long it may take to write the statements for Gappa, and to prove one, but with full effort.
+const STATEMENT: Duration = Duration::from_secs(10);
+
 /// The version of cocotb that the benches in Python are written for.
 const COCOTB_VERSION: &str = "2.1.0";
 
 /// Results of a bench around a netlist.
 const GATE_POINTS: u64 = 40;
+
+/// The bound of the contract, proved a second way.
+pub const CERTIFICATE: Check = Check {
+    id: "certificate",
+    title: "Proof of the error bound",
+    question: "Does the bound of the contract follow from the netlist and the microprogram, for all operands?",
+    tools: &["gappa"],
+    steps: |_| 1,
+    run: |subject, tools, _| {
+        let Core { design, contract, .. } = subject.core;
+        if design.pipeline.is_some() {
+            let why =
+                "It is made of a microprogram: see the sequential core of the same description.";
+            return Ok(Finding::without(Verdict::NotCovered, why.to_owned()));
+        }
+        let own = if subject.effort.full { subject.effort.time_limit } else { STATEMENT };
+        let limit = own.min(subject.effort.time_limit);
+        let statements = match statements(design, contract.as_ref(), limit) {
+            Ok(statements) => statements,
+            Err(step) => {
+                let why = format!("There are no statements for Gappa: {step}.");
+                return Ok(Finding::without(Verdict::NotCovered, why));
+            }
+        };
+        // The first that is open ends it.
+        let prove = |statement: &Statement| -> Result<Option<String>> {
+            Ok(match certify::prove(&tools[0], None, statement, limit)? {
+                Outcome::Proved(_) => None,
+                Outcome::Open(why) => Some(why),
+            })
+        };
+        let open = statements.par_iter().map(prove).find_any(|it| !matches!(it, Ok(None)));
+        if let Some(why) = open.transpose()?.flatten() {
+            let why = format!("Gappa does not prove every statement: {why}.");
+            return Ok(Finding::without(Verdict::NotCovered, why));
+        }
+        Ok(Finding::new(
+            Verdict::Proved,
+            "all operands of the domain".to_owned(),
+            format!(
+                "Gappa proves {} statements: an output differs from its formula by {:.3} units at most.",
+                statements.len(),
+                contract.bound().units
+            ),
+            Vec::new(),
+        )
+        .open("The words of tables are taken as they are."))
+    },
+};
 
 /// The emitted text.
 pub const LINT: Check = Check {

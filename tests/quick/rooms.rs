@@ -27,7 +27,7 @@ const ROOMS: [(&str, &str); 25] = [
     ("registry", "base config golden hdl/netlist hdl/dsl hdl/pipeline devices"),
     ("core", "config golden hdl/netlist package tools cosim registry"),
     ("tune", "config golden hdl/netlist hdl/pipeline registry synth"),
-    ("certify", "base golden hdl/netlist hdl/pipeline"),
+    ("certify", "base golden hdl/netlist hdl/pipeline tools"),
     ("mutate", "base golden hdl/netlist hdl/sim package tools cosim core"),
     ("render", "base config golden cosim core"),
     ("evidence", "config golden hdl/netlist tools cosim registry core"),
@@ -35,7 +35,7 @@ const ROOMS: [(&str, &str); 25] = [
         "pages",
         "base config golden hdl/netlist hdl/verilog package tools synth cosim core render evidence",
     ),
-    ("verify", "base golden package tools cosim core mutate"),
+    ("verify", "base golden package tools cosim core mutate certify"),
     (
         "cli",
         "base config golden hdl/netlist package tools cosim registry core mutate render evidence pages verify synth tune certify",

@@ -16,7 +16,7 @@ fn stated(device: &str, keys: &str) -> Vec<Statement> {
     let config = parse("core.toml", &text, &registry.schemas()).expect("a configuration");
     let device = registry.device(device).expect("in the catalogue");
     let design = device.sequential(&config).expect("a design");
-    statements(&design, (device.contract)(&config).as_ref()).expect("statements")
+    statements(&design, (device.contract)(&config).as_ref(), Duration::MAX).expect("statements")
 }
 
 fn accepted(script: &str) -> bool {
@@ -66,7 +66,7 @@ fn faulty_hardware_has_no_proof() {
     *bits -= *bits >> 4;
     let raw = net.format.raw(*bits);
     net.range = (raw, raw);
-    let stated = statements(&faulty, contract.as_ref());
+    let stated = statements(&faulty, contract.as_ref(), Duration::MAX);
     assert!(stated.map_or(true, |stated| !all_accepted(&stated)));
 }
 
@@ -77,7 +77,7 @@ fn what_cannot_be_stated_says_which_step() {
         let device = registry.device(device).expect("in the catalogue");
         let config = Config::defaults(&(device.schema)(), "core");
         let design = device.sequential(&config).expect("a design");
-        statements(&design, (device.contract)(&config).as_ref()).map(|_| ())
+        statements(&design, (device.contract)(&config).as_ref(), Duration::MAX).map(|_| ())
     };
     let step = step_of("quad-cosine").expect_err("a line");
     assert_eq!(step, "a computation of several results is not unrolled");
@@ -93,7 +93,8 @@ fn committed_certificates_are_those_of_today_and_proved() {
     let config = parse("core.toml", &text, &registry.schemas()).expect("a configuration");
     let device = registry.device("cosine-power").expect("in the catalogue");
     let design = device.sequential(&config).expect("a design");
-    let stated = statements(&design, (device.contract)(&config).as_ref()).expect("statements");
+    let stated = statements(&design, (device.contract)(&config).as_ref(), Duration::MAX)
+        .expect("statements");
     let directory = "proofs/certificates/cosine_power";
     let files = std::fs::read_dir(root.join(directory)).expect("certificates");
     assert_eq!(files.count(), stated.len());

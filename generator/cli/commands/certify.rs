@@ -3,13 +3,12 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use rayon::prelude::*;
 use serde_json::json;
 
 use super::load_sequential;
-use crate::base::transient::Directory;
-use crate::certify::{Statement, statements};
+use crate::certify::{Outcome, Statement, prove, statements};
 use crate::cli::own_file::OwnFile;
 use crate::cli::{Output, progress, tables};
 use crate::registry::Registry;
@@ -28,14 +27,6 @@ pub struct CertifyRequest {
     pub time_limit: Duration,
 }
 
-/// What became of a statement.
-enum Outcome {
-    /// The script that was accepted.
-    Proved(usize),
-    /// What Gappa says of the last script.
-    Open(String),
-}
-
 /// `glint certify`.
 pub fn certify(
     registry: &Registry,
@@ -50,7 +41,7 @@ pub fn certify(
     let mut whole = true;
     for one in &loaded {
         let contract = one.core.contract.as_ref();
-        let stated = match statements(&one.core.design, contract) {
+        let stated = match statements(&one.core.design, contract, Duration::MAX) {
             Ok(stated) => stated,
             Err(step) => {
                 whole = false;
@@ -129,55 +120,6 @@ pub fn certify(
         );
     }
     Ok(whole)
-}
-
-/// Has one of the statement's scripts accepted.
-fn prove(
-    gappa: &Tool,
-    coq: Option<&Tool>,
-    statement: &Statement,
-    limit: Duration,
-) -> Result<Outcome> {
-    let place = Directory::new().context("cannot make a temporary directory")?;
-    let mut why = String::new();
-    for (number, script) in statement.scripts.iter().enumerate() {
-        std::fs::write(place.path().join("statement.g"), script)
-            .context("cannot write a script for Gappa")?;
-        let run = match gappa.run(["statement.g"], place.path(), limit) {
-            Ok(run) => run,
-            Err(error) if error.is::<crate::tools::LimitReached>() => {
-                why = error.to_string();
-                continue;
-            }
-            Err(error) => return Err(error),
-        };
-        // Of a rewriting that it cannot prove Gappa says so, and goes on.
-        let assumed = run.output.contains("trivially equal");
-        if !run.status.success() || assumed {
-            let mut lines =
-                run.output.lines().filter(|line| line.contains("rror") || line.contains("best"));
-            why = lines.next_back().unwrap_or("Gappa assumes a step").trim().to_owned();
-            continue;
-        }
-        if let Some(coq) = coq {
-            let proof = gappa.run(["-Bcoq", "statement.g"], place.path(), limit)?;
-            if !proof.status.success() {
-                bail!("Gappa proves a statement, and cannot write it for Coq: {}", proof.output);
-            }
-            // Warnings come in between.
-            let lines = proof.output.lines().filter(|line| !line.starts_with("Warning:"));
-            let proof: String = lines.flat_map(|line| [line, "\n"]).collect();
-            std::fs::write(place.path().join("statement.v"), proof)
-                .context("cannot write a proof for Coq")?;
-            let check = coq.run(["statement.v"], place.path(), limit * 10)?;
-            if !check.status.success() {
-                why = format!("Coq refuses: {}", check.output.lines().next().unwrap_or_default());
-                continue;
-            }
-        }
-        return Ok(Outcome::Proved(number));
-    }
-    Ok(Outcome::Open(why))
 }
 
 /// The scripts, each in a file: the accepted one, or of what is open the first. Those of an earlier run with more

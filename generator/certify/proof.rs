@@ -1,0 +1,70 @@
+//! Gappa proves a statement, and Coq's kernel checks its proof.
+
+use std::fs;
+use std::time::Duration;
+
+use anyhow::{Context, Result, bail};
+
+use super::Statement;
+use crate::base::transient::Directory;
+use crate::tools::{LimitReached, Tool};
+
+/// What became of a statement.
+pub enum Outcome {
+    /// The script that was accepted.
+    Proved(usize),
+    /// What Gappa says of the last script.
+    Open(String),
+}
+
+/// Has one of the statement's scripts accepted by Gappa, and with `coq` its proof by Coq's kernel.
+///
+/// # Errors
+/// A tool does not do its work. That a statement is not proved, or not within the limit, is no error.
+pub fn prove(
+    gappa: &Tool,
+    coq: Option<&Tool>,
+    statement: &Statement,
+    limit: Duration,
+) -> Result<Outcome> {
+    let place = Directory::new().context("cannot make a temporary directory")?;
+    let mut why = String::new();
+    for (number, script) in statement.scripts.iter().enumerate() {
+        fs::write(place.path().join("statement.g"), script)
+            .context("cannot write a script for Gappa")?;
+        let run = match gappa.run(["statement.g"], place.path(), limit) {
+            Ok(run) => run,
+            Err(error) if error.is::<LimitReached>() => {
+                why = error.to_string();
+                continue;
+            }
+            Err(error) => return Err(error),
+        };
+        // Of a rewriting that it cannot prove Gappa says so, and goes on.
+        let assumed = run.output.contains("trivially equal");
+        if !run.status.success() || assumed {
+            let mut lines =
+                run.output.lines().filter(|line| line.contains("rror") || line.contains("best"));
+            why = lines.next_back().unwrap_or("Gappa assumes a step").trim().to_owned();
+            continue;
+        }
+        if let Some(coq) = coq {
+            let proof = gappa.run(["-Bcoq", "statement.g"], place.path(), limit)?;
+            if !proof.status.success() {
+                bail!("Gappa proves a statement, and cannot write it for Coq: {}", proof.output);
+            }
+            // Warnings come in between.
+            let lines = proof.output.lines().filter(|line| !line.starts_with("Warning:"));
+            let proof: String = lines.flat_map(|line| [line, "\n"]).collect();
+            fs::write(place.path().join("statement.v"), proof)
+                .context("cannot write a proof for Coq")?;
+            let check = coq.run(["statement.v"], place.path(), limit * 10)?;
+            if !check.status.success() {
+                why = format!("Coq refuses: {}", check.output.lines().next().unwrap_or_default());
+                continue;
+            }
+        }
+        return Ok(Outcome::Proved(number));
+    }
+    Ok(Outcome::Open(why))
+}
