@@ -16,7 +16,7 @@ module blinn_pipelined_tb #(
     parameter STIMULUS_FILE = "blinn_pipelined_stimulus.mem",
     parameter EXPECTED_FILE = "blinn_pipelined_expected.mem"
 );
-    localparam CLOCKS     = 4090;
+    localparam CLOCKS     = 6554;
     localparam KNOWN_FROM = 22;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 
