@@ -78,7 +78,10 @@ pub fn statements(
         for case in cases::cases(&unrolled.graph, &words, &results, &known)? {
             if begin.elapsed() > limit {
                 let so_far = statements.len();
-                return Err(format!("after {} s there are {so_far}, and not all", limit.as_secs()));
+                let limit = limit.as_secs();
+                return Err(format!(
+                    "to write its statements takes more than {limit} s, with {so_far} written"
+                ));
             }
             task.state(&case, &mut statements)?;
         }

@@ -284,7 +284,7 @@ Examples:
         /// Have Coq check each of Gappa's proofs
         #[arg(long)]
         coq: bool,
-        /// Time limit of each proof, in seconds
+        /// Time limit of each proof, and of writing the statements of a configuration, in seconds
         #[arg(long, value_name = "SECONDS", default_value_t = 60)]
         time_limit: u64,
     },

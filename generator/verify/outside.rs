@@ -47,7 +47,7 @@ pub const CERTIFICATE: Check = Check {
         let statements = match statements(design, contract.as_ref(), limit) {
             Ok(statements) => statements,
             Err(step) => {
-                let why = format!("There are no statements for Gappa: {step}.");
+                let why = format!("Gappa is not asked: {step}.");
                 return Ok(Finding::without(Verdict::NotCovered, why));
             }
         };

@@ -41,7 +41,7 @@ pub fn certify(
     let mut whole = true;
     for one in &loaded {
         let contract = one.core.contract.as_ref();
-        let stated = match statements(&one.core.design, contract, Duration::MAX) {
+        let stated = match statements(&one.core.design, contract, request.time_limit) {
             Ok(stated) => stated,
             Err(step) => {
                 whole = false;
