@@ -35,7 +35,7 @@ pub fn prove(
         let run = match gappa.run(["statement.g"], place.path(), limit) {
             Ok(run) => run,
             Err(error) if error.is::<LimitReached>() => {
-                why = error.to_string();
+                why = format!("Gappa did not end within {} s", limit.as_secs());
                 continue;
             }
             Err(error) => return Err(error),

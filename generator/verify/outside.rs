@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::{Check, Finding, Subject, Verdict};
 use crate::base::text::grouped;
 use crate::base::transient::Directory;
-use crate::certify::{self, Outcome, Statement, statements};
+use crate::certify::{self, Outcome, statements};
 use crate::core::{BENCH_SEED, Core};
 use crate::package;
 use crate::tools::gates;
@@ -51,16 +51,18 @@ pub const CERTIFICATE: Check = Check {
                 return Ok(Finding::without(Verdict::NotCovered, why));
             }
         };
-        // The first that is open ends it.
-        let prove = |statement: &Statement| -> Result<Option<String>> {
-            Ok(match certify::prove(&tools[0], None, statement, limit)? {
-                Outcome::Proved(_) => None,
-                Outcome::Open(why) => Some(why),
-            })
-        };
-        let open = statements.par_iter().map(prove).find_any(|it| !matches!(it, Ok(None)));
-        if let Some(why) = open.transpose()?.flatten() {
-            let why = format!("Gappa does not prove every statement: {why}.");
+        let outcome = |statement| (statement, certify::prove(&tools[0], None, statement, limit));
+        let open = |(_, outcome): &(_, Result<Outcome>)| !matches!(outcome, Ok(Outcome::Proved(_)));
+        // The first that is open ends it, whichever is done first.
+        if let Some((statement, outcome)) = statements.par_iter().map(outcome).find_first(open) {
+            outcome?;
+            let why = format!(
+                "Gappa has no proof of statement {} of `{}` within {} s, among {} statements.",
+                statement.number,
+                statement.output,
+                limit.as_secs(),
+                statements.len()
+            );
             return Ok(Finding::without(Verdict::NotCovered, why));
         }
         Ok(Finding::new(
