@@ -13,7 +13,7 @@ use std::time::Duration;
 use glint::tools::{BenchOutcome, Simulator, Tool, lint, run_bench};
 
 /// What a run of any tool may take.
-pub const LIMIT: Duration = Duration::from_secs(300);
+pub const LIMIT: Duration = Duration::from_secs(1200);
 
 /// The tool of that name: from the Python environment that `tools/install` makes, or from `PATH`.
 ///
