@@ -8,6 +8,7 @@ use anyhow::{Context, Result, bail};
 use serde::Serialize;
 
 use super::destination::Destination;
+use super::store::create_directory;
 
 /// A file to be, with the place to write it in.
 pub struct OwnFile {
@@ -19,11 +20,13 @@ impl OwnFile {
     /// What a JSON file of ours begins with.
     pub const JSON: &str = "{\n  \"glint\":";
 
-    /// A file `name` in `directory`, if what is there under this name contains `marker`, or nothing is there.
+    /// A file `name` in `directory`, which is made, if what is there under this name contains `marker`, or nothing is
+    /// there. Made before the work for it, so that a place that cannot be written is known then.
     ///
     /// # Errors
     /// Something else is there; it cannot be written.
     pub fn new(directory: &Path, name: &str, marker: &str) -> Result<Self> {
+        create_directory(directory)?;
         let path = directory.join(name);
         // What else is wrong with it shows in writing.
         let foreign = path.is_file()
@@ -39,6 +42,14 @@ impl OwnFile {
         }
         let destination = Destination::open(&path)?;
         Ok(Self { path, destination })
+    }
+
+    /// The record `<name>.json`, if there is a directory for records.
+    ///
+    /// # Errors
+    /// As [`OwnFile::new`].
+    pub fn record(directory: Option<&Path>, name: &str) -> Result<Option<Self>> {
+        directory.map(|it| Self::new(it, &format!("{name}.json"), Self::JSON)).transpose()
     }
 
     /// Its name, when it is written.

@@ -11,6 +11,7 @@ mod survey;
 #[cfg(test)]
 mod tests;
 
+use std::fmt;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -29,6 +30,15 @@ pub enum Written {
     Unchanged,
     /// They were written.
     Replaced,
+}
+
+impl fmt::Display for Written {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Unchanged => "up to date",
+            Self::Replaced => "written",
+        })
+    }
 }
 
 /// Writes the files of configuration `name` below `out`. Files that are neither Glint's nor in the way stay
@@ -137,7 +147,11 @@ fn create_parent(path: &Path) -> Result<()> {
     }
 }
 
-fn create_directory(path: &Path) -> Result<()> {
+/// Makes a directory, with those above it.
+///
+/// # Errors
+/// It cannot be made.
+pub fn create_directory(path: &Path) -> Result<()> {
     fs::create_dir_all(path)
         .with_context(|| format!("cannot create the directory `{}`", path.display()))
 }

@@ -85,9 +85,12 @@ fn fit(
     let widest = |at: usize| cells(at).map(length).max().unwrap_or(0);
     let longest_word = |text: &str| text.split(' ').map(length).max().unwrap_or(0);
     let heading = |at: usize| longest_word(columns[at].heading);
-    let least = |&at: &usize| match columns[at].number {
-        true => widest(at).max(heading(at)),
-        false => cells(at).map(longest_word).max().unwrap_or(0).max(heading(at)),
+    let least = |&at: &usize| {
+        if columns[at].number {
+            widest(at).max(heading(at))
+        } else {
+            cells(at).map(longest_word).max().unwrap_or(0).max(heading(at))
+        }
     };
     let most = |&at: &usize| widest(at).max(length(columns[at].heading));
     let least: Vec<usize> = shown.iter().map(least).collect();

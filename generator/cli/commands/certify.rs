@@ -4,44 +4,58 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use anyhow::{Context, Result};
+use clap::Args;
 use rayon::prelude::*;
 use serde_json::json;
 
 use super::load_sequential;
 use crate::certify::{Outcome, Statement, prove, statements};
 use crate::cli::own_file::OwnFile;
-use crate::cli::{Output, progress, tables};
+use crate::cli::{Configs, Output, progress, tables};
 use crate::registry::Registry;
 use crate::tools::Tool;
+
+/// Prove the error bound of a contract with Gappa, from the netlist and the microprogram
+///
+/// One computation is unrolled into its values. Each case of saturations, clamps and tables becomes a statement on
+/// real numbers with roundings: the output differs from the contract's formula by the bound at most. Gappa proves
+/// each statement. The cases cover the whole domain, so that the contract is proved if all of them are. With --coq
+/// the kernel of Coq checks each proof again. If a device has a step that cannot be stated so, the command names it,
+/// and the exit code is 1.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  glint certify configs/cosine_power.toml
+  glint certify configs/cosine_power.toml --out certificates   the scripts too
+  glint certify configs/cosine_power.toml --coq                needs coqc, and Gappa's library for it")]
+pub struct Arguments {
+    #[command(flatten)]
+    configs: Configs,
+    /// Write each script as `DIR/<name>/<output>_<number>.g`
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Have Coq check each of Gappa's proofs
+    #[arg(long)]
+    coq: bool,
+    /// Time limit of each proof, and of writing the statements of a configuration, in seconds
+    #[arg(long, value_name = "SECONDS", default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
+    time_limit: u64,
+}
 
 /// What a script of ours begins with: nothing else is overwritten.
 const MARKER: &str = "# Certificate by Glint: ";
 
-/// What `certify` was asked for.
-pub struct CertifyRequest {
-    /// The directory of the scripts.
-    pub out: Option<PathBuf>,
-    /// Coq checks what Gappa has proved.
-    pub coq: bool,
-    /// After which a proof is given up.
-    pub time_limit: Duration,
-}
-
 /// `glint certify`.
-pub fn certify(
-    registry: &Registry,
-    output: Output,
-    configs: &[PathBuf],
-    request: &CertifyRequest,
-) -> Result<bool> {
-    let loaded = load_sequential(registry, configs, "certify")?;
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    let loaded = load_sequential(registry, &arguments.configs.paths, "certify")?;
+    let limit = Duration::from_secs(arguments.time_limit);
     let gappa = Tool::find("gappa")?;
-    let coq = request.coq.then(|| Tool::find("coqc")).transpose()?;
+    let coq = arguments.coq.then(|| Tool::find("coqc")).transpose()?;
     let mut list = Vec::new();
     let mut whole = true;
     for one in &loaded {
         let contract = one.core.contract.as_ref();
-        let stated = match statements(&one.core.design, contract, request.time_limit) {
+        let stated = match statements(&one.core.design, contract, limit) {
             Ok(stated) => stated,
             Err(step) => {
                 whole = false;
@@ -56,14 +70,14 @@ pub fn certify(
         let checked: Vec<Result<Outcome>> = stated
             .par_iter()
             .map(|statement| {
-                let outcome = prove(&gappa, coq.as_ref(), statement, request.time_limit);
+                let outcome = prove(&gappa, coq.as_ref(), statement, limit);
                 bar.inc(1);
                 outcome
             })
             .collect();
         bar.finish_and_clear();
         let checked = checked.into_iter().collect::<Result<Vec<_>>>()?;
-        if let Some(out) = &request.out {
+        if let Some(out) = &arguments.out {
             write(&out.join(&one.core.config.name), &one.path, &stated, &checked)?;
         }
         let bound = contract.bound().units;
@@ -77,20 +91,24 @@ pub fn certify(
             .collect();
         whole &= open.is_empty();
         if !output.json {
-            let by =
-                if request.coq { "proved by Gappa and checked by Coq" } else { "proved by Gappa" };
+            let by = if arguments.coq {
+                "proved by Gappa and checked by Coq"
+            } else {
+                "proved by Gappa"
+            };
             let proved = stated.len() - open.len();
-            tables::print_line(&match open.is_empty() {
-                true => format!(
+            tables::print_line(&if open.is_empty() {
+                format!(
                     "{}: certified: |output - formula| <= {bound:.6} units over the whole domain; {proved} statements {by}",
                     one.path
-                ),
-                false => format!(
+                )
+            } else {
+                format!(
                     "{}: not certified: {proved} of {} statements {by}, {} open",
                     one.path,
                     stated.len(),
                     open.len()
-                ),
+                )
             });
             for (statement, why) in open.iter().take(3) {
                 tables::print_line(&format!(
@@ -109,7 +127,7 @@ pub fn certify(
             "bound": bound,
             "statements": stated.len(),
             "open": open,
-            "coq": request.coq,
+            "coq": arguments.coq,
         }));
     }
     if output.json {
@@ -130,8 +148,6 @@ fn write(
     statements: &[Statement],
     outcomes: &[Outcome],
 ) -> Result<()> {
-    std::fs::create_dir_all(directory)
-        .with_context(|| format!("cannot make `{}`", directory.display()))?;
     let mut names = Vec::new();
     for (statement, outcome) in statements.iter().zip(outcomes) {
         let Statement { output, number, scripts } = statement;

@@ -6,11 +6,12 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
+use clap::Args;
 use rayon::prelude::*;
 
-use super::load;
+use super::{load, yosys};
 use crate::cli::failure::Usage as WrongUsage;
-use crate::cli::{Output, progress};
+use crate::cli::{Output, TimeLimit, progress};
 use crate::config::{Config, Schema, Value};
 use crate::core::Core;
 use crate::evidence::comparison::{self, Accuracy, Multiplier};
@@ -20,20 +21,48 @@ use crate::synth::Record;
 use crate::tools::Tool;
 use crate::tools::synthesis::{self, FAMILIES, Family, Usage};
 
-/// What `compare` was asked for.
-pub struct CompareRequest {
-    /// The exponent n.
-    pub exponent: u32,
-    /// Keys that replace a device's default, where it has them.
-    pub widths: Vec<(&'static str, i64)>,
-    /// Print CSV.
-    pub csv: bool,
-    /// Ask Yosys what the devices take of which there is no record.
-    pub synthesis: bool,
-    /// The directory with records of `synth`.
-    pub figures: PathBuf,
-    /// After which a run of Yosys is given up.
-    pub time_limit: Duration,
+/// Compare all devices with cos^n gamma at one exponent, side by side
+///
+/// Every device has its default configuration, with the widths below where it has such a key. Configurations
+/// that you name are compared as they are. Errors are those
+/// of the reflectance f, the largest and the mean over gamma = 0 to 90 degrees, as a whole and by cause: the
+/// source's formula, the quantised operands, the fixed point. LUTs, DSP blocks and block RAMs of iCE40, ECP5 and
+/// Xilinx 7, frequencies and points a second come from records of `glint synth`; without a record Yosys is asked for
+/// the former, if it is on PATH, which takes a minute or more.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  glint compare --exponent 100                       errors, clocks, ROM and synthesis at n = 100
+  glint compare --no-synthesis --bits 10             in an instant; ten-bit colours
+  glint compare --exponent 20 my_core.toml --csv     your configuration beside the devices
+  glint compare --cosine-fraction 16 --json          coarser cosines, for scripts")]
+pub struct Arguments {
+    /// Configurations to compare with the devices
+    #[arg(value_name = "CONFIG")]
+    configs: Vec<PathBuf>,
+    /// The specular exponent n
+    #[arg(long, short = 'n', value_name = "N", default_value_t = 35)]
+    exponent: u32,
+    /// Bits of colours and outputs: the key colour.bits
+    #[arg(long, value_name = "B", value_parser = clap::value_parser!(i64).range(1..=64))]
+    bits: Option<i64>,
+    /// Fraction bits of cosines: the key cosine.fraction
+    #[arg(long, value_name = "C", value_parser = clap::value_parser!(i64).range(1..=64))]
+    cosine_fraction: Option<i64>,
+    /// Fraction bits of f: the key intensity.fraction
+    #[arg(long, value_name = "F", value_parser = clap::value_parser!(i64).range(1..=64))]
+    intensity_fraction: Option<i64>,
+    /// Print CSV, for spreadsheets
+    #[arg(long)]
+    csv: bool,
+    /// Where records of `synth --out` are; that of a configuration is found by its digest
+    #[arg(long, value_name = "DIR", default_value = crate::synth::DIRECTORY)]
+    figures: PathBuf,
+    /// Do not ask Yosys what the devices take
+    #[arg(long)]
+    no_synthesis: bool,
+    #[command(flatten)]
+    time_limit: TimeLimit,
 }
 
 /// One configuration in the comparison.
@@ -57,43 +86,37 @@ struct Figures {
 }
 
 /// `glint compare`.
-pub fn compare(
-    registry: &Registry,
-    output: Output,
-    configs: &[PathBuf],
-    request: &CompareRequest,
-) -> Result<bool> {
-    if request.csv && output.json {
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    if arguments.csv && output.json {
         bail!(WrongUsage("--csv and --json are two ways to print the same: give one".to_owned()));
     }
     let mut notes = Vec::new();
     let mut cores = Vec::new();
+    let widths = [
+        ("colour.bits", arguments.bits),
+        ("cosine.fraction", arguments.cosine_fraction),
+        ("intensity.fraction", arguments.intensity_fraction),
+    ];
     for device in registry.devices() {
-        let config = with_widths(device, &request.widths, &mut notes);
+        let config = with_widths(device, &widths, &mut notes);
         cores.push((device.name.to_owned(), Core::new(*device, config)?));
     }
-    if !configs.is_empty() {
-        let named = load(registry, configs)?;
+    if !arguments.configs.is_empty() {
+        let named = load(registry, &arguments.configs)?;
         cores.extend(named.into_iter().map(|one| (one.path, one.core)));
     }
     let records: Vec<Option<Record>> = cores
         .iter()
-        .map(|(_, core)| Record::find(&request.figures, &core.core_digest()))
+        .map(|(_, core)| Record::find(&arguments.figures, &core.core_digest()))
         .collect::<Result<_>>()?;
     let mut usage: Vec<_> = records.iter().map(|it| recorded(it.as_ref())).collect();
     let missing = usage.iter().filter(|usage| usage.is_empty()).count();
-    let yosys = match (request.synthesis && missing > 0).then(|| Tool::find("yosys")) {
-        None => None,
-        Some(Ok(yosys)) => Some(yosys),
-        Some(Err(missing)) => {
-            notes.push(format!("{missing}: no LUTs, DSP blocks and block RAMs"));
-            None
-        }
-    };
+    let wanted = !arguments.no_synthesis && missing > 0;
+    let yosys = wanted.then(|| yosys("no LUTs, DSP blocks and block RAMs", &mut notes)).flatten();
     let families = if yosys.is_some() { FAMILIES.len() } else { 0 };
     let steps = cores.len() + missing * families;
     let bar = progress::bar(output, steps as u64, "devices weighed");
-    let n = f64::from(request.exponent);
+    let n = f64::from(arguments.exponent);
     let figures: Vec<Figures> = cores
         .par_iter()
         .map(|(label, core)| {
@@ -105,7 +128,7 @@ pub fn compare(
     if let Some(yosys) = &yosys {
         let unknown = cores.iter().zip(&mut usage).filter(|(_, usage)| usage.is_empty());
         let (unknown, places): (Vec<_>, Vec<_>) = unknown.unzip();
-        let found = synthesise(&unknown, yosys, request.time_limit, &|| bar.inc(1))?;
+        let found = synthesise(&unknown, yosys, arguments.time_limit.get(), &|| bar.inc(1))?;
         places.into_iter().zip(found).for_each(|(place, found)| *place = found);
     }
     bar.finish_and_clear();
@@ -123,7 +146,7 @@ pub fn compare(
         .collect();
     for entry in &entries {
         if entry.figures.accuracy.is_none() {
-            notes.push(outside(entry, request.exponent));
+            notes.push(outside(entry, arguments.exponent));
         }
     }
     let faults: Vec<String> = entries
@@ -131,20 +154,20 @@ pub fn compare(
         .flat_map(|entry| &entry.usage)
         .filter_map(|usage| usage.as_ref().err().cloned())
         .collect();
-    show::show(output, request, &entries, &notes, &faults);
+    show::show(output, arguments, &entries, &notes, &faults);
     Ok(faults.is_empty())
 }
 
 /// The device's defaults with these keys replaced, where it has them and accepts the value.
-fn with_widths(device: &Device, widths: &[(&'static str, i64)], notes: &mut Vec<String>) -> Config {
+fn with_widths(device: &Device, widths: &[(&str, Option<i64>)], notes: &mut Vec<String>) -> Config {
     let schema: Schema = (device.schema)();
     let name = device.name.replace('-', "_");
     let mut accepted: Vec<(String, Value)> = Vec::new();
     let mut config = Config::defaults(&schema, &name);
     for &(key, value) in widths {
-        if schema.key(key).is_none() {
+        let Some(value) = value.filter(|_| schema.key(key).is_some()) else {
             continue;
-        }
+        };
         let mut wanted = accepted.clone();
         wanted.push((key.to_owned(), Value::Integer(value)));
         match Config::from_values(&schema, &name, wanted.clone()) {

@@ -1,12 +1,13 @@
 //! `cosim`.
 
 mod benches;
+pub mod exhaustive;
 mod spread;
 
 use std::path::PathBuf;
-use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
+use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
@@ -14,55 +15,90 @@ use super::mismatch::{self, Reproducer};
 use super::{Loaded, load, verdict};
 use crate::base::text;
 use crate::cli::failure::Usage;
-use crate::cli::{Output, Simulator, progress, tables};
-use crate::core::TEST_POINTS;
+use crate::cli::{Configs, Output, TimeLimit, count, progress, tables};
+use crate::core::{TEST_POINTS, TEST_SEED};
+use crate::cosim::exhaustive::Shard;
 use crate::cosim::{Outcome, Worst};
 use crate::golden::Bound;
 use crate::registry::Registry;
 use crate::tools;
 use benches::benches;
 
-/// What `cosim` was asked for.
-pub struct CosimRequest {
-    /// Results of each configuration.
-    pub points: Option<u64>,
-    /// Of the stimulus.
-    pub seed: u64,
-    /// What simulates.
-    pub simulator: Simulator,
-    /// Where the waveform goes.
-    pub vcd: Option<PathBuf>,
-    /// After which an external simulator is given up.
-    pub time_limit: Duration,
+/// Compare the golden model with the simulated hardware, every register on every clock
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  glint cosim                                             everything in configs/, built-in simulator
+  glint cosim my_core.toml --points 1000000 --seed 7      more points, another stimulus
+  glint cosim my_core.toml --simulator icarus --json      the emitted Verilog, result for scripts
+  glint cosim my_core.toml --points 20 --vcd wave.vcd     a waveform for a viewer
+  glint cosim my_core.toml --exhaustive                   the accuracy contract, all operands
+  glint cosim configs/reduced/rough.toml --exhaustive     and every combination, every clock")]
+pub struct Arguments {
+    #[command(flatten)]
+    configs: Configs,
+    /// Results to check for each configuration [default: 100000, or 200 with an external simulator]
+    #[arg(long, value_name = "N", value_parser = count)]
+    points: Option<u64>,
+    /// Seed of the stimulus
+    #[arg(long, value_name = "S", default_value_t = TEST_SEED)]
+    seed: u64,
+    /// What simulates the hardware
+    #[arg(long, value_enum, default_value_t = Simulator::RustHdl)]
+    simulator: Simulator,
+    /// Prove the accuracy contract instead: f for every combination of control operands, and every f with every
+    /// colour. If all operands together have at most 26 bits, also compare every register on every clock for
+    /// every combination of operands
+    #[arg(long, conflicts_with_all = ["points", "seed", "simulator", "vcd"])]
+    exhaustive: bool,
+    /// With --exhaustive: save progress in FILE, and continue from it
+    #[arg(long, value_name = "FILE", requires = "exhaustive")]
+    resume: Option<PathBuf>,
+    /// With --exhaustive: do part I of N, for a job array; `glint merge` joins the parts
+    #[arg(long, value_name = "I/N", requires = "exhaustive", requires = "resume")]
+    shard: Option<Shard>,
+    /// Write a waveform (VCD) of one configuration (built-in simulator only)
+    #[arg(long, value_name = "FILE")]
+    vcd: Option<PathBuf>,
+    #[command(flatten)]
+    time_limit: TimeLimit,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Simulator {
+    /// Built in: rust_hdl, inside this program
+    RustHdl,
+    /// Icarus Verilog, on the emitted files
+    Icarus,
+    /// Verilator, on the emitted files
+    Verilator,
 }
 
 /// `glint cosim`.
-pub fn cosim(
-    registry: &Registry,
-    output: Output,
-    configs: &[PathBuf],
-    request: &CosimRequest,
-) -> Result<bool> {
-    let loaded = load(registry, configs)?;
-    if request.vcd.is_some() && loaded.len() != 1 {
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    if arguments.exhaustive {
+        return exhaustive::run(registry, output, arguments);
+    }
+    let loaded = load(registry, &arguments.configs.paths)?;
+    if arguments.vcd.is_some() && loaded.len() != 1 {
         bail!(Usage(format!("--vcd is for one configuration; here are {}", loaded.len())));
     }
-    let which = match request.simulator {
-        Simulator::RustHdl => return built_in(output, &loaded, request),
+    let which = match arguments.simulator {
+        Simulator::RustHdl => return built_in(output, &loaded, arguments),
         Simulator::Icarus => tools::Simulator::Icarus,
         Simulator::Verilator => tools::Simulator::Verilator,
     };
-    benches(output, &loaded, request, which)
+    benches(output, &loaded, arguments, which)
 }
 
-fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result<bool> {
-    let points = request.points.unwrap_or(TEST_POINTS);
+fn built_in(output: Output, loaded: &[Loaded], arguments: &Arguments) -> Result<bool> {
+    let points = arguments.points.unwrap_or(TEST_POINTS);
     let bar = progress::bar(output, points.saturating_mul(loaded.len() as u64), "points checked");
     let outcomes: Vec<Outcome> = loaded
         .par_iter()
         .map(|one| {
             let progress = |points: u64| bar.inc(points);
-            run(one, points, request, &progress).with_context(|| format!("`{}`", one.path))
+            outcome(one, points, arguments, &progress).with_context(|| format!("`{}`", one.path))
         })
         .collect::<Result<_>>()?;
     bar.finish_and_clear();
@@ -110,14 +146,14 @@ fn built_in(output: Output, loaded: &[Loaded], request: &CosimRequest) -> Result
     Ok(holds)
 }
 
-fn run(
+fn outcome(
     one: &Loaded,
     points: u64,
-    request: &CosimRequest,
+    arguments: &Arguments,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<Outcome> {
-    let lockstep = one.core.lockstep(request.seed)?;
-    let Some(path) = &request.vcd else {
+    let lockstep = one.core.lockstep(arguments.seed)?;
+    let Some(path) = &arguments.vcd else {
         return lockstep.run(points, progress);
     };
     mismatch::traced(&lockstep, path, points, 0)

@@ -1,26 +1,37 @@
 //! `datasheet`.
 
 use std::path::PathBuf;
-use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use serde_json::json;
 
-use super::{Loaded, load};
+use super::{Loaded, load, yosys};
 use crate::cli::failure::Usage;
 use crate::cli::store::{self, Written};
-use crate::cli::{Configs, Output, progress, tables};
+use crate::cli::{Configs, Output, TimeLimit, progress, tables};
 use crate::cosim::exhaustive::Record;
 use crate::package::Seal;
 use crate::pages::datasheet::{self, Subject};
 use crate::registry::Registry;
 use crate::synth;
-use crate::tools::Tool;
 
-/// What `datasheet` was asked for.
+/// Write a datasheet, one HTML page that needs no network
+///
+/// A page as a vendor's product guide: figures at a glance, block diagram, ports and formats, a worked
+/// example, a timing diagram from simulation, the microprogram by control lines, latency and throughput, the error
+/// bound with its proof and plots, a rendered highlight, an instance in Verilog, and the sources. Area,
+/// frequency, points a second and longest paths are those of a record of `glint synth`; without one it says what Yosys,
+/// if on PATH, makes of the device for iCE40, ECP5 and Xilinx 7, which takes a minute or more. A file
+/// that Glint did not write, or that was edited since, is left alone unless --force is given.
 #[derive(Args)]
-pub struct DatasheetArguments {
+#[command(after_help = "\
+Examples:
+  glint datasheet                                       all of configs/, into datasheets/
+  glint datasheet my_core.toml --no-synthesis           in a second or two
+  glint datasheet my_core.toml --out core.html          one page, under this name
+  glint datasheet configs/rough.toml --wavedrom         also datasheets/rough.wavedrom.json")]
+pub struct Arguments {
     #[command(flatten)]
     configs: Configs,
     /// A directory, or for one configuration a file that ends in .html
@@ -41,23 +52,18 @@ pub struct DatasheetArguments {
     /// Do not ask Yosys what a device takes of which there is no record
     #[arg(long)]
     no_synthesis: bool,
-    /// Time limit of each run of Yosys, in seconds
-    #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
-    time_limit: u64,
+    #[command(flatten)]
+    time_limit: TimeLimit,
 }
 
 /// `glint datasheet`.
-pub fn datasheet(
-    registry: &Registry,
-    output: Output,
-    request: &DatasheetArguments,
-) -> Result<bool> {
-    let loaded = load(registry, &request.configs.configs)?;
-    let single = request.out.extension().is_some_and(|it| it.eq_ignore_ascii_case("html"));
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    let loaded = load(registry, &arguments.configs.paths)?;
+    let single = arguments.out.extension().is_some_and(|it| it.eq_ignore_ascii_case("html"));
     if single && loaded.len() != 1 {
         bail!(Usage(format!(
             "--out {}: a file takes one configuration, and there are {}; give a directory",
-            request.out.display(),
+            arguments.out.display(),
             loaded.len()
         )));
     }
@@ -65,20 +71,14 @@ pub fn datasheet(
     let mut records = Vec::new();
     for one in &loaded {
         let (core, contract) = (&one.core, one.core.contract.as_ref());
-        let proof = Record::find(&request.proofs, &core.contract_digest(), contract)?;
-        records.push((proof, synth::Record::find(&request.figures, &core.core_digest())?));
-        store::may_write(&path(request, one, single), Seal::Markup, request.force)?;
+        let proof = Record::find(&arguments.proofs, &core.contract_digest(), contract)?;
+        records.push((proof, synth::Record::find(&arguments.figures, &core.core_digest())?));
+        store::may_write(&path(arguments, one, single), Seal::Markup, arguments.force)?;
     }
     let mut notes = Vec::new();
-    let yosys = match (!request.no_synthesis).then(|| Tool::find("yosys")) {
-        None => None,
-        Some(Ok(yosys)) => Some(yosys),
-        Some(Err(missing)) => {
-            notes.push(format!("{missing}: nothing is synthesised"));
-            None
-        }
-    };
-    let limit = Duration::from_secs(request.time_limit);
+    let wanted = !arguments.no_synthesis;
+    let yosys = wanted.then(|| yosys("nothing is synthesised", &mut notes)).flatten();
+    let limit = arguments.time_limit.get();
     let steps = records.iter().map(|(_, it)| datasheet::steps(yosys.is_some() && it.is_none()));
     let steps: usize = steps.sum();
     let bar = progress::bar(output, steps as u64, "datasheets");
@@ -94,14 +94,14 @@ pub fn datasheet(
         };
         let made = datasheet::datasheet(&subject, &|| bar.inc(1));
         let made = made.with_context(|| format!("`{}`", one.path))?;
-        let page = path(request, one, single);
+        let page = path(arguments, one, single);
         let mut files = vec![(page.clone(), made.page, Seal::Markup)];
-        if request.wavedrom {
+        if arguments.wavedrom {
             let path = page.with_extension("wavedrom.json");
             files.push((path, made.wavedrom, Seal::Json));
         }
         for (path, text, seal) in files {
-            let written = store::write_sealed(&path, &text, seal, request.force);
+            let written = store::write_sealed(&path, &text, seal, arguments.force);
             let written = written.with_context(|| format!("`{}` has no datasheet", one.path))?;
             report.push((one, path.display().to_string().replace('\\', "/"), written));
         }
@@ -112,10 +112,11 @@ pub fn datasheet(
 }
 
 /// The page of a configuration.
-fn path(request: &DatasheetArguments, one: &Loaded, single: bool) -> PathBuf {
-    match single {
-        true => request.out.clone(),
-        false => request.out.join(format!("{}.html", one.core.config.name)),
+fn path(arguments: &Arguments, one: &Loaded, single: bool) -> PathBuf {
+    if single {
+        arguments.out.clone()
+    } else {
+        arguments.out.join(format!("{}.html", one.core.config.name))
     }
 }
 
@@ -134,11 +135,7 @@ fn tell(output: Output, report: &[(&Loaded, String, Written)], notes: &[String])
         return;
     }
     for (one, path, written) in report {
-        let what = match written {
-            Written::Unchanged => "up to date",
-            Written::Replaced => "written",
-        };
-        tables::print_line(&format!("{}: {path} {what}", one.path));
+        tables::print_line(&format!("{}: {path} {written}", one.path));
     }
     for note in notes {
         tables::print_line(&format!("Note: {note}"));

@@ -1,61 +1,72 @@
 //! `describe`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Context, Result};
+use clap::Args;
 use serde_json::json;
 
 use super::load;
 use crate::cli::store::{self, Written};
-use crate::cli::{Output, tables};
+use crate::cli::{Configs, Output, tables};
 use crate::package::Seal;
 use crate::registry::Registry;
 
-/// `glint describe`.
-pub fn describe(
-    registry: &Registry,
-    output: Output,
-    configs: &[PathBuf],
-    out: Option<&Path>,
+/// Print a page of documentation, in Markdown
+///
+/// Ports, blocks, microprogram, clocks, accuracy, a worked example and the keys of a configuration, from the
+/// description that the Verilog is made of. With --out, each configuration gets the file `DIR/<name>.md`; a page that
+/// Glint did not write, or that was edited since, is left alone unless --force is given.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  glint describe my_core.toml
+  glint describe configs/rough.toml --out docs/devices")]
+pub struct Arguments {
+    #[command(flatten)]
+    configs: Configs,
+    /// Write the pages into this directory
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Replace pages that Glint did not write or that were edited since
+    #[arg(long, requires = "out")]
     force: bool,
-) -> Result<bool> {
-    let loaded = load(registry, configs)?;
+}
+
+/// `glint describe`.
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    let loaded = load(registry, &arguments.configs.paths)?;
     let mut report = Vec::new();
     for (at, one) in loaded.iter().enumerate() {
         let page = one.core.page(&one.path);
         let page = page.with_context(|| format!("`{}`", one.path))?;
         let name = &one.core.config.name;
-        let written = match out {
+        let written = match &arguments.out {
             Some(out) => {
                 let written = store::write_sealed(
                     &out.join(format!("{name}.md")),
                     &page,
                     Seal::Markup,
-                    force,
+                    arguments.force,
                 );
                 Some(written.with_context(|| format!("`{}` was not described", one.path))?)
             }
             None => None,
         };
         match written {
-            _ if output.json => report.push(match written {
-                None => json!({ "config": one.path, "name": name, "page": page }),
-                Some(written) => json!({
-                    "config": one.path,
-                    "name": name,
-                    "written": written == Written::Replaced,
-                    "file": format!("{name}.md"),
-                }),
-            }),
+            Some(written) if output.json => report.push(json!({
+                "config": one.path,
+                "name": name,
+                "written": written == Written::Replaced,
+                "file": format!("{name}.md"),
+            })),
+            Some(written) => tables::print_line(&format!("{}: {name}.md {written}", one.path)),
+            None if output.json => {
+                report.push(json!({ "config": one.path, "name": name, "page": page }));
+            }
             None => {
                 let gap = if at > 0 { "\n" } else { "" };
                 tables::print_line(&format!("{gap}{}", page.trim_end()));
-            }
-            Some(Written::Unchanged) => {
-                tables::print_line(&format!("{}: {name}.md up to date", one.path));
-            }
-            Some(Written::Replaced) => {
-                tables::print_line(&format!("{}: {name}.md written", one.path));
             }
         }
     }

@@ -3,9 +3,10 @@
 mod batch;
 mod operands;
 
-use std::path::Path;
+use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
+use clap::Args;
 use serde_json::{Value, json};
 
 use super::{Loaded, load_one};
@@ -15,21 +16,37 @@ use crate::cli::{Output, tables};
 use crate::golden::{Contract, Model, Operand};
 use crate::registry::Registry;
 
+/// Compute one point: golden registers, outputs and the formula in f64
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
+  glint eval my_core.toml cos_gamma=#1038090     a raw integer, as the port takes it
+  glint eval my_core.toml --batch points.csv     a row of results for each row of operands
+  glint eval my_core.toml --json                 the middle of the domain, for scripts")]
+pub struct Arguments {
+    /// A configuration
+    config: PathBuf,
+    /// Operands: `cos_gamma=0.99` is a value, `cos_gamma=#1038090` a raw integer. An operand that is not
+    /// given is the middle of its domain, a colour the largest
+    #[arg(value_name = "OPERAND=VALUE")]
+    operands: Vec<String>,
+    /// Compute many points: a CSV file with the names of operands in its first row, or - for standard input. The
+    /// results are CSV, or with --json a list. Operands on the command line hold for all rows
+    #[arg(long, value_name = "FILE.csv")]
+    batch: Option<PathBuf>,
+}
+
 /// More clocks than any device takes.
 const LIMIT: u64 = 1 << 16;
 
 /// `glint eval`: one point, or as many as a CSV file has.
-pub fn eval(
-    registry: &Registry,
-    output: Output,
-    config: &Path,
-    settings: &[String],
-    batch: Option<&Path>,
-) -> Result<bool> {
-    let one = load_one(registry, &registry.schemas(), config)?;
-    let given = operands::given(one.core.contract.operands(), settings).map_err(Usage)?;
-    match batch {
-        Some(path) if path == config => {
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    let one = load_one(registry, &registry.schemas(), &arguments.config)?;
+    let given =
+        operands::given(one.core.contract.operands(), &arguments.operands).map_err(Usage)?;
+    match &arguments.batch {
+        Some(path) if *path == arguments.config => {
             bail!(Usage("configuration and --batch are one file".to_owned()))
         }
         Some(path) => batch::batch(output, &one, &given, path),

@@ -3,35 +3,54 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
+use clap::Args;
 use rayon::prelude::*;
 use serde_json::json;
 
 use super::{Loaded, load};
 use crate::cli::store::{self, Written};
-use crate::cli::{Output, progress, tables};
+use crate::cli::{Configs, Output, progress, tables};
 use crate::package::{self, OutputFile, Seal};
 use crate::registry::Registry;
 
-/// `glint generate`.
-pub fn generate(
-    registry: &Registry,
-    output: Output,
-    configs: &[PathBuf],
-    out: &Path,
+/// Write Verilog, ROM contents, manifest, FuseSoC core and test bench
+///
+/// Each configuration gets the directories `rtl_out/<name>/` and `testbench/<name>/`, and with
+/// `package.software` also `software/<name>/`. They are replaced as a whole or not at all. Files that Glint did not
+/// write, or that were edited since, are left alone unless --force is given.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  glint generate                              everything in configs/, into rtl_out/ and testbench/
+  glint generate my_core.toml --out build     one configuration, into build/
+  glint generate --check                      are the files up to date? Writes nothing")]
+pub struct Arguments {
+    #[command(flatten)]
+    configs: Configs,
+    /// The directory in which `rtl_out/` and `testbench/` are made
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    out: PathBuf,
+    /// Write nothing; fail if a file differs from what would be written
+    #[arg(long)]
     check: bool,
+    /// Replace files that Glint did not write or that were edited since
+    #[arg(long)]
     force: bool,
-) -> Result<bool> {
-    let loaded = load(registry, configs)?;
+}
+
+/// `glint generate`.
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    let loaded = load(registry, &arguments.configs.paths)?;
     for one in &loaded {
         one.contract()?;
     }
     let made = all_files(output, &loaded)?;
-    if check {
-        return compare(output, out, &loaded, &made);
+    if arguments.check {
+        return compare(output, &arguments.out, &loaded, &made);
     }
     let mut report = Vec::new();
     for (one, files) in loaded.iter().zip(&made) {
-        let written = write(out, one, files, force)?;
+        let written = write(&arguments.out, one, files, arguments.force)?;
         if output.json {
             let paths: Vec<&str> = files.iter().map(|file| file.path.as_str()).collect();
             report.push(json!({
@@ -41,11 +60,7 @@ pub fn generate(
                 "files": paths,
             }));
         } else {
-            let what = match written {
-                Written::Unchanged => "up to date",
-                Written::Replaced => "written",
-            };
-            tables::print_line(&format!("{}: {} files {what}", one.path, files.len()));
+            tables::print_line(&format!("{}: {} files {written}", one.path, files.len()));
         }
     }
     if output.json {

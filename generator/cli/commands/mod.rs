@@ -1,47 +1,31 @@
 //! What the commands do. Each returns whether everything holds.
 
-mod catalogue;
-mod certify;
-mod check;
-mod compare;
-mod cosim;
-mod datasheet;
-mod describe;
-mod eval;
-mod exhaustive;
-mod generate;
+pub mod certify;
+
+pub mod compare;
+pub mod cosim;
+pub mod datasheet;
+pub mod describe;
+pub mod eval;
+pub mod generate;
+pub mod list;
+pub mod main_job;
+pub mod merge;
 mod mismatch;
-mod mutate;
-mod render;
-mod report;
-mod schedule;
-mod synth;
-mod tune;
-mod verify;
-mod worst;
+pub mod mutate;
+pub mod new;
+pub mod render;
+pub mod report;
+pub mod schedule;
+pub mod schema;
+pub mod synth;
+pub mod tune;
+pub mod verify;
+pub mod worst;
 
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
-
-pub use catalogue::{list, new};
-pub use certify::{CertifyRequest, certify};
-pub use check::everything;
-pub use compare::{CompareRequest, compare};
-pub use cosim::{CosimRequest, cosim};
-pub use datasheet::{DatasheetArguments, datasheet};
-pub use describe::describe;
-pub use eval::eval;
-pub use exhaustive::{ExhaustiveRequest, exhaustive, merge};
-pub use generate::generate;
-pub use mutate::{MutateRequest, mutate};
-pub use render::{RenderArguments, render};
-pub use report::{ReportRequest, report};
-pub use schedule::schedule;
-pub use synth::{SynthArguments, synth};
-pub use tune::{TuneArguments, tune};
-pub use verify::{VerifyRequest, verify};
-pub use worst::{WorstArguments, worst};
 
 use super::failure::{self, Several, Usage};
 use crate::base::diagnostic::Diagnostics;
@@ -51,12 +35,13 @@ use crate::core::Core;
 use crate::golden::Bound;
 use crate::package::{OutputFile, Unfit, Vectors};
 use crate::registry::Registry;
+use crate::tools::Tool;
 
 /// Where configurations are when none are named.
 const CONFIGS: &str = "configs";
 
 /// A configuration file with what it asks for.
-struct Loaded {
+pub struct Loaded {
     /// As the command line names it, with `/`.
     path: String,
     core: Core,
@@ -146,12 +131,14 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
                 problems.push(key, format!("{} ({})", fault.message, fault.location), remedy);
             }
         }
-        match problems.is_empty() {
-            true => error.context(format!("`{name}`")),
-            false => problems.into(),
-        }
+        if problems.is_empty() { error.context(format!("`{name}`")) } else { problems.into() }
     })?;
     Ok(Loaded { path: name, core, places })
+}
+
+/// Yosys; where it is missing a note says so, and what there is without it.
+fn yosys(without: &str, notes: &mut Vec<String>) -> Option<Tool> {
+    Tool::find("yosys").map_err(|missing| notes.push(format!("{missing}: {without}"))).ok()
 }
 
 /// The verdict on a configuration whose outputs are right, within a bound that keeps the accuracy contract.

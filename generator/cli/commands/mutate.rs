@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::time::Duration;
 
 use anyhow::{Context, Result, bail};
+use clap::Args;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -13,7 +13,7 @@ use super::{Loaded, load};
 use crate::cli::failure::Usage;
 use crate::cli::own_file::OwnFile;
 use crate::cli::tables::Column;
-use crate::cli::{Output, progress, tables};
+use crate::cli::{Configs, Output, TimeLimit, progress, tables};
 use crate::cosim::Lockstep;
 use crate::mutate::{
     self, Check, Difference, Fault, Faults, Found, GOAL_MEMORY, GOAL_TEXT, Score, Share, TOLERATED,
@@ -21,18 +21,38 @@ use crate::mutate::{
 };
 use crate::registry::Registry;
 
-/// What `mutate` was asked for.
-pub struct MutateRequest {
-    /// Name the faults, and plant none.
-    pub list: bool,
-    /// The fault of this id alone.
-    pub only: Option<String>,
-    /// The faults of the emitted Verilog too.
-    pub full: bool,
-    /// The directory of the records.
-    pub out: Option<PathBuf>,
-    /// After which a run of an outside tool is given up.
-    pub time_limit: Duration,
+/// Plant faults one at a time, and show which of them the tests notice
+///
+/// Stuck and inverted bits, swapped mux inputs, wrong operators, constants, enables, every bit of every control
+/// word, a sample of ROM words: each fault is put into the netlist, and the default test of `cosim` is run on this
+/// mutant. The mutant is caught, or proved to change nothing that is compared, or undecided. How many of them the
+/// core's own bench notices is counted as well. The exit code is 0 if at most 1 % of the faults of each
+/// configuration are undecided.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  glint mutate my_core.toml                               the score, and what is undecided
+  glint mutate my_core.toml --list                        the names of all faults
+  glint mutate my_core.toml --only 'result[3]:inverted'   one fault: where it shows, a waveform
+  glint mutate my_core.toml --full                        the emitted Verilog too
+  glint mutate --out mutation                             a record of each configuration in configs/")]
+pub struct Arguments {
+    #[command(flatten)]
+    configs: Configs,
+    /// List the faults, and plant none
+    #[arg(long, conflicts_with_all = ["only", "out"])]
+    list: bool,
+    /// Plant this fault alone; where it is caught, write the waveform around it
+    #[arg(long, value_name = "ID", conflicts_with = "out")]
+    only: Option<String>,
+    /// Plant faults in the emitted Verilog too; needs Icarus Verilog, Verilator and Yosys
+    #[arg(long, conflicts_with_all = ["list", "only"])]
+    full: bool,
+    /// Write the record of each configuration, `<name>.json`, into this directory
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    time_limit: TimeLimit,
 }
 
 /// What was found of one configuration.
@@ -64,14 +84,9 @@ impl Scored {
 }
 
 /// `glint mutate`.
-pub fn mutate(
-    registry: &Registry,
-    output: Output,
-    configs: &[PathBuf],
-    request: &MutateRequest,
-) -> Result<bool> {
-    let loaded = load(registry, configs)?;
-    if let Some(id) = &request.only {
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    let loaded = load(registry, &arguments.configs.paths)?;
+    if let Some(id) = &arguments.only {
         return match &loaded[..] {
             [one] => only(output, one, id),
             _ => {
@@ -80,7 +95,7 @@ pub fn mutate(
         };
     }
     let faults: Vec<Faults> = loaded.iter().map(|one| Faults::of(&one.core.design)).collect();
-    if request.list {
+    if arguments.list {
         list(output, &loaded, &faults);
         return Ok(true);
     }
@@ -92,10 +107,11 @@ pub fn mutate(
                 let faults = text.faults();
                 (text, faults)
             };
-            request.full.then(text).transpose().map(|text| text.map(with_faults))
+            arguments.full.then(text).transpose().map(|text| text.map(with_faults))
         })
         .collect::<Result<_>>()?;
-    let records = records(&loaded, request)?;
+    let record = |one: &Loaded| OwnFile::record(arguments.out.as_deref(), &one.core.config.name);
+    let records: Vec<Option<OwnFile>> = loaded.iter().map(record).collect::<Result<_>>()?;
     let total = faults.iter().map(Faults::len).sum::<usize>()
         + texts.iter().flatten().map(|(_, faults)| faults.len()).sum::<usize>();
     let bar = progress::bar(output, total as u64, "faults planted");
@@ -105,7 +121,7 @@ pub fn mutate(
         let netlist = Score::of(&found.with_context(|| format!("`{}`", one.path))?);
         let verilog = match text {
             Some((text, faults)) => {
-                let found = text.run(faults, request.time_limit, &|| bar.inc(1));
+                let found = text.run(faults, arguments.time_limit.get(), &|| bar.inc(1));
                 let found = found.with_context(|| format!("`{}`", one.path))?;
                 Some(TextScore::of(faults, &found))
             }
@@ -232,21 +248,6 @@ fn found_as_json(one: &Loaded, found: &Found) -> Value {
     })
 }
 
-/// The record of each configuration, if records are asked for. A place that cannot be written is known before the
-/// work.
-fn records(loaded: &[Loaded], request: &MutateRequest) -> Result<Vec<Option<OwnFile>>> {
-    let Some(directory) = &request.out else {
-        return Ok(loaded.iter().map(|_| None).collect());
-    };
-    std::fs::create_dir_all(directory)
-        .with_context(|| format!("cannot make the directory `{}`", directory.display()))?;
-    let record = |one: &Loaded| {
-        let name = format!("{}.json", one.core.config.name);
-        OwnFile::new(directory, &name, OwnFile::JSON).map(Some)
-    };
-    loaded.iter().map(record).collect()
-}
-
 fn print(scored: &Scored) {
     let score = &scored.netlist;
     tables::print_line(&format!("{}:", scored.config));
@@ -298,10 +299,7 @@ fn print(scored: &Scored) {
     tables::print_line(&format!(
         "  {:.2} % undecided: {}",
         100.0 * scored.share_undecided(),
-        match scored.holds() {
-            true => "holds",
-            false => "FAILS, at most 1 % may be",
-        }
+        if scored.holds() { "holds" } else { "FAILS, at most 1 % may be" }
     ));
 }
 

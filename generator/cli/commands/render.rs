@@ -2,7 +2,6 @@
 
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 use anyhow::{Context, Result, anyhow, bail};
 use clap::{Args, ValueEnum};
@@ -12,7 +11,7 @@ use super::load_one;
 use crate::base::{input, text};
 use crate::cli::destination::Destination;
 use crate::cli::failure::{self, Usage};
-use crate::cli::{Output, progress, tables};
+use crate::cli::{Output, TimeLimit, progress, tables};
 use crate::config::Config;
 use crate::core::{self, Core};
 use crate::registry::Registry;
@@ -25,9 +24,21 @@ use crate::tools;
 /// The largest file that is read, in bytes: about the OBJ file of the largest mesh.
 const LARGEST_FILE: u64 = 4 << 30;
 
-/// What `render` was asked for.
+/// Draw a picture whose highlights are bit-accurate results of the device
+///
+/// Ambient and diffuse light are f64, and so is all geometry; the specular term of every sample and light
+/// is a result of the device. Without a configuration it is the first device of `glint list` with its
+/// defaults. The same command gives the same bytes on every machine, whatever computes the points.
 #[derive(Args)]
-pub struct RenderArguments {
+#[command(after_help = "\
+Examples:
+  glint render --out sphere.png
+  glint render configs/cosine_power.toml --shape group --exponent 80 --samples 4 --out group.png
+  glint render core.toml --mesh bunny.obj --light 1,2,3 --light -2,1,1,0.3,0.3,0.5 --out bunny.png
+  glint render configs/rough.toml --height grain.png --out rough.png
+  glint render core.toml --compare --out beside.png     device, Blinn in f64, and their difference
+  glint render core.toml --through verilator --out same.png")]
+pub struct Arguments {
     /// A configuration [default: the first device with its defaults]
     config: Option<PathBuf>,
     /// The PNG file to write
@@ -100,9 +111,8 @@ pub struct RenderArguments {
     /// The vertical field of view, in degrees, 1 to 150
     #[arg(long, value_name = "DEGREES", default_value_t = 30.0, value_parser = field)]
     fov: f64,
-    /// Time limit of an external simulator, in seconds
-    #[arg(long, value_name = "SECONDS", default_value_t = 600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
-    time_limit: u64,
+    #[command(flatten)]
+    time_limit: TimeLimit,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -128,7 +138,7 @@ enum ShapeName {
 }
 
 /// `glint render`.
-pub fn render(registry: &Registry, output: Output, arguments: &RenderArguments) -> Result<bool> {
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let (name, core) = core(registry, arguments.config.as_deref())?;
     let settings = settings(&core, arguments)?;
     if let Some(extension) = arguments.out.extension()
@@ -145,10 +155,9 @@ pub fn render(registry: &Registry, output: Output, arguments: &RenderArguments) 
     let through = match arguments.through {
         Through::Golden => core::Through::Golden,
         Through::RustHdl => core::Through::RustHdl,
-        Through::Verilator => core::Through::Verilog(
-            tools::Simulator::Verilator,
-            Duration::from_secs(arguments.time_limit),
-        ),
+        Through::Verilator => {
+            core::Through::Verilog(tools::Simulator::Verilator, arguments.time_limit.get())
+        }
     };
     let bar = progress::bar(output, u64::from(settings.size.1), "rows rendered");
     bar.tick();
@@ -180,7 +189,7 @@ fn core(registry: &Registry, config: Option<&Path>) -> Result<(String, Core)> {
     Ok((format!("the defaults of `{}`", device.name), core))
 }
 
-fn settings(core: &Core, arguments: &RenderArguments) -> Result<Settings> {
+fn settings(core: &Core, arguments: &Arguments) -> Result<Settings> {
     let (least, most) = render::exponents(core.contract.as_ref()).unwrap_or((0, i64::MAX));
     let exponent =
         arguments.exponent.unwrap_or_else(|| render::usual_exponent(core.contract.as_ref()));
@@ -206,7 +215,7 @@ fn settings(core: &Core, arguments: &RenderArguments) -> Result<Settings> {
 }
 
 /// What is shown; `coarse`: in triangles that one can see.
-fn scene(arguments: &RenderArguments, coarse: bool) -> Result<Scene> {
+fn scene(arguments: &Arguments, coarse: bool) -> Result<Scene> {
     let objects = match &arguments.mesh {
         Some(path) => {
             let cannot = || format!("the mesh `{}` cannot be used", path.display());
@@ -271,7 +280,7 @@ fn read(path: &Path) -> Result<Vec<u8>> {
 /// Says what came of it.
 fn tell(
     output: Output,
-    arguments: &RenderArguments,
+    arguments: &Arguments,
     name: &str,
     core: &Core,
     scene: &Scene,
@@ -383,9 +392,10 @@ fn vector(text: &str) -> Result<Vector, String> {
 
 fn colour(text: &str) -> Result<Vector, String> {
     let colour = vector(text)?;
-    match colour.0.iter().all(|part| (0.0..=1.0).contains(part)) {
-        true => Ok(colour),
-        false => Err("a colour is three numbers from 0 to 1".to_owned()),
+    if colour.0.iter().all(|part| (0.0..=1.0).contains(part)) {
+        Ok(colour)
+    } else {
+        Err("a colour is three numbers from 0 to 1".to_owned())
     }
 }
 

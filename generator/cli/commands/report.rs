@@ -1,59 +1,63 @@
 //! `report`.
 
-use std::fs;
 use std::path::PathBuf;
-use std::time::Duration;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
+use clap::Args;
 use serde_json::json;
 
+use super::yosys;
 use crate::cli::own_file::OwnFile;
 use crate::cli::tables::Column;
-use crate::cli::{Output, progress, tables};
+use crate::cli::{Output, TimeLimit, progress, tables};
 use crate::evidence;
 use crate::evidence::benchmark;
 use crate::evidence::claims::Verdict;
 use crate::pages::report;
 use crate::registry::Registry;
-use crate::tools::Tool;
 
-/// What `report` was asked for.
-pub struct ReportRequest {
-    /// Where the files go.
-    pub out: PathBuf,
-    /// Time W against Schlick's function.
-    pub benchmark: bool,
-    /// Synthesise W and Schlick's function.
-    pub synthesis: bool,
-    /// After which a run of Yosys is given up.
-    pub time_limit: Duration,
+/// Measure all devices and the claims of their sources, and write a page about them
+///
+/// Writes report.html, one page that needs no network, and report.json with all its figures: error curves of
+/// every device, the plots that the source documents (seeds 000 to 002) describe, and their claims, each with a
+/// verdict. The same tools give the same files. With Yosys on PATH, W and Schlick's function are synthesised.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  glint report                            report/report.html and report/report.json
+  glint report --out build --benchmark    also build/benchmark.json: W timed against Schlick
+  glint report --json                     the claims, for scripts")]
+pub struct Arguments {
+    /// Where the files go
+    #[arg(long, value_name = "DIR", default_value = "report")]
+    out: PathBuf,
+    /// Also time W against Schlick's function, into a file of its own
+    #[arg(long)]
+    benchmark: bool,
+    /// Do not ask Yosys what W and Schlick's function take
+    #[arg(long)]
+    no_synthesis: bool,
+    #[command(flatten)]
+    time_limit: TimeLimit,
 }
 
 /// `glint report`.
-pub fn report(registry: &Registry, output: Output, request: &ReportRequest) -> Result<bool> {
-    // Before the work: a directory that cannot be written is known now.
-    fs::create_dir_all(&request.out)
-        .with_context(|| format!("cannot make the directory `{}`", request.out.display()))?;
-    let html = OwnFile::new(&request.out, "report.html", report::MARKER)?;
-    let figures = OwnFile::new(&request.out, "report.json", OwnFile::JSON)?;
-    let timings = match request.benchmark {
-        true => Some(OwnFile::new(&request.out, "benchmark.json", OwnFile::JSON)?),
-        false => None,
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    let html = OwnFile::new(&arguments.out, "report.html", report::MARKER)?;
+    let figures = OwnFile::new(&arguments.out, "report.json", OwnFile::JSON)?;
+    let timings = if arguments.benchmark {
+        Some(OwnFile::new(&arguments.out, "benchmark.json", OwnFile::JSON)?)
+    } else {
+        None
     };
     let mut notes = Vec::new();
-    let yosys = match request.synthesis.then(|| Tool::find("yosys")) {
-        None => None,
-        Some(Ok(yosys)) => Some(yosys),
-        Some(Err(missing)) => {
-            notes.push(format!("{missing}: nothing is synthesised"));
-            None
-        }
-    };
+    let wanted = !arguments.no_synthesis;
+    let yosys = wanted.then(|| yosys("nothing is synthesised", &mut notes)).flatten();
     // Alone, before the processors are busy.
-    let timed = request.benchmark.then(benchmark::run);
+    let timed = arguments.benchmark.then(benchmark::run);
     let steps = evidence::steps(registry, yosys.is_some());
     let bar = progress::bar(output, steps as u64, "measurements");
-    let synthesis = yosys.as_ref().map(|yosys| (yosys, request.time_limit));
+    let synthesis = yosys.as_ref().map(|yosys| (yosys, arguments.time_limit.get()));
     let evidence = evidence::gather(registry, synthesis, &|| bar.inc(1))?;
     bar.finish_and_clear();
     notes.extend(evidence.notes.iter().cloned());

@@ -1,32 +1,49 @@
 //! `schedule`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
+use clap::Args;
 use serde_json::{Value, json};
 
 use super::{Loaded, load, paths};
 use crate::cli::tables::Column;
-use crate::cli::{Output, store, tables};
+use crate::cli::{Configs, Output, store, tables};
 use crate::hdl::netlist::{Design, Pipeline, value_name};
 use crate::package::{Seal, sealed};
 use crate::pages::stages;
 use crate::registry::Registry;
 
-/// `glint schedule`.
-pub fn schedule(
-    registry: &Registry,
-    output: Output,
-    configs: &[PathBuf],
-    svg: Option<&Path>,
+/// Show the stages of a pipeline
+///
+/// For each stage: which microinstructions it is made of, what it computes, the delay of its longest path by the
+/// delays of the target, the slack (what the clock period leaves beside that and a register's own delay), and the
+/// bits of the registers behind it.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  glint schedule my_pipeline.toml
+  glint schedule my_pipeline.toml --svg drawings   a drawing of the stages, drawings/<name>.svg
+  glint schedule my_pipeline.toml --json")]
+pub struct Arguments {
+    #[command(flatten)]
+    configs: Configs,
+    /// Draw the stages too, a file for each configuration
+    #[arg(long, value_name = "DIR")]
+    svg: Option<PathBuf>,
+    /// Replace drawings that Glint did not write or that were edited since
+    #[arg(long, requires = "svg")]
     force: bool,
-) -> Result<bool> {
-    let named = paths(configs)?;
+}
+
+/// `glint schedule`.
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    let named = paths(&arguments.configs.paths)?;
     let mut list = Vec::new();
     let mut shown = 0;
-    for one in load(registry, configs)? {
+    for one in load(registry, &arguments.configs.paths)? {
         let Some(pipeline) = &one.core.design.pipeline else {
-            if configs.is_empty() {
+            if arguments.configs.paths.is_empty() {
                 continue;
             }
             bail!(
@@ -35,10 +52,10 @@ pub fn schedule(
             );
         };
         shown += 1;
-        if let Some(directory) = svg {
+        if let Some(directory) = &arguments.svg {
             let drawing = sealed(stages::svg(&one.core.design, pipeline)?, Seal::Markup);
             let path = directory.join(format!("{}.svg", one.core.config.name));
-            store::write_sealed(&path, &drawing, Seal::Markup, force)
+            store::write_sealed(&path, &drawing, Seal::Markup, arguments.force)
                 .with_context(|| format!("`{}` was not drawn", one.path))?;
         }
         if output.json {

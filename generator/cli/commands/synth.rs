@@ -4,7 +4,6 @@ mod cache;
 mod show;
 
 use std::path::PathBuf;
-use std::time::Duration;
 
 use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
@@ -13,7 +12,7 @@ use serde::Serialize;
 
 use super::{Loaded, load};
 use crate::cli::own_file::OwnFile;
-use crate::cli::{Configs, Output, progress, tables};
+use crate::cli::{Configs, Output, TimeLimit, progress, tables};
 use crate::evidence::comparison;
 use crate::registry::Registry;
 use crate::synth::{Figures, Flow, Rate, Record, Subject, TARGETS, Target};
@@ -26,9 +25,21 @@ const EXPONENT: f64 = 35.0;
 /// Where Debian's `qflow-tech-osu018` puts the cells.
 const LIBERTY: &str = "/usr/share/qflow/tech/osu018/osu018_stdcells.lib";
 
-/// What `synth` was asked for.
+/// Measure area and frequency by synthesis, placement and routing
+///
+/// iCE40 (UP5K) and ECP5 by Yosys and nextpnr over several seeds, Xilinx 7 by Yosys (area alone), 0.18 µm standard cells by
+/// Yosys and OpenSTA (before layout; a gate is a NAND2X1). Registers stand around the core, so that pins do not count; the
+/// delay of a DSP block always counts. Points a second are the median frequency divided by the clocks a
+/// point. The critical path has the names of the description. Results are cached in `.glint/` beside the
+/// configuration, until the Verilog or the tools change.
 #[derive(Args)]
-pub struct SynthArguments {
+#[command(after_help = "\
+Examples:
+  glint synth my_core.toml                            every target whose tools are installed
+  glint synth my_core.toml --target ecp5 --seeds 11   one of them, more seeds
+  glint synth --json                                  everything in configs/, for scripts
+  glint synth --out synthesis                         a record of each configuration in configs/")]
+pub struct Arguments {
     #[command(flatten)]
     configs: Configs,
     /// The technology to measure for; may be repeated [default: every target whose tools are installed]
@@ -49,9 +60,8 @@ pub struct SynthArguments {
     /// The Liberty file of the standard cells
     #[arg(long, value_name = "FILE.lib", default_value = LIBERTY)]
     liberty: PathBuf,
-    /// Time limit of each run of a tool, in seconds
-    #[arg(long, value_name = "SECONDS", default_value_t = 3600, value_parser = clap::value_parser!(u64).range(1..=1_000_000))]
-    time_limit: u64,
+    #[command(flatten)]
+    time_limit: TimeLimit<3600>,
 }
 
 impl ValueEnum for Target {
@@ -82,25 +92,21 @@ struct Recorded<'a> {
 }
 
 /// `glint synth`.
-pub fn synth(registry: &Registry, output: Output, request: &SynthArguments) -> Result<bool> {
-    let loaded = load(registry, &request.configs.configs)?;
-    let (flows, notes) = flows(request)?;
-    let mut records = Vec::new();
-    for one in &loaded {
-        let file = format!("{}.json", one.core.config.name);
-        let record = request.out.as_ref().map(|out| OwnFile::new(out, &file, OwnFile::JSON));
-        records.push(record.transpose()?);
-    }
-    let steps = flows.iter().map(|flow| Flow::steps(flow.target(), request.seeds));
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    let loaded = load(registry, &arguments.configs.paths)?;
+    let (flows, notes) = flows(arguments)?;
+    let record = |one: &Loaded| OwnFile::record(arguments.out.as_deref(), &one.core.config.name);
+    let records: Vec<Option<OwnFile>> = loaded.iter().map(record).collect::<Result<_>>()?;
+    let steps = flows.iter().map(|flow| Flow::steps(flow.target(), arguments.seeds));
     let steps = steps.sum::<u64>() * loaded.len() as u64;
     let bar = progress::bar(output, steps, "synthesis");
     bar.tick();
     let jobs = rayon::ThreadPoolBuilder::new()
-        .num_threads(request.jobs.map_or_else(rayon::current_num_threads, usize::from));
+        .num_threads(arguments.jobs.map_or_else(rayon::current_num_threads, usize::from));
     let jobs = jobs.build().context("cannot start threads")?;
     let measured: Vec<Result<Measured>> = jobs.install(|| {
         let all = loaded.par_iter();
-        all.map(|one| measure(one, &flows, request, &|steps| bar.inc(steps))).collect()
+        all.map(|one| measure(one, &flows, arguments, &|steps| bar.inc(steps))).collect()
     });
     let measured: Vec<Measured> = measured.into_iter().collect::<Result<_>>()?;
     bar.finish_and_clear();
@@ -122,13 +128,13 @@ pub fn synth(registry: &Registry, output: Output, request: &SynthArguments) -> R
 }
 
 /// The tools for each target, and what is said of targets that are left out.
-fn flows(request: &SynthArguments) -> Result<(Vec<Flow>, Vec<String>)> {
+fn flows(arguments: &Arguments) -> Result<(Vec<Flow>, Vec<String>)> {
     let search = std::env::var_os("PATH").unwrap_or_default();
     let find = |target: Target| {
-        let flow = Flow::find(target, &search, &request.liberty);
+        let flow = Flow::find(target, &search, &arguments.liberty);
         flow.with_context(|| format!("nothing can be measured for {}", target.title()))
     };
-    let mut wanted = request.targets.clone();
+    let mut wanted = arguments.targets.clone();
     wanted.sort();
     wanted.dedup();
     if !wanted.is_empty() {
@@ -140,7 +146,7 @@ fn flows(request: &SynthArguments) -> Result<(Vec<Flow>, Vec<String>)> {
         match find(target) {
             Ok(flow) => flows.push(flow),
             // A record is of all targets.
-            Err(error) if request.out.is_some() => return Err(error),
+            Err(error) if arguments.out.is_some() => return Err(error),
             Err(error) => {
                 notes.push(format!("{error:#}"));
                 missing = Some(error);
@@ -157,7 +163,7 @@ fn flows(request: &SynthArguments) -> Result<(Vec<Flow>, Vec<String>)> {
 fn measure<'a>(
     one: &'a Loaded,
     flows: &[Flow],
-    request: &SynthArguments,
+    arguments: &Arguments,
     done: &(dyn Fn(u64) + Sync),
 ) -> Result<Measured<'a>> {
     let core = &one.core;
@@ -167,16 +173,16 @@ fn measure<'a>(
     let subject = Subject {
         design: &core.design,
         files: &files,
-        seeds: request.seeds,
-        limit: Duration::from_secs(request.time_limit),
+        seeds: arguments.seeds,
+        limit: arguments.time_limit.get(),
     };
     let figures = flows.par_iter().map(|flow| {
         let digest = flow.digest(&subject);
-        let cache = (!request.no_cache).then(|| Cache::beside(&one.path)).flatten();
+        let cache = (!arguments.no_cache).then(|| Cache::beside(&one.path)).flatten();
         if let Some(figures) =
             cache.as_ref().and_then(|cache| cache.find(core, flow.target(), &digest))
         {
-            done(Flow::steps(flow.target(), request.seeds));
+            done(Flow::steps(flow.target(), arguments.seeds));
             return Ok(figures);
         }
         let figures = flow.measure(&subject, &|| done(1));

@@ -19,9 +19,19 @@ use crate::registry::{Device, Registry};
 use crate::synth::Target;
 use crate::tune::{self, Answer, Candidate, Objective, Unit, Wish};
 
-/// What `tune` was asked for.
+/// Find the smallest configuration of a device for an error
+///
+/// The proved bound of the accuracy contract decides, so that the answer keeps the error for every operand of the domain.
+/// Keys that change neither ports nor formula are searched. Formats, domain and formula stay at their defaults, or as
+/// `--set` states them. Area and clock are estimates that were fitted to synthesis; `glint synth` measures the answer.
 #[derive(Args)]
-pub struct TuneArguments {
+#[command(after_help = "\
+Examples:
+  glint tune cosine-power --error 0.75                     3/4 of the outputs' last bit, on ECP5
+  glint tune blinn --error 0.0005 --unit f --target ice40
+  glint tune rough --error 0.9 --set cosine.fraction=16 --set exponent.bits=7 --out small_rough.toml
+  glint tune gauss --error 0.001 --unit f --csv            the trade-off of error and area")]
+pub struct Arguments {
     /// A device of `glint list`
     device: String,
     /// The largest error
@@ -89,28 +99,28 @@ impl ValueEnum for Objective {
 }
 
 /// `glint tune`.
-pub fn tune(registry: &Registry, output: Output, request: &TuneArguments) -> Result<bool> {
-    if output.json && request.csv {
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    if output.json && arguments.csv {
         bail!(Usage("--json and --csv are two forms of the same: give one".to_owned()));
     }
-    if !(request.error > 0.0 && request.error.is_finite()) {
-        bail!(Usage(format!("--error {}: an error is a number above 0", request.error)));
+    if !(arguments.error > 0.0 && arguments.error.is_finite()) {
+        bail!(Usage(format!("--error {}: an error is a number above 0", arguments.error)));
     }
-    if !tune::model::knows(request.target) {
+    if !tune::model::knows(arguments.target) {
         bail!(Usage(format!(
             "--target {}: there is no estimate of what a configuration costs there; tune for an FPGA and see `glint synth`",
-            request.target
+            arguments.target
         )));
     }
-    let (device, base, fixed) = base(registry, request)?;
-    let file = request.out.as_deref().map(fresh).transpose()?;
-    let drawing = request.plot.as_deref().map(fresh).transpose()?;
+    let (device, base, fixed) = base(registry, arguments)?;
+    let file = arguments.out.as_deref().map(fresh).transpose()?;
+    let drawing = arguments.plot.as_deref().map(fresh).transpose()?;
     let wish = Wish {
-        error: request.error,
-        unit: request.unit,
-        target: request.target,
-        objective: request.objective,
-        clock: request.clock,
+        error: arguments.error,
+        unit: arguments.unit,
+        target: arguments.target,
+        objective: arguments.objective,
+        clock: arguments.clock,
     };
     let bar: ProgressBar = progress::bar(output, 0, "configurations");
     let fixed: Vec<&str> = fixed.iter().map(String::as_str).collect();
@@ -120,9 +130,9 @@ pub fn tune(registry: &Registry, output: Output, request: &TuneArguments) -> Res
     });
     bar.finish_and_clear();
     let answer = answer?;
-    let text = toml(&device, &answer.best, request);
+    let text = toml(&device, &answer.best, arguments);
     if let Some(drawing) = drawing {
-        let svg = plot::plot(&answer, request)?;
+        let svg = plot::plot(&answer, arguments)?;
         drawing.file()?.write_all(svg.as_bytes()).context("cannot write the plot")?;
         drawing.commit()?;
     }
@@ -131,11 +141,11 @@ pub fn tune(registry: &Registry, output: Output, request: &TuneArguments) -> Res
         file.commit()?;
     }
     if output.json {
-        tables::print_json(&as_json(&answer, request, &text));
-    } else if request.csv {
+        tables::print_json(&as_json(&answer, arguments, &text));
+    } else if arguments.csv {
         print_csv(&answer)?;
     } else {
-        print(&answer, request, &text);
+        print(&answer, arguments, &text);
     }
     Ok(true)
 }
@@ -149,18 +159,18 @@ fn fresh(path: &Path) -> Result<Destination> {
 }
 
 /// The device, the configuration to start from, and the keys that are part of the wish.
-fn base(registry: &Registry, request: &TuneArguments) -> Result<(Device, Config, Vec<String>)> {
-    let Some(device) = registry.device(&request.device) else {
+fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, Vec<String>)> {
+    let Some(device) = registry.device(&arguments.device) else {
         let names: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
-        let near = config::nearest(&request.device, names.iter().copied());
+        let near = config::nearest(&arguments.device, names.iter().copied());
         let near = near.map_or_else(String::new, |near| format!("did you mean `{near}`? "));
-        bail!("there is no device `{}`; {near}devices: {}", request.device, names.join(", "));
+        bail!("there is no device `{}`; {near}devices: {}", arguments.device, names.join(", "));
     };
-    let name = request.name.clone().unwrap_or_else(|| device.name.replace('-', "_"));
+    let name = arguments.name.clone().unwrap_or_else(|| device.name.replace('-', "_"));
     // The same reader as a file's, so that messages are the same.
     let mut text = format!("device = \"{}\"\nname = \"{name}\"\n", device.name);
     let mut fixed = Vec::new();
-    for given in &request.set {
+    for given in &arguments.set {
         let Some((key, value)) = given.split_once('=') else {
             bail!(Usage(format!(
                 "--set {given}: a key and a value are wanted, as cosine.fraction=16"
@@ -179,16 +189,16 @@ fn base(registry: &Registry, request: &TuneArguments) -> Result<(Device, Config,
 }
 
 /// The configuration as a file, with what led to it.
-fn toml(device: &Device, best: &Candidate, request: &TuneArguments) -> String {
+fn toml(device: &Device, best: &Candidate, arguments: &Arguments) -> String {
     let cost = &best.cost;
     let head = format!(
         "# The smallest `{}` within {} {} that `glint tune` found for {}.\n\
          # Proved bound: {:.6} of f, {:.4} output units. Estimate: {:.0} LUTs, {} DSP blocks, {} block RAMs,\n\
          # {} bits of ROM, {:.0} MHz; `glint synth` measures.\n",
         device.name,
-        request.error,
-        request.unit,
-        request.target.title(),
+        arguments.error,
+        arguments.unit,
+        arguments.target.title(),
         best.bound.f,
         best.bound.units,
         cost.luts,
@@ -209,7 +219,7 @@ fn widths(answer: &Answer, candidate: &Candidate) -> String {
     shown.collect::<Vec<_>>().join(", ")
 }
 
-fn print(answer: &Answer, request: &TuneArguments, text: &str) {
+fn print(answer: &Answer, arguments: &Arguments, text: &str) {
     let columns = [
         Column::numbers("error of f"),
         Column::numbers("output units"),
@@ -236,16 +246,16 @@ fn print(answer: &Answer, request: &TuneArguments, text: &str) {
     tables::print(&columns, rows);
     tables::print_line(&format!(
         "Proved bounds; LUTs and MHz are estimates for {}. {} configurations were looked at.",
-        request.target.title(),
+        arguments.target.title(),
         answer.looked_at
     ));
-    match &request.out {
+    match &arguments.out {
         Some(path) => tables::print_line(&format!("{} written", path.display())),
         None => tables::print_line(&format!("\n{}", text.trim_end())),
     }
 }
 
-fn as_json(answer: &Answer, request: &TuneArguments, text: &str) -> Json {
+fn as_json(answer: &Answer, arguments: &Arguments, text: &str) -> Json {
     let candidate = |candidate: &Candidate| {
         let keys = answer.free.iter().map(|key| {
             let value = match candidate.config.value(key) {
@@ -266,10 +276,10 @@ fn as_json(answer: &Answer, request: &TuneArguments, text: &str) -> Json {
     };
     json!({
         "ok": true,
-        "device": request.device,
-        "target": request.target,
-        "error": request.error,
-        "unit": if request.unit == Unit::F { "f" } else { "output" },
+        "device": arguments.device,
+        "target": arguments.target,
+        "error": arguments.error,
+        "unit": if arguments.unit == Unit::F { "f" } else { "output" },
         "best": candidate(&answer.best),
         "front": answer.front.iter().map(candidate).collect::<Vec<_>>(),
         "looked_at": answer.looked_at,

@@ -1,29 +1,50 @@
 //! `verify`.
 
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
-use anyhow::{Context, Result};
+use anyhow::Result;
+use clap::Args;
 use serde_json::json;
 
 use super::{Loaded, load};
 use crate::cli::own_file::OwnFile;
-use crate::cli::{Output, progress, tables};
+use crate::cli::{Configs, Output, TimeLimit, progress, tables};
 use crate::registry::Registry;
 use crate::verify::{Answer, CHECKS, Conclusion, Effort, Record, Subject, Timing, Verdict, page};
 
-/// What `verify` was asked for.
-pub struct VerifyRequest {
-    /// Everything, however long it takes.
-    pub full: bool,
-    /// Only the checks that need no tool outside Glint.
-    pub without_tools: bool,
-    /// Where the files go.
-    pub out: PathBuf,
-    /// Where records of exhaustive checks are.
-    pub proofs: PathBuf,
-    /// After which a run of an outside tool is given up.
-    pub time_limit: Duration,
+/// Verify configurations by every means that Glint has, and write a page about each
+///
+/// Writes `DIR/<name>.html`, one page that needs no network, and `DIR/<name>.json` with the same for scripts: what was
+/// shown, by which check, over which domain, with which tools, and what is left open. Both are the same whenever they are
+/// made with the same tools, but for the page's last section: how long each check took, which `DIR/<name>.timings.json` has too.
+/// The exit code is 0 only if every check that covers the configuration, and that --without-tools does not leave out,
+/// was run and holds: a tool that is missing leaves the verification incomplete. So does a proof of the accuracy
+/// contract that takes more than some seconds, unless --full makes it or its record is in --proofs: that is found
+/// by the configuration's digest and checked again in part.
+#[derive(Args)]
+#[command(after_help = "\
+Examples:
+  glint verify my_core.toml                       every check, in a minute or two
+  glint verify my_core.toml --full                the whole proof, all faults: minutes to hours
+  glint verify my_core.toml --without-tools       what needs no simulator, solver or synthesiser
+  glint verify --json                             everything in configs/, for scripts")]
+pub struct Arguments {
+    #[command(flatten)]
+    configs: Configs,
+    /// Do everything, however long it takes
+    #[arg(long)]
+    full: bool,
+    /// Only the checks that need no tool outside Glint
+    #[arg(long)]
+    without_tools: bool,
+    /// Where the files go
+    #[arg(long, value_name = "DIR", default_value = "verification")]
+    out: PathBuf,
+    /// Where records of `cosim --exhaustive --json` are, which stand for a long proof of the accuracy contract
+    #[arg(long, value_name = "DIR", default_value = "proofs")]
+    proofs: PathBuf,
+    #[command(flatten)]
+    time_limit: TimeLimit<3600>,
 }
 
 /// The files of one configuration.
@@ -55,22 +76,14 @@ impl Files {
 }
 
 /// `glint verify`.
-pub fn verify(
-    registry: &Registry,
-    output: Output,
-    configs: &[PathBuf],
-    request: &VerifyRequest,
-) -> Result<bool> {
-    let loaded = load(registry, configs)?;
-    // Before the work: a directory that cannot be written is known now.
-    std::fs::create_dir_all(&request.out)
-        .with_context(|| format!("cannot make the directory `{}`", request.out.display()))?;
-    let files = loaded.iter().map(|one| Files::new(&request.out, &one.core.config.name));
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    let loaded = load(registry, &arguments.configs.paths)?;
+    let files = loaded.iter().map(|one| Files::new(&arguments.out, &one.core.config.name));
     let files = files.collect::<Result<Vec<_>>>()?;
     let mut list = Vec::new();
     let mut verified = true;
     for (one, files) in loaded.iter().zip(files) {
-        let (record, timings) = one_configuration(output, one, request)?;
+        let (record, timings) = one_configuration(output, one, arguments)?;
         verified &= record.conclusion == Conclusion::Verified;
         let written = files.write(&record, &timings)?;
         if output.json {
@@ -89,18 +102,18 @@ pub fn verify(
 fn one_configuration(
     output: Output,
     one: &Loaded,
-    request: &VerifyRequest,
+    arguments: &Arguments,
 ) -> Result<(Record, Vec<Timing>)> {
     one.contract()?;
     let effort = Effort {
-        full: request.full,
-        without_tools: request.without_tools,
-        time_limit: request.time_limit,
+        full: arguments.full,
+        without_tools: arguments.without_tools,
+        time_limit: arguments.time_limit.get(),
     };
-    let subject = Subject { path: &one.path, core: &one.core, effort, proofs: &request.proofs };
+    let subject = Subject { path: &one.path, core: &one.core, effort, proofs: &arguments.proofs };
     let mut answers: Vec<Answer> = Vec::new();
     for check in CHECKS {
-        if check.is_outside() && request.without_tools {
+        if check.is_outside() && arguments.without_tools {
             answers.push(check.left_out("--without-tools leaves it out."));
             continue;
         }
@@ -146,10 +159,8 @@ fn print_conclusion(one: &Loaded, record: &Record) {
 /// A check in a few lines, as soon as it has ended.
 fn print(one: &Loaded, answer: &Answer) {
     let finding = &answer.finding;
-    let domain = match finding.domain.is_empty() {
-        true => String::new(),
-        false => format!(" [{}]", finding.domain),
-    };
+    let domain =
+        if finding.domain.is_empty() { String::new() } else { format!(" [{}]", finding.domain) };
     tables::print_line(&format!(
         "{}: {}: {} ({:.1} s){domain}",
         one.path,

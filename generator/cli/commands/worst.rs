@@ -16,9 +16,18 @@ use crate::cli::{Configs, Output, count, progress, tables};
 use crate::cosim::search::{self, Reached};
 use crate::registry::Registry;
 
-/// What `worst` was asked for.
+/// Search for the largest error of an output
+///
+/// From points that the stimulus draws the operands are moved as long as the error grows. What is found is a lower
+/// limit of the largest error there is, as the bound of the contract is an upper one. The same seed finds the same.
+/// The exit code is 0 if the bound holds.
 #[derive(Args)]
-pub struct WorstArguments {
+#[command(after_help = "\
+Examples:
+  glint worst my_core.toml
+  glint worst my_core.toml --starts 1e5 --seed 7      longer, from other points
+  glint worst configs/rough.toml --out proofs/worst   a record; one of a larger error stays")]
+pub struct Arguments {
     #[command(flatten)]
     configs: Configs,
     /// How many climbs to begin
@@ -66,18 +75,18 @@ struct Report {
 }
 
 /// `glint worst`.
-pub fn worst(registry: &Registry, output: Output, request: &WorstArguments) -> Result<bool> {
-    let loaded = load(registry, &request.configs.configs)?;
-    let records = loaded.iter().map(|one| record(one, request)).collect::<Result<Vec<_>>>()?;
-    let total = request.starts.saturating_mul(loaded.len() as u64);
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    let loaded = load(registry, &arguments.configs.paths)?;
+    let records = loaded.iter().map(|one| record(one, arguments)).collect::<Result<Vec<_>>>()?;
+    let total = arguments.starts.saturating_mul(loaded.len() as u64);
     let bar = progress::bar(output, total, "climbs");
     let mut reports = Vec::new();
     for (one, record) in loaded.iter().zip(records) {
         let contract = one.core.contract.as_ref();
-        let found = search::worst(contract, request.starts, request.seed, &|| bar.inc(1));
+        let found = search::worst(contract, arguments.starts, arguments.seed, &|| bar.inc(1));
         let found = found.with_context(|| format!("`{}` has no output", one.path))?;
         let bound = contract.bound().units;
-        let (holds, found) = (found.units <= bound, known(one, request, &found));
+        let (holds, found) = (found.units <= bound, known(one, arguments, &found));
         let mut recorded = None;
         if let Some((file, before)) = record {
             match before.filter(|before| before.units >= found.units) {
@@ -99,15 +108,15 @@ pub fn worst(registry: &Registry, output: Output, request: &WorstArguments) -> R
     Ok(holds)
 }
 
-fn known(one: &Loaded, request: &WorstArguments, found: &Reached) -> Known {
+fn known(one: &Loaded, arguments: &Arguments, found: &Reached) -> Known {
     let contract = one.core.contract.as_ref();
     let names = contract.operands().iter().map(|it| it.name.clone());
     Known {
         glint: env!("CARGO_PKG_VERSION").to_owned(),
         config: one.path.clone(),
         contract: one.core.contract_digest(),
-        starts: request.starts,
-        seed: request.seed,
+        starts: arguments.starts,
+        seed: arguments.seed,
         units: found.units,
         output: contract.outputs()[found.output].name.clone(),
         operands: names.zip(found.operands.iter().copied()).collect(),
@@ -151,10 +160,8 @@ fn climbs(starts: u64) -> String {
 }
 
 /// The record to be, and the one that is there if it is of the same contract.
-fn record(one: &Loaded, request: &WorstArguments) -> Result<Option<(OwnFile, Option<Known>)>> {
-    let Some(directory) = &request.out else { return Ok(None) };
-    std::fs::create_dir_all(directory)
-        .with_context(|| format!("cannot make the directory `{}`", directory.display()))?;
+fn record(one: &Loaded, arguments: &Arguments) -> Result<Option<(OwnFile, Option<Known>)>> {
+    let Some(directory) = &arguments.out else { return Ok(None) };
     let name = format!("{}.json", one.core.config.name);
     let file = OwnFile::new(directory, &name, OwnFile::JSON)?;
     let before = read(&directory.join(&name))?;

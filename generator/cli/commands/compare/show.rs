@@ -3,7 +3,7 @@
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::{CompareRequest, Entry};
+use super::{Arguments, Entry};
 use crate::base::text;
 use crate::cli::tables::Column;
 use crate::cli::{Output, failure, tables};
@@ -15,17 +15,17 @@ use crate::tools::synthesis::{FAMILIES, Usage};
 /// Prints everything in the form that was asked for.
 pub fn show(
     output: Output,
-    request: &CompareRequest,
+    arguments: &Arguments,
     entries: &[Entry],
     notes: &[String],
     faults: &[String],
 ) {
     if output.json {
-        tables::print_json(&as_json(request, entries, notes, faults));
+        tables::print_json(&as_json(arguments, entries, notes, faults));
         return;
     }
-    if request.csv {
-        for row in as_csv(request, entries) {
+    if arguments.csv {
+        for row in as_csv(arguments, entries) {
             let fields: Vec<String> = row.iter().map(|field| csv_field(field)).collect();
             tables::print_line(&fields.join(","));
         }
@@ -34,7 +34,7 @@ pub fn show(
         }
         return;
     }
-    print_errors(request, entries);
+    print_errors(arguments, entries);
     print_hardware(entries);
     print_speed(entries);
     for note in entries.iter().filter_map(at_rest).chain(notes.iter().cloned()) {
@@ -82,10 +82,10 @@ fn spreads(accuracy: &Accuracy) -> [(&'static str, Spread); 4] {
     ]
 }
 
-fn print_errors(request: &CompareRequest, entries: &[Entry]) {
+fn print_errors(arguments: &Arguments, entries: &[Entry]) {
     tables::print_line(&format!(
         "Errors of f against cos^n gamma for n = {}, over gamma = 0 to 90 degrees in steps of {}:",
-        request.exponent,
+        arguments.exponent,
         1.0 / f64::from(ANGLES_PER_DEGREE)
     ));
     let columns = [
@@ -250,7 +250,7 @@ fn numbers(usage: &Usage) -> [(&'static str, u64); 3] {
 }
 
 /// The heading, then a row for each entry. What is not known is empty.
-fn as_csv(request: &CompareRequest, entries: &[Entry]) -> Vec<Vec<String>> {
+fn as_csv(arguments: &Arguments, entries: &[Entry]) -> Vec<Vec<String>> {
     let synthesised = entries.iter().any(|entry| !entry.usage.is_empty());
     let mut heading: Vec<String> = ["name", "device", "exponent"].map(str::to_owned).to_vec();
     for (name, _) in spreads(&Accuracy::default()) {
@@ -274,7 +274,7 @@ fn as_csv(request: &CompareRequest, entries: &[Entry]) -> Vec<Vec<String>> {
         let mut row = vec![
             entry.label.clone(),
             entry.core.device.name.to_owned(),
-            request.exponent.to_string(),
+            arguments.exponent.to_string(),
         ];
         match &entry.figures.accuracy {
             None => row.extend(vec![String::new(); 8]),
@@ -326,17 +326,12 @@ struct Speed {
     rate: Rate,
 }
 
-fn as_json(
-    request: &CompareRequest,
-    entries: &[Entry],
-    notes: &[String],
-    faults: &[String],
-) -> Value {
+fn as_json(arguments: &Arguments, entries: &[Entry], notes: &[String], faults: &[String]) -> Value {
     let entries: Vec<Value> = entries.iter().map(entry_json).collect();
     let problems: Vec<Value> = faults.iter().map(|fault| failure::problem(fault)).collect();
     json!({
         "ok": faults.is_empty(),
-        "exponent": request.exponent,
+        "exponent": arguments.exponent,
         "angles": { "from_degrees": 0, "to_degrees": 90, "count": ANGLES },
         "entries": entries,
         "notes": notes,

@@ -4,7 +4,7 @@ use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
-use super::CosimRequest;
+use super::Arguments;
 use crate::cli::commands::Loaded;
 use crate::cli::commands::mismatch::{first_clock, waveform_of};
 use crate::cli::failure::{self, Usage};
@@ -42,13 +42,13 @@ struct Mismatch {
 pub fn benches(
     output: Output,
     loaded: &[Loaded],
-    request: &CosimRequest,
+    arguments: &Arguments,
     which: Simulator,
 ) -> Result<bool> {
-    if request.vcd.is_some() {
+    if arguments.vcd.is_some() {
         bail!(Usage("--vcd is for the built-in simulator".to_owned()));
     }
-    let points = request.points.unwrap_or(POINTS);
+    let points = arguments.points.unwrap_or(POINTS);
     if points > MOST_POINTS {
         bail!(Usage(format!(
             "--points {points}: an external simulator takes at most {MOST_POINTS}"
@@ -58,7 +58,7 @@ pub fn benches(
     let runs: Vec<Run> = loaded
         .par_iter()
         .map(|one| {
-            let run = bench(one, which, points, request);
+            let run = bench(one, which, points, arguments);
             bar.inc(1);
             run.with_context(|| format!("`{}`", one.path))
         })
@@ -66,30 +66,33 @@ pub fn benches(
     bar.finish_and_clear();
     let holds = runs.iter().all(|run| run.outcome.passed);
     if output.json {
-        let list: Vec<Value> =
-            loaded.iter().zip(&runs).map(|(one, run)| as_json(one, run, points, request)).collect();
+        let list: Vec<Value> = loaded
+            .iter()
+            .zip(&runs)
+            .map(|(one, run)| as_json(one, run, points, arguments))
+            .collect();
         tables::print_json(&json!({ "ok": holds, "configurations": list }));
         return Ok(holds);
     }
     for (one, run) in loaded.iter().zip(&runs) {
-        print(one, run, points, request.seed, which);
+        print(one, run, points, arguments.seed, which);
     }
     Ok(holds)
 }
 
 /// The emitted bench in an external simulator. The expected values are those on which golden model
 /// and built-in simulator agree.
-fn bench(one: &Loaded, which: Simulator, points: u64, request: &CosimRequest) -> Result<Run> {
-    let vectors = one.core.vectors(points, request.seed)?;
+fn bench(one: &Loaded, which: Simulator, points: u64, arguments: &Arguments) -> Result<Run> {
+    let vectors = one.core.vectors(points, arguments.seed)?;
     let clocks = vectors.inputs.len();
     let files = package::sources(one.files(vectors)?);
     let top = format!("{}_tb", one.core.config.name);
-    let outcome = run_bench(which, &files, &top, request.time_limit)?;
+    let outcome = run_bench(which, &files, &top, arguments.time_limit.get())?;
     let mismatch = BenchDifference::first(&outcome.transcript).map(|difference| {
         let from = first_clock(difference.clock);
         let clocks = (from, difference.clock);
         let path = waveform_of(one);
-        let written = bench_waveform(which, &files, &top, clocks, request.time_limit)
+        let written = bench_waveform(which, &files, &top, clocks, arguments.time_limit.get())
             .and_then(|waveform| staged::replace(&path, &waveform));
         if let Err(error) = &written {
             // What differs is worth more than its waveform.
@@ -102,8 +105,8 @@ fn bench(one: &Loaded, which: Simulator, points: u64, request: &CosimRequest) ->
             command: format!(
                 "glint cosim {} --simulator {} --seed {} --points {points}",
                 one.path,
-                name(request),
-                request.seed
+                name(arguments),
+                arguments.seed
             ),
         }
     });
@@ -111,8 +114,8 @@ fn bench(one: &Loaded, which: Simulator, points: u64, request: &CosimRequest) ->
 }
 
 /// The simulator as the command line names it.
-fn name(request: &CosimRequest) -> String {
-    format!("{:?}", request.simulator).to_lowercase()
+fn name(arguments: &Arguments) -> String {
+    format!("{:?}", arguments.simulator).to_lowercase()
 }
 
 fn print(one: &Loaded, run: &Run, points: u64, seed: u64, which: Simulator) {
@@ -136,11 +139,11 @@ fn print(one: &Loaded, run: &Run, points: u64, seed: u64, which: Simulator) {
     tables::print_line(&format!("  {window}again: {}", mismatch.command));
 }
 
-fn as_json(one: &Loaded, run: &Run, points: u64, request: &CosimRequest) -> Value {
+fn as_json(one: &Loaded, run: &Run, points: u64, arguments: &Arguments) -> Value {
     let mismatch = run.mismatch.as_ref().map(|mismatch| {
         let difference = &mismatch.difference;
         json!({
-            "seed": request.seed,
+            "seed": arguments.seed,
             "clock": difference.clock,
             "during": difference.during,
             "signal": difference.signal,
@@ -152,7 +155,7 @@ fn as_json(one: &Loaded, run: &Run, points: u64, request: &CosimRequest) -> Valu
     });
     json!({
         "config": one.path,
-        "simulator": name(request),
+        "simulator": name(arguments),
         "points": points,
         "clocks": run.clocks,
         "passed": run.outcome.passed,

@@ -38,9 +38,10 @@ pub fn batch(output: Output, one: &Loaded, given: &[Option<i64>], path: &Path) -
         rows.push(row.map_err(|fault| anyhow!("`{shown}`, line {line}: {fault}"))?);
     }
     ensure!(!rows.is_empty(), "`{shown}` has no row of operands below the row with their names");
-    match output.json {
-        true => print_json(one, &rows),
-        false => print_csv(one, &rows)?,
+    if output.json {
+        print_json(one, &rows)
+    } else {
+        print_csv(one, &rows)?
     }
     Ok(true)
 }

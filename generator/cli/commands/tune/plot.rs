@@ -2,7 +2,7 @@
 
 use anyhow::{Result, bail};
 
-use super::TuneArguments;
+use super::Arguments;
 use crate::evidence::chart::{Axis, Chart, Series};
 use crate::pages::plots;
 use crate::tune::{Answer, Unit};
@@ -16,36 +16,36 @@ const STYLE: &str = "<style>svg{background:#fcfcfb}text{fill:#1c1d1f;font-family
 ///
 /// # Errors
 /// A front of one configuration, which is no line.
-pub fn plot(answer: &Answer, request: &TuneArguments) -> Result<String> {
-    let area = |at: usize| answer.front[at].cost.area(request.target);
+pub fn plot(answer: &Answer, arguments: &Arguments) -> Result<String> {
+    let area = |at: usize| answer.front[at].cost.area(arguments.target);
     let (Some(first), Some(last)) = (answer.front.first(), answer.front.last()) else {
         bail!("there is no front to plot");
     };
-    let (low, high) = (request.unit.of(&first.bound), request.unit.of(&last.bound));
+    let (low, high) = (arguments.unit.of(&first.bound), arguments.unit.of(&last.bound));
     if answer.front.len() < 2 || low <= 0.0 || low >= high {
         bail!("the front is a single configuration, and no line to plot");
     }
-    let unit = match request.unit {
+    let unit = match arguments.unit {
         Unit::F => "error of f",
         Unit::Output => "error in output units",
     };
     let values: Vec<f64> = (0..answer.front.len()).map(area).collect();
     let chart = Chart {
         id: "front".to_owned(),
-        title: format!("{}: area over proved error", request.device),
+        title: format!("{}: area over proved error", arguments.device),
         caption: "Each corner is a configuration that none of those looked at betters in both."
             .to_owned(),
         x: Axis::logarithmic(unit, low * 0.95, high * 1.05),
         y: Axis::linear(
             &format!(
                 "{}: look-up tables of {}, blocks counted in",
-                request.device,
-                request.target.title()
+                arguments.device,
+                arguments.target.title()
             ),
             0.0,
             values.iter().copied().fold(0.0, f64::max) * 1.1,
         ),
-        places: answer.front.iter().map(|candidate| request.unit.of(&candidate.bound)).collect(),
+        places: answer.front.iter().map(|candidate| arguments.unit.of(&candidate.bound)).collect(),
         series: vec![Series { name: "front".to_owned(), values }],
         marks: Vec::new(),
     };

@@ -1,18 +1,19 @@
-//! `cosim --exhaustive` and `merge`.
+//! `cosim --exhaustive`.
 
-mod show;
+pub mod show;
 
 use std::io::Read;
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use anyhow::{Context, Result, bail, ensure};
 use indicatif::HumanDuration;
 use serde_json::json;
 
-use super::load;
+use super::Arguments;
 use crate::base::{input, text};
+use crate::cli::commands::load;
 use crate::cli::failure::Usage;
 use crate::cli::interrupt::Deferred;
 use crate::cli::{Output, progress, staged, tables};
@@ -26,32 +27,20 @@ const SAVE: Duration = Duration::from_secs(5);
 /// Numbers of cores for which the duration of a proof is estimated.
 const CORES: [u32; 3] = [1, 16, 1000];
 
-/// What `cosim --exhaustive` was asked for beside configurations.
-pub struct ExhaustiveRequest {
-    /// Where the state stands.
-    pub resume: Option<PathBuf>,
-    /// Which part of the job.
-    pub shard: Option<Shard>,
-}
-
 /// `glint cosim --exhaustive`: the factored proof of the accuracy contract and, where they are not too many,
 /// every combination of operands clock by clock.
-pub fn exhaustive(
-    registry: &Registry,
-    output: Output,
-    configs: &[PathBuf],
-    request: &ExhaustiveRequest,
-) -> Result<bool> {
-    let loaded = load(registry, configs)?;
-    if request.resume.is_some() && loaded.len() != 1 {
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    let loaded = load(registry, &arguments.configs.paths)?;
+    if arguments.resume.is_some() && loaded.len() != 1 {
         bail!(Usage(format!("--resume is for one configuration; here are {}", loaded.len())));
     }
     let mut list = Vec::new();
     let mut holds = true;
     for one in &loaded {
         let job = one.core.job()?;
-        let mut state = State::new(&one.core.fingerprint(), request.shard.unwrap_or(Shard::WHOLE));
-        if let Some(path) = &request.resume
+        let mut state =
+            State::new(&one.core.fingerprint(), arguments.shard.unwrap_or(Shard::WHOLE));
+        if let Some(path) = &arguments.resume
             && let Some(found) = read(path)?
         {
             ensure!(
@@ -67,7 +56,7 @@ pub fn exhaustive(
             announce(one, &job, &state);
             announce_duration(&job, &state)?;
         }
-        prove(output, &job, &mut state, request.resume.as_deref())?;
+        prove(output, &job, &mut state, arguments.resume.as_deref())?;
         holds &= report(output, one, &job, &state, &mut list)?;
     }
     if output.json {
@@ -76,40 +65,8 @@ pub fn exhaustive(
     Ok(holds)
 }
 
-/// `glint merge`: what the shards of one job give together.
-pub fn merge(
-    registry: &Registry,
-    output: Output,
-    config: &Path,
-    files: &[PathBuf],
-) -> Result<bool> {
-    let loaded = load(registry, &[config.to_path_buf()])?;
-    let one = &loaded[0];
-    let job = one.core.job()?;
-    let names: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
-    let states = files
-        .iter()
-        .map(|path| read(path)?.with_context(|| format!("there is no `{}`", path.display())))
-        .collect::<Result<Vec<_>>>()?;
-    ensure!(
-        states.iter().any(|state| state.digest == one.core.fingerprint()),
-        "these shards are not of `{}` as it stands, or of another build of Glint",
-        one.path
-    );
-    let merged = job.merge(&states, &names)?;
-    if !output.json {
-        announce(one, &job, &State::new("", Shard::WHOLE));
-    }
-    let mut list = Vec::new();
-    let holds = report(output, one, &job, &merged, &mut list)?;
-    if output.json {
-        tables::print_json(&json!({ "ok": holds, "configurations": list }));
-    }
-    Ok(holds)
-}
-
 /// The state that a file holds, if there is one.
-fn read(path: &Path) -> Result<Option<State>> {
+pub fn read(path: &Path) -> Result<Option<State>> {
     let mut text = String::new();
     match input::open(path).and_then(|mut file| file.read_to_string(&mut text)) {
         Ok(_) => {}

@@ -1,46 +1,30 @@
-//! `list` and `new`.
-
-use std::path::Path;
+//! `new`.
 
 use anyhow::{Result, bail};
+use clap::Args;
 use serde_json::json;
 
-use super::{CONFIGS, paths};
 use crate::cli::failure::Usage;
-use crate::cli::tables::Column;
 use crate::cli::{Output, tables};
 use crate::config;
 use crate::registry::Registry;
 
-/// `glint list`.
-pub fn list(registry: &Registry, output: Output) -> Result<bool> {
-    let configs: Vec<String> = if Path::new(CONFIGS).is_dir() {
-        paths(&[]).unwrap_or_default().iter().map(|path| path.display().to_string()).collect()
-    } else {
-        Vec::new()
-    };
-    if output.json {
-        let devices: Vec<_> = registry
-            .devices()
-            .iter()
-            .map(|device| json!({ "name": device.name, "summary": device.summary }))
-            .collect();
-        tables::print_json(&json!({ "devices": devices, "configs": configs }));
-        return Ok(true);
-    }
-    let rows = registry
-        .devices()
-        .iter()
-        .map(|device| vec![device.name.to_owned(), device.summary.to_owned()]);
-    tables::print(&[Column::words("device"), Column::words("what it computes")], rows);
-    for config in configs {
-        tables::print_line(&config);
-    }
-    Ok(true)
+/// Print a commented configuration of a device
+#[derive(Args)]
+#[command(after_help = "\
+Example:
+  glint new rough --name my_core > my_core.toml")]
+pub struct Arguments {
+    /// A device of `glint list`
+    device: String,
+    /// The name of the top module [default: the device's, with _ for -]
+    #[arg(long)]
+    name: Option<String>,
 }
 
 /// `glint new`.
-pub fn new(registry: &Registry, output: Output, device: &str, name: Option<&str>) -> Result<bool> {
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    let Arguments { device, name } = arguments;
     let Some(found) = registry.device(device) else {
         let names: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
         let near = config::nearest(device, names.iter().copied())
@@ -51,7 +35,7 @@ pub fn new(registry: &Registry, output: Output, device: &str, name: Option<&str>
         )));
     };
     let schema = (found.schema)();
-    let name = name.map_or_else(|| device.replace('-', "_"), str::to_owned);
+    let name = name.clone().unwrap_or_else(|| device.replace('-', "_"));
     let text = config::commented(&schema, &name);
     // A name that the reader would refuse is refused here.
     if let Err(problems) = config::parse("<new>", &text, &[schema]) {

@@ -27,7 +27,7 @@ struct Finding {
 }
 
 /// The main job. With `details` it says of each configuration where the largest error is.
-pub fn everything(registry: &Registry, output: Output, details: bool) -> Result<bool> {
+pub fn run(registry: &Registry, output: Output, details: bool) -> Result<bool> {
     let loaded = load(registry, &[])?;
     for one in &loaded {
         one.contract()?;

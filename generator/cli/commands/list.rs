@@ -1,0 +1,46 @@
+//! `list`.
+
+use std::path::Path;
+
+use anyhow::Result;
+use clap::Args;
+use serde_json::json;
+
+use super::{CONFIGS, paths};
+use crate::cli::tables::Column;
+use crate::cli::{Output, tables};
+use crate::registry::Registry;
+
+/// List the devices, and the configurations in configs/
+#[derive(Args)]
+#[command(after_help = "\
+Example:
+  glint list --json")]
+pub struct Arguments;
+
+/// `glint list`.
+pub fn run(registry: &Registry, output: Output, _: &Arguments) -> Result<bool> {
+    let configs: Vec<String> = if Path::new(CONFIGS).is_dir() {
+        paths(&[]).unwrap_or_default().iter().map(|path| path.display().to_string()).collect()
+    } else {
+        Vec::new()
+    };
+    if output.json {
+        let devices: Vec<_> = registry
+            .devices()
+            .iter()
+            .map(|device| json!({ "name": device.name, "summary": device.summary }))
+            .collect();
+        tables::print_json(&json!({ "devices": devices, "configs": configs }));
+        return Ok(true);
+    }
+    let rows = registry
+        .devices()
+        .iter()
+        .map(|device| vec![device.name.to_owned(), device.summary.to_owned()]);
+    tables::print(&[Column::words("device"), Column::words("what it computes")], rows);
+    for config in configs {
+        tables::print_line(&config);
+    }
+    Ok(true)
+}

@@ -1,0 +1,56 @@
+//! `merge`.
+
+use std::path::PathBuf;
+
+use anyhow::{Context, Result, ensure};
+use clap::Args;
+use serde_json::json;
+
+use super::cosim::exhaustive::read;
+use super::cosim::exhaustive::show::{announce, report};
+use super::load;
+use crate::cli::{Output, tables};
+use crate::cosim::exhaustive::{Shard, State};
+use crate::registry::Registry;
+
+/// Join the parts of a `cosim --exhaustive` that was divided by --shard
+#[derive(Args)]
+#[command(after_help = "\
+Example, on four machines and then on one:
+  glint cosim my_core.toml --exhaustive --shard 1/4 --resume part1.json
+  glint merge my_core.toml part1.json part2.json part3.json part4.json")]
+pub struct Arguments {
+    /// The configuration
+    config: PathBuf,
+    /// The files of all parts
+    #[arg(value_name = "FILE", required = true)]
+    files: Vec<PathBuf>,
+}
+
+/// `glint merge`: what the shards of one job give together.
+pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
+    let Arguments { config, files } = arguments;
+    let loaded = load(registry, std::slice::from_ref(config))?;
+    let one = &loaded[0];
+    let job = one.core.job()?;
+    let names: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
+    let states = files
+        .iter()
+        .map(|path| read(path)?.with_context(|| format!("there is no `{}`", path.display())))
+        .collect::<Result<Vec<_>>>()?;
+    ensure!(
+        states.iter().any(|state| state.digest == one.core.fingerprint()),
+        "these shards are not of `{}` as it stands, or of another build of Glint",
+        one.path
+    );
+    let merged = job.merge(&states, &names)?;
+    if !output.json {
+        announce(one, &job, &State::new("", Shard::WHOLE));
+    }
+    let mut list = Vec::new();
+    let holds = report(output, one, &job, &merged, &mut list)?;
+    if output.json {
+        tables::print_json(&json!({ "ok": holds, "configurations": list }));
+    }
+    Ok(holds)
+}

@@ -1,0 +1,25 @@
+//! `schema`.
+
+use anyhow::Result;
+use clap::Args;
+
+use crate::cli::{Output, tables};
+use crate::config;
+use crate::registry::Registry;
+
+/// Print a JSON Schema of the configuration keys, for editors and validators
+///
+/// It has names, types, ranges, defaults and descriptions. Conditions between keys are checked when a
+/// configuration is read.
+#[derive(Args)]
+#[command(after_help = "\
+Example:
+  glint schema > glint.schema.json
+  and in the first line of my_core.toml: #:schema ./glint.schema.json")]
+pub struct Arguments;
+
+/// `glint schema`.
+pub fn run(registry: &Registry, _: Output, _: &Arguments) -> Result<bool> {
+    tables::print_json(&config::json_schema(&registry.schemas()));
+    Ok(true)
+}
