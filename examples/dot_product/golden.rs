@@ -132,9 +132,12 @@ impl Formula for Cosine {
         let across = unit_vector([0, 1, 2].map(|axis| off[axis] - along * normal[axis]));
         // The smaller of the two angles between them and what they are close to, by octaves.
         let (near, small) = (unit() < 0.5, exp2(-(unit() * f64::from(self.fraction)) as i32));
-        let half = [0, 1, 2].map(|axis| match near {
-            true => normal[axis] + small * across[axis],
-            false => across[axis] + small * off[axis],
+        let half = [0, 1, 2].map(|axis| {
+            if near {
+                normal[axis] + small * across[axis]
+            } else {
+                across[axis] + small * off[axis]
+            }
         });
         let one = exp2(self.fraction as i32);
         let raw = [normal, unit_vector(half)].concat().into_iter();

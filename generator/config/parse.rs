@@ -127,12 +127,11 @@ impl Reader<'_> {
         let mut draft = Draft::new(schema, &name);
         draft.config.strict = strict;
         self.table(document, "", schema, &mut draft);
-        match self.valid_toml {
-            true => {
-                let places = self.problems.cleared();
-                Ok((draft.finish(schema, self.problems)?, places))
-            }
-            false => Err(self.problems),
+        if self.valid_toml {
+            let places = self.problems.cleared();
+            Ok((draft.finish(schema, self.problems)?, places))
+        } else {
+            Err(self.problems)
         }
     }
 
@@ -225,9 +224,10 @@ impl Reader<'_> {
     ) {
         for (key, value) in table {
             // A quoted key with a dot in it is not a path; with its quotes it matches no name.
-            let name = match is_bare(key.get_ref()) {
-                true => format!("{prefix}{}", key.get_ref()),
-                false => format!("{prefix}{}", quoted(key.get_ref())),
+            let name = if is_bare(key.get_ref()) {
+                format!("{prefix}{}", key.get_ref())
+            } else {
+                format!("{prefix}{}", quoted(key.get_ref()))
             };
             let as_table = format!("{name}.");
             // On a line with a syntax error the value is the parser's guess.
@@ -288,9 +288,10 @@ impl Reader<'_> {
         let tables = || keys().map(|key| key.table_and_leaf().0);
         let names = || keys().map(|key| key.name);
         let is_table = value.get_ref().is_table();
-        let (what, meant) = match is_table {
-            true => ("table", nearest(name, tables())),
-            false => ("key", nearest(name, common_names().chain(names()))),
+        let (what, meant) = if is_table {
+            ("table", nearest(name, tables()))
+        } else {
+            ("key", nearest(name, common_names().chain(names())))
         };
         let (table, leaf) = name.rsplit_once('.').unwrap_or(("", name));
         let (heading, below) = name.split_once('.').unwrap_or(("", name));
@@ -370,10 +371,7 @@ fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Fault>> {
         _ => return Err(wrong_type()),
     };
     let faults = key.faults_of(&converted);
-    match faults.is_empty() {
-        true => Ok(converted),
-        false => Err(faults),
-    }
+    if faults.is_empty() { Ok(converted) } else { Err(faults) }
 }
 
 /// The value of an integer that fits 64 bits.

@@ -27,9 +27,10 @@ pub fn read(path: &Path, schemas: &[Schema]) -> Result<Config, Problems> {
 /// # Errors
 /// Those of [`read`].
 pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, Problems), Problems> {
-    let file_name = match path == Path::new(input::STDIN) {
-        true => STANDARD_INPUT.to_owned(),
-        false => path.display().to_string(),
+    let file_name = if path == Path::new(input::STDIN) {
+        STANDARD_INPUT.to_owned()
+    } else {
+        path.display().to_string()
     };
     let bytes = contents(path).map_err(|(message, remedy)| {
         let mut problems = Problems::of_file(&file_name, "");
@@ -90,10 +91,7 @@ fn contents(path: &Path) -> Result<Vec<u8>, (String, String)> {
 fn neighbour(path: &Path) -> Option<String> {
     let wanted = path.file_name()?.to_str()?;
     let parent = path.parent()?;
-    let directory = match parent.as_os_str().is_empty() {
-        true => Path::new("."),
-        false => parent,
-    };
+    let directory = if parent.as_os_str().is_empty() { Path::new(".") } else { parent };
     let entries = std::fs::read_dir(directory).ok()?;
     let mut names: Vec<String> = entries
         .filter_map(|entry| entry.ok()?.file_name().into_string().ok())

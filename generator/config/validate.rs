@@ -22,9 +22,12 @@ impl Key {
                 self.unless((min..=max).contains(&given), || out_of_range(name, given_text))
             }
             (Kind::Choice(options), Value::Text(given)) => self
-                .unless(options.contains(&given.as_str()), || match self.kind.is_integer_choice() {
-                    true => format!("`{name}` cannot be {}", shown(given)),
-                    false => format!("`{name}` cannot be {}", quoted(given)),
+                .unless(options.contains(&given.as_str()), || {
+                    if self.kind.is_integer_choice() {
+                        format!("`{name}` cannot be {}", shown(given))
+                    } else {
+                        format!("`{name}` cannot be {}", quoted(given))
+                    }
                 })
                 .into_iter()
                 .map(|fault| self.with_suggestion(fault, given))
@@ -75,10 +78,7 @@ impl Key {
     }
 
     fn unless(&self, good: bool, message: impl FnOnce() -> String) -> Vec<Fault> {
-        match good {
-            true => Vec::new(),
-            false => vec![self.fault(message())],
-        }
+        if good { Vec::new() } else { vec![self.fault(message())] }
     }
 
     fn with_suggestion(&self, fault: Fault, given: &str) -> Fault {
@@ -112,10 +112,13 @@ impl Key {
             }
             Kind::Flag => "true or false".to_owned(),
             Kind::Text(shape) => shape.words().to_owned(),
-            Kind::Integers { min, max, len_min, len_max } => match len_min == len_max {
-                true => format!("{len_min} integers from {min} to {max}"),
-                false => format!("{len_min} to {len_max} integers from {min} to {max}"),
-            },
+            Kind::Integers { min, max, len_min, len_max } => {
+                if len_min == len_max {
+                    format!("{len_min} integers from {min} to {max}")
+                } else {
+                    format!("{len_min} to {len_max} integers from {min} to {max}")
+                }
+            }
         }
     }
 
@@ -365,10 +368,7 @@ impl<'a> Draft<'a> {
             self.follow_clock();
         }
         check(schema, &self, &mut problems);
-        match problems.is_empty() {
-            true => Ok(self.config),
-            false => Err(problems),
-        }
+        if problems.is_empty() { Ok(self.config) } else { Err(problems) }
     }
 }
 
@@ -394,8 +394,9 @@ pub(super) fn keys_of(schema: &Schema, table: &str) -> String {
     }
     let tables = tables.join(", ");
     let keys = keys.join(", ");
-    match tables.is_empty() {
-        true => format!("keys: {keys}"),
-        false => format!("keys outside tables: {keys}; tables: {tables}"),
+    if tables.is_empty() {
+        format!("keys: {keys}")
+    } else {
+        format!("keys outside tables: {keys}; tables: {tables}")
     }
 }

@@ -38,10 +38,7 @@ pub fn commented(schema: &Schema, name: &str) -> String {
                 rule += &format!("; only with {other} = {value}");
             }
             text += &comment(&sentence(&rule));
-            let off = match config.applies(schema, key.name) {
-                true => "",
-                false => "# ",
-            };
+            let off = if config.applies(schema, key.name) { "" } else { "# " };
             text += &format!("{off}{} = {default}\n", key.table_and_leaf().1);
         }
     }

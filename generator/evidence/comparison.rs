@@ -55,10 +55,7 @@ pub struct Accuracy {
 /// What the formula says at the quantised operands: where it jumps, the nearer to `f` of the values that are right.
 pub fn formula(highlight: &Highlight, control: &[i64], f: f64) -> f64 {
     let [one, other] = highlight.references(control);
-    match (f - other).abs() < (f - one).abs() {
-        true => other,
-        false => one,
-    }
+    if (f - other).abs() < (f - one).abs() { other } else { one }
 }
 
 /// The errors over the grid of angles; `None` when the operands cannot denote `n`.

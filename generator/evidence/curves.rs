@@ -110,9 +110,10 @@ pub fn configuration(
         .filter(|operand| operand.colour)
         .map(|operand| operand.format.to_f64(i128::from(operand.domain.1)))
         .fold(0.0, f64::max);
-    let charts = match exponents.is_empty() {
-        true => Vec::new(),
-        false => charts(device.name, &exponents, &lines, largest_colour),
+    let charts = if exponents.is_empty() {
+        Vec::new()
+    } else {
+        charts(device.name, &exponents, &lines, largest_colour)
     };
     DeviceCurves {
         device: device.name.to_owned(),
@@ -226,10 +227,7 @@ fn charts(
         x: scaled(),
         y: Axis::logarithmic("absolute error of f", FLOOR, 0.1),
         places: places(),
-        series: lines(|at| match at.fixed_point.is_nan() {
-            true => f64::NAN,
-            false => at.fixed_point.max(FLOOR),
-        }),
+        series: lines(|at| if at.fixed_point.is_nan() { f64::NAN } else { at.fixed_point.max(FLOOR) }),
         marks: vec![Mark {
             label: "one output unit".to_owned(),
             at: unit,

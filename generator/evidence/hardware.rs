@@ -203,13 +203,14 @@ fn outcome(w: &Rival, schlick: &Rival) -> (bool, String) {
         w.clocks_per_point, schlick.clocks_per_point
     );
     let simpler = more.is_empty() && w.clocks_per_point <= schlick.clocks_per_point;
-    let words = match more.is_empty() {
-        true => format!("{clocks}, and W takes no more of any resource of any family."),
-        false => format!(
+    let words = if more.is_empty() {
+        format!("{clocks}, and W takes no more of any resource of any family.")
+    } else {
+        format!(
             "{clocks}. A divider of one bit a clock costs no multiplier and few LUTs: W takes more of some \
              ({}), and no more of the others.",
             more.join(", ")
-        ),
+        )
     };
     (simpler, words)
 }

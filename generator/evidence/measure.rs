@@ -79,13 +79,10 @@ pub fn over(
     exponents: impl IntoIterator<Item = u32>,
     region: Region,
 ) -> Option<Worst> {
-    exponents.into_iter().filter_map(|n| at(function, n, region)).reduce(|worst, other| match other
-        .error
-        > worst.error
-    {
-        true => other,
-        false => worst,
-    })
+    exponents
+        .into_iter()
+        .filter_map(|n| at(function, n, region))
+        .reduce(|worst, other| if other.error > worst.error { other } else { worst })
 }
 
 /// The level of `cosⁿγ` down to which the largest relative error over exponents is `error`, to four digits;
@@ -105,10 +102,7 @@ pub fn level_of(
     }
     while high - low > 1e-4 {
         let middle = 0.5 * (low + high);
-        match exceeds(middle) {
-            true => low = middle,
-            false => high = middle,
-        }
+        if exceeds(middle) { low = middle } else { high = middle }
     }
     Some(high)
 }
@@ -133,10 +127,7 @@ mod tests {
         // cosⁿγ less a tenth of it at 45° and beyond.
         let step = |gamma: f64, n: f64| {
             let exact = libm::pow(libm::cos(gamma), n);
-            match gamma >= FRAC_PI_4 - 1e-12 {
-                true => 0.9 * exact,
-                false => exact,
-            }
+            if gamma >= FRAC_PI_4 - 1e-12 { 0.9 * exact } else { exact }
         };
         let worst = at(&step, 2, Region::Inflection).expect("n > 1");
         assert!((worst.error - 0.1).abs() < 1e-12, "{worst:?}");

@@ -94,9 +94,10 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
         cosine,
         exponent,
         accumulator: frame.register("accumulator", it.keys.f_format()),
-        remaining: match counted {
-            true => frame.register("remaining", Format::unsigned(2, 0)),
-            false => frame.hidden(),
+        remaining: if counted {
+            frame.register("remaining", Format::unsigned(2, 0))
+        } else {
+            frame.hidden()
         },
         products: it.keys.products().slots(&mut frame),
     };

@@ -261,20 +261,21 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
         vector: ["dx", "dy", "dz"].map(|name| frame.operand(name, vector)),
         scale: frame.operand(params.scale_name(), scale),
         products: params.products().slots(&mut frame),
-        distance: match shift {
-            true => frame.register("shift_register", shifted),
-            false => frame.register("distance", Format::unsigned(4, point)),
+        distance: if shift {
+            frame.register("shift_register", shifted)
+        } else {
+            frame.register("distance", Format::unsigned(4, point))
         },
-        scaled: match shift {
-            true => frame.hidden(),
-            false => {
-                frame.register("scaled", Format::unsigned(1, params.intensity_fraction as i32))
-            }
+        scaled: if shift {
+            frame.hidden()
+        } else {
+            frame.register("scaled", Format::unsigned(1, params.intensity_fraction as i32))
         },
         accumulator: frame.register("accumulator", params.f_format()),
-        remaining: match shift || squarings > 1 {
-            true => frame.register("remaining", Format::unsigned(remaining as i32, 0)),
-            false => frame.hidden(),
+        remaining: if shift || squarings > 1 {
+            frame.register("remaining", Format::unsigned(remaining as i32, 0))
+        } else {
+            frame.hidden()
         },
     };
     let distance = step(|d: &Device, s| {

@@ -197,9 +197,10 @@ impl Faults {
                 false => Kind::RomBit,
             };
             let site = Site::Words(id, vec![(word, words[word] ^ 1 << bit)]);
-            let id_text = match control {
-                true => format!("{}@{word}.{}", rom.name, field_bit(design, bit as u32)),
-                false => format!("{}@{word}[{bit}]", rom.name),
+            let id_text = if control {
+                format!("{}@{word}.{}", rom.name, field_bit(design, bit as u32))
+            } else {
+                format!("{}@{word}[{bit}]", rom.name)
             };
             self.add(id_text, kind, site);
         }

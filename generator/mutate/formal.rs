@@ -82,9 +82,10 @@ fn commands(name: &str, is_free: bool) -> String {
         )
     };
     // Going backward, cells whose results are equal would have their inputs compared, those that are free too.
-    let (make, join) = match is_free {
-        true => (format!("equiv_make -blacklist {FREE}"), "equiv_struct -fwonly -icells"),
-        false => ("equiv_make".to_owned(), "equiv_struct -icells"),
+    let (make, join) = if is_free {
+        (format!("equiv_make -blacklist {FREE}"), "equiv_struct -fwonly -icells")
+    } else {
+        ("equiv_make".to_owned(), "equiv_struct -icells")
     };
     format!(
         "{}{}design -copy-from gold -as gold gold; design -copy-from gate -as gate gate; \

@@ -53,9 +53,10 @@ fn mux(design: &Design, select: NetId, inputs: &[NetId]) -> Vec<(String, Kind, O
             continue;
         }
         let limits = inputs.iter().filter(|&&other| other != input);
-        let kind = match inputs.len() == 2 && !constant(input) && limits.copied().all(constant) {
-            true => Kind::Saturation,
-            false => Kind::MuxChoice,
+        let kind = if inputs.len() == 2 && !constant(input) && limits.copied().all(constant) {
+            Kind::Saturation
+        } else {
+            Kind::MuxChoice
         };
         faults.push((format!("input-{at}-always"), kind, Op::Relabel(input)));
     }

@@ -45,10 +45,8 @@ pub fn unreached<'f>(core: &Core, faults: &[&'f Fault]) -> Result<Vec<&'f Fault>
         streams.iter().any(|stream| stream.seen[at][value] >> bit & 1 == 1)
     };
     let reads_words = faults.iter().any(|fault| matches!(fault.site, Site::Words(..)));
-    let coverage = match reads_words {
-        true => Some(Coverage::of(&core.design, &lockstep, TEST_POINTS)?),
-        false => None,
-    };
+    let coverage =
+        if reads_words { Some(Coverage::of(&core.design, &lockstep, TEST_POINTS)?) } else { None };
     let is_unreached = |fault: &Fault| match &fault.site {
         Site::Bit(net, bit, Bit::Stuck0) => !had(*net, 1, *bit),
         Site::Bit(net, bit, Bit::Stuck1) => !had(*net, 0, *bit),

@@ -144,10 +144,7 @@ impl Bench<'_> {
                 }
             }
         }
-        Ok(match all_tried {
-            true => Verdict::Equivalent(How::Operands),
-            false => Verdict::Undecided,
-        })
+        Ok(if all_tried { Verdict::Equivalent(How::Operands) } else { Verdict::Undecided })
     }
 
     /// Control operands of computations that read a word: of the default test, or else of a longer one.

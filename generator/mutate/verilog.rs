@@ -255,9 +255,10 @@ impl Text {
             // What Icarus does not build is noticed as lint is.
             (ShippedBench::Refused, _) => TextVerdict::Lint,
             (ShippedBench::Silent, Some(bench)) => {
-                match self.proves(&files, fault.file, bench.directory(), limit)? {
-                    true => TextVerdict::Equivalent,
-                    false => TextVerdict::Undecided,
+                if self.proves(&files, fault.file, bench.directory(), limit)? {
+                    TextVerdict::Equivalent
+                } else {
+                    TextVerdict::Undecided
                 }
             }
             _ => TextVerdict::Bench,
@@ -307,9 +308,10 @@ impl Text {
                 file.1.clone_from(contents);
             }
         }
-        Ok(match fails(&build(&longer)?) {
-            true => (ShippedBench::Missed, None),
-            false => (ShippedBench::Silent, Some(shipped)),
+        Ok(if fails(&build(&longer)?) {
+            (ShippedBench::Missed, None)
+        } else {
+            (ShippedBench::Silent, Some(shipped))
         })
     }
 

@@ -65,9 +65,10 @@ pub fn bench(
 fn lines(quantities: &[Quantity], code: fn(&str, i128) -> String) -> Vec<String> {
     let line = |quantity: &Quantity| {
         let code = code(&quantity.name, quantity.raw);
-        match quantity.value == quantity.raw as f64 {
-            true => code,
-            false => format!("{code}  # {}", quantity.value),
+        if quantity.value == quantity.raw as f64 {
+            code
+        } else {
+            format!("{code}  # {}", quantity.value)
         }
     };
     quantities.iter().map(line).collect()

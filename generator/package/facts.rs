@@ -240,9 +240,10 @@ pub fn microprogram(design: &Design) -> Vec<Microinstruction<'_>> {
                 netlist::Sequence::End => Sequence::Plain("end"),
                 netlist::Sequence::LoopWhile { condition, to } => {
                     let condition = name(design, *condition);
-                    match *to > address {
-                        true => Sequence::Jump { jump_to: *to, condition },
-                        false => Sequence::Loop { loop_to: *to, condition },
+                    if *to > address {
+                        Sequence::Jump { jump_to: *to, condition }
+                    } else {
+                        Sequence::Loop { loop_to: *to, condition }
                     }
                 }
             },

@@ -173,12 +173,11 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     let map = map.as_ref();
     let vendor::Vendor { constraints, scripts } =
         vendor::files(design, inputs, &tops, map.map(|(_, map)| map), &memory_names)?;
-    let mut software = match inputs.around.software {
-        true => {
-            let latency = design.pipeline.as_ref().map(|pipeline| pipeline.stages.len());
-            software::files(inputs.sequential.as_ref().unwrap_or(design), inputs, latency)?
-        }
-        false => Vec::new(),
+    let mut software = if inputs.around.software {
+        let latency = design.pipeline.as_ref().map(|pipeline| pipeline.stages.len());
+        software::files(inputs.sequential.as_ref().unwrap_or(design), inputs, latency)?
+    } else {
+        Vec::new()
     };
     if let Some((bus, map)) = map {
         software.extend(software::of_registers(design, inputs, *bus, map)?);

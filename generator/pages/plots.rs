@@ -71,10 +71,7 @@ impl Ranged for Places {
     }
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        match hint.weight().allow_light_points() {
-            true => Vec::new(),
-            false => self.ticks.clone(),
-        }
+        if hint.weight().allow_light_points() { Vec::new() } else { self.ticks.clone() }
     }
 
     fn range(&self) -> std::ops::Range<f64> {
@@ -221,10 +218,7 @@ fn ticks(axis: &Axis) -> Vec<f64> {
         Scale::Logarithmic => {
             let (first, last) = (libm::log10(low), libm::log10(high));
             // Few decades have room for steps in between.
-            let steps: &[f64] = match last - first < 3.0 {
-                true => &[1.0, 2.0, 5.0],
-                false => &[1.0],
-            };
+            let steps: &[f64] = if last - first < 3.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
             let (first, last) = (libm::floor(first) as i32, libm::ceil(last) as i32);
             (first..=last)
                 .flat_map(|decade| {

@@ -126,9 +126,12 @@ fn powers(accuracy: &Accuracy) -> PowerRow {
         runs: accuracy
             .powers
             .iter()
-            .map(|run| match run.first == run.last {
-                true => format!("k = {}: n = {}", run.power, run.first),
-                false => format!("k = {}: n = {}\u{2026}{}", run.power, run.first, run.last),
+            .map(|run| {
+                if run.first == run.last {
+                    format!("k = {}: n = {}", run.power, run.first)
+                } else {
+                    format!("k = {}: n = {}\u{2026}{}", run.power, run.first, run.last)
+                }
             })
             .collect(),
     }
@@ -172,9 +175,10 @@ fn timings(benchmark: &Benchmark) -> BenchmarkView<'_> {
             [
                 pair.m.to_string(),
                 pair.precision.to_owned(),
-                match pair.dependent {
-                    true => "each waits for the one before".to_owned(),
-                    false => "many at once".to_owned(),
+                if pair.dependent {
+                    "each waits for the one before".to_owned()
+                } else {
+                    "many at once".to_owned()
                 },
                 format!("{:.2}", pair.w_ns),
                 format!("{:.2}", pair.schlick_ns),

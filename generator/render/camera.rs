@@ -50,9 +50,10 @@ impl Camera {
         let back = from.unit();
         let back = back.context("the camera stands where it looks at: --camera and --target")?;
         // Looking straight up or down, the upper edge is to the back.
-        let upward = match back.0[0] == 0.0 && back.0[2] == 0.0 {
-            true => Vector::new(0.0, 0.0, -1.0),
-            false => Vector::new(0.0, 1.0, 0.0),
+        let upward = if back.0[0] == 0.0 && back.0[2] == 0.0 {
+            Vector::new(0.0, 0.0, -1.0)
+        } else {
+            Vector::new(0.0, 1.0, 0.0)
         };
         let right = upward.cross(back).unit();
         let right = right.context("the camera has no upward direction")?;

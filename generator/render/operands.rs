@@ -103,10 +103,7 @@ impl Feed {
     /// # Errors
     /// It has operands that are not understood, or not the colours.
     pub fn new(device: &str, contract: &dyn Contract, exponent: u32) -> Result<Self> {
-        let names: &[(&str, Quantity)] = match walks_lines(contract) {
-            false => &OF_POINTS,
-            true => &OF_LINES,
-        };
+        let names: &[(&str, Quantity)] = if walks_lines(contract) { &OF_LINES } else { &OF_POINTS };
         let mut unknown = Vec::new();
         let mut operands = Vec::new();
         for operand in contract.operands() {
@@ -224,10 +221,7 @@ impl Feed {
         let full = self.find(Quantity::Amplitude);
         let full = full.map_or(0.0, |(_, format, (_, most))| format.to_f64(i128::from(most)));
         let line = arc.line(full * light, self.exponent, length as u32);
-        let stretch = match self.takes(Quantity::Exponent) {
-            true => 1.0,
-            false => line.stretch(),
-        };
+        let stretch = if self.takes(Quantity::Exponent) { 1.0 } else { line.stretch() };
         let raw = |&(quantity, format, (low, high)): &(Quantity, Format, (i64, i64))| {
             let angle = |radians: f64| raw_angle(radians * stretch, format);
             let number =

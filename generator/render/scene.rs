@@ -90,14 +90,14 @@ impl Scene {
     /// # Errors
     /// None that a user could cause.
     pub fn built_in(which: BuiltIn, colour: Option<Vector>, coarse: bool) -> Result<Vec<Object>> {
-        let ball = |middle, radius| match coarse {
-            false => Ok(Shape::Ball { middle, radius }),
-            true => shapes::ball(middle, radius, [64, 32]).map(Shape::Mesh),
+        let ball = |middle, radius| {
+            if coarse {
+                shapes::ball(middle, radius, [64, 32]).map(Shape::Mesh)
+            } else {
+                Ok(Shape::Ball { middle, radius })
+            }
         };
-        let steps = |fine: [u32; 2]| match coarse {
-            false => fine,
-            true => fine.map(|steps| steps / 8),
-        };
+        let steps = |fine: [u32; 2]| if coarse { fine.map(|steps| steps / 8) } else { fine };
         let ring = || shapes::torus(0.72, 0.28, steps([384, 160]));
         let vase = || shapes::vase(steps([384, 480]));
         let of = |shape, own| Object { shape, colour: colour.unwrap_or(own) };

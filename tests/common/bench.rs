@@ -129,9 +129,8 @@ pub fn with_flipped_bit(memory: &str, word: usize, bit: u32) -> String {
     digits[at] = char::from_digit(digit, 16).expect("a digit");
     let flipped: String = digits.into_iter().collect();
     let mut words = 0..;
-    let lines = memory.lines().map(|line| match is_word(&line) && words.next() == Some(word) {
-        true => flipped.as_str(),
-        false => line,
+    let lines = memory.lines().map(|line| {
+        if is_word(&line) && words.next() == Some(word) { flipped.as_str() } else { line }
     });
     lines.map(|line| format!("{line}\n")).collect()
 }

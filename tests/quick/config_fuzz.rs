@@ -198,10 +198,7 @@ proptest! {
         comments in any::<bool>(),
         changes in vec((any::<prop::sample::Index>(), 0usize..6, piece()), 1..6),
     ) {
-        let text = match comments {
-            true => commented(&lamp(), "lamp"),
-            false => sample(&lamp(), seed).to_toml(&lamp()),
-        };
+        let text = if comments { commented(&lamp(), "lamp") } else { sample(&lamp(), seed).to_toml(&lamp()) };
         let mut text: Vec<char> = text.chars().collect();
         for (place, removed, piece) in changes {
             let start = place.index(text.len() + 1);

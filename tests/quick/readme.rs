@@ -371,9 +371,10 @@ fn faults_that_shipped_benches_notice() {
         }
         format!("{} of {} ({:.1} %)", grouped(noticed), grouped(of), 100.0 * share)
     };
-    let tallied = |tally: &Value, reached: Option<(f64, bool)>| match tally.is_null() {
-        true => "—".to_owned(),
-        false => {
+    let tallied = |tally: &Value, reached: Option<(f64, bool)>| {
+        if tally.is_null() {
+            "—".to_owned()
+        } else {
             let [noticed, missed] = ["shipped", "missed"].map(|count| number(&tally[count]));
             cell(noticed, noticed + missed, reached)
         }

@@ -265,9 +265,10 @@ impl Model {
             };
             writeln!(text, "operands.{} = ({kind})raw[{at}];", operand.name).expect("text");
         }
-        text += &match self.is_line() {
-            true => format!("size_t count = {name}_model(operands, points, 1 << 16);\n"),
-            false => format!("size_t count = 1;\npoints[0] = {name}_model(operands);\n"),
+        text += &if self.is_line() {
+            format!("size_t count = {name}_model(operands, points, 1 << 16);\n")
+        } else {
+            format!("size_t count = 1;\npoints[0] = {name}_model(operands);\n")
         };
         text += "for (size_t at = 0; at < count; ++at) {\nint64_t result;\n";
         for output in contract.outputs() {

@@ -236,10 +236,7 @@ fn one_per_cent() -> Claim {
         claim: "W with m = 16 is within 1 % before the inflection point for all n = 1…250"
             .to_owned(),
         seed: "1 %".to_owned(),
-        verdict: match failing.is_empty() {
-            true => Verdict::Holds,
-            false => Verdict::Fails,
-        },
+        verdict: if failing.is_empty() { Verdict::Holds } else { Verdict::Fails },
         words: format!(
             "It fails for n = {}, and holds from n = {after} on. n = 1 has no inflection point: W is beside the \
              cosine there.",

@@ -33,10 +33,7 @@ fn quad_large() -> Claim {
         claim: "cos\u{1d4f}(\u{221a}(n/k)\u{b7}\u{3b4}) with k = 16 is within 0.6 % for all n > 6"
             .to_owned(),
         seed: "< 0.6 %".to_owned(),
-        verdict: match failing.is_empty() {
-            true => Verdict::Holds,
-            false => Verdict::Fails,
-        },
+        verdict: if failing.is_empty() { Verdict::Holds } else { Verdict::Fails },
         words: format!(
             "It fails for n = {}, and holds at the inflection point from n = {after} to 1000.",
             runs(&failing)
@@ -61,10 +58,7 @@ fn quad_small() -> Claim {
         claim: "cos\u{1d4f}(\u{221a}(n/k)\u{b7}\u{3b4}) with k = 1, 2, 4 is within 1 % for n < 6"
             .to_owned(),
         seed: "\u{2264} 1 %".to_owned(),
-        verdict: match failing.is_empty() {
-            true => Verdict::Holds,
-            false => Verdict::Fails,
-        },
+        verdict: if failing.is_empty() { Verdict::Holds } else { Verdict::Fails },
         words: format!(
             "It fails for n = {}. n = 1, 2 and 4 are exact, for k = n; the patent does not speak of n = 6.",
             runs(&failing)
@@ -89,10 +83,7 @@ fn four_powers() -> Claim {
         source: SOURCE,
         claim: "Four functions, with k = 1, 2, 3 and 9, give 1 % for all n".to_owned(),
         seed: "1 %".to_owned(),
-        verdict: match served {
-            true => Verdict::Depends,
-            false => Verdict::Fails,
-        },
+        verdict: if served { Verdict::Depends } else { Verdict::Fails },
         words: "It holds if k = 3 serves n = 4 as well as n = 3, just so, and k = 9 serves n = 5…1000. With k = 9 from \
                 n = 4 on it does not. n = 1 and 2 are exact."
             .to_owned(),

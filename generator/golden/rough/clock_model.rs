@@ -55,9 +55,10 @@ pub(super) fn clocked(params: Params) -> Clocked<Device> {
     let largest = params.largest_cosine();
     let product = |int| Format::unsigned(int, params.product_fraction as i32);
     let mut frame = Frame::default();
-    let [cos_cos, sin_sin, sine] = match params.patent() {
-        true => [params.cos_dgamma_format(); 3],
-        false => [product(1), product(0), Format::unsigned(0, params.sine_fraction as i32)],
+    let [cos_cos, sin_sin, sine] = if params.patent() {
+        [params.cos_dgamma_format(); 3]
+    } else {
+        [product(1), product(0), Format::unsigned(0, params.sine_fraction as i32)]
     };
     let turned = frame.hidden_flag();
     let device = Device {

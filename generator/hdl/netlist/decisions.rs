@@ -50,10 +50,13 @@ fn registers_from_control(design: &Design, net: NetId) -> Option<u32> {
                 Driver::Rom(rom) if *rom == design.control.rom => {
                     shortest.get_or_insert(delay);
                 }
-                Driver::Rom(rom) => match design.rom(*rom).synchronous {
-                    true => behind.push(design.rom(*rom).address),
-                    false => through.push(design.rom(*rom).address),
-                },
+                Driver::Rom(rom) => {
+                    if design.rom(*rom).synchronous {
+                        behind.push(design.rom(*rom).address)
+                    } else {
+                        through.push(design.rom(*rom).address)
+                    }
+                }
                 Driver::Input => {
                     let role = design.ports.iter().find(|port| port.net == net);
                     if !role.is_some_and(|port| is_handshake(port.role)) {

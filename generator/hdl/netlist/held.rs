@@ -205,9 +205,10 @@ impl<'a> Steady<'a> {
                 Driver::Op(op) => {
                     let starts = op.operands().into_iter().filter_map(|of| {
                         let held = cut.iter().find(|(net, _)| *net == of);
-                        match held.is_some_and(|(_, to)| to.contains(&Reader::Cell(net))) {
-                            true => Some(0),
-                            false => arrival[of.index()],
+                        if held.is_some_and(|(_, to)| to.contains(&Reader::Cell(net))) {
+                            Some(0)
+                        } else {
+                            arrival[of.index()]
                         }
                     });
                     let own = delay(self.design, op);

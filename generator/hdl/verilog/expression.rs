@@ -120,9 +120,10 @@ impl<'a> Expressions<'a> {
             base: base.to_owned(),
             bits: value,
             width,
-            note: match origin.signed || origin.frac != 0 {
-                true => format!("{:?} in {origin}", origin.to_f64(origin.raw(bits))),
-                false => String::new(),
+            note: if origin.signed || origin.frac != 0 {
+                format!("{:?} in {origin}", origin.to_f64(origin.raw(bits)))
+            } else {
+                String::new()
             },
         });
         Some(name)

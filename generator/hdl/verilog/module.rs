@@ -235,28 +235,26 @@ impl<'a> Builder<'a> {
         let control = is_control_rom(self.plan.design, id);
         let word =
             format!("{}[{}]", self.naming.memories[id.index()], self.expressions.address(rom));
-        let read = match rom.synchronous {
-            true => {
-                let data = &self.plan.design.net(rom.data).name;
-                let when = rom.enable.map(|enable| self.expressions.whole(enable));
-                let when = when.map_or_else(String::new, |enable| format!("if ({enable}) "));
-                format!("always @(posedge clk) {when}{data} <= {word};")
-            }
-            false => format!("{} = {word};", self.target(rom.data)),
+        let read = if rom.synchronous {
+            let data = &self.plan.design.net(rom.data).name;
+            let when = rom.enable.map(|enable| self.expressions.whole(enable));
+            let when = when.map_or_else(String::new, |enable| format!("if ({enable}) "));
+            format!("always @(posedge clk) {when}{data} <= {word};")
+        } else {
+            format!("{} = {word};", self.target(rom.data))
         };
         Item::Rom(RomItem {
             comment: comment(4, &format!("{}{what}", rom_label(rom))),
             range: range(width),
             memory: self.naming.memories[id.index()].clone(),
             last: rom.words.len().saturating_sub(1),
-            contents: match self.naming.inline {
-                true => {
-                    Contents::Inline(words(self.plan.design, id, &self.naming.memories[id.index()]))
-                }
-                false => Contents::File {
+            contents: if self.naming.inline {
+                Contents::Inline(words(self.plan.design, id, &self.naming.memories[id.index()]))
+            } else {
+                Contents::File {
                     radix: if control { 'b' } else { 'h' },
                     parameter: self.naming.parameters[id.index()].clone(),
-                },
+                }
             },
             second: rom.shares.is_some(),
             read: statement(4, &read),
@@ -345,9 +343,10 @@ fn words(design: &Design, id: RomId, memory: &str) -> Vec<String> {
     let rom = design.rom(id);
     let width = design.width(rom.data);
     let word = |(address, word): (usize, &u64)| {
-        let value = match is_control_rom(design, id) {
-            true => format!("{width}'b{}", in_fields(design, *word)),
-            false => format!("{width}'h{}", in_hex(*word, width)),
+        let value = if is_control_rom(design, id) {
+            format!("{width}'b{}", in_fields(design, *word))
+        } else {
+            format!("{width}'h{}", in_hex(*word, width))
         };
         let note = word_note(design, id, address).unwrap_or_default();
         annotated(&format!("{memory}[{address}] = {value};"), 8, &note)

@@ -108,9 +108,10 @@ pub fn is_control_rom(design: &Design, rom: RomId) -> bool {
 pub fn remark(design: &Design, id: NetId) -> String {
     let net = design.net(id);
     // The width already says all of an unsigned integer.
-    let format = match net.format.signed || net.format.frac != 0 {
-        true => net.format.to_string(),
-        false => String::new(),
+    let format = if net.format.signed || net.format.frac != 0 {
+        net.format.to_string()
+    } else {
+        String::new()
     };
     let label = match &net.driver {
         Driver::Field(field) => field_label(&design.control, field.index()),

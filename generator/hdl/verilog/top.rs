@@ -28,12 +28,13 @@ pub fn module(
         .filter(|net| !plan.is_port(**net))
         .map(|net| Row::net(plan, "", "wire", *net))
         .collect();
-    let declarations = match between.is_empty() {
-        true => Vec::new(),
-        false => vec![Section {
+    let declarations = if between.is_empty() {
+        Vec::new()
+    } else {
+        vec![Section {
             title: "Between the control unit and the datapath",
             lines: Row::declarations(&between),
-        }],
+        }]
     };
     let roms: Vec<_> = units.iter().flat_map(|(_, interface)| interface.roms.clone()).collect();
     Top {

@@ -73,10 +73,8 @@ pub(super) fn of(
                     let products = products.into_iter().map(|product| (product, product));
                     products.reduce(hull).unwrap_or(all)
                 });
-                let products = products.map(|(low, high)| match is_square {
-                    true => (low.max(0), high),
-                    false => (low, high),
-                });
+                let products = products
+                    .map(|(low, high)| if is_square { (low.max(0), high) } else { (low, high) });
                 products.map_or(all, fits)
             }
             Op::Mux { select, inputs } => {

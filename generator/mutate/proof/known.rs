@@ -152,10 +152,9 @@ pub(super) fn choices(select: Known, lines: u32, inputs: &[NetId]) -> impl Itera
     inputs
         .iter()
         .enumerate()
-        .filter(move |&(at, _)| match at == last {
-            true => most >= last as u64,
-            false => select.may_be(at as u64),
-        })
+        .filter(
+            move |&(at, _)| if at == last { most >= last as u64 } else { select.may_be(at as u64) },
+        )
         .map(|(_, &input)| input)
 }
 

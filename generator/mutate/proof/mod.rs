@@ -224,9 +224,10 @@ impl<'a> Prover<'a> {
                 let possible = possible.chain(known::choices(after, lines, inputs));
                 let possible: Vec<NetId> = possible.collect();
                 let same = |net: &NetId| self.sound.same[net.index()];
-                match possible.iter().all(|net| same(net) == same(&possible[0])) {
-                    true => possible.iter().fold(0, |all, net| all | differ(net)),
-                    false => u64::MAX,
+                if possible.iter().all(|net| same(net) == same(&possible[0])) {
+                    possible.iter().fold(0, |all, net| all | differ(net))
+                } else {
+                    u64::MAX
                 }
             }
         }
@@ -241,10 +242,8 @@ impl<'a> Prover<'a> {
         sound: Known,
     ) -> (Known, u64) {
         let rom = self.sound.design.rom(id);
-        let differ = match rom.synchronous {
-            true => state.roms[id.index()],
-            false => self.read(id, site, nets),
-        };
+        let differ =
+            if rom.synchronous { state.roms[id.index()] } else { self.read(id, site, nets) };
         (sound.without(differ), differ)
     }
 

@@ -56,9 +56,10 @@ pub fn file(design: &Design, inputs: &EmitInputs, tops: &[Top]) -> Result<(Strin
     let find = |face: fn(Face) -> bool| tops.iter().find(|top| face(top.face));
     let stream = find(|face| face == Face::Stream).map(streamed);
     let is_line = inputs.accuracy.as_ref().is_some_and(|accuracy| accuracy.length.is_some());
-    let core = match is_line || design.pipeline.is_some() {
-        true => None,
-        false => find(|face| face == Face::Core).map(|top| driven(design, top)),
+    let core = if is_line || design.pipeline.is_some() {
+        None
+    } else {
+        find(|face| face == Face::Core).map(|top| driven(design, top))
     };
     if core.is_none() && stream.is_none() {
         let what = if is_line { "walks lines" } else { "is a pipeline" };
@@ -131,9 +132,10 @@ fn camel(name: &str) -> String {
         })
     };
     let joined: String = name.split('_').map(part).collect();
-    match joined.starts_with(|first: char| first.is_ascii_alphabetic()) {
-        true => joined,
-        false => format!("Core{joined}"),
+    if joined.starts_with(|first: char| first.is_ascii_alphabetic()) {
+        joined
+    } else {
+        format!("Core{joined}")
     }
 }
 

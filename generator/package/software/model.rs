@@ -162,14 +162,11 @@ pub fn files(
     };
     let results = || result_ports(design).map(|port| Field::new(design, port)).collect::<Vec<_>>();
     let names = table_names(design);
-    let (body, read) = match line {
-        true => of_line(design, &names),
-        false => of_point(design, &names),
-    }
-    .map_err(|error| {
-        let message = format!("`{name}` has no model in C: {error:#}");
-        Unfit::new("package.software", message, "remove it")
-    })?;
+    let (body, read) = if line { of_line(design, &names) } else { of_point(design, &names) }
+        .map_err(|error| {
+            let message = format!("`{name}` has no model in C: {error:#}");
+            Unfit::new("package.software", message, "remove it")
+        })?;
     let regenerate = inputs.config.as_str();
     let header = Header {
         name,

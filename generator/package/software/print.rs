@@ -50,10 +50,7 @@ struct Text(String, bool);
 
 impl Text {
     fn inner(self) -> String {
-        match self.1 {
-            true => self.0,
-            false => format!("({})", self.0),
-        }
+        if self.1 { self.0 } else { format!("({})", self.0) }
     }
 }
 
@@ -169,12 +166,11 @@ impl<'a> Printer<'a> {
     fn with_sign(&self, id: NetId, width: u32) -> String {
         let own = self.graph.width(id);
         let text = self.in_type(id, width).inner();
-        match (own == 32 && width == 32) || own == 64 {
-            true => text,
-            false => {
-                let sign = literal(1 << (own - 1), width);
-                format!("(({text} ^ {sign}) - {sign})")
-            }
+        if (own == 32 && width == 32) || own == 64 {
+            text
+        } else {
+            let sign = literal(1 << (own - 1), width);
+            format!("(({text} ^ {sign}) - {sign})")
         }
     }
 
@@ -217,9 +213,10 @@ impl<'a> Printer<'a> {
             Node::Input(port) => {
                 let net = self.design.net(*port);
                 let field = field(&net.name);
-                let text = match net.format.signed {
-                    true => format!("({})operands.{field}", pattern_type(width)),
-                    false => format!("operands.{field}"),
+                let text = if net.format.signed {
+                    format!("({})operands.{field}", pattern_type(width))
+                } else {
+                    format!("operands.{field}")
                 };
                 match width {
                     32 | 64 => Text(text, true),
@@ -262,10 +259,7 @@ impl<'a> Printer<'a> {
                     false => shifted,
                 };
                 let (from, to) = (pattern_type(whole), pattern_type(width));
-                match from == to {
-                    true => Text(cut, false),
-                    false => Text(format!("({to})({cut})"), true),
-                }
+                if from == to { Text(cut, false) } else { Text(format!("({to})({cut})"), true) }
             }
             Op::Concat(parts) => {
                 let mut low = width;

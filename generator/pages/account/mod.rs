@@ -44,11 +44,10 @@ pub const FORMATS: &str = "Formats: `uI.F` is unsigned, `sI.F` two's complement,
 
 /// Whose the numbers of the blocks are.
 pub fn numbering(design: &Design) -> &'static str {
-    match design.nets.iter().any(|net| net.block.is_some()) {
-        true => {
-            "In order of their numbers in the source's figure; those without a number are ours."
-        }
-        false => "The source gives them no numbers.",
+    if design.nets.iter().any(|net| net.block.is_some()) {
+        "In order of their numbers in the source's figure; those without a number are ours."
+    } else {
+        "The source gives them no numbers."
     }
 }
 
@@ -71,9 +70,10 @@ pub fn limit(inputs: &PageInputs) -> String {
 /// The bound, in sentences.
 pub fn accuracy(contract: &dyn Contract) -> String {
     let bound = contract.bound();
-    let verdict = match bound.units < 1.0 {
-        true => "which is inside the contract (less than 1 unit)",
-        false => "which is outside the contract (less than 1 unit)",
+    let verdict = if bound.units < 1.0 {
+        "which is inside the contract (less than 1 unit)"
+    } else {
+        "which is outside the contract (less than 1 unit)"
     };
     let proven = "The bound is proven, not measured; this is what it is made of:";
     if contract.highlight().is_none() {
@@ -174,10 +174,7 @@ pub fn roms(design: &Design, config: &Config) -> Table {
         ("an entry", Align::Left),
     ]);
     for rom in facts::roms(design, &naming) {
-        let reads = match rom.synchronous {
-            true => "on the clock",
-            false => "at once",
-        };
+        let reads = if rom.synchronous { "on the clock" } else { "at once" };
         table.row([
             code(rom.name),
             number(rom.block),
@@ -285,16 +282,13 @@ pub fn clocks(timing: &Timing, line: Option<&LineClocks>) -> Table {
 
 /// How points enter and leave a pipeline, in sentences.
 pub fn handshake(pipeline: &Pipeline) -> &'static str {
-    match pipeline.stall {
-        true => {
-            "A point is taken in each clock in which `in_valid` and `in_ready` are high: the operands of that clock are its \
+    if pipeline.stall {
+        "A point is taken in each clock in which `in_valid` and `in_ready` are high: the operands of that clock are its \
              own. Its results are taken in the clock in which `out_valid` and `out_ready` are high. While `out_valid` is high \
              and `out_ready` low, no point moves, and `in_ready` is low."
-        }
-        false => {
-            "A point is taken in each clock in which `in_valid` is high: the operands of that clock are its own. Its results \
+    } else {
+        "A point is taken in each clock in which `in_valid` is high: the operands of that clock are its own. Its results \
              are on the outputs for one clock, that in which `out_valid` is high."
-        }
     }
 }
 

@@ -184,9 +184,10 @@ impl Grid<'_> {
             items.push(Item::Open { class: "value", title: format!("{}: {text}", lane.name) });
             items.push(Item::path("bus", frame));
             let room = (f64::from(end - x - 2 * SLANT) / (SIZE * 0.6)) as usize;
-            let shown = match text.chars().count() > room {
-                true => text.chars().take(room.saturating_sub(1)).chain(['…']).collect(),
-                false => text.clone(),
+            let shown = if text.chars().count() > room {
+                text.chars().take(room.saturating_sub(1)).chain(['…']).collect()
+            } else {
+                text.clone()
             };
             items.push(Item::text("tick", (x + end) / 2, low - 4, shown));
             items.push(Item::Close);

@@ -195,9 +195,10 @@ impl Waves {
             });
             before = Some(value);
         }
-        match data.is_empty() {
-            true => json!({ "name": lane.name, "wave": wave }),
-            false => json!({ "name": lane.name, "wave": wave, "data": data }),
+        if data.is_empty() {
+            json!({ "name": lane.name, "wave": wave })
+        } else {
+            json!({ "name": lane.name, "wave": wave, "data": data })
         }
     }
 }

@@ -23,10 +23,7 @@ pub struct Call {
 pub fn calls(wild: bool) -> impl Strategy<Value = Vec<Call>> {
     let extremes = prop::sample::select(vec![0, 1, -1, 63, 64, 65, 128, i32::MAX, i32::MIN]);
     let number = prop_oneof![8 => 0..40, 2 => -70..140, 1 => extremes];
-    let odd = match wild {
-        true => prop::bool::weighted(0.15).boxed(),
-        false => Just(false).boxed(),
-    };
+    let odd = if wild { prop::bool::weighted(0.15).boxed() } else { Just(false).boxed() };
     let call = (any::<u8>(), any::<[u16; 3]>(), number, odd);
     let call = call.prop_map(|(what, of, number, wild)| Call { what, of, number, wild });
     vec(call, 1..24)
@@ -108,13 +105,14 @@ impl<'d> Builder<'d> {
     fn format(call: &Call) -> Format {
         let (int, signed) = (call.number, call.of[2] % 2 == 1);
         let frac = i32::from(call.of[1] % 30) - 8;
-        match call.wild {
-            true => Format {
+        if call.wild {
+            Format {
                 signed,
                 int,
                 frac: if call.of[1].is_multiple_of(7) { call.number } else { frac },
-            },
-            false => Format { signed, int: call.number.rem_euclid(14) + 1 - frac, frac },
+            }
+        } else {
+            Format { signed, int: call.number.rem_euclid(14) + 1 - frac, frac }
         }
     }
 
@@ -161,10 +159,13 @@ impl<'d> Builder<'d> {
                 self.settings.push(register.load());
                 register.q()
             }
-            3 => match call.wild {
-                true => d.constant(&name, f64::from(call.number) / 3.0, format),
-                false => d.constant(&name, 0.0, format),
-            },
+            3 => {
+                if call.wild {
+                    d.constant(&name, f64::from(call.number) / 3.0, format)
+                } else {
+                    d.constant(&name, 0.0, format)
+                }
+            }
             4 => d.raw_constant(&name, if call.wild { i128::MAX } else { 1 }, number),
             5 => {
                 let wire = d.wire(&name, format);
@@ -204,9 +205,10 @@ impl<'d> Builder<'d> {
             21 => {
                 let inputs = [self.fitted(call, 1, small), self.fitted(call, 2, small)];
                 // An input twice is a mistake.
-                let inputs = match call.wild {
-                    true => inputs,
-                    false => [inputs[0], d.not(&format!("{name}_other"), inputs[1])],
+                let inputs = if call.wild {
+                    inputs
+                } else {
+                    [inputs[0], d.not(&format!("{name}_other"), inputs[1])]
                 };
                 let mux = d.mux(
                     &name,
@@ -239,14 +241,20 @@ impl<'d> Builder<'d> {
                 let a = self.fitted(call, 0, small);
                 a.with_fraction(if call.wild { call.number } else { 6 })
             }
-            26 => match call.wild {
-                true => self.any(call, 0).bits(call.number as u32, format),
-                false => self.fitted(call, 0, small).bits(2, Format::unsigned(4, 0)),
-            },
-            27 => match call.wild {
-                true => self.any(call, 0).above(self.any(call, 1), format),
-                false => self.fitted(call, 0, number).read_as(Format::signed(2, 2)),
-            },
+            26 => {
+                if call.wild {
+                    self.any(call, 0).bits(call.number as u32, format)
+                } else {
+                    self.fitted(call, 0, small).bits(2, Format::unsigned(4, 0))
+                }
+            }
+            27 => {
+                if call.wild {
+                    self.any(call, 0).above(self.any(call, 1), format)
+                } else {
+                    self.fitted(call, 0, number).read_as(Format::signed(2, 2))
+                }
+            }
             28 => d.pipeline(&name, self.any(call, 0)).as_signed(),
             _ => {
                 let counter = d.down_counter(&name, self.fitted(call, 0, number));
@@ -257,12 +265,11 @@ impl<'d> Builder<'d> {
         };
         // Sums and products of sums and products grow without end.
         let wide = new.format().width() > 24;
-        self.signals.push(match wide && !call.wild {
-            true => {
-                let narrow = format!("narrow{}", self.count);
-                d.narrow(&narrow, new, small, Rounding::Truncate, Overflow::Saturate)
-            }
-            false => new,
+        self.signals.push(if wide && !call.wild {
+            let narrow = format!("narrow{}", self.count);
+            d.narrow(&narrow, new, small, Rounding::Truncate, Overflow::Saturate)
+        } else {
+            new
         });
     }
 
@@ -296,12 +303,13 @@ impl<'d> Builder<'d> {
             step("result", [valid(), end()]),
         ];
         let condition = self.signals[self.signals.len() / 2];
-        match wrong {
-            false => d.microprogram(steps),
-            true => d.microprogram([
+        if wrong {
+            d.microprogram([
                 step("idle", [loop_while(condition, "nowhere")]),
                 step("idle", [jump_if(condition, "idle"), end()]),
-            ]),
+            ])
+        } else {
+            d.microprogram(steps)
         }
     }
 }

@@ -36,9 +36,10 @@ impl Random {
     /// A pattern; often one of the ends.
     pub fn bits(&mut self, width: u32) -> u64 {
         let ends = [0, 1, mask(width), mask(width) >> 1, 1 << (width - 1)];
-        match self.chance(30) {
-            true => ends[self.below(ends.len())] & mask(width),
-            false => self.next() & mask(width),
+        if self.chance(30) {
+            ends[self.below(ends.len())] & mask(width)
+        } else {
+            self.next() & mask(width)
         }
     }
 }
@@ -245,9 +246,10 @@ impl Build {
     fn format(&mut self, widest: usize) -> Format {
         let width = 1 + self.random.below(widest) as i32;
         let frac = self.random.below(30) as i32 - 10;
-        match self.random.chance(50) {
-            true => Format::signed(width - 1 - frac, frac),
-            false => Format::unsigned(width - frac, frac),
+        if self.random.chance(50) {
+            Format::signed(width - 1 - frac, frac)
+        } else {
+            Format::unsigned(width - frac, frac)
         }
     }
 
@@ -300,9 +302,10 @@ impl Build {
         }
         let from = self.design.net(source).format;
         let signed = signed.unwrap_or(from.signed);
-        let format = match signed {
-            true => Format::signed(width as i32 - 1, 0),
-            false => Format::unsigned(width as i32, 0),
+        let format = if signed {
+            Format::signed(width as i32 - 1, 0)
+        } else {
+            Format::unsigned(width as i32, 0)
         };
         if self.random.chance(12) {
             let value = self.random.bits(width);
@@ -311,9 +314,10 @@ impl Build {
         }
         let resized = match from.width().cmp(&width) {
             std::cmp::Ordering::Less => {
-                let extended = match from.signed {
-                    true => Format::signed(width as i32 - 1, 0),
-                    false => Format::unsigned(width as i32, 0),
+                let extended = if from.signed {
+                    Format::signed(width as i32 - 1, 0)
+                } else {
+                    Format::unsigned(width as i32, 0)
                 };
                 self.add(extended, Op::Extend(source))
             }

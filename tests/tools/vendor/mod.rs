@@ -311,9 +311,12 @@ fn rom_contents_in_the_verilog_are_those_of_the_files() {
 /// The Verilog with all words of its first memory with a table inverted.
 fn wrong_word(rtl: &[(String, String)]) -> Vec<(String, String)> {
     let inverted = |text: &str| {
-        let line = |line: &str| match line.contains("_rom[") && line.contains("'h") {
-            true => line.replacen("'h", "'h0 | ~", 1).replace("~", "~'h"),
-            false => line.to_owned(),
+        let line = |line: &str| {
+            if line.contains("_rom[") && line.contains("'h") {
+                line.replacen("'h", "'h0 | ~", 1).replace("~", "~'h")
+            } else {
+                line.to_owned()
+            }
         };
         text.lines().map(|it| line(it) + "\n").collect::<String>()
     };

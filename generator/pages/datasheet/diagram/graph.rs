@@ -220,10 +220,7 @@ impl<'a> Builder<'a> {
     fn lines(&self, field: FieldId) -> String {
         let field = &self.design.control.fields[field.index()];
         let lines: Vec<String> = field.lines.iter().map(u16::to_string).collect();
-        match lines.is_empty() {
-            true => field.name.clone(),
-            false => lines.join(" "),
-        }
+        if lines.is_empty() { field.name.clone() } else { lines.join(" ") }
     }
 }
 

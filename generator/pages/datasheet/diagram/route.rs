@@ -251,10 +251,8 @@ impl Router<'_> {
         let mut x = 0.0;
         for (gap, &tracks) in tracks.iter().enumerate() {
             let outside = (gap == 0 || gap == columns) && tracks == 0;
-            let wide = match outside {
-                true => 0.0,
-                false => 2.0 * MARGIN + TRACK * tracks.saturating_sub(1) as f64,
-            };
+            let wide =
+                if outside { 0.0 } else { 2.0 * MARGIN + TRACK * tracks.saturating_sub(1) as f64 };
             borders.push((x, x + wide));
             x += wide + if gap < columns { widest(gap) } else { 0.0 };
         }
