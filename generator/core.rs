@@ -11,7 +11,7 @@ use crate::cosim::{Lockstep, directed, trial};
 use crate::golden::Contract;
 use crate::hdl::netlist::Design;
 use crate::package::{
-    self, Accuracy, EmitInputs, LineClocks, OutputFile, Surroundings, Timing, Vectors,
+    self, ContractFacts, EmitInputs, LineClocks, OutputFile, Surroundings, Timing, Vectors,
     WorkedExample,
 };
 use crate::registry::Device;
@@ -212,7 +212,7 @@ impl Core {
             configuration: self.digest(),
             timing: self.timing()?,
             example: Some(self.example()?),
-            accuracy: Some(Accuracy::new(self.contract.as_ref())),
+            accuracy: Some(ContractFacts::new(self.contract.as_ref())),
             computations: trial::computations(&self.design, self.contract.as_ref())?,
             vectors: Some(vectors),
             around,

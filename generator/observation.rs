@@ -85,7 +85,7 @@ impl Linear {
 
 /// What a device promises of its results, as far as a program can use it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Accuracy {
+pub struct ContractFacts {
     /// The operands with the smallest and the largest raw value for which it promises anything.
     pub domain: Vec<(String, (i64, i64))>,
     /// The result outputs, each with the operand by which a highlight multiplies f.
@@ -98,7 +98,7 @@ pub struct Accuracy {
     pub bound: f64,
 }
 
-impl Accuracy {
+impl ContractFacts {
     /// The promise of a contract.
     pub fn new(contract: &dyn Contract) -> Self {
         let operands = contract.operands();

@@ -3,7 +3,7 @@
 
 use glint::config::Config;
 use glint::fixed::{Format, Rounding, exp2};
-use glint::golden::contract::{Share, control};
+use glint::golden::contract::{ErrorShare, control};
 use glint::golden::frame::{Datapath, Frame, Slot, State, idle, step};
 use glint::golden::highlight::{Highlight, ProductSlots, Products, Reflectance};
 use glint::golden::narrow::{Narrow, rounding_error};
@@ -150,7 +150,7 @@ impl Reflectance for Fresnel {
     /// - The fifth is off by at most 2u + 2r: |q·t − t⁵| ≤ |q − t⁴|; q·t ≤ 1 − u does not saturate.
     /// - f is off by at most 2u + 2r + u: 1 − f0 ≤ 1 adds nothing to the error of the fifth power, and
     ///   the sum is at most 1, so that rounding and saturation together move it by u at most.
-    fn shares(&self) -> Vec<Share> {
+    fn shares(&self) -> Vec<ErrorShare> {
         let u = exp2(-(self.power as i32));
         let r = rounding_error(2 * self.power, self.power, self.rounding);
         vec![

@@ -11,15 +11,15 @@ use crate::config::Problems;
 
 /// A mistake on the command line itself, which only a command can see: exit code 2.
 #[derive(Debug)]
-pub struct Usage(pub String);
+pub struct WrongUsage(pub String);
 
-impl fmt::Display for Usage {
+impl fmt::Display for WrongUsage {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(&self.0)
     }
 }
 
-impl std::error::Error for Usage {}
+impl std::error::Error for WrongUsage {}
 
 /// Several errors, none the cause of another: those of several configurations.
 #[derive(Debug)]
@@ -39,7 +39,7 @@ pub fn exit_code(error: &anyhow::Error) -> ExitCode {
     if let Some(interrupted) = error.downcast_ref::<Interrupted>() {
         return ExitCode::from(interrupted.exit_code());
     }
-    match error.downcast_ref::<Usage>() {
+    match error.downcast_ref::<WrongUsage>() {
         Some(_) => ExitCode::from(2),
         None => ExitCode::FAILURE,
     }

@@ -28,7 +28,7 @@ pub use problems::{Problem, Problems};
 pub use read::{read, read_located};
 pub use sample::sample;
 pub use schema::{Key, Kind, Schema};
-pub use shape::Shape;
+pub use shape::TextPattern;
 pub use shared::shared_keys;
 pub use values::{Config, Value};
 pub use write::commented;

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use super::problems::Problems;
-use super::shape::Shape;
+use super::shape::TextPattern;
 use super::values::{Config, Value, is_integer};
 
 /// The keys of one device, and the conditions between them.
@@ -48,7 +48,7 @@ pub enum Kind {
     /// `true` or `false`.
     Flag,
     /// Text of a shape.
-    Text(Shape),
+    Text(TextPattern),
     /// A list of integers; its entries and its length have limits.
     Integers { min: i64, max: i64, len_min: usize, len_max: usize },
 }
@@ -101,7 +101,7 @@ impl Key {
     pub fn text(
         name: &'static str,
         default: &'static str,
-        shape: Shape,
+        shape: TextPattern,
         doc: &'static str,
     ) -> Self {
         Self::new(name, Kind::Text(shape), Value::Text(default.to_owned()), doc)

@@ -2,7 +2,7 @@
 
 /// The shape of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
+pub enum TextPattern {
     /// Who makes or sells something: a letter, then letters, digits, `.`, `-` and `_`.
     Name,
     /// Three numbers without leading zeros and with dots between them.
@@ -18,7 +18,7 @@ const LONGEST: usize = 60;
 /// The most digits of a number of a version.
 const DIGITS: usize = 4;
 
-impl Shape {
+impl TextPattern {
     /// Whether a text has this shape.
     pub fn fits(self, text: &str) -> bool {
         let more = |also: &str| {
@@ -28,9 +28,9 @@ impl Shape {
         let first =
             |also: &str| text.starts_with(|c: char| c.is_ascii_alphabetic() || also.contains(c));
         match self {
-            Shape::Name => first("") && more(".-_"),
-            Shape::Licence => first("(") && more(" .-+()"),
-            Shape::Version => {
+            TextPattern::Name => first("") && more(".-_"),
+            TextPattern::Licence => first("(") && more(" .-+()"),
+            TextPattern::Version => {
                 let numbers: Vec<&str> = text.split('.').collect();
                 numbers.len() == 3 && numbers.into_iter().all(is_number)
             }
@@ -40,22 +40,22 @@ impl Shape {
     /// The same as a regular expression that JavaScript and Rust know.
     pub fn pattern(self) -> &'static str {
         match self {
-            Shape::Name => "^[A-Za-z][A-Za-z0-9._-]{0,59}$",
-            Shape::Licence => "^[A-Za-z(][A-Za-z0-9 .+()-]{0,59}$",
-            Shape::Version => "^(0|[1-9][0-9]{0,3})(\\.(0|[1-9][0-9]{0,3})){2}$",
+            TextPattern::Name => "^[A-Za-z][A-Za-z0-9._-]{0,59}$",
+            TextPattern::Licence => "^[A-Za-z(][A-Za-z0-9 .+()-]{0,59}$",
+            TextPattern::Version => "^(0|[1-9][0-9]{0,3})(\\.(0|[1-9][0-9]{0,3})){2}$",
         }
     }
 
     /// The same in words.
     pub fn words(self) -> &'static str {
         match self {
-            Shape::Name => {
+            TextPattern::Name => {
                 "a name of at most 60 letters, digits, `.`, `-` and `_`, beginning with a letter"
             }
-            Shape::Licence => {
+            TextPattern::Licence => {
                 "an SPDX licence expression of at most 60 characters, as \"MIT OR Apache-2.0\""
             }
-            Shape::Version => "a version of three numbers up to 9999, as \"1.0.0\"",
+            TextPattern::Version => "a version of three numbers up to 9999, as \"1.0.0\"",
         }
     }
 }
@@ -73,17 +73,17 @@ mod tests {
     fn texts_fit_their_shapes() {
         for (shape, good, bad) in [
             (
-                Shape::Name,
+                TextPattern::Name,
                 vec!["a", "example.org", "A-1_b"],
                 vec!["", "1a", "a b", "é", "a\"", "[exit]"],
             ),
             (
-                Shape::Version,
+                TextPattern::Version,
                 vec!["0.0.0", "1.20.9999"],
                 vec!["", "1.0", "1.0.0.0", "01.0.0", "1.0.10000", "1.0.x"],
             ),
             (
-                Shape::Licence,
+                TextPattern::Licence,
                 vec!["MIT", "MIT OR Apache-2.0", "(0BSD) AND GPL-2.0+"],
                 vec!["", " MIT", "M<T", "MIT\n", "$a"],
             ),
@@ -96,6 +96,6 @@ mod tests {
             }
             assert!(!shape.fits(&"a".repeat(61)));
         }
-        assert!(Shape::Name.fits(&"a".repeat(60)));
+        assert!(TextPattern::Name.fits(&"a".repeat(60)));
     }
 }

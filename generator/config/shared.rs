@@ -7,7 +7,7 @@
 use std::sync::LazyLock;
 
 use super::schema::{Key, Schema};
-use super::shape::Shape;
+use super::shape::TextPattern;
 
 /// The shared keys, in the order in which a written file shows them, after those of the device.
 pub fn shared_keys() -> &'static [Key] {
@@ -125,19 +125,19 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
         Key::text(
             "package.vendor",
             "glint",
-            Shape::Name,
+            TextPattern::Name,
             "The vendor in IP-XACT, Vivado and Platform Designer; a domain name, as a rule.",
         ),
         Key::text(
             "package.version",
             "0.1.0",
-            Shape::Version,
+            TextPattern::Version,
             "The version of the core for FuseSoC, IP-XACT, Vivado and Platform Designer.",
         ),
         Key::text(
             "package.licence",
             "LicenseRef-belongs-to-its-user",
-            Shape::Licence,
+            TextPattern::Licence,
             "The licence of the files for FuseSoC; what Glint generates belongs to its user.",
         ),
     ]

@@ -374,7 +374,7 @@ fn between(peak: i64, far: i64, scale: f64) -> i64 {
 pub(super) mod tests {
     use super::*;
     use crate::base::fixed::Format;
-    use crate::golden::contract::{Share, control};
+    use crate::golden::contract::{ErrorShare, control};
     use crate::golden::highlight::{Products, Reflectance};
 
     /// A pulse that knows no angle and no exponent: `f` is 1 where `x` is `at`, and 0 from 4 away.
@@ -424,7 +424,7 @@ pub(super) mod tests {
             self.length
         }
 
-        fn shares(&self) -> Vec<Share> {
+        fn shares(&self) -> Vec<ErrorShare> {
             Vec::new()
         }
     }

@@ -6,9 +6,9 @@
 use crate::base::fixed::{Format, Overflow, Rounding, exp2};
 use crate::config::{Config, Key, Problems, Value};
 use crate::hdl::blocks::colour::Colours;
-use crate::hdl::blocks::exponential::{self, Shape as Exponential};
+use crate::hdl::blocks::exponential::{self, ExponentialFormats};
 use crate::hdl::blocks::multipartite::{Cut, Offset};
-use crate::hdl::blocks::segmented::{self, Entry, Segment, Segmentation, Shape};
+use crate::hdl::blocks::segmented::{self, Entry, Segment, Segmentation, SegmentedFormats};
 use crate::hdl::dsl::{Designer, Signal, end, step, valid};
 
 use super::{common, rounding};
@@ -216,8 +216,11 @@ pub fn describe<'d>(d: &'d Designer, config: &Config, cos_gamma: Signal<'d>, cur
         .q();
     let colours = Colours::new(d, integer("colour.bits"), None);
     let f = Format::unsigned(0, integer("intensity.fraction"));
-    let exponential =
-        Exponential { cut: cut(config), fraction: integer("exponential.fraction"), synchronous };
+    let exponential = ExponentialFormats {
+        cut: cut(config),
+        fraction: integer("exponential.fraction"),
+        synchronous,
+    };
     // An integer part that shifts every bit of f out, and no larger.
     let most = f.frac as u32 + 2;
     let halvings_format = Format::unsigned(most.ilog2() as i32 + 1, exponential.cut.bits() as i32);
@@ -300,7 +303,7 @@ fn look_up<'d>(
         tail: Some(config.integer("decay.tail") as u32),
         packed: true,
     };
-    let shape = Shape {
+    let shape = SegmentedFormats {
         fraction: value.frac,
         slope_fraction: config.integer("decay.slope_fraction") as i32,
         synchronous: config.flag("tables.synchronous"),
@@ -312,7 +315,7 @@ fn look_up<'d>(
 /// The straight line through a segment of a convex function with the least error: the slope of the chord,
 /// and the base that puts the error of the segment's points symmetrically about 0, half an ulp up for what
 /// the truncated rise loses.
-fn chord(segment: Segment, function: &dyn Fn(f64) -> f64, shape: Shape) -> Entry {
+fn chord(segment: Segment, function: &dyn Fn(f64) -> f64, shape: SegmentedFormats) -> Entry {
     let value = Format::unsigned(0, shape.fraction);
     let (from, length) = (segment.from as f64, segment.length as f64);
     if segment.length == 1 {

@@ -14,7 +14,7 @@ pub enum Scale {
 
 /// An axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Axis {
+pub struct ChartAxis {
     /// What it shows, with the unit.
     pub label: String,
     /// How it is divided.
@@ -23,7 +23,7 @@ pub struct Axis {
     pub range: (f64, f64),
 }
 
-impl Axis {
+impl ChartAxis {
     /// An evenly divided axis.
     pub fn linear(label: &str, low: f64, high: f64) -> Self {
         Self { label: label.to_owned(), scale: Scale::Linear, range: (low, high) }
@@ -73,9 +73,9 @@ pub struct Chart {
     /// What is to be seen, in a sentence or two: also what a screen reader says.
     pub caption: String,
     /// The horizontal axis.
-    pub x: Axis,
+    pub x: ChartAxis,
     /// The vertical axis.
-    pub y: Axis,
+    pub y: ChartAxis,
     /// Places on the horizontal axis, ascending.
     pub places: Vec<f64>,
     /// The lines, at most [`crate::pages::plots::STYLES`] of them.
@@ -126,10 +126,10 @@ mod tests {
 
     #[test]
     fn places_of_values() {
-        let linear = Axis::linear("x", 0.0, 1.0);
+        let linear = ChartAxis::linear("x", 0.0, 1.0);
         assert_eq!(linear.place(-2.0), Some(-2.0));
         assert_eq!(linear.place(f64::NAN), None);
-        let logarithmic = Axis::logarithmic("x", 0.1, 1000.0);
+        let logarithmic = ChartAxis::logarithmic("x", 0.1, 1000.0);
         assert_eq!(logarithmic.place(100.0), Some(2.0));
         assert_eq!([0.0, -1.0].map(|x| logarithmic.place(x)), [None, None]);
     }
@@ -147,8 +147,8 @@ mod tests {
             id: String::new(),
             title: String::new(),
             caption: String::new(),
-            x: Axis::linear("", 0.0, 1.0),
-            y: Axis::linear("", 0.0, 1.0),
+            x: ChartAxis::linear("", 0.0, 1.0),
+            y: ChartAxis::linear("", 0.0, 1.0),
             places: even(0.0, 1.0, count - 1),
             series: Vec::new(),
             marks: Vec::new(),

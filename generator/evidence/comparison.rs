@@ -136,7 +136,7 @@ pub fn multipliers(design: &Design) -> Vec<Multiplier> {
 mod tests {
     use super::*;
     use crate::base::fixed::Format;
-    use crate::golden::contract::{Share, control};
+    use crate::golden::contract::{ErrorShare, control};
     use crate::golden::highlight::{Products, Reflectance};
     use crate::hdl::dsl::{Designer, end, loop_while, step, valid};
 
@@ -167,7 +167,7 @@ mod tests {
             Some("intervals")
         }
 
-        fn shares(&self) -> Vec<Share> {
+        fn shares(&self) -> Vec<ErrorShare> {
             Vec::new()
         }
     }

@@ -3,7 +3,7 @@
 
 use serde::Serialize;
 
-use super::chart::{Axis, Chart, Mark, Series, even};
+use super::chart::{Chart, ChartAxis, Mark, Series, even};
 use super::comparison;
 use crate::config::Config;
 use crate::golden::Contract;
@@ -182,8 +182,8 @@ fn charts(
             "The formula against cos\u{207f}\u{3b3}, and the fixed-point word f against the formula, over all angles. \
              f is 1 at the peak; the line across is one output unit, 1/{largest_colour}."
         ),
-        x: Axis::logarithmic("n", 1.0, 1000.0),
-        y: Axis::logarithmic("absolute error of f", FLOOR, 1.0),
+        x: ChartAxis::logarithmic("n", 1.0, 1000.0),
+        y: ChartAxis::logarithmic("absolute error of f", FLOOR, 1.0),
         places: exponents.iter().map(|at| f64::from(at.n)).collect(),
         series: vec![
             column("formula", |at| at.formula),
@@ -200,7 +200,7 @@ fn charts(
             })
             .collect()
     };
-    let scaled = || Axis::linear("\u{221a}n\u{b7}\u{3b3}, \u{3b3} in radians", 0.0, REACH);
+    let scaled = || ChartAxis::linear("\u{221a}n\u{b7}\u{3b3}, \u{3b3} in radians", 0.0, REACH);
     let formula = lines(|at| at.formula);
     let reach = reach(&formula);
     let over_gamma = Chart {
@@ -210,7 +210,7 @@ fn charts(
                   width: the inflection point is near 1."
             .to_owned(),
         x: scaled(),
-        y: Axis::linear("f, formula \u{2212} cos\u{207f}\u{3b3}", -reach, reach),
+        y: ChartAxis::linear("f, formula \u{2212} cos\u{207f}\u{3b3}", -reach, reach),
         places: places(),
         series: formula,
         marks: vec![Mark {
@@ -225,7 +225,7 @@ fn charts(
                   The line across is one output unit."
             .to_owned(),
         x: scaled(),
-        y: Axis::logarithmic("absolute error of f", FLOOR, 0.1),
+        y: ChartAxis::logarithmic("absolute error of f", FLOOR, 0.1),
         places: places(),
         series: lines(|at| if at.fixed_point.is_nan() { f64::NAN } else { at.fixed_point.max(FLOOR) }),
         marks: vec![Mark {

@@ -19,7 +19,7 @@ use crate::registry::Registry;
 use claims::{Claim, Verdict};
 use curves::DeviceCurves;
 use hardware::{Hardware, Synthesis};
-use seed_plots::{Accuracy, Rom9Word, SeedPlot};
+use seed_plots::{RequiredPowers, Rom9Word, SeedPlot};
 
 /// The report's contents. The same program and tools give the same; no timing is in it.
 #[derive(Clone, Debug, Serialize)]
@@ -31,7 +31,7 @@ pub struct Evidence {
     /// The seeds' plots.
     pub plots: Vec<SeedPlot>,
     /// Powers for a required accuracy.
-    pub power_table: Vec<Accuracy>,
+    pub power_table: Vec<RequiredPowers>,
     /// All devices in one chart each.
     pub overview: Vec<chart::Chart>,
     /// Error curves of every device.

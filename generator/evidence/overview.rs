@@ -2,7 +2,7 @@
 
 use anyhow::{Result, bail};
 
-use super::chart::{Axis, Chart, Series};
+use super::chart::{Chart, ChartAxis, Series};
 use super::comparison;
 use super::curves::{AtExponent, DeviceCurves, EXPONENTS};
 use crate::config::Config;
@@ -45,8 +45,8 @@ fn over_exponents<'a>(devices: impl Iterator<Item = &'a DeviceCurves>) -> Chart 
         caption: "The word f against cos\u{207f}\u{3b3}, over all angles: what the formula, the fixed point and the \
                   operands' widths give together. f is 1 at the peak."
             .to_owned(),
-        x: Axis::logarithmic("n", 1.0, 1000.0),
-        y: Axis::logarithmic("absolute error of f", FLOOR, 1.0),
+        x: ChartAxis::logarithmic("n", 1.0, 1000.0),
+        y: ChartAxis::logarithmic("absolute error of f", FLOOR, 1.0),
         places: EXPONENTS.iter().map(|&n| f64::from(n)).collect(),
         series,
         marks: Vec::new(),
@@ -88,8 +88,8 @@ fn size_against_error(sizes: &[(&DeviceCurves, f64, f64)]) -> Chart {
             "The largest error of f over n = {HIGHLIGHTS}\u{2026}1000 and all angles. The size counts a bit of a register, a bit of a \
              product's array and {ROM_BITS} bits of ROM as one cell each: it is of the netlist, before any synthesis."
         ),
-        x: Axis::logarithmic("largest absolute error of f", 1e-4, 1.0),
-        y: Axis::logarithmic("one-bit cells", 500.0, 20_000.0),
+        x: ChartAxis::logarithmic("largest absolute error of f", 1e-4, 1.0),
+        y: ChartAxis::logarithmic("one-bit cells", 500.0, 20_000.0),
         places,
         series,
         marks: Vec::new(),

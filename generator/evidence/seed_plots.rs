@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::chart::{Axis, Chart, Mark, Series, even, exponents};
+use super::chart::{Chart, ChartAxis, Mark, Series, even, exponents};
 use super::claims::{percent, quad, schlick, stretched, w};
 use super::measure::{self, Function, Region};
 use crate::golden::formulas;
@@ -24,7 +24,7 @@ pub struct SeedPlot {
 
 /// One line of the patent's table 1 (Fig. 8): which powers a required accuracy needs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Accuracy {
+pub struct RequiredPowers {
     /// The required relative error to the inflection point.
     pub error: f64,
     /// The smallest power for each run of exponents.
@@ -83,8 +83,8 @@ fn over_angle(
         id: id.to_owned(),
         title: title.to_owned(),
         caption: caption.to_owned(),
-        x: Axis::linear(GAMMA, 0.0, degrees),
-        y: Axis::linear(VALUE, 0.0, 1.0),
+        x: ChartAxis::linear(GAMMA, 0.0, degrees),
+        y: ChartAxis::linear(VALUE, 0.0, 1.0),
         places,
         series,
         marks: Vec::new(),
@@ -105,7 +105,7 @@ fn over_exponents(
     id: &str,
     title: &str,
     caption: &str,
-    axes: (Axis, Axis),
+    axes: (ChartAxis, ChartAxis),
     series: &[(&str, Function, Region)],
 ) -> Chart {
     let low = libm::round(axes.0.range.0) as u32;
@@ -154,7 +154,7 @@ pub fn plots() -> Vec<SeedPlot> {
 }
 
 fn patent() -> Vec<SeedPlot> {
-    let exponents = || Axis::logarithmic(EXPONENT, 2.0, f64::from(LARGEST));
+    let exponents = || ChartAxis::logarithmic(EXPONENT, 2.0, f64::from(LARGEST));
     let mut zones = over_angle(
         "zones",
         "The zones of a highlight",
@@ -174,7 +174,7 @@ fn patent() -> Vec<SeedPlot> {
                 "cosine-squared-error",
                 "cos\u{b2}(a\u{b7}\u{3b4}) for cos\u{207f}\u{3b4}",
                 "Largest relative error of the prototype's function against n.",
-                (exponents(), Axis::linear(ERROR, 0.0, 15.0)),
+                (exponents(), ChartAxis::linear(ERROR, 0.0, 15.0)),
                 &[
                     ("to the inflection point", &squared, Region::Inflection),
                     ("where cos\u{207f}\u{3b4} \u{2265} 0.46", &squared, Region::Level(0.46)),
@@ -188,7 +188,7 @@ fn patent() -> Vec<SeedPlot> {
                 "cos\u{1d4f}(\u{221a}(n/k)\u{b7}\u{3b4}) for cos\u{207f}\u{3b4}",
                 "Largest relative error to the inflection point against n. With the patent's k the error has a peak \
                  wherever k changes; k = 16 alone would not do for small n.",
-                (exponents(), Axis::linear(ERROR, 0.0, 5.0)),
+                (exponents(), ChartAxis::linear(ERROR, 0.0, 5.0)),
                 &[
                     ("k = 2, 4, 16 by n", &quad, Region::Inflection),
                     ("k = 16 throughout", &sixteen, Region::Inflection),
@@ -201,7 +201,7 @@ fn patent() -> Vec<SeedPlot> {
 
 fn paper() -> Vec<SeedPlot> {
     let (w2, w4, w8, w16) = (w(2), w(4), w(8), w(16));
-    let exponents = || Axis::logarithmic(EXPONENT, 2.0, 250.0);
+    let exponents = || ChartAxis::logarithmic(EXPONENT, 2.0, 250.0);
     let mut plots = vec![
         SeedPlot {
             figure: "seed 002, Fig. 3",
@@ -224,7 +224,7 @@ fn paper() -> Vec<SeedPlot> {
                 "w2-epicentre",
                 "The epicentre: W with m = 2, and Schlick's function",
                 "Largest relative error to the inflection point against n.",
-                (exponents(), Axis::linear(ERROR, 0.0, 12.0)),
+                (exponents(), ChartAxis::linear(ERROR, 0.0, 12.0)),
                 &[("W, m = 2", &w2, Region::Inflection), ("Schlick", &schlick, Region::Inflection)],
             ),
         },
@@ -260,7 +260,7 @@ fn paper() -> Vec<SeedPlot> {
             ("m = 16", &|gamma, n| less(&w16, gamma, n)),
         ],
     );
-    differences.y = Axis::linear("difference", -0.08, 0.02);
+    differences.y = ChartAxis::linear("difference", -0.08, 0.02);
     plots.push(SeedPlot { figure: "seed 002, Figs. 5 to 7", chart: differences });
     let families = |region| {
         [
@@ -277,7 +277,7 @@ fn paper() -> Vec<SeedPlot> {
             "The epicentre: W with m = 4, 8, 16",
             "Largest relative error to the inflection point against n. Where n is less than m, W is on the other side of \
              cos\u{207f}\u{3b3}, and worse than for large n.",
-            (exponents(), Axis::linear(ERROR, 0.0, 12.0)),
+            (exponents(), ChartAxis::linear(ERROR, 0.0, 12.0)),
             &families(Region::Inflection),
         ),
     });
@@ -288,7 +288,7 @@ fn paper() -> Vec<SeedPlot> {
             "The same where cos\u{207f}\u{3b3} \u{2265} 0.46",
             "Largest relative error down to this level against n. Three of the paper's four figures come out here: those of \
              m = 4 and 8 and of Schlick's function.",
-            (exponents(), Axis::linear(ERROR, 0.0, 25.0)),
+            (exponents(), ChartAxis::linear(ERROR, 0.0, 25.0)),
             &families(Region::Level(0.46)),
         ),
     });
@@ -298,7 +298,7 @@ fn paper() -> Vec<SeedPlot> {
             "w-blooming",
             "The blooming zone: W with m = 4, 8, 16",
             "Largest relative error where cos\u{207f}\u{3b3} \u{2265} 0.20, against n.",
-            (exponents(), Axis::linear(ERROR, 0.0, 100.0)),
+            (exponents(), ChartAxis::linear(ERROR, 0.0, 100.0)),
             &families(Region::Level(0.20)),
         ),
     });
@@ -307,10 +307,10 @@ fn paper() -> Vec<SeedPlot> {
 
 /// The patent's table 1: for each required accuracy the smallest k by n, where the error counts to the
 /// inflection point. n = 1 has none, and k = 1 is exact there.
-pub fn power_table() -> Vec<Accuracy> {
+pub fn power_table() -> Vec<RequiredPowers> {
     [0.005, 0.006, 0.01, 0.02, 0.03, 0.05]
         .into_iter()
-        .map(|error| Accuracy { error, powers: power_runs(error) })
+        .map(|error| RequiredPowers { error, powers: power_runs(error) })
         .collect()
 }
 

@@ -10,7 +10,7 @@ pub const COSINE: &str = "cos_gamma";
 pub const EXPONENT: &str = "exponent";
 
 /// One contribution to the error of `f`: its configuration key, what it is, and its size.
-pub type Share = (&'static str, &'static str, f64);
+pub type ErrorShare = (&'static str, &'static str, f64);
 
 /// The operand cos γ.
 pub fn cosine_operand(format: Format, domain: (i64, i64)) -> Operand {
@@ -34,7 +34,12 @@ pub fn control(name: &str, format: Format, domain: (i64, i64), doc: &str) -> Ope
 /// exceed it, they are scaled down to it. An output is `f` times a colour, which multiplies the error
 /// by the largest colour, and a rounding. It never saturates, for `f` < 1. The rounding's share is
 /// attributed to a key `output.rounding`, which the device must have.
-pub fn bound(shares: &[Share], frac: u32, colour_bits: u32, output_rounding: Rounding) -> Bound {
+pub fn bound(
+    shares: &[ErrorShare],
+    frac: u32,
+    colour_bits: u32,
+    output_rounding: Rounding,
+) -> Bound {
     let sum: f64 = shares.iter().map(|share| share.2).sum();
     let cap = if sum > 1.0 { 1.0 / sum } else { 1.0 };
     let largest = exp2(colour_bits as i32) - 1.0;

@@ -1,6 +1,6 @@
 //! `cosine-power`: the paper's W(n, γ) = (n/m·(cos γ − 1) + 1)^m (seed 002), by formula.
 
-use super::contract::{self, Share};
+use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
 use super::highlight::{Highlight, Keys, ProductSlots, Reflectance};
 use super::narrow::{Narrow, rounding_error};
@@ -158,7 +158,7 @@ impl Reflectance for Arithmetic {
     ///   The base is raised to m.
     /// - The result of squaring number i is rounded, and then raised to m/2^i: m − 1 in sum.
     /// - The output adds its own rounding; it cannot exceed the largest colour, for f < 1.
-    fn shares(&self) -> Vec<Share> {
+    fn shares(&self) -> Vec<ErrorShare> {
         let (f, power) = (self.keys.intensity_fraction, f64::from(self.power));
         let ulp = exp2(-(f as i32));
         let scaled_fraction = self.keys.cosine_fraction + self.squarings;

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use super::contract::Share;
+use super::contract::ErrorShare;
 use super::frame::{Clocked, Datapath, Frame, Slot, State};
 use super::highlight::{Highlight, ProductSlots, Products, Reflectance};
 use super::line::{self, CosineTable, Walker, magnitude};
@@ -199,7 +199,7 @@ impl Reflectance for Arithmetic {
     }
 
     /// How far ROM 12 is from the formula within a step: the angle itself is exact, and so is its step.
-    fn shares(&self) -> Vec<Share> {
+    fn shares(&self) -> Vec<ErrorShare> {
         let table = &self.table;
         vec![
             ("table.address", "the steps of ROM 12", table.step),

@@ -5,7 +5,7 @@ mod tests;
 
 use std::f64::consts::LN_2;
 
-use super::contract::{self, Share};
+use super::contract::{self, ErrorShare};
 use super::curve::{self, Curve, Piece};
 use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
 use super::halving::{self, Halving};
@@ -323,7 +323,7 @@ impl Reflectance for Arithmetic {
     /// - f is rounded, or saturated just below 1.0: an ulp. Where n·decay saturates, nothing of f is left: its integer
     ///   is F + 2 at least, which is less than that ulp too.
     /// - The output adds its own rounding; it cannot exceed the largest colour, for f < 1.
-    fn shares(&self) -> Vec<Share> {
+    fn shares(&self) -> Vec<ErrorShare> {
         let octaves: &[f64] = match self.params.function {
             Function::Logarithm => &[0.0, 1.0],
             Function::Angle => &[0.0],

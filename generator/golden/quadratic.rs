@@ -4,7 +4,7 @@ pub mod coefficient;
 #[cfg(test)]
 mod tests;
 
-use super::contract::{self, Share};
+use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
 use super::highlight::{Highlight, Keys, ProductSlots, Reflectance};
 use super::narrow::{Narrow, rounding_error};
@@ -15,14 +15,14 @@ use crate::golden::formulas;
 
 /// What ROM(n) holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scheme {
+pub enum CoefficientScheme {
     /// n − 1.
     Taylor,
     /// The coefficient with the smallest largest error, with this number of fraction bits.
     Minimax { fraction: u32 },
 }
 
-impl Scheme {
+impl CoefficientScheme {
     fn fraction(self) -> u32 {
         match self {
             Self::Taylor => 0,
@@ -35,7 +35,7 @@ impl Scheme {
 #[derive(Clone)]
 struct Arithmetic {
     keys: Keys,
-    scheme: Scheme,
+    scheme: CoefficientScheme,
     /// `difference.fraction`: fraction bits of c² − c, which is from −0.25 to 0.
     difference_fraction: u32,
     /// `difference.rounding`: of c² − c.
@@ -51,7 +51,12 @@ struct Arithmetic {
 
 impl Arithmetic {
     /// The difference c² − c and f by their fraction bits and roundings.
-    fn new(keys: Keys, scheme: Scheme, difference: (u32, Rounding), rounding: Rounding) -> Self {
+    fn new(
+        keys: Keys,
+        scheme: CoefficientScheme,
+        difference: (u32, Rounding),
+        rounding: Rounding,
+    ) -> Self {
         let cosine = keys.cosine_fraction;
         let scale = f64::from(1u32 << scheme.fraction());
         let exact = coefficient::table(scheme, 1 << keys.exponent_bits);
@@ -72,8 +77,10 @@ impl Arithmetic {
 
     fn of(config: &Config) -> Self {
         let scheme = match config.choice("coefficient.scheme") {
-            "minimax" => Scheme::Minimax { fraction: keys::bits(config, "coefficient.fraction") },
-            _ => Scheme::Taylor,
+            "minimax" => {
+                CoefficientScheme::Minimax { fraction: keys::bits(config, "coefficient.fraction") }
+            }
+            _ => CoefficientScheme::Taylor,
         };
         let difference = keys::rounding(config, "difference.rounding");
         Self::new(
@@ -164,8 +171,8 @@ impl Reflectance for Arithmetic {
     /// The coefficient of the least largest error has no closed form; ROM(n) holds it.
     fn expressions(&self) -> Vec<String> {
         let coefficient = match self.scheme {
-            Scheme::Taylor => "(max(exponent, 1) - 1)",
-            Scheme::Minimax { .. } => "coefficient[int(exponent)]",
+            CoefficientScheme::Taylor => "(max(exponent, 1) - 1)",
+            CoefficientScheme::Minimax { .. } => "coefficient[int(exponent)]",
         };
         let f = format!("cos_gamma * (1 - {coefficient} * (1 - cos_gamma))");
         vec![contract::where_it_faces(&contract::clamped_at_0(&f))]
@@ -177,7 +184,7 @@ impl Reflectance for Arithmetic {
     /// - An error of the word a(n) is multiplied by g.
     /// - The rounding of g is multiplied by the word a(n).
     /// - f is rounded; 1.0 is an ulp low.
-    fn shares(&self) -> Vec<Share> {
+    fn shares(&self) -> Vec<ErrorShare> {
         let f = self.keys.intensity_fraction;
         let scale = exp2(-(self.scheme.fraction() as i32));
         let (first, last) = self.keys.exponents;
@@ -205,11 +212,11 @@ impl Reflectance for Arithmetic {
 
     /// What n − 1 costs beside the minimax table.
     fn remarks(&self) -> Vec<String> {
-        if self.scheme != Scheme::Taylor {
+        if self.scheme != CoefficientScheme::Taylor {
             return Vec::new();
         }
         let n = self.keys.exponents.1;
-        let best = coefficient::table(Scheme::Minimax { fraction: 0 }, n as u32 + 1);
+        let best = coefficient::table(CoefficientScheme::Minimax { fraction: 0 }, n as u32 + 1);
         let errors = [(n - 1) as f64, best[n as usize]].map(|a| formula_error(n, a));
         if errors[1] >= errors[0] {
             return Vec::new();

@@ -12,7 +12,7 @@ pub use contract::contract;
 use super::highlight::Products;
 use super::keys;
 use super::narrow::Narrow;
-use super::sine::{self, Scheme, Sine};
+use super::sine::{self, Sine, TableScheme};
 use crate::base::fixed::{Format, Rounding};
 use crate::config::Config;
 
@@ -54,7 +54,7 @@ struct Params {
     /// `output.rounding`: of the colour outputs.
     output_rounding: Rounding,
     /// `sine.scheme` with `sine.address`, or `sine.segments` and `sine.slope_fraction`.
-    sine_scheme: Scheme,
+    sine_scheme: TableScheme,
     /// `sine.fraction`: fraction bits of the sine, S.
     sine_fraction: u32,
     /// `sine.synchronous`: ROM 18 answers a clock later.
@@ -68,8 +68,8 @@ struct Params {
 impl Params {
     fn of(config: &Config) -> Self {
         let sine_scheme = match config.choice("sine.scheme") {
-            "direct" => Scheme::Direct { address: keys::bits(config, "sine.address") },
-            _ => Scheme::Segmented {
+            "direct" => TableScheme::Direct { address: keys::bits(config, "sine.address") },
+            _ => TableScheme::Segmented {
                 // The schema allows no negative entries.
                 segments: config
                     .integers("sine.segments")

@@ -1,6 +1,6 @@
 //! `schlick`: c / (n − n·c + c), c = cos γ (seed 002), by formula.
 
-use super::contract::{self, Share};
+use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
 use super::highlight::{Highlight, Keys, ProductSlots, Reflectance};
 use super::{Contract, Model};
@@ -126,7 +126,7 @@ impl Reflectance for Arithmetic {
 
     /// Dividend and divisor are exact, so that nothing but the quotient's own last bit is lost: it is
     /// truncated, and 1.0 becomes the largest fraction. Both are at most an ulp below the formula.
-    fn shares(&self) -> Vec<Share> {
+    fn shares(&self) -> Vec<ErrorShare> {
         let ulp = exp2(-(self.0.intensity_fraction as i32));
         vec![("intensity.fraction", "truncation of the quotient", ulp)]
     }

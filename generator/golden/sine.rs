@@ -6,7 +6,7 @@ use crate::base::fixed::exp2;
 
 /// How the table is organised.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Scheme {
+pub enum TableScheme {
     /// One entry per value of the `address` leading fraction bits of the operand.
     Direct {
         /// Address bits, A.
@@ -30,7 +30,7 @@ pub struct Params {
     /// Fraction bits of the sine, S.
     pub fraction: u32,
     /// The organisation.
-    pub scheme: Scheme,
+    pub scheme: TableScheme,
 }
 
 /// A contiguous set of operands over which the table's error is bounded.
@@ -96,11 +96,11 @@ impl Sine {
     pub fn new(params: &Params) -> Self {
         let (operand, fraction) = (params.operand_fraction, params.fraction);
         let table = match &params.scheme {
-            Scheme::Direct { address } => Table::Direct {
+            TableScheme::Direct { address } => Table::Direct {
                 address: *address,
                 entries: (0..1 << address).map(|a| direct_entry(a, *address, fraction)).collect(),
             },
-            Scheme::Segmented { segments, slope_fraction } => {
+            TableScheme::Segmented { segments, slope_fraction } => {
                 let range = |(j, &bits): (usize, &u32)| {
                     let width = operand - 2 * j as u32 - bits;
                     let first = 1i64 << (bits - 2);
@@ -268,19 +268,19 @@ fn fit(operand: u32, fraction: u32, slope_fraction: u32, u: i64, width: u32) -> 
 mod tests {
     use super::*;
 
-    fn sine(operand_fraction: u32, fraction: u32, scheme: Scheme) -> Sine {
+    fn sine(operand_fraction: u32, fraction: u32, scheme: TableScheme) -> Sine {
         Sine::new(&Params { operand_fraction, fraction, scheme })
     }
 
-    fn segmented(segments: &[u32], slope_fraction: u32) -> Scheme {
-        Scheme::Segmented { segments: segments.to_vec(), slope_fraction }
+    fn segmented(segments: &[u32], slope_fraction: u32) -> TableScheme {
+        TableScheme::Segmented { segments: segments.to_vec(), slope_fraction }
     }
 
     #[test]
     fn a_direct_table_by_hand() {
         // Buckets of a quarter: x = 1/8, 3/8, 5/8, 7/8; sines 0.9922, 0.9270, 0.7806, 0.4841; in
         // sixteenths 15.87 (saturated), 14.83, 12.49, 7.75.
-        let it = sine(3, 4, Scheme::Direct { address: 2 });
+        let it = sine(3, 4, TableScheme::Direct { address: 2 });
         let sines = [0, 1, 2, 3, 4, 5, 6, 7, 8].map(|x| it.at(x));
         assert_eq!(sines, [15, 15, 15, 15, 12, 12, 8, 8, 8]);
     }
@@ -308,8 +308,8 @@ mod tests {
     #[test]
     fn pieces_bound_every_operand() {
         let tables = [
-            sine(10, 12, Scheme::Direct { address: 5 }),
-            sine(10, 12, Scheme::Direct { address: 10 }),
+            sine(10, 12, TableScheme::Direct { address: 5 }),
+            sine(10, 12, TableScheme::Direct { address: 10 }),
             sine(12, 14, segmented(&[4, 5, 4, 3], 12)),
             sine(12, 9, segmented(&[2, 2], 8)),
             sine(9, 9, segmented(&[9, 3], 9)),

@@ -3,7 +3,7 @@
 #[cfg(test)]
 mod tests;
 
-use super::contract::{self, Share};
+use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
 use super::highlight::{Highlight, Keys, ProductSlots, Reflectance};
 use super::narrow::{Narrow, rounding_error};
@@ -186,7 +186,7 @@ impl Reflectance for Arithmetic {
     /// The product is rounded into the base, and limited to −1.0 where the formula is clamped. The square
     /// is rounded; the square of 1.0 is an ulp low. The gates add nothing: within the sum of these of
     /// ROM(n) either side is right.
-    fn shares(&self) -> Vec<Share> {
+    fn shares(&self) -> Vec<ErrorShare> {
         let f = self.keys.intensity_fraction;
         let base = rounding_error(self.keys.cosine_fraction + 1, f, self.rounding);
         vec![

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use super::kind::Kind;
+use super::kind::FaultKind;
 use super::operators;
 use crate::base::fixed::mask;
 use crate::cosim::Random;
@@ -65,7 +65,7 @@ pub struct Fault {
     /// Made of the names in the design: `adder15[3]:stuck-at-0`. No two faults of a design have the same.
     pub id: String,
     /// What goes wrong.
-    pub kind: Kind,
+    pub kind: FaultKind,
     /// Where.
     pub site: Site,
 }
@@ -121,7 +121,7 @@ impl Faults {
         self.0.iter().find(|fault| fault.id == id)
     }
 
-    fn add(&mut self, id: String, kind: Kind, site: Site) {
+    fn add(&mut self, id: String, kind: FaultKind, site: Site) {
         self.0.push(Fault { id, kind, site });
     }
 
@@ -134,9 +134,9 @@ impl Faults {
         for bit in 0..net.format.width() {
             for how in Bit::ALL {
                 let (name, kind) = match how {
-                    Bit::Stuck0 => ("stuck-at-0", Kind::StuckAt0),
-                    Bit::Stuck1 => ("stuck-at-1", Kind::StuckAt1),
-                    Bit::Inverted => ("inverted", Kind::Inverted),
+                    Bit::Stuck0 => ("stuck-at-0", FaultKind::StuckAt0),
+                    Bit::Stuck1 => ("stuck-at-1", FaultKind::StuckAt1),
+                    Bit::Inverted => ("inverted", FaultKind::Inverted),
                 };
                 let id_text = format!("{}[{bit}]:{name}", net.name);
                 self.add(id_text, kind, Site::Bit(id, bit, how));
@@ -151,7 +151,7 @@ impl Faults {
             let other = other & mask(width);
             if others.insert(other) {
                 let site = Site::Driver(id, Driver::Constant(other));
-                self.add(format!("{}:{name}", net.name), Kind::Constant, site);
+                self.add(format!("{}:{name}", net.name), FaultKind::Constant, site);
             }
         }
     }
@@ -168,11 +168,11 @@ impl Faults {
         let name = &design.net(register.q).name;
         if register.enable.is_some() {
             for (how, always) in [("always-enabled", true), ("never-enabled", false)] {
-                self.add(format!("{name}:{how}"), Kind::Enable, Site::Enable(id, always));
+                self.add(format!("{name}:{how}"), FaultKind::Enable, Site::Enable(id, always));
             }
         }
         if register.reset.is_some() {
-            self.add(format!("{name}:no-reset"), Kind::Reset, Site::Reset(id));
+            self.add(format!("{name}:no-reset"), FaultKind::Reset, Site::Reset(id));
         }
     }
 
@@ -192,9 +192,9 @@ impl Faults {
         for at in bits {
             let (word, bit) = (at / width as usize, at % width as usize);
             let kind = match control {
-                true => Kind::ControlBit,
-                false if 2 * bit >= width as usize => Kind::RomHighBit,
-                false => Kind::RomBit,
+                true => FaultKind::ControlBit,
+                false if 2 * bit >= width as usize => FaultKind::RomHighBit,
+                false => FaultKind::RomBit,
             };
             let site = Site::Words(id, vec![(word, words[word] ^ 1 << bit)]);
             let id_text = if control {
@@ -205,7 +205,7 @@ impl Faults {
             self.add(id_text, kind, site);
         }
         for (a, b) in pairs(words, &mut random) {
-            let kind = if control { Kind::ControlWords } else { Kind::RomWords };
+            let kind = if control { FaultKind::ControlWords } else { FaultKind::RomWords };
             let site = Site::Words(id, vec![(a, words[b]), (b, words[a])]);
             self.add(format!("{}@{a},{b}", rom.name), kind, site);
         }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// What goes wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Kind {
+pub enum FaultKind {
     /// A bit is always 0.
     StuckAt0,
     /// A bit is always 1.
@@ -46,7 +46,7 @@ pub enum Kind {
     RomWords,
 }
 
-impl Kind {
+impl FaultKind {
     /// Every kind, in the order of tables.
     pub const ALL: [Self; 18] = [
         Self::StuckAt0,
@@ -70,7 +70,7 @@ impl Kind {
     ];
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for FaultKind {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.pad(match self {
             Self::StuckAt0 => "bit stuck at 0",

@@ -23,9 +23,9 @@ mod verdict;
 mod verilog;
 
 pub use fault::{Bit, Fault, Faults, Site};
-pub use kind::Kind;
+pub use kind::FaultKind;
 pub use reach::unreached;
 pub use run::run;
 pub use score::{GOAL_MEMORY, GOAL_TEXT, Score, Share, TOLERATED, Tally, TextScore};
-pub use verdict::{Check, Difference, Found, How, Verdict};
+pub use verdict::{Detector, Difference, Found, How, Verdict};
 pub use verilog::{ShippedBench, Text, TextFault, TextFound, TextVerdict};

@@ -1,10 +1,10 @@
 //! What can be wrong with a cell as a whole.
 
-use super::kind::Kind;
+use super::kind::FaultKind;
 use crate::hdl::netlist::{Design, Driver, NetId, Op};
 
 /// The wrong cells in the place of the one that drives `id`, each with a name and a kind.
-pub(super) fn of(design: &Design, id: NetId, op: &Op) -> Vec<(String, Kind, Op)> {
+pub(super) fn of(design: &Design, id: NetId, op: &Op) -> Vec<(String, FaultKind, Op)> {
     let width = design.width(id);
     match op {
         Op::Mux { select, inputs } => mux(design, *select, inputs),
@@ -28,23 +28,23 @@ pub(super) fn of(design: &Design, id: NetId, op: &Op) -> Vec<(String, Kind, Op)>
     }
 }
 
-fn operator(name: &str, op: Op) -> (String, Kind, Op) {
-    (name.to_owned(), Kind::Operator, op)
+fn operator(name: &str, op: Op) -> (String, FaultKind, Op) {
+    (name.to_owned(), FaultKind::Operator, op)
 }
 
-fn swapped(op: Op) -> (String, Kind, Op) {
-    ("operands-swapped".to_owned(), Kind::Operands, op)
+fn swapped(op: Op) -> (String, FaultKind, Op) {
+    ("operands-swapped".to_owned(), FaultKind::Operands, op)
 }
 
 /// Inputs that are different nets change places; one input is taken always.
-fn mux(design: &Design, select: NetId, inputs: &[NetId]) -> Vec<(String, Kind, Op)> {
+fn mux(design: &Design, select: NetId, inputs: &[NetId]) -> Vec<(String, FaultKind, Op)> {
     let mut faults = Vec::new();
     for b in 0..inputs.len() {
         for a in (0..b).filter(|&a| inputs[a] != inputs[b]) {
             let mut inputs = inputs.to_vec();
             inputs.swap(a, b);
             let name = format!("inputs-{a}-{b}-swapped");
-            faults.push((name, Kind::MuxInputs, Op::Mux { select, inputs }));
+            faults.push((name, FaultKind::MuxInputs, Op::Mux { select, inputs }));
         }
     }
     let constant = |net: NetId| matches!(design.net(net).driver, Driver::Constant(_));
@@ -54,9 +54,9 @@ fn mux(design: &Design, select: NetId, inputs: &[NetId]) -> Vec<(String, Kind, O
         }
         let limits = inputs.iter().filter(|&&other| other != input);
         let kind = if inputs.len() == 2 && !constant(input) && limits.copied().all(constant) {
-            Kind::Saturation
+            FaultKind::Saturation
         } else {
-            Kind::MuxChoice
+            FaultKind::MuxChoice
         };
         faults.push((format!("input-{at}-always"), kind, Op::Relabel(input)));
     }
@@ -64,26 +64,26 @@ fn mux(design: &Design, select: NetId, inputs: &[NetId]) -> Vec<(String, Kind, O
 }
 
 /// A sum without its carry or without the bit that rounds, and a difference.
-fn add(design: &Design, a: NetId, b: NetId, carry: Option<NetId>) -> Vec<(String, Kind, Op)> {
+fn add(design: &Design, a: NetId, b: NetId, carry: Option<NetId>) -> Vec<(String, FaultKind, Op)> {
     let mut faults = vec![operator("sub", Op::Sub(a, b))];
     if carry.is_some() {
         let op = Op::Add { a, b, carry: None };
-        faults.push(("no-carry".to_owned(), Kind::Rounding, op));
+        faults.push(("no-carry".to_owned(), FaultKind::Rounding, op));
     }
     for (bit, rest) in [(a, b), (b, a)] {
         // One unit in the last place or none: what rounds to nearest.
         if design.net(bit).range == (0, 1) && carry.is_none() {
-            faults.push(("truncated".to_owned(), Kind::Rounding, Op::Relabel(rest)));
+            faults.push(("truncated".to_owned(), FaultKind::Rounding, Op::Relabel(rest)));
         }
     }
     faults
 }
 
 /// The bits one place beside.
-fn slice(of: NetId, low: u32, width: u32, have: u32) -> Vec<(String, Kind, Op)> {
+fn slice(of: NetId, low: u32, width: u32, have: u32) -> Vec<(String, FaultKind, Op)> {
     let mut faults = Vec::new();
     let mut shifted = |name: &str, low| {
-        faults.push((name.to_owned(), Kind::Wiring, Op::Slice { of, low }));
+        faults.push((name.to_owned(), FaultKind::Wiring, Op::Slice { of, low }));
     };
     if low > 0 {
         shifted("one-bit-lower", low - 1);

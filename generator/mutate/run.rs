@@ -11,7 +11,7 @@ use super::held::{self, Tried};
 use super::plant;
 use super::proof::Prover;
 use super::shipped::Shipped;
-use super::verdict::{Check, Difference, Found, How, Verdict};
+use super::verdict::{Detector, Difference, Found, How, Verdict};
 use crate::core::{self, Core};
 use crate::cosim::{Lockstep, Mismatch};
 use crate::golden::Model;
@@ -119,7 +119,7 @@ impl Bench<'_> {
 
     /// With operands held at the words at fault.
     fn directed(&self, mutant: &Design, rom: RomId, words: &[(usize, u64)]) -> Result<Verdict> {
-        let directed = |difference| Verdict::Caught(Check::Directed, difference);
+        let directed = |difference| Verdict::Caught(Detector::Directed, difference);
         let mut all_tried = true;
         for &(word, _) in words {
             let addressing = held::addressing(self.core, rom, word);
@@ -217,5 +217,5 @@ impl Bench<'_> {
 /// Noticed by the default test.
 fn caught(mismatch: Mismatch) -> Verdict {
     let held = Vec::new();
-    Verdict::Caught(Check::Cosim, Difference { held, mismatch })
+    Verdict::Caught(Detector::Cosim, Difference { held, mismatch })
 }

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::kind::Kind;
-use super::verdict::{Check, Found, How, Verdict};
+use super::kind::FaultKind;
+use super::verdict::{Detector, Found, How, Verdict};
 use super::verilog::{ShippedBench, TextFault, TextFound, TextVerdict};
 
 /// At most so much of the faults may be undecided, as a share.
@@ -41,7 +41,7 @@ pub struct Tally {
     /// How many were planted.
     pub planted: usize,
     /// How many each check noticed first.
-    pub caught: BTreeMap<Check, usize>,
+    pub caught: BTreeMap<Detector, usize>,
     /// How many were proved equivalent, by proof.
     pub equivalent: BTreeMap<How, usize>,
     /// How many are neither.
@@ -90,7 +90,7 @@ pub struct Score {
     /// All together.
     pub all: Tally,
     /// By kind.
-    pub kinds: BTreeMap<Kind, Tally>,
+    pub kinds: BTreeMap<FaultKind, Tally>,
     /// The ids of those that are undecided.
     pub undecided: Vec<String>,
     /// The ids of those that the default test misses and stimulus that is directed at them does not.
@@ -111,7 +111,7 @@ impl Score {
             score.kinds.entry(fault.kind).or_default().add(one);
             match verdict {
                 Verdict::Undecided => score.undecided.push(fault.id.clone()),
-                Verdict::Caught(Check::Directed, _) => score.directed.push(fault.id.clone()),
+                Verdict::Caught(Detector::Directed, _) => score.directed.push(fault.id.clone()),
                 Verdict::Caught(..) => {}
                 Verdict::Equivalent(how) => {
                     score.equivalent.entry(*how).or_default().push(fault.id.clone());
@@ -131,7 +131,7 @@ impl Score {
 
     /// What the shipped bench notices of the bits in the upper half of the words of tables; nothing without tables.
     pub fn of_memory(&self) -> Option<Share> {
-        self.kinds.get(&Kind::RomHighBit).map(Tally::of_shipped)
+        self.kinds.get(&FaultKind::RomHighBit).map(Tally::of_shipped)
     }
 }
 

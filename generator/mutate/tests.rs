@@ -5,7 +5,7 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::proof::Prover;
-use super::{Fault, Faults, Kind, plant, unreached};
+use super::{Fault, FaultKind, Faults, plant, unreached};
 use crate::config;
 use crate::core::{Core, TEST_SEED};
 use crate::cosim::Lockstep;
@@ -70,7 +70,7 @@ fn what_is_never_reached_is_never_noticed() {
         assert_eq!(lockstep.run(2_000, &|_| ()).unwrap().mismatch, None, "{}", fault.id);
     }
     // A bit that is inverted shows wherever it is looked at.
-    assert!(unreached.iter().all(|fault| fault.kind != Kind::Inverted));
+    assert!(unreached.iter().all(|fault| fault.kind != FaultKind::Inverted));
     // The signal that says that the device runs is 0 and is 1.
     let stuck = |fault: &&&Fault| fault.id.starts_with("run[0]:stuck");
     assert!(faults.iter().any(|fault| stuck(&fault)), "no such fault");

@@ -10,7 +10,7 @@ use crate::cosim::Mismatch;
 /// What notices a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Check {
+pub enum Detector {
     /// The default test: golden model against built-in simulator.
     Cosim,
     /// Operands held where the words at fault are read.
@@ -29,7 +29,7 @@ pub enum How {
     Operands,
 }
 
-impl fmt::Display for Check {
+impl fmt::Display for Detector {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.pad(match self {
             Self::Cosim => "co-simulation",
@@ -61,7 +61,7 @@ pub struct Difference {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Verdict {
     /// A check differs, and where.
-    Caught(Check, Difference),
+    Caught(Detector, Difference),
     /// Proved to change nothing that is compared.
     Equivalent(How),
     /// Neither caught nor proved equivalent.

@@ -4,7 +4,7 @@ use anyhow::Result;
 use askama::Template;
 
 use super::seal::{Seal, sealed};
-use super::{Accuracy, OutputFile, Quantity, WorkedExample};
+use super::{ContractFacts, OutputFile, Quantity, WorkedExample};
 use crate::hdl::netlist::Design;
 
 #[derive(Template)]
@@ -44,7 +44,7 @@ const PIPELINE: [&str; 4] = [
 pub fn bench(
     design: &Design,
     example: &WorkedExample,
-    accuracy: &Accuracy,
+    accuracy: &ContractFacts,
 ) -> Result<(String, String)> {
     let pipeline = design.pipeline.is_some();
     let all = if pipeline { &PIPELINE[..] } else { &SEQUENTIAL[..] };

@@ -9,7 +9,7 @@ use askama::Template;
 
 use super::{Computation, EmitInputs, Timing};
 use crate::hdl::netlist::termination::{self, Left};
-use crate::hdl::netlist::{Design, NetId, RegId, Sequence, Unit};
+use crate::hdl::netlist::{Design, NetId, Partition, RegId, Sequence};
 use crate::hdl::verilog::naming::Naming;
 use crate::hdl::verilog::rows::{Row, separated};
 use crate::hdl::verilog::text::{Names, literal, range};
@@ -200,7 +200,7 @@ pub fn files(
             name: age.name.clone(),
         }),
     };
-    let within = format!("{instance}.{}.*", naming.instance(Unit::Datapath));
+    let within = format!("{instance}.{}.*", naming.instance(Partition::Datapath));
     let script = Script { name: &name, within: &within, rtl: sources.rtl };
     let task = Task {
         name: &name,
@@ -229,21 +229,21 @@ fn bounded_view(
 ) -> Bounded {
     // A net of the inside under a name of the wrapper; Yosys joins the two when it flattens.
     let mut inside = Vec::new();
-    let mut seen = |unit: Unit, net: NetId, name: String| {
+    let mut seen = |partition: Partition, net: NetId, name: String| {
         let range = range(design.width(net));
-        let path = format!("{instance}.{}.{}", naming.instance(unit), design.net(net).name);
+        let path = format!("{instance}.{}.{}", naming.instance(partition), design.net(net).name);
         inside.push(format!("(* hierconn *) wire {range} \\{path} ;"));
         inside.push(format!("wire {range} {name} = \\{path} ;"));
     };
     let address = design.register(design.control.address).q;
     let executed = names.fresh("word");
-    seen(Unit::Control, address, executed.clone());
+    seen(Partition::Control, address, executed.clone());
     let mut counters: Vec<(RegId, String)> = Vec::new();
     for counter in left.iter().filter_map(|left| left.counter) {
         if counters.iter().all(|(other, _)| *other != counter) {
             let q = design.register(counter).q;
             let name = names.fresh(&design.net(q).name);
-            seen(Unit::Datapath, q, name.clone());
+            seen(Partition::Datapath, q, name.clone());
             counters.push((counter, name));
         }
     }

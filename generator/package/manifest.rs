@@ -6,7 +6,7 @@ use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Value, json};
 
 use super::facts::{self, Port, Rom};
-use super::{Accuracy, Computation, EmitInputs, OutputFile, Quantity, Timing, digest};
+use super::{Computation, ContractFacts, EmitInputs, OutputFile, Quantity, Timing, digest};
 use crate::hdl::netlist::{Design, Pipeline, RegId};
 use crate::hdl::verilog::naming::Naming;
 
@@ -144,7 +144,7 @@ fn listed(files: &Files) -> Value {
     listed
 }
 
-fn accuracy(accuracy: &Accuracy) -> Value {
+fn accuracy(accuracy: &ContractFacts) -> Value {
     let outputs = accuracy.outputs.iter();
     let outputs: serde_json::Map<_, _> =
         outputs.map(|(output, operand)| (output.clone(), json!(operand))).collect();

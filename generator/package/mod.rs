@@ -31,7 +31,7 @@ use anyhow::{Result, ensure};
 use askama::Template;
 use sha2::{Digest, Sha256};
 
-use crate::hdl::netlist::{Design, RomId, Unit};
+use crate::hdl::netlist::{Design, Partition, RomId};
 use crate::hdl::verilog::header::Origin;
 use crate::hdl::verilog::interface::Interface;
 use crate::hdl::verilog::naming::Naming;
@@ -39,7 +39,7 @@ use crate::hdl::verilog::plan::Plan;
 use crate::hdl::verilog::{module, pipeline, top};
 
 pub use crate::observation::{
-    Accuracy, Computation, LineClocks, Linear, Quantity, Shown, Timing, Vectors, WorkedExample,
+    Computation, ContractFacts, LineClocks, Linear, Quantity, Shown, Timing, Vectors, WorkedExample,
 };
 pub use cocotb::driver;
 pub use instance::instance;
@@ -99,7 +99,7 @@ pub struct EmitInputs {
     /// One computation with all its numbers, for the manifest.
     pub example: Option<WorkedExample>,
     /// What the results are to be, for the manifest.
-    pub accuracy: Option<Accuracy>,
+    pub accuracy: Option<ContractFacts>,
     /// Computations with all that they show, for the manifest.
     pub computations: Vec<Computation>,
     /// Stimulus and expected outputs; without them there is no bench.
@@ -231,15 +231,15 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
 
 /// The top module, the control unit and the datapath.
 fn units(plan: &Plan, naming: &Naming, inputs: &EmitInputs) -> Result<Vec<(String, String)>> {
-    let control = Interface::new(plan, Unit::Control);
-    let datapath = Interface::new(plan, Unit::Datapath);
-    let units = [(Unit::Control, &control), (Unit::Datapath, &datapath)];
+    let control = Interface::new(plan, Partition::Control);
+    let datapath = Interface::new(plan, Partition::Datapath);
+    let units = [(Partition::Control, &control), (Partition::Datapath, &datapath)];
     let origin = inputs.origin();
     let top = render(&top::module(plan, naming, units, &origin))?;
     let mut rtl = vec![(format!("{}.v", plan.design.name), top)];
-    for (unit, interface) in units {
-        let module = module::Builder::new(plan, naming, interface, unit).module(&origin);
-        rtl.push((format!("{}.v", naming.module(unit)), render(&module)?));
+    for (partition, interface) in units {
+        let module = module::Builder::new(plan, naming, interface, partition).module(&origin);
+        rtl.push((format!("{}.v", naming.module(partition)), render(&module)?));
     }
     Ok(rtl)
 }

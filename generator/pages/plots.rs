@@ -5,7 +5,7 @@ use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-use crate::evidence::chart::{Axis, Chart, Scale};
+use crate::evidence::chart::{Chart, ChartAxis, Scale};
 
 /// Lines that the style sheet can tell apart, by colour and by dashes.
 pub const STYLES: usize = 10;
@@ -49,7 +49,7 @@ struct Places {
 }
 
 impl Places {
-    fn new(axis: &Axis) -> Result<Self> {
+    fn new(axis: &ChartAxis) -> Result<Self> {
         let end = |value| {
             axis.place(value)
                 .ok_or_else(|| anyhow!("an end of `{}` has no place on it", axis.label))
@@ -90,7 +90,7 @@ fn draw(chart: &Chart, text: &mut String) -> Result<(), Box<dyn std::error::Erro
         .build_cartesian_2d(Places::new(&chart.x)?, Places::new(&chart.y)?)?;
     // The library's sizes are larger than the SVG's by a quarter.
     let font = ("sans-serif", 16 * FINE).into_font().color(&INK);
-    let label = |axis: &Axis, place: f64| match axis.scale {
+    let label = |axis: &ChartAxis, place: f64| match axis.scale {
         Scale::Linear => number(place),
         Scale::Logarithmic => number(libm::pow(10.0, place)),
     };
@@ -143,7 +143,7 @@ fn points(chart: &Chart) -> Vec<(usize, (f64, f64), bool)> {
     let mut places: Vec<_> =
         series.filter_map(|(at, series)| Some((at, only(&series.values)?))).collect();
     places.sort_by(|(_, (_, one)), (_, (_, other))| other.total_cmp(one));
-    let ends = |axis: &Axis| axis.place(axis.range.0).zip(axis.place(axis.range.1));
+    let ends = |axis: &ChartAxis| axis.place(axis.range.0).zip(axis.place(axis.range.1));
     let Some(((left, right), (low, high))) = ends(&chart.x).zip(ends(&chart.y)) else {
         return Vec::new();
     };
@@ -201,7 +201,7 @@ fn runs(chart: &Chart, values: &[f64]) -> Vec<Vec<(f64, f64)>> {
 }
 
 /// Round values within the range of an axis, in order.
-fn ticks(axis: &Axis) -> Vec<f64> {
+fn ticks(axis: &ChartAxis) -> Vec<f64> {
     let (low, high) = axis.range;
     match axis.scale {
         Scale::Linear => {
@@ -274,8 +274,8 @@ mod tests {
             id: "parabola".to_owned(),
             title: "A parabola".to_owned(),
             caption: "It rises.".to_owned(),
-            x: Axis::linear("x", 0.0, 4.0),
-            y: Axis::linear("y", 0.0, 4.0),
+            x: ChartAxis::linear("x", 0.0, 4.0),
+            y: ChartAxis::linear("y", 0.0, 4.0),
             places: vec![0.0, 1.0, 2.0, 3.0, 4.0],
             series: vec![Series {
                 name: "x squared".to_owned(),
@@ -321,14 +321,14 @@ mod tests {
 
     #[test]
     fn round_ticks() {
-        let linear = |low, high| ticks(&Axis::linear("", low, high));
+        let linear = |low, high| ticks(&ChartAxis::linear("", low, high));
         assert_eq!(linear(0.0, 1.0).len(), 6);
         assert_eq!(linear(0.0, 10.0), [0.0, 2.0, 4.0, 6.0, 8.0, 10.0]);
         assert_eq!(linear(-4.0, 4.0), [-4.0, -2.0, 0.0, 2.0, 4.0]);
-        let logarithmic = ticks(&Axis::logarithmic("", 0.05, 1000.0));
+        let logarithmic = ticks(&ChartAxis::logarithmic("", 0.05, 1000.0));
         let labels: Vec<String> = logarithmic.into_iter().map(number).collect();
         assert_eq!(labels, ["0.1", "1", "10", "100", "1000"]);
-        assert_eq!(ticks(&Axis::logarithmic("", 2.0, 60.0)), [2.0, 5.0, 10.0, 20.0, 50.0]);
+        assert_eq!(ticks(&ChartAxis::logarithmic("", 2.0, 60.0)), [2.0, 5.0, 10.0, 20.0, 50.0]);
         assert_eq!([-0.5, 1e-5].map(number), ["\u{2212}0.5", "1e\u{2212}5"]);
     }
 }

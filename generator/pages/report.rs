@@ -10,7 +10,7 @@ use crate::evidence::benchmark::Benchmark;
 use crate::evidence::chart::Chart;
 use crate::evidence::claims::{Claim, Verdict, percent};
 use crate::evidence::curves::DeviceCurves;
-use crate::evidence::seed_plots::{Accuracy, Rom9Word};
+use crate::evidence::seed_plots::{RequiredPowers, Rom9Word};
 
 /// The words of ROM 9 in a row of its table.
 const WORDS: usize = 10;
@@ -120,7 +120,7 @@ fn claim(claim: &Claim) -> ClaimView<'_> {
     ClaimView { claim, class: class(claim.verdict), verdict: claim.verdict.words() }
 }
 
-fn powers(accuracy: &Accuracy) -> PowerRow {
+fn powers(accuracy: &RequiredPowers) -> PowerRow {
     PowerRow {
         error: percent(accuracy.error),
         runs: accuracy

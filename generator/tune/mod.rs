@@ -26,14 +26,14 @@ use crate::synth::Target;
 
 /// What the error is measured in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unit {
+pub enum ErrorUnit {
     /// Of the reflectance f, from 0 to 1.
     F,
     /// Of an output: its least significant bit.
     Output,
 }
 
-impl Unit {
+impl ErrorUnit {
     /// The bound in this unit.
     pub fn of(self, bound: &Bound) -> f64 {
         match self {
@@ -43,7 +43,7 @@ impl Unit {
     }
 }
 
-impl fmt::Display for Unit {
+impl fmt::Display for ErrorUnit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::F => "of f",
@@ -71,7 +71,7 @@ pub struct Wish {
     /// The largest error.
     pub error: f64,
     /// What it is measured in.
-    pub unit: Unit,
+    pub unit: ErrorUnit,
     /// What the core is for.
     pub target: Target,
     /// What is to be small.

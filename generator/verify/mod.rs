@@ -3,7 +3,7 @@
 //! A [`Check`] asks one question, with the tools that it names, and gives a [`Finding`]: the answer, over
 //! which domain it holds, and what it leaves open. The checks are independent of each other: none is told what
 //! another found. What they found is the same whenever it is found with the same tools; how long it
-//! took stands apart, in [`Timing`].
+//! took stands apart, in [`CheckTime`].
 
 mod inside;
 mod outside;
@@ -187,7 +187,7 @@ impl Check {
             question: self.question,
             tools,
             finding,
-            timing: Timing { check: self.id, seconds: took.as_secs_f64() },
+            timing: CheckTime { check: self.id, seconds: took.as_secs_f64() },
         }
     }
 
@@ -231,12 +231,12 @@ pub struct Answer {
     pub finding: Finding,
     /// How long it took: not among what is the same every time.
     #[serde(skip)]
-    pub timing: Timing,
+    pub timing: CheckTime,
 }
 
 /// How long a check took.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Timing {
+pub struct CheckTime {
     /// [`Check::id`].
     pub check: &'static str,
     /// Seconds on the clock on the wall.

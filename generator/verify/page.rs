@@ -3,7 +3,7 @@
 use anyhow::Result;
 use askama::Template;
 
-use super::{Answer, Conclusion, Record, Timing, Verdict};
+use super::{Answer, CheckTime, Conclusion, Record, Verdict};
 
 /// What marks a page of ours: nothing else is overwritten.
 pub const MARKER: &str = "<meta name=\"generator\" content=\"glint verify\">";
@@ -28,7 +28,7 @@ struct View<'a> {
 ///
 /// # Errors
 /// A template that fails.
-pub fn page(record: &Record, timings: &[Timing]) -> Result<String> {
+pub fn page(record: &Record, timings: &[CheckTime]) -> Result<String> {
     let count = |verdict: Verdict| {
         let checks = record.checks.iter();
         let count = checks.filter(|it| it.finding.verdict == verdict).count();

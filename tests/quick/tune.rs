@@ -3,7 +3,7 @@
 use glint::config::{Config, Value};
 use glint::registry::{Device, Registry};
 use glint::synth::Target;
-use glint::tune::{Candidate, Objective, Unit, Wish, exhaustive, tune};
+use glint::tune::{Candidate, ErrorUnit, Objective, Wish, exhaustive, tune};
 
 fn device(name: &str) -> Device {
     *Registry::catalogue().device(name).expect("a device of the catalogue")
@@ -51,7 +51,7 @@ fn spaces() -> Vec<(&'static str, f64, Vec<Values>)> {
 }
 
 fn wish(error: f64, target: Target) -> Wish {
-    Wish { error, unit: Unit::Output, target, objective: Objective::Area, clock: None }
+    Wish { error, unit: ErrorUnit::Output, target, objective: Objective::Area, clock: None }
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn half_the_error_takes_a_bit_more() {
     let device = device("cosine-power");
     let base = defaults(&device);
     let bits = |error: f64| {
-        let wish = Wish { unit: Unit::F, ..wish(error, Target::Ecp5) };
+        let wish = Wish { unit: ErrorUnit::F, ..wish(error, Target::Ecp5) };
         let answer = tune(&device, &base, &[], &wish, &|_| ()).expect("an answer");
         answer.best.config.integer("intensity.fraction")
     };

@@ -11,7 +11,7 @@ use crate::common::sample::sampled;
 use crate::common::tools::LIMIT;
 use glint::core::{Core, TEST_POINTS};
 use glint::cosim::Lockstep;
-use glint::mutate::{self, Check, Faults, Found, ShippedBench, Text, TextVerdict, Verdict};
+use glint::mutate::{self, Detector, Faults, Found, ShippedBench, Text, TextVerdict, Verdict};
 use glint::registry::Registry;
 use serde_json::Value;
 
@@ -49,18 +49,18 @@ fn recorded(netlist: &Value, id: &str) -> Said {
     if has(&netlist["undecided"]) {
         Said::Undecided
     } else if has(&netlist["directed"]) {
-        Said::Caught(Check::Directed)
+        Said::Caught(Detector::Directed)
     } else if let Some((how, _)) = proofs.find(|(_, ids)| has(ids)) {
         Said::Equivalent(how.clone())
     } else {
-        Said::Caught(Check::Cosim)
+        Said::Caught(Detector::Cosim)
     }
 }
 
 /// A verdict without what shows it.
 #[derive(Debug, PartialEq)]
 enum Said {
-    Caught(Check),
+    Caught(Detector),
     Equivalent(String),
     Undecided,
 }

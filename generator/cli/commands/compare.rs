@@ -10,7 +10,7 @@ use clap::Args;
 use rayon::prelude::*;
 
 use super::{load, yosys};
-use crate::cli::failure::Usage as WrongUsage;
+use crate::cli::failure::WrongUsage;
 use crate::cli::{Output, TimeLimit, progress};
 use crate::config::{Config, Schema, Value};
 use crate::core::Core;

@@ -14,7 +14,7 @@ use serde_json::{Value, json};
 use super::mismatch::{self, Reproducer};
 use super::{Loaded, load, verdict};
 use crate::base::text;
-use crate::cli::failure::Usage;
+use crate::cli::failure::WrongUsage;
 use crate::cli::{Configs, Output, TimeLimit, count, progress, tables};
 use crate::core::{TEST_POINTS, TEST_SEED};
 use crate::cosim::exhaustive::Shard;
@@ -81,7 +81,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     }
     let loaded = load(registry, &arguments.configs.paths)?;
     if arguments.vcd.is_some() && loaded.len() != 1 {
-        bail!(Usage(format!("--vcd is for one configuration; here are {}", loaded.len())));
+        bail!(WrongUsage(format!("--vcd is for one configuration; here are {}", loaded.len())));
     }
     let which = match arguments.simulator {
         Simulator::RustHdl => return built_in(output, &loaded, arguments),

@@ -7,7 +7,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::{Loaded, load, yosys};
-use crate::cli::failure::Usage;
+use crate::cli::failure::WrongUsage;
 use crate::cli::store::{self, Written};
 use crate::cli::{Configs, Output, TimeLimit, progress, tables};
 use crate::cosim::exhaustive::Record;
@@ -61,7 +61,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let loaded = load(registry, &arguments.configs.paths)?;
     let single = arguments.out.extension().is_some_and(|it| it.eq_ignore_ascii_case("html"));
     if single && loaded.len() != 1 {
-        bail!(Usage(format!(
+        bail!(WrongUsage(format!(
             "--out {}: a file takes one configuration, and there are {}; give a directory",
             arguments.out.display(),
             loaded.len()

@@ -10,7 +10,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::{Loaded, load_one};
-use crate::cli::failure::Usage;
+use crate::cli::failure::WrongUsage;
 use crate::cli::tables::Column;
 use crate::cli::{Output, tables};
 use crate::golden::{Contract, Model, Operand};
@@ -44,10 +44,10 @@ const LIMIT: u64 = 1 << 16;
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let one = load_one(registry, &registry.schemas(), &arguments.config)?;
     let given =
-        operands::given(one.core.contract.operands(), &arguments.operands).map_err(Usage)?;
+        operands::given(one.core.contract.operands(), &arguments.operands).map_err(WrongUsage)?;
     match &arguments.batch {
         Some(path) if *path == arguments.config => {
-            bail!(Usage("configuration and --batch are one file".to_owned()))
+            bail!(WrongUsage("configuration and --batch are one file".to_owned()))
         }
         Some(path) => batch::batch(output, &one, &given, path),
         None => point(output, &one, &given),

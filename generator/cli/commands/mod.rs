@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
 
-use super::failure::{self, Several, Usage};
+use super::failure::{self, Several, WrongUsage};
 use crate::base::diagnostic::Diagnostics;
 use crate::base::input;
 use crate::config::{self, Problems};
@@ -76,7 +76,7 @@ fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
 /// The problems of all files are reported, not only those of the first.
 fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
     if named.iter().filter(|path| path.as_path() == Path::new(input::STDIN)).count() > 1 {
-        bail!(Usage("standard input, `-`, is read once: name it once".to_owned()));
+        bail!(WrongUsage("standard input, `-`, is read once: name it once".to_owned()));
     }
     let schemas = registry.schemas();
     let mut loaded: Vec<Loaded> = Vec::new();

@@ -10,14 +10,14 @@ use serde_json::{Value, json};
 
 use super::mismatch::{self, first_clock, traced};
 use super::{Loaded, load};
-use crate::cli::failure::Usage;
+use crate::cli::failure::WrongUsage;
 use crate::cli::own_file::OwnFile;
 use crate::cli::tables::Column;
 use crate::cli::{Configs, Output, TimeLimit, progress, tables};
 use crate::cosim::Lockstep;
 use crate::mutate::{
-    self, Check, Difference, Fault, Faults, Found, GOAL_MEMORY, GOAL_TEXT, Score, Share, TOLERATED,
-    Tally, Text, TextFault, TextScore, Verdict,
+    self, Detector, Difference, Fault, Faults, Found, GOAL_MEMORY, GOAL_TEXT, Score, Share,
+    TOLERATED, Tally, Text, TextFault, TextScore, Verdict,
 };
 use crate::registry::Registry;
 
@@ -90,7 +90,10 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         return match &loaded[..] {
             [one] => only(output, one, id),
             _ => {
-                bail!(Usage(format!("--only is for one configuration; here are {}", loaded.len())))
+                bail!(WrongUsage(format!(
+                    "--only is for one configuration; here are {}",
+                    loaded.len()
+                )))
             }
         };
     }
@@ -174,7 +177,7 @@ fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) {
 fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
     let faults = Faults::of(&one.core.design);
     let Some(fault) = faults.find(id) else {
-        bail!(Usage(format!(
+        bail!(WrongUsage(format!(
             "`{}` has no fault `{id}`; `glint mutate {} --list` names them",
             one.path, one.path
         )));
@@ -256,8 +259,8 @@ fn print(scored: &Scored) {
         vec![
             name,
             tally.planted.to_string(),
-            caught(Check::Cosim),
-            caught(Check::Directed),
+            caught(Detector::Cosim),
+            caught(Detector::Directed),
             tally.all_equivalent().to_string(),
             tally.undecided.to_string(),
             tally.shipped.to_string(),

@@ -4,7 +4,7 @@ use anyhow::{Result, bail};
 use clap::Args;
 use serde_json::json;
 
-use crate::cli::failure::Usage;
+use crate::cli::failure::WrongUsage;
 use crate::cli::{Output, tables};
 use crate::config;
 use crate::registry::Registry;
@@ -29,7 +29,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         let names: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
         let near = config::nearest(device, names.iter().copied())
             .map_or_else(|| ".".to_owned(), |near| format!("; did you mean `{near}`?"));
-        bail!(Usage(format!(
+        bail!(WrongUsage(format!(
             "there is no device `{device}`{near} The devices are: {}",
             names.join(", ")
         )));
@@ -43,7 +43,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             .iter()
             .map(|problem| format!("{}; {}", problem.message, problem.remedy))
             .collect();
-        bail!(Usage(faults.join("\n")));
+        bail!(WrongUsage(faults.join("\n")));
     }
     if output.json {
         tables::print_json(&json!({ "ok": true, "device": device, "name": name, "text": text }));

@@ -10,7 +10,7 @@ use serde_json::json;
 use super::load_one;
 use crate::base::{input, text};
 use crate::cli::destination::Destination;
-use crate::cli::failure::{self, Usage};
+use crate::cli::failure::{self, WrongUsage};
 use crate::cli::{Output, TimeLimit, progress, tables};
 use crate::config::Config;
 use crate::core::{self, Core};
@@ -144,13 +144,13 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     if let Some(extension) = arguments.out.extension()
         && !extension.eq_ignore_ascii_case("png")
     {
-        bail!(Usage(format!(
+        bail!(WrongUsage(format!(
             "--out {}: the picture is a PNG file, and its name should end so",
             arguments.out.display()
         )));
     }
     let scene = scene(arguments, render::walks_lines(core.contract.as_ref()))?;
-    render::check(&settings, &scene).map_err(|error| Usage(error.to_string()))?;
+    render::check(&settings, &scene).map_err(|error| WrongUsage(error.to_string()))?;
     let destination = Destination::open(&arguments.out)?;
     let through = match arguments.through {
         Through::Golden => core::Through::Golden,
@@ -194,7 +194,7 @@ fn settings(core: &Core, arguments: &Arguments) -> Result<Settings> {
     let exponent =
         arguments.exponent.unwrap_or_else(|| render::usual_exponent(core.contract.as_ref()));
     if !(least..=most).contains(&i64::from(exponent)) {
-        bail!(Usage(format!(
+        bail!(WrongUsage(format!(
             "--exponent {exponent}: `{}` takes {least} to {most}",
             core.config.name
         )));
@@ -255,7 +255,7 @@ fn scene(arguments: &Arguments, coarse: bool) -> Result<Scene> {
         ] {
             // Far beyond what can be seen, and far from what overflows.
             if !(-1e6..=1e6).contains(&value) {
-                bail!(Usage(format!("{option} {value}: not beyond a million")));
+                bail!(WrongUsage(format!("{option} {value}: not beyond a million")));
             }
         }
         let cannot = || format!("the height map `{}` cannot be used", path.display());

@@ -11,13 +11,13 @@ use indicatif::ProgressBar;
 use serde_json::{Value as Json, json};
 
 use crate::cli::destination::Destination;
-use crate::cli::failure::Usage;
+use crate::cli::failure::WrongUsage;
 use crate::cli::tables::{self, Column};
 use crate::cli::{Output, progress};
 use crate::config::{self, Config, Value};
 use crate::registry::{Device, Registry};
 use crate::synth::Target;
-use crate::tune::{self, Answer, Candidate, Objective, Unit, Wish};
+use crate::tune::{self, Answer, Candidate, ErrorUnit, Objective, Wish};
 
 /// Find the smallest configuration of a device for an error
 ///
@@ -38,8 +38,8 @@ pub struct Arguments {
     #[arg(long, value_name = "E")]
     error: f64,
     /// What the error is measured in: the reflectance f, 0 to 1, or the outputs' least significant bit
-    #[arg(long, value_enum, default_value_t = Unit::Output)]
-    unit: Unit,
+    #[arg(long, value_enum, default_value_t = ErrorUnit::Output)]
+    unit: ErrorUnit,
     /// The technology that area and clock are estimated for
     #[arg(long, value_name = "TARGET", value_enum, default_value_t = Target::Ecp5)]
     target: Target,
@@ -66,7 +66,7 @@ pub struct Arguments {
     csv: bool,
 }
 
-impl ValueEnum for Unit {
+impl ValueEnum for ErrorUnit {
     fn value_variants<'a>() -> &'a [Self] {
         &[Self::F, Self::Output]
     }
@@ -101,13 +101,13 @@ impl ValueEnum for Objective {
 /// `glint tune`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     if output.json && arguments.csv {
-        bail!(Usage("--json and --csv are two forms of the same: give one".to_owned()));
+        bail!(WrongUsage("--json and --csv are two forms of the same: give one".to_owned()));
     }
     if !(arguments.error > 0.0 && arguments.error.is_finite()) {
-        bail!(Usage(format!("--error {}: an error is a number above 0", arguments.error)));
+        bail!(WrongUsage(format!("--error {}: an error is a number above 0", arguments.error)));
     }
     if !tune::model::knows(arguments.target) {
-        bail!(Usage(format!(
+        bail!(WrongUsage(format!(
             "--target {}: there is no estimate of what a configuration costs there; tune for an FPGA and see `glint synth`",
             arguments.target
         )));
@@ -172,7 +172,7 @@ fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, V
     let mut fixed = Vec::new();
     for given in &arguments.set {
         let Some((key, value)) = given.split_once('=') else {
-            bail!(Usage(format!(
+            bail!(WrongUsage(format!(
                 "--set {given}: a key and a value are wanted, as cosine.fraction=16"
             )));
         };
@@ -279,7 +279,7 @@ fn as_json(answer: &Answer, arguments: &Arguments, text: &str) -> Json {
         "device": arguments.device,
         "target": arguments.target,
         "error": arguments.error,
-        "unit": if arguments.unit == Unit::F { "f" } else { "output" },
+        "unit": if arguments.unit == ErrorUnit::F { "f" } else { "output" },
         "best": candidate(&answer.best),
         "front": answer.front.iter().map(candidate).collect::<Vec<_>>(),
         "looked_at": answer.looked_at,

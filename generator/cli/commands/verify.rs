@@ -10,7 +10,9 @@ use super::{Loaded, load};
 use crate::cli::own_file::OwnFile;
 use crate::cli::{Configs, Output, TimeLimit, progress, tables};
 use crate::registry::Registry;
-use crate::verify::{Answer, CHECKS, Conclusion, Effort, Record, Subject, Timing, Verdict, page};
+use crate::verify::{
+    Answer, CHECKS, CheckTime, Conclusion, Effort, Record, Subject, Verdict, page,
+};
 
 /// Verify configurations by every means that Glint has, and write a page about each
 ///
@@ -65,7 +67,7 @@ impl Files {
         })
     }
 
-    fn write(self, record: &Record, timings: &[Timing]) -> Result<[String; 3]> {
+    fn write(self, record: &Record, timings: &[CheckTime]) -> Result<[String; 3]> {
         let times = json!({ "glint": record.glint, "config": record.config, "seconds": timings });
         Ok([
             self.page.write(&page::page(record, timings)?)?,
@@ -103,7 +105,7 @@ fn one_configuration(
     output: Output,
     one: &Loaded,
     arguments: &Arguments,
-) -> Result<(Record, Vec<Timing>)> {
+) -> Result<(Record, Vec<CheckTime>)> {
     one.contract()?;
     let effort = Effort {
         full: arguments.full,

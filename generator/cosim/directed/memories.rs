@@ -1,7 +1,7 @@
 //! A design whose tables are there once for each lane of a machine, so that every lane can have a fault of its own.
 
 use crate::base::fixed::Format;
-use crate::hdl::netlist::{Design, Driver, Net, NetId, Op, Port, Role, Unit};
+use crate::hdl::netlist::{Design, Driver, Net, NetId, Op, Partition, Port, Role};
 use crate::hdl::sim::Machine;
 
 /// Where the words of a design's tables are in the copies of every lane.
@@ -69,7 +69,7 @@ fn add(design: &mut Design, name: &str, bits: u32, driver: Driver) -> NetId {
         block: None,
         doc: String::new(),
         named: false,
-        unit: Unit::Datapath,
+        partition: Partition::Datapath,
         location: like.location,
     };
     design.nets.push(net);

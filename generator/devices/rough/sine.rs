@@ -3,7 +3,7 @@
 use super::Formats;
 use crate::base::fixed::Format;
 use crate::config::Config;
-use crate::hdl::blocks::segmented::{self, Entry, Segment, Segmentation, Shape};
+use crate::hdl::blocks::segmented::{self, Entry, Segment, Segmentation, SegmentedFormats};
 use crate::hdl::dsl::{Designer, Signal};
 
 /// ROM 18: sin = √(1 − cos²).
@@ -27,7 +27,7 @@ pub(super) fn sine_rom<'d>(
         tail: None,
         packed: false,
     };
-    let shape = Shape {
+    let shape = SegmentedFormats {
         fraction: formats.sine.frac,
         slope_fraction: config.integer("sine.slope_fraction") as i32,
         synchronous,
@@ -67,7 +67,7 @@ fn direct_sine<'d>(
 
 /// The straight line through a segment of s(u) = √(1 − (1 − u)²) with the least error: the slope of
 /// the chord, and the base that puts the error of the segment's points symmetrically about 0.
-fn sine_entry(segment: Segment, fraction: u32, shape: Shape) -> Entry {
+fn sine_entry(segment: Segment, fraction: u32, shape: SegmentedFormats) -> Entry {
     let one = f64::from(1u32 << fraction);
     let sine = |u: f64| {
         let x = (one - u) / one;

@@ -6,7 +6,7 @@ mod products;
 pub use keys::Keys;
 pub use products::{ProductSlots, Products};
 
-use super::contract::{self, COSINE, Share};
+use super::contract::{self, COSINE, ErrorShare};
 use super::{Bound, Contract, Operand, Output, Sweep, nearer};
 use crate::base::fixed::{Format, exp2};
 
@@ -100,7 +100,7 @@ pub trait Reflectance: Send + Sync {
     }
 
     /// What the error of f is made of, each a proven upper limit.
-    fn shares(&self) -> Vec<Share>;
+    fn shares(&self) -> Vec<ErrorShare>;
 
     /// As [`Contract::remarks`].
     fn remarks(&self) -> Vec<String> {

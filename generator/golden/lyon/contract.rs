@@ -3,7 +3,7 @@
 use super::{Arithmetic, Params, Scale};
 use crate::base::fixed::{Rounding, exp2};
 use crate::config::Config;
-use crate::golden::contract::{self as shared, Share};
+use crate::golden::contract::{self as shared, ErrorShare};
 use crate::golden::formulas;
 use crate::golden::highlight::{Highlight, Reflectance};
 use crate::golden::narrow::rounding_error;
@@ -145,7 +145,7 @@ impl Reflectance for Arithmetic {
     ///
     /// Where all of them truncate, D² makes f too large and the others make it too small, by so much at
     /// most: only the larger of the two counts.
-    fn shares(&self) -> Vec<Share> {
+    fn shares(&self) -> Vec<ErrorShare> {
         let params = &self.params;
         let (f, power) = (params.intensity_fraction, f64::from(params.power));
         let ulp = exp2(-(f as i32));

@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use super::{Arithmetic, POWERS, Params, range_of};
 use crate::base::fixed::exp2;
 use crate::config::Config;
-use crate::golden::contract::{self as shared, Share};
+use crate::golden::contract::{self as shared, ErrorShare};
 use crate::golden::formulas;
 use crate::golden::highlight::{Highlight, Reflectance};
 use crate::golden::line;
@@ -123,7 +123,7 @@ impl Reflectance for Arithmetic {
 
     /// For each n: how far ROM 12 is from the formula within a step, and the error of the stretched angle
     /// by the steepest slope of the power. The terms are those of the worst n.
-    fn shares(&self) -> Vec<Share> {
+    fn shares(&self) -> Vec<ErrorShare> {
         let params = &self.params;
         let (low, high) = params.exponents;
         let largest = (1 << params.exponent_bits) - 1;

@@ -3,7 +3,7 @@
 use super::*;
 
 /// C = 4, D = 6, F = 4, K = 4, small enough to follow by hand.
-fn small(scheme: Scheme) -> Arithmetic {
+fn small(scheme: CoefficientScheme) -> Arithmetic {
     let keys = Keys {
         cosine_fraction: 4,
         cosine_signed: false,
@@ -18,7 +18,7 @@ fn small(scheme: Scheme) -> Arithmetic {
 
 #[test]
 fn points_by_hand() {
-    let contract = small(Scheme::Taylor);
+    let contract = small(CoefficientScheme::Taylor);
     let f = |cosine, n| contract.f(&[cosine, n]);
     // n = 1 and n = 0: f = c.
     assert_eq!((f(14, 1), f(14, 0)), (14, 14));
@@ -34,7 +34,7 @@ fn points_by_hand() {
 
 #[test]
 fn minimax_words_by_hand() {
-    let scheme = Scheme::Minimax { fraction: 2 };
+    let scheme = CoefficientScheme::Minimax { fraction: 2 };
     let contract = small(scheme);
     // n = 3: the errors are equal, 0.0424, at a = 1.535; six quarters.
     assert_eq!(contract.words[..4], [0, 0, 4, 6]);
@@ -45,7 +45,7 @@ fn minimax_words_by_hand() {
 /// The table makes both errors equal: on a grid, no larger and no smaller coefficient does better.
 #[test]
 fn the_table_is_minimax() {
-    let table = coefficient::table(Scheme::Minimax { fraction: 0 }, 4096);
+    let table = coefficient::table(CoefficientScheme::Minimax { fraction: 0 }, 4096);
     for n in [3, 5, 16, 250, 1000, 4095] {
         let a = table[n];
         let error = |a: f64| {
@@ -65,7 +65,7 @@ fn the_table_is_minimax() {
 /// One point followed clock by clock: words 0, 1, 2, 3 and idle.
 #[test]
 fn a_point_clock_by_clock() {
-    let mut model = clocked(&small(Scheme::Taylor));
+    let mut model = clocked(&small(CoefficientScheme::Taylor));
     // c = 14/16, n = 5, red 15, written together with start.
     model.clock(&[1, 1, 14, 1, 5, 1, 15, 1, 0, 0, 0, 0]);
     let names = ["run", "word_address", "difference", "intensity", "valid", "done"];

@@ -23,9 +23,9 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::{Kind, Params};
 use crate::base::fixed::{Rounding, exp2};
-use crate::golden::contract::Share;
+use crate::golden::contract::ErrorShare;
 use crate::golden::narrow::rounding_error;
-use crate::golden::sine::{Piece, Scheme, Sine};
+use crate::golden::sine::{Piece, Sine, TableScheme};
 
 /// Bins of the quarter circle: fine against the narrowest highlight, 3.6° at n = 1000.
 const BINS: usize = 512;
@@ -35,7 +35,7 @@ const BIN: f64 = FRAC_PI_2 / BINS as f64;
 const SLACK: f64 = 1e-9;
 
 /// What the error of f is made of with a configuration, whose ROM 18 is `sine`.
-pub fn shares(params: &Params, sine: &Sine) -> Vec<Share> {
+pub fn shares(params: &Params, sine: &Sine) -> Vec<ErrorShare> {
     match params.arithmetic {
         Kind::Patent => {
             vec![("arithmetic", "words modulo 1.0 wrap where the base is negative", 1.0)]
@@ -121,7 +121,7 @@ fn bin(angle: f64) -> usize {
     ((angle.max(0.0) / BIN) as usize).min(BINS - 1)
 }
 
-fn exact(params: &Params, sine: &Sine) -> Vec<Share> {
+fn exact(params: &Params, sine: &Sine) -> Vec<ErrorShare> {
     let errors = Errors::new(sine);
     let deviation = bin(params.deviation.to_radians() + SLACK);
     let (p, f, s) = (params.product_fraction, params.intensity_fraction, params.sine_fraction);
@@ -155,7 +155,7 @@ fn exact(params: &Params, sine: &Sine) -> Vec<Share> {
 
     let linear = weights[at.0.abs_diff(at.1)].linear;
     let ulp = exp2(-(f as i32));
-    let mut shares: Vec<Share> = sine_terms(params)
+    let mut shares: Vec<ErrorShare> = sine_terms(params)
         .iter()
         .enumerate()
         .map(|(k, &(key, what))| {
@@ -174,11 +174,11 @@ fn exact(params: &Params, sine: &Sine) -> Vec<Share> {
 /// The keys that govern the parts which [`split`] tells apart.
 fn sine_terms(params: &Params) -> &'static [(&'static str, &'static str)] {
     match params.sine_scheme {
-        Scheme::Direct { .. } => &[
+        TableScheme::Direct { .. } => &[
             ("sine.fraction", "rounding of the sine, times n"),
             ("sine.address", "one sine for a whole bucket, times n"),
         ],
-        Scheme::Segmented { .. } => &[
+        TableScheme::Segmented { .. } => &[
             ("sine.fraction", "rounding of the sine, times n"),
             ("sine.segments", "straight segments for the sine, times n"),
             ("sine.slope_fraction", "rounding of the slopes, times n"),
@@ -191,9 +191,9 @@ fn sine_terms(params: &Params) -> &'static [(&'static str, &'static str)] {
 fn split(params: &Params, error: f64, shape: f64) -> [f64; 3] {
     let ulp = exp2(-(params.sine_fraction as i32));
     let most = match params.sine_scheme {
-        Scheme::Direct { .. } => [ulp / 2.0, shape, 0.0],
+        TableScheme::Direct { .. } => [ulp / 2.0, shape, 0.0],
         // A slope is off by half an ulp over the segment, and the base halves that again.
-        Scheme::Segmented { slope_fraction, .. } => {
+        TableScheme::Segmented { slope_fraction, .. } => {
             [1.5 * ulp, shape, exp2(-(slope_fraction as i32)) / 4.0]
         }
     };

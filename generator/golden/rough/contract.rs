@@ -3,7 +3,7 @@
 use super::{Arithmetic, Kind, Params, bound};
 use crate::base::fixed::{Format, exp2};
 use crate::config::Config;
-use crate::golden::contract::{self as shared, Share};
+use crate::golden::contract::{self as shared, ErrorShare};
 use crate::golden::formulas;
 use crate::golden::highlight::{Highlight, Reflectance};
 use crate::golden::{Axis, Contract, Operand, Sweep, Values};
@@ -126,7 +126,7 @@ impl Reflectance for Arithmetic {
         })
     }
 
-    fn shares(&self) -> Vec<Share> {
+    fn shares(&self) -> Vec<ErrorShare> {
         bound::shares(&self.params, &self.sine)
     }
 }

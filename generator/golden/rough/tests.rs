@@ -14,7 +14,7 @@ fn small() -> Params {
         colour_bits: 4,
         product_fraction: 6,
         intensity_fraction: 4,
-        sine_scheme: Scheme::Segmented { segments: vec![2], slope_fraction: 5 },
+        sine_scheme: TableScheme::Segmented { segments: vec![2], slope_fraction: 5 },
         sine_fraction: 6,
         exponents: (1, 15),
         cosine_signed: false,
@@ -74,8 +74,11 @@ fn without_the_clamp_the_parabola_rises_again() {
 
 #[test]
 fn patent_arithmetic() {
-    let params =
-        Params { arithmetic: Kind::Patent, sine_scheme: Scheme::Direct { address: 4 }, ..small() };
+    let params = Params {
+        arithmetic: Kind::Patent,
+        sine_scheme: TableScheme::Direct { address: 4 },
+        ..small()
+    };
     // Sines at 12.5/16 and 14.5/16: 0.6242 and 0.4227, or 10/16 and 7/16. Register 11: 168/256 →
     // 10/16; register 12: 70/256 → 4/16.
     // dγ positive, n = 4: 10 + ¬4 = 10 + 11 = 21 → 5; 5·2 = 10; 10 + 1 = 11; 121/256 → 7/16.

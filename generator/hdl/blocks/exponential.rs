@@ -7,7 +7,7 @@ use crate::hdl::dsl::{Designer, Signal};
 
 /// Formats of the exponential.
 #[derive(Clone, Debug)]
-pub struct Shape {
+pub struct ExponentialFormats {
     /// How the fraction of y is cut; y has as many fraction bits.
     pub cut: Cut,
     /// Fraction bits of the tables.
@@ -28,7 +28,7 @@ pub fn halvings<'d>(
     d: &'d Designer,
     name: &str,
     y: Signal<'d>,
-    shape: &Shape,
+    shape: &ExponentialFormats,
     frac: i32,
     rounding: Rounding,
 ) -> Signal<'d> {

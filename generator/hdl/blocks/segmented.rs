@@ -35,7 +35,7 @@ struct Block {
 }
 
 /// One entry of the table: the value at the start of the segment and its rise over the segment, as
-/// raw values of the formats in [`Shape`].
+/// raw values of the formats in [`SegmentedFormats`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Entry {
     /// At the start of the segment.
@@ -55,7 +55,7 @@ pub struct Segment {
 
 /// The formats of a table: value `u0.S`, slope with D fraction bits.
 #[derive(Clone, Copy, Debug)]
-pub struct Shape {
+pub struct SegmentedFormats {
     /// S: fraction bits of the value.
     pub fraction: i32,
     /// D: fraction bits of the slope.
@@ -163,7 +163,7 @@ pub fn interpolate<'d>(
     name: &str,
     u: Signal<'d>,
     cut: &Segmentation,
-    shape: Shape,
+    shape: SegmentedFormats,
     entry: impl Fn(Segment) -> Entry,
     block: Option<u16>,
 ) -> Signal<'d> {
@@ -199,7 +199,7 @@ pub fn look_up<'d>(
     name: &str,
     u: Signal<'d>,
     cut: &Segmentation,
-    shape: Shape,
+    shape: SegmentedFormats,
     entry: impl Fn(Segment) -> Entry,
     block: Option<u16>,
 ) -> Line<'d> {

@@ -32,8 +32,8 @@
 //! Mistakes are collected, not thrown: [`Designer::finish`] reports all of them, each with the names
 //! of the signals and the Rust source line.
 
-mod bus;
 mod narrow;
+mod operand_mux;
 mod program;
 mod registers;
 mod rules;
@@ -44,7 +44,7 @@ use std::collections::HashMap;
 use std::panic::Location;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-pub use bus::{Bus, SharedProduct};
+pub use operand_mux::{OperandMux, SharedProduct};
 pub use program::{
     Program, Setting, Step, end, hold, jump_if, loop_while, next, step, valid, wait_for_start,
 };
@@ -57,8 +57,8 @@ use crate::hdl::netlist::register_held;
 use crate::base::diagnostic::{Diagnostic, Diagnostics, SourceLocation};
 use crate::base::fixed::{Format, MAX_POINT, MAX_WIDTH};
 use crate::hdl::netlist::{
-    Control, Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, Port,
-    Register as NetRegister, RegisterKind, Role, Rom as NetRom, RomId, Unit,
+    Control, Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, Partition, Port,
+    Register as NetRegister, RegisterKind, Role, Rom as NetRom, RomId,
 };
 
 /// Builds a [`Design`]; see the [module documentation](self).
@@ -73,7 +73,7 @@ pub struct Designer {
 
 /// A net that carries the product of a shared multiplier under one selection of its operands.
 #[derive(Clone, Debug)]
-pub(crate) struct View {
+pub(crate) struct SelectedProduct {
     /// The select field of the multiplier's operands.
     pub field: FieldId,
     /// The values of the field under which the net means what its format says.
@@ -84,7 +84,7 @@ pub(crate) struct View {
 
 pub(crate) struct Inner {
     design: Design,
-    views: HashMap<NetId, View>,
+    views: HashMap<NetId, SelectedProduct>,
     program: Option<Program>,
     /// What `valid` follows, and how many clocks later, when no microinstruction raises it.
     valid: Option<(NetId, u32)>,
@@ -92,7 +92,7 @@ pub(crate) struct Inner {
     sequencer_lines: Option<[u16; 2]>,
     diagnostics: Vec<Diagnostic>,
     names: HashMap<String, u32>,
-    unit: Unit,
+    partition: Partition,
 }
 
 impl Designer {
@@ -119,7 +119,7 @@ impl Designer {
             sequencer_lines: None,
             diagnostics: Vec::new(),
             names: HashMap::new(),
-            unit: Unit::Control,
+            partition: Partition::Control,
         };
         static DESIGNERS: AtomicU64 = AtomicU64::new(0);
         let mut designer = Self {
@@ -140,7 +140,7 @@ impl Designer {
         designer.set_doc(designer.run, "a microprogram is running");
         designer.idle = designer.add_named("idle", Format::BIT, Driver::Undriven);
         designer.set_doc(designer.idle, "operands may be written");
-        designer.inner.borrow_mut().unit = Unit::Datapath;
+        designer.inner.borrow_mut().partition = Partition::Datapath;
         designer
     }
 
@@ -441,7 +441,7 @@ impl Designer {
                 block: None,
                 doc: String::new(),
                 named,
-                unit: inner.unit,
+                partition: inner.partition,
                 location,
             });
             id
@@ -477,7 +477,7 @@ impl Designer {
         let net = self.add_named(name, Format::unsigned(width as i32, 0), Driver::Field(id));
         self.with(|inner| {
             // Fields come out of the control unit, whoever uses them.
-            inner.design.nets[net.index()].unit = Unit::Control;
+            inner.design.nets[net.index()].partition = Partition::Control;
             inner.design.control.fields.push(Field {
                 name: name.to_owned(),
                 net,

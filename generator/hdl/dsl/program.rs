@@ -7,8 +7,8 @@ use crate::base::diagnostic::{Diagnostic, SourceLocation};
 use crate::base::fixed::Format;
 use crate::hdl::netlist::microcode;
 use crate::hdl::netlist::{
-    Control, Driver, FieldId, FieldKind, Microinstruction, NetId, Op, RegisterKind, Role,
-    Rom as NetRom, RomId, Sequence, Unit,
+    Control, Driver, FieldId, FieldKind, Microinstruction, NetId, Op, Partition, RegisterKind,
+    Role, Rom as NetRom, RomId, Sequence,
 };
 
 /// What a microinstruction says of one field, or of its successor.
@@ -217,7 +217,7 @@ pub(crate) fn assemble(d: &Designer, program: &Program) {
         }
     }
     let waits = sequences.contains(&Sequence::WaitStart);
-    d.with(|inner| inner.unit = Unit::Control);
+    d.with(|inner| inner.partition = Partition::Control);
     let (conditions, targets) = distinct(&loops);
     let address_width = usize::BITS - (steps.len() - 1).leading_zeros();
     let sequence_field = |name: &str, width: u32| d.add_field(name, width, FieldKind::Sequence);
@@ -517,7 +517,7 @@ fn sequencer(
     d.port(busy.id(), Role::Busy);
     d.port(done.id(), Role::Done);
     d.with(|inner| {
-        inner.unit = Unit::Datapath;
+        inner.partition = Partition::Datapath;
         // Inputs first, then the handshake, then results.
         inner.design.ports.sort_by_key(|port| match port.role {
             role if role.is_input() => 0,

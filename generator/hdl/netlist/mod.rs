@@ -71,7 +71,7 @@ id!(
 
 /// Which of the two modules of the emitted Verilog a net belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Unit {
+pub enum Partition {
     /// The control unit: sequencer and control ROM.
     Control,
     /// Operand registers, arithmetic, result registers.
@@ -97,7 +97,7 @@ pub struct Net {
     /// wiring that the DSL adds (extensions, slices, rounding), named after what it serves.
     pub named: bool,
     /// The module that the net is in.
-    pub unit: Unit,
+    pub partition: Partition,
     /// Where in the description it was written.
     pub location: SourceLocation,
 }

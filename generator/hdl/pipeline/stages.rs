@@ -8,8 +8,8 @@ use super::unroll::Unrolled;
 use super::{Goal, Options};
 use crate::base::fixed::Format;
 use crate::hdl::netlist::{
-    Checkpoint, Control, Design, Driver, Net, NetId, Op, Pipeline, Port, RegId, Register,
-    RegisterKind, Role, Rom, RomId, Stage, Unit,
+    Checkpoint, Control, Design, Driver, Net, NetId, Op, Partition, Pipeline, Port, RegId,
+    Register, RegisterKind, Role, Rom, RomId, Stage,
 };
 
 /// The design of a schedule.
@@ -131,7 +131,7 @@ impl Builder<'_> {
             block: None,
             doc: String::new(),
             named: true,
-            unit: Unit::Datapath,
+            partition: Partition::Datapath,
             location: self.sequential.nets[0].location,
         });
         self.stage_of.push(stage);

@@ -7,7 +7,7 @@ use rust_hdl::core::check_error::check_all;
 use rust_hdl::core::prelude::{Block, Clock, In, Logic, Probe, Signal};
 use rust_hdl::core::signal::get_signal_id;
 
-use crate::hdl::netlist::{Design, NetId, Unit};
+use crate::hdl::netlist::{Design, NetId, Partition};
 use crate::hdl::sim::machine::Machine;
 use crate::hdl::sim::program::Program;
 use crate::hdl::sim::wire::{Direction, MicroinstructionName, Wire};
@@ -79,11 +79,13 @@ impl<const LANES: usize> Circuit<LANES> {
                 false => observed(port.net, Direction::Output),
             })
             .collect();
-        let of_unit = |unit| {
+        let of_partition = |partition| {
             design
                 .iter()
                 .filter(|(id, net)| {
-                    net.named && net.unit == unit && design.ports.iter().all(|port| port.net != *id)
+                    net.named
+                        && net.partition == partition
+                        && design.ports.iter().all(|port| port.net != *id)
                 })
                 .map(|(id, _)| observed(id, Direction::Local))
                 .collect()
@@ -96,8 +98,8 @@ impl<const LANES: usize> Circuit<LANES> {
             changed: false,
             connected: false,
             ports,
-            control: of_unit(Unit::Control),
-            datapath: of_unit(Unit::Datapath),
+            control: of_partition(Partition::Control),
+            datapath: of_partition(Partition::Datapath),
             microprogram: Microprogram::new(design),
         };
         circuit.connect_all();

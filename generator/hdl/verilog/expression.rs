@@ -6,7 +6,7 @@
 //! adder's width. Signedness matters to products and comparisons alone, which state it.
 
 use super::bits::{Bits, Piece};
-use super::plan::{Form, Plan, Reader};
+use super::plan::{NetForm, Plan, Reader};
 use super::text::{Names, constant_name, literal};
 use crate::base::fixed::mask;
 use crate::hdl::netlist::{Driver, NetId, Op, Rom};
@@ -141,7 +141,7 @@ impl<'a> Expressions<'a> {
     /// The cell that a net stands for, if that is written in its place.
     fn inline(&self, id: NetId) -> Option<NetId> {
         match self.plan.bits[id.index()].single() {
-            Some(Piece::Net { net, .. }) if self.plan.forms[net.index()] == Form::Inline => {
+            Some(Piece::Net { net, .. }) if self.plan.forms[net.index()] == NetForm::Inline => {
                 Some(net)
             }
             _ => None,

@@ -3,7 +3,7 @@
 use super::naming::Naming;
 use super::text::comment;
 use crate::base::fixed::Format;
-use crate::hdl::netlist::{Design, NetId, Pipeline, Role, Sequence, Unit};
+use crate::hdl::netlist::{Design, NetId, Partition, Pipeline, Role, Sequence};
 use crate::observation::Timing;
 
 /// What a file's header says beyond the design.
@@ -37,14 +37,20 @@ pub fn top(design: &Design, origin: &Origin) -> Vec<String> {
     lines
 }
 
-/// Of a unit.
-pub fn unit(design: &Design, unit: Unit, origin: &Origin, naming: &Naming) -> Vec<String> {
-    let title = match unit {
-        Unit::Control => "sequencer and control ROM",
-        Unit::Datapath => "operand registers, arithmetic and results",
+/// Of a partition.
+pub fn partition(
+    design: &Design,
+    partition: Partition,
+    origin: &Origin,
+    naming: &Naming,
+) -> Vec<String> {
+    let title = match partition {
+        Partition::Control => "sequencer and control ROM",
+        Partition::Datapath => "operand registers, arithmetic and results",
     };
-    let mut lines = comment(0, &format!("{}: {title} of {}", naming.module(unit), design.name));
-    if unit == Unit::Control {
+    let mut lines =
+        comment(0, &format!("{}: {title} of {}", naming.module(partition), design.name));
+    if partition == Partition::Control {
         lines.extend(program(design));
     }
     lines.extend(regenerated(origin));

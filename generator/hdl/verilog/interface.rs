@@ -1,10 +1,10 @@
 //! The ports of the two units.
 
-use super::plan::{Form, Plan};
+use super::plan::{NetForm, Plan};
 use crate::base::fixed::mask;
-use crate::hdl::netlist::{Driver, NetId, RomId, Unit};
+use crate::hdl::netlist::{Driver, NetId, Partition, RomId};
 
-/// What crosses the boundary of a unit.
+/// What crosses the boundary of a partition.
 pub struct Interface {
     /// Something in it changes on the clock.
     pub clocked: bool,
@@ -18,48 +18,49 @@ pub struct Interface {
 
 impl Interface {
     /// Of one of the units.
-    pub fn new(plan: &Plan, unit: Unit) -> Self {
+    pub fn new(plan: &Plan, partition: Partition) -> Self {
         let design = plan.design;
-        let other = match unit {
-            Unit::Control => Unit::Datapath,
-            Unit::Datapath => Unit::Control,
+        let other = match partition {
+            Partition::Control => Partition::Datapath,
+            Partition::Datapath => Partition::Control,
         };
-        let reads = |unit: Unit, net: NetId| plan.reads.contains_key(&(unit, net));
+        let reads = |partition: Partition, net: NetId| plan.reads.contains_key(&(partition, net));
         let declared =
-            |net: &NetId| plan.forms[net.index()] == Form::Declared && !plan.is_input(*net);
-        let nets_read = |by: Unit, of: Unit| {
+            |net: &NetId| plan.forms[net.index()] == NetForm::Declared && !plan.is_input(*net);
+        let nets_read = |by: Partition, of: Partition| {
             let ids = (0..design.nets.len() as u32).map(NetId);
-            ids.filter(declared).filter(move |net| plan.unit(*net) == of && reads(by, *net))
+            ids.filter(declared).filter(move |net| plan.partition(*net) == of && reads(by, *net))
         };
         // An input that nothing reads still has to end somewhere: in its own unit.
-        let inputs = design
-            .inputs()
-            .map(|port| port.net)
-            .filter(|net| reads(unit, *net) || (plan.unit(*net) == unit && !reads(other, *net)));
-        let outputs = design.outputs().map(|port| port.net).filter(|net| plan.unit(*net) == unit);
+        let inputs = design.inputs().map(|port| port.net).filter(|net| {
+            reads(partition, *net) || (plan.partition(*net) == partition && !reads(other, *net))
+        });
+        let outputs =
+            design.outputs().map(|port| port.net).filter(|net| plan.partition(*net) == partition);
         let roms: Vec<_> = (0..design.roms.len() as u32)
             .map(RomId)
-            .filter(|rom| plan.unit(design.rom(*rom).data) == unit)
+            .filter(|rom| plan.partition(design.rom(*rom).data) == partition)
             .collect();
-        let registers = design.registers.iter().any(|register| plan.unit(register.q) == unit);
+        let registers =
+            design.registers.iter().any(|register| plan.partition(register.q) == partition);
         Self {
             clocked: registers || roms.iter().any(|rom| design.rom(*rom).synchronous),
-            inputs: inputs.chain(nets_read(unit, other)).collect(),
+            inputs: inputs.chain(nets_read(partition, other)).collect(),
             outputs: outputs
-                .chain(nets_read(other, unit).filter(|net| !plan.is_port(*net)))
+                .chain(nets_read(other, partition).filter(|net| !plan.is_port(*net)))
                 .collect(),
             roms,
         }
     }
 }
 
-/// The nets and the bits of them that are there in a unit and that nothing in it needs, as ranges
+/// The nets and the bits of them that are there in a partition and that nothing in it needs, as ranges
 /// `(net, low, width)`.
-pub fn unread(plan: &Plan, unit: Unit, interface: &Interface) -> Vec<(NetId, u32, u32)> {
+pub fn unread(plan: &Plan, partition: Partition, interface: &Interface) -> Vec<(NetId, u32, u32)> {
     let design = plan.design;
     let here = plan.live.iter().copied().filter(|net| {
-        plan.unit(*net) == unit
-            && plan.forms[net.index()] == Form::Declared
+        plan.partition(*net) == partition
+            && plan.forms[net.index()] == NetForm::Declared
             && design.net(*net).driver != Driver::Input
             && !interface.outputs.contains(net)
     });
@@ -68,7 +69,7 @@ pub fn unread(plan: &Plan, unit: Unit, interface: &Interface) -> Vec<(NetId, u32
     let mut ranges = Vec::new();
     for net in nets {
         let width = design.width(net);
-        let read = plan.reads.get(&(unit, net)).copied().unwrap_or(0);
+        let read = plan.reads.get(&(partition, net)).copied().unwrap_or(0);
         let mut rest = !read & mask(width);
         while rest != 0 {
             let low = rest.trailing_zeros();

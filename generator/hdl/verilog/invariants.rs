@@ -1,15 +1,15 @@
-//! What a unit asserts of itself, for formal tools alone: the proof of the handshake stands on it.
+//! What a partition asserts of itself, for formal tools alone: the proof of the handshake stands on it.
 
 use super::naming::Naming;
 use super::text::literal;
-use crate::hdl::netlist::{Design, RegisterKind, Unit};
+use crate::hdl::netlist::{Design, Partition, RegisterKind};
 
-/// The lines of a unit's section for formal tools.
-pub fn invariants(design: &Design, naming: &Naming, unit: Unit) -> Vec<String> {
+/// The lines of a partition's section for formal tools.
+pub fn invariants(design: &Design, naming: &Naming, partition: Partition) -> Vec<String> {
     let mut names = naming.names.clone();
-    let lines = match unit {
-        Unit::Control => control(design),
-        Unit::Datapath => datapath(design, &names.fresh("was_busy")),
+    let lines = match partition {
+        Partition::Control => control(design),
+        Partition::Datapath => datapath(design, &names.fresh("was_busy")),
     };
     lines.into_iter().map(|line| format!("    {line}")).collect()
 }

@@ -7,37 +7,37 @@ use super::header::{self, Origin};
 use super::interface::{Interface, unread};
 use super::invariants::invariants;
 use super::naming::{Naming, is_control_rom, remark, rom_label};
-use super::plan::{Form, Plan};
+use super::plan::{NetForm, Plan};
 use super::rows::{Row, separated};
 use super::text::{annotated, comment, literal, range, statement};
 use super::view::{Contents, Item, Module, RomItem, Section, Spaced};
 use super::words::{in_fields, in_hex, word_note};
-use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId, RomId, Unit};
+use crate::hdl::netlist::{Design, Driver, NetId, Op, Partition, RegId, RomId};
 
-/// Builds one unit.
+/// Builds one partition.
 pub struct Builder<'a> {
     plan: &'a Plan<'a>,
     naming: &'a Naming,
     interface: &'a Interface,
-    unit: Unit,
+    partition: Partition,
     expressions: Expressions<'a>,
     /// The choices of fields that label a case, as (field, value).
     labels: BTreeSet<(usize, usize)>,
 }
 
 impl<'a> Builder<'a> {
-    /// For a unit.
+    /// For a partition.
     pub fn new(
         plan: &'a Plan<'a>,
         naming: &'a Naming,
         interface: &'a Interface,
-        unit: Unit,
+        partition: Partition,
     ) -> Self {
         Self {
             plan,
             naming,
             interface,
-            unit,
+            partition,
             expressions: Expressions::new(plan, naming.names.clone()),
             labels: BTreeSet::new(),
         }
@@ -52,8 +52,8 @@ impl<'a> Builder<'a> {
         let state = self.state(&|_| true);
         let sections = [("Constants", constants), ("Registers", state)];
         Module {
-            header: header::unit(self.plan.design, self.unit, origin, self.naming),
-            name: self.naming.module(self.unit),
+            header: header::partition(self.plan.design, self.partition, origin, self.naming),
+            name: self.naming.module(self.partition),
             parameters: parameters(self.naming, &self.interface.roms),
             ports: self.ports(),
             declarations: sections
@@ -64,7 +64,7 @@ impl<'a> Builder<'a> {
             items,
             groups,
             unused: self.unused(),
-            formal: invariants(self.plan.design, self.naming, self.unit),
+            formal: invariants(self.plan.design, self.naming, self.partition),
         }
     }
 
@@ -102,7 +102,7 @@ impl<'a> Builder<'a> {
         let rows: Vec<_> = registers
             .chain(roms)
             .filter(|net| {
-                let here = self.plan.unit(*net) == self.unit && wanted(*net);
+                let here = self.plan.partition(*net) == self.partition && wanted(*net);
                 here && !self.interface.outputs.contains(net)
             })
             .map(|net| Row::net(self.plan, "", "reg", net))
@@ -129,8 +129,8 @@ impl<'a> Builder<'a> {
         let design = self.plan.design;
         let mut items = Vec::new();
         for &id in &self.plan.live {
-            let declared = self.plan.forms[id.index()] == Form::Declared;
-            if self.plan.unit(id) != self.unit || !declared || !wanted(id) {
+            let declared = self.plan.forms[id.index()] == NetForm::Declared;
+            if self.plan.partition(id) != self.partition || !declared || !wanted(id) {
                 continue;
             }
             match &design.net(id).driver {
@@ -268,7 +268,7 @@ impl<'a> Builder<'a> {
         let design = self.plan.design;
         let mut groups: Vec<(Key, Vec<RegId>)> = Vec::new();
         for (at, register) in design.registers.iter().enumerate() {
-            if self.plan.unit(register.q) != self.unit || !wanted(register.q) {
+            if self.plan.partition(register.q) != self.partition || !wanted(register.q) {
                 continue;
             }
             let key = (register.enable, register.reset.is_some());
@@ -325,7 +325,7 @@ impl<'a> Builder<'a> {
     }
 
     pub(super) fn unused(&self) -> Vec<String> {
-        let ranges = unread(self.plan, self.unit, self.interface);
+        let ranges = unread(self.plan, self.partition, self.interface);
         if ranges.is_empty() {
             return Vec::new();
         }

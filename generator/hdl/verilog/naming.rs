@@ -1,7 +1,9 @@
 //! The names and comments that emission adds to those of the description.
 
 use super::text::{Names, constant_name};
-use crate::hdl::netlist::{Control, Design, Driver, FieldKind, Net, NetId, Op, Rom, RomId, Unit};
+use crate::hdl::netlist::{
+    Control, Design, Driver, FieldKind, Net, NetId, Op, Partition, Rom, RomId,
+};
 
 /// Names of modules, instances, memories, files and parameters.
 pub struct Naming {
@@ -71,19 +73,19 @@ impl Naming {
         Self { inline, ..self }
     }
 
-    /// The module of a unit.
-    pub fn module(&self, unit: Unit) -> String {
-        match unit {
-            Unit::Control => format!("{}_control", self.design),
-            Unit::Datapath => format!("{}_datapath", self.design),
+    /// The module of a partition.
+    pub fn module(&self, partition: Partition) -> String {
+        match partition {
+            Partition::Control => format!("{}_control", self.design),
+            Partition::Datapath => format!("{}_datapath", self.design),
         }
     }
 
-    /// The instance of a unit.
-    pub fn instance(&self, unit: Unit) -> &str {
-        match unit {
-            Unit::Control => &self.control_instance,
-            Unit::Datapath => &self.datapath_instance,
+    /// The instance of a partition.
+    pub fn instance(&self, partition: Partition) -> &str {
+        match partition {
+            Partition::Control => &self.control_instance,
+            Partition::Datapath => &self.datapath_instance,
         }
     }
 }

@@ -7,7 +7,7 @@ use super::naming::Naming;
 use super::plan::Plan;
 use super::text::{ascii, comment};
 use super::view::{PipelineModule, StageSection};
-use crate::hdl::netlist::{Driver, NetId, Pipeline, Unit};
+use crate::hdl::netlist::{Driver, NetId, Partition, Pipeline};
 
 /// The module.
 pub fn module(
@@ -17,8 +17,8 @@ pub fn module(
     origin: &Origin,
 ) -> PipelineModule {
     let design = plan.design;
-    let interface = Interface::new(plan, Unit::Datapath);
-    let mut builder = Builder::new(plan, naming, &interface, Unit::Datapath);
+    let interface = Interface::new(plan, Partition::Datapath);
+    let mut builder = Builder::new(plan, naming, &interface, Partition::Datapath);
     let flow = |net: NetId| pipeline.handshake.contains(&net);
     let clocked = |net: NetId| match design.net(net).driver {
         Driver::Register(_) => true,

@@ -11,11 +11,11 @@ use anyhow::{Result, ensure};
 use super::bits::{Bits, Piece};
 use crate::base::diagnostic::Diagnostics;
 use crate::base::fixed::mask;
-use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId, Role, RomId, Unit};
+use crate::hdl::netlist::{Design, Driver, NetId, Op, Partition, RegId, Role, RomId};
 
 /// How a net appears in the Verilog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
+pub enum NetForm {
     /// Pure wiring: its [`Bits`] are written wherever it is used.
     Wiring,
     /// A `wire`, `reg` or port of its own.
@@ -40,7 +40,7 @@ pub struct Plan<'a> {
     /// What is emitted.
     pub design: &'a Design,
     /// How each net appears.
-    pub forms: Vec<Form>,
+    pub forms: Vec<NetForm>,
     /// What each net stands for.
     pub bits: Vec<Bits>,
     /// The same through declared wiring too, down to cells, state and inputs.
@@ -48,7 +48,7 @@ pub struct Plan<'a> {
     /// The nets whose cells are written at all, in an order in which operands come first.
     pub live: Vec<NetId>,
     /// The bits of each net that each module reads.
-    pub reads: BTreeMap<(Unit, NetId), u64>,
+    pub reads: BTreeMap<(Partition, NetId), u64>,
     /// The reset port, if a register is reset.
     pub reset: Option<NetId>,
 }
@@ -67,7 +67,7 @@ impl<'a> Plan<'a> {
         let reset = reset.filter(|_| resets);
         let mut plan = Self {
             design,
-            forms: vec![Form::Declared; design.nets.len()],
+            forms: vec![NetForm::Declared; design.nets.len()],
             bits: vec![Bits::default(); design.nets.len()],
             roots: vec![Bits::default(); design.nets.len()],
             live: Vec::new(),
@@ -82,10 +82,10 @@ impl<'a> Plan<'a> {
     }
 
     /// The module that declares a net: fields belong to the control unit whatever they turn.
-    pub fn unit(&self, net: NetId) -> Unit {
+    pub fn partition(&self, net: NetId) -> Partition {
         match self.design.net(net).driver {
-            Driver::Field(_) => Unit::Control,
-            _ => self.design.net(net).unit,
+            Driver::Field(_) => Partition::Control,
+            _ => self.design.net(net).partition,
         }
     }
 
@@ -100,11 +100,11 @@ impl<'a> Plan<'a> {
     }
 
     /// The module that a reader is written in.
-    pub fn home(&self, reader: Reader) -> Unit {
+    pub fn home(&self, reader: Reader) -> Partition {
         match reader {
-            Reader::Cell(net) => self.unit(net),
-            Reader::Register(register) => self.unit(self.design.register(register).q),
-            Reader::Rom(rom) => self.unit(self.design.rom(rom).data),
+            Reader::Cell(net) => self.partition(net),
+            Reader::Register(register) => self.partition(self.design.register(register).q),
+            Reader::Rom(rom) => self.partition(self.design.rom(rom).data),
         }
     }
 
@@ -209,7 +209,7 @@ impl<'a> Plan<'a> {
             self.roots[id.index()] = self.wired(id, &self.roots).unwrap_or_else(|| whole.clone());
             self.bits[id.index()] = match self.wiring(id) {
                 Some(bits) if transparent => {
-                    self.forms[id.index()] = Form::Wiring;
+                    self.forms[id.index()] = NetForm::Wiring;
                     bits
                 }
                 _ => whole,
@@ -228,7 +228,7 @@ impl<'a> Plan<'a> {
             pending.push(Reader::Rom(RomId(at as u32)));
         }
         for (id, net) in self.design.iter() {
-            if self.forms[id.index()] == Form::Declared && (net.named || self.is_port(id)) {
+            if self.forms[id.index()] == NetForm::Declared && (net.named || self.is_port(id)) {
                 live[id.index()] = true;
                 pending.push(Reader::Cell(id));
             }
@@ -284,8 +284,8 @@ impl<'a> Plan<'a> {
             };
             let mentioned: usize =
                 op.operands().iter().map(|operand| self.mentioned(*operand, &size)).sum();
-            if self.home(*reader) == self.unit(id) && self.reads_well(op, *reader, mentioned) {
-                self.forms[id.index()] = Form::Inline;
+            if self.home(*reader) == self.partition(id) && self.reads_well(op, *reader, mentioned) {
+                self.forms[id.index()] = NetForm::Inline;
                 size[id.index()] = mentioned;
             }
         }
@@ -331,16 +331,16 @@ impl<'a> Plan<'a> {
 
     fn count_reads(&mut self) {
         let mut reads = BTreeMap::new();
-        let mut read = |unit: Unit, net: NetId, bits: u64| {
-            *reads.entry((unit, net)).or_insert(0) |= bits;
+        let mut read = |partition: Partition, net: NetId, bits: u64| {
+            *reads.entry((partition, net)).or_insert(0) |= bits;
         };
         for reader in self.readers() {
-            let unit = self.home(reader);
+            let partition = self.home(reader);
             for operand in self.operands(reader) {
                 for piece in self.operand_bits(reader, operand).pieces() {
                     match *piece {
-                        Piece::Net { net, low, width } => read(unit, net, mask(width) << low),
-                        Piece::Copies { net, bit, .. } => read(unit, net, 1 << bit),
+                        Piece::Net { net, low, width } => read(partition, net, mask(width) << low),
+                        Piece::Copies { net, bit, .. } => read(partition, net, 1 << bit),
                         Piece::Constant { .. } => {}
                     }
                 }
@@ -349,7 +349,7 @@ impl<'a> Plan<'a> {
         if let Some(reset) = self.reset {
             for register in &self.design.registers {
                 if register.reset.is_some() {
-                    read(self.unit(register.q), reset, 1);
+                    read(self.partition(register.q), reset, 1);
                 }
             }
         }

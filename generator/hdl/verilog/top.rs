@@ -7,13 +7,13 @@ use super::naming::Naming;
 use super::plan::Plan;
 use super::rows::{Row, separated};
 use super::view::{Instance, Section, Top};
-use crate::hdl::netlist::Unit;
+use crate::hdl::netlist::Partition;
 
 /// The top module.
 pub fn module(
     plan: &Plan,
     naming: &Naming,
-    units: [(Unit, &Interface); 2],
+    units: [(Partition, &Interface); 2],
     origin: &Origin,
 ) -> Top {
     let design = plan.design;
@@ -45,19 +45,19 @@ pub fn module(
         declarations,
         instances: units
             .iter()
-            .map(|(unit, interface)| instance(plan, naming, *unit, interface))
+            .map(|(partition, interface)| instance(plan, naming, *partition, interface))
             .collect(),
     }
 }
 
-fn instance(plan: &Plan, naming: &Naming, unit: Unit, interface: &Interface) -> Instance {
+fn instance(plan: &Plan, naming: &Naming, partition: Partition, interface: &Interface) -> Instance {
     let clock = interface.clocked.then_some("clk");
     let nets = interface.inputs.iter().chain(&interface.outputs);
     let names = clock.into_iter().chain(nets.map(|net| plan.design.net(*net).name.as_str()));
     let connect = |name: &str| format!(".{name}({name})");
     Instance {
-        module: naming.module(unit),
-        name: naming.instance(unit).to_owned(),
+        module: naming.module(partition),
+        name: naming.instance(partition).to_owned(),
         parameters: separated(
             interface
                 .roms

@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::{Align, NUMBER, Table, code, format_text};
-use crate::hdl::netlist::{Design, Driver, FieldId, NetId, Op, RegisterKind, Rom, Unit};
+use crate::hdl::netlist::{Design, Driver, FieldId, NetId, Op, Partition, RegisterKind, Rom};
 
 /// The blocks in order of their number; those that the source does not number follow.
 pub fn table(design: &Design) -> Table {
@@ -46,7 +46,7 @@ pub struct Block<'a> {
     /// Its name.
     pub name: &'a str,
     /// What it is made of.
-    pub kind: Kind,
+    pub kind: BlockKind,
     /// Of its output.
     pub format: String,
     /// The net that it drives.
@@ -61,7 +61,7 @@ pub struct Block<'a> {
 
 /// What a block is made of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum BlockKind {
     /// A register that a port writes.
     Operand,
     /// A register.
@@ -92,7 +92,7 @@ pub enum Kind {
     Other,
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for BlockKind {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         f.write_str(match self {
             Self::Mux(inputs) => return write!(f, "{inputs}:1 mux"),
@@ -139,7 +139,7 @@ impl<'a> Blocks<'a> {
                     Driver::Op(op) => matches!(op, Op::Mul(..)) || !net.doc.is_empty(),
                     _ => false,
                 };
-                net.unit == Unit::Datapath
+                net.partition == Partition::Datapath
                     && (net.named && hardware || net.block.is_some())
                     && !ports.contains(&id)
             })
@@ -154,7 +154,12 @@ impl<'a> Blocks<'a> {
             .design
             .iter()
             .map(|(id, net)| {
-                let small = || matches!(self.kind(id), Kind::Inverter | Kind::Gate | Kind::Wiring);
+                let small = || {
+                    matches!(
+                        self.kind(id),
+                        BlockKind::Inverter | BlockKind::Gate | BlockKind::Wiring
+                    )
+                };
                 self.shown[id.index()] && (net.block.is_some() || !small())
             })
             .collect();
@@ -186,7 +191,7 @@ impl<'a> Blocks<'a> {
         blocks.extend(roms.filter(|rom| !is_control(design, rom)).map(|rom| Block {
             number: rom.block,
             name: &rom.name,
-            kind: Kind::Rom,
+            kind: BlockKind::Rom,
             format: format!("{} bits", design.width(rom.data)),
             output: rom.data,
             inputs: self.sources([rom.address]),
@@ -205,7 +210,7 @@ impl<'a> Blocks<'a> {
         }
     }
 
-    fn kind(&self, id: NetId) -> Kind {
+    fn kind(&self, id: NetId) -> BlockKind {
         // Of what is multiplied, before it is extended to a sign.
         let width = |net: &NetId| match &self.design.net(*net).driver {
             Driver::Op(Op::Extend(of)) if !self.shown[net.index()] => self.design.width(*of),
@@ -213,30 +218,32 @@ impl<'a> Blocks<'a> {
         };
         match &self.design.net(id).driver {
             Driver::Register(register) => match self.design.register(*register).kind {
-                RegisterKind::Operand => Kind::Operand,
-                _ => Kind::Register,
+                RegisterKind::Operand => BlockKind::Operand,
+                _ => BlockKind::Register,
             },
-            Driver::Constant(_) => Kind::Constant,
-            Driver::Rom(_) => Kind::Rom,
+            Driver::Constant(_) => BlockKind::Constant,
+            Driver::Rom(_) => BlockKind::Rom,
             Driver::Op(op) => match op {
                 // What the selection is made by is what it is made of: narrowing that saturates.
-                Op::Mux { select, inputs } if self.limits(*select, inputs) => Kind::Limiter,
-                Op::Mux { inputs, .. } => Kind::Mux(inputs.len()),
-                Op::Mul(a, b) => Kind::Multiplier(width(a), width(b)),
-                Op::Add { .. } => Kind::Adder,
-                Op::Sub(..) => Kind::Subtractor,
-                Op::Equal(..) | Op::Less(..) => Kind::Comparator,
-                Op::Not(_) => Kind::Inverter,
-                Op::And(..) | Op::Or(..) | Op::Xor(..) | Op::Any(_) | Op::All(_) => Kind::Gate,
+                Op::Mux { select, inputs } if self.limits(*select, inputs) => BlockKind::Limiter,
+                Op::Mux { inputs, .. } => BlockKind::Mux(inputs.len()),
+                Op::Mul(a, b) => BlockKind::Multiplier(width(a), width(b)),
+                Op::Add { .. } => BlockKind::Adder,
+                Op::Sub(..) => BlockKind::Subtractor,
+                Op::Equal(..) | Op::Less(..) => BlockKind::Comparator,
+                Op::Not(_) => BlockKind::Inverter,
+                Op::And(..) | Op::Or(..) | Op::Xor(..) | Op::Any(_) | Op::All(_) => BlockKind::Gate,
                 Op::Relabel(of) | Op::Slice { of, .. } | Op::Extend(of)
                     if !self.shown[of.index()]
                         && matches!(self.design.net(*of).driver, Driver::Op(_)) =>
                 {
                     self.kind(*of)
                 }
-                Op::Relabel(_) | Op::Slice { .. } | Op::Extend(_) | Op::Concat(_) => Kind::Wiring,
+                Op::Relabel(_) | Op::Slice { .. } | Op::Extend(_) | Op::Concat(_) => {
+                    BlockKind::Wiring
+                }
             },
-            Driver::Undriven | Driver::Input | Driver::Field(_) => Kind::Other,
+            Driver::Undriven | Driver::Input | Driver::Field(_) => BlockKind::Other,
         }
     }
 

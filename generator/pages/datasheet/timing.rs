@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::waves::{Lane, MICROINSTRUCTION, Shape, Waves};
+use super::waves::{Lane, LaneStyle, MICROINSTRUCTION, Waves};
 use crate::pages::drawing::{Drawing, Item, text_width};
 
 /// Of the type.
@@ -69,7 +69,7 @@ fn label(lane: &Lane) -> String {
 /// cut.
 fn clock_widths(waves: &Waves) -> [i32; 2] {
     let wanted = |lanes: &mut dyn Iterator<Item = &Lane>| {
-        let widths = lanes.filter(|lane| lane.shape == Shape::Bus).flat_map(|lane| {
+        let widths = lanes.filter(|lane| lane.shape == LaneStyle::Bus).flat_map(|lane| {
             let segments = segments(lane, 0..lane.values.len()).into_iter();
             segments.map(|(from, to)| {
                 let text = lane.values[from].as_deref().unwrap_or_default();
@@ -118,9 +118,9 @@ impl Grid<'_> {
             let top = head + PITCH * row as i32 + (PITCH - SWING) / 2;
             items.push(Item::text("label", self.left - 8, top + SWING - 4, label(lane)));
             match lane.shape {
-                Shape::Clock => items.push(Item::path("wave", self.clock(top))),
-                Shape::Bit => items.push(Item::path("wave", self.bit(lane, top))),
-                Shape::Bus => self.bus(lane, top, items),
+                LaneStyle::Clock => items.push(Item::path("wave", self.clock(top))),
+                LaneStyle::Bit => items.push(Item::path("wave", self.bit(lane, top))),
+                LaneStyle::Bus => self.bus(lane, top, items),
             }
         }
         for at in self.gaps() {

@@ -41,14 +41,14 @@ pub struct Lane {
     /// The number of its block in the source's figure.
     pub number: Option<u16>,
     /// How it is drawn.
-    pub shape: Shape,
+    pub shape: LaneStyle,
     /// In each clock that is shown; `None` where the value means nothing yet.
     pub values: Vec<Option<String>>,
 }
 
 /// How a lane is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shape {
+pub enum LaneStyle {
     /// A rising edge begins each clock.
     Clock,
     /// High or low.
@@ -182,13 +182,13 @@ impl Waves {
                 wave.push('|');
             }
             wave.push(match (lane.shape, value) {
-                (Shape::Clock, _) if at == 0 => 'p',
-                (Shape::Clock, _) => '.',
+                (LaneStyle::Clock, _) if at == 0 => 'p',
+                (LaneStyle::Clock, _) => '.',
                 _ if before == Some(value) => '.',
                 (_, None) => 'x',
-                (Shape::Bit, Some(bit)) if bit == "1" => '1',
-                (Shape::Bit, Some(_)) => '0',
-                (Shape::Bus, Some(text)) => {
+                (LaneStyle::Bit, Some(bit)) if bit == "1" => '1',
+                (LaneStyle::Bit, Some(_)) => '0',
+                (LaneStyle::Bus, Some(text)) => {
                     data.push(text.clone());
                     '='
                 }
@@ -217,11 +217,16 @@ fn probes(design: &Design, handshake: [NetId; 4]) -> Vec<Probe> {
 }
 
 fn clock_lane(clocks: usize) -> Lane {
-    Lane { name: "clk".to_owned(), number: None, shape: Shape::Clock, values: vec![None; clocks] }
+    Lane {
+        name: "clk".to_owned(),
+        number: None,
+        shape: LaneStyle::Clock,
+        values: vec![None; clocks],
+    }
 }
 
-fn shape(format: Format) -> Shape {
-    if format.width() == 1 { Shape::Bit } else { Shape::Bus }
+fn shape(format: Format) -> LaneStyle {
+    if format.width() == 1 { LaneStyle::Bit } else { LaneStyle::Bus }
 }
 
 /// The lane of a probe; none for a register that the computation leaves alone.
@@ -258,7 +263,7 @@ fn microprogram_lane(design: &Design, addresses: &[u64], busy: &[u64]) -> Lane {
     Lane {
         name: MICROINSTRUCTION.to_owned(),
         number: None,
-        shape: Shape::Bus,
+        shape: LaneStyle::Bus,
         values: addresses
             .iter()
             .zip(busy)
@@ -315,9 +320,9 @@ mod tests {
             what: "one computation",
             clocks: vec![0, 1, 7, 8],
             lanes: vec![
-                lane("clk", Shape::Clock, [None; 4]),
-                lane("busy", Shape::Bit, ["0", "1", "1", "0"].map(Some)),
-                lane("r", Shape::Bus, [None, None, Some("5"), Some("6")]),
+                lane("clk", LaneStyle::Clock, [None; 4]),
+                lane("busy", LaneStyle::Bit, ["0", "1", "1", "0"].map(Some)),
+                lane("r", LaneStyle::Bus, [None, None, Some("5"), Some("6")]),
             ],
         };
         let text = waves.wavedrom().expect("JSON");

@@ -5,7 +5,7 @@ use std::panic::Location;
 use glint::fixed::{Format, mask};
 use glint::hdl::netlist::{
     About, Control, Design, Driver, Field, FieldId, FieldKind, Microinstruction, Net, NetId, Op,
-    Port, RegId, Register, RegisterKind, Role, Rom, RomId, Sequence, Unit,
+    Partition, Port, RegId, Register, RegisterKind, Role, Rom, RomId, Sequence,
 };
 
 /// Splitmix64.
@@ -50,9 +50,9 @@ const WORDS: usize = 6;
 /// The design of a seed.
 pub fn design(seed: u64) -> Design {
     let mut build =
-        Build { random: Random::new(seed), design: skeleton(seed), unit: Unit::Control };
+        Build { random: Random::new(seed), design: skeleton(seed), partition: Partition::Control };
     build.control();
-    build.unit = Unit::Datapath;
+    build.partition = Partition::Datapath;
     build.datapath();
     build.design.ports.sort_by_key(|port| !port.role.is_input());
     build.design
@@ -77,7 +77,7 @@ fn skeleton(seed: u64) -> Design {
 struct Build {
     random: Random,
     design: Design,
-    unit: Unit,
+    partition: Partition,
 }
 
 impl Build {
@@ -95,7 +95,7 @@ impl Build {
                 String::new()
             },
             named,
-            unit: self.unit,
+            partition: self.partition,
             location: Location::caller(),
         });
         id
@@ -214,7 +214,8 @@ impl Build {
             })
             .collect();
         for at in 0..40 {
-            self.unit = if self.random.chance(90) { Unit::Datapath } else { Unit::Control };
+            self.partition =
+                if self.random.chance(90) { Partition::Datapath } else { Partition::Control };
             match at {
                 10 | 20 => self.memory(at == 20),
                 15 | 25 | 35 => {
@@ -226,7 +227,7 @@ impl Build {
                 _ => self.cell(),
             }
         }
-        self.unit = Unit::Datapath;
+        self.partition = Partition::Datapath;
         for (id, q) in loops {
             let width = self.design.width(q);
             let data = self.of_width(width, None);

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::Arguments;
 use crate::cli::commands::Loaded;
 use crate::cli::commands::mismatch::{first_clock, waveform_of};
-use crate::cli::failure::{self, Usage};
+use crate::cli::failure::{self, WrongUsage};
 use crate::cli::{Output, progress, staged, tables};
 use crate::package;
 use crate::tools::{BenchDifference, BenchOutcome, Simulator, bench_waveform, run_bench};
@@ -46,11 +46,11 @@ pub fn benches(
     which: Simulator,
 ) -> Result<bool> {
     if arguments.vcd.is_some() {
-        bail!(Usage("--vcd is for the built-in simulator".to_owned()));
+        bail!(WrongUsage("--vcd is for the built-in simulator".to_owned()));
     }
     let points = arguments.points.unwrap_or(POINTS);
     if points > MOST_POINTS {
-        bail!(Usage(format!(
+        bail!(WrongUsage(format!(
             "--points {points}: an external simulator takes at most {MOST_POINTS}"
         )));
     }

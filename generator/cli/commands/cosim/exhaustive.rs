@@ -14,7 +14,7 @@ use serde_json::json;
 use super::Arguments;
 use crate::base::{input, text};
 use crate::cli::commands::load;
-use crate::cli::failure::Usage;
+use crate::cli::failure::WrongUsage;
 use crate::cli::interrupt::Deferred;
 use crate::cli::{Output, progress, staged, tables};
 use crate::cosim::exhaustive::{Job, Shard, State, kept};
@@ -32,7 +32,7 @@ const CORES: [u32; 3] = [1, 16, 1000];
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     if arguments.resume.is_some() && loaded.len() != 1 {
-        bail!(Usage(format!("--resume is for one configuration; here are {}", loaded.len())));
+        bail!(WrongUsage(format!("--resume is for one configuration; here are {}", loaded.len())));
     }
     let mut list = Vec::new();
     let mut holds = true;

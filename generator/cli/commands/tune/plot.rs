@@ -3,9 +3,9 @@
 use anyhow::{Result, bail};
 
 use super::Arguments;
-use crate::evidence::chart::{Axis, Chart, Series};
+use crate::evidence::chart::{Chart, ChartAxis, Series};
 use crate::pages::plots;
-use crate::tune::{Answer, Unit};
+use crate::tune::{Answer, ErrorUnit};
 
 /// What the page's style sheet says elsewhere.
 const STYLE: &str = "<style>svg{background:#fcfcfb}text{fill:#1c1d1f;font-family:sans-serif}.ink{stroke:#5b5f66}text.ink{stroke:none}\
@@ -26,8 +26,8 @@ pub fn plot(answer: &Answer, arguments: &Arguments) -> Result<String> {
         bail!("the front is a single configuration, and no line to plot");
     }
     let unit = match arguments.unit {
-        Unit::F => "error of f",
-        Unit::Output => "error in output units",
+        ErrorUnit::F => "error of f",
+        ErrorUnit::Output => "error in output units",
     };
     let values: Vec<f64> = (0..answer.front.len()).map(area).collect();
     let chart = Chart {
@@ -35,8 +35,8 @@ pub fn plot(answer: &Answer, arguments: &Arguments) -> Result<String> {
         title: format!("{}: area over proved error", arguments.device),
         caption: "Each corner is a configuration that none of those looked at betters in both."
             .to_owned(),
-        x: Axis::logarithmic(unit, low * 0.95, high * 1.05),
-        y: Axis::linear(
+        x: ChartAxis::logarithmic(unit, low * 0.95, high * 1.05),
+        y: ChartAxis::linear(
             &format!(
                 "{}: look-up tables of {}, blocks counted in",
                 arguments.device,

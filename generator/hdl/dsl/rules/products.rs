@@ -3,13 +3,13 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::View;
+use super::SelectedProduct;
 use crate::base::diagnostic::Diagnostic;
 use crate::hdl::netlist::{Design, Driver, FieldKind, NetId, Op, turned};
 
 /// Registers of `design` that are loaded with a product under a selection that means another one; `views` are the
 /// products that a selection gives their meaning.
-pub(super) fn check(design: &Design, views: &HashMap<NetId, View>) -> Vec<Diagnostic> {
+pub(super) fn check(design: &Design, views: &HashMap<NetId, SelectedProduct>) -> Vec<Diagnostic> {
     let mut checker = Checker { design, views, found: Vec::new() };
     for at in 0..design.control.microprogram.len() {
         checker.selections(at);
@@ -19,7 +19,7 @@ pub(super) fn check(design: &Design, views: &HashMap<NetId, View>) -> Vec<Diagno
 
 struct Checker<'a> {
     design: &'a Design,
-    views: &'a HashMap<NetId, View>,
+    views: &'a HashMap<NetId, SelectedProduct>,
     found: Vec<Diagnostic>,
 }
 
@@ -79,7 +79,13 @@ impl Checker<'_> {
     }
 
     /// Microinstruction `at` loads `register`, but the selection of microinstruction `under` is wrong for that.
-    fn wrong_product(&self, at: usize, under: usize, register: NetId, view: &View) -> Diagnostic {
+    fn wrong_product(
+        &self,
+        at: usize,
+        under: usize,
+        register: NetId,
+        view: &SelectedProduct,
+    ) -> Diagnostic {
         let field = &self.design.control.fields[view.field.index()];
         let choice = |value: u64| match &field.kind {
             FieldKind::Select(choices) => {

@@ -5,7 +5,7 @@ use std::panic::Location;
 use crate::base::fixed::{Format, mask};
 use crate::hdl::netlist::{
     About, Control, Design, Driver, Field, FieldId, FieldKind, Microinstruction, Net, NetId, Op,
-    Port, RegId, Register, RegisterKind, Role, Rom, RomId, Sequence, Unit,
+    Partition, Port, RegId, Register, RegisterKind, Role, Rom, RomId, Sequence,
 };
 
 /// A design under construction. It has the input port `rst_n`, number 0.
@@ -46,7 +46,7 @@ impl Build {
             block: None,
             doc: String::new(),
             named: true,
-            unit: Unit::Datapath,
+            partition: Partition::Datapath,
             location: Location::caller(),
         });
         NetId(self.design.nets.len() as u32 - 1)

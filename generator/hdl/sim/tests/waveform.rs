@@ -8,7 +8,7 @@ use vcd::{Command, IdCode, Parser, ScopeItem};
 
 use super::build::Build;
 use crate::base::fixed::Format;
-use crate::hdl::netlist::{Design, Driver, Op, RegId, RomId, Unit};
+use crate::hdl::netlist::{Design, Driver, Op, Partition, RegId, RomId};
 use crate::hdl::sim::Simulator;
 
 /// A file in memory that can be read while the simulator writes it.
@@ -70,7 +70,7 @@ fn design() -> Design {
     let hidden = b.op("hidden", Format::signed(63, 0), Op::Not(wide));
     b.design.nets[hidden.index()].named = false;
     for net in [address, not, run, select] {
-        b.design.nets[net.index()].unit = Unit::Control;
+        b.design.nets[net.index()].partition = Partition::Control;
     }
     b.design.control.rom = RomId(0);
     b.design.control.address = RegId(0);

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use crate::hdl::netlist::{Design, Driver, FieldId, NetId, Role, Sequence};
-use crate::pages::account::blocks::{Block, Blocks, Kind};
+use crate::pages::account::blocks::{Block, BlockKind, Blocks};
 use crate::pages::account::format_text;
 
 /// Boxes and the wires between them.
@@ -17,7 +17,7 @@ pub struct Graph {
 /// A box of the diagram.
 pub struct Node {
     /// How it is drawn.
-    pub form: Form,
+    pub form: BoxForm,
     /// In the source's figure.
     pub number: Option<u16>,
     /// Its name.
@@ -32,7 +32,7 @@ pub struct Node {
 
 /// How a box is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Form {
+pub enum BoxForm {
     /// A port at the top.
     Input,
     /// A port at the bottom.
@@ -40,7 +40,7 @@ pub enum Form {
     /// The control unit.
     Control,
     /// A block of the datapath.
-    Block(Kind),
+    Block(BlockKind),
 }
 
 /// A wire.
@@ -108,7 +108,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    fn port(&mut self, net: NetId, form: Form) -> usize {
+    fn port(&mut self, net: NetId, form: BoxForm) -> usize {
         let found = self.design.net(net);
         let format = format_text(found.format);
         self.add(Node {
@@ -125,7 +125,7 @@ impl<'a> Builder<'a> {
     fn inputs(&mut self) {
         for port in self.design.inputs() {
             if matches!(port.role, Role::Operand { .. } | Role::Start) {
-                let at = self.port(port.net, Form::Input);
+                let at = self.port(port.net, BoxForm::Input);
                 self.driver.insert(port.net, at);
             }
         }
@@ -133,7 +133,7 @@ impl<'a> Builder<'a> {
 
     fn outputs(&mut self, control: usize) {
         for port in self.design.outputs() {
-            let at = self.port(port.net, Form::Output);
+            let at = self.port(port.net, BoxForm::Output);
             let handshake = port.role.is_status();
             let sources = match &self.design.net(port.net).driver {
                 Driver::Op(op) if !handshake => self.blocks.sources(op.operands()),
@@ -153,7 +153,7 @@ impl<'a> Builder<'a> {
         let rom = self.design.rom(control.rom);
         let (words, width) = (control.microprogram.len(), self.design.width(rom.data));
         let at = self.add(Node {
-            form: Form::Control,
+            form: BoxForm::Control,
             number: rom.block,
             name: "control unit".to_owned(),
             caption: format!("{words} words × {width} bits"),
@@ -186,7 +186,7 @@ impl<'a> Builder<'a> {
             }
             let kind = block.kind.to_string();
             let at = self.add(Node {
-                form: Form::Block(block.kind),
+                form: BoxForm::Block(block.kind),
                 number: block.number,
                 name: block.name.to_owned(),
                 caption: caption(&block),
@@ -203,7 +203,7 @@ impl<'a> Builder<'a> {
     fn turned_by(&self, block: &Block) -> String {
         let fields = self.blocks.fields(block.output);
         let mut lines: Vec<String> = fields.into_iter().map(|field| self.lines(field)).collect();
-        if block.kind == Kind::Operand {
+        if block.kind == BlockKind::Operand {
             let strobes = self.design.inputs().filter_map(|port| match port.role {
                 Role::Operand { strobe } if block.inputs.contains(&port.net) => Some(strobe),
                 _ => None,
@@ -227,7 +227,7 @@ impl<'a> Builder<'a> {
 /// What a block is made of, and its format; that a register takes an operand is to be seen from the port above it.
 fn caption(block: &Block) -> String {
     match block.kind {
-        Kind::Operand => format!("{} · {}", Kind::Register, block.format),
+        BlockKind::Operand => format!("{} · {}", BlockKind::Register, block.format),
         kind => format!("{kind} · {}", block.format),
     }
 }

@@ -9,9 +9,9 @@ mod route;
 mod tracks;
 
 use crate::hdl::netlist::Design;
-use crate::pages::account::blocks::Kind;
+use crate::pages::account::blocks::BlockKind;
 use crate::pages::drawing::{Drawing, Item, text_width};
-use graph::{Form, Graph, Node};
+use graph::{BoxForm, Graph, Node};
 use place::Placement;
 use route::{Body, LANE, Net, Routes};
 
@@ -65,7 +65,7 @@ pub fn drawing(design: &Design) -> Drawing {
     for (at, one) in graph.boxes.iter().enumerate() {
         draw_box(one, routes.left[at], &bodies[at], &mut items);
     }
-    let count = |wanted: fn(Form) -> bool| {
+    let count = |wanted: fn(BoxForm) -> bool| {
         let boxes = graph.boxes.iter();
         boxes.filter(|one| wanted(one.form)).count()
     };
@@ -75,9 +75,9 @@ pub fn drawing(design: &Design) -> Drawing {
         description: format!(
             "{} blocks and the control unit between {} inputs at the top and {} outputs at the bottom. The table of blocks \
              says what each of them takes.",
-            count(|form| matches!(form, Form::Block(_))),
-            count(|form| form == Form::Input),
-            count(|form| form == Form::Output),
+            count(|form| matches!(form, BoxForm::Block(_))),
+            count(|form| form == BoxForm::Input),
+            count(|form| form == BoxForm::Output),
         ),
         width: coordinate(bottom(&bodies, &routes)) + BORDER,
         height: coordinate(routes.width) + BORDER,
@@ -120,7 +120,7 @@ impl Sizes {
 }
 
 fn is_port(one: &Node) -> bool {
-    matches!(one.form, Form::Input | Form::Output)
+    matches!(one.form, BoxForm::Input | BoxForm::Output)
 }
 
 /// The text of a box, with the class of each line; the control lines that turn it are the last.
@@ -183,7 +183,7 @@ fn draw_box(one: &Node, left: f64, body: &Body, items: &mut Vec<Item>) {
     let (width, height) = ((body.lower - body.upper).round() as i32, body.width.round() as i32);
     items.push(Item::Open { class: "block", title: one.title.clone() });
     items.push(Item::path(class(one.form), outline(one.form, x, y, width, height)));
-    if matches!(one.form, Form::Block(Kind::Register | Kind::Operand)) {
+    if matches!(one.form, BoxForm::Block(BlockKind::Register | BlockKind::Operand)) {
         // The mark of the clock.
         let (right, edge) = (x + width, y + height);
         items.push(Item::path("notch", format!("M{right} {}l-6 -4l6 -4", edge - 3)));
@@ -202,26 +202,26 @@ fn draw_box(one: &Node, left: f64, body: &Body, items: &mut Vec<Item>) {
 }
 
 /// The class of a box, which gives it its colour; its caption says the same.
-fn class(form: Form) -> &'static str {
+fn class(form: BoxForm) -> &'static str {
     match form {
-        Form::Input | Form::Output => "box port",
-        Form::Control => "box control",
-        Form::Block(Kind::Register | Kind::Operand) => "box register",
-        Form::Block(Kind::Rom | Kind::Constant) => "box memory",
-        Form::Block(Kind::Mux(_)) => "box mux",
-        Form::Block(_) => "box",
+        BoxForm::Input | BoxForm::Output => "box port",
+        BoxForm::Control => "box control",
+        BoxForm::Block(BlockKind::Register | BlockKind::Operand) => "box register",
+        BoxForm::Block(BlockKind::Rom | BlockKind::Constant) => "box memory",
+        BoxForm::Block(BlockKind::Mux(_)) => "box mux",
+        BoxForm::Block(_) => "box",
     }
 }
 
 /// Ports point in the direction of the signal, down the page; muxes narrow toward their output.
-fn outline(form: Form, x: i32, y: i32, width: i32, height: i32) -> String {
+fn outline(form: BoxForm, x: i32, y: i32, width: i32, height: i32) -> String {
     let (right, bottom, middle) = (x + width, y + height, x + width / 2);
     match form {
-        Form::Input | Form::Output => {
+        BoxForm::Input | BoxForm::Output => {
             let neck = bottom - NECK;
             format!("M{x} {y}H{right}V{neck}L{middle} {bottom}L{x} {neck}Z")
         }
-        Form::Block(Kind::Mux(_)) => {
+        BoxForm::Block(BlockKind::Mux(_)) => {
             let (left, right, wide) = (x + 6, right - 6, right);
             format!("M{x} {y}H{wide}L{right} {bottom}H{left}Z")
         }

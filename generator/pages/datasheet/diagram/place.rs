@@ -3,8 +3,8 @@
 use dagre::graph::{Graph as Layered, GraphOptions};
 use dagre::{EdgeLabel, LayoutOptions, NodeLabel, RankDir, Ranker, layout};
 
-use super::graph::{Form, Graph};
-use crate::pages::account::blocks::Kind;
+use super::graph::{BoxForm, Graph};
+use crate::pages::account::blocks::BlockKind;
 
 /// Between boxes of a column.
 const BOXES: f64 = 12.0;
@@ -70,12 +70,13 @@ impl Placement {
         for (at, &height) in heights.iter().enumerate() {
             layered.set_node(at.to_string(), Some(node(height)));
             let edge = EdgeLabel { weight: LAST, ..EdgeLabel::default() };
-            if graph.boxes[at].form == Form::Output && (handshake || !driven_by_control(graph, at))
+            if graph.boxes[at].form == BoxForm::Output
+                && (handshake || !driven_by_control(graph, at))
             {
                 layered.set_edge(at.to_string(), END.to_owned(), Some(edge), None);
             }
         }
-        let is_port = |at: usize| matches!(graph.boxes[at].form, Form::Input | Form::Output);
+        let is_port = |at: usize| matches!(graph.boxes[at].form, BoxForm::Input | BoxForm::Output);
         let ends = |wire: usize| {
             let (from, to) = (graph.wires[wire].from, graph.wires[wire].to);
             let (from, to) = if back[wire] { (to, from) } else { (from, to) };
@@ -137,15 +138,15 @@ impl Placement {
 /// Whether an output is the control unit's.
 fn driven_by_control(graph: &Graph, output: usize) -> bool {
     let mut drivers = graph.wires.iter().filter(|wire| wire.to == output);
-    drivers.any(|wire| graph.boxes[wire.from].form == Form::Control)
+    drivers.any(|wire| graph.boxes[wire.from].form == BoxForm::Control)
 }
 
 /// Which wires lead back: of each loop the one into the mux that chooses among the most, where it has one.
 pub fn back(graph: &Graph) -> Vec<bool> {
     let weight = |at: usize| match graph.boxes[at].form {
-        Form::Block(Kind::Mux(inputs)) if !graph.boxes[at].control.is_empty() => 2 + inputs,
-        Form::Block(Kind::Mux(_)) => 2,
-        Form::Block(Kind::Register) => 1,
+        BoxForm::Block(BlockKind::Mux(inputs)) if !graph.boxes[at].control.is_empty() => 2 + inputs,
+        BoxForm::Block(BlockKind::Mux(_)) => 2,
+        BoxForm::Block(BlockKind::Register) => 1,
         _ => 0,
     };
     let mut order: Vec<usize> = (0..graph.wires.len()).collect();

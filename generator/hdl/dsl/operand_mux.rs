@@ -1,7 +1,7 @@
 //! A multiplier shared by operands of different formats.
 //!
 //! The formats of what a shared multiplier multiplies differ from word to word, so its operand muxes
-//! carry bits, not values: a [`Bus`] is as wide as its widest input. The product means something only
+//! carry bits, not values: a [`OperandMux`] is as wide as its widest input. The product means something only
 //! together with the selection, and [`SharedProduct::of`] gives it back its format: exact, with its
 //! range, for one selection or for several that agree in their point. [`Designer::finish`] then proves for
 //! every word that a register which takes such a view is loaded under a selection that it is for.
@@ -9,13 +9,13 @@
 use std::cmp::Ordering;
 
 use super::signal::product_range;
-use super::{Designer, Select, Setting, Signal, View};
+use super::{Designer, Select, SelectedProduct, Setting, Signal};
 use crate::base::fixed::Format;
 use crate::hdl::netlist::{Driver, FieldId, Op};
 
 /// A mux of operands of different formats.
 #[derive(Clone)]
-pub struct Bus<'d> {
+pub struct OperandMux<'d> {
     designer: &'d Designer,
     name: String,
     field: FieldId,
@@ -33,7 +33,7 @@ impl Designer {
         name: &str,
         select: Select<'d>,
         inputs: impl IntoIterator<Item = Signal<'d>>,
-    ) -> Bus<'d> {
+    ) -> OperandMux<'d> {
         let inputs = self.own_all(&inputs.into_iter().collect::<Vec<_>>());
         let select = self.own_select(select);
         select.check_inputs(name, inputs.len());
@@ -52,7 +52,14 @@ impl Designer {
             .collect();
         let op = Op::Mux { select: self.field_net(select.field()).id(), inputs: carried };
         let out = self.signal(self.add_net(name, format, (low, high), Driver::Op(op), true));
-        Bus { designer: self, name: name.to_owned(), field: select.field(), out, inputs, delay: 0 }
+        OperandMux {
+            designer: self,
+            name: name.to_owned(),
+            field: select.field(),
+            out,
+            inputs,
+            delay: 0,
+        }
     }
 
     /// The product of two buses under the same select lines.
@@ -65,8 +72,8 @@ impl Designer {
     pub fn shared_mul<'d>(
         &'d self,
         name: &str,
-        first: &Bus<'d>,
-        second: &Bus<'d>,
+        first: &OperandMux<'d>,
+        second: &OperandMux<'d>,
     ) -> SharedProduct<'d> {
         let (alike, other) = ((first.field, first.delay), (second.field, second.delay));
         if alike != other || first.inputs.len() != second.inputs.len() {
@@ -95,7 +102,7 @@ impl Designer {
     fn unsigned_core<'d>(
         &'d self,
         name: &str,
-        [signed, other]: [&Bus<'d>; 2],
+        [signed, other]: [&OperandMux<'d>; 2],
         ordered: impl FnOnce(Signal<'d>) -> (Signal<'d>, Signal<'d>),
     ) -> (Signal<'d>, Option<Excess<'d>>) {
         let low = signed.out.format().width() - 1;
@@ -121,7 +128,7 @@ impl Designer {
     }
 }
 
-impl<'d> Bus<'d> {
+impl<'d> OperandMux<'d> {
     /// The setting with which the mux passes `input` on. It must be one of the inputs.
     #[track_caller]
     pub fn pick(&self, input: Signal<'d>) -> Setting {
@@ -225,7 +232,7 @@ impl<'d> SharedProduct<'d> {
             }
             _ => resized(self.out, "view", format, range),
         };
-        let described = View { field: self.field, values, delay: self.delay };
+        let described = SelectedProduct { field: self.field, values, delay: self.delay };
         d.with(|inner| inner.views.insert(view.id(), described));
         view
     }
