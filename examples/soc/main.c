@@ -1,71 +1,79 @@
-/* A ball, pixel by pixel, once with the highlights of each core: what `glint render` draws with the options that `run` gives.
+/* A ball, pixel by pixel, once with the highlights of each device: what `glint render` draws with the options that `run` gives.
  *
- * The highlights of every row are computed in three ways, whose clocks are counted. A third series of points has roughness,
- * which a ball without a height map does not.
+ * The highlights of every pixel in the light are computed in all ways, whose clocks are counted. A third series of points has
+ * roughness, which a ball without a height map does not.
  */
 #include "ball.h"
 #include "system.h"
 #include "ways.h"
 
 /* ROWS are worked on together, as many as there is memory for. */
-enum { ROWS = 12, PIXELS = ROWS * WIDTH };
+enum { ROWS = 8, PIXELS = ROWS * WIDTH };
 
 static pixel pixels[PIXELS];
-static point points[PIXELS];
-static uint32_t colours[PIXELS];
+static span spans[PIXELS / 2];
+static unsigned span_count;
+static uint32_t operands[2 * PIXELS];
+static uint32_t frames[WAYS][PIXELS];
 
-/* Points so far, and the clocks of the core, the model, and the code by hand. */
+/* Pixels so far, and the clocks of each way. */
 typedef struct {
-    uint32_t points, spent[3];
+    uint32_t pixels, spent[WAYS];
 } tally;
 
-/* The colours of so many points in three ways; whether all are the same. */
-static int compute(const ways *of, unsigned count, tally *tally)
+/* The runs of pixels in the light. */
+static void find_spans(void)
 {
-    static uint32_t again[2][PIXELS];
-    if (count == 0) {
-        return 1;
-    }
-    const uint32_t start = clocks();
-    of->core(points, colours, count);
-    const uint32_t second = clocks();
-    of->model(points, again[0], count);
-    const uint32_t third = clocks();
-    of->hand(points, again[1], count);
-    const uint32_t end = clocks();
-    tally->points += count;
-    tally->spent[0] += second - start;
-    tally->spent[1] += third - second;
-    tally->spent[2] += end - third;
-    for (unsigned at = 0; at < count; at++) {
-        if (colours[at] != again[0][at] || colours[at] != again[1][at]) {
-            return 0;
+    span_count = 0;
+    unsigned run = 0;
+    for (unsigned at = 0; at < PIXELS; at++) {
+        run = at % WIDTH == 0 ? 0 : run;
+        if (pixels[at].lit) {
+            if (run == 0) {
+                spans[span_count++].first = at;
+            }
+            spans[span_count - 1].count = ++run;
+        } else {
+            run = 0;
         }
+    }
+}
+
+/* The highlights of all spans in every way; whether all are the same. */
+static int compute(const device *device, tally *tally)
+{
+    for (unsigned way = 0; way < WAYS; way++) {
+        const uint32_t start = clocks();
+        device->ways[way](spans, span_count, operands, frames[way]);
+        tally->spent[way] += clocks() - start;
+    }
+    for (const span *span = spans; span < spans + span_count; span++) {
+        for (unsigned at = span->first; at < span->first + span->count; at++) {
+            for (unsigned way = 1; way < WAYS; way++) {
+                if (frames[way][at] != frames[0][at]) {
+                    return 0;
+                }
+            }
+        }
+        tally->pixels += span->count;
     }
     return 1;
 }
 
-/* Whether a smooth surface has a highlight there: the program knows where it is 0, and asks nobody. */
-static int shines(const pixel *pixel, const ways *of)
-{
-    return pixel->lit && (0x100000u - pixel->cos_gamma) * EXPONENT < of->limit;
-}
-
 /* The picture of these rows; 0 if the ways do not agree. */
-static int draw(const ways *of, enum picture picture, tally *tally)
+static int draw(const device *device, enum picture picture, tally *tally)
 {
-    unsigned count = 0;
     for (unsigned at = 0; at < PIXELS; at++) {
-        if (shines(&pixels[at], of)) {
-            points[count++] = (point){pixels[at].cos_gamma, 0x100000u, 0};
+        operands[device->words * at] = pixels[at].cos_gamma;
+        if (device->words == 2) {
+            operands[2 * at + 1] = ONE;
         }
     }
-    if (!compute(of, count, tally)) {
+    if (!compute(device, tally)) {
         return 0;
     }
-    unsigned shaded = 0;
     for (unsigned at = 0; at < PIXELS; at++) {
-        const uint32_t colour = shines(&pixels[at], of) ? colours[shaded++] : 0;
+        const uint32_t colour = pixels[at].lit ? frames[0][at] : 0;
         for (unsigned channel = 0; channel < 3; channel++) {
             const double sum = pixels[at].base[channel] + (double)(colour >> (8 * channel) & 0xffu);
             show(picture, (uint32_t)((sum > 255.0 ? 255.0 : sum) + 0.5));
@@ -74,20 +82,18 @@ static int draw(const ways *of, enum picture picture, tally *tally)
     return 1;
 }
 
-/* The pixels in the light, with a roughness that looks random: cosines of dgamma down to 7/8, 29 degrees. */
+/* The same pixels with a roughness that looks random: cosines of dgamma down to 7/8, 29 degrees. */
 static int roughen(tally *tally)
 {
     static uint32_t state = 1;
-    unsigned count = 0;
     for (unsigned at = 0; at < PIXELS; at++) {
-        if (pixels[at].lit) {
-            state ^= state << 13;
-            state ^= state >> 17;
-            state ^= state << 5;
-            points[count++] = (point){pixels[at].cos_gamma, 0x100000u - (state >> 8 & 0x1ffffu), state & 1u};
-        }
+        state ^= state << 13;
+        state ^= state >> 17;
+        state ^= state << 5;
+        operands[2 * at] = pixels[at].cos_gamma;
+        operands[2 * at + 1] = (ONE - (state >> 8 & 0x1ffffu)) | (state & 1u ? NEGATIVE : 0u);
     }
-    return compute(&grain_ways, count, tally);
+    return compute(&grain, tally);
 }
 
 int main(void)
@@ -96,20 +102,20 @@ int main(void)
         return 1;
     }
     const vector light = unit((vector){-0.6, 0.8, 0.9});
-    tally shade = {0}, smooth = {0}, rough = {0};
+    tally of_shade = {0}, smooth = {0}, rough = {0};
     for (unsigned row = 0; row < HEIGHT; row += ROWS) {
         for (unsigned at = 0; at < PIXELS; at++) {
             pixels[at] = geometry(at % WIDTH, row + at / WIDTH, light);
         }
-        if (!draw(&shade_ways, SHADE_PICTURE, &shade) ||
-            !draw(&smooth_ways, GRAIN_PICTURE, &smooth) || !roughen(&rough)) {
+        find_spans();
+        if (!draw(&shade, SHADE_PICTURE, &of_shade) || !draw(&grain, GRAIN_PICTURE, &smooth) || !roughen(&rough)) {
             return 2;
         }
     }
-    const tally *const all[] = {&shade, &smooth, &rough};
+    const tally *const all[] = {&of_shade, &smooth, &rough};
     for (unsigned at = 0; at < 3; at++) {
-        number(all[at]->points);
-        for (unsigned way = 0; way < 3; way++) {
+        number(all[at]->pixels);
+        for (unsigned way = 0; way < WAYS; way++) {
             number(all[at]->spent[way]);
         }
     }

@@ -22,16 +22,18 @@ std::FILE* begin(const char* name) {
     return picture;
 }
 
-// What the program prints of a series of points: their number, and clocks of the core, the model, and the code by hand.
+constexpr unsigned SERIES = 3, WAYS = 4, BY_HAND = 2;
+const char* const NAMES[WAYS] = {"span engine:", "registers:", "C by hand:", "model in C:"};
+
+// A series of pixels: how many there are, and the clocks of each way.
 void report(const char* series, const uint32_t* numbers) {
-    const double points = numbers[0], core = numbers[1] / points;
-    std::printf("%s, %u highlights\n", series, numbers[0]);
-    std::printf("  the core:          %6.1f clocks a pixel\n", core);
-    const char* const names[] = {"C by hand:", "the model in C:"};
-    for (unsigned way : {0u, 1u}) {
-        const double software = numbers[way == 0 ? 3 : 2] / points;
-        std::printf("  %-18s %6.1f clocks a pixel, %.1f times those of the core\n", names[way], software,
-                    software / core);
+    const double pixels = numbers[0];
+    const uint32_t* const clocks = numbers + 1;
+    std::printf("%s, %u pixels\n", series, numbers[0]);
+    for (unsigned way = 0; way < WAYS; way++) {
+        std::printf("  %-12s %6.1f clocks a pixel", NAMES[way], clocks[way] / pixels);
+        if (way < BY_HAND) std::printf(", C by hand %.1f times as many", (double)clocks[BY_HAND] / clocks[way]);
+        std::printf("\n");
     }
 }
 
@@ -56,14 +58,14 @@ int main() {
         if (soc.failed) fail("the processor trapped, or a core refused an access");
         if (soc.end_write) {
             if (std::fclose(shade) != 0 || std::fclose(grain) != 0) fail("the pictures cannot be written");
-            if (soc.written != 0 || numbers.size() != 12) {
+            if (soc.written != 0 || numbers.size() != SERIES * (1 + WAYS)) {
                 std::fprintf(stderr, "the program ended with exit code %u\n", soc.written);
                 return 1;
             }
             std::printf("%llu clocks in all\n", (unsigned long long)clock);
             report("cosine-power", numbers.data());
-            report("rough, where it is smooth", numbers.data() + 4);
-            report("rough, where it is not", numbers.data() + 8);
+            report("rough, where it is smooth", numbers.data() + 1 + WAYS);
+            report("rough, where it is not", numbers.data() + 2 * (1 + WAYS));
             return 0;
         }
     }

@@ -1,10 +1,13 @@
-// A system on a chip that shades: PicoRV32, 64 kB of RAM, and two cores of Glint on Wishbone.
+// A system on a chip that shades: PicoRV32, 64 kB of RAM, and two devices of Glint. Each is there twice, so that both ways can
+// be compared: a sequential core behind registers on Wishbone, and a pipeline between AXI4-Streams with a span engine, span.v.
 //
-//  0x0000_0000  RAM, with the program
+//  0x0000_0000  RAM, with the program, the operands and the frame buffer
 //  0x1000_0000  the registers of `shade`, cosine-power
 //  0x2000_0000  +0 a byte of the picture of `shade`, +4 a number to print, +8 the end, with an exit code, +12 a byte of
 //               the picture of `grain`
 //  0x3000_0000  the registers of `grain`, rough
+//  0x4000_0000  the span engine of `shade_pipeline`, cosine-power
+//  0x5000_0000  the span engine of `grain_pipeline`, rough
 
 `default_nettype none
 
@@ -67,25 +70,35 @@ module soc (
         .trace_data()
     );
 
-    // RAM answers in the first clock of a request: it is asked a clock ahead.
+    // RAM answers in the first clock of a request: it is asked a clock ahead. It has one port. The processor's requests go
+    // first, and it never asks in two clocks one after another; the others are the span engines'.
     reg  [31:0] ram [0:16383];
     initial $readmemh("firmware.hex", ram);
     reg         ram_ready;
     reg  [31:0] ram_rdata;
-    wire        la_ram = mem_la_addr[31:28] == 4'd0;
-    wire [13:0] la_at = mem_la_addr[15:2];
+    wire        la_ram = (mem_la_read | mem_la_write) & (mem_la_addr[31:28] == 4'd0);
+    wire        shade_asks;
+    wire        shade_writes;
+    wire [15:2] shade_at;
+    wire [31:0] shade_data;
+    wire        grain_asks;
+    wire        grain_writes;
+    wire [15:2] grain_at;
+    wire [31:0] grain_data;
+    wire [15:2] ram_at = la_ram ? mem_la_addr[15:2] : shade_asks ? shade_at : grain_at;
+    wire [31:0] ram_wdata = la_ram ? mem_la_wdata : shade_asks ? shade_data : grain_data;
+    wire        span_writes = shade_asks ? shade_writes : grain_asks & grain_writes;
+    wire [3:0]  ram_wstrb = la_ram ? {4{mem_la_write}} & mem_la_wstrb : {4{span_writes}};
     always @(posedge clk) begin
-        ram_ready <= rst_n & la_ram & (mem_la_read | mem_la_write);
-        if (mem_la_read) ram_rdata <= ram[la_at];
-        if (mem_la_write & la_ram) begin
-            if (mem_la_wstrb[0]) ram[la_at][7:0] <= mem_la_wdata[7:0];
-            if (mem_la_wstrb[1]) ram[la_at][15:8] <= mem_la_wdata[15:8];
-            if (mem_la_wstrb[2]) ram[la_at][23:16] <= mem_la_wdata[23:16];
-            if (mem_la_wstrb[3]) ram[la_at][31:24] <= mem_la_wdata[31:24];
-        end
+        ram_ready <= rst_n & la_ram;
+        ram_rdata <= ram[ram_at];
+        if (ram_wstrb[0]) ram[ram_at][7:0] <= ram_wdata[7:0];
+        if (ram_wstrb[1]) ram[ram_at][15:8] <= ram_wdata[15:8];
+        if (ram_wstrb[2]) ram[ram_at][23:16] <= ram_wdata[23:16];
+        if (ram_wstrb[3]) ram[ram_at][31:24] <= ram_wdata[31:24];
     end
 
-    // The cores, which are asked a clock ahead too, and then until they answer.
+    // The cores behind registers, which are asked a clock ahead too, and then until they answer.
     wire        la_any = mem_la_read | mem_la_write;
     wire        la_shade = la_any & (mem_la_addr[31:28] == 4'd1);
     wire        la_grain = la_any & (mem_la_addr[31:28] == 4'd3);
@@ -132,6 +145,109 @@ module soc (
     );
     assign failed = trap | shade_err | grain_err;
 
+    // The pipelines with their span engines.
+    wire        shade_ready;
+    wire [9:0]  shade_exponent;
+    wire [23:0] shade_colour;
+    wire [31:0] shade_operands;
+    wire        shade_operands_last;
+    wire        shade_operands_valid;
+    wire        shade_operands_ready;
+    wire [23:0] shade_result;
+    wire        shade_result_last;
+    wire        shade_result_valid;
+    wire        shade_result_ready;
+    span #(.WORDS(1)) shade_span (
+        .clk(clk),
+        .rst_n(rst_n),
+        .request(mem_valid & (mem_addr[31:28] == 4'd4)),
+        .write(|mem_wstrb),
+        .at(mem_addr[4:2]),
+        .data(mem_wdata),
+        .ready(shade_ready),
+        .ram_free(~la_ram),
+        .ram_request(shade_asks),
+        .ram_write(shade_writes),
+        .ram_at(shade_at),
+        .ram_data(shade_data),
+        .ram_read_data(ram_rdata),
+        .exponent(shade_exponent),
+        .colour(shade_colour),
+        .operands(shade_operands),
+        .operands_last(shade_operands_last),
+        .operands_valid(shade_operands_valid),
+        .operands_ready(shade_operands_ready),
+        .result(shade_result),
+        .result_last(shade_result_last),
+        .result_valid(shade_result_valid),
+        .result_ready(shade_result_ready)
+    );
+    shade_pipeline_axis shade_pipeline (
+        .aclk(clk),
+        .aresetn(rst_n),
+        .s_axis_tdata({shade_colour, 6'd0, shade_exponent, shade_operands[23:0]}),
+        .s_axis_tuser(1'b0),
+        .s_axis_tlast(shade_operands_last),
+        .s_axis_tvalid(shade_operands_valid),
+        .s_axis_tready(shade_operands_ready),
+        .m_axis_tdata(shade_result),
+        .m_axis_tuser(),
+        .m_axis_tlast(shade_result_last),
+        .m_axis_tvalid(shade_result_valid),
+        .m_axis_tready(shade_result_ready)
+    );
+    wire        grain_ready;
+    wire [9:0]  grain_exponent;
+    wire [23:0] grain_colour;
+    wire [63:0] grain_operands;     // cos gamma; cos dgamma, with the sign of dgamma in the highest bit
+    wire        grain_operands_last;
+    wire        grain_operands_valid;
+    wire        grain_operands_ready;
+    wire [23:0] grain_result;
+    wire        grain_result_last;
+    wire        grain_result_valid;
+    wire        grain_result_ready;
+    span #(.WORDS(2)) grain_span (
+        .clk(clk),
+        .rst_n(rst_n),
+        .request(mem_valid & (mem_addr[31:28] == 4'd5)),
+        .write(|mem_wstrb),
+        .at(mem_addr[4:2]),
+        .data(mem_wdata),
+        .ready(grain_ready),
+        .ram_free(~la_ram & ~shade_asks),
+        .ram_request(grain_asks),
+        .ram_write(grain_writes),
+        .ram_at(grain_at),
+        .ram_data(grain_data),
+        .ram_read_data(ram_rdata),
+        .exponent(grain_exponent),
+        .colour(grain_colour),
+        .operands(grain_operands),
+        .operands_last(grain_operands_last),
+        .operands_valid(grain_operands_valid),
+        .operands_ready(grain_operands_ready),
+        .result(grain_result),
+        .result_last(grain_result_last),
+        .result_valid(grain_result_valid),
+        .result_ready(grain_result_ready)
+    );
+    grain_pipeline_axis grain_pipeline (
+        .aclk(clk),
+        .aresetn(rst_n),
+        .s_axis_tdata({grain_colour, 7'd0, grain_operands[63], 6'd0, grain_exponent, grain_operands[55:32],
+                       grain_operands[23:0]}),
+        .s_axis_tuser(1'b0),
+        .s_axis_tlast(grain_operands_last),
+        .s_axis_tvalid(grain_operands_valid),
+        .s_axis_tready(grain_operands_ready),
+        .m_axis_tdata(grain_result),
+        .m_axis_tuser(),
+        .m_axis_tlast(grain_result_last),
+        .m_axis_tvalid(grain_result_valid),
+        .m_axis_tready(grain_result_ready)
+    );
+
     // To the outside.
     wire of_console = mem_valid & (mem_addr[31:28] == 4'd2) & ~console_ready;
     reg  console_ready;
@@ -144,7 +260,7 @@ module soc (
         written <= mem_wdata;
     end
 
-    assign mem_ready = ram_ready | shade_ack | grain_ack | console_ready;
+    assign mem_ready = ram_ready | shade_ack | grain_ack | shade_ready | grain_ready | console_ready;
     assign mem_rdata = shade_ack ? shade_rdata : grain_ack ? grain_rdata : ram_rdata;
 endmodule
 

@@ -1,4 +1,5 @@
-/* The ways to highlights: a core, its model in C, and C by hand. All have to agree. */
+/* The ways to highlights: a pipeline that a span engine feeds, a core behind registers, its model in C, and C by hand. All have to
+ * agree. */
 #ifndef WAYS_H
 #define WAYS_H
 
@@ -7,23 +8,31 @@
 /* The specular exponent n of everything. */
 enum { EXPONENT = 80 };
 
-/* What changes from point to point. Cosines are u1.20; cosine-power takes the first alone. */
+/* Pixels side by side in a row that are in the light: the first, as an index of the frame buffer, and how many. */
 typedef struct {
-    uint32_t cos_gamma, cos_dgamma, dgamma_negative;
-} point;
+    unsigned first, count;
+} span;
 
-/* The colours of highlights: red, green and blue in the lowest bytes of a word. */
+/* From the operands of so many spans to the frame buffer, both indexed by pixels: colours have red, green and blue in their lowest
+ * bytes. */
+typedef void shader(const span *spans, unsigned count, const uint32_t *operands, uint32_t *frame);
+
+enum way { BY_SPANS, BY_REGISTERS, BY_HAND, BY_MODEL, WAYS };
+
 typedef struct {
-    uint32_t limit; /* of (1 - cos gamma) * n, u11.20: from there on a smooth surface has no highlight */
-    void (*core)(const point *points, uint32_t *colours, unsigned count);
-    void (*model)(const point *points, uint32_t *colours, unsigned count);
-    void (*hand)(const point *points, uint32_t *colours, unsigned count);
-} ways;
+    unsigned words; /* of operands a pixel */
+    shader *ways[WAYS];
+} device;
 
-/* `smooth_ways` is `grain_ways` where dgamma is 0: the core keeps an operand that does not change. */
-extern const ways shade_ways, grain_ways, smooth_ways;
+/* cosine-power: a word a pixel, cos gamma in u1.20. */
+extern const device shade;
 
-/* Sets a core up. Whether it is there, with the configuration of its header. */
+/* rough: cos gamma, then cos dgamma in u1.20, whose highest bit says that dgamma is negative. */
+extern const device grain;
+#define ONE 0x100000u
+#define NEGATIVE 0x80000000u
+
+/* Sets a device up. Whether it is there, with the configuration of its header. */
 int shade_begin(double specular);
 int grain_begin(double specular);
 
