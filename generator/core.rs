@@ -64,11 +64,14 @@ impl Core {
     /// Builds and checks the design.
     ///
     /// # Errors
-    /// The mistakes of the description.
+    /// The mistakes of the description; constraints with a clock that the pipeline is not made for.
     pub fn new(device: Device, config: Config) -> Result<Self> {
         let design = device
             .design(&config)
             .with_context(|| format!("the description of `{}` is wrong", device.name))?;
+        if let Some(pipeline) = &design.pipeline {
+            package::check_clock(&config, pipeline)?;
+        }
         let contract = (device.contract)(&config);
         Ok(Self { device, config, design, contract })
     }
@@ -202,7 +205,7 @@ impl Core {
     /// # Errors
     /// Golden model and simulation do not agree, or the design cannot be written as Verilog.
     pub fn files(&self, config: &str, vectors: Vectors) -> Result<Vec<OutputFile>> {
-        let around = Surroundings::new(&self.config);
+        let around = Surroundings::new(&self.config, self.design.pipeline.as_ref());
         let sequential = match &self.design.pipeline {
             Some(_) if around.software => Some(self.device.sequential(&self.config)?),
             _ => None,
@@ -227,7 +230,7 @@ impl Core {
     /// The design cannot be written as Verilog.
     pub fn verilog(&self) -> Result<Vec<(String, String)>> {
         let around = Surroundings {
-            inline_memories: Surroundings::new(&self.config).inline_memories,
+            inline_memories: Surroundings::new(&self.config, None).inline_memories,
             ..Surroundings::default()
         };
         let files = package::emit(&self.design, &EmitInputs { around, ..EmitInputs::default() })?;

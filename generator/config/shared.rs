@@ -100,9 +100,10 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
         ),
         Key::number(
             "package.clock_mhz",
-            100.0,
-            0.001..=2000.0,
-            "The frequency of the clock in constraints and vendors' projects.",
+            0.0,
+            0.0..=2000.0,
+            "The frequency of the clock in constraints and vendors' projects. 0 for that of the pipeline, \
+             or 100 for a sequential core.",
         )
         .only_when("package.constraints", "true"),
         Key::flag(

@@ -344,17 +344,6 @@ impl<'a> Draft<'a> {
         }
     }
 
-    /// The clock of constraints, where it is not given, is that which the pipeline is made for.
-    fn follow_clock(&mut self) {
-        let of_pipeline = self.config.choice("architecture") == "pipelined"
-            && self.config.integer("pipeline.stages") == 0
-            && self.config.flag("package.constraints");
-        if of_pipeline && !self.given.contains("package.clock_mhz") {
-            let clock = self.config.value("pipeline.clock_mhz").clone();
-            self.config.set("package.clock_mhz", clock);
-        }
-    }
-
     /// Checks the conditions between keys, and gives the configuration if nothing is wrong. Keys that were not
     /// given follow from those that were.
     pub(super) fn finish(
@@ -365,7 +354,6 @@ impl<'a> Draft<'a> {
         // While a value is not known, nothing follows from it.
         if self.doubtful.is_empty() {
             self.config = follow(schema, &self.config, &self.given);
-            self.follow_clock();
         }
         check(schema, &self, &mut problems);
         if problems.is_empty() { Ok(self.config) } else { Err(problems) }

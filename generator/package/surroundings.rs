@@ -1,6 +1,37 @@
 //! What a configuration asks for around a core.
 
+use super::Unfit;
 use crate::config::{Config, Schema};
+use crate::hdl::netlist::Pipeline;
+
+/// The clock of constraints for a sequential core, unless a key says another.
+const CLOCK_MHZ: f64 = 100.0;
+
+/// The key that says another.
+const CLOCK: &str = "package.clock_mhz";
+
+/// That constraints do not ask more of a pipeline than it is made for.
+///
+/// # Errors
+/// A clock of constraints above that of the stages.
+pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), Unfit> {
+    let (asked, made_for) = (config.number(CLOCK), pipeline.clock_mhz);
+    if asked <= made_for {
+        return Ok(());
+    }
+    let (made, remedy) = match config.integer("pipeline.stages") {
+        0 => ("the pipeline is made for".to_owned(), format!("set pipeline.clock_mhz to {asked}")),
+        stages => (
+            format!("{stages} stages allow on {}", pipeline.target),
+            "raise pipeline.stages".to_owned(),
+        ),
+    };
+    Err(Unfit::new(
+        CLOCK,
+        format!("`{CLOCK}` = {asked:?} is above the {made_for} MHz that {made}"),
+        format!("{remedy}, or set {CLOCK} to {made_for} or less"),
+    ))
+}
 
 /// A bus on which registers are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,13 +77,13 @@ pub struct Surroundings {
 impl Default for Surroundings {
     fn default() -> Self {
         let schema = Schema { device: "", keys: Vec::new(), check: |_, _| () };
-        Self::new(&Config::defaults(&schema, ""))
+        Self::new(&Config::defaults(&schema, ""), None)
     }
 }
 
 impl Surroundings {
-    /// What the keys that every device shares say.
-    pub fn new(config: &Config) -> Self {
+    /// What the keys that every device shares say; of a pipeline, with the clock that it is made for.
+    pub fn new(config: &Config, pipeline: Option<&Pipeline>) -> Self {
         Self {
             stream: config.flag("interface.stream"),
             user_bits: config.integer("interface.user_bits") as u32,
@@ -64,9 +95,10 @@ impl Surroundings {
             software: config.flag("package.software"),
             inline_memories: config.choice("package.memories") == "inline",
             litex: config.flag("package.litex"),
-            clock_mhz: config
-                .flag("package.constraints")
-                .then(|| config.number("package.clock_mhz")),
+            clock_mhz: config.flag("package.constraints").then(|| {
+                let made_for = pipeline.map_or(CLOCK_MHZ, |pipeline| pipeline.clock_mhz);
+                Some(config.number(CLOCK)).filter(|&given| given > 0.0).unwrap_or(made_for)
+            }),
             vivado: config.flag("package.vivado"),
             quartus: config.flag("package.quartus"),
             ip_xact: config.flag("package.ip_xact"),

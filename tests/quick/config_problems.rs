@@ -99,9 +99,9 @@ fn keys_for_vendors_tools_are_checked() {
           | remove it, or set package.constraints = true"]
     );
     assert_eq!(
-        of_package("constraints = true\nclock_mhz = 0\n"),
-        ["4:13 package.clock_mhz | `package.clock_mhz` = 0.0 is out of range \
-          | give a number from 0.001 to 2000.0 (default 100.0)"]
+        of_package("constraints = true\nclock_mhz = -1\n"),
+        ["4:13 package.clock_mhz | `package.clock_mhz` = -1.0 is out of range \
+          | give a number from 0.0 to 2000.0 (default 0.0)"]
     );
     assert_eq!(
         of_package("litex = true\n"),

@@ -115,9 +115,10 @@ memories = \"files\"
 # True or false, default false.
 constraints = false
 
-# The frequency of the clock in constraints and vendors' projects.
-# A number from 0.001 to 2000.0, default 100.0; only with package.constraints = true.
-# clock_mhz = 100.0
+# The frequency of the clock in constraints and vendors' projects. 0 for that of the
+# pipeline, or 100 for a sequential core.
+# A number from 0.0 to 2000.0, default 0.0; only with package.constraints = true.
+# clock_mhz = 0.0
 
 # Write Tcl for Vivado: <name>_vivado.tcl builds, <name>_vivado_ip.tcl packages IP.
 # True or false, default false; only with package.constraints = true.

@@ -23,7 +23,7 @@ fn device(operand: &str, result: &str) -> Design {
 fn on_wishbone(design: &Design) -> anyhow::Result<usize> {
     let text = "device = \"cosine-power\"\n[interface]\nregisters = \"wishbone\"\n";
     let config: Config = glint::config::parse("x.toml", text, &Registry::catalogue().schemas())?;
-    let around = Surroundings::new(&config);
+    let around = Surroundings::new(&config, None);
     Ok(emit(design, &EmitInputs { around, ..EmitInputs::default() })?.len())
 }
 

@@ -125,6 +125,9 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
     let core = Core::new(*device, config).map_err(|error| {
         // What the configuration asks for and the description cannot give is a fault of the configuration.
         let mut problems = places.clone();
+        if let Some(unfit) = error.downcast_ref::<Unfit>() {
+            problems.push(unfit.key, &unfit.message, &unfit.remedy);
+        }
         let faults = error.downcast_ref::<Diagnostics>().map_or(&[][..], |faults| &faults.0);
         for fault in faults {
             if let Some((key, remedy)) = &fault.key {

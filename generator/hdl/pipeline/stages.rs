@@ -75,7 +75,8 @@ pub fn assemble(
         target: options.target.name.to_owned(),
         clock_mhz: match options.goal {
             Goal::ClockMhz(clock) => clock,
-            Goal::Stages(_) => 1000.0 / schedule.period,
+            // As it is stated, and rounded down, so that it is kept.
+            Goal::Stages(_) => (10_000.0 / schedule.period).floor() / 10.0,
         },
         stall: options.stall,
         side: options.side,

@@ -162,7 +162,7 @@ pub fn ports(design: &Design) -> Table {
 
 /// The ROMs, that of the microprogram among them.
 pub fn roms(design: &Design, config: &Config) -> Table {
-    let inline = Surroundings::new(config).inline_memories;
+    let inline = Surroundings::new(config, None).inline_memories;
     let naming = Naming::new(design).inlined(inline);
     let mut table = Table::new(&[
         ("ROM", Align::Left),

@@ -7,7 +7,7 @@ type Refusal = (&'static str, [&'static str; 3]);
 
 #[test]
 fn what_cannot_be_a_pipeline_is_refused_with_line_key_and_remedy() {
-    let refusals: [Refusal; 4] = [
+    let refusals: [Refusal; 6] = [
         (
             "device = \"rough\"\narchitecture = \"pipelined\"\n[pipeline]\nclock_mhz = 900\n",
             ["`core` cannot run at 900 MHz: `", "core.toml:4:13", "set pipeline.clock_mhz to "],
@@ -23,6 +23,24 @@ fn what_cannot_be_a_pipeline_is_refused_with_line_key_and_remedy() {
         (
             "device = \"quad-cosine\"\narchitecture = \"pipelined\"\n",
             ["`core` cannot be a pipeline", "core.toml:2:16", "set architecture = \"sequential\""],
+        ),
+        (
+            "device = \"schlick\"\narchitecture = \"pipelined\"\npipeline.clock_mhz = 60\n[package]\n\
+             constraints = true\nclock_mhz = 61\n",
+            [
+                "`package.clock_mhz` = 61.0 is above the 60 MHz that the pipeline is made for",
+                "core.toml:6:13",
+                "set pipeline.clock_mhz to 61, or set package.clock_mhz to 60 or less",
+            ],
+        ),
+        (
+            "device = \"schlick\"\narchitecture = \"pipelined\"\npipeline.stages = 4\n[package]\n\
+             constraints = true\nclock_mhz = 900\n",
+            [
+                "MHz that 4 stages allow on ecp5",
+                "core.toml:6:13",
+                "raise pipeline.stages, or set package.clock_mhz to ",
+            ],
         ),
     ];
     for (text, says) in refusals {
@@ -48,6 +66,30 @@ fn what_is_proposed_can_be_reached() {
     let place = Place::with("core.toml", text(nearest));
     let shown = place.glint(["schedule", "core.toml", "--json"]);
     assert_eq!(shown.code, 0, "{shown:?}");
+}
+
+#[test]
+fn constraints_have_the_clock_of_the_schedule() {
+    for (pipeline, clock, expected) in [
+        ("stages = 4", "", None),
+        ("clock_mhz = 60", "", Some(60.0)),
+        ("clock_mhz = 60", "clock_mhz = 48", Some(48.0)),
+    ] {
+        let text = format!(
+            "device = \"schlick\"\narchitecture = \"pipelined\"\n[pipeline]\n{pipeline}\n[package]\n\
+             constraints = true\n{clock}\n"
+        );
+        let place = Place::with("core.toml", &text);
+        let schedule = place.glint(["schedule", "core.toml", "--json"]).json();
+        let stated = schedule["schedules"][0]["clock_mhz"].as_f64().expect("a clock");
+        place.done(["generate", "core.toml"]);
+        let constraints = place.read("rtl_out/core/core.sdc");
+        let period = constraints.split("-period ").nth(1).expect("a period");
+        let period: f64 = period.split(' ').next().expect("a number").parse().expect("a number");
+        // Whole picoseconds.
+        let wanted = 1000.0 / expected.unwrap_or(stated);
+        assert!(period <= wanted && wanted - period < 0.001, "{text}: {period} ns, not {wanted}");
+    }
 }
 
 #[test]
