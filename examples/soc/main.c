@@ -39,6 +39,19 @@ static void find_spans(void)
     }
 }
 
+/* Whether the pixels of all spans are the same in two frame buffers. */
+static int same(const uint32_t *frame, const uint32_t *other)
+{
+    for (const span *span = spans; span < spans + span_count; span++) {
+        for (unsigned at = span->first; at < span->first + span->count; at++) {
+            if (frame[at] != other[at]) {
+                return 0;
+            }
+        }
+    }
+    return 1;
+}
+
 /* The highlights of all spans in every way; whether all are the same. */
 static int compute(const device *device, tally *tally)
 {
@@ -48,16 +61,9 @@ static int compute(const device *device, tally *tally)
         tally->spent[way] += clocks() - start;
     }
     for (const span *span = spans; span < spans + span_count; span++) {
-        for (unsigned at = span->first; at < span->first + span->count; at++) {
-            for (unsigned way = 1; way < WAYS; way++) {
-                if (frames[way][at] != frames[0][at]) {
-                    return 0;
-                }
-            }
-        }
         tally->pixels += span->count;
     }
-    return 1;
+    return same(frames[0], frames[1]) && same(frames[0], frames[2]) && same(frames[0], frames[3]);
 }
 
 /* The picture of these rows; 0 if the ways do not agree. */
@@ -96,8 +102,21 @@ static int roughen(tally *tally)
     return compute(&grain, tally);
 }
 
+/* The spans of both devices at once, which share the RAM with the processor; whether all is as it was. */
+static int together(const uint32_t *cosines, const uint32_t *shaded)
+{
+    for (const span *span = spans; span < spans + span_count; span++) {
+        begin_span(SHADE_SPANS, shade.words, span, cosines, frames[1]);
+        begin_span(GRAIN_SPANS, grain.words, span, operands, frames[2]);
+    }
+    end_spans(SHADE_SPANS);
+    end_spans(GRAIN_SPANS);
+    return same(frames[1], shaded) && same(frames[2], frames[0]);
+}
+
 int main(void)
 {
+    static uint32_t cosines[PIXELS], shaded[PIXELS];
     if (!shade_begin(SPECULAR) || !grain_begin(SPECULAR)) {
         return 1;
     }
@@ -108,7 +127,12 @@ int main(void)
             pixels[at] = geometry(at % WIDTH, row + at / WIDTH, light);
         }
         find_spans();
-        if (!draw(&shade, SHADE_PICTURE, &of_shade) || !draw(&grain, GRAIN_PICTURE, &smooth) || !roughen(&rough)) {
+        if (!draw(&shade, SHADE_PICTURE, &of_shade)) {
+            return 2;
+        }
+        memcpy(cosines, operands, sizeof cosines);
+        memcpy(shaded, frames[0], sizeof shaded);
+        if (!draw(&grain, GRAIN_PICTURE, &smooth) || !roughen(&rough) || !together(cosines, shaded)) {
             return 2;
         }
     }

@@ -98,12 +98,17 @@ module span #(
             operands_valid <= (arrives & complete) | (operands_valid & ~operands_ready);
         end
     end
+    wire [32*WORDS-1:0] following;
+    generate
+        if (WORDS == 1) assign following = ram_read_data;
+        else assign following = {ram_read_data, operands[32*WORDS-1:32]};
+    endgenerate
     always @(posedge clk) begin
         complete <= last_word;
         second <= ~start & (second ^ (reads & (WORDS != 1)));
         source <= start ? next_source : source + {13'd0, reads};
         destination <= start ? next_destination : destination + {13'd0, writes};
-        if (arrives) operands <= {ram_read_data, operands} >> 32;
+        if (arrives) operands <= following;
     end
     // The next pixel is not read before this one is taken.
     assign operands_last = left == 10'd0;

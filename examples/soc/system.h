@@ -18,16 +18,26 @@ typedef volatile struct {
 #define SHADE_SPANS ((span_engine *)0x40000000u)
 #define GRAIN_SPANS ((span_engine *)0x50000000u)
 
-/* Has an engine shade these spans. A span waits for the one before in hardware, and the last read for the last of them. */
+/* Has an engine shade a span, when it is through with the one before. */
+static inline void begin_span(span_engine *engine, unsigned words, const span *span, const uint32_t *operands,
+                              uint32_t *frame)
+{
+    engine->source = (uint32_t)(uintptr_t)&operands[words * span->first];
+    engine->destination = (uint32_t)(uintptr_t)&frame[span->first];
+    engine->count = span->count;
+}
+
+/* Waits until an engine is through. */
+static inline void end_spans(span_engine *engine) { (void)engine->count; }
+
+/* Has an engine shade these spans. */
 static inline void run_spans(span_engine *engine, unsigned words, const span *spans, unsigned count,
                              const uint32_t *operands, uint32_t *frame)
 {
     for (const span *at = spans; at < spans + count; at++) {
-        engine->source = (uint32_t)(uintptr_t)&operands[words * at->first];
-        engine->destination = (uint32_t)(uintptr_t)&frame[at->first];
-        engine->count = at->count;
+        begin_span(engine, words, at, operands, frame);
     }
-    (void)engine->count;
+    end_spans(engine);
 }
 
 /* The two pictures, one a device. */
@@ -41,6 +51,9 @@ static inline void show(enum picture picture, uint32_t byte)
 
 /* A number that is printed. */
 static inline void number(uint32_t value) { ((volatile uint32_t *)0x20000000u)[1] = value; }
+
+/* There is no string.h. */
+void *memcpy(void *restrict to, const void *restrict from, size_t count);
 
 static inline uint32_t clocks(void)
 {
