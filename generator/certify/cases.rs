@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use super::polynomial::Polynomial;
+use super::quotient::Quotient;
 use crate::base::fixed::{Format, mask};
 use crate::hdl::netlist::{NetId, Op, RomId};
 use crate::hdl::pipeline::{Cell, Graph, Interval};
@@ -19,29 +21,66 @@ pub struct Case {
     pub known: Known,
     /// The raw values of every node.
     pub ranges: Vec<Interval>,
+    /// Of these nodes the values are those of a parabola, which are fewer than intervals tell.
+    pub parabolas: BTreeMap<NetId, Polynomial>,
 }
 
 /// The raw value of a word of a ROM.
 pub type Words<'a> = &'a dyn Fn(RomId, u64) -> i128;
 
+/// An unrolled computation and what is known of it.
+#[derive(Clone, Copy)]
+pub struct View<'a> {
+    /// The computation.
+    pub graph: &'a Graph,
+    /// The words of its tables.
+    pub words: Words<'a>,
+    /// Its quotients, by the node that joins the bits.
+    pub quotients: &'a BTreeMap<NetId, Quotient>,
+}
+
+impl View<'_> {
+    /// Every node that these need, themselves too, in order. Of a quotient that are its operands, and no bits.
+    fn cone(&self, roots: &[NetId]) -> Vec<NetId> {
+        let mut live = vec![false; self.graph.nodes.len()];
+        roots.iter().for_each(|root| live[root.index()] = true);
+        for at in (0..live.len()).rev() {
+            if live[at] {
+                for operand in self.operands(NetId(at as u32)) {
+                    live[operand.index()] = true;
+                }
+            }
+        }
+        (0..live.len()).filter(|&at| live[at]).map(|at| NetId(at as u32)).collect()
+    }
+
+    fn operands(&self, id: NetId) -> Vec<NetId> {
+        match self.quotients.get(&id) {
+            Some(quotient) => vec![quotient.dividend, quotient.divisor],
+            None => self.graph.node(id).cell.operands(),
+        }
+    }
+}
+
 /// All ways to compute `results`, given `known` of the operands: together they cover every combination of operands.
 ///
 /// # Errors
 /// There are too many.
-pub fn cases(
-    graph: &Graph,
-    words: Words,
-    results: &[NetId],
-    known: &Known,
-) -> Result<Vec<Case>, String> {
-    let cone = graph.cone(results.iter().copied());
+pub fn cases(view: View, results: &[NetId], known: &Known) -> Result<Vec<Case>, String> {
+    let cone = view.cone(results);
+    let graph = view.graph;
     let mut found = Vec::new();
     let mut pending = vec![known.clone()];
     let mut looked_at = 0;
     while let Some(known) = pending.pop() {
         looked_at += 1;
-        match ranges(graph, words, &cone, &known) {
-            Way::Whole(ranges) => found.push(Case { known, ranges }),
+        let mut way = Case {
+            known,
+            ranges: graph.nodes.iter().map(|node| node.range).collect(),
+            parabolas: BTreeMap::new(),
+        };
+        match way.follow(view, &cone) {
+            Way::Whole => found.push(way),
             Way::Never => {}
             Way::Splits(node, (low, high)) => {
                 if high - low > 63 {
@@ -49,8 +88,8 @@ pub fn cases(
                     return Err(format!("`{name}` selects among too many values"));
                 }
                 for value in (low..=high).rev() {
-                    let mut known = known.clone();
-                    if learn(graph, &mut known, node, (value, value)) {
+                    let mut known = way.known.clone();
+                    if learn(graph, &mut known, &way.ranges, node, (value, value)) {
                         pending.push(known);
                     }
                 }
@@ -65,44 +104,125 @@ pub fn cases(
 
 enum Way {
     /// Every selection is decided.
-    Whole(Vec<Interval>),
+    Whole,
     /// No operands lead here.
     Never,
     /// This node decides, and has several values.
     Splits(NetId, Interval),
 }
 
-fn ranges(graph: &Graph, words: Words, cone: &[NetId], known: &Known) -> Way {
-    let mut ranges = vec![(0, 0); graph.nodes.len()];
-    for &id in cone {
-        let node = graph.node(id);
-        let of = |id: &NetId| ranges[id.index()];
-        let mut range = match &node.cell {
-            Cell::Op(Op::Mux { select, inputs }) => {
-                let (low, high) = of(select);
-                if low != high {
-                    let decider = decider(graph, *select, &of);
+impl Case {
+    /// The raw values of the nodes of `cone`, as far as they are decided.
+    fn follow(&mut self, view: View, cone: &[NetId]) -> Way {
+        let graph = view.graph;
+        let mut polynomials: BTreeMap<NetId, Polynomial> = BTreeMap::new();
+        for &id in cone {
+            let node = graph.node(id);
+            let of = |id: &NetId| self.ranges[id.index()];
+            let open = |id: &NetId| of(id).0 != of(id).1;
+            let mut range = match &node.cell {
+                _ if view.quotients.contains_key(&id) => {
+                    let Quotient { dividend, divisor, bits } = view.quotients[&id];
+                    let (over, under) = (of(&dividend), of(&divisor));
+                    let part = |over: i128, under: i128| (over << bits) / under.max(1);
+                    let most = (1 << bits) - 1;
+                    (part(over.0, under.1).min(most), part(over.1, under.0).min(most))
+                }
+                Cell::Op(Op::Mux { select, inputs }) => {
+                    if open(select) {
+                        let decider = decider(graph, *select, &of);
+                        return Way::Splits(decider, of(&decider));
+                    }
+                    of(&inputs[(of(select).0 as usize).min(inputs.len() - 1)])
+                }
+                // A condition that is counted with.
+                Cell::Op(Op::Add { carry: Some(carry), .. }) if open(carry) => {
+                    let decider = decider(graph, *carry, &of);
                     return Way::Splits(decider, of(&decider));
                 }
-                of(&inputs[(low as usize).min(inputs.len() - 1)])
+                Cell::Op(op) => computed(graph, id, op, &of),
+                Cell::Read { rom, address } => {
+                    let (low, high) = of(address);
+                    let words = (low..=high).map(|at| (view.words)(*rom, at as u64));
+                    let ends = words.fold(None, |ends: Option<Interval>, word| {
+                        Some(ends.map_or((word, word), |it| (it.0.min(word), it.1.max(word))))
+                    });
+                    ends.unwrap_or(node.range)
+                }
+                _ => node.range,
+            };
+            let other = self.known.get(&id).copied().unwrap_or(node.range);
+            for (low, high) in [node.range, other] {
+                range = (range.0.max(low), range.1.min(high));
             }
-            Cell::Op(op) => computed(graph, id, op, &of),
-            Cell::Read { rom, address } if of(address).0 == of(address).1 => {
-                let word = words(*rom, of(address).0 as u64);
-                (word, word)
+            if range.0 > range.1 {
+                return Way::Never;
             }
-            _ => node.range,
-        };
-        let other = known.get(&id).copied().unwrap_or(node.range);
-        for (low, high) in [node.range, other] {
-            range = (range.0.max(low), range.1.min(high));
+            if let Some(polynomial) = polynomial(graph, id, &polynomials, &of) {
+                polynomials.insert(id, polynomial);
+                let values = polynomial.of.and_then(|x| polynomial.range(of(&x)));
+                if let Some((low, high)) = values.filter(|it| it.0 > range.0 || it.1 < range.1) {
+                    range = (range.0.max(low), range.1.min(high));
+                    if range.0 > range.1 {
+                        return Way::Never;
+                    }
+                    if polynomial.factors[2] != 0 {
+                        self.parabolas.insert(id, polynomial);
+                    }
+                }
+            }
+            self.ranges[id.index()] = range;
         }
-        if range.0 > range.1 {
-            return Way::Never;
-        }
-        ranges[id.index()] = range;
+        Way::Whole
     }
-    Way::Whole(ranges)
+}
+
+/// What a node is as a polynomial in an operand, if no bits are dropped on the way.
+fn polynomial(
+    graph: &Graph,
+    id: NetId,
+    known: &BTreeMap<NetId, Polynomial>,
+    of: &dyn Fn(&NetId) -> Interval,
+) -> Option<Polynomial> {
+    let node = graph.node(id);
+    let known = |id: &NetId| match of(id) {
+        (low, high) if low == high => Some(Polynomial::constant(low)),
+        _ => known.get(id).copied(),
+    };
+    // All that comes to the node, with one multiple of the modulus added.
+    let turned = |whole: Interval, polynomial: Polynomial| {
+        polynomial.plus(Polynomial::constant(turns(whole, node.format)?), 1)
+    };
+    match &node.cell {
+        Cell::Operand(_) => Some(Polynomial::operand(id)),
+        Cell::Op(Op::Relabel(a) | Op::Extend(a)) => turned(of(a), known(a)?),
+        Cell::Op(Op::Slice { of: a, low: 0 }) => turned(of(a), known(a)?),
+        Cell::Op(Op::Not(a)) => {
+            let most = if node.format.signed { -1 } else { node.format.range().1 };
+            Polynomial::constant(most).plus(known(a)?, -1)
+        }
+        Cell::Op(Op::Concat(parts)) => {
+            let [a, zeros] = parts[..] else { return None };
+            let raised =
+                graph.constant_of(zeros) == Some(0) && of(&a).0 >= 0 && !node.format.signed;
+            let factor = Polynomial::constant(1 << graph.width(zeros));
+            known(&a).filter(|_| raised)?.times(factor)
+        }
+        Cell::Op(Op::Mux { select, inputs }) => {
+            known(&inputs[(of(select).0 as usize).min(inputs.len() - 1)])
+        }
+        Cell::Op(Op::Add { a, b, carry }) => {
+            let one = carry.as_ref().map_or((0, 0), of);
+            let whole = (of(a).0 + of(b).0 + one.0, of(a).1 + of(b).1 + one.1);
+            let carry = Polynomial::constant(one.0);
+            turned(whole, known(a)?.plus(known(b)?, 1)?.plus(carry, 1)?)
+        }
+        Cell::Op(Op::Sub(a, b)) => {
+            turned((of(a).0 - of(b).1, of(a).1 - of(b).0), known(a)?.plus(known(b)?, -1)?)
+        }
+        Cell::Op(Op::Mul(a, b)) => known(a)?.times(known(b)?),
+        _ => None,
+    }
 }
 
 /// What to decide first, so that this undecided selection becomes known: a condition of which it is made.
@@ -179,10 +299,20 @@ fn computed(graph: &Graph, id: NetId, op: &Op, of: &dyn Fn(&NetId) -> Interval) 
 }
 
 /// Notes that a node has the values of `range` alone, and what follows for those that it comes from; false if
-/// that cannot be.
-pub fn learn(graph: &Graph, known: &mut Known, id: NetId, range: Interval) -> bool {
+/// that cannot be. `ranges` are the values that nodes have without it.
+pub fn learn(
+    graph: &Graph,
+    known: &mut Known,
+    ranges: &[Interval],
+    id: NetId,
+    range: Interval,
+) -> bool {
     let node = graph.node(id);
     let before = known.get(&id).copied().unwrap_or(node.range);
+    let value = |known: &Known, id: NetId| {
+        let ((low, high), own) = (ranges[id.index()], known.get(&id));
+        own.map_or((low, high), |own| (low.max(own.0), high.min(own.1)))
+    };
     let range = (range.0.max(before.0), range.1.min(before.1));
     if range.0 > range.1 {
         return false;
@@ -194,21 +324,21 @@ pub fn learn(graph: &Graph, known: &mut Known, id: NetId, range: Interval) -> bo
     let is = (range.0 == range.1).then_some(range.0);
     match (op, is) {
         (Op::Relabel(a) | Op::Extend(a), _) if unsigned(*a) == unsigned(id) => {
-            learn(graph, known, *a, range)
+            learn(graph, known, ranges, *a, range)
         }
         (Op::Not(a), _) if unsigned(*a) && unsigned(id) => {
             let most = all(id).1;
-            learn(graph, known, *a, (most - range.1, most - range.0))
+            learn(graph, known, ranges, *a, (most - range.1, most - range.0))
         }
         // The bits above all others.
         (Op::Slice { of, low }, _) if reaches_top(graph, *of, low + graph.width(id)) => {
             if unsigned(*of) && unsigned(id) {
-                learn(graph, known, *of, (range.0 << low, ((range.1 + 1) << low) - 1))
+                learn(graph, known, ranges, *of, (range.0 << low, ((range.1 + 1) << low) - 1))
             } else if let (Some(bit), 1, false) = (is, graph.width(id), unsigned(*of)) {
                 // The sign.
                 let (least, most) = all(*of);
                 let half = if bit == 0 { (0, most) } else { (least, -1) };
-                learn(graph, known, *of, half)
+                learn(graph, known, ranges, *of, half)
             } else {
                 true
             }
@@ -218,40 +348,43 @@ pub fn learn(graph: &Graph, known: &mut Known, id: NetId, range: Interval) -> bo
             if !unsigned(*of) && unsigned(id) && low + graph.width(id) + 1 == graph.width(*of) =>
         {
             let (least, _) = all(*of);
-            let base = match known.get(of) {
-                Some((from, _)) if *from >= 0 => 0,
-                Some((_, to)) if *to < 0 => least,
+            let base = match value(known, *of) {
+                (from, _) if from >= 0 => 0,
+                (_, to) if to < 0 => least,
                 _ => return true,
             };
             let range = (base + (range.0 << low), base + ((range.1 + 1) << low) - 1);
-            learn(graph, known, *of, range)
+            learn(graph, known, ranges, *of, range)
         }
         // Of a mux that is decided, the input that it passes on.
-        (Op::Mux { select, inputs }, _) => match known.get(select) {
-            Some((low, high)) if low == high => {
-                let input = inputs[(*low as usize).min(inputs.len() - 1)];
-                unsigned(input) != unsigned(id) || learn(graph, known, input, range)
+        (Op::Mux { select, inputs }, _) => match value(known, *select) {
+            (low, high) if low == high => {
+                let input = inputs[(low as usize).min(inputs.len() - 1)];
+                unsigned(input) != unsigned(id) || learn(graph, known, ranges, input, range)
             }
             _ => true,
         },
-        (Op::Any(a), Some(0)) => learn(graph, known, *a, (0, 0)),
-        (Op::Any(a), Some(_)) if unsigned(*a) => learn(graph, known, *a, (1, all(*a).1)),
-        (Op::All(a), Some(0)) if unsigned(*a) => learn(graph, known, *a, (0, all(*a).1 - 1)),
-        (Op::All(a), Some(_)) if unsigned(*a) => learn(graph, known, *a, (all(*a).1, all(*a).1)),
+        (Op::Any(a), Some(0)) => learn(graph, known, ranges, *a, (0, 0)),
+        (Op::Any(a), Some(_)) if unsigned(*a) => learn(graph, known, ranges, *a, (1, all(*a).1)),
+        (Op::All(a), Some(0)) if unsigned(*a) => {
+            learn(graph, known, ranges, *a, (0, all(*a).1 - 1))
+        }
+        (Op::All(a), Some(_)) if unsigned(*a) => {
+            learn(graph, known, ranges, *a, (all(*a).1, all(*a).1))
+        }
         (Op::And(a, b), Some(1)) if graph.width(id) == 1 => {
-            learn(graph, known, *a, (1, 1)) && learn(graph, known, *b, (1, 1))
+            learn(graph, known, ranges, *a, (1, 1)) && learn(graph, known, ranges, *b, (1, 1))
         }
         (Op::Or(a, b), Some(0)) if graph.width(id) == 1 => {
-            learn(graph, known, *a, (0, 0)) && learn(graph, known, *b, (0, 0))
+            learn(graph, known, ranges, *a, (0, 0)) && learn(graph, known, ranges, *b, (0, 0))
         }
         (Op::Less(a, b), Some(less)) => {
-            let value = |id: NetId| known.get(&id).copied().unwrap_or(graph.node(id).range);
-            let ((a_low, a_high), (b_low, b_high)) = (value(*a), value(*b));
+            let ((a_low, a_high), (b_low, b_high)) = (value(known, *a), value(known, *b));
             let (for_a, for_b) = match less {
                 1 => ((a_low, b_high - 1), (a_low + 1, b_high)),
                 _ => ((b_low, a_high), (b_low, a_high)),
             };
-            learn(graph, known, *a, for_a) && learn(graph, known, *b, for_b)
+            learn(graph, known, ranges, *a, for_a) && learn(graph, known, ranges, *b, for_b)
         }
         _ => true,
     }

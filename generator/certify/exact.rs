@@ -1,10 +1,11 @@
 //! The formula on one way through the hardware, as terms.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use super::formula::{Comparison, Real};
 use super::terms::{Id, Term, Terms};
 use crate::base::fixed::exp2;
+use crate::golden::Operand;
 
 /// A formula's term under what it presupposes: these terms are not negative, those not positive.
 #[derive(Clone, Debug, Default)]
@@ -15,6 +16,16 @@ pub struct Branch {
     pub at_most: Vec<Id>,
     /// The formula.
     pub term: Id,
+    /// Which side every choice goes to, by what is compared with 0 and how.
+    chosen: BTreeMap<(Id, Choice), bool>,
+}
+
+/// What decides between two sides. Choices of one kind about one number go to the same side everywhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Choice {
+    Larger,
+    Positive,
+    NotNegative,
 }
 
 impl Branch {
@@ -27,6 +38,35 @@ impl Branch {
         self.at_least.iter().any(|id| is(id, |value| value < 0.0))
             || self.at_most.iter().any(|id| is(id, |value| value > 0.0))
     }
+
+    /// The way that goes both ways, with the term of the second; none where they choose differently.
+    pub fn and(&self, other: &Self) -> Option<Self> {
+        let mut both = self.clone();
+        both.term = other.term;
+        for (&choice, &taken) in &other.chosen {
+            if *both.chosen.entry(choice).or_insert(taken) != taken {
+                return None;
+            }
+        }
+        let (least, most) = (&mut both.at_least, &mut both.at_most);
+        for (all, more) in [(least, &other.at_least), (most, &other.at_most)] {
+            let new: Vec<Id> = more.iter().copied().filter(|id| !all.contains(id)).collect();
+            all.extend(new);
+        }
+        Some(both)
+    }
+
+    /// The way with a choice made about the sign of a term.
+    fn choosing(&self, difference: Id, choice: Choice, taken: bool) -> Option<Self> {
+        let mut own = Self { term: self.term, ..Self::default() };
+        own.chosen.insert((difference, choice), taken);
+        if taken {
+            own.at_least.push(difference)
+        } else {
+            own.at_most.push(difference)
+        };
+        self.and(&own)
+    }
 }
 
 /// What formulas are written of.
@@ -37,6 +77,13 @@ pub struct Setting<'a> {
     pub ranges: &'a HashMap<String, (f64, f64)>,
     /// The words of ROMs as values, by the name of the ROM.
     pub words: &'a HashMap<String, Vec<f64>>,
+    /// The operands.
+    pub operands: &'a [Operand],
+}
+
+/// The variable that stands for the word of a table, by the variable of the operand that numbers it.
+pub fn word_variable(rom: &str, variable: &str) -> String {
+    format!("{rom}_at_{variable}")
 }
 
 /// How often each operand is divided by a power of two where it occurs: that power, if it is so everywhere.
@@ -84,23 +131,16 @@ fn power_of_two(value: f64) -> Option<i32> {
 /// # Errors
 /// What has no translation.
 pub fn branches(real: &Real, setting: &Setting, terms: &mut Terms) -> Result<Vec<Branch>, String> {
-    let pairs = |terms: &mut Terms, a: &Real, b: &Real| -> Result<Vec<(Branch, Id)>, String> {
+    // Of two expressions every way that both can go together, each with its term.
+    let pairs = |terms: &mut Terms, a: &Real, b: &Real| -> Result<Vec<(Branch, Id, Id)>, String> {
         let (first, second) = (branches(a, setting, terms)?, branches(b, setting, terms)?);
-        let mut pairs = Vec::new();
-        for one in &first {
-            for other in &second {
-                let mut both = one.clone();
-                both.at_least.extend(&other.at_least);
-                both.at_most.extend(&other.at_most);
-                pairs.push((both, other.term));
-            }
-        }
-        Ok(pairs)
+        let all = first.iter().flat_map(|one| second.iter().map(move |other| (one, other)));
+        let pairs = all.filter_map(|(one, other)| Some((one.and(other)?, one.term, other.term)));
+        Ok(pairs.collect())
     };
     let operation = |terms: &mut Terms, a: &Real, b: &Real, make: fn(Id, Id) -> Term| {
-        let pairs = pairs(terms, a, b)?;
-        let made = pairs.into_iter().map(|(branch, right)| {
-            let term = folded(terms, make(branch.term, right));
+        let made = pairs(terms, a, b)?.into_iter().map(|(branch, left, right)| {
+            let term = folded(terms, make(left, right));
             Branch { term, ..branch }
         });
         Ok(made.collect())
@@ -109,12 +149,7 @@ pub fn branches(real: &Real, setting: &Setting, terms: &mut Terms) -> Result<Vec
     match real {
         Real::Number(value) => Ok(plain(terms.number(*value))),
         Real::Operand(name) => Ok(plain(operand(name, setting, terms)?)),
-        Real::Word(rom, place) => {
-            let place = constant(place, setting).ok_or("a table is read at several places")?;
-            let word = setting.words.get(rom).and_then(|words| words.get(place as usize));
-            let word = word.ok_or_else(|| format!("there is no word {place} in `{rom}`"))?;
-            Ok(plain(terms.number(*word)))
-        }
+        Real::Word(rom, place) => Ok(plain(word(rom, place, setting, terms)?)),
         Real::Add(a, b) => operation(terms, a, b, Term::Add),
         Real::Sub(a, b) => operation(terms, a, b, Term::Sub),
         Real::Mul(a, b) => operation(terms, a, b, Term::Mul),
@@ -142,41 +177,60 @@ pub fn branches(real: &Real, setting: &Setting, terms: &mut Terms) -> Result<Vec
         }
         Real::Max(a, b) => {
             let mut found = Vec::new();
-            for (branch, right) in pairs(terms, a, b)? {
-                let difference = folded(terms, Term::Sub(branch.term, right));
-                let (mut left, mut other) = (branch.clone(), Branch { term: right, ..branch });
-                left.at_least.push(difference);
-                other.at_most.push(difference);
-                found.extend([left, other]);
+            for (branch, left, right) in pairs(terms, a, b)? {
+                let difference = folded(terms, Term::Sub(left, right));
+                for (taken, term) in [(true, left), (false, right)] {
+                    let side = Branch { term, ..branch.clone() };
+                    found.extend(side.choosing(difference, Choice::Larger, taken));
+                }
             }
             Ok(found)
         }
         Real::If(comparison, yes, no) => {
             let decided = decided(comparison, setting);
+            let choice = if comparison.or_equal { Choice::NotNegative } else { Choice::Positive };
             let mut found = Vec::new();
             for (taken, side) in [(true, yes), (false, no)] {
                 if decided == Some(!taken) {
                     continue;
                 }
-                for side in branches(side, setting, terms)? {
-                    if decided.is_some() {
-                        found.push(side);
-                        continue;
-                    }
-                    for (condition, right) in pairs(terms, &comparison.left, &comparison.right)? {
-                        let difference = folded(terms, Term::Sub(condition.term, right));
-                        let mut branch = side.clone();
-                        branch.at_least.extend(&condition.at_least);
-                        branch.at_most.extend(&condition.at_most);
-                        let bound = if taken { &mut branch.at_least } else { &mut branch.at_most };
-                        bound.push(difference);
-                        found.push(branch);
-                    }
+                let sides = branches(side, setting, terms)?;
+                if decided.is_some() {
+                    found.extend(sides);
+                    continue;
+                }
+                for (condition, left, right) in pairs(terms, &comparison.left, &comparison.right)? {
+                    let difference = folded(terms, Term::Sub(left, right));
+                    let condition = condition.choosing(difference, choice, taken);
+                    let both = |side: &Branch| condition.as_ref()?.and(side);
+                    found.extend(sides.iter().filter_map(both));
                 }
             }
             Ok(found)
         }
     }
+}
+
+/// The word of a table: the number that it is wherever this case reads, or a variable.
+fn word(rom: &str, place: &Real, setting: &Setting, terms: &mut Terms) -> Result<Id, String> {
+    let words = setting.words.get(rom).ok_or_else(|| format!("there is no table `{rom}`"))?;
+    let (name, range) = match place {
+        Real::Operand(name) => (name.as_str(), setting.ranges.get(name).copied()),
+        Real::Number(value) => ("", Some((*value, *value))),
+        _ => return Err(format!("`{rom}` is read at a place that is computed")),
+    };
+    let (low, high) = range.ok_or_else(|| format!("there is no operand `{name}`"))?;
+    if setting.operands.iter().any(|operand| operand.name == name && operand.format.frac != 0) {
+        return Err(format!("`{rom}` is read at an operand with a fraction, `{name}`"));
+    }
+    let read = words.get(low as usize..=high as usize);
+    let read = read.ok_or_else(|| format!("there is no word {high} in `{rom}`"))?;
+    if read.iter().all(|word| *word == read[0]) {
+        return Ok(terms.number(read[0]));
+    }
+    let operand = setting.variables.get(name).map_or("", |(variable, _)| variable.as_str());
+    let variable = word_variable(rom, operand);
+    Ok(terms.insert(Term::Variable(variable.clone()), &variable))
 }
 
 fn operand(name: &str, setting: &Setting, terms: &mut Terms) -> Result<Id, String> {

@@ -38,6 +38,24 @@ pub struct Comparison {
     pub or_equal: bool,
 }
 
+impl Real {
+    /// Whether the operand is an exponent.
+    pub fn has_exponent(&self, name: &str) -> bool {
+        match self {
+            Self::Power(a, b) => **b == Self::Operand(name.to_owned()) || a.has_exponent(name),
+            Self::Number(_) | Self::Operand(_) | Self::Word(..) => false,
+            Self::Add(a, b)
+            | Self::Sub(a, b)
+            | Self::Mul(a, b)
+            | Self::Div(a, b)
+            | Self::Max(a, b) => a.has_exponent(name) || b.has_exponent(name),
+            Self::If(Comparison { left, right, .. }, a, b) => {
+                [left, right, a, b].into_iter().any(|side| side.has_exponent(name))
+            }
+        }
+    }
+}
+
 /// The expression as a tree.
 ///
 /// # Errors

@@ -1,11 +1,13 @@
 //! What the hardware computes on one way through it, as terms.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
-use super::cases::{Case, turns};
+use super::cases::{Case, View, turns};
+use super::exact::word_variable;
+use super::quotient::{Quotient, widened};
 use super::terms::{Direction, Id, Term, Terms};
 use crate::base::fixed::exp2;
-use crate::hdl::netlist::{NetId, Op};
+use crate::hdl::netlist::{NetId, Op, RomId};
 use crate::hdl::pipeline::{Cell, Graph, Interval};
 
 /// A node's raw value.
@@ -26,21 +28,107 @@ pub enum Value {
 pub type Variables = Vec<(String, i32)>;
 
 /// Translates nodes of one case.
+#[derive(Clone)]
 pub struct Hardware<'a> {
     graph: &'a Graph,
+    quotients: &'a BTreeMap<NetId, Quotient>,
     case: &'a Case,
-    variables: &'a Variables,
+    /// Operands, and behind them what else has become a variable.
+    pub variables: Variables,
+    /// The names of the tables.
+    tables: &'a [String],
+    /// What is known of terms that are no nodes.
+    pub facts: BTreeMap<Id, (f64, f64)>,
     known: HashMap<NetId, Value>,
 }
 
 impl<'a> Hardware<'a> {
-    /// Nothing translated yet.
-    pub fn new(graph: &'a Graph, case: &'a Case, variables: &'a Variables) -> Self {
-        Self { graph, case, variables, known: HashMap::new() }
+    /// Nothing translated yet. `variables` are the operands.
+    pub fn new(view: View<'a>, case: &'a Case, variables: Variables, tables: &'a [String]) -> Self {
+        let View { graph, quotients, .. } = view;
+        let (facts, known) = (BTreeMap::new(), HashMap::new());
+        Self { graph, quotients, case, variables, tables, facts, known }
     }
 
     fn range(&self, id: NetId) -> Interval {
         self.case.ranges[id.index()]
+    }
+
+    /// A new variable with the values that the node has.
+    fn variable(&mut self, terms: &mut Terms, node: NetId, variable: String, scale: i32) -> Value {
+        let id = terms.insert(Term::Variable(variable.clone()), &variable);
+        let (low, high) = self.range(node);
+        let value = |raw: i128| raw as f64 * exp2(-scale);
+        self.facts.insert(id, (value(low), value(high)));
+        if !self.variables.iter().any(|(name, _)| *name == variable) {
+            self.variables.push((variable, scale));
+        }
+        Value::Term { id, scale }
+    }
+
+    /// The word of a table: the variable that a formula has for it too, where an operand numbers it.
+    fn read(&mut self, terms: &mut Terms, node: NetId, rom: RomId, address: NetId) -> Value {
+        let table = &self.tables[rom.index()];
+        let variable = match self.graph.node(address).cell {
+            Cell::Operand(at) => word_variable(table, &self.variables[at].0),
+            _ => format!("{table}_{}", node.0),
+        };
+        let scale = self.graph.node(node).format.frac;
+        self.variable(terms, node, variable, scale)
+    }
+
+    /// A quotient: a variable that the real quotient exceeds by its last place at most.
+    fn quotient(
+        &mut self,
+        terms: &mut Terms,
+        node: NetId,
+        quotient: Quotient,
+    ) -> Result<Value, String> {
+        let (dividend, divisor) = self.fraction(terms, quotient)?;
+        let name = &self.graph.node(node).label.name;
+        let real = terms.insert(Term::Div(dividend, divisor), &format!("{name}_exact"));
+        let scale = quotient.bits as i32;
+        let value = self.variable(terms, node, format!("{name}_{}", node.0), scale);
+        if let Value::Term { id, .. } = value {
+            let rest = terms.insert(Term::Sub(real, id), &format!("{name}_rest"));
+            self.facts.insert(rest, (0.0, exp2(-scale)));
+        }
+        Ok(value)
+    }
+
+    /// The difference of two values of which the first is known to be less, or not to be; nothing where one does not
+    /// vary, or has no translation.
+    pub fn compared(
+        &mut self,
+        terms: &mut Terms,
+        (a, b): (NetId, NetId),
+        less: bool,
+    ) -> Option<(Id, (f64, f64))> {
+        let ((a_low, a_high), (b_low, b_high)) = (self.range(a), self.range(b));
+        let (a, b) = (self.value(terms, a).ok()?, self.value(terms, b).ok()?);
+        // Both at one point: they are compared as raw values.
+        let (Value::Term { scale, .. }, Value::Term { scale: other, .. }) = (a, b) else {
+            return None;
+        };
+        let difference = add(terms, a, b, Term::Sub, "compared");
+        let Value::Term { id, .. } = difference else { return None };
+        let value = |raw: i128| raw as f64 * exp2(-scale);
+        let range = match less {
+            true => (value(a_low - b_high), value(-1)),
+            false => (0.0, value(a_high - b_low)),
+        };
+        (scale == other).then_some((id, range))
+    }
+
+    /// Dividend and divisor, with the points at one place.
+    pub fn fraction(&mut self, terms: &mut Terms, of: Quotient) -> Result<(Id, Id), String> {
+        let (dividend, divisor) = (self.value(terms, of.dividend)?, self.value(terms, of.divisor)?);
+        let scale = [dividend, divisor].into_iter().filter_map(|value| match value {
+            Value::Term { scale, .. } => Some(scale),
+            Value::Constant(_) => None,
+        });
+        let scale = scale.max().unwrap_or(0);
+        Ok((pointed(terms, dividend, scale, "dividend"), pointed(terms, divisor, scale, "divisor")))
     }
 
     /// The node as a value.
@@ -57,10 +145,25 @@ impl<'a> Hardware<'a> {
         Ok(value)
     }
 
+    /// The node as a term even where it is one number in this case: that it is this number says something of its operands.
+    /// None where it is made of constants, or is bits that are cut out.
+    pub fn expression(&mut self, terms: &mut Terms, id: NetId) -> Option<Value> {
+        let is_cut =
+            matches!(self.graph.node(id).cell, Cell::Op(Op::Slice { .. }) | Cell::Operand(_));
+        let (low, high) = self.range(id);
+        if low != high {
+            return self.value(terms, id).ok();
+        }
+        (!is_cut).then(|| self.translated(terms, id).ok())?
+    }
+
     fn translated(&mut self, terms: &mut Terms, id: NetId) -> Result<Value, String> {
         let graph = self.graph;
         let node = graph.node(id);
         let name = node.label.name.clone();
+        if let Some(&quotient) = self.quotients.get(&id) {
+            return self.quotient(terms, id, quotient);
+        }
         let op = match &node.cell {
             Cell::Op(op) => op,
             Cell::Operand(at) => {
@@ -68,7 +171,7 @@ impl<'a> Hardware<'a> {
                 let id = terms.insert(Term::Variable(variable.clone()), &variable);
                 return Ok(Value::Term { id, scale });
             }
-            Cell::Read { .. } => return Err(format!("`{name}` is the word of a table")),
+            Cell::Read { rom, address } => return Ok(self.read(terms, id, *rom, *address)),
             _ => return Err(format!("`{name}` is nothing that the operands determine")),
         };
         // What is to be added where bits above the format are dropped.
@@ -92,7 +195,12 @@ impl<'a> Hardware<'a> {
             }
             Op::Slice { of, low } => {
                 let turn = turn((range(of).0 >> low, range(of).1 >> low))?;
+                let (from, to) = range(of);
                 let of = self.value(terms, *of)?;
+                if graph.width(id) == 1 && *low > 0 && from >= 0 && to < 2 << low {
+                    // The top bit of a fraction is the fraction to the nearest.
+                    return Ok(cut(terms, of, low + 1, Direction::Nearest, &name));
+                }
                 let cut = cut(terms, of, *low, Direction::Down, &name);
                 Ok(add(terms, cut, Value::Constant(turn), Term::Add, &name))
             }
@@ -155,9 +263,10 @@ impl<'a> Hardware<'a> {
                 Ok(add(terms, difference, Value::Constant(turn), Term::Add, &name))
             }
             Op::Mul(a, b) => {
-                let (a, b) = (self.value(terms, *a)?, self.value(terms, *b)?);
-                let (a, a_scale) = placed(terms, a);
-                let (b, b_scale) = placed(terms, b);
+                let frac = |id: &NetId| graph.node(*id).format.frac;
+                let (of_a, of_b) = (self.value(terms, *a)?, self.value(terms, *b)?);
+                let (a, a_scale) = placed(terms, of_a, frac(a));
+                let (b, b_scale) = placed(terms, of_b, frac(b));
                 let id = terms.insert(Term::Mul(a, b), &name);
                 Ok(Value::Term { id, scale: a_scale + b_scale })
             }
@@ -179,7 +288,7 @@ impl<'a> Hardware<'a> {
             _ => id,
         };
         let slice = |id: NetId| match &self.graph.node(inner(id)).cell {
-            Cell::Op(Op::Slice { of, low }) => Some((*of, *low)),
+            Cell::Op(Op::Slice { of, low }) => Some((widened(self.graph, *of), *low)),
             _ => None,
         };
         let one = |a: NetId, b: NetId| {
@@ -188,7 +297,7 @@ impl<'a> Hardware<'a> {
                 && bit + 1 == low
                 && self.graph.width(inner(b)) == 1
                 && self.range(of).0 >= 0
-                && low + self.graph.width(inner(a)) == self.graph.width(of);
+                && self.range(of).1 >> (low + self.graph.width(inner(a))) == 0;
             is.then_some((of, low))
         };
         one(a, b).or_else(|| one(b, a))
@@ -236,13 +345,16 @@ fn add(terms: &mut Terms, a: Value, b: Value, operation: fn(Id, Id) -> Term, nam
         | (Value::Constant(_), Value::Term { scale, .. }) => scale,
         (Value::Term { scale: a, .. }, Value::Term { scale: b, .. }) => a.max(b),
     };
-    let mut at = |value: Value| match value {
-        Value::Constant(raw) => terms.number(raw as f64 * exp2(-scale)),
-        Value::Term { id, scale: own } if own == scale => id,
-        Value::Term { id, scale: own } => scaled(terms, id, own - scale, name),
-    };
-    let (a, b) = (at(a), at(b));
+    let (a, b) = (pointed(terms, a, scale, name), pointed(terms, b, scale, name));
     Value::Term { id: terms.insert(operation(a, b), name), scale }
+}
+
+/// The value as a term whose raw values are its values times 2^`scale`.
+fn pointed(terms: &mut Terms, value: Value, scale: i32, name: &str) -> Id {
+    match value {
+        Value::Constant(raw) => terms.number(raw as f64 * exp2(-scale)),
+        Value::Term { id, scale: own } => scaled(terms, id, own - scale, name),
+    }
 }
 
 /// The term times two to the power of `power`.
@@ -254,10 +366,10 @@ pub fn scaled(terms: &mut Terms, id: Id, power: i32, name: &str) -> Id {
     terms.insert(Term::Mul(id, factor), name)
 }
 
-/// The value as a term and its fraction bits.
-pub fn placed(terms: &mut Terms, value: Value) -> (Id, i32) {
+/// The value as a term and its fraction bits, which are `frac` for a constant.
+pub fn placed(terms: &mut Terms, value: Value, frac: i32) -> (Id, i32) {
     match value {
-        Value::Constant(raw) => (terms.number(raw as f64), 0),
+        Value::Constant(raw) => (terms.number(raw as f64 * exp2(-frac)), frac),
         Value::Term { id, scale } => (id, scale),
     }
 }

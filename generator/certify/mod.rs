@@ -13,44 +13,71 @@ pub mod cases;
 pub mod exact;
 pub mod formula;
 pub mod hardware;
+pub mod polynomial;
+mod premises;
 mod proof;
+pub mod quotient;
+mod script;
 pub mod terms;
 
 use std::collections::{BTreeMap, HashMap};
-use std::fmt::Write as _;
 use std::time::{Duration, Instant};
-
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use crate::base::fixed::exp2;
 use crate::golden::Contract;
-use crate::hdl::netlist::{Design, NetId, RomId};
+use crate::hdl::netlist::{Design, NetId, Op, RomId};
 use crate::hdl::pipeline::{Cell, Graph, Unrolled, unroll};
-use cases::{Case, Known};
+use cases::{Case, Known, View};
 use exact::{Branch, Setting};
 use formula::Real;
 use hardware::{Hardware, Value, Variables};
 pub use proof::{Outcome, prove};
-use terms::{Id, Term, Terms, number};
+use script::Script;
+use terms::{Id, Term, Terms};
 
-/// An operand of at most this number of values is gone through value by value where a table is read by it, or where it is
-/// an exponent of the formula.
+/// An operand of at most this number of values is gone through value by value where it is an exponent of the formula, or
+/// numbers the words of several tables.
 const SPLIT: i64 = 1024;
 
-/// Points by which terms are compared, and how often one is looked for.
-const SAMPLES: usize = 24;
-const TRIES: usize = 20_000;
+/// A table of at most this number of different words, one after the other, is gone through word by word.
+const RUNS: usize = 16;
 
 /// What Gappa is to prove.
 #[derive(Clone, Debug)]
 pub struct Statement {
-    /// The output that it speaks of.
+    /// The output that it speaks of, or the value on the way to the outputs.
     pub output: String,
     /// Its number among those of the output, from 1.
     pub number: usize,
+    /// Other outputs of which it is the statement too, by another name.
+    pub also: Vec<String>,
     /// Scripts of which one has to be accepted: where the formula jumps there are two that are right.
     pub scripts: Vec<String>,
+}
+
+/// Statements, each once.
+#[derive(Default)]
+struct Statements {
+    list: Vec<Statement>,
+    /// Where each is, by its scripts with all names replaced.
+    known: HashMap<Vec<String>, usize>,
+}
+
+impl Statements {
+    fn push(&mut self, output: &str, scripts: Vec<String>) {
+        let nameless = scripts.iter().map(|script| script::nameless(script)).collect();
+        if let Some(&at) = self.known.get(&nameless) {
+            let Statement { output: own, also, .. } = &mut self.list[at];
+            if own != output && !also.iter().any(|other| other == output) {
+                also.push(output.to_owned());
+            }
+            return;
+        }
+        self.known.insert(nameless, self.list.len());
+        let before = self.list.iter().filter(|other| other.output == output).count();
+        let (output, number) = (output.to_owned(), before + 1);
+        self.list.push(Statement { output, number, also: Vec::new(), scripts });
+    }
 }
 
 /// The statements whose conjunction is the contract of a sequential design.
@@ -65,19 +92,24 @@ pub fn statements(
     let begin = Instant::now();
     let formulas = formulas(contract)?;
     let unrolled = unroll(design).map_err(|error| error.to_string())?;
-    let task = Task { design, contract, unrolled: &unrolled, formulas: &formulas };
-    let known = task.domain()?;
-    let results: Vec<NetId> = task.outputs()?.into_iter().map(|(_, node)| node).collect();
+    let results: Vec<NetId> = unrolled.results.iter().map(|(_, node)| *node).collect();
     let words = |rom: RomId, address: u64| {
         let rom = design.rom(rom);
         let word = rom.words.get(address as usize).copied().unwrap_or(0);
         design.net(rom.data).format.raw(word)
     };
-    let mut statements = Vec::new();
+    let quotients = quotient::quotients(&unrolled.graph, &results);
+    let view = View { graph: &unrolled.graph, words: &words, quotients: &quotients };
+    let tables: Vec<String> = design.roms.iter().map(|rom| rom.name.clone()).collect();
+    let task =
+        Task { design, contract, unrolled: &unrolled, view, tables: &tables, formulas: &formulas };
+    let known = task.domain()?;
+    let results: Vec<NetId> = task.outputs()?.into_iter().map(|(_, node)| node).collect();
+    let mut statements = Statements::default();
     for known in task.split(&known) {
-        for case in cases::cases(&unrolled.graph, &words, &results, &known)? {
+        for case in cases::cases(view, &results, &known)? {
             if begin.elapsed() > limit {
-                let so_far = statements.len();
+                let so_far = statements.list.len();
                 let limit = limit.as_secs();
                 return Err(format!(
                     "to write its statements takes more than {limit} s, with {so_far} written"
@@ -86,7 +118,7 @@ pub fn statements(
             task.state(&case, &mut statements)?;
         }
     }
-    Ok(statements)
+    Ok(statements.list)
 }
 
 fn formulas(contract: &dyn Contract) -> Result<Vec<Real>, String> {
@@ -106,12 +138,20 @@ struct Task<'a> {
     design: &'a Design,
     contract: &'a dyn Contract,
     unrolled: &'a Unrolled,
+    view: View<'a>,
+    tables: &'a [String],
     formulas: &'a [Real],
 }
 
 impl Task<'_> {
     fn graph(&self) -> &Graph {
         &self.unrolled.graph
+    }
+
+    /// As [`cases::learn`], of what is known before any way is followed.
+    fn learn(&self, known: &mut Known, node: NetId, range: (i128, i128)) -> bool {
+        let ranges: Vec<_> = self.graph().nodes.iter().map(|node| node.range).collect();
+        cases::learn(self.graph(), known, &ranges, node, range)
     }
 
     /// The node of the operand, if anything depends on it, by its name.
@@ -129,7 +169,7 @@ impl Task<'_> {
         for operand in self.contract.operands() {
             let (low, high) = operand.domain;
             if let Some(node) = self.operand(&operand.name)
-                && !cases::learn(self.graph(), &mut known, node, (low.into(), high.into()))
+                && !self.learn(&mut known, node, (low.into(), high.into()))
             {
                 return Err(format!("the domain of `{}` is not in its format", operand.name));
             }
@@ -148,28 +188,53 @@ impl Task<'_> {
         outputs.collect()
     }
 
-    /// The domain, by the values of operands that number the words of tables or stand in exponents.
+    /// The domain, by the values of operands that stand in exponents, and by the runs of operands over which tables have the
+    /// same words. Of one table with many words a word is a variable; those of several depend on each other.
     fn split(&self, known: &Known) -> Vec<Known> {
         let mut split = vec![known.clone()];
         for operand in self.contract.operands() {
             let (low, high) = operand.domain;
-            let numbers = self.formulas.iter().any(|formula| is_number_of(formula, &operand.name));
-            let Some(node) = self.operand(&operand.name).filter(|_| numbers && high - low < SPLIT)
-            else {
+            let Some(node) = self.operand(&operand.name).filter(|_| high - low < SPLIT) else {
                 continue;
+            };
+            let tables: Vec<RomId> = self.tables_read_at(node);
+            let is_exponent = |formula: &Real| formula.has_exponent(&operand.name);
+            let single = self.formulas.iter().any(is_exponent);
+            let words = |at: i64| -> Vec<i128> {
+                tables.iter().map(|&rom| (self.view.words)(rom, at as u64)).collect()
+            };
+            let mut runs: Vec<(i64, i64)> = Vec::new();
+            for value in low..=high {
+                match runs.last_mut() {
+                    Some(run) if !single && words(run.1) == words(value) => run.1 = value,
+                    _ => runs.push((value, value)),
+                }
+            }
+            if !single && (tables.is_empty() || tables.len() == 1 && runs.len() > RUNS) {
+                continue;
+            }
+            let learnt = |known: &Known, (from, to): (i64, i64)| {
+                let mut known = known.clone();
+                self.learn(&mut known, node, (from.into(), to.into())).then_some(known)
             };
             split = split
                 .iter()
-                .flat_map(|known| {
-                    (low..=high).filter_map(move |value| {
-                        let mut known = known.clone();
-                        let value = (value.into(), value.into());
-                        cases::learn(self.graph(), &mut known, node, value).then_some(known)
-                    })
-                })
+                .flat_map(|known| runs.iter().filter_map(|&run| learnt(known, run)))
                 .collect();
         }
         split
+    }
+
+    /// The tables that this node numbers the words of.
+    fn tables_read_at(&self, node: NetId) -> Vec<RomId> {
+        let reads = self.graph().nodes.iter().filter_map(|it| match it.cell {
+            Cell::Read { rom, address } if address == node => Some(rom),
+            _ => None,
+        });
+        let mut tables: Vec<RomId> = reads.collect();
+        tables.sort_by_key(|rom| rom.index());
+        tables.dedup();
+        tables
     }
 
     /// Variable and divisor of each operand: where the formula divides it by a power of two throughout, the variable
@@ -189,11 +254,11 @@ impl Task<'_> {
     }
 
     /// The statements of one case.
-    fn state(&self, case: &Case, statements: &mut Vec<Statement>) -> Result<(), String> {
+    fn state(&self, case: &Case, statements: &mut Statements) -> Result<(), String> {
         let variables = self.variables();
         let mut ranges = HashMap::new();
         let mut placed = Variables::new();
-        let mut operands: BTreeMap<String, (f64, f64)> = BTreeMap::new();
+        let mut operands = Vec::new();
         for port in &self.unrolled.operands {
             let name = &self.design.net(*port).name;
             let operand = self.contract.operands().iter().find(|operand| operand.name == *name);
@@ -206,7 +271,7 @@ impl Task<'_> {
             let value = |raw: i128| raw as f64 * exp2(-operand.format.frac);
             ranges.insert(name.clone(), (value(low), value(high)));
             let quotient = |raw: i128| value(raw) * exp2(-divisor);
-            operands.insert(variable.clone(), (quotient(low), quotient(high)));
+            operands.push((variable.clone(), (quotient(low), quotient(high))));
         }
         let words: HashMap<String, Vec<f64>> = self
             .design
@@ -218,27 +283,24 @@ impl Task<'_> {
                 (rom.name.clone(), words.collect())
             })
             .collect();
-        let setting = Setting { variables: &variables, ranges: &ranges, words: &words };
+        let setting = Setting {
+            variables: &variables,
+            ranges: &ranges,
+            words: &words,
+            operands: self.contract.operands(),
+        };
+        let hardware = Hardware::new(self.view, case, placed, self.tables);
+        for premise in premises::of(self.view, case, &hardware, &operands)? {
+            statements.push(&premise.about, vec![premise.script]);
+        }
         let colours: Vec<_> =
             self.contract.operands().iter().filter(|operand| operand.colour).collect();
         for ((output, node), colour) in self.outputs()?.into_iter().zip(colours) {
             let mut terms = Terms::default();
-            let mut hardware = Hardware::new(self.graph(), case, &placed);
+            let mut hardware = hardware.clone();
             let out = hardware.value(&mut terms, node)?;
-            // What the case presupposes of values that have a translation; others are left out, which leaves
-            // more to prove.
-            let mut presupposed: BTreeMap<Id, (f64, f64)> = BTreeMap::new();
-            for (&node, &(low, high)) in &case.known {
-                if let Ok(Value::Term { id, scale }) = hardware.value(&mut terms, node) {
-                    let value = |raw: i128| raw as f64 * exp2(-scale);
-                    presupposed.insert(id, (value(low), value(high)));
-                }
-            }
-            for (name, &range) in &operands {
-                let id = terms.insert(Term::Variable(name.clone()), name);
-                presupposed.insert(id, range);
-            }
-            let (out, scale) = hardware::placed(&mut terms, out);
+            let presupposed = self.presupposed(case, &mut hardware, &mut terms, &operands);
+            let (out, scale) = hardware::placed(&mut terms, out, 0);
             let out = hardware::scaled(&mut terms, out, scale, "out");
             let colour = real_operand(&colour.name, &setting, &mut terms)?;
             let hardware_terms = terms.count();
@@ -246,29 +308,60 @@ impl Task<'_> {
             for formula in self.formulas {
                 ways.push(exact::branches(formula, &setting, &mut terms)?);
             }
-            for chosen in product(&ways) {
+            for chosen in together(&ways) {
                 if chosen.iter().any(|way| way.is_never(&terms)) {
                     continue;
                 }
                 let script = Script {
                     terms: &terms,
                     hardware_terms,
-                    placed: &placed,
+                    placed: &hardware.variables,
                     presupposed: &presupposed,
                     ways: &chosen,
                 };
                 let scripts = chosen
                     .iter()
                     .map(|way| script.text(out, colour, way.term, self.contract.bound().units));
-                let before = statements.iter().filter(|other| other.output == output).count();
-                statements.push(Statement {
-                    output: output.clone(),
-                    number: before + 1,
-                    scripts: scripts.collect(),
-                });
+                let mut scripts: Vec<String> = scripts.collect();
+                scripts.dedup();
+                statements.push(&output, scripts);
             }
         }
         Ok(())
+    }
+
+    /// What the case presupposes of values that have a translation; others are left out, which leaves more to prove.
+    fn presupposed(
+        &self,
+        case: &Case,
+        hardware: &mut Hardware,
+        terms: &mut Terms,
+        operands: &[(String, (f64, f64))],
+    ) -> BTreeMap<Id, (f64, f64)> {
+        let mut presupposed = BTreeMap::new();
+        // The formula may read words that nothing in the hardware depends on any more.
+        for (at, node) in self.graph().nodes.iter().enumerate() {
+            if let Cell::Read { address, .. } = node.cell
+                && matches!(self.graph().node(address).cell, Cell::Operand(_))
+            {
+                let _ = hardware.value(terms, NetId(at as u32));
+            }
+        }
+        for (&node, &(low, high)) in &case.known {
+            if let Some(Value::Term { id, scale }) = hardware.expression(terms, node) {
+                let value = |raw: i128| raw as f64 * exp2(-scale);
+                presupposed.insert(id, (value(low), value(high)));
+            }
+            if let (Cell::Op(Op::Less(a, b)), true) = (&self.graph().node(node).cell, low == high) {
+                presupposed.extend(hardware.compared(terms, (*a, *b), low == 1));
+            }
+        }
+        for (name, range) in operands {
+            let id = terms.insert(Term::Variable(name.clone()), name);
+            presupposed.insert(id, *range);
+        }
+        presupposed.extend(hardware.facts.iter().map(|(&id, &range)| (id, range)));
+        presupposed
     }
 }
 
@@ -278,197 +371,16 @@ fn real_operand(name: &str, setting: &Setting, terms: &mut Terms) -> Result<Id, 
     Ok(branches[0].term)
 }
 
-/// Whether the operand numbers a word, or is an exponent.
-fn is_number_of(real: &Real, name: &str) -> bool {
-    let is = |real: &Real| *real == Real::Operand(name.to_owned());
-    match real {
-        Real::Word(_, place) => is(place),
-        Real::Power(a, b) => is(b) || is_number_of(a, name),
-        Real::Number(_) | Real::Operand(_) => false,
-        Real::Add(a, b) | Real::Sub(a, b) | Real::Mul(a, b) | Real::Div(a, b) | Real::Max(a, b) => {
-            is_number_of(a, name) || is_number_of(b, name)
-        }
-        Real::If(comparison, a, b) => {
-            let sides = [&comparison.left, &comparison.right, a, b];
-            sides.into_iter().any(|side| is_number_of(side, name))
-        }
-    }
-}
-
-/// One of each.
-fn product(ways: &[Vec<Branch>]) -> Vec<Vec<Branch>> {
-    ways.iter().fold(vec![Vec::new()], |chosen, ways| {
-        let longer = chosen.iter().flat_map(|before| {
-            ways.iter().map(|way| {
-                let mut longer = before.clone();
-                longer.push(way.clone());
-                longer
+/// Every way that the expressions can go together.
+fn together(ways: &[Vec<Branch>]) -> Vec<Vec<Branch>> {
+    let all = ways.iter().fold(vec![(Branch::default(), Vec::new())], |chosen, ways| {
+        let longer = chosen.iter().flat_map(|(all, before)| {
+            ways.iter().filter_map(|way| {
+                let chosen: Vec<Branch> = before.iter().chain([way]).cloned().collect();
+                Some((all.and(way)?, chosen))
             })
         });
         longer.collect()
-    })
-}
-
-struct Script<'a> {
-    terms: &'a Terms,
-    /// Terms below this number are the hardware's.
-    hardware_terms: usize,
-    placed: &'a Variables,
-    presupposed: &'a BTreeMap<Id, (f64, f64)>,
-    ways: &'a [Branch],
-}
-
-impl Script<'_> {
-    fn text(&self, out: Id, colour: Id, f: Id, bound: f64) -> String {
-        let mut terms = self.terms.clone();
-        let exact = exact::folded(&mut terms, Term::Mul(f, colour));
-        let difference = terms.insert(Term::Sub(out, exact), "difference");
-        let mut roots = vec![difference];
-        for way in self.ways {
-            roots.extend(way.at_least.iter().chain(&way.at_most));
-        }
-        let mut hypotheses = Vec::new();
-        let values = self.presupposed.keys().copied();
-        let values = values.filter(|&id| !matches!(self.terms.get(id), Term::Variable(_)));
-        roots.extend(values);
-        let defined = terms.definitions(&roots);
-        let needed = |name: &str| {
-            let mut words = defined.split(|c: char| !c.is_ascii_alphanumeric() && c != '_');
-            words.any(|word| word == name)
-        };
-        for (name, scale) in self.placed.iter().filter(|(name, _)| needed(name)) {
-            hypotheses.push(format!("@FIX({name},{})", -scale));
-        }
-        for (&id, &(low, high)) in self.presupposed {
-            let name = self.terms.name(id);
-            if !matches!(self.terms.get(id), Term::Number(_)) && needed(&name) {
-                hypotheses.push(format!("{name} in [{},{}]", number(low), number(high)));
-            }
-        }
-        for way in self.ways {
-            let sides = way.at_least.iter().map(|&id| (id, ">="));
-            for (id, sign) in sides.chain(way.at_most.iter().map(|&id| (id, "<="))) {
-                if !matches!(self.terms.get(id), Term::Number(_)) {
-                    hypotheses.push(format!("{} {sign} 0", self.terms.name(id)));
-                }
-            }
-        }
-        hypotheses.dedup();
-        let (equal, near) = self.hints(&terms, exact, &needed);
-        let mut text = defined.clone();
-        let goal = terms.name(difference);
-        let _ = write!(
-            text,
-            "\n{{ {}\n  -> |{goal}| <= {} }}\n\n",
-            hypotheses.join("\n  /\\ "),
-            number(bound)
-        );
-        for line in equal.into_iter().chain(near) {
-            let _ = writeln!(text, "{line}");
-        }
-        text
-    }
-
-    /// Which terms of the formula are sums of terms of the hardware, and which terms of the hardware stand for which
-    /// of the formula. Gappa proves what it uses of it.
-    fn hints(
-        &self,
-        terms: &Terms,
-        exact: Id,
-        needed: &dyn Fn(&str) -> bool,
-    ) -> (Vec<String>, Vec<String>) {
-        let samples = self.samples(terms);
-        let (mut equal, mut near) = (Vec::new(), Vec::new());
-        if samples.len() < 2 {
-            return (equal, near);
-        }
-        let column = |id: Id| samples.iter().map(|values| values[id]).collect::<Vec<f64>>();
-        let varies = |values: &[f64]| values.iter().any(|value| *value != values[0]);
-        let formula: Vec<(Id, Vec<f64>)> = (self.hardware_terms..terms.count())
-            .filter(|&id| {
-                id <= exact && !matches!(terms.get(id), Term::Number(_) | Term::Variable(_))
-            })
-            .map(|id| (id, column(id)))
-            .filter(|(_, values)| varies(values))
-            .collect();
-        for id in 0..self.hardware_terms {
-            let own = column(id);
-            if !varies(&own) || matches!(terms.get(id), Term::Number(_)) || !needed(&terms.name(id))
-            {
-                continue;
-            }
-            for (other, values) in &formula {
-                if terms.is_exact(id) && !matches!(terms.get(id), Term::Variable(_)) {
-                    if let Some((factor, offset)) = line_through(&own, values) {
-                        let own = terms.name(id);
-                        // Gappa sees through a plain difference, and not through a product by -1.
-                        let right = match (offset, factor) {
-                            (0.0, 1.0) => own,
-                            (_, 1.0) => format!("{} + {own}", number(offset)),
-                            (_, -1.0) => format!("{} - {own}", number(offset)),
-                            (0.0, _) => format!("({}) * {own}", number(factor)),
-                            _ => format!("{} + ({}) * {own}", number(offset), number(factor)),
-                        };
-                        equal.push(format!("{} -> {right};", terms.name(*other)));
-                    }
-                    continue;
-                }
-                let largest = own.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-                let apart = own.iter().zip(values).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-                if apart <= largest / 64.0 && !matches!(terms.get(id), Term::Variable(_)) {
-                    near.push(format!("{} ~ {};", terms.name(id), terms.name(*other)));
-                }
-            }
-        }
-        (equal, near)
-    }
-
-    /// The values of all terms at operands of this case.
-    fn samples(&self, terms: &Terms) -> Vec<Vec<f64>> {
-        let mut random = ChaCha8Rng::seed_from_u64(1);
-        let mut samples = Vec::new();
-        for _ in 0..TRIES {
-            let mut variables = HashMap::new();
-            for (&id, &(low, high)) in self.presupposed {
-                if let Term::Variable(name) = self.terms.get(id) {
-                    let scale = self.placed.iter().find(|(other, _)| other == name);
-                    let unit = exp2(scale.map_or(0, |(_, scale)| *scale));
-                    let unit_share = (random.next_u32() as f64) / f64::from(u32::MAX);
-                    // More near the lower end, and near the upper, than between.
-                    let share = match random.next_u32() % 3 {
-                        0 => unit_share,
-                        1 => unit_share.powi(8),
-                        _ => 1.0 - unit_share.powi(8),
-                    };
-                    let raw = (low + (high - low) * share) * unit;
-                    variables.insert(name.clone(), libm::floor(raw).max(low * unit) / unit);
-                }
-            }
-            let values = terms.evaluate(&variables);
-            let within =
-                |(&id, &(low, high)): (&Id, &(f64, f64))| (low..=high).contains(&values[id]);
-            let ways = self.ways.iter().all(|way| {
-                way.at_least.iter().all(|&id| values[id] >= 0.0)
-                    && way.at_most.iter().all(|&id| values[id] <= 0.0)
-            });
-            if ways && self.presupposed.iter().all(within) {
-                samples.push(values);
-                if samples.len() == SAMPLES {
-                    break;
-                }
-            }
-        }
-        samples
-    }
-}
-
-/// Factor and offset, both short numbers, with which the second is the first's line.
-fn line_through(x: &[f64], y: &[f64]) -> Option<(f64, f64)> {
-    let other = x.iter().position(|value| *value != x[0])?;
-    let factor = (y[other] - y[0]) / (x[other] - x[0]);
-    let short = |value: f64| libm::round(value * 65536.0) / 65536.0;
-    let factor = short(factor);
-    let offset = short(y[0] - factor * x[0]);
-    let fits = |(x, y): (&f64, &f64)| (factor * x + offset - y).abs() <= 1e-9 * y.abs().max(1e-3);
-    (factor != 0.0 && x.iter().zip(y).all(fits)).then_some((factor, offset))
+    });
+    all.into_iter().map(|(_, chosen)| chosen).collect()
 }

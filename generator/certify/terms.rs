@@ -45,12 +45,22 @@ pub enum Term {
 #[derive(Clone, Debug, Default)]
 pub struct Terms {
     terms: Vec<(Term, String)>,
+    /// Of each the variables and the degree in them.
+    shapes: Vec<(Vec<Id>, u32)>,
     known: HashMap<String, Id>,
 }
 
 impl Terms {
     /// The term; `name` is what its definition is called, if it gets one.
+    ///
+    /// Of a sum and a product the operands come in an order of ours, so that hardware and formula have them in the
+    /// same: Gappa compares a product with another factor by factor.
     pub fn insert(&mut self, term: Term, name: &str) -> Id {
+        let term = match term {
+            Term::Add(a, b) if self.is_after(a, b) => Term::Add(b, a),
+            Term::Mul(a, b) if self.is_after(a, b) => Term::Mul(b, a),
+            term => term,
+        };
         let key = format!("{term:?}");
         if let Some(&id) = self.known.get(&key) {
             return id;
@@ -61,8 +71,40 @@ impl Terms {
             _ => format!("{name}_{id}"),
         };
         self.terms.push((term, name));
+        self.shapes.push(self.shape(id));
         self.known.insert(key, id);
         id
+    }
+
+    /// Whether `a` stands behind `b`: numbers stand first, variables last, and other terms by the variables and the degree
+    /// that they have.
+    fn is_after(&self, a: Id, b: Id) -> bool {
+        let kind = |id: Id| match self.get(id) {
+            Term::Number(_) => 0,
+            Term::Variable(_) => 2,
+            _ => 1,
+        };
+        let order = |id: Id| (kind(id), &self.shapes[id], id);
+        order(a) > order(b)
+    }
+
+    /// The variables of a term that is new, and its degree in them.
+    fn shape(&self, id: Id) -> (Vec<Id>, u32) {
+        let operands = self.operands(id);
+        let mut variables: Vec<Id> =
+            operands.iter().flat_map(|&id| self.shapes[id].0.iter().copied()).collect();
+        let degrees = operands.iter().map(|&id| self.shapes[id].1);
+        let degree = match self.get(id) {
+            Term::Variable(_) => {
+                variables.push(id);
+                1
+            }
+            Term::Mul(..) => degrees.sum(),
+            _ => degrees.max().unwrap_or(0),
+        };
+        variables.sort_unstable();
+        variables.dedup();
+        (variables, degree)
     }
 
     /// The constant.
@@ -124,8 +166,8 @@ impl Terms {
         values
     }
 
-    /// Definitions of the terms that `roots` need, in order.
-    pub fn definitions(&self, roots: &[Id]) -> String {
+    /// Which terms `roots` are made of, and they themselves.
+    pub fn needed(&self, roots: &[Id]) -> Vec<bool> {
         let mut needed = vec![false; self.terms.len()];
         roots.iter().for_each(|&root| needed[root] = true);
         for id in (0..self.terms.len()).rev() {
@@ -133,6 +175,38 @@ impl Terms {
                 self.operands(id).into_iter().for_each(|operand| needed[operand] = true);
             }
         }
+        needed
+    }
+
+    /// The term without its roundings. `known` are those that are known.
+    pub fn unrounded(&mut self, id: Id, known: &mut HashMap<Id, Id>) -> Id {
+        if let Some(&twin) = known.get(&id) {
+            return twin;
+        }
+        let twin = match self.get(id).clone() {
+            Term::Round { of, .. } => self.unrounded(of, known),
+            Term::Variable(_) | Term::Number(_) => id,
+            Term::Add(a, b) => self.without(Term::Add, (a, b), known),
+            Term::Sub(a, b) => self.without(Term::Sub, (a, b), known),
+            Term::Mul(a, b) => self.without(Term::Mul, (a, b), known),
+            Term::Div(a, b) => self.without(Term::Div, (a, b), known),
+        };
+        known.insert(id, twin);
+        twin
+    }
+
+    fn without(
+        &mut self,
+        make: fn(Id, Id) -> Term,
+        (a, b): (Id, Id),
+        known: &mut HashMap<Id, Id>,
+    ) -> Id {
+        let (a, b) = (self.unrounded(a, known), self.unrounded(b, known));
+        self.insert(make(a, b), "unrounded")
+    }
+
+    /// Definitions of the terms that are needed, in order.
+    pub fn definitions(&self, needed: &[bool]) -> String {
         let mut text = String::new();
         for (id, (term, name)) in self.terms.iter().enumerate() {
             let of = |id: &Id| self.name(*id);
@@ -195,7 +269,10 @@ mod tests {
             terms.insert(Term::Round { of: sum, fraction: 4, direction: Direction::Down }, "cut");
         let _unneeded = terms.insert(Term::Mul(x, x), "square");
         assert_eq!(terms.insert(Term::Add(x, half), "again"), sum);
-        assert_eq!(terms.definitions(&[cut]), "sum_2 = x + 0.5;\ncut_3 = fixed<-4,dn>(sum_2);\n");
+        assert_eq!(
+            terms.definitions(&terms.needed(&[cut])),
+            "sum_2 = 0.5 + x;\ncut_3 = fixed<-4,dn>(sum_2);\n"
+        );
         let values = terms.evaluate(&HashMap::from([("x".to_owned(), 0.3)]));
         assert_eq!((values[cut], values[sum]), (0.75, 0.8));
         assert!(terms.is_exact(sum) && !terms.is_exact(cut));

@@ -1,73 +1,138 @@
 //! Statements for Gappa: proved of the devices as they are, refused of a smaller bound and of faulty hardware.
 
+use std::path::Path;
 use std::time::Duration;
 
-use glint::certify::{Statement, statements};
+use glint::certify::{Outcome, Statement, prove, statements};
 use glint::config::{Config, parse};
-use glint::hdl::netlist::{Driver, Net};
+use glint::golden::Contract;
+use glint::hdl::netlist::{Design, Driver, Op};
 use glint::registry::Registry;
 use glint::tools::Tool;
+use rayon::prelude::*;
 
-const LIMIT: Duration = Duration::from_secs(120);
+use crate::common::sample::sampled;
 
-fn stated(device: &str, keys: &str) -> Vec<Statement> {
+/// What Gappa proves it proves in a second.
+const LIMIT: Duration = Duration::from_secs(20);
+
+/// Coq takes a hundred times as long.
+const LIMIT_COQ: Duration = Duration::from_secs(60);
+
+/// The configurations that are certified whole, and their devices.
+const CERTIFIED: [(&str, &str); 5] = [
+    ("cosine_power", "cosine-power"),
+    ("threshold", "threshold"),
+    ("quadratic", "quadratic"),
+    ("schlick", "schlick"),
+    ("lyon", "lyon"),
+];
+
+fn device(name: &str, keys: &str) -> (Design, Box<dyn Contract>) {
     let registry = Registry::catalogue();
-    let text = format!("device = \"{device}\"\nname = \"core\"\n{keys}");
+    let text = format!("device = \"{name}\"\nname = \"core\"\n{keys}");
     let config = parse("core.toml", &text, &registry.schemas()).expect("a configuration");
-    let device = registry.device(device).expect("in the catalogue");
-    let design = device.sequential(&config).expect("a design");
-    statements(&design, (device.contract)(&config).as_ref(), Duration::MAX).expect("statements")
+    let device = registry.device(name).expect("in the catalogue");
+    (device.sequential(&config).expect("a design"), (device.contract)(&config))
+}
+
+fn stated(name: &str, keys: &str) -> Vec<Statement> {
+    let (design, contract) = device(name, keys);
+    statements(&design, contract.as_ref(), Duration::MAX).expect("statements")
 }
 
 fn accepted(script: &str) -> bool {
     let gappa = Tool::find("gappa").unwrap_or_else(|error| panic!("{error}"));
     let place = tempfile::tempdir().expect("a directory");
     std::fs::write(place.path().join("statement.g"), script).expect("a script");
-    let run = gappa.run(["statement.g"], place.path(), LIMIT).expect("Gappa ends");
-    run.status.success() && !run.output.contains("trivially equal")
+    let run = gappa.run(["statement.g"], place.path(), LIMIT);
+    run.is_ok_and(|run| run.status.success() && !run.output.contains("trivially equal"))
 }
 
 fn all_accepted(statements: &[Statement]) -> bool {
     statements.iter().all(|statement| statement.scripts.iter().any(|script| accepted(script)))
 }
 
+/// The script with a bound of half a unit, which the rounding of the outputs alone may take.
+fn smaller(script: &str) -> String {
+    let Some((before, after)) = script.split_once("| <= ") else { return script.to_owned() };
+    let (_, after) = after.split_once(" }").expect("the end of the goal");
+    format!("{before}| <= 0.5 }}{after}")
+}
+
 #[test]
 fn bounds_are_proved_and_smaller_ones_are_not() {
-    for power in [2, 16] {
-        let stated = stated("cosine-power", &format!("power = {power}\n"));
-        assert!(all_accepted(&stated), "power = {power}");
-        // The same with a bound of half a unit, which the rounding of the outputs alone may take.
-        let smaller = |script: &String| {
-            let (before, after) = script.split_once("| <= ").expect("a goal");
-            let (_, after) = after.split_once(" }").expect("its end");
-            format!("{before}| <= 0.5 }}{after}")
-        };
+    for (device, keys) in [
+        ("cosine-power", "power = 2"),
+        ("cosine-power", "power = 16"),
+        ("threshold", ""),
+        ("threshold", "visibility.levels = [50, 100, 200]"),
+        ("quadratic", ""),
+        ("quadratic", "cosine.signed = true"),
+        ("schlick", ""),
+        ("schlick", "intensity.fraction = 6\nexponent.bits = 6\ndomain.exponent_max = 60"),
+        ("lyon", "power = 2"),
+        ("lyon", "scale = \"multiplier\""),
+    ] {
+        let stated = stated(device, keys);
+        assert!(all_accepted(&stated), "{device}: {keys}");
         let refused = stated.iter().any(|it| !it.scripts.iter().any(|it| accepted(&smaller(it))));
-        assert!(refused, "power = {power}");
+        assert!(refused, "{device}: {keys}");
+    }
+}
+
+/// What is changed in a net: a constant gets a sixteenth smaller, an inverter a wire, operands change places.
+fn plant(design: &mut Design, name: &str) {
+    let net = design.nets.iter_mut().find(|net| net.name == name);
+    let net = net.unwrap_or_else(|| panic!("there is a net `{name}`"));
+    match &mut net.driver {
+        Driver::Constant(bits) => {
+            assert!(*bits >= 16, "`{name}` has a sixteenth");
+            *bits -= *bits >> 4;
+            let raw = net.format.raw(*bits);
+            net.range = (raw, raw);
+        }
+        Driver::Op(op @ Op::Not(_)) => *op = Op::Relabel(op.operands()[0]),
+        Driver::Op(Op::Sub(a, b) | Op::Less(a, b)) => std::mem::swap(a, b),
+        other => panic!("no fault is known for {other:?}"),
     }
 }
 
 #[test]
 fn faulty_hardware_has_no_proof() {
-    let registry = Registry::catalogue();
-    let device = registry.device("cosine-power").expect("in the catalogue");
-    let config = Config::defaults(&(device.schema)(), "core");
-    let design = device.sequential(&config).expect("a design");
-    let contract = (device.contract)(&config);
-    // 1.0, from which the cosine is taken, a sixteenth too small.
-    let mut faulty = design.clone();
-    let one = |net: &&mut Net| {
-        net.format.frac > 0
-            && net.format.raw(1 << net.format.frac) == net.range.0
-            && net.range.0 == net.range.1
-    };
-    let net = faulty.nets.iter_mut().find(one).expect("the constant 1.0");
-    let Driver::Constant(bits) = &mut net.driver else { panic!("`{}` is a constant", net.name) };
-    *bits -= *bits >> 4;
-    let raw = net.format.raw(*bits);
-    net.range = (raw, raw);
-    let stated = statements(&faulty, contract.as_ref(), Duration::MAX);
-    assert!(stated.map_or(true, |stated| !all_accepted(&stated)));
+    for (name, net) in [
+        ("cosine-power", "one_2"),
+        ("threshold", "base_one"),
+        ("threshold", "comparator"),
+        ("quadratic", "inverters"),
+        ("schlick", "one"),
+        ("schlick", "quotient_trial"),
+        ("schlick", "quotient_bit"),
+        ("lyon", "inverse"),
+    ] {
+        let (mut design, contract) = device(name, "");
+        plant(&mut design, net);
+        let stated = statements(&design, contract.as_ref(), Duration::MAX);
+        assert!(stated.map_or(true, |stated| !all_accepted(&stated)), "{name}: `{net}`");
+    }
+}
+
+/// A parabola and a quotient are taken for more than intervals say of them, which is stated too.
+#[test]
+fn what_statements_rest_on_is_stated_and_wrong_premises_are_refused() {
+    let quadratic = stated("quadratic", "");
+    let premise = quadratic.iter().find(|it| it.output == "adder1").expect("c² − c");
+    let script = &premise.scripts[0];
+    assert!(accepted(script) && script.contains(" in [-0.25,0]"), "{script}");
+    assert!(!accepted(&script.replace(" in [-0.25,0]", " in [-0.2499,0]")));
+    let schlick = stated("schlick", "");
+    let premises: Vec<_> = schlick.iter().filter(|it| it.output == "quotient").collect();
+    assert_eq!(premises.len(), 3);
+    assert!(premises.iter().all(|it| accepted(&it.scripts[0])));
+    // The divisor may be below the dividend where n may be below 1.
+    let dividend = premises.iter().find(|it| it.scripts[0].contains("exponent in [1,1000]"));
+    let dividend = &dividend.expect("what the division presupposes").scripts[0];
+    assert!(!accepted(&dividend.replace("exponent in [1,1000]", "exponent in [-1,1000]")));
 }
 
 #[test]
@@ -85,24 +150,53 @@ fn what_cannot_be_stated_says_which_step() {
     assert_eq!(step, "the function `sqrt` has no translation");
 }
 
+/// The certificates of a configuration, with the statements of today.
+fn committed((name, device): (&str, &str)) -> Vec<(String, Statement)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(root.join(format!("configs/{name}.toml")));
+    let registry = Registry::catalogue();
+    let config = parse("core.toml", &text.expect("a file"), &registry.schemas());
+    let config = config.expect("a configuration");
+    let device = registry.device(device).expect("in the catalogue");
+    let design = device.sequential(&config).expect("a design");
+    let contract = (device.contract)(&config);
+    let stated = statements(&design, contract.as_ref(), Duration::MAX).expect("statements");
+    let directory = root.join("proofs/certificates").join(name);
+    assert_eq!(std::fs::read_dir(&directory).expect("certificates").count(), stated.len());
+    let read = |statement: Statement| {
+        let file = directory.join(format!("{}_{}.g", statement.output, statement.number));
+        (std::fs::read_to_string(file).expect("a certificate"), statement)
+    };
+    stated.into_iter().map(read).collect()
+}
+
 #[test]
 fn committed_certificates_are_those_of_today_and_proved() {
-    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(root.join("configs/cosine_power.toml")).expect("a file");
-    let registry = Registry::catalogue();
-    let config = parse("core.toml", &text, &registry.schemas()).expect("a configuration");
-    let device = registry.device("cosine-power").expect("in the catalogue");
-    let design = device.sequential(&config).expect("a design");
-    let stated = statements(&design, (device.contract)(&config).as_ref(), Duration::MAX)
-        .expect("statements");
-    let directory = "proofs/certificates/cosine_power";
-    let files = std::fs::read_dir(root.join(directory)).expect("certificates");
-    assert_eq!(files.count(), stated.len());
-    for statement in &stated {
-        let file = format!("{directory}/{}_{}.g", statement.output, statement.number);
-        let committed = std::fs::read_to_string(root.join(&file)).expect("a certificate");
-        let (_, script) = committed.split_once("\n\n").expect("a head and a script");
-        assert!(statement.scripts.iter().any(|it| it == script), "{file} is of another time");
-        assert!(accepted(&committed), "{file} is not proved");
+    for (name, device) in CERTIFIED {
+        for (certificate, Statement { output, number, scripts, .. }) in committed((name, device)) {
+            let (_, script) = certificate.split_once("\n\n").expect("a head and a script");
+            let place = format!("{name}: {output}, statement {number}");
+            assert!(scripts.iter().any(|it| it == script), "{place} is of another time");
+            assert!(accepted(&certificate), "{place} is not proved");
+        }
     }
+}
+
+/// On request: what Gappa writes for Coq takes seconds to minutes a statement.
+#[test]
+fn coq_accepts_certificates() {
+    let wanted = sampled("configurations with certificates for Coq", CERTIFIED, 0);
+    if wanted.is_empty() {
+        return;
+    }
+    let [gappa, coq] =
+        ["gappa", "coqc"].map(|tool| Tool::find(tool).unwrap_or_else(|error| panic!("{error}")));
+    let all = wanted.into_iter().flat_map(|it| committed(it).into_iter().map(move |of| (it.0, of)));
+    let all: Vec<_> = all.collect();
+    all.par_iter().for_each(|(name, (_, statement))| {
+        let outcome = prove(&gappa, Some(&coq), statement, LIMIT_COQ).expect("tools that work");
+        if let Outcome::Open(why) = outcome {
+            panic!("{name}: {}, statement {}: {why}", statement.output, statement.number);
+        }
+    });
 }

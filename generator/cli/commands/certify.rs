@@ -118,7 +118,8 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             }
         }
         let open = open.iter().map(|(statement, why)| {
-            json!({ "number": statement.number, "output": statement.output, "why": why })
+            let Statement { output, number, also, .. } = statement;
+            json!({ "number": number, "output": output, "also": also, "why": why })
         });
         let open: Vec<_> = open.collect();
         list.push(json!({
@@ -150,13 +151,14 @@ fn write(
 ) -> Result<()> {
     let mut names = Vec::new();
     for (statement, outcome) in statements.iter().zip(outcomes) {
-        let Statement { output, number, scripts } = statement;
+        let Statement { output, number, also, scripts } = statement;
         let (chosen, state) = match outcome {
             Outcome::Proved(chosen) => (*chosen, "accepted"),
             Outcome::Open(_) => (0, "open"),
         };
         let name = format!("{output}_{number}.g");
-        let head = format!("{MARKER}{config}, {output}, statement {number}: {state}.");
+        let outputs = [std::slice::from_ref(output), also.as_slice()].concat().join(" and ");
+        let head = format!("{MARKER}{config}, {outputs}, statement {number}: {state}.");
         let text = format!("{head} To check: gappa {name}\n\n{}", scripts[chosen]);
         OwnFile::new(directory, &name, MARKER)?.write(&text)?;
         names.push(name);

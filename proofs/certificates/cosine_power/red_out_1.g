@@ -1,10 +1,10 @@
-# Certificate by Glint: configs/cosine_power.toml, red_out, statement 1: accepted. To check: gappa red_out_1.g
+# Certificate by Glint: configs/cosine_power.toml, red_out and green_out and blue_out, statement 1: accepted. To check: gappa red_out_1.g
 
-product_5 = 1048576 * exponent_over_16;
+product_5 = 1 * exponent_over_16;
 difference_8 = 0 - 0;
 
 { @FIX(exponent_over_16,-4)
   /\ exponent_over_16 in [0.0625,62.5]
-  /\ product_5 in [0,1048575.9375]
+  /\ product_5 in [0,0.999999940395355224609375]
   -> |difference_8| <= 0.6206207275390625 }
 

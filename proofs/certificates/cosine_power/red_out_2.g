@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_power.toml, red_out, statement 2: accepted. To check: gappa red_out_2.g
+# Certificate by Glint: configs/cosine_power.toml, red_out and green_out and blue_out, statement 2: accepted. To check: gappa red_out_2.g
 
 complement_2 = 1 - cos_gamma;
 product_4 = complement_2 * exponent_over_16;
@@ -15,8 +15,8 @@ accumulator_15 = fixed<-16,dn>(product_14);
 red_product_17 = accumulator_15 * red;
 red_intensity_18 = fixed<0,na>(red_product_17);
 exact_21 = cos_gamma - 1;
-exact_22 = exponent_over_16 * exact_21;
-exact_23 = exact_22 + 1;
+exact_22 = exact_21 * exponent_over_16;
+exact_23 = 1 + exact_22;
 exact_25 = exact_23 * exact_23;
 exact_26 = exact_25 * exact_25;
 exact_27 = exact_26 * exact_26;

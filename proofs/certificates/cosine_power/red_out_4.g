@@ -1,12 +1,12 @@
-# Certificate by Glint: configs/cosine_power.toml, red_out, statement 4: accepted. To check: gappa red_out_4.g
+# Certificate by Glint: configs/cosine_power.toml, red_out and green_out and blue_out, statement 4: accepted. To check: gappa red_out_4.g
 
-product_5 = 1048576 * exponent_over_16;
-product_view_kept_bits_6 = fixed<20,dn>(product_5);
+product_5 = 1 * exponent_over_16;
+product_view_kept_bits_6 = fixed<0,dn>(product_5);
 difference_9 = 0 - 0;
 
 { @FIX(exponent_over_16,-4)
   /\ exponent_over_16 in [0.0625,62.5]
-  /\ product_5 in [1048576,67043328]
-  /\ product_view_kept_bits_6 in [1048576,66060288]
+  /\ product_5 in [1,63.9375]
+  /\ product_view_kept_bits_6 in [1,63]
   -> |difference_9| <= 0.6206207275390625 }
 

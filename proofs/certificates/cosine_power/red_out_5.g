@@ -1,11 +1,11 @@
-# Certificate by Glint: configs/cosine_power.toml, red_out, statement 5: accepted. To check: gappa red_out_5.g
+# Certificate by Glint: configs/cosine_power.toml, red_out and green_out and blue_out, statement 5: accepted. To check: gappa red_out_5.g
 
 complement_6 = 1 - cos_gamma;
 product_7 = complement_6 * exponent_over_16;
 product_view_kept_bits_8 = fixed<0,dn>(product_7);
 exact_10 = cos_gamma - 1;
-exact_11 = exponent_over_16 * exact_10;
-exact_12 = exact_11 + 1;
+exact_11 = exact_10 * exponent_over_16;
+exact_12 = 1 + exact_11;
 exact_13 = exact_12 * exact_12;
 exact_14 = exact_13 * exact_13;
 exact_15 = exact_14 * exact_14;
@@ -24,3 +24,6 @@ difference_18 = 0 - exact_17;
   /\ exact_12 >= 0
   -> |difference_18| <= 0.6206207275390625 }
 
+exact_10 -> 0 - complement_6;
+exact_11 -> 0 - product_7;
+exact_12 -> 1 - product_7;

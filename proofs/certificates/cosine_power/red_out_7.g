@@ -1,11 +1,10 @@
-# Certificate by Glint: configs/cosine_power.toml, red_out, statement 7: accepted. To check: gappa red_out_7.g
+# Certificate by Glint: configs/cosine_power.toml, red_out and green_out and blue_out, statement 7: accepted. To check: gappa red_out_7.g
 
-red_product_2 = 65520 * red;
-red_intensity_3 = fixed<16,na>(red_product_2);
-out_9 = red_intensity_3 * 0.0000152587890625;
-difference_12 = out_9 - red;
+red_product_2 = 0.999755859375 * red;
+red_intensity_3 = fixed<0,na>(red_product_2);
+difference_10 = red_intensity_3 - red;
 
 { @FIX(red,0)
   /\ red in [0,255]
-  -> |difference_12| <= 0.6206207275390625 }
+  -> |difference_10| <= 0.6206207275390625 }
 

@@ -1,0 +1,29 @@
+# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 27: accepted. To check: gappa red_out_27.g
+
+multiplier1_6 = dx * dx;
+multiplier2_7 = dy * dy;
+adder1_8 = multiplier1_6 + multiplier2_7;
+multiplier3_9 = dz * dz;
+adder2_10 = adder1_8 + multiplier3_9;
+distance_rounded_11 = fixed<-20,dn>(adder2_10);
+exact_16 = 1 - adder2_10;
+exact_17 = exact_16 * exact_16;
+exact_18 = exact_17 * exact_17;
+exact_19 = exact_18 * exact_18;
+exact_20 = exact_19 * exact_19;
+exact_21 = exact_20 * red;
+difference_22 = 0 - exact_21;
+
+{ @FIX(dx,-16)
+  /\ @FIX(dy,-16)
+  /\ @FIX(dz,-16)
+  /\ @FIX(red,0)
+  /\ dx in [-2,1.9999847412109375]
+  /\ dy in [-2,1.9999847412109375]
+  /\ dz in [-2,1.9999847412109375]
+  /\ red in [0,255]
+  /\ distance_rounded_11 in [2,3.9999999701976776123046875]
+  /\ exact_16 >= 0
+  -> |difference_22| <= 0.62451171875 }
+
+exact_16 -> 1 - adder2_10;

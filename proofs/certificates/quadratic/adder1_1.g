@@ -1,0 +1,12 @@
+# Certificate by Glint: configs/quadratic.toml, adder1, statement 1: accepted. To check: gappa adder1_1.g
+
+multiplier5_1 = cos_gamma * cos_gamma;
+inverters_3 = (-0.0000000000009094947017729282379150390625) - cos_gamma;
+adder1_4 = inverters_3 + multiplier5_1;
+adder1_6 = 0.0000000000009094947017729282379150390625 + adder1_4;
+
+{ @FIX(cos_gamma,-20)
+  /\ cos_gamma in [0,0.99999904632568359375]
+  -> adder1_6 in [-0.25,0] }
+
+adder1_6 -> (1) * ((cos_gamma - (0.5)) * (cos_gamma - (0.5))) + (-0.25);

@@ -1,0 +1,10 @@
+# Certificate by Glint: configs/quadratic.toml, red_out and green_out and blue_out, statement 7: accepted. To check: gappa red_out_7.g
+
+red_product_2 = 0.9999847412109375 * red;
+red_intensity_3 = fixed<0,na>(red_product_2);
+difference_11 = red_intensity_3 - red;
+
+{ @FIX(red,0)
+  /\ red in [0,255]
+  -> |difference_11| <= 0.84526692814504833517474935433710925281047821044921875 }
+

@@ -1,0 +1,10 @@
+# Certificate by Glint: configs/schlick.toml, red_out and green_out and blue_out, statement 3: accepted. To check: gappa red_out_3.g
+
+red_product_2 = 0.9990234375 * red;
+red_intensity_3 = fixed<0,na>(red_product_2);
+difference_10 = red_intensity_3 - red;
+
+{ @FIX(red,0)
+  /\ red in [0,255]
+  -> |difference_10| <= 0.7490234375 }
+
