@@ -427,6 +427,11 @@ fn what_verify_says_of_cosine_power() {
             "{planted} faults: {caught} caught, {equivalent} proved equivalent, {undecided} undecided"
         )
     );
+    let certificates = fs::read_dir("proofs/certificates/cosine_power").expect("certificates");
+    assert_eq!(
+        over("the error bound, by Gappa"),
+        format!("all operands: {} statements", certificates.count())
+    );
 }
 
 /// Faults in the emitted text: planted, noticed by lint and by the bench, equivalent, undecided; and the share that is undecided
