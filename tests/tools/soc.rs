@@ -1,12 +1,18 @@
-//! The system of `examples/soc`: its pictures are those of `glint render`, and the cores are worth their place.
+//! The system of `examples/soc`: its pictures are those of `glint render`, the cores are worth their place, and the span engine is
+//! proved.
 
+use std::fs;
 use std::path::Path;
 use std::time::Duration;
 
-use crate::common::tools::tool;
+use anyhow::Result;
+use glint::tools::prove;
+use rayon::prelude::*;
+
+use crate::common::tools::{LIMIT, tool};
 
 /// Verilator builds a processor, and simulates 132 million clocks of it: more than other tools need.
-const LIMIT: Duration = Duration::from_secs(900);
+const RUN_LIMIT: Duration = Duration::from_secs(900);
 
 #[test]
 fn a_processor_renders_through_its_cores() {
@@ -16,7 +22,7 @@ fn a_processor_renders_through_its_cores() {
     let script = root.join("examples/soc/run");
     let arguments = [glint.as_ref(), script.as_os_str(), place.path().as_os_str()];
     let output = tool("env")
-        .run_to_success(arguments, root, LIMIT)
+        .run_to_success(arguments, root, RUN_LIMIT)
         .unwrap_or_else(|error| panic!("{error:#}"));
     for core in ["shade", "grain"] {
         let equal = format!("{core}: the pictures are equal, 6912 bytes");
@@ -32,4 +38,54 @@ fn a_processor_renders_through_its_cores() {
         .collect();
     assert_eq!(times.len(), 3, "{output}");
     assert!(times.iter().all(|&times| times >= 6.0), "{output}");
+}
+
+#[test]
+fn the_span_engine_is_proved() {
+    for words in [1, 2] {
+        proof(words, |engine| engine).unwrap_or_else(|error| panic!("{words} words: {error:#}"));
+    }
+}
+
+/// What stands in the engine, and what stands there instead.
+const FAULTS: [(&str, &str); 9] = [
+    // A word over another, one left out, one twice.
+    ("& ~(arrives & complete);", ";"),
+    ("source + {13'd0, reads}", "source + {13'd0, wants}"),
+    ("(left != 10'd0) & room", "under_way & room"),
+    // Words of two pixels, and in the wrong order.
+    (
+        "second <= ~start & (second ^ (reads & (WORDS != 1)));",
+        "second <= second ^ (reads & (WORDS != 1));",
+    ),
+    ("{ram_read_data, operands[32*WORDS-1:32]}", "{operands[31:0], ram_read_data}"),
+    // A result where the RAM is not free, an end before the last, a start within a span.
+    ("assign result_ready = ram_free;", "assign result_ready = 1'b1;"),
+    ("if (writes & result_last)", "if (writes)"),
+    ("(at >= COUNT) & under_way", "1'b0"),
+    ("operands_valid & ~operands_ready);", "1'b0);"),
+];
+
+#[test]
+fn faults_of_the_span_engine_break_its_proof() {
+    FAULTS.par_iter().for_each(|(right, wrong)| {
+        let with_fault = |engine: String| {
+            assert!(engine.contains(right), "`{right}` is not in span.v");
+            engine.replace(right, wrong)
+        };
+        assert!(proof(2, with_fault).is_err(), "`{wrong}` in span.v is proved");
+    });
+}
+
+/// Proves the engine for so many words of operands a pixel, with what is made of its Verilog.
+fn proof(words: u32, change: impl Fn(String) -> String) -> Result<()> {
+    let soc = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/soc");
+    let place = tempfile::tempdir()?;
+    let read = |name: &str| fs::read_to_string(soc.join(name)).expect("a file");
+    let problem = read("span_formal.sv")
+        .replace("parameter WORDS = 1", &format!("parameter WORDS = {words}"));
+    fs::write(place.path().join("span_formal.sv"), problem)?;
+    fs::write(place.path().join("span_formal.ys"), read("span_formal.ys"))?;
+    fs::write(place.path().join("span.v"), change(read("span.v")))?;
+    prove(place.path(), "span", LIMIT)
 }
