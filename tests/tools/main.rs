@@ -8,6 +8,7 @@ mod common;
 mod baseline;
 mod bench_fails;
 mod builder_fuzz;
+mod certificate_check;
 mod certify;
 mod cocotb;
 mod example;

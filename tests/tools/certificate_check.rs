@@ -1,0 +1,45 @@
+//! The check of `glint verify` that has Gappa prove the bound of a contract.
+
+use std::path::Path;
+use std::time::Duration;
+
+use glint::core::Core;
+use glint::hdl::netlist::{Driver, Op};
+use glint::verify::{CHECKS, Effort, Finding, Subject, Verdict};
+
+use crate::common::cores::configuration;
+
+fn found(core: &Core) -> Finding {
+    let check = CHECKS.iter().find(|check| check.id == "certificate").expect("the check");
+    let effort = Effort { full: true, without_tools: false, time_limit: Duration::from_secs(300) };
+    let subject = Subject { path: "core.toml", core, effort, proofs: Path::new("proofs") };
+    check.run(&subject, &|_| ()).finding
+}
+
+#[test]
+fn what_gappa_proves_is_proved() {
+    let finding = found(&configuration("configs/cosine_power.toml"));
+    assert_eq!(finding.verdict, Verdict::Proved, "{}", finding.words);
+}
+
+#[test]
+fn what_cannot_be_stated_is_not_covered() {
+    for path in ["configs/quad_cosine.toml", "configs/cosine_power_pipelined.toml"] {
+        let finding = found(&configuration(path));
+        assert_eq!(finding.verdict, Verdict::NotCovered, "{path}: {}", finding.words);
+    }
+}
+
+/// The comparison with ROM(n) is the wrong way round. Which statement has no proof does not depend on which was tried first.
+#[test]
+fn faulty_hardware_is_not_proved() {
+    let mut core = configuration("configs/threshold.toml");
+    let net = core.design.nets.iter_mut().find(|net| net.name == "comparator");
+    let driver = &mut net.expect("what compares with ROM(n)").driver;
+    let Driver::Op(Op::Less(a, b)) = driver else { panic!("{driver:?} is no comparison") };
+    std::mem::swap(a, b);
+    let finding = found(&core);
+    assert_eq!(finding.verdict, Verdict::NotCovered, "{}", finding.words);
+    assert!(finding.words.starts_with("Gappa has no proof of statement"), "{}", finding.words);
+    assert_eq!(found(&core).words, finding.words);
+}
