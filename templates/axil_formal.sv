@@ -63,7 +63,7 @@ module ${ name }$_axil_formal (
         .irq(irq)
     );
 
-    // What the proof sees of the inside.
+    // Internal signals that the proof refers to.
     (* hierconn *) wire \dut.write_taken ;
     (* hierconn *) wire \dut.write ;
     (* hierconn *) wire \dut.read ;

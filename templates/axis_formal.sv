@@ -112,7 +112,7 @@ module ${ name }$_axis_formal (
         .m_axis_tready(m_axis_tready)
     );
 
-    // What the proof sees of the inside.
+    // Internal signals that the proof refers to.
 <%- for wire in inside %>
     ${ wire }$
 <%- endfor %>
@@ -237,7 +237,7 @@ module ${ name }$_axis_formal (
 <%- endif %>
     end
 
-    // What the induction stands on.
+    // Inductive invariants.
     always @* if (!$initstate) begin
         assert (!(s_axis_tready && dut.waiting));
         assert (taken - begun == dut.waiting);

@@ -80,7 +80,7 @@ module ${ name }$_axis_formal (
         .m_axis_tready(m_axis_tready)
     );
 
-    // What the proof sees of the inside.
+    // Internal signals that the proof refers to.
 <%- for wire in inside %>
     ${ wire }$
 <%- endfor %>
@@ -172,7 +172,7 @@ module ${ name }$_axis_formal (
 
     end
 
-    // What the induction stands on: every point is in one place, in the order in which they came.
+    // Inductive invariants: every point is in one place, in the order in which they came.
     always @* if (!$initstate) begin
         assert (taken == next_0);
         assert (!dut.held || m_axis_tvalid);

@@ -69,7 +69,7 @@ module ${ name }$_registers_formal (
         .irq(irq)
     );
 
-    // What the proof sees of the inside.
+    // Internal signals that the proof refers to.
 <%- for wire in inside %>
     ${ wire }$
 <%- endfor %>

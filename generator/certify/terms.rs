@@ -53,7 +53,7 @@ pub struct Terms {
 impl Terms {
     /// The term; `name` is what its definition is called, if it gets one.
     ///
-    /// Of a sum and a product the operands come in an order of ours, so that hardware and formula have them in the
+    /// Of a sum and a product the operands come in one order, so that hardware and formula have them in the
     /// same: Gappa compares a product with another factor by factor.
     pub fn insert(&mut self, term: Term, name: &str) -> Id {
         let term = match term {

@@ -59,7 +59,7 @@ fn of_key(key: &Key) -> Json {
             json!({ "enum": options.iter().map(|option| choice(key, option)).collect::<Vec<_>>() })
         }
         Kind::Flag => json!({ "type": "boolean" }),
-        Kind::Text(shape) => json!({ "type": "string", "pattern": shape.pattern() }),
+        Kind::Text(pattern) => json!({ "type": "string", "pattern": pattern.regex() }),
         Kind::Integers { min, max, len_min, len_max } => json!({
             "type": "array",
             "items": { "type": "integer", "minimum": min, "maximum": max },

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use super::problems::Problems;
-use super::shape::TextPattern;
+use super::text_pattern::TextPattern;
 use super::values::{Config, Value, is_integer};
 
 /// The keys of one device, and the conditions between them.
@@ -47,7 +47,7 @@ pub enum Kind {
     Choice(&'static [&'static str]),
     /// `true` or `false`.
     Flag,
-    /// Text of a shape.
+    /// Text of a pattern.
     Text(TextPattern),
     /// A list of integers; its entries and its length have limits.
     Integers { min: i64, max: i64, len_min: usize, len_max: usize },
@@ -97,14 +97,14 @@ impl Key {
         Self::new(name, Kind::Flag, Value::Flag(default), doc)
     }
 
-    /// Text of a shape.
+    /// Text of a pattern.
     pub fn text(
         name: &'static str,
         default: &'static str,
-        shape: TextPattern,
+        pattern: TextPattern,
         doc: &'static str,
     ) -> Self {
-        Self::new(name, Kind::Text(shape), Value::Text(default.to_owned()), doc)
+        Self::new(name, Kind::Text(pattern), Value::Text(default.to_owned()), doc)
     }
 
     /// A list of `len` integers, each in a range.

@@ -1,13 +1,12 @@
 //! The keys of every device, of a user's own too: what is put around a core, not what it computes.
 //!
 //! They are declared and read as a device's own keys, and [`Schema::key`] finds them. A configuration
-//! that leaves them at their defaults is written, and counts, as one without them: they came later than
-//! many records of what was proved.
+//! that leaves them at their defaults is written as one without them, so that the digests in older records stay valid.
 
 use std::sync::LazyLock;
 
 use super::schema::{Key, Schema};
-use super::shape::TextPattern;
+use super::text_pattern::TextPattern;
 
 /// The shared keys, in the order in which a written file shows them, after those of the device.
 pub fn shared_keys() -> &'static [Key] {
@@ -33,14 +32,14 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
             "pipeline.clock_mhz",
             130.0,
             1.0..=2000.0,
-            "The clock that every stage keeps, with the fewest registers.",
+            "The clock that every stage must reach; the schedule has the fewest registers for it.",
         )
         .only_when("architecture", "pipelined"),
         Key::integer(
             "pipeline.stages",
             0,
             0..=1000,
-            "So many stages in place of a clock: as fast as they allow. 0 for pipeline.clock_mhz.",
+            "The number of stages, in place of a clock; as fast as they allow. 0: pipeline.clock_mhz decides.",
         )
         .only_when("architecture", "pipelined"),
         Key::choice(

@@ -33,8 +33,8 @@ impl Key {
                 .map(|fault| self.with_suggestion(fault, given))
                 .collect(),
             (Kind::Flag, Value::Flag(_)) => Vec::new(),
-            (Kind::Text(shape), Value::Text(given)) => {
-                self.unless(shape.fits(given), || format!("`{name}` cannot be {}", quoted(given)))
+            (Kind::Text(pattern), Value::Text(given)) => {
+                self.unless(pattern.fits(given), || format!("`{name}` cannot be {}", quoted(given)))
             }
             (Kind::Integers { min, max, len_min, len_max }, Value::Integers(given)) => {
                 let mut faults = self.unless((len_min..=len_max).contains(&&given.len()), || {
@@ -111,7 +111,7 @@ impl Key {
                 }
             }
             Kind::Flag => "true or false".to_owned(),
-            Kind::Text(shape) => shape.words().to_owned(),
+            Kind::Text(pattern) => pattern.text().to_owned(),
             Kind::Integers { min, max, len_min, len_max } => {
                 if len_min == len_max {
                     format!("{len_min} integers from {min} to {max}")

@@ -1,7 +1,7 @@
 //! Golden model and simulated hardware side by side, every signal compared on every clock.
 //!
 //! A run is divided into *streams*: each starts at power-up, with a stimulus of its own. How many there
-//! are, their seeds and their points depend on the seed and the points of the run alone. [`LANES`] of
+//! are, their seeds and their points depend on the seed and the points of the run alone. Up to [`LANES`] of
 //! them go through one simulator together, and as many simulators run as there are threads; neither
 //! has any influence on what is found. What counts is what streams showed in their order up to the
 //! first that differs.
@@ -25,13 +25,13 @@ use crate::package::Vectors;
 /// Streams that share a simulator.
 pub(super) const LANES: usize = 32;
 
-/// The number of streams that keeps two threads busy; of more there are multiples of it.
+/// The number of streams that keeps two threads busy. A longer run has a multiple of it.
 const STREAMS: u64 = 2 * LANES as u64;
 
 /// The fewest points of a stream.
 const FEWEST_POINTS: u64 = 64;
 
-/// A stream has the points of at least this number of the longest computations.
+/// A stream has at least as many points as this number of the longest computations has results.
 const COMPUTATIONS: u64 = 2;
 
 /// The fewest points of a stream where there are more than [`STREAMS`].
@@ -61,7 +61,7 @@ impl<'a> Sequential<'a> {
         Ok(Self { binding, seed })
     }
 
-    /// The same with some operands held at raw values: the stimulus seldom draws others for them.
+    /// The same with some operands mostly at these raw values: the stimulus seldom draws others for them.
     #[must_use]
     pub fn holding(self, held: &[(String, i64)]) -> Self {
         Self { binding: self.binding.holding(held), ..self }

@@ -1,7 +1,7 @@
 //! `threshold` — UA 30041 (the prototype in seed 001): `(n/2·(cos γ − 1) + 1)²`, gated by a comparator
 //! against ROM(n).
 //!
-//! The patent's blocks follow one another without a control block; two registers of ours cut the chain
+//! The patent's blocks follow one another without a control block; two registers that it does not have cut the chain
 //! so that no clock holds more than one multiplier before the outputs. Numbers count each kind of block, as the seed's
 //! text does: register 1, adder 1, multiplier 1.
 

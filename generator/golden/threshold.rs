@@ -24,7 +24,7 @@ struct Arithmetic {
     square: Narrow,
     /// By octave of n.
     thresholds: Vec<i64>,
-    /// How far from ROM(n) the square may be seen on its other side: the bound of f.
+    /// The distance from ROM(n) within which either outcome of the comparison is accepted: the bound of f.
     margin: f64,
 }
 

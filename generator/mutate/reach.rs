@@ -27,7 +27,7 @@ impl Watch<'_> {
 }
 
 /// Those of the faults that the default test never comes to: a bit of a register that is stuck at the value that it
-/// has anyway, words of tables that are never read. Whether it comes to any other fault is not told.
+/// has anyway, words of tables that are never read. Of other faults it says nothing.
 ///
 /// # Errors
 /// A design that cannot be simulated.

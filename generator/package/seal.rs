@@ -1,4 +1,4 @@
-//! What vouches for a file of which no manifest speaks: that it is as Glint wrote it.
+//! Digests of files that are in no manifest, in their last line: that a file is as Glint wrote it.
 
 use anyhow::{Context, Result};
 use serde_json::Value;

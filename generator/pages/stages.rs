@@ -7,13 +7,13 @@ use super::account::{Align, Table, code, format_text};
 use super::drawing::{Drawing, Item, text_width};
 use crate::hdl::netlist::{Design, Net, Pipeline, value_name};
 
-/// Of the type.
+/// The size of the font.
 const SIZE: f64 = 11.0;
 
 /// The drawing from left to right: what a page shows without scrolling.
 const WIDTH: i32 = 1120;
 
-/// Around the drawing.
+/// The margin of the drawing.
 const BORDER: i32 = 12;
 
 /// Where the microinstructions of a stage begin.

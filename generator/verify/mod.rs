@@ -1,7 +1,7 @@
 //! Everything that shows that a configuration does what it says, check by check, and a page about it.
 //!
 //! A [`Check`] asks one question, with the tools that it names, and gives a [`Finding`]: the answer, over
-//! which domain it holds, and what it leaves open. The checks are independent of each other: none is told what
+//! which domain it holds, and what it leaves open. The checks are independent of each other: none knows what
 //! another found. What they found is the same whenever it is found with the same tools; how long it
 //! took stands apart, in [`CheckTime`].
 
@@ -54,7 +54,8 @@ pub enum Verdict {
     Passed,
     /// It does not hold.
     Failed,
-    /// The check says nothing of this configuration, or was left out on purpose; why is said.
+    /// The check says nothing of this configuration, was left out on purpose, or is a second proof of what another
+    /// check shows and did not succeed; why is said.
     NotCovered,
     /// It was run, and its test is too weak to say that it holds.
     Undecided,
@@ -239,7 +240,7 @@ pub struct Answer {
 pub struct CheckTime {
     /// [`Check::id`].
     pub check: &'static str,
-    /// Seconds on the clock on the wall.
+    /// Wall-clock seconds.
     pub seconds: f64,
 }
 

@@ -95,7 +95,7 @@ module blinn_pipelined #(
     reg  valid_s16;  // stage 16 has a point
     reg  valid_s17;  // stage 17 has a point
     reg  valid_s18;  // stage 18 has a point
-    reg  valid_s19;  // stage 19 has a point
+    reg  valid_s19;  // the results are on the outputs
 
     assign out_valid = valid_s19;  // the results are on the outputs
     wire advance = out_ready | ~valid_s19;  // every point moves on by a stage
@@ -145,7 +145,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 0: segment of the decay addressed by cos gamma
+    // Stage 0, part of: segment of the decay addressed by cos gamma
     reg  [20:0] cos_gamma_reg_s1;  // u1.20: cosine of the angle between normal and half vector
     reg  [9:0]  exponent_s1;       // specular exponent n
     reg  [7:0]  red_s1;            // intensity of the light times k_s
@@ -171,7 +171,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 1: segment of the decay addressed by cos gamma
+    // Stage 1, part of: segment of the decay addressed by cos gamma
     reg  [9:0]  exponent_s2;       // specular exponent n
     reg  [7:0]  red_s2;            // intensity of the light times k_s
     reg  [7:0]  green_s2;          // intensity of the light times k_s
@@ -209,7 +209,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 2: segment of the decay addressed by cos gamma
+    // Stage 2, part of: segment of the decay addressed by cos gamma
     reg  [9:0]  exponent_s3;         // specular exponent n
     reg  [7:0]  red_s3;              // intensity of the light times k_s
     reg  [7:0]  green_s3;            // intensity of the light times k_s
@@ -258,7 +258,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 3: segment of the decay addressed by cos gamma
+    // Stage 3, part of: segment of the decay addressed by cos gamma
     reg  [9:0]  exponent_s4;     // specular exponent n
     reg  [7:0]  red_s4;          // intensity of the light times k_s
     reg  [7:0]  green_s4;        // intensity of the light times k_s
@@ -317,7 +317,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 4: segment of the decay addressed by cos gamma
+    // Stage 4, part of: segment of the decay addressed by cos gamma
     reg  [9:0]  exponent_s5;     // specular exponent n
     reg  [7:0]  red_s5;          // intensity of the light times k_s
     reg  [7:0]  green_s5;        // intensity of the light times k_s
@@ -342,7 +342,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 5: decay <- base + slope * rest
+    // Stage 5, part of: decay <- base + slope * rest
     reg  [9:0]  exponent_s6;          // specular exponent n
     reg  [7:0]  red_s6;               // intensity of the light times k_s
     reg  [7:0]  green_s6;             // intensity of the light times k_s
@@ -375,7 +375,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 6: decay <- base + slope * rest
+    // Stage 6, part of: decay <- base + slope * rest
     reg  [9:0]  exponent_s7;          // specular exponent n
     reg  [7:0]  red_s7;               // intensity of the light times k_s
     reg  [7:0]  green_s7;             // intensity of the light times k_s
@@ -407,8 +407,8 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 7: segment of the decay addressed by cos gamma; decay <- base + slope * rest; halvings
-    // <- n * decay
+    // Stage 7, part of: segment of the decay addressed by cos gamma; decay <- base + slope * rest;
+    // halvings <- n * decay
     reg  [9:0]  exponent_s8;              // specular exponent n
     reg  [7:0]  red_s8;                   // intensity of the light times k_s
     reg  [7:0]  green_s8;                 // intensity of the light times k_s
@@ -445,7 +445,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 8: halvings <- n * decay
+    // Stage 8, part of: halvings <- n * decay
     reg  [7:0]  red_s9;                 // intensity of the light times k_s
     reg  [7:0]  green_s9;               // intensity of the light times k_s
     reg  [7:0]  blue_s9;                // intensity of the light times k_s
@@ -473,7 +473,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 9: halvings <- n * decay
+    // Stage 9, part of: halvings <- n * decay
     reg  [7:0]  red_s10;          // intensity of the light times k_s
     reg  [7:0]  green_s10;        // intensity of the light times k_s
     reg  [7:0]  blue_s10;         // intensity of the light times k_s
@@ -499,7 +499,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 10: halvings <- n * decay
+    // Stage 10, part of: halvings <- n * decay
     reg  [7:0]  red_s11;       // intensity of the light times k_s
     reg  [7:0]  green_s11;     // intensity of the light times k_s
     reg  [7:0]  blue_s11;      // intensity of the light times k_s
@@ -527,7 +527,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 11: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
+    // Stage 11, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
     reg         [7:0]  red_s12;                     // intensity of the light times k_s
     reg         [7:0]  green_s12;                   // intensity of the light times k_s
     reg         [7:0]  blue_s12;                    // intensity of the light times k_s
@@ -610,7 +610,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 12: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
+    // Stage 12, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
     reg         [7:0]  red_s13;                     // intensity of the light times k_s
     reg         [7:0]  green_s13;                   // intensity of the light times k_s
     reg         [7:0]  blue_s13;                    // intensity of the light times k_s
@@ -676,7 +676,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 13: reflectance <- 2^-halvings
+    // Stage 13, part of: reflectance <- 2^-halvings
     reg  [7:0]  red_s14;                        // intensity of the light times k_s
     reg  [7:0]  green_s14;                      // intensity of the light times k_s
     reg  [7:0]  blue_s14;                       // intensity of the light times k_s
@@ -717,7 +717,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 14: reflectance <- 2^-halvings
+    // Stage 14, part of: reflectance <- 2^-halvings
     reg  [7:0]  red_s15;             // intensity of the light times k_s
     reg  [7:0]  green_s15;           // intensity of the light times k_s
     reg  [7:0]  blue_s15;            // intensity of the light times k_s
@@ -760,7 +760,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 15: reflectance <- 2^-halvings
+    // Stage 15, part of: reflectance <- 2^-halvings
     reg  [7:0]  red_s16;     // intensity of the light times k_s
     reg  [7:0]  green_s16;   // intensity of the light times k_s
     reg  [7:0]  blue_s16;    // intensity of the light times k_s
@@ -787,7 +787,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 16: reflectance <- 2^-halvings
+    // Stage 16, part of: reflectance <- 2^-halvings
     reg  [7:0]  red_s17;          // intensity of the light times k_s
     reg  [7:0]  green_s17;        // intensity of the light times k_s
     reg  [7:0]  blue_s17;         // intensity of the light times k_s
@@ -804,7 +804,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 17: result
+    // Stage 17, part of: result
     reg  [15:0] reflectance_s18;         // u0.16: f
     reg  [7:0]  red_product_kept_s18;
     reg         red_product_bits_s18;
@@ -834,7 +834,7 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 18: result
+    // Stage 18, part of: result
     reg  [15:0] reflectance_s19;      // u0.16: f
     reg  [7:0]  red_intensity_s19;
     reg  [7:0]  green_intensity_s19;

@@ -69,7 +69,7 @@ module cosine_power_pipelined (
     reg  valid_s7;   // stage 7 has a point
     reg  valid_s8;   // stage 8 has a point
     reg  valid_s9;   // stage 9 has a point
-    reg  valid_s10;  // stage 10 has a point
+    reg  valid_s10;  // the results are on the outputs
 
     assign out_valid = valid_s10;  // the results are on the outputs
     wire advance = out_ready | ~valid_s10;  // every point moves on by a stage
@@ -101,7 +101,7 @@ module cosine_power_pipelined (
         end
     end
 
-    // Stage 0: operands 1 - cos gamma, n/m
+    // Stage 0, part of: operands 1 - cos gamma, n/m
     reg  [9:0]  exponent_s1;            // specular exponent n
     reg  [7:0]  red_s1;                 // intensity of the light times k_s
     reg  [7:0]  green_s1;               // intensity of the light times k_s
@@ -134,7 +134,7 @@ module cosine_power_pipelined (
         end
     end
 
-    // Stage 1: accumulator <- n/m * (1 - cos gamma)
+    // Stage 1, part of: accumulator <- n/m * (1 - cos gamma)
     reg  [7:0]  red_s2;               // intensity of the light times k_s
     reg  [7:0]  green_s2;             // intensity of the light times k_s
     reg  [7:0]  blue_s2;              // intensity of the light times k_s
@@ -162,7 +162,7 @@ module cosine_power_pipelined (
         end
     end
 
-    // Stage 2: accumulator <- n/m * (1 - cos gamma)
+    // Stage 2, part of: accumulator <- n/m * (1 - cos gamma)
     reg  [7:0]  red_s3;                       // intensity of the light times k_s
     reg  [7:0]  green_s3;                     // intensity of the light times k_s
     reg  [7:0]  blue_s3;                      // intensity of the light times k_s
@@ -186,7 +186,7 @@ module cosine_power_pipelined (
         end
     end
 
-    // Stage 3: accumulator <- n/m * (1 - cos gamma); accumulator <- base^2
+    // Stage 3, part of: accumulator <- n/m * (1 - cos gamma); accumulator <- base^2
     reg  [7:0]  red_s4;    // intensity of the light times k_s
     reg  [7:0]  green_s4;  // intensity of the light times k_s
     reg  [7:0]  blue_s4;   // intensity of the light times k_s
@@ -207,7 +207,7 @@ module cosine_power_pipelined (
         end
     end
 
-    // Stage 4: accumulator <- base^2
+    // Stage 4, part of: accumulator <- base^2
     reg  [7:0]  red_s5;            // intensity of the light times k_s
     reg  [7:0]  green_s5;          // intensity of the light times k_s
     reg  [7:0]  blue_s5;           // intensity of the light times k_s
@@ -228,7 +228,7 @@ module cosine_power_pipelined (
         end
     end
 
-    // Stage 5: accumulator <- accumulator^2
+    // Stage 5, part of: accumulator <- accumulator^2
     reg  [7:0]  red_s6;            // intensity of the light times k_s
     reg  [7:0]  green_s6;          // intensity of the light times k_s
     reg  [7:0]  blue_s6;           // intensity of the light times k_s
@@ -249,7 +249,7 @@ module cosine_power_pipelined (
         end
     end
 
-    // Stage 6: accumulator <- accumulator^2
+    // Stage 6, part of: accumulator <- accumulator^2
     reg  [7:0]  red_s7;            // intensity of the light times k_s
     reg  [7:0]  green_s7;          // intensity of the light times k_s
     reg  [7:0]  blue_s7;           // intensity of the light times k_s
@@ -270,7 +270,7 @@ module cosine_power_pipelined (
         end
     end
 
-    // Stage 7: accumulator <- accumulator^2
+    // Stage 7, part of: accumulator <- accumulator^2
     reg  [7:0]  red_s8;            // intensity of the light times k_s
     reg  [7:0]  green_s8;          // intensity of the light times k_s
     reg  [7:0]  blue_s8;           // intensity of the light times k_s
@@ -291,7 +291,7 @@ module cosine_power_pipelined (
         end
     end
 
-    // Stage 8: result
+    // Stage 8, part of: result
     reg  [7:0] red_product_kept_s9;
     reg        red_product_bits_s9;
     reg  [7:0] green_product_kept_s9;
@@ -319,7 +319,7 @@ module cosine_power_pipelined (
         end
     end
 
-    // Stage 9: result
+    // Stage 9, part of: result
     reg  [7:0] red_intensity_s10;
     reg  [7:0] green_intensity_s10;
     reg  [7:0] blue_intensity_s10;

@@ -91,7 +91,7 @@ module gauss_pipelined #(
     reg  valid_s14;  // stage 14 has a point
     reg  valid_s15;  // stage 15 has a point
     reg  valid_s16;  // stage 16 has a point
-    reg  valid_s17;  // stage 17 has a point
+    reg  valid_s17;  // the results are on the outputs
 
     assign out_valid = valid_s17;  // the results are on the outputs
     wire advance = out_ready | ~valid_s17;  // every point moves on by a stage
@@ -137,7 +137,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 0: segment of the decay addressed by cos gamma
+    // Stage 0, part of: segment of the decay addressed by cos gamma
     reg  [9:0]  exponent_s1;         // specular exponent n
     reg  [7:0]  red_s1;              // intensity of the light times k_s
     reg  [7:0]  green_s1;            // intensity of the light times k_s
@@ -176,7 +176,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 1: segment of the decay addressed by cos gamma
+    // Stage 1, part of: segment of the decay addressed by cos gamma
     reg  [9:0]  exponent_s2;     // specular exponent n
     reg  [7:0]  red_s2;          // intensity of the light times k_s
     reg  [7:0]  green_s2;        // intensity of the light times k_s
@@ -233,7 +233,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 2: segment of the decay addressed by cos gamma
+    // Stage 2, part of: segment of the decay addressed by cos gamma
     reg  [9:0]  exponent_s3;     // specular exponent n
     reg  [7:0]  red_s3;          // intensity of the light times k_s
     reg  [7:0]  green_s3;        // intensity of the light times k_s
@@ -256,7 +256,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 3: decay <- base + slope * rest
+    // Stage 3, part of: decay <- base + slope * rest
     reg  [9:0]  exponent_s4;          // specular exponent n
     reg  [7:0]  red_s4;               // intensity of the light times k_s
     reg  [7:0]  green_s4;             // intensity of the light times k_s
@@ -287,7 +287,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 4: decay <- base + slope * rest
+    // Stage 4, part of: decay <- base + slope * rest
     reg  [9:0]  exponent_s5;  // specular exponent n
     reg  [7:0]  red_s5;       // intensity of the light times k_s
     reg  [7:0]  green_s5;     // intensity of the light times k_s
@@ -316,7 +316,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 5: halvings <- n * decay
+    // Stage 5, part of: halvings <- n * decay
     reg  [9:0]  exponent_s6;     // specular exponent n
     reg  [7:0]  red_s6;          // intensity of the light times k_s
     reg  [7:0]  green_s6;        // intensity of the light times k_s
@@ -345,7 +345,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 6: halvings <- n * decay
+    // Stage 6, part of: halvings <- n * decay
     reg  [7:0]  red_s7;              // intensity of the light times k_s
     reg  [7:0]  green_s7;            // intensity of the light times k_s
     reg  [7:0]  blue_s7;             // intensity of the light times k_s
@@ -371,7 +371,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 7: halvings <- n * decay
+    // Stage 7, part of: halvings <- n * decay
     reg  [7:0]  red_s8;          // intensity of the light times k_s
     reg  [7:0]  green_s8;        // intensity of the light times k_s
     reg  [7:0]  blue_s8;         // intensity of the light times k_s
@@ -397,7 +397,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 8: halvings <- n * decay
+    // Stage 8, part of: halvings <- n * decay
     reg  [7:0]  red_s9;       // intensity of the light times k_s
     reg  [7:0]  green_s9;     // intensity of the light times k_s
     reg  [7:0]  blue_s9;      // intensity of the light times k_s
@@ -425,7 +425,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 9: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
+    // Stage 9, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
     reg         [7:0]  red_s10;                     // intensity of the light times k_s
     reg         [7:0]  green_s10;                   // intensity of the light times k_s
     reg         [7:0]  blue_s10;                    // intensity of the light times k_s
@@ -506,7 +506,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 10: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
+    // Stage 10, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
     reg         [7:0]  red_s11;                     // intensity of the light times k_s
     reg         [7:0]  green_s11;                   // intensity of the light times k_s
     reg         [7:0]  blue_s11;                    // intensity of the light times k_s
@@ -574,7 +574,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 11: reflectance <- 2^-halvings
+    // Stage 11, part of: reflectance <- 2^-halvings
     reg  [7:0]  red_s12;                        // intensity of the light times k_s
     reg  [7:0]  green_s12;                      // intensity of the light times k_s
     reg  [7:0]  blue_s12;                       // intensity of the light times k_s
@@ -613,7 +613,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 12: reflectance <- 2^-halvings
+    // Stage 12, part of: reflectance <- 2^-halvings
     reg  [7:0]  red_s13;                  // intensity of the light times k_s
     reg  [7:0]  green_s13;                // intensity of the light times k_s
     reg  [7:0]  blue_s13;                 // intensity of the light times k_s
@@ -658,7 +658,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 13: reflectance <- 2^-halvings
+    // Stage 13, part of: reflectance <- 2^-halvings
     reg  [7:0]  red_s14;     // intensity of the light times k_s
     reg  [7:0]  green_s14;   // intensity of the light times k_s
     reg  [7:0]  blue_s14;    // intensity of the light times k_s
@@ -685,7 +685,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 14: reflectance <- 2^-halvings
+    // Stage 14, part of: reflectance <- 2^-halvings
     reg  [7:0]  red_s15;          // intensity of the light times k_s
     reg  [7:0]  green_s15;        // intensity of the light times k_s
     reg  [7:0]  blue_s15;         // intensity of the light times k_s
@@ -702,7 +702,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 15: result
+    // Stage 15, part of: result
     reg  [15:0] reflectance_s16;         // u0.16: f
     reg  [7:0]  red_product_kept_s16;
     reg         red_product_bits_s16;
@@ -732,7 +732,7 @@ module gauss_pipelined #(
         end
     end
 
-    // Stage 16: result
+    // Stage 16, part of: result
     reg  [15:0] reflectance_s17;      // u0.16: f
     reg  [7:0]  red_intensity_s17;
     reg  [7:0]  green_intensity_s17;

@@ -82,7 +82,7 @@ module lyon_pipelined (
     reg  valid_s12;  // stage 12 has a point
     reg  valid_s13;  // stage 13 has a point
     reg  valid_s14;  // stage 14 has a point
-    reg  valid_s15;  // stage 15 has a point
+    reg  valid_s15;  // the results are on the outputs
 
     assign out_valid = valid_s15;  // the results are on the outputs
     wire advance = out_ready | ~valid_s15;  // every point moves on by a stage
@@ -145,7 +145,7 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 1: operands dx, dy, dz
+    // Stage 1, part of: operands dx, dy, dz
     reg         [3:0]  shift_s2;        // log2 of the specular exponent n, rounded
     reg         [7:0]  red_s2;          // intensity of the light times k_s
     reg         [7:0]  green_s2;        // intensity of the light times k_s
@@ -170,7 +170,7 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 2: shift_register <- D^2 / (4*power); shift_register <- 2 * shift_register
+    // Stage 2, part of: shift_register <- D^2 / (4*power); shift_register <- 2 * shift_register
     reg  [7:0]  red_s3;               // intensity of the light times k_s
     reg  [7:0]  green_s3;             // intensity of the light times k_s
     reg  [7:0]  blue_s3;              // intensity of the light times k_s
@@ -200,7 +200,7 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 3: shift_register <- 2 * shift_register
+    // Stage 3, part of: shift_register <- 2 * shift_register
     reg  [7:0]  red_s4;               // intensity of the light times k_s
     reg  [7:0]  green_s4;             // intensity of the light times k_s
     reg  [7:0]  blue_s4;              // intensity of the light times k_s
@@ -260,7 +260,7 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 4: shift_register <- 2 * shift_register
+    // Stage 4, part of: shift_register <- 2 * shift_register
     reg  [7:0]  red_s5;                // intensity of the light times k_s
     reg  [7:0]  green_s5;              // intensity of the light times k_s
     reg  [7:0]  blue_s5;               // intensity of the light times k_s
@@ -321,7 +321,7 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 5: shift_register <- 2 * shift_register
+    // Stage 5, part of: shift_register <- 2 * shift_register
     reg  [7:0]  red_s6;                // intensity of the light times k_s
     reg  [7:0]  green_s6;              // intensity of the light times k_s
     reg  [7:0]  blue_s6;               // intensity of the light times k_s
@@ -383,7 +383,7 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 6: shift_register <- 2 * shift_register
+    // Stage 6, part of: shift_register <- 2 * shift_register
     reg  [7:0]  red_s7;                // intensity of the light times k_s
     reg  [7:0]  green_s7;              // intensity of the light times k_s
     reg  [7:0]  blue_s7;               // intensity of the light times k_s
@@ -445,7 +445,7 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 7: shift_register <- 2 * shift_register
+    // Stage 7, part of: shift_register <- 2 * shift_register
     reg  [7:0]  red_s8;                // intensity of the light times k_s
     reg  [7:0]  green_s8;              // intensity of the light times k_s
     reg  [7:0]  blue_s8;               // intensity of the light times k_s
@@ -494,7 +494,7 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 8: accumulator <- base^2
+    // Stage 8, part of: accumulator <- base^2
     reg  [7:0]  red_s9;    // intensity of the light times k_s
     reg  [7:0]  green_s9;  // intensity of the light times k_s
     reg  [7:0]  blue_s9;   // intensity of the light times k_s
@@ -516,7 +516,7 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 9: accumulator <- base^2
+    // Stage 9, part of: accumulator <- base^2
     reg  [7:0]  red_s10;          // intensity of the light times k_s
     reg  [7:0]  green_s10;        // intensity of the light times k_s
     reg  [7:0]  blue_s10;         // intensity of the light times k_s
@@ -536,7 +536,7 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 10: accumulator <- accumulator^2
+    // Stage 10, part of: accumulator <- accumulator^2
     reg  [7:0]  red_s11;            // intensity of the light times k_s
     reg  [7:0]  green_s11;          // intensity of the light times k_s
     reg  [7:0]  blue_s11;           // intensity of the light times k_s
@@ -556,7 +556,7 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 11: accumulator <- accumulator^2
+    // Stage 11, part of: accumulator <- accumulator^2
     reg  [7:0]  red_s12;            // intensity of the light times k_s
     reg  [7:0]  green_s12;          // intensity of the light times k_s
     reg  [7:0]  blue_s12;           // intensity of the light times k_s
@@ -576,7 +576,7 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 12: accumulator <- accumulator^2
+    // Stage 12, part of: accumulator <- accumulator^2
     reg  [7:0]  red_s13;            // intensity of the light times k_s
     reg  [7:0]  green_s13;          // intensity of the light times k_s
     reg  [7:0]  blue_s13;           // intensity of the light times k_s
@@ -596,7 +596,7 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 13: result
+    // Stage 13, part of: result
     reg  [7:0] red_product_kept_s14;
     reg        red_product_bits_s14;
     reg  [7:0] green_product_kept_s14;
@@ -624,7 +624,7 @@ module lyon_pipelined (
         end
     end
 
-    // Stage 14: result
+    // Stage 14, part of: result
     reg  [7:0] red_intensity_s15;
     reg  [7:0] green_intensity_s15;
     reg  [7:0] blue_intensity_s15;

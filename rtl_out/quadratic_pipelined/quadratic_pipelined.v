@@ -75,7 +75,7 @@ module quadratic_pipelined #(
     reg  valid_s6;  // stage 6 has a point
     reg  valid_s7;  // stage 7 has a point
     reg  valid_s8;  // stage 8 has a point
-    reg  valid_s9;  // stage 9 has a point
+    reg  valid_s9;  // the results are on the outputs
 
     assign out_valid = valid_s9;  // the results are on the outputs
     wire advance = out_ready | ~valid_s9;  // every point moves on by a stage
@@ -105,7 +105,7 @@ module quadratic_pipelined #(
         end
     end
 
-    // Stage 0: operands; ROM(n) addressed
+    // Stage 0, part of: operands; ROM(n) addressed
     reg  [9:0]  exponent_s1;       // register 1: specular exponent n
     // register 2, u1.20: c, the cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s1;
@@ -128,7 +128,7 @@ module quadratic_pipelined #(
         end
     end
 
-    // Stage 1: operands; ROM(n) addressed
+    // Stage 1, part of: operands; ROM(n) addressed
     reg  [9:0]  exponent_s2;                    // register 1: specular exponent n
     // register 2, u1.20: c, the cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s2;
@@ -187,7 +187,7 @@ module quadratic_pipelined #(
         end
     end
 
-    // Stage 2: operands; ROM(n) addressed
+    // Stage 2, part of: operands; ROM(n) addressed
     // register 2, u1.20: c, the cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s3;
     reg  [7:0]  red_s3;               // register 3: intensity of the light times k_s
@@ -224,7 +224,7 @@ module quadratic_pipelined #(
         end
     end
 
-    // Stage 3: operands; ROM(n) addressed; difference <- c^2 - c
+    // Stage 3, part of: operands; ROM(n) addressed; difference <- c^2 - c
     // register 2, u1.20: c, the cosine of the angle between normal and half vector
     reg         [20:0] cos_gamma_reg_s4;
     reg         [7:0]  red_s4;               // register 3: intensity of the light times k_s
@@ -252,7 +252,7 @@ module quadratic_pipelined #(
         end
     end
 
-    // Stage 4: intensity <- c + a(n) * difference, not below 0
+    // Stage 4, part of: intensity <- c + a(n) * difference, not below 0
     // register 2, u1.20: c, the cosine of the angle between normal and half vector
     reg         [20:0] cos_gamma_reg_s5;
     reg         [7:0]  red_s5;                // register 3: intensity of the light times k_s
@@ -276,7 +276,7 @@ module quadratic_pipelined #(
         end
     end
 
-    // Stage 5: intensity <- c + a(n) * difference, not below 0
+    // Stage 5, part of: intensity <- c + a(n) * difference, not below 0
     reg  [7:0]  red_s6;                 // register 3: intensity of the light times k_s
     reg  [7:0]  green_s6;               // register 4: intensity of the light times k_s
     reg  [7:0]  blue_s6;                // register 5: intensity of the light times k_s
@@ -305,7 +305,7 @@ module quadratic_pipelined #(
         end
     end
 
-    // Stage 6: intensity <- c + a(n) * difference, not below 0
+    // Stage 6, part of: intensity <- c + a(n) * difference, not below 0
     reg  [7:0]  red_s7;        // register 3: intensity of the light times k_s
     reg  [7:0]  green_s7;      // register 4: intensity of the light times k_s
     reg  [7:0]  blue_s7;       // register 5: intensity of the light times k_s
@@ -326,7 +326,7 @@ module quadratic_pipelined #(
         end
     end
 
-    // Stage 7: result
+    // Stage 7, part of: result
     reg  [7:0] red_product_kept_s8;
     reg        red_product_bits_s8;
     reg  [7:0] green_product_kept_s8;
@@ -354,7 +354,7 @@ module quadratic_pipelined #(
         end
     end
 
-    // Stage 8: result
+    // Stage 8, part of: result
     reg  [7:0] red_intensity_s9;
     reg  [7:0] green_intensity_s9;
     reg  [7:0] blue_intensity_s9;

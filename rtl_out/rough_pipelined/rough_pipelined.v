@@ -91,7 +91,7 @@ module rough_pipelined #(
     reg  valid_s15;  // stage 15 has a point
     reg  valid_s16;  // stage 16 has a point
     reg  valid_s17;  // stage 17 has a point
-    reg  valid_s18;  // stage 18 has a point
+    reg  valid_s18;  // the results are on the outputs
 
     assign out_valid = valid_s18;  // the results are on the outputs
     wire advance = out_ready | ~valid_s18;  // every point moves on by a stage
@@ -139,8 +139,8 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 0: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma; 11 <- cos
-    // gamma * cos dgamma
+    // Stage 0, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
+    // 11 <- cos gamma * cos dgamma
     // register 1, u1.20: cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s1;
     // register 2, u1.20: cosine of the angle by which the normal is perturbed
@@ -181,8 +181,8 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 1: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma; 11 <- cos
-    // gamma * cos dgamma
+    // Stage 1, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
+    // 11 <- cos gamma * cos dgamma
     reg  [9:0]  exponent_s2;                     // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s2;
@@ -380,8 +380,8 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 2: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma; 11 <- cos
-    // gamma * cos dgamma
+    // Stage 2, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
+    // 11 <- cos gamma * cos dgamma
     reg  [9:0]  exponent_s3;         // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s3;
@@ -441,8 +441,8 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 3: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma; 11 <- cos
-    // gamma * cos dgamma
+    // Stage 3, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
+    // 11 <- cos gamma * cos dgamma
     reg  [9:0]  exponent_s4;         // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s4;
@@ -477,7 +477,8 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 4: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin gamma
+    // Stage 4, part of: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin
+    // gamma
     reg  [9:0]  exponent_s5;          // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s5;
@@ -512,7 +513,8 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 5: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin gamma
+    // Stage 5, part of: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin
+    // gamma
     reg  [9:0]  exponent_s6;         // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s6;
@@ -548,7 +550,7 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 6: 12 <- sin gamma * sin dgamma
+    // Stage 6, part of: 12 <- sin gamma * sin dgamma
     reg  [9:0]  exponent_s7;                   // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s7;
@@ -594,7 +596,7 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 7: 12 <- sin gamma * sin dgamma
+    // Stage 7, part of: 12 <- sin gamma * sin dgamma
     reg  [9:0]  exponent_s8;                    // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s8;
@@ -661,7 +663,7 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 8: 12 <- sin gamma * sin dgamma
+    // Stage 8, part of: 12 <- sin gamma * sin dgamma
     reg  [9:0]  exponent_s9;         // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s9;
@@ -707,7 +709,7 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 9: operands adder 15, n/2
+    // Stage 9, part of: operands adder 15, n/2
     reg         [9:0]  exponent_s10;  // register 3: specular exponent n
     reg         [7:0]  red_s10;       // register 5: intensity of the light times k_s
     reg         [7:0]  green_s10;     // register 6: intensity of the light times k_s
@@ -743,7 +745,7 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 10: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
+    // Stage 10, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
     reg  [7:0]  red_s11;                   // register 5: intensity of the light times k_s
     reg  [7:0]  green_s11;                 // register 6: intensity of the light times k_s
     reg  [7:0]  blue_s11;                  // register 7: intensity of the light times k_s
@@ -771,7 +773,7 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 11: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
+    // Stage 11, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
     reg  [7:0]  red_s12;                   // register 5: intensity of the light times k_s
     reg  [7:0]  green_s12;                 // register 6: intensity of the light times k_s
     reg  [7:0]  blue_s12;                  // register 7: intensity of the light times k_s
@@ -798,7 +800,7 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 12: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
+    // Stage 12, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
     reg         [7:0]  red_s13;     // register 5: intensity of the light times k_s
     reg         [7:0]  green_s13;   // register 6: intensity of the light times k_s
     reg         [7:0]  blue_s13;    // register 7: intensity of the light times k_s
@@ -824,7 +826,7 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 13: 13 <- n/2 * (cos(gamma +- dgamma) - 1); operands adder 16, adder 16
+    // Stage 13, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1); operands adder 16, adder 16
     reg  [7:0]  red_s14;      // register 5: intensity of the light times k_s
     reg  [7:0]  green_s14;    // register 6: intensity of the light times k_s
     reg  [7:0]  blue_s14;     // register 7: intensity of the light times k_s
@@ -846,7 +848,7 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 14: 13 <- (... + 1)^2
+    // Stage 14, part of: 13 <- (... + 1)^2
     // register 5: intensity of the light times k_s
     reg         [7:0]  red_s15;
     // register 6: intensity of the light times k_s
@@ -871,7 +873,7 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 15: 13 <- (... + 1)^2
+    // Stage 15, part of: 13 <- (... + 1)^2
     reg  [7:0]  red_s16;    // register 5: intensity of the light times k_s
     reg  [7:0]  green_s16;  // register 6: intensity of the light times k_s
     reg  [7:0]  blue_s16;   // register 7: intensity of the light times k_s
@@ -896,7 +898,7 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 16: valid: intensities on the outputs
+    // Stage 16, part of: valid: intensities on the outputs
     reg  [7:0] red_product_kept_s17;
     reg        red_product_bits_s17;
     reg  [7:0] green_product_kept_s17;
@@ -924,7 +926,7 @@ module rough_pipelined #(
         end
     end
 
-    // Stage 17: valid: intensities on the outputs
+    // Stage 17, part of: valid: intensities on the outputs
     reg  [7:0] red_intensity_s18;
     reg  [7:0] green_intensity_s18;
     reg  [7:0] blue_intensity_s18;

@@ -75,7 +75,7 @@ module schlick_pipelined (
     reg  valid_s12;  // stage 12 has a point
     reg  valid_s13;  // stage 13 has a point
     reg  valid_s14;  // stage 14 has a point
-    reg  valid_s15;  // stage 15 has a point
+    reg  valid_s15;  // the results are on the outputs
 
     assign out_valid = valid_s15;  // the results are on the outputs
     wire advance = out_ready | ~valid_s15;  // every point moves on by a stage
@@ -117,7 +117,7 @@ module schlick_pipelined (
         end
     end
 
-    // Stage 0: operands cos gamma, n
+    // Stage 0, part of: operands cos gamma, n
     reg  [20:0] cos_gamma_reg_s1;  // u1.20: cosine of the angle between normal and half vector
     reg  [9:0]  exponent_s1;       // specular exponent n
     reg  [7:0]  red_s1;            // intensity of the light times k_s
@@ -143,7 +143,7 @@ module schlick_pipelined (
         end
     end
 
-    // Stage 1: cos gamma by n*(1 - cos gamma) + cos gamma
+    // Stage 1, part of: cos gamma by n*(1 - cos gamma) + cos gamma
     reg  [20:0] cos_gamma_reg_s2;    // u1.20: cosine of the angle between normal and half vector
     reg  [7:0]  red_s2;              // intensity of the light times k_s
     reg  [7:0]  green_s2;            // intensity of the light times k_s
@@ -171,7 +171,7 @@ module schlick_pipelined (
         end
     end
 
-    // Stage 2: cos gamma by n*(1 - cos gamma) + cos gamma
+    // Stage 2, part of: cos gamma by n*(1 - cos gamma) + cos gamma
     reg  [20:0] cos_gamma_reg_s3;     // u1.20: cosine of the angle between normal and half vector
     reg  [7:0]  red_s3;               // intensity of the light times k_s
     reg  [7:0]  green_s3;             // intensity of the light times k_s
@@ -198,7 +198,7 @@ module schlick_pipelined (
         end
     end
 
-    // Stage 3: next bit of the quotient
+    // Stage 3, part of: next bit of the quotient
     reg  [7:0]  red_s4;                 // intensity of the light times k_s
     reg  [7:0]  green_s4;               // intensity of the light times k_s
     reg  [7:0]  blue_s4;                // intensity of the light times k_s
@@ -232,7 +232,7 @@ module schlick_pipelined (
         end
     end
 
-    // Stage 4: next bit of the quotient
+    // Stage 4, part of: next bit of the quotient
     reg  [7:0]  red_s5;                   // intensity of the light times k_s
     reg  [7:0]  green_s5;                 // intensity of the light times k_s
     reg  [7:0]  blue_s5;                  // intensity of the light times k_s
@@ -266,7 +266,7 @@ module schlick_pipelined (
         end
     end
 
-    // Stage 5: next bit of the quotient
+    // Stage 5, part of: next bit of the quotient
     reg  [7:0]  red_s6;                   // intensity of the light times k_s
     reg  [7:0]  green_s6;                 // intensity of the light times k_s
     reg  [7:0]  blue_s6;                  // intensity of the light times k_s
@@ -300,7 +300,7 @@ module schlick_pipelined (
         end
     end
 
-    // Stage 6: next bit of the quotient
+    // Stage 6, part of: next bit of the quotient
     reg  [7:0]  red_s7;                   // intensity of the light times k_s
     reg  [7:0]  green_s7;                 // intensity of the light times k_s
     reg  [7:0]  blue_s7;                  // intensity of the light times k_s
@@ -334,7 +334,7 @@ module schlick_pipelined (
         end
     end
 
-    // Stage 7: next bit of the quotient
+    // Stage 7, part of: next bit of the quotient
     reg  [7:0]  red_s8;                   // intensity of the light times k_s
     reg  [7:0]  green_s8;                 // intensity of the light times k_s
     reg  [7:0]  blue_s8;                  // intensity of the light times k_s
@@ -370,7 +370,7 @@ module schlick_pipelined (
         end
     end
 
-    // Stage 8: next bit of the quotient
+    // Stage 8, part of: next bit of the quotient
     reg  [7:0]  red_s9;                   // intensity of the light times k_s
     reg  [7:0]  green_s9;                 // intensity of the light times k_s
     reg  [7:0]  blue_s9;                  // intensity of the light times k_s
@@ -404,7 +404,7 @@ module schlick_pipelined (
         end
     end
 
-    // Stage 9: next bit of the quotient
+    // Stage 9, part of: next bit of the quotient
     reg  [7:0]  red_s10;                   // intensity of the light times k_s
     reg  [7:0]  green_s10;                 // intensity of the light times k_s
     reg  [7:0]  blue_s10;                  // intensity of the light times k_s
@@ -438,7 +438,7 @@ module schlick_pipelined (
         end
     end
 
-    // Stage 10: next bit of the quotient
+    // Stage 10, part of: next bit of the quotient
     reg  [7:0]  red_s11;                   // intensity of the light times k_s
     reg  [7:0]  green_s11;                 // intensity of the light times k_s
     reg  [7:0]  blue_s11;                  // intensity of the light times k_s
@@ -472,7 +472,7 @@ module schlick_pipelined (
         end
     end
 
-    // Stage 11: next bit of the quotient
+    // Stage 11, part of: next bit of the quotient
     reg  [7:0]  red_s12;                   // intensity of the light times k_s
     reg  [7:0]  green_s12;                 // intensity of the light times k_s
     reg  [7:0]  blue_s12;                  // intensity of the light times k_s
@@ -506,7 +506,7 @@ module schlick_pipelined (
         end
     end
 
-    // Stage 12: next bit of the quotient
+    // Stage 12, part of: next bit of the quotient
     reg  [7:0] red_s13;              // intensity of the light times k_s
     reg  [7:0] green_s13;            // intensity of the light times k_s
     reg  [7:0] blue_s13;             // intensity of the light times k_s
@@ -530,7 +530,7 @@ module schlick_pipelined (
         end
     end
 
-    // Stage 13: result
+    // Stage 13, part of: result
     reg  [7:0] red_product_kept_s14;
     reg        red_product_bits_s14;
     reg  [7:0] green_product_kept_s14;
@@ -561,7 +561,7 @@ module schlick_pipelined (
         end
     end
 
-    // Stage 14: result
+    // Stage 14, part of: result
     reg  [7:0] red_intensity_s15;
     reg  [7:0] green_intensity_s15;
     reg  [7:0] blue_intensity_s15;

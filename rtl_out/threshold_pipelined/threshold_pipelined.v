@@ -78,7 +78,7 @@ module threshold_pipelined #(
     reg  valid_s6;  // stage 6 has a point
     reg  valid_s7;  // stage 7 has a point
     reg  valid_s8;  // stage 8 has a point
-    reg  valid_s9;  // stage 9 has a point
+    reg  valid_s9;  // the results are on the outputs
 
     assign out_valid = valid_s9;  // the results are on the outputs
     wire advance = out_ready | ~valid_s9;  // every point moves on by a stage
@@ -108,8 +108,8 @@ module threshold_pipelined #(
         end
     end
 
-    // Stage 0: operands; ROM(n) addressed; scaled <- n/2 * (cos gamma - 1); intensity <- (scaled +
-    // 1)^2, or 0 below ROM(n)
+    // Stage 0, part of: operands; ROM(n) addressed; scaled <- n/2 * (cos gamma - 1); intensity <-
+    // (scaled + 1)^2, or 0 below ROM(n)
     reg         [9:0]  exponent_s1;  // register 2: specular exponent n
     reg         [7:0]  red_s1;       // register 3: intensity of the light times k_s
     reg         [7:0]  green_s1;     // register 4: intensity of the light times k_s
@@ -136,7 +136,7 @@ module threshold_pipelined #(
         end
     end
 
-    // Stage 1: scaled <- n/2 * (cos gamma - 1)
+    // Stage 1, part of: scaled <- n/2 * (cos gamma - 1)
     reg         [9:0]  exponent_s2;            // register 2: specular exponent n
     reg         [7:0]  red_s2;                 // register 3: intensity of the light times k_s
     reg         [7:0]  green_s2;               // register 4: intensity of the light times k_s
@@ -178,7 +178,7 @@ module threshold_pipelined #(
         end
     end
 
-    // Stage 2: scaled <- n/2 * (cos gamma - 1)
+    // Stage 2, part of: scaled <- n/2 * (cos gamma - 1)
     reg         [9:0]  exponent_s3;                   // register 2: specular exponent n
     // register 3: intensity of the light times k_s
     reg         [7:0]  red_s3;
@@ -209,7 +209,8 @@ module threshold_pipelined #(
         end
     end
 
-    // Stage 3: scaled <- n/2 * (cos gamma - 1); intensity <- (scaled + 1)^2, or 0 below ROM(n)
+    // Stage 3, part of: scaled <- n/2 * (cos gamma - 1); intensity <- (scaled + 1)^2, or 0 below
+    // ROM(n)
     reg  [7:0]  red_s4;          // register 3: intensity of the light times k_s
     reg  [7:0]  green_s4;        // register 4: intensity of the light times k_s
     reg  [7:0]  blue_s4;         // register 5: intensity of the light times k_s
@@ -238,7 +239,7 @@ module threshold_pipelined #(
         end
     end
 
-    // Stage 4: operands; ROM(n) addressed; intensity <- (scaled + 1)^2, or 0 below ROM(n)
+    // Stage 4, part of: operands; ROM(n) addressed; intensity <- (scaled + 1)^2, or 0 below ROM(n)
     reg  [7:0]  red_s5;                      // register 3: intensity of the light times k_s
     reg  [7:0]  green_s5;                    // register 4: intensity of the light times k_s
     reg  [7:0]  blue_s5;                     // register 5: intensity of the light times k_s
@@ -261,7 +262,7 @@ module threshold_pipelined #(
         end
     end
 
-    // Stage 5: intensity <- (scaled + 1)^2, or 0 below ROM(n)
+    // Stage 5, part of: intensity <- (scaled + 1)^2, or 0 below ROM(n)
     reg  [7:0]  red_s6;     // register 3: intensity of the light times k_s
     reg  [7:0]  green_s6;   // register 4: intensity of the light times k_s
     reg  [7:0]  blue_s6;    // register 5: intensity of the light times k_s
@@ -285,7 +286,7 @@ module threshold_pipelined #(
         end
     end
 
-    // Stage 6: intensity <- (scaled + 1)^2, or 0 below ROM(n)
+    // Stage 6, part of: intensity <- (scaled + 1)^2, or 0 below ROM(n)
     reg  [7:0]  red_s7;        // register 3: intensity of the light times k_s
     reg  [7:0]  green_s7;      // register 4: intensity of the light times k_s
     reg  [7:0]  blue_s7;       // register 5: intensity of the light times k_s
@@ -303,7 +304,7 @@ module threshold_pipelined #(
         end
     end
 
-    // Stage 7: result
+    // Stage 7, part of: result
     reg  [7:0] red_product_kept_s8;
     reg        red_product_bits_s8;
     reg  [7:0] green_product_kept_s8;
@@ -331,7 +332,7 @@ module threshold_pipelined #(
         end
     end
 
-    // Stage 8: result
+    // Stage 8, part of: result
     reg  [7:0] red_intensity_s9;
     reg  [7:0] green_intensity_s9;
     reg  [7:0] blue_intensity_s9;

@@ -92,7 +92,7 @@ module cosine_power_axis_formal (
         .m_axis_tready(m_axis_tready)
     );
 
-    // What the proof sees of the inside.
+    // Internal signals that the proof refers to.
     (* hierconn *) wire  \dut.start ;
     (* hierconn *) wire  \dut.valid ;
     (* hierconn *) wire  \dut.waiting ;
@@ -188,7 +188,7 @@ module cosine_power_axis_formal (
         end
     end
 
-    // What the induction stands on.
+    // Inductive invariants.
     always @* if (!$initstate) begin
         assert (!(s_axis_tready && dut.waiting));
         assert (taken - begun == dut.waiting);

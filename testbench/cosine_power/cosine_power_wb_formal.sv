@@ -65,7 +65,7 @@ module cosine_power_wb_formal (
         .irq(irq)
     );
 
-    // What the proof sees of the inside.
+    // Internal signals that the proof refers to.
     (* hierconn *) wire \dut.write ;
     (* hierconn *) wire \dut.read ;
     (* hierconn *) wire \dut.write_answer ;

@@ -122,7 +122,7 @@ module cosine_power_pipelined_axis_formal (
         .m_axis_tready(m_axis_tready)
     );
 
-    // What the proof sees of the inside.
+    // Internal signals that the proof refers to.
     (* hierconn *) wire \dut.held ;
     (* hierconn *) wire [23:0] \dut.held_results ;
     (* hierconn *) wire [1:0] \dut.held_side ;
@@ -263,7 +263,7 @@ module cosine_power_pipelined_axis_formal (
 
     end
 
-    // What the induction stands on: every point is in one place, in the order in which they came.
+    // Inductive invariants: every point is in one place, in the order in which they came.
     always @* if (!$initstate) begin
         assert (taken == next_0);
         assert (!dut.held || m_axis_tvalid);

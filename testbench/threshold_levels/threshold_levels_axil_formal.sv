@@ -85,7 +85,7 @@ module threshold_levels_axil_formal (
         .irq(irq)
     );
 
-    // What the proof sees of the inside.
+    // Internal signals that the proof refers to.
     (* hierconn *) wire \dut.write_taken ;
     (* hierconn *) wire \dut.write ;
     (* hierconn *) wire \dut.read ;

@@ -90,7 +90,7 @@ module threshold_levels_registers_formal (
         .irq(irq)
     );
 
-    // What the proof sees of the inside.
+    // Internal signals that the proof refers to.
     (* hierconn *) wire \dut.start ;
     (* hierconn *) wire \dut.start_on_write ;
     (* hierconn *) wire [3:0] \dut.start_word ;

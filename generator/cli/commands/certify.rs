@@ -42,7 +42,7 @@ pub struct Arguments {
     time_limit: u64,
 }
 
-/// What a script of ours begins with: nothing else is overwritten.
+/// What a script that Glint wrote begins with: nothing else is overwritten.
 const MARKER: &str = "# Certificate by Glint: ";
 
 /// `glint certify`.

@@ -245,7 +245,12 @@ impl Builder<'_> {
         for stage in 1..=latency {
             let name = self.staged("valid", stage);
             let id = self.net(name, stage, Format::BIT, Driver::Undriven);
-            self.documented(id, &format!("stage {stage} has a point"));
+            let what = if stage == latency {
+                "the results are on the outputs".to_owned()
+            } else {
+                format!("stage {stage} has a point")
+            };
+            self.documented(id, &what);
             self.flow.push(id);
             valid.push(id);
         }

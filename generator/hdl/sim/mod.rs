@@ -7,7 +7,7 @@
 //! rust_hdl is the kernel. Its part is exactly this: it owns the clock, a `Signal`; each half of a clock
 //! is one call of its `simulate()`, which updates the block, finds the edge, and updates again until
 //! nothing changes; its `check_all` checks the ports, and its probes see every named net and write the
-//! waveforms. What an update does with the netlist is ours: the registers at an edge, and then one pass
+//! waveforms. What an update does with the netlist is Glint's own: the registers at an edge, and then one pass
 //! over the program, which settles all nets, because it is in an order of evaluation. An own rust_hdl
 //! block for each cell would be settled by rust_hdl as well, a hundred times more slowly.
 

@@ -60,11 +60,11 @@ pub fn module(
     }
 }
 
-/// `Stage 3: accumulator <- base^2`.
+/// `Stage 3, part of: accumulator <- base^2`.
 fn title(number: usize, microinstructions: &[String]) -> Vec<String> {
     let what = match microinstructions {
-        [] => "values on their way".to_owned(),
-        some => some.join("; "),
+        [] => ": values on their way".to_owned(),
+        some => format!(", part of: {}", some.join("; ")),
     };
-    comment(4, &ascii(&format!("Stage {number}: {what}")))
+    comment(4, &ascii(&format!("Stage {number}{what}")))
 }

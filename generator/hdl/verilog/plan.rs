@@ -54,7 +54,7 @@ pub struct Plan<'a> {
 }
 
 impl<'a> Plan<'a> {
-    /// Decides.
+    /// Builds the plan of a design.
     ///
     /// # Errors
     /// The mistakes that [`Design::verify_structure`] finds.
@@ -94,7 +94,7 @@ impl<'a> Plan<'a> {
         self.design.ports.iter().any(|port| port.net == net)
     }
 
-    /// Whether a net is driven inside, and so by exactly one of the two modules.
+    /// Whether a net is an input port, driven from outside.
     pub fn is_input(&self, net: NetId) -> bool {
         self.design.net(net).driver == Driver::Input
     }

@@ -25,7 +25,7 @@ impl Line {
         self.width - 1
     }
 
-    /// Of points, which have a bit more than places.
+    /// 0 as a count, which has a bit more than an address of the buffer.
     fn zero(&self) -> String {
         literal(0, self.width + 1)
     }

@@ -1,6 +1,6 @@
-//! What a text in a configuration may look like. Each shape can stand in Tcl, XML, YAML and TOML as it is.
+//! What a text in a configuration may look like. Each pattern can stand in Tcl, XML, YAML and TOML as it is.
 
-/// The shape of a text.
+/// What a text must look like.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TextPattern {
     /// Who makes or sells something: a letter, then letters, digits, `.`, `-` and `_`.
@@ -19,7 +19,7 @@ const LONGEST: usize = 60;
 const DIGITS: usize = 4;
 
 impl TextPattern {
-    /// Whether a text has this shape.
+    /// Whether a text has this pattern.
     pub fn fits(self, text: &str) -> bool {
         let more = |also: &str| {
             let good = |c: char| c.is_ascii_alphanumeric() || also.contains(c);
@@ -38,7 +38,7 @@ impl TextPattern {
     }
 
     /// The same as a regular expression that JavaScript and Rust know.
-    pub fn pattern(self) -> &'static str {
+    pub fn regex(self) -> &'static str {
         match self {
             TextPattern::Name => "^[A-Za-z][A-Za-z0-9._-]{0,59}$",
             TextPattern::Licence => "^[A-Za-z(][A-Za-z0-9 .+()-]{0,59}$",
@@ -47,7 +47,7 @@ impl TextPattern {
     }
 
     /// The same in words.
-    pub fn words(self) -> &'static str {
+    pub fn text(self) -> &'static str {
         match self {
             TextPattern::Name => {
                 "a name of at most 60 letters, digits, `.`, `-` and `_`, beginning with a letter"
@@ -70,8 +70,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn texts_fit_their_shapes() {
-        for (shape, good, bad) in [
+    fn texts_fit_their_patterns() {
+        for (pattern, good, bad) in [
             (
                 TextPattern::Name,
                 vec!["a", "example.org", "A-1_b"],
@@ -89,12 +89,12 @@ mod tests {
             ),
         ] {
             for text in good {
-                assert!(shape.fits(text), "{text}");
+                assert!(pattern.fits(text), "{text}");
             }
             for text in bad {
-                assert!(!shape.fits(text), "{text}");
+                assert!(!pattern.fits(text), "{text}");
             }
-            assert!(!shape.fits(&"a".repeat(61)));
+            assert!(!pattern.fits(&"a".repeat(61)));
         }
         assert!(TextPattern::Name.fits(&"a".repeat(60)));
     }
