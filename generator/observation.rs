@@ -114,7 +114,12 @@ impl ContractFacts {
                 .map(|(output, colour)| (output.name.clone(), colour))
                 .collect(),
             length: contract.length().map(str::to_owned),
-            f: contract.highlight().map(Highlight::expressions).unwrap_or_default(),
+            // Without a bound there is nothing that results could be held against.
+            f: contract
+                .highlight()
+                .filter(|_| contract.bound().is_stated())
+                .map(Highlight::expressions)
+                .unwrap_or_default(),
             bound: contract.bound().units,
         }
     }

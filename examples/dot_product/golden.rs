@@ -107,6 +107,11 @@ impl Formula for Cosine {
         vec![sum.clamp(0.0, 1.0)]
     }
 
+    /// Components within their domain; `certify` holds the hardware against this.
+    fn expressions(&self) -> Vec<String> {
+        vec!["max(0, min(1, nx * hx + ny * hy + nz * hz))".to_owned()]
+    }
+
     /// The products and their sum are exact, and rounded once. To clamp to 0 … 1 brings two values no further
     /// apart, and both ends are values of the output, so that the rest of the way changes nothing.
     fn terms(&self) -> Vec<Term> {

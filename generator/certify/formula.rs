@@ -59,7 +59,7 @@ impl Real {
 /// The expression as a tree.
 ///
 /// # Errors
-/// What is no expression, or has a function that is none of `max` and `int`.
+/// What is no expression, or has a function that is none of `max`, `min` and `int`.
 pub fn parse(text: &str) -> Result<Real> {
     let mut parser = Parser { tokens: tokens(text)?, at: 0 };
     let real = parser.choice()?;
@@ -197,6 +197,12 @@ impl Parser {
             "max" => {
                 self.expect(",")?;
                 Real::Max(Box::new(first), Box::new(self.choice()?))
+            }
+            "min" => {
+                self.expect(",")?;
+                let (left, right) = (Box::new(first.clone()), Box::new(self.choice()?));
+                let comparison = Comparison { left, right: right.clone(), or_equal: false };
+                Real::If(comparison, right, Box::new(first))
             }
             other => bail!("the function `{other}` has no translation"),
         };

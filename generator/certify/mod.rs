@@ -11,6 +11,7 @@
 
 pub mod cases;
 pub mod exact;
+mod find;
 pub mod formula;
 pub mod hardware;
 pub mod polynomial;
@@ -29,6 +30,7 @@ use crate::hdl::netlist::{Design, NetId, Op, RomId};
 use crate::hdl::pipeline::{Cell, Graph, Unrolled, unroll};
 use cases::{Case, Known, View};
 use exact::{Branch, Setting};
+pub use find::bound;
 use formula::Real;
 use hardware::{Hardware, Value, Variables};
 pub use proof::{Outcome, prove};
@@ -83,10 +85,37 @@ impl Statements {
 /// The statements whose conjunction is the contract of a sequential design.
 ///
 /// # Errors
-/// The step that has no translation, in words; or that it takes longer than `limit` to say them all.
+/// The step that has no translation, in words; that the contract states no bound; or that it takes longer than `limit` to
+/// say them all.
 pub fn statements(
     design: &Design,
     contract: &dyn Contract,
+    limit: Duration,
+) -> Result<Vec<Statement>, String> {
+    let bound = contract.bound();
+    match bound.is_stated() {
+        true => within(design, contract, Some(bound.units), limit),
+        false => Err("its contract states no bound".to_owned()),
+    }
+}
+
+/// The same without a bound: each statement asks how far an output is from the formula, in its units. [`bound`] answers,
+/// and [`Statement::within`] states the answer.
+///
+/// # Errors
+/// As of [`statements`].
+pub fn questions(
+    design: &Design,
+    contract: &dyn Contract,
+    limit: Duration,
+) -> Result<Vec<Statement>, String> {
+    within(design, contract, None, limit)
+}
+
+fn within(
+    design: &Design,
+    contract: &dyn Contract,
+    bound: Option<f64>,
     limit: Duration,
 ) -> Result<Vec<Statement>, String> {
     let begin = Instant::now();
@@ -101,8 +130,15 @@ pub fn statements(
     let quotients = quotient::quotients(&unrolled.graph, &results);
     let view = View { graph: &unrolled.graph, words: &words, quotients: &quotients };
     let tables: Vec<String> = design.roms.iter().map(|rom| rom.name.clone()).collect();
-    let task =
-        Task { design, contract, unrolled: &unrolled, view, tables: &tables, formulas: &formulas };
+    let task = Task {
+        design,
+        contract,
+        bound,
+        unrolled: &unrolled,
+        view,
+        tables: &tables,
+        formulas: &formulas,
+    };
     let known = task.domain()?;
     let results: Vec<NetId> = task.outputs()?.into_iter().map(|(_, node)| node).collect();
     let mut statements = Statements::default();
@@ -122,12 +158,14 @@ pub fn statements(
 }
 
 fn formulas(contract: &dyn Contract) -> Result<Vec<Real>, String> {
-    let highlight = contract.highlight().ok_or("its contract is of no highlight")?;
     if contract.length().is_some() {
         return Err("a computation of several results is not unrolled".to_owned());
     }
-    let expressions = highlight.expressions();
-    if expressions.is_empty() {
+    let (expressions, wanted) = match contract.highlight() {
+        Some(highlight) => (highlight.expressions(), 1),
+        None => (contract.expressions(), contract.outputs().len()),
+    };
+    if expressions.len() < wanted {
         return Err("its contract has no formula in words".to_owned());
     }
     let parsed = expressions.iter().map(|text| formula::parse(text));
@@ -137,9 +175,12 @@ fn formulas(contract: &dyn Contract) -> Result<Vec<Real>, String> {
 struct Task<'a> {
     design: &'a Design,
     contract: &'a dyn Contract,
+    /// None: it is asked for.
+    bound: Option<f64>,
     unrolled: &'a Unrolled,
     view: View<'a>,
     tables: &'a [String],
+    /// Of a highlight what f may be, else what each output is.
     formulas: &'a [Real],
 }
 
@@ -295,17 +336,24 @@ impl Task<'_> {
         }
         let colours: Vec<_> =
             self.contract.operands().iter().filter(|operand| operand.colour).collect();
-        for ((output, node), colour) in self.outputs()?.into_iter().zip(colours) {
+        for (at, (output, node)) in self.outputs()?.into_iter().enumerate() {
             let mut terms = Terms::default();
             let mut hardware = hardware.clone();
             let out = hardware.value(&mut terms, node)?;
             let presupposed = self.presupposed(case, &mut hardware, &mut terms, &operands);
             let (out, scale) = hardware::placed(&mut terms, out, 0);
             let out = hardware::scaled(&mut terms, out, scale, "out");
-            let colour = real_operand(&colour.name, &setting, &mut terms)?;
+            // What the formula is multiplied by: the colour, or what makes units of values.
+            let (factor, formulas) = match self.contract.highlight() {
+                Some(_) => (real_operand(&colours[at].name, &setting, &mut terms)?, self.formulas),
+                None => {
+                    let unit = exp2(self.contract.outputs()[at].format.frac);
+                    (terms.number(unit), std::slice::from_ref(&self.formulas[at]))
+                }
+            };
             let hardware_terms = terms.count();
             let mut ways: Vec<Vec<Branch>> = Vec::new();
-            for formula in self.formulas {
+            for formula in formulas {
                 ways.push(exact::branches(formula, &setting, &mut terms)?);
             }
             for chosen in together(&ways) {
@@ -319,10 +367,8 @@ impl Task<'_> {
                     presupposed: &presupposed,
                     ways: &chosen,
                 };
-                let scripts = chosen
-                    .iter()
-                    .map(|way| script.text(out, colour, way.term, self.contract.bound().units));
-                let mut scripts: Vec<String> = scripts.collect();
+                let text = |way: &Branch| script.text(out, factor, way.term, self.bound);
+                let mut scripts: Vec<String> = chosen.iter().map(text).collect();
                 scripts.dedup();
                 statements.push(&output, scripts);
             }

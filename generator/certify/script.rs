@@ -7,6 +7,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
 use super::exact::{self, Branch};
+use super::find;
 use super::hardware::Variables;
 use super::terms::{Id, Term, Terms, number};
 use crate::base::fixed::exp2;
@@ -30,12 +31,12 @@ pub struct Script<'a> {
 }
 
 impl Script<'_> {
-    /// That the output `out` is within the bound of the formula `f` times a colour.
-    pub fn text(&self, out: Id, colour: Id, f: Id, bound: f64) -> String {
+    /// That the output `out` is within the bound of the formula `f` times a factor, or how far from it.
+    pub fn text(&self, out: Id, factor: Id, f: Id, bound: Option<f64>) -> String {
         let mut terms = self.terms.clone();
-        let exact = exact::folded(&mut terms, Term::Mul(f, colour));
+        let exact = exact::folded(&mut terms, Term::Mul(f, factor));
         let difference = terms.insert(Term::Sub(out, exact), "difference");
-        let goal = format!("|{}| <= {}", terms.name(difference), number(bound));
+        let goal = find::goal(&terms.name(difference), bound);
         self.statement(terms, difference, &goal, &[])
     }
 

@@ -33,13 +33,16 @@ pub fn control(name: &str, format: Format, domain: (i64, i64), doc: &str) -> Ope
 /// `f` and the formula both lie in 0 … 1, so that no word is off by more than 1.0: where the shares
 /// exceed it, they are scaled down to it. An output is `f` times a colour, which multiplies the error
 /// by the largest colour, and a rounding. It never saturates, for `f` < 1. The rounding's share is
-/// attributed to a key `output.rounding`, which the device must have.
+/// attributed to a key `output.rounding`, which the device must have. Without shares no bound is stated.
 pub fn bound(
     shares: &[ErrorShare],
     frac: u32,
     colour_bits: u32,
     output_rounding: Rounding,
 ) -> Bound {
+    if shares.is_empty() {
+        return Bound::of(Vec::new());
+    }
     let sum: f64 = shares.iter().map(|share| share.2).sum();
     let cap = if sum > 1.0 { 1.0 / sum } else { 1.0 };
     let largest = exp2(colour_bits as i32) - 1.0;

@@ -112,8 +112,15 @@ pub trait Formula: Send + Sync {
     /// The outputs in f64, unrounded, for the values (not raw) of the operands, in the order of the frame.
     fn exact(&self, operands: &[f64]) -> Vec<f64>;
 
-    /// What the error of an output is made of, each a proven upper limit.
-    fn terms(&self) -> Vec<Term>;
+    /// What the error of an output is made of, each a proven upper limit; none where the bound is not known yet.
+    fn terms(&self) -> Vec<Term> {
+        Vec::new()
+    }
+
+    /// As [`Contract::expressions`].
+    fn expressions(&self) -> Vec<String> {
+        Vec::new()
+    }
 
     /// As [`Contract::hint`].
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {
@@ -187,6 +194,10 @@ impl<D: Datapath, F: Formula> Contract for OfModel<D, F> {
 
     fn bound(&self) -> Bound {
         Bound::of(self.formula.terms())
+    }
+
+    fn expressions(&self) -> Vec<String> {
+        self.formula.expressions()
     }
 
     fn hint(&self, unit: &mut dyn FnMut() -> f64) -> Option<Vec<i64>> {

@@ -121,8 +121,15 @@ pub trait Contract: Send + Sync {
     /// sides. An error is taken from the nearer.
     fn exact(&self, operands: &[i64], index: u64, values: &mut Vec<[f64; 2]>);
 
-    /// A proven bound on the error, stated before anything is simulated.
+    /// A proven bound on the error, stated before anything is simulated. One without terms is not stated:
+    /// [`crate::certify`] may find one.
     fn bound(&self) -> Bound;
+
+    /// What the formula says of each output, as an expression of Python, as in
+    /// [`highlight::Reflectance::expressions`]; none where nobody wrote them. A [`Highlight`] has its own.
+    fn expressions(&self) -> Vec<String> {
+        Vec::new()
+    }
 
     /// What the contract has beyond this of a device that multiplies by a reflectance.
     fn highlight(&self) -> Option<&Highlight> {
@@ -282,10 +289,26 @@ pub struct Term {
 }
 
 impl Bound {
-    /// The sum of its terms, of a device that is no highlight.
+    /// The sum of its terms, of a device that is no highlight; infinite without any.
     pub fn of(terms: Vec<Term>) -> Self {
-        let units = terms.iter().map(|term| term.units).sum();
+        let units = match terms.is_empty() {
+            true => f64::INFINITY,
+            false => terms.iter().map(|term| term.units).sum(),
+        };
         Self { f: units, units, terms }
+    }
+
+    /// It in units, or that there is none.
+    pub fn words(&self) -> String {
+        match self.is_stated() {
+            true => format!("{:.3}", self.units),
+            false => "not stated".to_owned(),
+        }
+    }
+
+    /// Whether its author has stated one.
+    pub fn is_stated(&self) -> bool {
+        self.units.is_finite()
     }
 
     /// The largest contribution: the key to change first.

@@ -1,17 +1,26 @@
 //! Statements for Gappa: proved of the devices as they are, refused of a smaller bound and of faulty hardware.
 
+#[allow(dead_code)]
+#[path = "../../examples/dot_product/main.rs"]
+mod dot_product;
+#[allow(dead_code)]
+#[path = "../../examples/smoothstep/main.rs"]
+mod smoothstep;
+
 use std::path::Path;
+use std::process::Command;
 use std::time::Duration;
 
-use glint::certify::{Outcome, Statement, prove, statements};
+use glint::certify::{self, Outcome, Statement, prove, questions, statements};
 use glint::config::{Config, parse};
 use glint::golden::Contract;
 use glint::hdl::netlist::{Design, Driver, Op};
-use glint::registry::Registry;
+use glint::registry::{Device, Registry};
 use glint::tools::Tool;
 use rayon::prelude::*;
 
 use crate::common::sample::sampled;
+use crate::example::fresnel;
 
 /// What Gappa proves it proves in a second.
 const LIMIT: Duration = Duration::from_secs(20);
@@ -79,6 +88,79 @@ fn bounds_are_proved_and_smaller_ones_are_not() {
         let refused = stated.iter().any(|it| !it.scripts.iter().any(|it| accepted(&smaller(it))));
         assert!(refused, "{device}: {keys}");
     }
+}
+
+fn of_user(device: Device) -> (Design, Box<dyn Contract>) {
+    let config = Config::defaults(&(device.schema)(), "core");
+    (device.sequential(&config).expect("a design"), (device.contract)(&config))
+}
+
+#[test]
+fn devices_of_users_are_certified() {
+    for device in [fresnel::FRESNEL, dot_product::DOT_PRODUCT] {
+        let (design, contract) = of_user(device);
+        let stated = statements(&design, contract.as_ref(), Duration::MAX).expect("statements");
+        assert!(all_accepted(&stated), "{}", device.name);
+        // Less than the rounding of the outputs takes.
+        let asked = questions(&design, contract.as_ref(), Duration::MAX).expect("questions");
+        let smaller: Vec<_> = asked.iter().map(|it| it.within(0.49)).collect();
+        assert!(!all_accepted(&smaller), "{}", device.name);
+    }
+}
+
+/// The bound that Gappa finds.
+fn found(design: &Design, contract: &dyn Contract) -> (f64, Vec<Statement>) {
+    let gappa = Tool::find("gappa").unwrap_or_else(|error| panic!("{error}"));
+    let asked = questions(design, contract, Duration::MAX).expect("questions");
+    (certify::bound(&gappa, &asked, LIMIT).expect("Gappa").expect("a bound"), asked)
+}
+
+#[test]
+fn a_bound_is_found_where_none_is_stated() {
+    let (design, contract) = of_user(smoothstep::SMOOTHSTEP);
+    assert!(!contract.bound().is_stated());
+    let step = statements(&design, contract.as_ref(), Duration::MAX).expect_err("no bound");
+    assert_eq!(step, "its contract states no bound");
+    let (bound, asked) = found(&design, contract.as_ref());
+    // The square is cut by a sixteenth of a unit at most, three times that is left of it, and half a unit is rounded.
+    assert!(bound <= 0.5 + 3.0 / 16.0, "{bound}");
+    let within = |bound: f64| asked.iter().map(|it| it.within(bound)).collect::<Vec<_>>();
+    assert!(all_accepted(&within(bound)));
+    let largest = (0..=4096).map(|x| contract.largest_error(&[x])).fold(0.0, f64::max);
+    assert!(largest <= bound && !all_accepted(&within(largest - 0.001)), "{largest} {bound}");
+}
+
+/// By its own command line, as its author uses it.
+#[test]
+fn the_bound_of_a_device_of_a_user_is_printed() {
+    let place = tempfile::tempdir().expect("a directory");
+    std::fs::write(place.path().join("s.toml"), "device = \"smoothstep\"\n").expect("a file");
+    let mut cargo = Command::new(env!("CARGO"));
+    cargo.args(["run", "--quiet", "--features", "outside-tools", "--example", "smoothstep"]);
+    if !cfg!(debug_assertions) {
+        cargo.arg("--release");
+    }
+    let file = place.path().join("s.toml");
+    let output = cargo.args(["--", "certify"]).arg(&file).output().expect("the example runs");
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{output:?}");
+    assert!(text.contains("certified: |output - formula| <= 0.6"), "{text}");
+    assert!(text.contains("a bound that is found, as the contract states none"), "{text}");
+}
+
+/// What is found for a device of the catalogue is no more than what its author has proved, and no less than an error that is
+/// known.
+#[test]
+fn bounds_that_are_found_lie_between_errors_and_bounds_by_hand() {
+    let (design, contract) = device("cosine-power", "");
+    let (bound, _) = found(&design, contract.as_ref());
+    let errors = (0..4096).map(|at| {
+        let cosine = (1 << 20) - at * 31;
+        contract.largest_error(&[cosine, 1 + at % 40, 255, 255, 255])
+    });
+    let largest = errors.fold(0.0, f64::max);
+    assert!(largest > 0.5 && largest <= bound, "{largest} {bound}");
+    assert!(bound <= contract.bound().units, "{bound}");
 }
 
 /// What is changed in a net: a constant gets a sixteenth smaller, an inverter a wire, operands change places.

@@ -3,7 +3,7 @@
 // The example's own source; its `main` is run as a program below.
 #[allow(dead_code)]
 #[path = "../../examples/fresnel/main.rs"]
-mod fresnel;
+pub mod fresnel;
 
 use std::fs;
 use std::path::Path;

@@ -9,9 +9,11 @@ use rayon::prelude::*;
 use serde_json::json;
 
 use super::load_sequential;
-use crate::certify::{Outcome, Statement, prove, statements};
+use crate::certify::{self, Outcome, Statement, prove, questions, statements};
 use crate::cli::own_file::OwnFile;
 use crate::cli::{Configs, Output, progress, tables};
+use crate::golden::Contract;
+use crate::hdl::netlist::Design;
 use crate::registry::Registry;
 use crate::tools::Tool;
 
@@ -55,7 +57,14 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let mut whole = true;
     for one in &loaded {
         let contract = one.core.contract.as_ref();
-        let stated = match statements(&one.core.design, contract, limit) {
+        let design = &one.core.design;
+        let is_stated = contract.bound().is_stated();
+        let stated = if is_stated {
+            statements(design, contract, limit).map(|stated| (stated, contract.bound().units))
+        } else {
+            found(design, contract, &gappa, limit)?
+        };
+        let (stated, bound) = match stated {
             Ok(stated) => stated,
             Err(step) => {
                 whole = false;
@@ -80,7 +89,6 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         if let Some(out) = &arguments.out {
             write(&out.join(&one.core.config.name), &one.path, &stated, &checked)?;
         }
-        let bound = contract.bound().units;
         let open: Vec<(&Statement, &str)> = stated
             .iter()
             .zip(&checked)
@@ -98,8 +106,13 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             };
             let proved = stated.len() - open.len();
             tables::print_line(&if open.is_empty() {
+                let origin = if is_stated {
+                    ""
+                } else {
+                    ", a bound that is found, as the contract states none"
+                };
                 format!(
-                    "{}: certified: |output - formula| <= {bound:.6} units over the whole domain; {proved} statements {by}",
+                    "{}: certified: |output - formula| <= {bound:.6} units over the whole domain{origin}; {proved} statements {by}",
                     one.path
                 )
             } else {
@@ -126,6 +139,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             "config": one.path,
             "certified": open.is_empty(),
             "bound": bound,
+            "bound_found": !is_stated,
             "statements": stated.len(),
             "open": open,
             "coq": arguments.coq,
@@ -139,6 +153,21 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         );
     }
     Ok(whole)
+}
+
+/// The statements of a contract without a bound, with the one that Gappa finds.
+fn found(
+    design: &Design,
+    contract: &dyn Contract,
+    gappa: &Tool,
+    limit: Duration,
+) -> Result<Result<(Vec<Statement>, f64), String>> {
+    let asked = match questions(design, contract, limit) {
+        Ok(asked) => asked,
+        Err(step) => return Ok(Err(step)),
+    };
+    let bound = certify::bound(gappa, &asked, limit)?;
+    Ok(bound.map(|bound| (asked.iter().map(|one| one.within(bound)).collect(), bound)))
 }
 
 /// The scripts, each in a file: the accepted one, or of what is open the first. Those of an earlier run with more

@@ -123,9 +123,9 @@ fn built_in(output: Output, loaded: &[Loaded], arguments: &Arguments) -> Result<
         ));
         if let Some(worst) = &outcome.worst {
             tables::print_line(&format!(
-                "  largest error {:.3} units (bound {:.3}) at {}",
+                "  largest error {:.3} units (bound {}) at {}",
                 worst.units,
-                bound.units,
+                bound.words(),
                 place(one, worst)
             ));
         }

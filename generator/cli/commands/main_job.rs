@@ -106,7 +106,7 @@ fn print(loaded: &[Loaded], findings: &[Finding], details: bool) -> Result<()> {
             text::grouped(finding.outcome.clocks),
             format!("{}, {}", finding.outcome.registers, finding.outcome.outputs),
             text::grouped(one.core.design.rom_bits()),
-            format!("{:.3}", finding.bound.units),
+            finding.bound.words(),
             worst.map_or_else(|| "-".to_owned(), |worst| format!("{:.3}", worst.units)),
             verdict(&finding.bound, &finding.faults).to_owned(),
         ]

@@ -150,12 +150,16 @@ const HOLDS: &str = "holds";
 /// The verdict on one whose outputs are right, within a bound that does not.
 const OUTSIDE: &str = "outside the contract";
 
+/// The verdict on one whose outputs are right, and held against no bound.
+const UNSTATED: &str = "no bound is stated";
+
 /// The verdict on one with faults.
 const FAILS: &str = "FAILS";
 
 /// What is said of a configuration with this bound, and these faults.
 fn verdict(bound: &Bound, faults: &[String]) -> &'static str {
     match (faults.is_empty(), bound.units < 1.0) {
+        (true, _) if !bound.is_stated() => UNSTATED,
         (true, true) => HOLDS,
         (true, false) => OUTSIDE,
         (false, _) => FAILS,
@@ -178,7 +182,16 @@ impl Loaded {
     /// Warns when the configuration misses the accuracy contract; refuses it when it is strict.
     fn contract(&self) -> Result<()> {
         let bound = self.core.contract.bound();
-        if bound.units >= 1.0 {
+        if !bound.is_stated() {
+            let message = format!(
+                "{}: its contract states no error bound; `glint certify` finds one where it can",
+                self.path
+            );
+            if self.core.config.strict {
+                bail!("{message}; `strict = true` refuses that");
+            }
+            failure::warn(&message);
+        } else if bound.units >= 1.0 {
             let limit = bound.limiting().map_or_else(String::new, |term| {
                 format!("; most of it, {:.3}, is of `{}` ({})", term.units, term.key, term.what)
             });

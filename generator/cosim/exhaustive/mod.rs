@@ -69,6 +69,8 @@ impl Proof {
     pub fn verdict(&self, contract: &dyn Contract) -> &'static str {
         if !self.faults.is_empty() {
             "FAILS"
+        } else if !contract.bound().is_stated() {
+            "no bound is stated"
         } else if contract.bound().units >= 1.0 {
             "within its bound, outside the contract"
         } else if contract.sweep().omits.is_empty() {

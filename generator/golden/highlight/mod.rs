@@ -99,8 +99,10 @@ pub trait Reflectance: Send + Sync {
         None
     }
 
-    /// What the error of f is made of, each a proven upper limit.
-    fn shares(&self) -> Vec<ErrorShare>;
+    /// What the error of f is made of, each a proven upper limit; none where the bound is not known yet.
+    fn shares(&self) -> Vec<ErrorShare> {
+        Vec::new()
+    }
 
     /// As [`Contract::remarks`].
     fn remarks(&self) -> Vec<String> {

@@ -70,6 +70,9 @@ pub fn limit(inputs: &PageInputs) -> String {
 /// The bound, in sentences.
 pub fn accuracy(contract: &dyn Contract) -> String {
     let bound = contract.bound();
+    if !bound.is_stated() {
+        return "The contract states no bound of the error; `glint certify` finds one where it can.".to_owned();
+    }
     let verdict = if bound.units < 1.0 {
         "which is inside the contract (less than 1 unit)"
     } else {

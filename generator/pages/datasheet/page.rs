@@ -215,8 +215,13 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
     let outputs = contract.outputs().len();
     let registers = design.registers.iter();
     let flip_flops: u32 = registers.map(|register| design.width(register.q)).sum();
+    let bound = contract.bound();
+    let error = match bound.is_stated() {
+        true => format!("{:.3} units, proven", bound.units),
+        false => "no bound is stated".to_owned(),
+    };
     let mut glance = vec![
-        ("Largest error of an output", format!("{:.3} units, proven", contract.bound().units)),
+        ("Largest error of an output", error),
         ("Outputs", outputs.to_string()),
         match &design.pipeline {
             None => ("Clocks, start to valid", clocks(timing.start_to_valid)),

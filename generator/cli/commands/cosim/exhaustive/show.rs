@@ -96,9 +96,9 @@ fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &State) {
         false => "FAILS".to_owned(),
     };
     tables::print_line(&format!(
-        "  {} (bound {:.3}): {verdict}",
+        "  {} (bound {}): {verdict}",
         proof.words(&format!(", at raw {}", at.join(" "))),
-        one.core.contract.bound().units,
+        one.core.contract.bound().words(),
     ));
     for fault in &proof.faults {
         tables::print_line(&format!("  FAILS: {fault}"));

@@ -1,0 +1,142 @@
+//! A device whose author has proved no bound of its error: smoothstep, 3·x² − 2·x³.
+//!
+//! A contract states how far an output may be from its formula. Where nobody has worked that out, `terms` is left out,
+//! and `certify` finds the bound: from netlist and microprogram it writes what the hardware computes as real numbers with
+//! roundings, and Gappa says how far they are from the expression of the formula.
+//!
+//! ```sh
+//! cargo run --release --example smoothstep -- new smoothstep > s.toml
+//! cargo run --release --example smoothstep -- certify s.toml
+//! ```
+//!
+//! What it prints is proved, and may be stated as a `Term` from then on. Until it is, the commands that weigh errors say that no bound is
+//! stated, and `strict = true` refuses the configuration.
+
+use std::process::ExitCode;
+
+use glint::config::{Config, Key, Problems, Schema};
+use glint::dsl::{About, Designer, end, step, valid};
+use glint::fixed::{Format, Overflow, Rounding};
+use glint::golden::device::{self, Formula};
+use glint::golden::frame::{Datapath, Frame, Slot, idle, step as execute};
+use glint::golden::narrow::Narrow;
+use glint::golden::{Contract, Model, keys};
+use glint::registry::{Device, Registry};
+
+fn schema() -> Schema {
+    let bits = |name, default, doc| Key::integer(name, default, 4..=20, doc);
+    Schema {
+        device: "smoothstep",
+        keys: vec![
+            bits("x.fraction", 12, "Fraction bits of x, u1.F."),
+            bits("output.fraction", 12, "Fraction bits of the output, u1.C; x^2 has four more."),
+        ],
+        check: |_: &Config, _: &mut Problems| {},
+    }
+}
+
+fn bits(config: &Config) -> (i32, i32) {
+    (keys::bits(config, "x.fraction") as i32, keys::bits(config, "output.fraction") as i32)
+}
+
+/// Fraction bits that the square has beyond those of the output.
+const GUARD: i32 = 4;
+
+/// The square is cut, and its product with 3 − 2·x rounded.
+fn describe(d: &Designer, config: &Config) {
+    let (fraction, kept) = bits(config);
+    let result = Format::unsigned(1, kept);
+    d.about(About {
+        device: "smoothstep".into(),
+        title: "A smooth step from 0 to 1".into(),
+        formula: "3*x^2 - 2*x^3".into(),
+        source: "RenderMan Interface Specification 3.1, 1989".into(),
+        notes: vec!["x beyond 1 is taken for 1.".into()],
+    });
+    let x = d.operand_clamped("x", Format::unsigned(1, fraction), 0.0, 1.0).q();
+    let wide = Format::unsigned(1, kept + GUARD);
+    let square = d.register("square", wide).doc("x^2");
+    let smooth = d.register("smooth", result).doc("x^2 * (3 - 2*x)");
+    let product = d.mul("x_square", x, x);
+    square.takes(d.narrow("square_cut", product, wide, Rounding::Truncate, Overflow::Saturate));
+    let three = d.constant("three", 3.0, Format::unsigned(2, fraction));
+    let slope = d.sub("slope", three, x.shift_left(1)).doc("3 - 2*x");
+    let product = d.mul("product", square.q(), slope);
+    smooth.takes(d.narrow("rounded", product, result, Rounding::Nearest, Overflow::Saturate));
+    d.output("smooth_out", smooth.q());
+    d.microprogram([
+        step("idle", []),
+        step("square", [square.load()]),
+        step("smooth", [smooth.load()]),
+        step("result", [valid(), end()]),
+    ]);
+}
+
+/// The golden model's registers and roundings.
+struct Smoothstep {
+    x: Slot,
+    square: Slot,
+    smooth: Slot,
+    three: i64,
+    cut: Narrow,
+    rounded: Narrow,
+}
+
+impl Datapath for Smoothstep {}
+
+fn device(config: &Config) -> device::Device<Smoothstep> {
+    let (fraction, kept) = bits(config);
+    let [wide, result] = [kept + GUARD, kept].map(|fraction| Format::unsigned(1, fraction));
+    let mut frame = Frame::default();
+    let product = (fraction + kept + GUARD) as u32;
+    let it = Smoothstep {
+        x: frame.clamped("x", Format::unsigned(1, fraction), 0, 1 << fraction),
+        square: frame.register("square", wide),
+        smooth: frame.register("smooth", result),
+        three: 3 << fraction,
+        cut: Narrow::new(2 * fraction as u32, wide, Rounding::Truncate),
+        rounded: Narrow::new(product, result, Rounding::Nearest),
+    };
+    frame.shows("smooth_out", it.smooth);
+    let square = execute(|d: &Smoothstep, s| s[d.square] = d.cut.apply(s[d.x] * s[d.x]));
+    let smooth = execute(|d: &Smoothstep, s| {
+        s[d.smooth] = d.rounded.apply(s[d.square] * (d.three - 2 * s[d.x]));
+    });
+    frame.device(it, [idle(), square, smooth, idle().valid().end()])
+}
+
+fn model(config: &Config) -> Box<dyn Model> {
+    device(config).model()
+}
+
+fn contract(config: &Config) -> Box<dyn Contract> {
+    device(config).contract(Curve)
+}
+
+/// The formula, without `terms`.
+struct Curve;
+
+impl Formula for Curve {
+    fn exact(&self, x: &[f64]) -> Vec<f64> {
+        let x = x[0].min(1.0);
+        vec![x * x * (3.0 - 2.0 * x)]
+    }
+
+    fn expressions(&self) -> Vec<String> {
+        vec!["x ** 2 * (3 - 2 * x)".to_owned()]
+    }
+}
+
+/// The device.
+pub const SMOOTHSTEP: Device = Device {
+    name: "smoothstep",
+    summary: "3*x^2 - 2*x^3, a smooth step from 0 to 1",
+    schema,
+    describe,
+    model,
+    contract,
+};
+
+fn main() -> ExitCode {
+    glint::cli::run(&Registry::empty().with(SMOOTHSTEP))
+}
