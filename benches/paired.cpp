@@ -14,7 +14,7 @@
 
 #include "Vtop.h"
 
-// `INPUTS`, and `drive`, which takes a row to the inputs, and `result`: written by paired.rs.
+// `INPUTS`; `drive`, which takes a row to the inputs; and the outputs `valid` and `result`: written by paired.rs.
 #include "ports.h"
 
 int main(int argc, char** argv) {
@@ -36,7 +36,7 @@ int main(int argc, char** argv) {
             top.eval();
             top.clk = 1;
             top.eval();
-            if (top.valid) sum += result(top);
+            if (valid(top)) sum += result(top);
         }
     }
     const double used = double(std::clock() - processor) / CLOCKS_PER_SEC;

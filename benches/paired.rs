@@ -2,10 +2,11 @@
 //! ratios.
 //!
 //! ```text
-//! cargo bench --bench paired [-- DEVICE ...]
+//! cargo bench --bench paired [-- CORE ...]
 //! ```
 //!
-//! For each device, or each that is named, clocks per second and thread of
+//! For each device and each pipeline of `configs/`, or those that are named (`rough`, `rough_pipelined`), clocks
+//! per second and thread of
 //! - *design*: the built-in simulator through rust_hdl's `simulate()`, [`LANES`] streams side by side;
 //! - *golden*: `Lockstep::run` as `glint cosim` uses it: stimulus drawn, golden model, every register and
 //!   output compared on every clock, every result measured against the formula;
@@ -24,8 +25,8 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result, ensure};
-use glint::config::Config;
+use anyhow::{Context, Result, anyhow, ensure};
+use glint::config::{self, Config};
 use glint::core::Core;
 use glint::hdl::netlist::{NetId, Role};
 use glint::hdl::sim::Simulator;
@@ -39,8 +40,8 @@ const LANES: usize = 64;
 /// Results in each stream, about.
 const POINTS: u64 = 64;
 
-/// Replays in one measurement of the design; as many of Verilator.
-const PASSES: usize = 64;
+/// Clocks, at least, in one measurement of the design; in as many replays of all streams, one of Verilator has the same.
+const CLOCKS: usize = 4_000_000;
 
 /// Results in one measurement with the golden model.
 const GOLDEN_POINTS: u64 = 1_000_000;
@@ -59,17 +60,16 @@ fn main() -> Result<()> {
         "million clocks per second of processor time and thread, and ratios: median of {ROUNDS}"
     );
     println!(
-        "device        design  golden  Verilator  Icarus  design/Verilator  golden/Verilator  \
-         design/Icarus  {VERDICT_POINTS} points"
+        "core                    design  golden  Verilator  Icarus  design/Verilator  \
+         golden/Verilator  design/Icarus  {VERDICT_POINTS} points"
     );
     let named: Vec<String> = std::env::args().skip(1).collect();
     let named: Vec<&String> = named.iter().filter(|it| !it.starts_with('-')).collect();
-    for device in Registry::catalogue().devices() {
-        if !named.is_empty() && !named.iter().any(|name| *name == device.name) {
+    for core in cores()? {
+        let name = &core.config.name;
+        if !named.is_empty() && !named.contains(&name) {
             continue;
         }
-        let name = device.name.replace('-', "_");
-        let core = Core::new(*device, Config::defaults(&(device.schema)(), &name))?;
         let streams = Streams::record(&core)?;
         let verilator = Verilator::build(&core, &streams)?;
         let icarus = Icarus::build(&core, &streams)?;
@@ -83,8 +83,7 @@ fn main() -> Result<()> {
         }
         let figure = |of: fn(&[f64; 4]) -> f64| median(rounds.iter().map(of).collect());
         println!(
-            "{:12} {:7.2} {:7.2} {:10.2} {:7.3} {:17.2} {:17.2} {:14.0} {:10.2} s",
-            device.name,
+            "{name:22} {:7.2} {:7.2} {:10.2} {:7.3} {:17.2} {:17.2} {:14.0} {:10.2} s",
             figure(|round| round[0]),
             figure(|round| round[1]),
             figure(|round| round[2]),
@@ -96,6 +95,23 @@ fn main() -> Result<()> {
         );
     }
     Ok(())
+}
+
+/// The defaults of every device, and the pipelines of `configs/`.
+fn cores() -> Result<Vec<Core>> {
+    let registry = Registry::catalogue();
+    let mut cores = Vec::new();
+    for device in registry.devices() {
+        let name = device.name.replace('-', "_");
+        cores.push(Core::new(*device, Config::defaults(&(device.schema)(), &name))?);
+        let pipeline = format!("configs/{name}_pipelined.toml");
+        if Path::new(&pipeline).exists() {
+            let config = config::read(Path::new(&pipeline), &registry.schemas());
+            let config = config.map_err(|problems| anyhow!("{problems}"))?;
+            cores.push(Core::new(*device, config)?);
+        }
+    }
+    Ok(cores)
 }
 
 fn median(mut values: Vec<f64>) -> f64 {
@@ -164,6 +180,11 @@ impl Streams {
         self.inputs.iter().map(Vec::len).sum()
     }
 
+    /// Replays in one measurement.
+    fn passes(&self) -> usize {
+        CLOCKS.div_ceil(self.clocks())
+    }
+
     /// All streams, side by side: the seconds it took, and the sum of the results.
     fn replay(&self, design: &glint::hdl::netlist::Design, passes: usize) -> Result<(f64, u64)> {
         let clocks = self.inputs[0].len();
@@ -191,9 +212,10 @@ impl Streams {
 
     /// Clocks per second of the built-in simulator.
     fn design(&self, core: &Core) -> Result<f64> {
-        let (seconds, sum) = self.replay(&core.design, PASSES)?;
-        ensure!(sum == self.sum.wrapping_mul(PASSES as u64), "another sum");
-        Ok((PASSES * self.clocks()) as f64 / seconds)
+        let passes = self.passes();
+        let (seconds, sum) = self.replay(&core.design, passes)?;
+        ensure!(sum == self.sum.wrapping_mul(passes as u64), "another sum");
+        Ok((passes * self.clocks()) as f64 / seconds)
     }
 
     /// All streams one after the other, with the outputs before each edge.
@@ -203,12 +225,14 @@ impl Streams {
         let mut vectors =
             Vectors { known_from: core.vectors(1, 1)?.known_from, ..Vectors::default() };
         for inputs in self.inputs.iter().flatten() {
-            let outputs = outputs.iter().map(|&net| simulator.value(net));
-            vectors.expected.push(outputs.collect());
-            vectors.inputs.push(inputs.clone());
             for (at, &bits) in inputs.iter().enumerate() {
                 simulator.set(at, bits);
             }
+            // `in_ready` follows `out_ready` within the clock.
+            simulator.settle()?;
+            let outputs = outputs.iter().map(|&net| simulator.value(net));
+            vectors.expected.push(outputs.collect());
+            vectors.inputs.push(inputs.clone());
             simulator.clock()?;
         }
         Ok(vectors)
@@ -251,6 +275,7 @@ struct Verilator {
     program: Tool,
     place: tempfile::TempDir,
     clocks: usize,
+    passes: usize,
     sum: u64,
 }
 
@@ -266,11 +291,11 @@ impl Verilator {
         for (at, port) in core.design.inputs().enumerate() {
             writeln!(ports, "    top.{} = row[{at}];", name(port.net))?;
         }
-        let result = name(streams.result);
-        writeln!(
-            ports,
-            "}}\n\nstatic uint64_t result(const Vtop& top) {{ return top.{result}; }}"
-        )?;
+        writeln!(ports, "}}")?;
+        for (role, net) in [("valid", streams.valid), ("result", streams.result)] {
+            let name = name(net);
+            writeln!(ports, "\nstatic uint64_t {role}(const Vtop& top) {{ return top.{name}; }}")?;
+        }
         fs::write(place.path().join("ports.h"), ports)?;
         fs::write(place.path().join("paired.cpp"), include_str!("paired.cpp"))?;
         let words = streams.inputs.iter().flatten().flatten();
@@ -292,13 +317,14 @@ impl Verilator {
             program: Tool::find_in("paired", place.path().join("build").as_os_str())?,
             place,
             clocks: streams.clocks(),
+            passes: streams.passes(),
             sum: streams.sum,
         })
     }
 
     /// Clocks per second.
     fn run(&self) -> Result<f64> {
-        let passes = PASSES.to_string();
+        let passes = self.passes.to_string();
         let arguments = ["rows", &passes];
         let said = self.program.run_to_success(arguments, self.place.path(), LIMIT)?;
         let numbers: Vec<&str> = said.split_whitespace().collect();
@@ -306,10 +332,10 @@ impl Verilator {
             anyhow::bail!("the verilated model said `{said}`");
         };
         ensure!(
-            sum.parse() == Ok(self.sum.wrapping_mul(PASSES as u64)),
+            sum.parse() == Ok(self.sum.wrapping_mul(self.passes as u64)),
             "Verilator has another sum of the results"
         );
-        Ok((PASSES * self.clocks) as f64 / processor.parse::<f64>()?)
+        Ok((self.passes * self.clocks) as f64 / processor.parse::<f64>()?)
     }
 }
 

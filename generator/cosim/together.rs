@@ -80,7 +80,7 @@ impl<'a, const LANES: usize> Together<'a, LANES> {
     /// A simulation that does not settle.
     pub(super) fn run(&mut self) -> Result<u64> {
         let mut points = 0;
-        for (lane, stream) in self.streams.iter_mut().enumerate() {
+        for (lane, stream) in (0..LANES).zip(&mut self.streams) {
             let before = stream.seen.points;
             for clock in &mut self.ahead {
                 if self.differ[lane] || stream.ended() {
@@ -103,7 +103,7 @@ impl<'a, const LANES: usize> Together<'a, LANES> {
             self.simulator.inputs_mut().copy_from_slice(&clock.inputs);
             self.simulator.clock()?;
             let nets = &self.binding.compared;
-            let differences = self.simulator.differences(nets, &clock.predicted);
+            let differences = self.simulator.differences(nets, &clock.predicted, None);
             let lanes = differences.iter().zip(&clock.compared);
             for (differ, (differences, compared)) in self.differ.iter_mut().zip(lanes) {
                 *differ |= differences & compared != 0;

@@ -230,9 +230,9 @@ mod tests {
         assert_eq!(f(-20), 49);
         // The last step, a right angle and beyond, to the ends of the word.
         assert_eq!([56, 63, 64, 255, -64, -65, -256].map(f), [0; 7]);
-        assert_eq!(contract.point(&[3, -10, 7], 4), [3, 2, 7]);
+        assert_eq!(*contract.point(&[3, -10, 7], 4), [3, 2, 7]);
         // s2.6 wraps at 256.
-        assert_eq!(contract.point(&[100, 100, 7], 2), [100, -212, 7]);
+        assert_eq!(*contract.point(&[100, 100, 7], 2), [100, -212, 7]);
         assert_eq!(contract.colour(49, 255), 195);
     }
 }

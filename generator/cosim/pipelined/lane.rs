@@ -7,10 +7,8 @@ use anyhow::Result;
 use super::Setup;
 use super::reference::{Expected, Reference};
 use crate::base::fixed::mask;
-use crate::cosim::histogram::Histogram;
-use crate::cosim::outcome::Worst;
+use crate::cosim::outcome::Seen;
 use crate::cosim::random::Random;
-use crate::golden::Operand;
 use crate::golden::pipeline::Occupancy;
 
 /// How eager a side of the handshake is: it is ready once in this number of clocks.
@@ -23,7 +21,7 @@ const PACE_CLOCKS: u64 = 24;
 const RESET_CLOCKS: u64 = 1024;
 
 /// A point on its way.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub(super) struct Point {
     /// Bit patterns.
     pub operands: Vec<u64>,
@@ -34,6 +32,8 @@ pub(super) struct Point {
 /// A stream.
 pub(super) struct Lane {
     seed: u64,
+    /// How many points it takes.
+    points: u64,
     random: Random,
     reference: Reference,
     /// What is offered until it is taken.
@@ -47,17 +47,19 @@ pub(super) struct Lane {
     pace_left: u64,
     /// The inputs of the latest clock.
     pub(super) inputs: Vec<u64>,
-    pub(super) points: u64,
-    pub(super) clocks: u64,
-    pub(super) worst: Option<Worst>,
-    pub(super) histogram: Histogram,
+    pub(super) seen: Seen,
     pub(super) out_ready: bool,
+    /// The latest clock changed what the stages hold.
+    pub(super) moved: bool,
+    /// Raw operands, in the order of the contract.
+    raw: Vec<i64>,
 }
 
 impl Lane {
-    pub(super) fn new(setup: &Setup<'_>, seed: u64) -> Result<Self> {
+    pub(super) fn new(setup: &Setup<'_>, seed: u64, points: u64) -> Result<Self> {
         Ok(Self {
             seed,
+            points,
             random: Random::new(seed),
             reference: setup.reference()?,
             offered: None,
@@ -68,12 +70,16 @@ impl Lane {
             pace: (1, 1),
             pace_left: 0,
             inputs: vec![0; setup.inputs],
-            points: 0,
-            clocks: 0,
-            worst: None,
-            histogram: Histogram::default(),
+            seen: Seen::default(),
             out_ready: true,
+            moved: false,
+            raw: Vec::new(),
         })
+    }
+
+    /// Whether all its points were taken, or something differs.
+    pub(super) fn ended(&self) -> bool {
+        self.seen.points >= self.points || self.seen.mismatch.is_some()
     }
 
     pub(super) fn seed(&self) -> u64 {
@@ -94,7 +100,7 @@ impl Lane {
 
     /// The inputs of the next clock, and what they make of the points.
     pub(super) fn clock(&mut self, setup: &Setup<'_>) -> Result<()> {
-        self.clocks += 1;
+        self.seen.clocks += 1;
         if self.pace_left == 0 {
             let mut pace = || PACES[self.random.below(PACES.len() as u64) as usize];
             self.pace = (pace(), pace());
@@ -139,10 +145,13 @@ impl Lane {
             self.inputs[at] = u64::from(out_ready);
         }
         let moves = self.stages.moves(out_ready);
-        let offered = if moves { self.offered.take() } else { self.offered.clone() };
+        self.moved = moves || !rst_n;
+        // Nothing is taken while the points do not move.
+        let offered = if moves { self.offered.take() } else { None };
         if let Some(point) = self.stages.clock(rst_n, offered, out_ready) {
-            self.points += 1;
-            self.judge(setup, &point);
+            self.seen.points += 1;
+            let results = &point.expected.results;
+            setup.formula.measure(&mut self.seen, &mut self.raw, &point.operands, results);
         }
         Ok(())
     }
@@ -152,36 +161,23 @@ impl Lane {
         if let Some(listed) = &mut self.listed {
             return listed.pop_front();
         }
-        let mut raw = vec![0; setup.points.operands().len()];
+        let mut raw = std::mem::take(&mut self.raw);
+        raw.clear();
+        raw.resize(setup.points.operands().len(), 0);
         setup.points.draw(&mut self.random, &mut raw, u64::MAX);
-        Some(self.bits(setup, &raw))
+        let bits = self.bits(setup, &raw);
+        self.raw = raw;
+        Some(bits)
     }
 
     /// Raw operands in the order of the contract as bit patterns at the ports. Operands that it does not have are drawn.
     fn bits(&mut self, setup: &Setup<'_>, raw: &[i64]) -> Vec<u64> {
-        let bits = |operand: &Operand| {
-            let mut known = setup.points.operands().iter();
-            match known.position(|it| it.name == operand.name) {
-                Some(at) => raw[at] as u64 & mask(operand.format.width()),
+        let operands = setup.operands.iter().zip(&setup.formula.of_operands);
+        operands
+            .map(|(operand, known)| match known {
+                Some(at) => raw[*at] as u64 & mask(operand.format.width()),
                 None => self.random.pattern(operand),
-            }
-        };
-        setup.operands.iter().map(bits).collect()
-    }
-
-    /// The error of a result against the formula.
-    fn judge(&mut self, setup: &Setup<'_>, point: &Point) {
-        setup.formula.count(&point.operands, &mut self.histogram);
-        let Some((units, at)) = setup.formula.worst(&point.operands, &point.expected.results)
-        else {
-            return;
-        };
-        if self.worst.as_ref().is_none_or(|worst| units > worst.units) {
-            self.worst = Some(Worst {
-                units,
-                output: setup.design.net(setup.results[at]).name.clone(),
-                operands: setup.formula.operands(&point.operands).0,
-            });
-        }
+            })
+            .collect()
     }
 }

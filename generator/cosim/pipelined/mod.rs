@@ -23,7 +23,7 @@ use crate::golden::{Contract, Model, Operand};
 use crate::hdl::netlist::{Design, NetId, Pipeline, Role};
 use crate::hdl::sim::Simulator;
 use crate::package::Vectors;
-use lane::{Lane, Point};
+use lane::Lane;
 use reference::{Formula, Reference};
 
 /// The points of a stream.
@@ -56,9 +56,50 @@ pub(super) struct Setup<'a> {
     points: Points<'a>,
     results: Vec<NetId>,
     out_valid: NetId,
-    in_ready: Option<NetId>,
     side_out: Option<NetId>,
     outputs: Vec<NetId>,
+    /// What is compared after a clock, the first to be told first: `out_valid`, and then what [`Columns`] says.
+    compared: Vec<NetId>,
+    columns: Columns,
+}
+
+/// Where in a comparison what is expected of a point has its place.
+struct Columns {
+    in_ready: Option<usize>,
+    side: Option<usize>,
+    /// That of the first result; the others follow.
+    results: usize,
+    /// For each stage the checkpoints in it, by their numbers, with their columns.
+    checkpoints: Vec<Vec<(usize, usize)>>,
+}
+
+/// The column of `out_valid`.
+const OUT_VALID: usize = 0;
+
+impl Columns {
+    /// The nets that are compared, with the columns that they make.
+    fn new(
+        pipeline: &Pipeline,
+        out_valid: NetId,
+        in_ready: Option<NetId>,
+        side_out: Option<NetId>,
+        results: &[NetId],
+    ) -> (Vec<NetId>, Self) {
+        let mut nets = vec![out_valid];
+        let mut column = |net: NetId| {
+            nets.push(net);
+            nets.len() - 1
+        };
+        let (in_ready, side) = (in_ready.map(&mut column), side_out.map(&mut column));
+        let result_columns: Vec<usize> = results.iter().map(|&net| column(net)).collect();
+        let mut checkpoints = vec![Vec::new(); pipeline.stages.len() + 1];
+        for (at, checkpoint) in pipeline.checkpoints.iter().enumerate() {
+            let stage = pipeline.stage_of[checkpoint.net.index()];
+            checkpoints[stage].push((at, column(checkpoint.net)));
+        }
+        let results = result_columns.first().copied().unwrap_or_default();
+        (nets, Self { in_ready, side, results, checkpoints })
+    }
 }
 
 impl Setup<'_> {
@@ -101,6 +142,9 @@ impl<'a> Pipelined<'a> {
             .filter(|port| matches!(port.role, Role::Result | Role::Status))
             .map(|port| port.net)
             .collect();
+        let out_valid = out(Role::Valid).context("the pipeline has no output `out_valid`")?;
+        let (in_ready, side_out) = (out(Role::InReady), out(Role::SideOut));
+        let (compared, columns) = Columns::new(pipeline, out_valid, in_ready, side_out, &results);
         let setup = Setup {
             formula: Formula::new(design, contract, &results)?,
             design,
@@ -118,10 +162,11 @@ impl<'a> Pipelined<'a> {
             operands,
             points: Points::new(contract),
             results,
-            out_valid: out(Role::Valid).context("the pipeline has no output `out_valid`")?,
-            in_ready: out(Role::InReady),
-            side_out: out(Role::SideOut),
+            out_valid,
+            side_out,
             outputs: design.outputs().map(|port| port.net).collect(),
+            compared,
+            columns,
         };
         setup.reference()?;
         Ok(Self { setup, seed })
@@ -170,11 +215,11 @@ impl<'a> Pipelined<'a> {
     /// # Errors
     /// Those of [`Pipelined::run`].
     pub(super) fn run_alone(&self, points: u64) -> Result<Outcome> {
-        let mut alone = self.alone()?;
-        while !alone.ended(points) {
+        let mut alone = self.alone(points)?;
+        while !alone.ended() {
             alone.clock(&self.setup)?;
         }
-        Ok(self.outcome(alone.seen()))
+        Ok(self.outcome(alone.into_seen()))
     }
 
     /// Inputs and outputs of every clock of one stream, for a bench: of so many points, and then of those with these raw
@@ -183,12 +228,12 @@ impl<'a> Pipelined<'a> {
     /// # Errors
     /// Golden model and simulation differ; a design that cannot be simulated.
     pub(super) fn record(&self, points: u64, listed: &[Vec<i64>]) -> Result<Vectors> {
-        let mut alone = self.alone()?;
+        let mut alone = self.alone(u64::MAX)?;
         let mut vectors = Vectors::default();
-        self.add(&mut vectors, &mut alone, |alone| alone.ended(points))?;
+        self.add(&mut vectors, &mut alone, |alone| alone.lanes[0].seen.points >= points)?;
         alone.lanes[0].follow(&self.setup, listed);
         self.add(&mut vectors, &mut alone, |alone| alone.lanes[0].is_idle())?;
-        let mismatch = &alone.mismatches[0];
+        let mismatch = &alone.lanes[0].seen.mismatch;
         ensure!(mismatch.is_none(), "golden model and simulation differ: {mismatch:?}");
         Ok(vectors)
     }
@@ -200,7 +245,7 @@ impl<'a> Pipelined<'a> {
         alone: &mut Group<1>,
         ended: impl Fn(&Group<1>) -> bool,
     ) -> Result<()> {
-        while !ended(alone) && alone.mismatches[0].is_none() {
+        while !ended(alone) && alone.lanes[0].seen.mismatch.is_none() {
             alone.prepare(&self.setup)?;
             alone.simulator.settle()?;
             let outputs = self.setup.outputs.iter();
@@ -225,16 +270,16 @@ impl<'a> Pipelined<'a> {
         from: u64,
         file: impl Write + Send + 'static,
     ) -> Result<Outcome> {
-        let mut alone = self.alone()?;
-        while !alone.ended(points) && alone.lanes[0].clocks < from {
+        let mut alone = self.alone(points)?;
+        while !alone.ended() && alone.lanes[0].seen.clocks < from {
             alone.clock(&self.setup)?;
         }
         alone.simulator.trace(file)?;
-        while !alone.ended(points) {
+        while !alone.ended() {
             alone.clock(&self.setup)?;
         }
         alone.simulator.end_trace()?;
-        Ok(self.outcome(alone.seen()))
+        Ok(self.outcome(alone.into_seen()))
     }
 
     /// See [`Lockstep::watch`](super::Lockstep::watch).
@@ -253,28 +298,27 @@ impl<'a> Pipelined<'a> {
             .map(|number| {
                 let seed = stream_seed(self.seed, number);
                 let mut watch = begin(seed);
-                let mut alone = Group::<1>::new(&self.setup, &[seed])?;
-                while !alone.ended(share(points, streams, number)) {
+                let share = share(points, streams, number);
+                let mut alone = Group::<1>::new(&self.setup, &[(seed, share)])?;
+                while !alone.ended() {
                     alone.clock(&self.setup)?;
-                    note(&mut watch, alone.lanes[0].points, &alone.simulator);
+                    note(&mut watch, alone.lanes[0].seen.points, &alone.simulator);
                 }
                 Ok(watch)
             })
             .collect()
     }
 
-    fn alone(&self) -> Result<Group<1>> {
-        Group::new(&self.setup, &[self.seed])
+    fn alone(&self, points: u64) -> Result<Group<1>> {
+        Group::new(&self.setup, &[(self.seed, points)])
     }
 
     fn group(&self, shares: &[(u64, u64)]) -> Result<Vec<Seen>> {
-        let seeds: Vec<u64> = shares.iter().map(|&(seed, _)| seed).collect();
-        let points = shares.iter().map(|&(_, points)| points).max().unwrap_or(0);
-        let mut group = Group::<LANES>::new(&self.setup, &seeds)?;
-        while !group.ended(points) {
+        let mut group = Group::<LANES>::new(&self.setup, shares)?;
+        while !group.ended() {
             group.clock(&self.setup)?;
         }
-        Ok(group.seen())
+        Ok(group.into_seen().collect())
     }
 
     fn outcome(&self, streams: impl IntoIterator<Item = Seen>) -> Outcome {
@@ -285,22 +329,65 @@ impl<'a> Pipelined<'a> {
 /// Streams in one simulator.
 struct Group<const L: usize> {
     simulator: Simulator<L>,
+    /// The first are in the first lanes.
     lanes: Vec<Lane>,
-    mismatches: Vec<Option<Mismatch>>,
+    predicted: Predicted<L>,
+}
+
+/// For each net that is compared and each lane.
+struct Predicted<const L: usize> {
+    /// What is expected after the latest clock.
+    expected: Vec<[u64; L]>,
+    /// All ones where something is.
+    known: Vec<[u64; L]>,
+}
+
+impl<const L: usize> Predicted<L> {
+    /// Takes what is expected of a lane after its latest clock.
+    fn take(&mut self, setup: &Setup<'_>, lane: &Lane, number: usize) {
+        let columns = &setup.columns;
+        let mut set = |column: usize, expected: Option<u64>| {
+            self.expected[column][number] = expected.unwrap_or(0);
+            self.known[column][number] = if expected.is_some() { u64::MAX } else { 0 };
+        };
+        if let Some(column) = columns.in_ready {
+            set(column, Some(lane.stages.moves(lane.out_ready).into()));
+        }
+        // Of points that stay where they are the same is expected as before.
+        if !lane.moved {
+            return;
+        }
+        let last = lane.stages.last();
+        set(OUT_VALID, Some(last.is_some().into()));
+        if let Some(column) = columns.side {
+            set(column, last.map(|point| point.side));
+        }
+        for at in 0..setup.results.len() {
+            set(columns.results + at, last.map(|point| point.expected.results[at]));
+        }
+        for (stage, checkpoints) in columns.checkpoints.iter().enumerate() {
+            let point = lane.stages.stage(stage);
+            for &(at, column) in checkpoints {
+                set(column, point.and_then(|point| point.expected.registers[at]));
+            }
+        }
+    }
 }
 
 impl<const L: usize> Group<L> {
-    fn new(setup: &Setup<'_>, seeds: &[u64]) -> Result<Self> {
+    /// Streams by their seeds and points.
+    fn new(setup: &Setup<'_>, streams: &[(u64, u64)]) -> Result<Self> {
+        let nothing = vec![[0; L]; setup.compared.len()];
+        let lanes = streams.iter().map(|&(seed, points)| Lane::new(setup, seed, points));
         Ok(Self {
             simulator: Simulator::new(setup.design)?,
-            lanes: seeds.iter().map(|&seed| Lane::new(setup, seed)).collect::<Result<_>>()?,
-            mismatches: vec![None; seeds.len()],
+            lanes: lanes.collect::<Result<_>>()?,
+            predicted: Predicted { expected: nothing.clone(), known: nothing },
         })
     }
 
-    fn ended(&self, points: u64) -> bool {
-        let lanes = self.lanes.iter().zip(&self.mismatches);
-        lanes.into_iter().all(|(lane, mismatch)| lane.points >= points || mismatch.is_some())
+    fn ended(&self) -> bool {
+        self.lanes.iter().all(Lane::ended)
     }
 
     fn clock(&mut self, setup: &Setup<'_>) -> Result<()> {
@@ -308,13 +395,18 @@ impl<const L: usize> Group<L> {
         self.edge(setup)
     }
 
-    /// Draws the inputs of the next clock.
+    /// Draws the inputs of the next clock, and says what is expected after it; of streams that have ended nothing is.
     fn prepare(&mut self, setup: &Setup<'_>) -> Result<()> {
-        for (number, lane) in self.lanes.iter_mut().enumerate() {
+        for (number, lane) in (0..L).zip(&mut self.lanes) {
+            if lane.ended() {
+                self.predicted.known.iter_mut().for_each(|known| known[number] = 0);
+                continue;
+            }
             lane.clock(setup)?;
             for (input, &bits) in self.simulator.inputs_mut().iter_mut().zip(&lane.inputs) {
                 input[number] = bits;
             }
+            self.predicted.take(setup, lane, number);
         }
         Ok(())
     }
@@ -322,56 +414,38 @@ impl<const L: usize> Group<L> {
     /// The clock, and everything that can be compared after it.
     fn edge(&mut self, setup: &Setup<'_>) -> Result<()> {
         self.simulator.clock()?;
-        self.compare(setup, setup.out_valid, |lane| Some(u64::from(lane.stages.last().is_some())));
-        if let Some(net) = setup.in_ready {
-            self.compare(setup, net, |lane| Some(u64::from(lane.stages.moves(lane.out_ready))));
-        }
-        if let Some(net) = setup.side_out {
-            self.compare(setup, net, |lane| lane.stages.last().map(|point| point.side));
-        }
-        for (at, &net) in setup.results.iter().enumerate() {
-            self.compare(setup, net, |lane| {
-                lane.stages.last().map(|point| point.expected.results[at])
-            });
-        }
-        for (at, checkpoint) in setup.pipeline.checkpoints.iter().enumerate() {
-            let stage = setup.pipeline.stage_of[checkpoint.net.index()];
-            self.compare(setup, checkpoint.net, |lane| {
-                let in_stage = |point: &Point| point.expected.registers[at];
-                lane.stages.stage(stage).and_then(in_stage)
-            });
+        let Predicted { expected, known } = &self.predicted;
+        let differences = self.simulator.differences(&setup.compared, expected, Some(known));
+        if differences != [0; L] {
+            for number in 0..self.lanes.len() {
+                if differences[number] != 0 {
+                    self.lanes[number].seen.mismatch = self.mismatch(setup, number);
+                }
+            }
         }
         Ok(())
     }
 
-    fn compare(&mut self, setup: &Setup<'_>, net: NetId, expected: impl Fn(&Lane) -> Option<u64>) {
-        let simulated = self.simulator.lanes(net);
-        for (number, lane) in self.lanes.iter().enumerate() {
-            let Some(golden) = expected(lane) else { continue };
-            if golden != simulated[number] && self.mismatches[number].is_none() {
-                self.mismatches[number] = Some(Mismatch {
-                    seed: lane.seed(),
-                    clock: lane.clocks,
-                    signal: setup.design.net(net).name.clone(),
-                    golden,
-                    simulated: simulated[number],
-                    during: format!("stage {}", setup.pipeline.stage_of[net.index()]),
-                });
-            }
-        }
+    /// The first difference in a lane.
+    fn mismatch(&self, setup: &Setup<'_>, number: usize) -> Option<Mismatch> {
+        let Predicted { expected, known } = &self.predicted;
+        let simulated = |net: NetId| self.simulator.lane(net, number);
+        let (at, net) =
+            setup.compared.iter().copied().enumerate().find(|&(at, net)| {
+                (simulated(net) ^ expected[at][number]) & known[at][number] != 0
+            })?;
+        let lane = &self.lanes[number];
+        Some(Mismatch {
+            seed: lane.seed(),
+            clock: lane.seen.clocks,
+            signal: setup.design.net(net).name.clone(),
+            golden: expected[at][number],
+            simulated: simulated(net),
+            during: format!("stage {}", setup.pipeline.stage_of[net.index()]),
+        })
     }
 
-    fn seen(&mut self) -> Vec<Seen> {
-        let lanes = self.lanes.iter_mut().zip(self.mismatches.iter_mut());
-        lanes
-            .map(|(lane, mismatch)| Seen {
-                points: lane.points,
-                clocks: lane.clocks,
-                worst: lane.worst.take(),
-                histogram: std::mem::take(&mut lane.histogram),
-                mismatch: mismatch.take(),
-                exact: Vec::new(),
-            })
-            .collect()
+    fn into_seen(self) -> impl Iterator<Item = Seen> {
+        self.lanes.into_iter().map(|lane| lane.seen)
     }
 }

@@ -2,8 +2,9 @@
 
 use anyhow::{Context, Result, anyhow};
 
-use crate::cosim::histogram::Histogram;
-use crate::golden::{Contract, Model};
+use crate::base::fixed::{Format, exp2};
+use crate::cosim::outcome::{Seen, Worst};
+use crate::golden::{Contract, Model, nearer};
 use crate::hdl::netlist::{Design, NetId, Pipeline, Role};
 
 /// The most clocks of a computation.
@@ -30,7 +31,7 @@ pub(super) struct Reference {
 }
 
 /// What is expected of a point.
-#[derive(Clone, Debug, Default)]
+#[derive(Debug, Default)]
 pub(super) struct Expected {
     /// The results, bit patterns.
     pub results: Vec<u64>,
@@ -130,13 +131,17 @@ impl Reference {
     }
 }
 
-/// The largest error of results against the formula in f64.
+/// What points show of the formula in f64.
 pub(super) struct Formula<'a> {
     contract: &'a dyn Contract,
     /// For each operand of the contract its position among those of the pipeline.
     operands: Vec<usize>,
-    /// For each output of the contract its position among the results, and its format.
-    outputs: Vec<(usize, crate::base::fixed::Format)>,
+    /// For each operand of the pipeline its position among those of the contract, if it is there.
+    pub(super) of_operands: Vec<Option<usize>>,
+    /// For each output of the contract its position among the results, its format, and the value of its last place.
+    outputs: Vec<(usize, Format, f64)>,
+    /// The names of the results.
+    names: Vec<String>,
 }
 
 impl<'a> Formula<'a> {
@@ -161,7 +166,10 @@ impl<'a> Formula<'a> {
                 let at = ports.iter().position(|&port| port == operand.name);
                 at.with_context(|| format!("the contract speaks of operand `{}`", operand.name))
             })
-            .collect::<Result<_>>()?;
+            .collect::<Result<Vec<usize>>>()?;
+        let of_operands = (0..ports.len())
+            .map(|port| operands.iter().position(|&operand| operand == port))
+            .collect();
         let outputs = contract
             .outputs()
             .iter()
@@ -170,57 +178,59 @@ impl<'a> Formula<'a> {
                 let at = at.with_context(|| {
                     format!("the contract takes `{}` for an output", output.name)
                 })?;
-                Ok((at, design.net(results[at]).format))
+                let format = design.net(results[at]).format;
+                Ok((at, format, exp2(-format.frac)))
             })
             .collect::<Result<_>>()?;
-        Ok(Self { contract, operands, outputs })
+        let names = results.iter().map(|&net| name(net).to_owned()).collect();
+        Ok(Self { contract, operands, of_operands, outputs, names })
     }
 
-    /// The raw operands in the order of the contract, with names; and whether they are in the domain.
-    pub(super) fn operands(&self, bits: &[u64]) -> (Vec<(String, i64)>, bool) {
-        let all = self.contract.operands().iter().zip(&self.operands);
-        let raw: Vec<(String, i64)> = all
-            .map(|(operand, &at)| (operand.name.clone(), operand.format.raw(bits[at]) as i64))
-            .collect();
-        let inside = raw.iter().zip(self.contract.operands());
-        let inside = inside
-            .into_iter()
-            .all(|((_, raw), operand)| (operand.domain.0..=operand.domain.1).contains(raw));
-        (raw, inside)
-    }
-
-    /// Counts the word `f` of a point.
-    pub(super) fn count(&self, bits: &[u64], histogram: &mut Histogram) {
-        let (raw, inside) = self.operands(bits);
-        let Some(highlight) = self.contract.highlight() else { return };
-        if !inside {
-            return histogram.add_outside();
-        }
-        let control: Vec<i64> = raw[..highlight.control()].iter().map(|(_, raw)| *raw).collect();
-        histogram.add(highlight.f_format(), highlight.f(&highlight.point(&control, 0)));
-    }
-
-    /// The largest error, in output units, and its output.
-    pub(super) fn worst(&self, bits: &[u64], results: &[u64]) -> Option<(f64, usize)> {
+    /// Takes note of a point by its bit patterns: of the word `f`, and of the largest error. `raw` is room for the raw
+    /// operands.
+    pub(super) fn measure(
+        &self,
+        seen: &mut Seen,
+        raw: &mut Vec<i64>,
+        bits: &[u64],
+        results: &[u64],
+    ) {
         let operands = self.contract.operands();
-        let mut raw = Vec::with_capacity(operands.len());
+        raw.clear();
+        let mut inside = true;
         for (operand, &at) in operands.iter().zip(&self.operands) {
             let value = operand.format.raw(bits[at]) as i64;
-            if !(operand.domain.0..=operand.domain.1).contains(&value) {
-                return None;
-            }
+            inside &= (operand.domain.0..=operand.domain.1).contains(&value);
             raw.push(value);
         }
-        let mut exact = Vec::with_capacity(self.outputs.len());
-        self.contract.exact(&raw, 0, &mut exact);
-        let mut largest = None;
-        for (&(at, format), exact) in self.outputs.iter().zip(exact) {
-            let value = format.to_f64(format.raw(results[at]));
-            let units = crate::golden::nearer(value, exact) / format.to_f64(1);
-            if largest.is_none_or(|(most, _)| units > most) {
-                largest = Some((units, at));
+        let highlight = self.contract.highlight();
+        if !inside {
+            if highlight.is_some() {
+                seen.histogram.add_outside();
+            }
+            return;
+        }
+        if let Some(highlight) = highlight {
+            let f = highlight.f(&highlight.point(&raw[..highlight.control()], 0));
+            seen.histogram.add(highlight.f_format(), f);
+        }
+        seen.exact.clear();
+        self.contract.exact(raw, 0, &mut seen.exact);
+        let mut largest = (seen.worst.as_ref().map_or(-1.0, |worst| worst.units), None);
+        for (&(at, format, unit), &exact) in self.outputs.iter().zip(&seen.exact) {
+            let value = format.raw(results[at]) as f64 * unit;
+            let units = nearer(value, exact) / unit;
+            if units > largest.0 {
+                largest = (units, Some(at));
             }
         }
-        largest
+        if let (units, Some(at)) = largest {
+            let names = operands.iter().map(|operand| operand.name.clone());
+            seen.worst = Some(Worst {
+                units,
+                output: self.names[at].clone(),
+                operands: names.zip(raw.iter().copied()).collect(),
+            });
+        }
     }
 }

@@ -6,6 +6,8 @@ mod products;
 pub use keys::Keys;
 pub use products::{ProductSlots, Products};
 
+use std::borrow::Cow;
+
 use super::contract::{self, COSINE, ErrorShare};
 use super::{Bound, Contract, Operand, Output, Sweep, nearer};
 use crate::base::fixed::{Format, exp2};
@@ -173,9 +175,13 @@ impl Highlight {
         self.reflectance.expressions()
     }
 
-    /// As [`Reflectance::point`].
-    pub fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
-        self.reflectance.point(control, index)
+    /// As [`Reflectance::point`]: the operands themselves where a computation has one result.
+    #[inline]
+    pub fn point<'c>(&self, control: &'c [i64], index: u64) -> Cow<'c, [i64]> {
+        match self.reflectance.length() {
+            None => Cow::Borrowed(control),
+            Some(_) => Cow::Owned(self.reflectance.point(control, index)),
+        }
     }
 
     /// As [`Reflectance::peak`].
@@ -210,20 +216,13 @@ impl Contract for Highlight {
 
     fn results(&self, operands: &[i64], index: u64, raw: &mut Vec<i64>) {
         let (control, colours) = operands.split_at(self.control());
-        // A computation of one result shows the point of its operands.
-        let f = match self.reflectance.length() {
-            None => self.f(control),
-            Some(_) => self.f(&self.point(control, index)),
-        };
+        let f = self.f(&self.point(control, index));
         raw.extend(colours.iter().map(|&colour| self.colour(f, colour)));
     }
 
     fn exact(&self, operands: &[i64], index: u64, values: &mut Vec<[f64; 2]>) {
         let (control, colours) = operands.split_at(self.control());
-        let f = match self.reflectance.length() {
-            None => self.references(control),
-            Some(_) => self.references(&self.point(control, index)),
-        };
+        let f = self.references(&self.point(control, index));
         let pairs = self.products.operands.iter().zip(colours);
         values.extend(pairs.map(|(operand, &colour)| {
             let colour = colour as f64 * exp2(-operand.format.frac);

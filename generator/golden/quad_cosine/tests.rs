@@ -63,7 +63,7 @@ fn f_by_hand() {
 fn points_follow_the_line() {
     let contract = highlight(small());
     // From −10/64 by 3/64; and around: 120 + 2·5 is 130 − 256.
-    assert_eq!(contract.point(&[3, -10, 20, 7], 0), [3, -10, 20, 7]);
-    assert_eq!(contract.point(&[3, -10, 20, 7], 4), [3, 2, 20, 7]);
-    assert_eq!(contract.point(&[5, 120, 20, 7], 2), [5, -126, 20, 7]);
+    assert_eq!(*contract.point(&[3, -10, 20, 7], 0), [3, -10, 20, 7]);
+    assert_eq!(*contract.point(&[3, -10, 20, 7], 4), [3, 2, 20, 7]);
+    assert_eq!(*contract.point(&[5, 120, 20, 7], 2), [5, -126, 20, 7]);
 }

@@ -119,8 +119,11 @@ impl Control {
 }
 
 impl Design {
-    /// The number of the lowest bit of each field in the control word.
+    /// The number of the lowest bit of each field in the control word; of a pipeline, which has none, nothing.
     pub fn field_positions(&self) -> Vec<u32> {
+        if self.control.fields.is_empty() {
+            return Vec::new();
+        }
         let mut low = self.width(self.rom(self.control.rom).data);
         self.control
             .fields

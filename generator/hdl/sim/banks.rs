@@ -259,7 +259,7 @@ impl Divider<'_> {
             let edge = ReadEdge {
                 to: slot(edge.to),
                 address: slot(edge.address),
-                enable: slot(edge.enable),
+                enable: edge.enable.map(&mut slot),
                 ..*edge
             };
             self.bank(wide).reads.push(edge);
@@ -273,8 +273,8 @@ impl Divider<'_> {
             let edge = RegisterEdge {
                 q: slot(edge.q),
                 data: slot(edge.data),
-                enable: slot(edge.enable),
-                keep: slot(edge.keep),
+                enable: edge.enable.map(&mut slot),
+                reset: edge.reset.map(|(rst_n, bits)| (slot(rst_n), bits)),
                 ..*edge
             };
             self.bank(wide).registers.push(edge);

@@ -1,12 +1,12 @@
 //! From [`Design`] to [`Program`].
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use anyhow::{Result, ensure};
 
 use crate::base::diagnostic::Diagnostics;
 use crate::base::fixed::mask;
-use crate::hdl::netlist::{Design, Driver, NetId, Role};
+use crate::hdl::netlist::{Design, Driver, NetId, Register, Role};
 use crate::hdl::sim::banks;
 use crate::hdl::sim::compiler::Compiler;
 use crate::hdl::sim::program::{
@@ -32,7 +32,7 @@ impl Program {
     }
 }
 
-impl Compiler<'_> {
+impl<'a> Compiler<'a> {
     /// A slot with a field of the control word. It is a source of its own, so that what depends on
     /// it is settled when the field changes, rather than whenever the address does.
     fn field(&mut self, word: NetId, low: u32, width: u32) -> Slot {
@@ -76,17 +76,15 @@ impl Compiler<'_> {
     /// The clock edge, and everything together.
     fn finish(mut self) -> Program {
         let design = self.design;
-        let one = self.constant(1);
         let reset = design.port(|role| role == Role::Reset);
-        let mut written = Vec::new();
+        let mut written = HashSet::new();
         let mut reads = Vec::new();
         for (at, rom) in design.roms.iter().enumerate() {
             if rom.synchronous {
                 let to = self.of_net[rom.data.index()];
                 let address = self.stable(self.of_net[rom.address.index()], &written);
-                let enable = rom.enable.map_or(one, |net| self.of_net[net.index()]);
-                let enable = self.stable(enable, &written);
-                written.push(to);
+                let enable = self.enable(rom.enable, &written);
+                written.insert(to);
                 reads.push(ReadEdge {
                     to,
                     source: self.sources[to as usize],
@@ -97,21 +95,19 @@ impl Compiler<'_> {
             }
         }
         let mut registers = Vec::new();
-        for register in &design.registers {
+        for register in self.readers_first() {
             let q = self.of_net[register.q.index()];
             let data = register.data.unwrap_or(register.q);
-            let keep = register.reset.and(reset).map_or(one, |port| self.of_net[port.net.index()]);
-            let enable = register.enable.map_or(one, |net| self.of_net[net.index()]);
             let data = self.stable(self.of_net[data.index()], &written);
-            let enable = self.stable(enable, &written);
-            written.push(q);
+            let enable = self.enable(register.enable, &written);
+            let value = register.reset.map(|bits| bits & mask(design.width(register.q)));
+            written.insert(q);
             registers.push(RegisterEdge {
                 q,
                 source: self.sources[q as usize],
                 data,
                 enable,
-                keep,
-                reset: register.reset.unwrap_or(0) & mask(design.width(register.q)),
+                reset: reset.map(|port| self.of_net[port.net.index()]).zip(value),
             });
         }
         self.drop_unneeded(&reads, &registers);
@@ -122,6 +118,42 @@ impl Compiler<'_> {
         banks::divide(&self, &reads, &registers)
     }
 
+    /// The registers, those that take the value of another before that one as far as they are no circle: such a value
+    /// need not be copied to be [`Compiler::stable`].
+    fn readers_first(&self) -> Vec<&'a Register> {
+        let registers = &self.design.registers;
+        let slot = |net: NetId| self.of_net[net.index()];
+        let by_slot: HashMap<Slot, usize> =
+            registers.iter().enumerate().map(|(at, register)| (slot(register.q), at)).collect();
+        let mut readers = vec![0; registers.len()];
+        let read_by = |at: usize| {
+            let register: &Register = &registers[at];
+            let nets = register.data.iter().chain(&register.enable);
+            nets.filter_map(|&net| by_slot.get(&slot(net)).copied()).filter(move |&of| of != at)
+        };
+        (0..registers.len()).flat_map(read_by).for_each(|of| readers[of] += 1);
+        let mut ordered = Vec::with_capacity(registers.len());
+        let mut placed = vec![false; registers.len()];
+        let mut ready: Vec<usize> = (0..registers.len()).filter(|&at| readers[at] == 0).collect();
+        while ordered.len() < registers.len() {
+            // In a circle one goes ahead of those that read it.
+            let first = || placed.iter().position(|&placed| !placed);
+            let Some(at) = ready.pop().or_else(first) else { break };
+            if placed[at] {
+                continue;
+            }
+            placed[at] = true;
+            ordered.push(&registers[at]);
+            for of in read_by(at) {
+                readers[of] -= 1;
+                if readers[of] == 0 {
+                    ready.push(of);
+                }
+            }
+        }
+        ordered
+    }
+
     /// Drops the instructions that neither the edge nor a named net or a port has a use for. What
     /// they would have computed has no slot then.
     fn drop_unneeded(&mut self, reads: &[ReadEdge], registers: &[RegisterEdge]) {
@@ -129,8 +161,11 @@ impl Compiler<'_> {
         let mut needed = vec![false; self.sources.len()];
         let of_edge = reads
             .iter()
-            .flat_map(|edge| [edge.address, edge.enable])
-            .chain(registers.iter().flat_map(|edge| [edge.data, edge.enable, edge.keep]));
+            .flat_map(|edge| [Some(edge.address), edge.enable])
+            .chain(registers.iter().flat_map(|edge| {
+                [Some(edge.data), edge.enable, edge.reset.map(|(rst_n, _)| rst_n)]
+            }))
+            .flatten();
         let of_nets = design
             .iter()
             .filter(|(_, net)| net.named)
@@ -158,9 +193,16 @@ impl Compiler<'_> {
         }
     }
 
+    /// The slot of an enable, unless it is always 1.
+    fn enable(&mut self, enable: Option<NetId>, written: &HashSet<Slot>) -> Option<Slot> {
+        let slot = enable.map(|net| self.of_net[net.index()]);
+        let slot = slot.filter(|&slot| self.known_value(slot) != Some(1));
+        slot.map(|slot| self.stable(slot, written))
+    }
+
     /// A slot that holds the value of `a` until the edge is over, although the edge has written the
     /// slots `written` before: the edge happens everywhere at once.
-    fn stable(&mut self, a: Slot, written: &[Slot]) -> Slot {
+    fn stable(&mut self, a: Slot, written: &HashSet<Slot>) -> Slot {
         if written.contains(&a) { self.emit(&[a], |to| Instruction::Copy { to, a }) } else { a }
     }
 }

@@ -7,6 +7,10 @@ use crate::hdl::netlist::Design;
 use crate::hdl::sim::machine::execute;
 use crate::hdl::sim::program::{InputPort, Instruction, Slot, Sources, Span};
 
+/// The most sources that are input ports, which change at another edge than what the edge writes; the first numbers are
+/// theirs.
+const INPUTS: u32 = 16;
+
 /// Sources below this number change from outside settling and share numbers when they are many;
 /// from here on each is a field of the control word, numbered in order of evaluation.
 const FIRST_FIELD: u32 = 40;
@@ -25,8 +29,10 @@ pub(super) struct Compiler<'a> {
     pub(super) design: &'a Design,
     /// For each slot: the [`Sources`] it depends on within one clock; none for constants.
     pub(super) sources: Vec<Sources>,
-    /// How many sources there are so far.
-    numbered: u32,
+    /// The number of sources that are input ports.
+    input_sources: u32,
+    /// The next source for what the edge writes.
+    next_source: u32,
     /// The next source for a field.
     pub(super) next_field: u32,
     /// For each slot; the only lane is that of the folded constants.
@@ -51,10 +57,12 @@ pub(super) struct Compiler<'a> {
 impl<'a> Compiler<'a> {
     /// The slots of the input ports and the contents of the ROMs; no net is compiled yet.
     pub(super) fn new(design: &'a Design) -> Self {
+        let input_sources = (design.inputs().count() as u32).clamp(1, INPUTS);
         let mut compiler = Self {
             design,
             sources: Vec::new(),
-            numbered: 0,
+            input_sources,
+            next_source: input_sources,
             next_field: FIRST_FIELD,
             initial: Vec::new(),
             constants: BTreeMap::new(),
@@ -66,13 +74,13 @@ impl<'a> Compiler<'a> {
             roms: Vec::new(),
             of_net: vec![Slot::MAX; design.nets.len()],
             inputs: Vec::new(),
-            fields: Vec::new(),
+            fields: design.field_positions(),
         };
-        for port in design.inputs() {
-            let slot = compiler.source();
+        for (at, port) in design.inputs().enumerate() {
+            let slot = compiler.fresh(1 << (at as u32 % input_sources));
             compiler.of_net[port.net.index()] = slot;
             compiler.inputs.push(InputPort {
-                at: compiler.inputs.len() as u32,
+                at: at as u32,
                 slot,
                 source: compiler.sources[slot as usize],
                 mask: mask(design.width(port.net)),
@@ -84,9 +92,6 @@ impl<'a> Compiler<'a> {
             compiler.roms.push(Span { start, len });
             compiler.words.extend(rom.words.iter().map(|word| word & mask));
         }
-        if !design.control.fields.is_empty() {
-            compiler.fields = design.field_positions();
-        }
         compiler
     }
 
@@ -96,11 +101,12 @@ impl<'a> Compiler<'a> {
         (self.sources.len() - 1) as Slot
     }
 
-    /// A slot that changes from outside settling.
+    /// A slot that the edge writes.
     pub(super) fn source(&mut self) -> Slot {
-        let sources = 1 << (self.numbered % FIRST_FIELD);
-        self.numbered += 1;
-        self.fresh(sources)
+        let source = self.next_source;
+        let next = source + 1;
+        self.next_source = if next == FIRST_FIELD { self.input_sources } else { next };
+        self.fresh(1 << source)
     }
 
     pub(super) fn constant(&mut self, bits: u64) -> Slot {

@@ -11,8 +11,8 @@ use crate::hdl::sim::program::{Bank, Instruction, Place, Program, Slot, Sources,
 /// The state of `LANES` independent instances of a design, which one pass over the [`Program`]
 /// advances together.
 ///
-/// A pass is compiled twice on x86-64, for any processor and for those with AVX2; which one runs is
-/// decided at run time, and they compute the same.
+/// A pass is compiled three times on x86-64: for any processor, for those with AVX2 and for those with AVX-512. Which
+/// one runs is decided at run time, and they compute the same.
 #[derive(Clone, Debug)]
 pub struct Machine<const LANES: usize = 1> {
     program: Arc<Program>,
@@ -58,10 +58,19 @@ impl<const LANES: usize> Machine<LANES> {
     /// ignored.
     pub fn update(&mut self, edge: bool, inputs: Option<&[[u64; LANES]]>) -> bool {
         #[cfg(target_arch = "x86_64")]
-        if is_x86_feature_detected!("avx2") {
+        match Vectors::here() {
+            // SAFETY: this processor has AVX-512.
+            Vectors::Avx512 => return unsafe { self.update_avx512(edge, inputs) },
             // SAFETY: this processor has AVX2.
-            return unsafe { self.update_avx2(edge, inputs) };
+            Vectors::Avx2 => return unsafe { self.update_avx2(edge, inputs) },
+            Vectors::Base => {}
         }
+        self.update_here(edge, inputs)
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[target_feature(enable = "avx512f,avx512bw,avx512dq,avx512vl")]
+    fn update_avx512(&mut self, edge: bool, inputs: Option<&[[u64; LANES]]>) -> bool {
         self.update_here(edge, inputs)
     }
 
@@ -75,12 +84,12 @@ impl<const LANES: usize> Machine<LANES> {
     fn update_here(&mut self, edge: bool, inputs: Option<&[[u64; LANES]]>) -> bool {
         let Program { narrow, wide, words, .. } = &*self.program;
         if edge {
-            self.changed |= clock(narrow, words, &mut self.narrow);
-            self.changed |= clock(wide, words, &mut self.wide);
+            self.changed = clock(narrow, words, &mut self.narrow, self.changed);
+            self.changed = clock(wide, words, &mut self.wide, self.changed);
         }
         if let Some(inputs) = inputs {
-            self.changed |= take_inputs(narrow, inputs, &mut self.narrow);
-            self.changed |= take_inputs(wide, inputs, &mut self.wide);
+            self.changed = take_inputs(narrow, inputs, &mut self.narrow, self.changed);
+            self.changed = take_inputs(wide, inputs, &mut self.wide, self.changed);
         }
         let changed = self.changed != 0;
         if changed {
@@ -134,40 +143,58 @@ impl<const LANES: usize> Machine<LANES> {
         }
     }
 
-    /// For each lane, a pattern that is 0 exactly if each net carries what is expected of it.
+    /// For each lane, a pattern that is 0 exactly if each net carries what is expected of it, in the bits that are `known`
+    /// of it: all, when there is nothing.
     ///
     /// # Panics
     /// When a net is unnamed and was optimised away.
-    pub fn differences(&self, nets: &[NetId], expected: &[[u64; LANES]]) -> [u64; LANES] {
+    pub fn differences(
+        &self,
+        nets: &[NetId],
+        expected: &[[u64; LANES]],
+        known: Option<&[[u64; LANES]]>,
+    ) -> [u64; LANES] {
         #[cfg(target_arch = "x86_64")]
-        if is_x86_feature_detected!("avx2") {
+        if Vectors::here() != Vectors::Base {
             // SAFETY: this processor has AVX2.
-            return unsafe { self.differences_avx2(nets, expected) };
+            return unsafe { self.differences_avx2(nets, expected, known) };
         }
-        self.differences_here(nets, expected)
+        self.differences_here(nets, expected, known)
     }
 
     #[cfg(target_arch = "x86_64")]
     #[target_feature(enable = "avx2")]
-    fn differences_avx2(&self, nets: &[NetId], expected: &[[u64; LANES]]) -> [u64; LANES] {
-        self.differences_here(nets, expected)
+    fn differences_avx2(
+        &self,
+        nets: &[NetId],
+        expected: &[[u64; LANES]],
+        known: Option<&[[u64; LANES]]>,
+    ) -> [u64; LANES] {
+        self.differences_here(nets, expected, known)
     }
 
     #[inline(always)]
-    fn differences_here(&self, nets: &[NetId], expected: &[[u64; LANES]]) -> [u64; LANES] {
+    fn differences_here(
+        &self,
+        nets: &[NetId],
+        expected: &[[u64; LANES]],
+        known: Option<&[[u64; LANES]]>,
+    ) -> [u64; LANES] {
+        let all = [u64::MAX; LANES];
         let mut differences = [0; LANES];
-        for (net, expected) in nets.iter().zip(expected) {
+        for (at, (net, expected)) in nets.iter().zip(expected).enumerate() {
+            let known = known.map_or(&all, |known| &known[at]);
             match self.program.place(*net) {
                 Place::Narrow(slot) => {
                     let bits = &self.narrow[slot as usize];
                     for lane in 0..LANES {
-                        differences[lane] |= u64::from(bits[lane]) ^ expected[lane];
+                        differences[lane] |= (u64::from(bits[lane]) ^ expected[lane]) & known[lane];
                     }
                 }
                 Place::Wide(slot) => {
                     let bits = &self.wide[slot as usize];
                     for lane in 0..LANES {
-                        differences[lane] |= bits[lane] ^ expected[lane];
+                        differences[lane] |= (bits[lane] ^ expected[lane]) & known[lane];
                     }
                 }
             }
@@ -194,6 +221,34 @@ impl<const LANES: usize> Machine<LANES> {
         match self.program.place(net) {
             Place::Narrow(slot) => self.narrow[slot as usize][lane].into(),
             Place::Wide(slot) => self.wide[slot as usize][lane],
+        }
+    }
+}
+
+/// Which vector instructions the processor has.
+#[cfg(target_arch = "x86_64")]
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Vectors {
+    Base,
+    Avx2,
+    /// With AVX2.
+    Avx512,
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Vectors {
+    #[inline]
+    fn here() -> Self {
+        if !is_x86_feature_detected!("avx2") {
+            Self::Base
+        } else if is_x86_feature_detected!("avx512f")
+            && is_x86_feature_detected!("avx512bw")
+            && is_x86_feature_detected!("avx512dq")
+            && is_x86_feature_detected!("avx512vl")
+        {
+            Self::Avx512
+        } else {
+            Self::Avx2
         }
     }
 }
@@ -254,65 +309,81 @@ fn power_up<W: Word, const LANES: usize>(bank: &Bank) -> Vec<[W; LANES]> {
     slots.map(|&bits| [W::low(bits); LANES]).collect()
 }
 
-/// The sources that are news.
+/// The sources that are news, besides those that are already.
 #[inline(always)]
 fn take_inputs<W: Word, const LANES: usize>(
     bank: &Bank,
     inputs: &[[u64; LANES]],
     slots: &mut [[W; LANES]],
+    mut news: Sources,
 ) -> Sources {
-    let mut news = 0;
     for port in &bank.inputs {
         let mut bits = [W::ZERO; LANES];
         map(&mut bits, &inputs[port.at as usize], |bits| W::low(bits & port.mask));
-        news |= store(&mut slots[port.slot as usize], &bits, port.source);
+        news |= store(&mut slots[port.slot as usize], &bits, port.source, news);
     }
     news
 }
 
-/// The rising edge, and the sources that are news.
+/// The rising edge, and the sources that are news besides those that are already.
 #[inline(always)]
 fn clock<W: Word, const LANES: usize>(
     bank: &Bank,
     words: &[u64],
     slots: &mut [[W; LANES]],
+    mut news: Sources,
 ) -> Sources {
-    let mut news = 0;
     for edge in &bank.reads {
         let mut word = [W::ZERO; LANES];
         map(&mut word, &slots[edge.address as usize], |address| {
             W::low(read(words, edge.words, address.into()))
         });
-        let [to, enable] = [edge.to, edge.enable].map(|slot| &slots[slot as usize]);
-        for lane in 0..LANES {
-            word[lane] = select_unpredictable(enable[lane] == W::ZERO, to[lane], word[lane]);
-        }
-        news |= store(&mut slots[edge.to as usize], &word, edge.source);
+        let word = enabled(slots, edge.to, word, edge.enable);
+        news |= store(&mut slots[edge.to as usize], &word, edge.source, news);
     }
     for edge in &bank.registers {
-        let [q, data, enable, keep] =
-            [edge.q, edge.data, edge.enable, edge.keep].map(|slot| &slots[slot as usize]);
-        let reset = W::low(edge.reset);
-        let mut next = [W::ZERO; LANES];
-        for lane in 0..LANES {
-            let loaded = select_unpredictable(enable[lane] == W::ZERO, q[lane], data[lane]);
-            next[lane] = select_unpredictable(keep[lane] == W::ZERO, reset, loaded);
+        let mut next = enabled(slots, edge.q, slots[edge.data as usize], edge.enable);
+        if let Some((rst_n, reset)) = edge.reset {
+            let (rst_n, reset) = (&slots[rst_n as usize], W::low(reset));
+            for lane in 0..LANES {
+                next[lane] = select_unpredictable(rst_n[lane] == W::ZERO, reset, next[lane]);
+            }
         }
-        news |= store(&mut slots[edge.q as usize], &next, edge.source);
+        news |= store(&mut slots[edge.q as usize], &next, edge.source, news);
     }
     news
 }
 
-/// Stores a value; `source` when that changes any lane.
+/// What a slot takes at the edge: a new value in the lanes that are enabled.
+#[inline(always)]
+fn enabled<W: Word, const LANES: usize>(
+    slots: &[[W; LANES]],
+    slot: Slot,
+    mut new: [W; LANES],
+    enable: Option<Slot>,
+) -> [W; LANES] {
+    if let Some(enable) = enable {
+        let (old, enable) = (&slots[slot as usize], &slots[enable as usize]);
+        for lane in 0..LANES {
+            new[lane] = select_unpredictable(enable[lane] == W::ZERO, old[lane], new[lane]);
+        }
+    }
+    new
+}
+
+/// Stores a value; `source` when that changes any lane, unless it is among the `news` already.
 #[inline(always)]
 fn store<W: Word, const LANES: usize>(
     slot: &mut [W; LANES],
     new: &[W; LANES],
     source: Sources,
+    news: Sources,
 ) -> Sources {
     let mut differences = W::ZERO;
-    for lane in 0..LANES {
-        differences = differences | slot[lane] ^ new[lane];
+    if news & source == 0 {
+        for lane in 0..LANES {
+            differences = differences | slot[lane] ^ new[lane];
+        }
     }
     *slot = *new;
     if differences == W::ZERO { 0 } else { source }
@@ -333,7 +404,7 @@ pub(super) fn execute<W: Word, const LANES: usize>(
         I::Field { to, a, low, drop, source } => {
             let mut field = [W::ZERO; LANES];
             map(&mut field, &slots[a as usize], |a| a >> low & mask(drop));
-            return store(&mut slots[to as usize], &field, 1 << source);
+            return store(&mut slots[to as usize], &field, 1 << source, 0);
         }
         I::Slice { to, a, low, drop } => unary(slots, to, a, |a| a >> low & mask(drop)),
         I::Place { to, base, a, low, drop, shift } => {

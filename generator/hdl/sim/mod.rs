@@ -120,12 +120,18 @@ impl<const LANES: usize> Simulator<LANES> {
         self.circuit.lane(net, lane)
     }
 
-    /// For each lane, a pattern that is 0 exactly if each net carries what is expected of it.
+    /// For each lane, a pattern that is 0 exactly if each net carries what is expected of it, in the bits that are `known`
+    /// of it: all, when there is nothing.
     ///
     /// # Panics
     /// When a net is unnamed and was optimised away.
-    pub fn differences(&self, nets: &[NetId], expected: &[[u64; LANES]]) -> [u64; LANES] {
-        self.circuit.differences(nets, expected)
+    pub fn differences(
+        &self,
+        nets: &[NetId],
+        expected: &[[u64; LANES]],
+        known: Option<&[[u64; LANES]]>,
+    ) -> [u64; LANES] {
+        self.circuit.differences(nets, expected, known)
     }
 
     /// One clock: the falling edge, with which inputs change, and the rising edge.

@@ -174,29 +174,28 @@ pub(super) struct ReadEdge {
     pub to: Slot,
     pub source: Sources,
     pub address: Slot,
-    /// The constant 1 when every edge reads.
-    pub enable: Slot,
+    /// None when every edge reads.
+    pub enable: Option<Slot>,
     pub words: Span,
 }
 
-/// A register: at the edge, `q` takes `reset` when `keep` is 0, else `data` when `enable` is 1.
+/// A register: at the edge, `q` takes the value of `reset` when its slot, `rst_n`, is 0, else `data` when `enable` is 1.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RegisterEdge {
     pub q: Slot,
     pub source: Sources,
     pub data: Slot,
-    /// The constant 1 when the register has no enable.
-    pub enable: Slot,
-    /// The slot of `rst_n`; the constant 1 when the register has no reset.
-    pub keep: Slot,
-    pub reset: u64,
+    /// None when every edge loads.
+    pub enable: Option<Slot>,
+    /// None when the register has no reset.
+    pub reset: Option<(Slot, u64)>,
 }
 
 /// One of the two banks: what happens to its slots outside settling.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bank {
     pub inputs: Vec<InputPort>,
-    /// To be performed before `registers`; no operand of either is written by an earlier one.
+    /// To be performed before `registers`; no operand of either is written by an earlier one of either.
     pub reads: Vec<ReadEdge>,
     pub registers: Vec<RegisterEdge>,
     /// What the slots hold at power-up, before settling.
