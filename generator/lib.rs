@@ -41,6 +41,9 @@ pub mod cosim;
 pub mod devices;
 #[cfg(feature = "cli")]
 #[doc(hidden)]
+pub mod equality;
+#[cfg(feature = "cli")]
+#[doc(hidden)]
 pub mod evidence;
 pub mod golden;
 pub mod hdl;

@@ -141,13 +141,14 @@ pub struct Check {
 }
 
 /// All checks: first those that need nothing but Glint.
-pub const CHECKS: [&Check; 13] = [
+pub const CHECKS: [&Check; 14] = [
     &inside::DESIGN,
     &inside::LOCKSTEP,
     &inside::CLOCKS,
     &inside::CONTRACT,
     &inside::MUTATION,
     &outside::CERTIFICATE,
+    &outside::EQUALITY,
     &outside::LINT,
     &outside::ICARUS,
     &outside::VERILATOR,

@@ -7,10 +7,11 @@ use anyhow::{Context, Result};
 use rayon::prelude::*;
 
 use super::{Check, Finding, Subject, Verdict};
-use crate::base::text::grouped;
+use crate::base::text::{counted, grouped};
 use crate::base::transient::Directory;
 use crate::certify::{self, Outcome, statements};
 use crate::core::{BENCH_SEED, Core};
+use crate::equality;
 use crate::package;
 use crate::tools::gates;
 use crate::tools::synthesis::{FAMILIES, Family, synthesise};
@@ -21,6 +22,9 @@ const POINTS: [u64; 2] = [200, 20_000];
 
 /// How long it may take to write the statements for Gappa, and to prove one, but with full effort.
 const STATEMENT: Duration = Duration::from_secs(10);
+
+/// How long the solver may take to prove a pipeline equal to its sequential core, but with full effort.
+const EQUAL: Duration = Duration::from_secs(300);
 
 /// The version of cocotb that the benches in Python are written for.
 const COCOTB_VERSION: &str = "2.1.0";
@@ -76,6 +80,45 @@ pub const CERTIFICATE: Check = Check {
             Vec::new(),
         )
         .open("The words of tables are taken as they are."))
+    },
+};
+
+/// A pipeline and the sequential core of the same description.
+pub const EQUALITY: Check = Check {
+    id: "equality",
+    title: "Equal to the sequential core",
+    question: "Does the pipeline show for every point what the sequential core of the same description shows?",
+    tools: &["z3"],
+    steps: |_| 1,
+    run: |subject, tools, _| {
+        let (core, effort) = (subject.core, subject.effort);
+        if core.design.pipeline.is_none() {
+            let why = "It is the sequential core.".to_owned();
+            return Ok(Finding::without(Verdict::NotCovered, why));
+        }
+        let sequential = core.device.sequential(&core.config)?;
+        let limit = if effort.full { effort.time_limit } else { EQUAL.min(effort.time_limit) };
+        Ok(match equality::compare(&sequential, &core.design, &tools[0], limit)? {
+            equality::Verdict::Equal(proof) => Finding::new(
+                Verdict::Proved,
+                "every point: all bits of all operands".to_owned(),
+                format!(
+                    "{} and {} of the core on its way to them are equal, whatever {} and the words of memories are.",
+                    counted(proof.outputs, "output"),
+                    counted(proof.registers, "register value"),
+                    counted(proof.products, "product"),
+                ),
+                Vec::new(),
+            )
+            .open("Stalls and resets: a value of a stage is made of this stage alone, and the handshake is proved by induction."),
+            equality::Verdict::Different(difference) => {
+                let faults = vec![difference.to_string()];
+                Finding::new(Verdict::Failed, String::new(), String::new(), faults)
+            }
+            equality::Verdict::Open(why) => {
+                Finding::without(Verdict::NotCovered, format!("It is not decided: {why}."))
+            }
+        })
     },
 };
 

@@ -8,7 +8,7 @@ use glint::registry::Registry;
 use regex::Regex;
 
 /// From the bottom: a room and those above it that it may import from.
-const ROOMS: [(&str, &str); 25] = [
+const ROOMS: [(&str, &str); 26] = [
     ("base", ""),
     ("config", "base"),
     ("golden", "base config"),
@@ -22,6 +22,7 @@ const ROOMS: [(&str, &str); 25] = [
     ("devices", "base config hdl/netlist hdl/dsl hdl/blocks"),
     ("package", "base config golden hdl/netlist hdl/verilog observation"),
     ("tools", "base package"),
+    ("equality", "base hdl/netlist tools"),
     ("synth", "base hdl/netlist package tools"),
     ("cosim", "base golden hdl/netlist hdl/sim observation package tools"),
     ("registry", "base config golden hdl/netlist hdl/dsl hdl/pipeline devices"),
@@ -35,7 +36,7 @@ const ROOMS: [(&str, &str); 25] = [
         "pages",
         "base config golden hdl/netlist hdl/verilog package tools synth cosim core render evidence",
     ),
-    ("verify", "base golden package tools cosim core mutate certify"),
+    ("verify", "base golden package tools cosim core mutate certify equality"),
     (
         "cli",
         "base config golden hdl/netlist package tools cosim registry core mutate render evidence pages verify synth tune certify",

@@ -11,6 +11,7 @@ mod builder_fuzz;
 mod certificate_check;
 mod certify;
 mod cocotb;
+mod equality;
 mod example;
 mod external;
 mod formal;

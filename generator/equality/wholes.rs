@@ -1,0 +1,54 @@
+//! Which nets may carry a product that was put together from parts.
+
+use std::collections::HashMap;
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{RngCore, SeedableRng};
+
+use super::term::{Id, Terms};
+use crate::base::fixed::MAX_WIDTH;
+
+/// Numbers at random by which terms that may be equal are found.
+const SAMPLES: usize = 4;
+
+/// Values of terms for numbers at random in place of the unknowns: terms that may be equal.
+pub struct Wholes {
+    values: Vec<HashMap<Id, u64>>,
+    /// The first net of these values, extended by zeros or by its sign bit.
+    nets: HashMap<Vec<u64>, Id>,
+}
+
+impl Wholes {
+    pub fn new<'i>(terms: &Terms, nets: &'i [Id], others: impl Iterator<Item = &'i Id>) -> Self {
+        let cone = terms.cone(nets.iter().chain(others).copied());
+        let mut random = ChaCha8Rng::seed_from_u64(2);
+        let values: Vec<HashMap<Id, u64>> = (0..SAMPLES)
+            .map(|_| {
+                let key = random.next_u64();
+                terms.values(&cone, |number| {
+                    let mut one = ChaCha8Rng::seed_from_u64(key ^ u64::from(number));
+                    one.next_u64()
+                })
+            })
+            .collect();
+        let mut known = HashMap::new();
+        for signed in [false, true] {
+            for &net in nets {
+                let drop = MAX_WIDTH - terms.width(net);
+                let number = |bits: u64| match signed {
+                    true => ((bits << drop) as i64 >> drop) as u64,
+                    false => bits,
+                };
+                let key = values.iter().map(|values| number(values[&net])).collect();
+                known.entry(key).or_insert(net);
+            }
+        }
+        Self { values, nets: known }
+    }
+
+    /// A net that has the values of a term of 64 bits, extended to as many.
+    pub fn of(&self, id: Id) -> Option<Id> {
+        let key: Vec<u64> = self.values.iter().map(|values| values[&id]).collect();
+        self.nets.get(&key).copied()
+    }
+}

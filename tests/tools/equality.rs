@@ -1,0 +1,152 @@
+//! Pipelines against the sequential cores that they are made of, by an SMT solver: proved as they are, refuted with a fault.
+
+use std::time::Duration;
+
+use glint::core::Core;
+use glint::dsl::{Designer, end, step, valid};
+use glint::equality::{Verdict, compare};
+use glint::fixed::Format;
+use glint::hdl::netlist::{Design, Driver, NetId, Op};
+use glint::hdl::pipeline::{Goal, Options, TARGETS, pipeline};
+use glint::tools::Tool;
+
+use crate::common::cores::{all_configurations, configuration};
+
+/// A number that no test at random meets.
+const NUMBER: u64 = 0x5_a5a5;
+
+fn found(sequential: &Design, pipeline: &Design) -> anyhow::Result<Verdict> {
+    let z3 = Tool::find("z3").unwrap_or_else(|error| panic!("{error}"));
+    compare(sequential, pipeline, &z3, Duration::from_secs(900))
+}
+
+fn verdict(sequential: &Design, pipeline: &Design) -> Verdict {
+    let found = found(sequential, pipeline);
+    found.unwrap_or_else(|error| panic!("{}: {error:#}", pipeline.name))
+}
+
+fn sequential(core: &Core) -> Design {
+    core.device.sequential(&core.config).expect("a description")
+}
+
+#[test]
+fn every_pipeline_is_proved_equal_to_its_sequential_core() {
+    let mut proved = 0;
+    for (path, core) in all_configurations() {
+        if core.design.pipeline.is_none() {
+            continue;
+        }
+        match verdict(&sequential(&core), &core.design) {
+            Verdict::Equal(proof) => {
+                assert!(proof.outputs > 0 && proof.registers > 0 && proof.products > 0, "{path}");
+                proved += 1;
+            }
+            other => panic!("{path}: {other:?}"),
+        }
+    }
+    assert_eq!(proved, 8, "pipelines");
+}
+
+/// Every way to plant one kind of fault in a design.
+fn faulty(design: &Design, plant: impl Fn(&mut Design, NetId) -> Option<()>) -> Vec<Design> {
+    let planted = design.iter().filter_map(|(id, _)| {
+        let mut faulty = design.clone();
+        plant(&mut faulty, id).map(|()| faulty)
+    });
+    planted.collect()
+}
+
+fn op(design: &mut Design, id: NetId) -> Option<&mut Op> {
+    match &mut design.nets[id.index()].driver {
+        Driver::Op(op) => Some(op),
+        _ => None,
+    }
+}
+
+#[test]
+fn a_fault_in_a_pipeline_is_refuted() {
+    let core = configuration("configs/cosine_power_pipelined.toml");
+    let own = sequential(&core);
+    let stages = core.design.pipeline.as_ref().expect("a pipeline");
+    // A register takes what the next of its stage and width should.
+    let swapped = faulty(&core.design, |design, id| {
+        let Driver::Register(register) = design.net(id).driver else { return None };
+        let stage = stages.stage_of[id.index()];
+        let width = design.width(id);
+        let other = design.registers.iter().skip(register.index() + 1).position(|it| {
+            stages.stage_of[it.q.index()] == stage
+                && design.width(it.q) == width
+                && it.reset.is_none()
+        })?;
+        let (one, other) = (register.index(), register.index() + 1 + other);
+        let data = design.registers[one].data;
+        design.registers[one].data = design.registers[other].data;
+        design.registers[other].data = data;
+        Some(())
+    });
+    // Bits are taken one place too low.
+    let narrow = faulty(&core.design, |design, id| match op(design, id)? {
+        Op::Slice { low, .. } if *low > 0 => {
+            *low -= 1;
+            Some(())
+        }
+        _ => None,
+    });
+    // A mux of two takes the other.
+    let inverted = faulty(&core.design, |design, id| match op(design, id)? {
+        Op::Mux { inputs, .. } if inputs.len() == 2 && inputs[0] != inputs[1] => {
+            inputs.swap(0, 1);
+            Some(())
+        }
+        _ => None,
+    });
+    for (kind, designs) in [("swapped", swapped), ("narrow", narrow), ("inverted", inverted)] {
+        assert!(designs.len() > 3, "{kind}: {}", designs.len());
+        let planted: Vec<&Design> = designs.iter().step_by(designs.len() / 4).collect();
+        let mut refuted = 0;
+        for faulty in &planted {
+            // Of a fault in the handshake it is said that no result is shown.
+            match found(&own, faulty) {
+                Ok(Verdict::Different(_)) => refuted += 1,
+                Err(error) if format!("{error}").contains("no result") => refuted += 1,
+                // No point was found at which it shows.
+                Ok(Verdict::Open(_)) => {}
+                other => panic!("{kind}: {other:?}"),
+            }
+        }
+        assert!(refuted + 1 >= planted.len(), "{kind}: {refuted} of {}", planted.len());
+    }
+}
+
+/// A square, or with a fault something else for one number.
+fn square(faulty: bool) -> Design {
+    let d = Designer::new("square");
+    let x = d.operand("x", Format::unsigned(20, 0));
+    let square = d.register("square", Format::unsigned(40, 0));
+    let product = d.mul("x_squared", x.q(), x.q());
+    let number = d.raw_constant("number", NUMBER.into(), x.q().format());
+    let wrong = d.raw_constant(
+        "wrong",
+        if faulty { 7 } else { i128::from(NUMBER).pow(2) },
+        product.format(),
+    );
+    square.takes(d.choose("chosen", d.equal("rare", x.q(), number), [product, wrong]));
+    d.output("square_out", square.q());
+    let squares = step("square", [square.load()]);
+    d.microprogram([step("idle", []), squares, step("result", [valid(), end()])]);
+    d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"))
+}
+
+/// No point at random meets the one that differs.
+#[test]
+fn the_solver_finds_the_point_that_differs() {
+    let goal = Goal::ClockMhz(100.0);
+    let options = Options { target: &TARGETS[0], goal, stall: true, side: 0 };
+    let made_of = |design: &Design| pipeline(design, &options).expect("a pipeline");
+    assert!(matches!(verdict(&square(false), &made_of(&square(false))), Verdict::Equal(_)));
+    let Verdict::Different(difference) = verdict(&square(false), &made_of(&square(true))) else {
+        panic!("the fault is not found")
+    };
+    assert_eq!(difference.operands, [("x".to_owned(), NUMBER)]);
+    assert_eq!([difference.sequential, difference.pipeline], [NUMBER.pow(2), 7]);
+}
