@@ -269,8 +269,9 @@ fn computed(graph: &Graph, id: NetId, op: &Op, of: &dyn Fn(&NetId) -> Interval) 
         Op::Slice { of: a, low } => fits((of(a).0 >> low, of(a).1 >> low)),
         Op::Concat(parts) => fits(parts.iter().fold((0, 0), |(low, high), part| {
             let width = graph.width(*part);
-            // Of a signed part the bits count, whose values are not in order.
-            let own = if of(part).0 < 0 { (0, mask(width).into()) } else { of(part) };
+            // Of a signed part the bits count, whose values are not in order; but on top of a signed number they are its sign.
+            let is_sign = format.signed && Some(part) == parts.first();
+            let own = if of(part).0 < 0 && !is_sign { (0, mask(width).into()) } else { of(part) };
             ((low << width) + own.0, (high << width) + own.1)
         })),
         Op::Not(a) if format.signed => (!of(a).1, !of(a).0),

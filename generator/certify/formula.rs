@@ -39,6 +39,23 @@ pub struct Comparison {
 }
 
 impl Real {
+    /// Whether words of the table are read.
+    pub fn reads(&self, rom: &str) -> bool {
+        match self {
+            Self::Word(name, _) => name == rom,
+            Self::Number(_) | Self::Operand(_) => false,
+            Self::Add(a, b)
+            | Self::Sub(a, b)
+            | Self::Mul(a, b)
+            | Self::Div(a, b)
+            | Self::Max(a, b)
+            | Self::Power(a, b) => a.reads(rom) || b.reads(rom),
+            Self::If(Comparison { left, right, .. }, a, b) => {
+                [left, right, a, b].into_iter().any(|side| side.reads(rom))
+            }
+        }
+    }
+
     /// Whether the operand is an exponent.
     pub fn has_exponent(&self, name: &str) -> bool {
         match self {

@@ -208,7 +208,8 @@ impl<'a> Hardware<'a> {
                 let mut sum = Value::Constant(0);
                 let mut position = 0;
                 for part in parts.iter().rev() {
-                    if range(part).0 < 0 {
+                    let is_sign = node.format.signed && Some(part) == parts.first();
+                    if range(part).0 < 0 && !is_sign {
                         return Err(format!("`{name}` joins bits of a negative number"));
                     }
                     let raised = raised(self.value(terms, *part)?, position);

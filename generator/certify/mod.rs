@@ -230,7 +230,8 @@ impl Task<'_> {
     }
 
     /// The domain, by the values of operands that stand in exponents, and by the runs of operands over which tables have the
-    /// same words. Of one table with many words a word is a variable; those of several depend on each other.
+    /// same words. Of one table with many words, which the formula reads too, a word is a variable; those of several depend on
+    /// each other.
     fn split(&self, known: &Known) -> Vec<Known> {
         let mut split = vec![known.clone()];
         for operand in self.contract.operands() {
@@ -251,7 +252,12 @@ impl Task<'_> {
                     _ => runs.push((value, value)),
                 }
             }
-            if !single && (tables.is_empty() || tables.len() == 1 && runs.len() > RUNS) {
+            let is_variable = |rom: &RomId| {
+                let name = &self.tables[rom.index()];
+                runs.len() > RUNS && self.formulas.iter().any(|formula| formula.reads(name))
+            };
+            if !single && (tables.is_empty() || tables.len() == 1 && tables.iter().all(is_variable))
+            {
                 continue;
             }
             let learnt = |known: &Known, (from, to): (i64, i64)| {

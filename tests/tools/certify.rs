@@ -78,6 +78,10 @@ fn bounds_are_proved_and_smaller_ones_are_not() {
         ("threshold", "visibility.levels = [50, 100, 200]"),
         ("quadratic", ""),
         ("quadratic", "cosine.signed = true"),
+        (
+            "quadratic",
+            "coefficient.scheme = \"taylor\"\nexponent.bits = 5\ndomain.exponent_max = 20",
+        ),
         ("schlick", ""),
         ("schlick", "intensity.fraction = 6\nexponent.bits = 6\ndomain.exponent_max = 60"),
         ("lyon", "power = 2"),
