@@ -67,11 +67,12 @@ deviation = 30.0
 # \"pipelined\".
 # target = \"ecp5\"
 
-# The clock that every stage keeps, with the fewest registers.
+# The clock that every stage must reach; the schedule has the fewest registers for it.
 # A number from 1.0 to 2000.0, default 130.0; only with architecture = \"pipelined\".
 # clock_mhz = 130.0
 
-# So many stages in place of a clock: as fast as they allow. 0 for pipeline.clock_mhz.
+# The number of stages, in place of a clock; as fast as they allow. 0: pipeline.clock_mhz
+# decides.
 # An integer from 0 to 1000, default 0; only with architecture = \"pipelined\".
 # stages = 0
 

@@ -123,8 +123,8 @@ fn what_is_not_ours_stays() {
 #[test]
 fn a_directory_that_cannot_be() {
     let place = Place::with("taken", "a file");
-    report(&place, &["--out", "taken"]).refused(1, &["cannot make the directory `taken`"]);
-    report(&place, &["--out", "taken/deeper"]).refused(1, &["cannot make the directory"]);
+    report(&place, &["--out", "taken"]).refused(1, &["cannot create the directory `taken`"]);
+    report(&place, &["--out", "taken/deeper"]).refused(1, &["cannot create the directory"]);
     let run = report(&place, &["--out", "taken", "--json"]);
     assert_eq!((run.code, run.json()["ok"] == false), (1, true), "{run:?}");
     assert_eq!(place.read("taken"), "a file");

@@ -195,5 +195,5 @@ fn what_is_not_of_glints_making_is_not_overwritten() {
     }
     place.write("file", "");
     let run = place.glint(WITHOUT_TOOLS.iter().chain(&["--out", "file"]));
-    run.refused(1, &["cannot make the directory `file`"]);
+    run.refused(1, &["cannot create the directory `file`"]);
 }
