@@ -31,9 +31,9 @@ fn simpler_terms_have_the_values_of_those_that_were_asked_for() {
         let mut terms = Terms::default();
         // Each with what it is worth.
         let mut made: Vec<(Id, u64)> = Vec::new();
-        for number in 0..6 {
+        for value in &values[..6] {
             let width = 1 + random.next_u32() % 12;
-            made.push((terms.unknown(width), values[number] & mask(width)));
+            made.push((terms.unknown(width), value & mask(width)));
             let bits = random.next_u64() & mask(width);
             made.push((terms.constant(bits, width), bits));
         }

@@ -416,12 +416,8 @@ impl<const L: usize> Group<L> {
         self.simulator.clock()?;
         let Predicted { expected, known } = &self.predicted;
         let differences = self.simulator.differences(&setup.compared, expected, Some(known));
-        if differences != [0; L] {
-            for number in 0..self.lanes.len() {
-                if differences[number] != 0 {
-                    self.lanes[number].seen.mismatch = self.mismatch(setup, number);
-                }
-            }
+        for (number, _) in differences.iter().enumerate().filter(|(_, it)| **it != 0) {
+            self.lanes[number].seen.mismatch = self.mismatch(setup, number);
         }
         Ok(())
     }
