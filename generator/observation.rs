@@ -128,7 +128,7 @@ impl ContractFacts {
 /// A computation as its handshake shows it. The clock in which `start` is taken is number 0.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Computation {
-    /// Raw, in the order of [`Accuracy::domain`].
+    /// Raw, in the order of [`ContractFacts::domain`].
     pub operands: Vec<i64>,
     /// What is on the outputs whenever `valid` is high.
     pub results: Vec<Shown>,
@@ -149,7 +149,7 @@ impl Computation {
 pub struct Shown {
     /// The clock in which `valid` is high.
     pub clock: u32,
-    /// Raw, in the order of [`Accuracy::outputs`].
+    /// Raw, in the order of [`ContractFacts::outputs`].
     pub outputs: Vec<i64>,
 }
 
