@@ -1,6 +1,6 @@
 // What is proved of the span engine: each pixel of a span is read once, offered once with its own operands, the last of them
-// as the last, and its result written once to its own place, whatever the RAM, the core and the processor do. For WORDS words
-// of operands a pixel, 1 or 2:
+// as the last, and its result written once to its own place, whatever the RAM, the core and the processor do; and that a span
+// never stops of itself. For WORDS words of operands a pixel, 1 here; for 2, change the parameter below:
 //   $ yosys -q span_formal.ys
 //   $ yosys-smtbmc -s z3 --unroll -t 3 span_formal.smt2
 //   $ yosys-smtbmc -s z3 --unroll -i -t 2 span_formal.smt2
@@ -88,6 +88,24 @@ module span_formal #(
     (* hierconn *) wire \dut.arrives ;
     (* hierconn *) wire \dut.complete ;
 
+    // What the processor wrote last, and what it wrote at all.
+    reg [15:2] asked_source;
+    reg [15:2] asked_destination;
+    reg [9:0] asked_exponent;
+    reg [23:0] asked_colour;
+    reg [4:0] known;        // one bit each, by `at`
+    initial known = 5'd0;
+    always @(posedge clk) if (request && write && ready) begin
+        if (at < 3'd5) known[at] <= 1'b1;
+        case (at)
+            3'd0: asked_source <= data[15:2];
+            3'd1: asked_destination <= data[15:2];
+            3'd3: asked_exponent <= data[9:0];
+            3'd4: asked_colour <= data[23:0];
+            default: ;
+        endcase
+    end
+
     // The span: where it began, and how far it is.
     reg [15:2] from;
     reg [15:2] to;
@@ -125,6 +143,13 @@ module span_formal #(
         // The processor waits for a span alone, and what it asks then is not done.
         if (request && !ready) assert (dut.under_way);
         if (dut.start) assert (request && write && at == 3'd2 && !dut.under_way);
+        // What the processor wrote is what the next span begins with, and what the core is given.
+        if (known[0]) assert (dut.next_source == asked_source);
+        if (known[1]) assert (dut.next_destination == asked_destination);
+        if (known[3]) assert (exponent == asked_exponent);
+        if (known[4]) assert (colour == asked_colour);
+        // Addresses of the next span never wait.
+        if (request && at < 3'd2) assert (ready);
         // Each pixel is read, taken and written once, and the span ends with the last.
         assert (words <= WORDS * pixels);
         assert (taken <= pixels && written <= taken);
@@ -139,6 +164,10 @@ module span_formal #(
         assert (!dut.arrives || words != here && dut.complete == (words % WORDS == 0));
         // The last is the last.
         assert (!operands_valid || operands_last == (taken == pixels - 10'd1));
+        // A result leaves the core where the RAM takes it.
+        if (writes) assert (ram_free && ram_request && ram_write);
+        // A span that is not at its end asks the RAM, or waits for it, or for the core.
+        if (dut.under_way) assert (ram_request || dut.arrives || operands_valid || taken != written);
         // To its own place.
         if (ram_write) assert (ram_at == to + written && ram_data == result);
         // The word that is followed is in its place.

@@ -48,7 +48,7 @@ fn the_span_engine_is_proved() {
 }
 
 /// What stands in the engine, and what stands there instead.
-const FAULTS: [(&str, &str); 9] = [
+const FAULTS: [(&str, &str); 16] = [
     // A word over another, one left out, one twice.
     ("& ~(arrives & complete);", ";"),
     ("source + {13'd0, reads}", "source + {13'd0, wants}"),
@@ -64,6 +64,15 @@ const FAULTS: [(&str, &str); 9] = [
     ("if (writes & result_last)", "if (writes)"),
     ("(at >= COUNT) & under_way", "1'b0"),
     ("operands_valid & ~operands_ready);", "1'b0);"),
+    // A result that leaves the core for nowhere, a span that stops, addresses that wait.
+    ("assign ram_request = result_valid | wants;", "assign ram_request = wants;"),
+    ("wire wants = (left != 10'd0) & room;", "wire wants = 1'b0;"),
+    ("(at >= COUNT) & under_way", "(at >= SOURCE) & under_way"),
+    // Not what the processor wrote: a part of it, by a read, to another place.
+    ("next_destination <= data[15:2];", "next_destination <= {1'b0, data[14:2]};"),
+    ("exponent <= data[9:0];", "exponent[8:0] <= data[8:0];"),
+    ("if (taken & (at == SOURCE))", "if (request & (at == SOURCE))"),
+    ("(at == COLOUR)) colour <=", "(at == EXPONENT)) colour <="),
 ];
 
 #[test]
