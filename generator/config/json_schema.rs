@@ -54,7 +54,13 @@ fn of_key(key: &Key) -> Json {
         Kind::Integer { min, max } => {
             json!({ "type": "integer", "minimum": min, "maximum": max })
         }
-        Kind::Number { min, max } => json!({ "type": "number", "minimum": min, "maximum": max }),
+        Kind::Number { min, max, or_zero: false } => {
+            json!({ "type": "number", "minimum": min, "maximum": max })
+        }
+        Kind::Number { min, max, or_zero: true } => json!({
+            "type": "number",
+            "anyOf": [{ "minimum": 0, "maximum": 0 }, { "minimum": min, "maximum": max }],
+        }),
         Kind::Choice(options) => {
             json!({ "enum": options.iter().map(|option| choice(key, option)).collect::<Vec<_>>() })
         }

@@ -63,7 +63,10 @@ fn settle(schema: &Schema, config: &mut Config) {
 fn draw(key: &Key, rng: &mut ChaCha8Rng) -> Value {
     match &key.kind {
         Kind::Integer { min, max } => Value::Integer(integer(*min, *max, rng)),
-        Kind::Number { min, max } => Value::Number(number(*min, *max, rng)),
+        Kind::Number { min, max, or_zero } => {
+            let drawn = number(*min, *max, rng);
+            Value::Number(if *or_zero && drawn == *min { 0.0 } else { drawn })
+        }
         Kind::Choice(options) => {
             let index = integer(0, options.len() as i64 - 1, rng) as usize;
             Value::Text(options[index].to_owned())

@@ -41,8 +41,8 @@ pub struct Key {
 pub enum Kind {
     /// An integer, both limits included.
     Integer { min: i64, max: i64 },
-    /// A finite number, both limits included. A file may write it as an integer.
-    Number { min: f64, max: f64 },
+    /// A finite number, both limits included, or 0 too. A file may write it as an integer.
+    Number { min: f64, max: f64, or_zero: bool },
     /// A key whose value is one of some texts. If all of them are decimal integers, a file writes an integer.
     Choice(&'static [&'static str]),
     /// `true` or `false`.
@@ -77,7 +77,17 @@ impl Key {
         doc: &'static str,
     ) -> Self {
         let (min, max) = range.into_inner();
-        Self::new(name, Kind::Number { min, max }, Value::Number(default), doc)
+        Self::new(name, Kind::Number { min, max, or_zero: false }, Value::Number(default), doc)
+    }
+
+    /// A number in a range above 0, or 0, its default, which says that none is given.
+    pub fn number_or_zero(
+        name: &'static str,
+        range: RangeInclusive<f64>,
+        doc: &'static str,
+    ) -> Self {
+        let (min, max) = range.into_inner();
+        Self::new(name, Kind::Number { min, max, or_zero: true }, Value::Number(0.0), doc)
     }
 
     /// A key whose value is one of some texts. With options that are all decimal integers, as `["2", "4"]`, a file

@@ -97,10 +97,9 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
             false,
             "Write the clock as constraints: <top>.sdc and <top>.xdc.",
         ),
-        Key::number(
+        Key::number_or_zero(
             "package.clock_mhz",
-            0.0,
-            0.0..=2000.0,
+            1.0..=2000.0,
             "The frequency of the clock in constraints and vendors' projects. 0 for that of the pipeline, \
              or 100 for a sequential core.",
         )

@@ -17,9 +17,9 @@ impl Key {
             (Kind::Integer { min, max }, Value::Integer(given)) => {
                 self.unless((min..=max).contains(&given), || out_of_range(name, given))
             }
-            (Kind::Number { min, max }, Value::Number(given)) => {
-                let given_text = value.bare();
-                self.unless((min..=max).contains(&given), || out_of_range(name, given_text))
+            (Kind::Number { min, max, or_zero }, Value::Number(given)) => {
+                let good = (min..=max).contains(&given) || *or_zero && *given == 0.0;
+                self.unless(good, || out_of_range(name, value.bare()))
             }
             (Kind::Choice(options), Value::Text(given)) => self
                 .unless(options.contains(&given.as_str()), || {
@@ -100,7 +100,10 @@ impl Key {
     pub fn accepts(&self) -> String {
         match &self.kind {
             Kind::Integer { min, max } => format!("an integer from {min} to {max}"),
-            Kind::Number { min, max } => format!("a number from {min:?} to {max:?}"),
+            Kind::Number { min, max, or_zero } => {
+                let zero = if *or_zero { "0, or " } else { "" };
+                format!("{zero}a number from {min:?} to {max:?}")
+            }
             Kind::Choice(options) => {
                 let options: Vec<String> =
                     options.iter().map(|option| Value::Text((*option).to_owned()).toml()).collect();
@@ -126,7 +129,7 @@ impl Key {
     fn stand_ins(&self) -> Vec<Value> {
         let ends: Vec<Value> = match &self.kind {
             Kind::Integer { min, max } => vec![Value::Integer(*min), Value::Integer(*max)],
-            Kind::Number { min, max } => vec![Value::Number(*min), Value::Number(*max)],
+            Kind::Number { min, max, .. } => vec![Value::Number(*min), Value::Number(*max)],
             Kind::Choice(options) => {
                 options.iter().map(|option| Value::Text((*option).to_owned())).collect()
             }

@@ -98,11 +98,22 @@ fn keys_for_vendors_tools_are_checked() {
         ["3:10 package.vivado | `package.vivado` has no effect with package.constraints = false \
           | remove it, or set package.constraints = true"]
     );
-    assert_eq!(
-        of_package("constraints = true\nclock_mhz = -1\n"),
-        ["4:13 package.clock_mhz | `package.clock_mhz` = -1.0 is out of range \
-          | give a number from 0.0 to 2000.0 (default 0.0)"]
-    );
+    // A period of such a clock is none that a tool reads.
+    for (given, shown) in
+        [("-1", "-1.0"), ("5e-324", "5e-324"), ("0.999", "0.999"), ("2001", "2001.0")]
+    {
+        assert_eq!(
+            of_package(&format!("constraints = true\nclock_mhz = {given}\n")),
+            [format!(
+                "4:13 package.clock_mhz | `package.clock_mhz` = {shown} is out of range \
+                 | give 0, or a number from 1.0 to 2000.0 (default 0.0)"
+            )]
+        );
+    }
+    for given in ["0", "0.0", "1", "2000"] {
+        let said = of_package(&format!("constraints = true\nclock_mhz = {given}\n"));
+        assert!(said[0].starts_with("accepted"), "{said:?}");
+    }
     assert_eq!(
         of_package("litex = true\n"),
         ["3:9 package.litex | `package.litex` has no effect with package.memories = \"files\" \

@@ -118,7 +118,7 @@ constraints = false
 
 # The frequency of the clock in constraints and vendors' projects. 0 for that of the
 # pipeline, or 100 for a sequential core.
-# A number from 0.0 to 2000.0, default 0.0; only with package.constraints = true.
+# 0, or a number from 1.0 to 2000.0, default 0.0; only with package.constraints = true.
 # clock_mhz = 0.0
 
 # Write Tcl for Vivado: <name>_vivado.tcl builds, <name>_vivado_ip.tcl packages IP.

@@ -61,6 +61,7 @@ fn mistakes_are_found() {
         "device = \"cosine-power\"\n[cosine]\nfractoin = 20\n",
         "device = \"cosine-power\"\n[interface]\nregisters = \"wishbon\"\n",
         "device = \"cosine-power\"\n[interface]\nstream = \"yes\"\n",
+        "device = \"cosine-power\"\n[package]\nconstraints = true\nclock_mhz = 0.5\n",
         "device = \"quad-cosine\"\npower = 4\n",
         "power = 4\n",
     ];
