@@ -16,6 +16,8 @@ struct DeviceCore<'a> {
     description: String,
     sources: Sources<'a>,
     testbench: bool,
+    /// That of `<name>.xdc` and `<name>.sdc`, if there are any.
+    clock_mhz: Option<f64>,
     version: &'a str,
     licence: &'a str,
 }
@@ -28,8 +30,6 @@ pub struct Sources<'a> {
     pub wrappers: &'a [String],
     /// ROM contents.
     pub memories: &'a [String],
-    /// There are `<name>.xdc` and `<name>.sdc`.
-    pub constrained: bool,
 }
 
 /// The core of the bench.
@@ -55,9 +55,15 @@ pub fn device(
 ) -> Result<String> {
     // A YAML string in single quotes; a quote in it is doubled.
     let description = ascii(&design.about.title).replace('\'', "''");
-    let (version, licence) = (&inputs.around.version, &inputs.around.licence);
-    let name = &design.name;
-    super::render(&DeviceCore { name, description, sources, testbench, version, licence })
+    super::render(&DeviceCore {
+        name: &design.name,
+        description,
+        sources,
+        testbench,
+        clock_mhz: inputs.around.clock_mhz,
+        version: &inputs.around.version,
+        licence: &inputs.around.licence,
+    })
 }
 
 /// `<name>_tb.core`. File names are relative to it.

@@ -200,12 +200,8 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         scripts: &names_of(&scripts),
     };
     let has_bench = !testbench.is_empty();
-    let sources = fusesoc::Sources {
-        rtl: &rtl_names,
-        wrappers: &wrapper_names,
-        memories: &memory_names,
-        constrained: !constraints.is_empty(),
-    };
+    let sources =
+        fusesoc::Sources { rtl: &rtl_names, wrappers: &wrapper_names, memories: &memory_names };
     let core = fusesoc::device(design, inputs, sources, has_bench)?;
     let mut all: Vec<OutputFile> = rtl
         .into_iter()

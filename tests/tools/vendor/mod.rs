@@ -387,4 +387,7 @@ fn fusesoc_sets_up_the_vendors_projects() {
         made.unwrap_or_else(|error| panic!("{error:#}"));
         assert!(text_below(&format!("/{target}/"), ".json").contains(cell), "{target}");
     }
+    // The clock of the constraints, which this core does not reach there, without an end before the bitstream.
+    let rules = text_below("/ecp5/", "Makefile");
+    assert!(rules.contains("--freq=100 --timing-allow-fail"), "{rules}");
 }
