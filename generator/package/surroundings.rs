@@ -19,17 +19,19 @@ pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), Unfit> {
     if asked <= made_for {
         return Ok(());
     }
-    let (made, remedy) = match config.integer("pipeline.stages") {
+    let (made, faster) = match config.integer("pipeline.stages") {
         0 => ("the pipeline is made for".to_owned(), format!("set pipeline.clock_mhz to {asked}")),
-        stages => (
-            format!("{stages} stages allow on {}", pipeline.target),
-            "raise pipeline.stages".to_owned(),
-        ),
+        stages => {
+            let (plural, verb) = if stages == 1 { ("", "allows") } else { ("s", "allow") };
+            let made = format!("{stages} stage{plural} {verb} on {}", pipeline.target);
+            (made, "raise pipeline.stages".to_owned())
+        }
     };
+    let faster = if asked <= pipeline.most_mhz { format!("{faster}, or ") } else { String::new() };
     Err(Unfit::new(
         CLOCK,
         format!("`{CLOCK}` = {asked:?} is above the {made_for} MHz that {made}"),
-        format!("{remedy}, or set {CLOCK} to {made_for} or less"),
+        format!("{faster}set {CLOCK} to {made_for} or less"),
     ))
 }
 

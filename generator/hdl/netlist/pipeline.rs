@@ -9,6 +9,8 @@ pub struct Pipeline {
     pub target: String,
     /// The clock that they keep.
     pub clock_mhz: f64,
+    /// The fastest clock that some number of stages keeps: what the slowest operation alone allows.
+    pub most_mhz: f64,
     /// The environment can hold the results back by `out_ready`.
     pub stall: bool,
     /// Bits that travel with a point.

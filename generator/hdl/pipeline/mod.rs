@@ -80,8 +80,7 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
     let schedule = match options.goal {
         Goal::ClockMhz(clock) => problems.for_period(1000.0 / clock).map_err(|unreachable| {
             let (limiting, period) = (unreachable.limiting, unreachable.period);
-            // Rounded down, so that what is proposed can be reached.
-            let nearest = (1000.0 / period * 10.0).floor() / 10.0;
+            let nearest = schedule::megahertz(period);
             let message = format!(
                 "`{name}` cannot run at {clock} MHz: `{}` alone takes {period:.2} ns on {target}, which allows {nearest} MHz at \
                  most",
@@ -104,8 +103,9 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
             let schedule = problems.for_stages(stages);
             if schedule.latency > stages {
                 let least = schedule.latency;
+                let plural = if stages == 1 { "" } else { "s" };
                 let message = format!(
-                    "`{name}` cannot have {stages} stages: its block memories need {least} on {target}"
+                    "`{name}` cannot have {stages} stage{plural}: its block memories need {least} on {target}"
                 );
                 return Err(wrong(key, message, format!("set pipeline.stages to {least} or more"), None));
             }

@@ -52,6 +52,11 @@ pub struct Problems<'a> {
     block: Vec<bool>,
 }
 
+/// The clock of a period in nanoseconds, in MHz to a decimal. Rounded down, so that what is stated can be reached.
+pub fn megahertz(period: f64) -> f64 {
+    (10_000.0 / period).floor() / 10.0
+}
+
 /// A node stands at least this number of stages after another.
 type Difference = (NetId, NetId, usize);
 

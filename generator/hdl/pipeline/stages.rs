@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 
 use super::graph::{Cell, Graph};
-use super::schedule::{Problems, Schedule};
+use super::schedule::{Problems, Schedule, megahertz};
 use super::unroll::Unrolled;
 use super::{Goal, Options};
 use crate::base::fixed::Format;
@@ -75,9 +75,9 @@ pub fn assemble(
         target: options.target.name.to_owned(),
         clock_mhz: match options.goal {
             Goal::ClockMhz(clock) => clock,
-            // As it is stated, and rounded down, so that it is kept.
-            Goal::Stages(_) => (10_000.0 / schedule.period).floor() / 10.0,
+            Goal::Stages(_) => megahertz(schedule.period),
         },
+        most_mhz: problems.fastest().map_or(f64::INFINITY, |it| megahertz(it.period)),
         stall: options.stall,
         side: options.side,
         stages,

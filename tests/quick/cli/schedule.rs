@@ -7,7 +7,7 @@ type Refusal = (&'static str, [&'static str; 3]);
 
 #[test]
 fn what_cannot_be_a_pipeline_is_refused_with_line_key_and_remedy() {
-    let refusals: [Refusal; 6] = [
+    let refusals: [Refusal; 8] = [
         (
             "device = \"rough\"\narchitecture = \"pipelined\"\n[pipeline]\nclock_mhz = 900\n",
             ["`core` cannot run at 900 MHz: `", "core.toml:4:13", "set pipeline.clock_mhz to "],
@@ -18,7 +18,7 @@ fn what_cannot_be_a_pipeline_is_refused_with_line_key_and_remedy() {
         ),
         (
             "device = \"rough\"\narchitecture = \"pipelined\"\n[pipeline]\nstages = 1\n",
-            ["`core` cannot have 1 stages: its block memories", "core.toml:4:10", "or more"],
+            ["`core` cannot have 1 stage: its block memories", "core.toml:4:10", "or more"],
         ),
         (
             "device = \"quad-cosine\"\narchitecture = \"pipelined\"\n",
@@ -35,11 +35,30 @@ fn what_cannot_be_a_pipeline_is_refused_with_line_key_and_remedy() {
         ),
         (
             "device = \"schlick\"\narchitecture = \"pipelined\"\npipeline.stages = 4\n[package]\n\
-             constraints = true\nclock_mhz = 900\n",
+             constraints = true\nclock_mhz = 100\n",
             [
                 "MHz that 4 stages allow on ecp5",
                 "core.toml:6:13",
-                "raise pipeline.stages, or set package.clock_mhz to ",
+                "help: raise pipeline.stages, or set package.clock_mhz to ",
+            ],
+        ),
+        // Neither a clock nor stages are proposed where none are enough.
+        (
+            "device = \"schlick\"\narchitecture = \"pipelined\"\npipeline.clock_mhz = 60\n[package]\n\
+             constraints = true\nclock_mhz = 900\n",
+            [
+                "`package.clock_mhz` = 900.0 is above the 60 MHz that the pipeline is made for",
+                "core.toml:6:13",
+                "help: set package.clock_mhz to 60 or less",
+            ],
+        ),
+        (
+            "device = \"schlick\"\narchitecture = \"pipelined\"\npipeline.stages = 1\n[package]\n\
+             constraints = true\nclock_mhz = 900\n",
+            [
+                "MHz that 1 stage allows on ecp5",
+                "core.toml:6:13",
+                "help: set package.clock_mhz to ",
             ],
         ),
     ];
