@@ -26,10 +26,11 @@ need() {
     done
     if [[ -z ${GLINT:-} ]]; then
         cargo build --release --quiet --manifest-path "$root/Cargo.toml"
-        GLINT=$root/target/release/glint
+        GLINT=${CARGO_TARGET_DIR:-$root/target}/release/glint
     fi
+    command -v "$GLINT" > /dev/null || fail "GLINT is '$GLINT', which is no program"
     # Scripts go to other directories.
-    GLINT=$(realpath "$(command -v "$GLINT")") || fail "GLINT is '$GLINT', which is no program"
+    GLINT=$(realpath "$(command -v "$GLINT")")
 }
 
 # Goes to the directory for a scene on a board, with the core's contents of memories in it. `sources` is the Verilog.
