@@ -78,6 +78,8 @@ pub struct Wish {
     pub objective: Objective,
     /// The slowest clock in MHz, by the estimate.
     pub clock: Option<f64>,
+    /// The fewest million points a second, by the estimate of the clock.
+    pub rate: Option<f64>,
 }
 
 /// Searches for the smallest configuration. `base` has the keys that are part of the wish; the free ones are changed, but for those

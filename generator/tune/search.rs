@@ -10,8 +10,12 @@ use super::model::Cost;
 use super::space::Space;
 use super::{Objective, Wish};
 use crate::config::{Config, Value};
+use crate::evidence::comparison::clocks_per_point;
 use crate::golden::Bound;
 use crate::registry::Device;
+
+/// The exponent at which the clocks of a point are counted where they depend on it.
+const EXPONENT: f64 = 35.0;
 
 /// A configuration with what is known of it.
 #[derive(Clone, Debug)]
@@ -22,6 +26,15 @@ pub struct Candidate {
     pub bound: Bound,
     /// The estimate of what it costs.
     pub cost: Cost,
+    /// Clocks from a point to the next, as `glint synth` counts them; `None` if the device shows none.
+    pub clocks: Option<f64>,
+}
+
+impl Candidate {
+    /// Million points a second at the estimated clock.
+    pub fn rate(&self) -> Option<f64> {
+        self.clocks.map(|clocks| self.cost.mhz / clocks)
+    }
 }
 
 /// What came of a search.
@@ -102,12 +115,13 @@ impl<'a> Search<'a> {
         if let Some(known) = known(&lock()) {
             return known;
         }
-        let bound = (self.device.contract)(config).bound();
+        let contract = (self.device.contract)(config);
         let design = self.device.design(config).ok();
         let found = design.map(|design| Candidate {
             config: config.clone(),
-            bound,
+            bound: contract.bound(),
             cost: Cost::new(&design, self.wish.target),
+            clocks: clocks_per_point(&design, contract.as_ref(), EXPONENT).ok(),
         });
         let mut seen = lock();
         seen.insert(text, found.clone());
@@ -120,8 +134,20 @@ impl<'a> Search<'a> {
     }
 
     fn keeps(&self, candidate: &Candidate) -> bool {
-        self.error(candidate) <= self.wish.error
-            && self.wish.clock.is_none_or(|clock| candidate.cost.mhz >= clock)
+        self.error(candidate) <= self.wish.error && self.is_fast(candidate)
+    }
+
+    fn is_fast(&self, candidate: &Candidate) -> bool {
+        candidate.cost.mhz >= self.wanted_mhz(candidate)
+    }
+
+    /// The clock that a candidate needs for the wish, in MHz: infinite where it shows no point.
+    fn wanted_mhz(&self, candidate: &Candidate) -> f64 {
+        let of_rate = self.wish.rate.map(|rate| match candidate.clocks {
+            Some(clocks) => rate * clocks,
+            None => f64::INFINITY,
+        });
+        self.wish.clock.unwrap_or_default().max(of_rate.unwrap_or_default())
     }
 
     /// What is to be small, the most important first; two candidates that are alike in it differ in their text.
@@ -171,22 +197,33 @@ impl<'a> Search<'a> {
                 true => self.error(candidate),
                 // The error is kept, and the clock is not.
                 false if self.error(candidate) > self.wish.error => f64::INFINITY,
-                false => -candidate.cost.mhz,
+                false => -candidate.cost.mhz / self.wanted_mhz(candidate),
             };
             let next = self.around(&here, 1).into_iter();
             let next = next.min_by(|one, other| measure(one).total_cmp(&measure(other)));
             match next.filter(|next| measure(next) < measure(&here) - 1e-9) {
                 Some(next) => here = next,
                 None if wanted => return self.out_of_reach(&here),
-                None => bail!(
-                    "the estimate of the fastest clock that keeps the error is {:.1} MHz, {:.1} MHz are wanted; \
-                     `--set architecture=pipelined` computes a point a clock",
-                    here.cost.mhz,
-                    self.wish.clock.unwrap_or_default()
-                ),
+                None => return self.too_slow(&here),
             }
         }
         Ok(here)
+    }
+
+    /// The clock that cannot be kept.
+    fn too_slow(&self, fastest: &Candidate) -> Result<Candidate> {
+        let wanted = match (self.wish.rate, fastest.clocks) {
+            (Some(rate), Some(clocks)) => {
+                format!("for {rate} million points a second at {clocks} clocks a point")
+            }
+            _ => "as --clock".to_owned(),
+        };
+        bail!(
+            "the estimate of the fastest clock that keeps the error is {:.1} MHz, {:.1} MHz are wanted {wanted}; \
+             `--set architecture=pipelined` computes a point a clock",
+            fastest.cost.mhz,
+            self.wanted_mhz(fastest)
+        )
     }
 
     /// The error that cannot be kept, and what is in the way.
@@ -216,9 +253,7 @@ impl<'a> Search<'a> {
     }
 
     fn front(&self, all: Vec<Candidate>) -> Vec<Candidate> {
-        let clock =
-            |candidate: &Candidate| self.wish.clock.is_none_or(|clock| candidate.cost.mhz >= clock);
-        let mut all: Vec<Candidate> = all.into_iter().filter(clock).collect();
+        let mut all: Vec<Candidate> = all.into_iter().filter(|it| self.is_fast(it)).collect();
         all.sort_by(|one, other| {
             let by_error = self.error(one).total_cmp(&self.error(other));
             by_error.then(self.order(one).0.total_cmp(&self.order(other).0))

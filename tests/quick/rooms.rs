@@ -27,11 +27,11 @@ const ROOMS: [(&str, &str); 26] = [
     ("cosim", "base golden hdl/netlist hdl/sim observation package tools"),
     ("registry", "base config golden hdl/netlist hdl/dsl hdl/pipeline devices"),
     ("core", "config golden hdl/netlist package tools cosim registry"),
-    ("tune", "config golden hdl/netlist hdl/pipeline registry synth"),
     ("certify", "base golden hdl/netlist hdl/pipeline tools"),
     ("mutate", "base golden hdl/netlist hdl/sim package tools cosim core"),
     ("render", "base config golden cosim core"),
     ("evidence", "config golden hdl/netlist tools cosim registry core"),
+    ("tune", "config golden hdl/netlist hdl/pipeline registry synth evidence"),
     (
         "pages",
         "base config golden hdl/netlist hdl/verilog package tools synth cosim core render evidence",

@@ -51,7 +51,14 @@ fn spaces() -> Vec<(&'static str, f64, Vec<Values>)> {
 }
 
 fn wish(error: f64, target: Target) -> Wish {
-    Wish { error, unit: ErrorUnit::Output, target, objective: Objective::Area, clock: None }
+    Wish {
+        error,
+        unit: ErrorUnit::Output,
+        target,
+        objective: Objective::Area,
+        clock: None,
+        rate: None,
+    }
 }
 
 #[test]
@@ -139,4 +146,23 @@ fn a_wish_out_of_reach_says_what_is_in_the_way() {
     let refused = tune(&device, &defaults(&device), &[], &fast, &|_| ());
     let refused = format!("{:#}", refused.expect_err("out of reach"));
     assert!(refused.contains("5000.0 MHz are wanted"), "{refused}");
+    let many = Wish { rate: Some(500.0), ..wish(0.9, Target::Ecp5) };
+    let refused = tune(&device, &defaults(&device), &[], &many, &|_| ());
+    let refused = format!("{:#}", refused.expect_err("out of reach"));
+    let wanted = "4000.0 MHz are wanted for 500 million points a second at 8 clocks a point";
+    assert!(refused.contains(wanted), "{refused}");
+}
+
+/// Clocks of a point as README.md has them: `cosine-power` takes 8, a pipeline 1; a rate is the clock divided by them.
+#[test]
+fn a_rate_asks_for_the_clock_that_the_clocks_of_a_point_need() {
+    let device = device("cosine-power");
+    let slow = tune(&device, &defaults(&device), &[], &wish(0.9, Target::Ecp5), &|_| ());
+    let slow = slow.expect("an answer").best;
+    assert_eq!(slow.clocks, Some(8.0));
+    assert_eq!(slow.rate(), Some(slow.cost.mhz / 8.0));
+    let wanted = slow.rate().expect("a rate") * 0.99;
+    let kept = Wish { rate: Some(wanted), ..wish(0.9, Target::Ecp5) };
+    let kept = tune(&device, &defaults(&device), &[], &kept, &|_| ()).expect("an answer").best;
+    assert!(kept.cost.mhz >= 8.0 * wanted, "{} MHz", kept.cost.mhz);
 }

@@ -49,6 +49,9 @@ pub struct Arguments {
     /// The clock that the core must reach, by the estimate
     #[arg(long, value_name = "MHZ")]
     clock: Option<f64>,
+    /// How many million points a second the core must compute, by the estimated clock and the clocks of a point
+    #[arg(long, value_name = "MPOINTS")]
+    rate: Option<f64>,
     /// A key with the value that it must have: a format, the domain, or any other; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
     set: Vec<String>,
@@ -106,6 +109,11 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     if !(arguments.error > 0.0 && arguments.error.is_finite()) {
         bail!(WrongUsage(format!("--error {}: an error is a number above 0", arguments.error)));
     }
+    for (option, wanted) in [("--clock", arguments.clock), ("--rate", arguments.rate)] {
+        if let Some(wanted) = wanted.filter(|wanted| !(*wanted > 0.0 && wanted.is_finite())) {
+            bail!(WrongUsage(format!("{option} {wanted}: a number above 0 is wanted")));
+        }
+    }
     if !tune::model::knows(arguments.target) {
         bail!(WrongUsage(format!(
             "--target {}: there is no estimate of what a configuration costs there; tune for an FPGA and see `glint synth`",
@@ -121,6 +129,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         target: arguments.target,
         objective: arguments.objective,
         clock: arguments.clock,
+        rate: arguments.rate,
     };
     let bar: ProgressBar = progress::bar(output, 0, "configurations");
     let fixed: Vec<&str> = fixed.iter().map(String::as_str).collect();
@@ -228,6 +237,7 @@ fn print(answer: &Answer, arguments: &Arguments, text: &str) {
         Column::numbers("RAM"),
         Column::numbers("ROM bits"),
         Column::numbers("MHz"),
+        Column::numbers("M points/s"),
         Column::words("keys").dispensable(1),
     ];
     let rows = answer.front.iter().map(|candidate| {
@@ -240,6 +250,7 @@ fn print(answer: &Answer, arguments: &Arguments, text: &str) {
             cost.block_rams.to_string(),
             cost.rom_bits.to_string(),
             format!("{:.0}", cost.mhz),
+            candidate.rate().map_or_else(|| "-".to_owned(), |rate| format!("{rate:.1}")),
             widths(answer, candidate),
         ]
     });
@@ -271,6 +282,8 @@ fn as_json(answer: &Answer, arguments: &Arguments, text: &str) -> Json {
             "error_of_f": candidate.bound.f,
             "output_units": candidate.bound.units,
             "cost": candidate.cost,
+            "clocks_per_point": candidate.clocks,
+            "million_points_per_second": candidate.rate(),
             "keys": keys.collect::<serde_json::Map<String, Json>>(),
         })
     };
@@ -289,7 +302,8 @@ fn as_json(answer: &Answer, arguments: &Arguments, text: &str) -> Json {
 
 fn print_csv(answer: &Answer) -> Result<()> {
     let mut csv = csv::Writer::from_writer(Vec::new());
-    let head = ["error_of_f", "output_units", "luts", "dsps", "block_rams", "rom_bits", "mhz"];
+    let head =
+        ["error_of_f", "output_units", "luts", "dsps", "block_rams", "rom_bits", "mhz", "mpoints"];
     csv.write_record(head.iter().copied().chain(answer.free.iter().copied()))?;
     for candidate in &answer.front {
         let cost = &candidate.cost;
@@ -301,6 +315,7 @@ fn print_csv(answer: &Answer) -> Result<()> {
             cost.block_rams.to_string(),
             cost.rom_bits.to_string(),
             format!("{:.1}", cost.mhz),
+            candidate.rate().map_or_else(String::new, |rate| format!("{rate:.2}")),
         ];
         let keys = answer.free.iter().map(|key| candidate.config.value(key).bare());
         csv.write_record(figures.into_iter().chain(keys))?;
