@@ -137,7 +137,7 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
             "package.licence",
             "LicenseRef-belongs-to-its-user",
             TextPattern::Licence,
-            "The licence of the files for FuseSoC; what Glint generates belongs to its user.",
+            "The licence of the files for FuseSoC, of which only the characters are checked. What Glint generates belongs to its user.",
         ),
     ]
 });

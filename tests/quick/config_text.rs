@@ -142,7 +142,8 @@ vendor = \"glint\"
 # A version of three numbers up to 9999, as \"1.0.0\", default \"0.1.0\".
 version = \"0.1.0\"
 
-# The licence of the files for FuseSoC; what Glint generates belongs to its user.
+# The licence of the files for FuseSoC, of which only the characters are checked. What
+# Glint generates belongs to its user.
 # An SPDX licence expression of at most 60 characters, as \"MIT OR Apache-2.0\", default
 # \"LicenseRef-belongs-to-its-user\".
 licence = \"LicenseRef-belongs-to-its-user\"
