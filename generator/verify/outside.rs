@@ -248,16 +248,30 @@ pub const FORMAL: Check = Check {
             }
         }
         let limits = Limits { time: limit.min(PROOF_LIMITS.time), ..PROOF_LIMITS };
-        if let Err(error) = prove(&flat, name, limits) {
-            return match error.downcast_ref::<LimitReached>() {
-                Some(_) => Ok(Finding::without(Verdict::NotRun, format!("Undecided: {error:#}"))),
-                None => Err(error),
-            };
+        // The core's, and one for each wrapper.
+        let mut proofs = Vec::new();
+        for entry in flat.read_dir().context("cannot read what was emitted")? {
+            let file = entry.context("cannot read what was emitted")?.file_name();
+            let module = file.to_str().and_then(|file| file.strip_suffix("_formal.sv"));
+            proofs.extend(module.map(str::to_owned));
         }
+        proofs.sort();
+        for module in &proofs {
+            if let Err(error) = prove(&flat, module, limits) {
+                return match error.downcast_ref::<LimitReached>() {
+                    Some(_) => {
+                        Ok(Finding::without(Verdict::NotRun, format!("Undecided: {error:#}")))
+                    }
+                    None => Err(error),
+                };
+            }
+        }
+        let files: Vec<String> =
+            proofs.iter().map(|module| format!("{module}_formal.sv")).collect();
         Ok(Finding::new(
             Verdict::Proved,
             "all inputs, any state, any number of clocks".to_owned(),
-            format!("The properties of {name}_formal.sv are proved by k-induction."),
+            format!("The properties of {} are proved by k-induction.", files.join(", ")),
             Vec::new(),
         )
         .open("Values: products and ROMs of the datapath are cut away."))

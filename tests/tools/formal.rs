@@ -4,12 +4,14 @@
 //! The tasks for SymbiYosys have the same commands and the same depth; it is no part of the tools here.
 
 use std::fs;
+use std::path::Path;
 use std::time::Duration;
 
 use crate::common::bench::with_flipped_bit;
 use crate::common::cores::{Emitted, all_configurations, configuration, write};
 use crate::common::tools::LIMIT;
 use glint::tools::{LimitReached, Limits, PROOF_LIMITS, prove};
+use glint::verify::{CHECKS, Effort, Subject, Verdict};
 use rayon::prelude::*;
 
 #[test]
@@ -200,4 +202,19 @@ fn emitted(core: &glint::core::Core) -> (tempfile::TempDir, String) {
     let files = files.collect();
     write(place.path(), &files);
     (place, emitted.name)
+}
+
+/// `glint verify` proves what is emitted around a core too.
+#[test]
+fn verify_proves_the_wrappers() {
+    let core = configuration("configs/cosine_power.toml");
+    let check = CHECKS.iter().find(|check| check.id == "formal").expect("the check");
+    let effort = Effort { full: false, without_tools: false, time_limit: LIMIT };
+    let subject = Subject { path: "core.toml", core: &core, effort, proofs: Path::new("proofs") };
+    let finding = check.run(&subject, &|_| ()).finding;
+    assert_eq!(finding.verdict, Verdict::Proved, "{}", finding.words);
+    for wrapper in ["axis", "registers", "wb"] {
+        let file = format!("cosine_power_{wrapper}_formal.sv");
+        assert!(finding.words.contains(&file), "{}", finding.words);
+    }
 }
