@@ -1,7 +1,7 @@
 // ${ name }$_axis_formal: what is proved of ${ name }$_axis
 //
-// For formal tools alone: every input is free, the sender's too. In place of the core stands any
-// with its handshake: busy from the clock after start to done, results while it is busy,
+// For formal tools alone. All inputs are free, the sender's too. The core is abstracted to its
+// handshake: busy from the clock after start to done, results while it is busy,
 <%- if line.is_some() %> one more
 // than its length,
 <%- else %> exactly

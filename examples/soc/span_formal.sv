@@ -76,7 +76,7 @@ module span_formal #(
         .result_ready(result_ready)
     );
 
-    // What the proof sees of the inside.
+    // Internal signals that the proof refers to.
     (* hierconn *) wire [15:2] \dut.next_source ;
     (* hierconn *) wire [15:2] \dut.next_destination ;
     (* hierconn *) wire \dut.under_way ;

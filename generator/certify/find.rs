@@ -69,10 +69,7 @@ pub fn bound(gappa: &Tool, asked: &[Statement], limit: Duration) -> Result<Resul
             if middle >= above {
                 break;
             }
-            match holds(middle)? {
-                true => above = middle,
-                false => bound = middle,
-            }
+            if holds(middle)? { above = middle } else { bound = middle }
         }
         bound = above;
     }

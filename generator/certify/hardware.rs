@@ -113,10 +113,8 @@ impl<'a> Hardware<'a> {
         let difference = add(terms, a, b, Term::Sub, "compared");
         let Value::Term { id, .. } = difference else { return None };
         let value = |raw: i128| raw as f64 * exp2(-scale);
-        let range = match less {
-            true => (value(a_low - b_high), value(-1)),
-            false => (0.0, value(a_high - b_low)),
-        };
+        let range =
+            if less { (value(a_low - b_high), value(-1)) } else { (0.0, value(a_high - b_low)) };
         (scale == other).then_some((id, range))
     }
 

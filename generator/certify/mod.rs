@@ -93,9 +93,10 @@ pub fn statements(
     limit: Duration,
 ) -> Result<Vec<Statement>, String> {
     let bound = contract.bound();
-    match bound.is_stated() {
-        true => within(design, contract, Some(bound.units), limit),
-        false => Err("its contract states no bound".to_owned()),
+    if bound.is_stated() {
+        within(design, contract, Some(bound.units), limit)
+    } else {
+        Err("its contract states no bound".to_owned())
     }
 }
 

@@ -122,10 +122,8 @@ impl Task<'_> {
 /// That a step of a divider leaves a remainder between 0 and the divisor, whether the divisor fits into twice the remainder or
 /// not. The numbers are the shares of the divisor, which is 1.
 fn step(fits: bool) -> String {
-    let (condition, left) = match fits {
-        true => ("doubled - 1 >= 0", "doubled - 1"),
-        false => ("doubled - 1 <= 0", "doubled"),
-    };
+    let (condition, left) =
+        if fits { ("doubled - 1 >= 0", "doubled - 1") } else { ("doubled - 1 <= 0", "doubled") };
     format!(
         "doubled = 2 * remainder;\nleft = {left};\n\n{{ remainder in [0,1]\n  /\\ {condition}\n  -> left in [0,1] }}\n\n"
     )

@@ -167,9 +167,10 @@ impl<'a> Points<'a> {
     /// A raw value for one operand: half of the time any bit pattern of its format.
     pub fn any(&self, random: &mut Random, at: usize) -> i64 {
         let format = self.operands[at].format;
-        match random.once_in(2) {
-            true => random.within(format.min_raw() as i64, format.max_raw() as i64),
-            false => self.one(random, at),
+        if random.once_in(2) {
+            random.within(format.min_raw() as i64, format.max_raw() as i64)
+        } else {
+            self.one(random, at)
         }
     }
 
@@ -348,18 +349,12 @@ impl Way {
         let (mut inner, mut outer) = (f64::from(64 - span.leading_zeros()) + 1.0, 0.0);
         for _ in 0..HALVINGS {
             let middle = f64::midpoint(inner, outer);
-            match reaches(libm::exp2(-middle)) {
-                true => inner = middle,
-                false => outer = middle,
-            }
+            if reaches(libm::exp2(-middle)) { inner = middle } else { outer = middle }
         }
         let (mut inner, mut outer) = (libm::exp2(-inner), libm::exp2(-outer));
         while exact && (outer - inner) * span as f64 > 0.5 {
             let middle = f64::midpoint(inner, outer);
-            match reaches(middle) {
-                true => inner = middle,
-                false => outer = middle,
-            }
+            if reaches(middle) { inner = middle } else { outer = middle }
         }
         [inner, outer]
     }

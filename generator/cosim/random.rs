@@ -63,10 +63,8 @@ impl Random {
 
     /// A bit pattern for an operand: mostly of its domain, as [`Random::of_domain`] draws it, at times any.
     pub fn pattern(&mut self, operand: &Operand) -> u64 {
-        let raw = match self.once_in(16) {
-            true => self.bits() as i64,
-            false => self.of_domain(operand.domain),
-        };
+        let raw =
+            if self.once_in(16) { self.bits() as i64 } else { self.of_domain(operand.domain) };
         raw as u64 & mask(operand.format.width())
     }
 

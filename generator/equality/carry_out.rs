@@ -138,9 +138,12 @@ impl<'a> Execution<'a> {
     ) -> Id {
         let of = |net: &NetId| values[net.index()];
         let is_signed = |net: &NetId| self.design.net(*net).format.signed;
-        let extended = |terms: &mut Terms, net: &NetId, width: u32| match is_signed(net) {
-            true => terms.sign_extended(of(net), width),
-            false => terms.resized(of(net), width),
+        let extended = |terms: &mut Terms, net: &NetId, width: u32| {
+            if is_signed(net) {
+                terms.sign_extended(of(net), width)
+            } else {
+                terms.resized(of(net), width)
+            }
         };
         match op {
             Op::Relabel(a) => of(a),

@@ -92,9 +92,10 @@ fn in_parts(terms: &mut Terms, factor: Id, other: Id) -> Option<Parts> {
         return None;
     }
     let whole = terms.slice(of, 0, low + terms.width(bits));
-    let whole = match signed {
-        true => terms.sign_extended(whole, MAX_WIDTH),
-        false => terms.resized(whole, MAX_WIDTH),
+    let whole = if signed {
+        terms.sign_extended(whole, MAX_WIDTH)
+    } else {
+        terms.resized(whole, MAX_WIDTH)
     };
     let product = terms.make(Term::Product(whole, other), MAX_WIDTH);
     let upper = terms.make(Term::Product(factor, other), MAX_WIDTH);
@@ -104,9 +105,10 @@ fn in_parts(terms: &mut Terms, factor: Id, other: Id) -> Option<Parts> {
     let lower = Term::Product(lower, other);
     let is_product = terms.has(&lower, MAX_WIDTH);
     let there = is_product || has_row(terms, rest, other);
-    let lower = match is_product || low > ROWS {
-        true => terms.make(lower, MAX_WIDTH),
-        false => rows(terms, rest, other),
+    let lower = if is_product || low > ROWS {
+        terms.make(lower, MAX_WIDTH)
+    } else {
+        rows(terms, rest, other)
     };
     let sum = terms.make(Term::Add(upper, lower), MAX_WIDTH);
     Some(Parts { product, sum, there })

@@ -35,10 +35,8 @@ impl Wholes {
         for signed in [false, true] {
             for &net in nets {
                 let drop = MAX_WIDTH - terms.width(net);
-                let number = |bits: u64| match signed {
-                    true => ((bits << drop) as i64 >> drop) as u64,
-                    false => bits,
-                };
+                let number =
+                    |bits: u64| if signed { ((bits << drop) as i64 >> drop) as u64 } else { bits };
                 let key = values.iter().map(|values| number(values[&net])).collect();
                 known.entry(key).or_insert(net);
             }

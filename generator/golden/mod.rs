@@ -291,19 +291,17 @@ pub struct Term {
 impl Bound {
     /// The sum of its terms, of a device that is no highlight; infinite without any.
     pub fn of(terms: Vec<Term>) -> Self {
-        let units = match terms.is_empty() {
-            true => f64::INFINITY,
-            false => terms.iter().map(|term| term.units).sum(),
+        let units = if terms.is_empty() {
+            f64::INFINITY
+        } else {
+            terms.iter().map(|term| term.units).sum()
         };
         Self { f: units, units, terms }
     }
 
     /// It in units, or that there is none.
     pub fn words(&self) -> String {
-        match self.is_stated() {
-            true => format!("{:.3}", self.units),
-            false => "not stated".to_owned(),
-        }
+        if self.is_stated() { format!("{:.3}", self.units) } else { "not stated".to_owned() }
     }
 
     /// Whether its author has stated one.

@@ -38,18 +38,20 @@ pub const DESIGN: Check = Check {
                 counted(design.registers.len(), "register"),
                 counted(design.roms.len(), "ROM"),
                 counted(design.control.microprogram.len(), "microinstruction"),
-                match bound.is_stated() {
-                    true => format!("The stated bound on an output is {:.3} units.", bound.units),
-                    false => "No bound on an output is stated.".to_owned(),
+                if bound.is_stated() {
+                    format!("The stated bound on an output is {:.3} units.", bound.units)
+                } else {
+                    "No bound on an output is stated.".to_owned()
                 },
             ),
             Vec::new(),
         );
-        Ok(match bound.units < 1.0 {
-            true => finding,
-            false => finding.open(
+        Ok(if bound.units < 1.0 {
+            finding
+        } else {
+            finding.open(
                 "The bound is not below one unit: the configuration is outside the accuracy contract.",
-            ),
+            )
         })
     },
 };
@@ -147,10 +149,7 @@ fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
 
 /// A sweep that leaves something out proves nothing.
 fn of_sweep(sweep: &Sweep) -> Verdict {
-    match sweep.omits.is_empty() {
-        true => Verdict::Proved,
-        false => Verdict::Passed,
-    }
+    if sweep.omits.is_empty() { Verdict::Proved } else { Verdict::Passed }
 }
 
 fn domain(job: &Job<'_>) -> String {

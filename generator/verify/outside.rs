@@ -184,10 +184,8 @@ fn bench(subject: &Subject<'_>, simulator: Simulator) -> Result<Finding> {
     let files = package::sources(core.files(subject.path, vectors)?);
     let top = format!("{}_tb", core.config.name);
     let outcome = run_bench(simulator, &files, &top, effort.time_limit)?;
-    let faults = match outcome.passed {
-        true => Vec::new(),
-        false => vec![outcome.transcript.trim().to_owned()],
-    };
+    let faults =
+        if outcome.passed { Vec::new() } else { vec![outcome.transcript.trim().to_owned()] };
     Ok(Finding::new(
         Verdict::Passed,
         format!("{} results in {} clocks (seed {BENCH_SEED})", grouped(points), grouped(clocks)),

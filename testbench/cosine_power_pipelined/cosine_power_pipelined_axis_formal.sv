@@ -1,8 +1,8 @@
 // cosine_power_pipelined_axis_formal: what is proved of cosine_power_pipelined_axis
 //
-// For formal tools alone: every input is free, the sender's too. In place of the core stands any
-// with its handshake and its 10 stages, which makes any results of a point. To prove it, from
-// a directory that holds the files of both folders:
+// For formal tools alone. All inputs are free, the sender's too. The core is abstracted to its
+// handshake and its 10 stages: a point has any results. To prove it, from a directory that
+// holds the files of both folders:
 //   $ yosys -q cosine_power_pipelined_axis_formal.ys
 //   $ yosys-smtbmc -s z3 --unroll -t 3 cosine_power_pipelined_axis_formal.smt2
 //   $ yosys-smtbmc -s z3 --unroll -i -t 2 cosine_power_pipelined_axis_formal.smt2

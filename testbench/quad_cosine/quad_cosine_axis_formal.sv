@@ -1,7 +1,7 @@
 // quad_cosine_axis_formal: what is proved of quad_cosine_axis
 //
-// For formal tools alone: every input is free, the sender's too. In place of the core stands any
-// with its handshake: busy from the clock after start to done, results while it is busy, one more
+// For formal tools alone. All inputs are free, the sender's too. The core is abstracted to its
+// handshake: busy from the clock after start to done, results while it is busy, one more
 // than its length, after any time and with any values. To prove it, from a directory that holds the
 // files of both folders:
 //   $ yosys -q quad_cosine_axis_formal.ys
@@ -16,15 +16,15 @@ module quad_cosine (
     input wire clk,
     input wire rst_n,
     input wire start,
-    input wire [7:0]amplitude,
+    input wire [7:0] amplitude,
     input wire amplitude_write,
-    input wire signed [27:0]delta_zeta,
+    input wire signed [27:0] delta_zeta,
     input wire delta_zeta_write,
-    input wire signed [27:0]zeta_start,
+    input wire signed [27:0] zeta_start,
     input wire zeta_start_write,
-    input wire [11:0]length,
+    input wire [11:0] length,
     input wire length_write,
-    input wire [9:0]exponent,
+    input wire [9:0] exponent,
     input wire exponent_write,
     output wire valid,
     output wire busy,
@@ -32,7 +32,7 @@ module quad_cosine (
     output wire count,
     output wire accumulate,
     output wire write_angle,
-    output wire [7:0]intensity_out
+    output wire [7:0] intensity_out
 );
     (* anyseq *) reg shows;
     (* anyseq *) reg ends;
@@ -42,7 +42,7 @@ module quad_cosine (
     assign accumulate = any_accumulate;
     (* anyseq *) reg any_write_angle;
     assign write_angle = any_write_angle;
-    (* anyseq *) reg [7:0]any_intensity_out;
+    (* anyseq *) reg [7:0] any_intensity_out;
     assign intensity_out = any_intensity_out;
     reg run;
     reg [12:0] to_come;

@@ -1,7 +1,7 @@
 // threshold_levels_axis_formal: what is proved of threshold_levels_axis
 //
-// For formal tools alone: every input is free, the sender's too. In place of the core stands any
-// with its handshake: busy from the clock after start to done, results while it is busy, exactly
+// For formal tools alone. All inputs are free, the sender's too. The core is abstracted to its
+// handshake: busy from the clock after start to done, results while it is busy, exactly
 // one, after any time and with any values. To prove it, from a directory that holds the
 // files of both folders:
 //   $ yosys -q threshold_levels_axis_formal.ys
@@ -16,30 +16,30 @@ module threshold_levels (
     input wire clk,
     input wire rst_n,
     input wire start,
-    input wire [20:0]cos_gamma,
+    input wire [20:0] cos_gamma,
     input wire cos_gamma_write,
-    input wire [9:0]exponent,
+    input wire [9:0] exponent,
     input wire exponent_write,
-    input wire [7:0]red,
+    input wire [7:0] red,
     input wire red_write,
-    input wire [7:0]green,
+    input wire [7:0] green,
     input wire green_write,
-    input wire [7:0]blue,
+    input wire [7:0] blue,
     input wire blue_write,
     output wire valid,
     output wire busy,
     output wire done,
-    output wire [7:0]red_out,
-    output wire [7:0]green_out,
-    output wire [7:0]blue_out
+    output wire [7:0] red_out,
+    output wire [7:0] green_out,
+    output wire [7:0] blue_out
 );
     (* anyseq *) reg shows;
     (* anyseq *) reg ends;
-    (* anyseq *) reg [7:0]any_red_out;
+    (* anyseq *) reg [7:0] any_red_out;
     assign red_out = any_red_out;
-    (* anyseq *) reg [7:0]any_green_out;
+    (* anyseq *) reg [7:0] any_green_out;
     assign green_out = any_green_out;
-    (* anyseq *) reg [7:0]any_blue_out;
+    (* anyseq *) reg [7:0] any_blue_out;
     assign blue_out = any_blue_out;
     reg run;
     reg computing;

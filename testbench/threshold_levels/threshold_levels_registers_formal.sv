@@ -1,6 +1,6 @@
 // threshold_levels_registers_formal: what is proved of threshold_levels_registers
 //
-// For formal tools alone: every input is free. In place of the core stands any that is busy from
+// For formal tools alone. All inputs are free. The core is abstracted to its handshake: busy from
 // the clock after start to done, with any results. To prove it, from a directory that holds the
 // files of both folders:
 //   $ yosys -q threshold_levels_registers_formal.ys

@@ -64,9 +64,8 @@ pub fn computations(design: &Design, contract: &dyn Contract) -> Result<Vec<Vec<
     let others = [&pool.readers, &pool.sweeps].into_iter().flat_map(|all| all.chunks(LANES));
     let batches = watched.chain(others.map(|batch| (batch, false)));
     for (batch, watched) in batches {
-        let shown = device.run(batch.iter().map(Vec::as_slice), |machine, busy| match watched {
-            true => watch.note(machine, busy),
-            false => watch.note_words(machine, busy),
+        let shown = device.run(batch.iter().map(Vec::as_slice), |machine, busy| {
+            if watched { watch.note(machine, busy) } else { watch.note_words(machine, busy) }
         })?;
         for (lane, (operands, shown)) in batch.iter().zip(shown).enumerate() {
             let class = class(contract, &shown);

@@ -191,9 +191,10 @@ impl Search<'_> {
         let mut moved = |lane: usize| {
             let pairs = operands.iter().zip(&kept[lane % kept.len()].1).enumerate();
             let values = pairs.map(|(at, (operand, &raw))| {
-                let (low, high) = match beyond && !operand.colour {
-                    true => (operand.format.min_raw() as i64, operand.format.max_raw() as i64),
-                    false => operand.domain,
+                let (low, high) = if beyond && !operand.colour {
+                    (operand.format.min_raw() as i64, operand.format.max_raw() as i64)
+                } else {
+                    operand.domain
                 };
                 if operand.colour {
                     return high - random.magnitude(high.abs_diff(low) / 8) as i64;

@@ -74,9 +74,9 @@ impl<const LANES: usize> Circuit<LANES> {
         let ports = design
             .ports
             .iter()
-            .map(|port| match port.role.is_input() {
-                true => observed(port.net, Direction::Input),
-                false => observed(port.net, Direction::Output),
+            .map(|port| {
+                let input = port.role.is_input();
+                observed(port.net, if input { Direction::Input } else { Direction::Output })
             })
             .collect();
         let of_partition = |partition| {

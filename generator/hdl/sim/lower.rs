@@ -60,9 +60,12 @@ impl Compiler<'_> {
                 let signed = signed(*a);
                 let (drop_a, drop_b) = (drop_of(design.width(*a)), drop_of(design.width(*b)));
                 let (a, b) = (slot(*a), slot(*b));
-                self.emit(&[a, b], |to| match signed {
-                    false => Instruction::MulUnsigned { to, a, b },
-                    true => Instruction::MulSigned { to, a, b, drop_a, drop_b, drop },
+                self.emit(&[a, b], |to| {
+                    if signed {
+                        Instruction::MulSigned { to, a, b, drop_a, drop_b, drop }
+                    } else {
+                        Instruction::MulUnsigned { to, a, b }
+                    }
                 })
             }
             Op::Equal(a, b) | Op::Less(a, b) => {

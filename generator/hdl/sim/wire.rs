@@ -53,9 +53,10 @@ impl Atom for Wire {
 
     fn descriptor(&self) -> TypeDescriptor {
         let width = self.bits();
-        let (name, kind) = match self.signed {
-            true => (format!("Signed::<{width}>"), TypeKind::Signed(width)),
-            false => (format!("Bits::<{width}>"), TypeKind::Bits(width)),
+        let (name, kind) = if self.signed {
+            (format!("Signed::<{width}>"), TypeKind::Signed(width))
+        } else {
+            (format!("Bits::<{width}>"), TypeKind::Bits(width))
         };
         TypeDescriptor { name, kind }
     }

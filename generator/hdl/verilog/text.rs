@@ -89,7 +89,7 @@ pub fn literal(value: u64, width: u32) -> String {
     }
 }
 
-/// `[7:0] `, or nothing for one bit.
+/// `[7:0]`, or nothing for one bit.
 pub fn range(width: u32) -> String {
     match width {
         1 => String::new(),

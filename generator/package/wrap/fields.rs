@@ -103,10 +103,7 @@ pub fn padding(fields: &[Field], net: &str) -> Vec<String> {
     let padded = fields.iter().filter(|field| field.padded() > field.width);
     let bits = padded.map(|field| {
         let (low, high) = (field.high() + 1, field.low + field.padded() - 1);
-        match low == high {
-            true => format!("{net}[{low}]"),
-            false => format!("{net}[{high}:{low}]"),
-        }
+        if low == high { format!("{net}[{low}]") } else { format!("{net}[{high}:{low}]") }
     });
     bits.collect()
 }

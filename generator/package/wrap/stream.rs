@@ -177,9 +177,10 @@ fn formal(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>>
         let range = range(net.format.width());
         let sign = if net.format.signed { "signed " } else { "" };
         let direction = if port.role.is_input() { "input" } else { "output" };
-        stub_ports.push(format!("{direction} wire {sign}{range}{}", net.name));
+        stub_ports.push(format!("{direction} wire {sign}{range} {}", net.name).replace("  ", " "));
         if matches!(port.role, Role::Result | Role::Status) {
-            stub_free.push(format!("(* anyseq *) reg {range}any_{};", net.name));
+            stub_free
+                .push(format!("(* anyseq *) reg {range} any_{};", net.name).replace("  ", " "));
             stub_free.push(format!("assign {0} = any_{0};", net.name));
         }
     }

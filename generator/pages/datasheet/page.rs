@@ -216,9 +216,10 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
     let registers = design.registers.iter();
     let flip_flops: u32 = registers.map(|register| design.width(register.q)).sum();
     let bound = contract.bound();
-    let error = match bound.is_stated() {
-        true => format!("{:.3} units, proven", bound.units),
-        false => "no bound is stated".to_owned(),
+    let error = if bound.is_stated() {
+        format!("{:.3} units, proven", bound.units)
+    } else {
+        "no bound is stated".to_owned()
     };
     let mut glance = vec![
         ("Largest error of an output", error),

@@ -15,10 +15,7 @@ fn design(random: &mut Random, big: bool) -> Design {
         let format = random.format(width);
         b.input(&format!("in_{at}"), format);
     }
-    let (registers_wanted, fields) = match big {
-        true => (50, 30),
-        false => (random.within(1, 6), 3),
-    };
+    let (registers_wanted, fields) = if big { (50, 30) } else { (random.within(1, 6), 3) };
     for at in 0..registers_wanted {
         let width = random.within(1, 64);
         let format = random.format(width);
