@@ -8,7 +8,7 @@ use crate::config::{Config, Key};
 use crate::cosim::batch::{Engine, Golden, RustHdl, Verilog};
 use crate::cosim::exhaustive::{Clocks, Job, Places};
 use crate::cosim::{Lockstep, directed, trial};
-use crate::golden::Contract;
+use crate::golden::{Contract, Sweep};
 use crate::hdl::netlist::Design;
 use crate::package::{
     self, ContractFacts, EmitInputs, LineClocks, OutputFile, Surroundings, Timing, Vectors,
@@ -108,16 +108,19 @@ impl Core {
         package::digest(text.as_bytes())
     }
 
-    /// Tells what a proof of this configuration goes through and computes from others: the configuration, the
+    /// Tells what a proof of this configuration goes through and computes from others: the configuration, the sweep, the
     /// sources of everything that takes part, and what a spread of places gives, which also notices a
     /// golden model outside this crate that was changed. The same on every machine.
-    pub fn fingerprint(&self) -> String {
+    pub fn fingerprint(&self, sweep: &Sweep) -> String {
         let contract = self.contract.as_ref();
-        let seen: Vec<String> = [Places::of_f(contract), Places::of_colours(contract)]
+        let places = [Places::of_sweep(contract, sweep.clone()), Places::of_colours(contract)];
+        let seen: Vec<String> = places
             .iter()
             .map(|places| places.glimpse().iter().map(|error| format!("{error:e} ")).collect())
             .collect();
-        let text = [self.digest(), env!("GLINT_SOURCES").to_owned(), seen.concat()].join("\n");
+        let axes = format!("{:?}", sweep.axes);
+        let sources = env!("GLINT_SOURCES").to_owned();
+        let text = [self.digest(), sources, axes, seen.concat()].join("\n");
         package::digest(text.as_bytes())
     }
 
@@ -136,7 +139,15 @@ impl Core {
     /// # Errors
     /// Model and design do not name the same signals.
     pub fn job(&self) -> Result<Job<'_>> {
-        Ok(Job::new(self.contract.as_ref()).with(self.clocks()?))
+        self.job_of(self.contract.sweep())
+    }
+
+    /// The same by a sweep with other values than those of the contract.
+    ///
+    /// # Errors
+    /// Model and design do not name the same signals.
+    pub fn job_of(&self, sweep: Sweep) -> Result<Job<'_>> {
+        Ok(Job::of_sweep(self.contract.as_ref(), sweep).with(self.clocks()?))
     }
 
     /// Every combination of operands, golden model against built-in simulator.

@@ -104,7 +104,10 @@ pub const CONTRACT: Check = Check {
     tools: &[],
     steps: |subject| match evaluations(subject) {
         all if is_short(subject, all) => all,
-        _ => Recorded::steps(subject.core.contract.as_ref(), AGAIN),
+        _ => record(subject)
+            .ok()
+            .flatten()
+            .map_or(1, |record| record.steps(subject.core.contract.as_ref(), AGAIN)),
     },
     run: |subject, _, progress| contract(subject, progress),
 };
@@ -118,6 +121,12 @@ fn is_short(subject: &Subject<'_>, evaluations: u64) -> bool {
     subject.effort.full || evaluations <= EVALUATIONS
 }
 
+/// The record of a long proof, if there is one.
+fn record(subject: &Subject<'_>) -> Result<Option<Recorded>> {
+    let (core, digest) = (subject.core, subject.core.contract_digest());
+    Recorded::find(subject.proofs, &digest, core.contract.as_ref())
+}
+
 /// The whole proof; or, where it is long, its record, checked again in part.
 fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Finding> {
     let contract = subject.core.contract.as_ref();
@@ -127,8 +136,7 @@ fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
     }
     let all = evaluations(subject);
     if !is_short(subject, all) {
-        let digest = subject.core.contract_digest();
-        return Ok(match Recorded::find(subject.proofs, &digest, contract)? {
+        return Ok(match record(subject)? {
             Some(record) => recorded(&record, contract, progress),
             None => without_record(subject, all),
         });
@@ -161,7 +169,7 @@ fn recorded(
     contract: &dyn Contract,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Finding {
-    let job = Job::new(contract);
+    let job = Job::of_sweep(contract, record.sweep(contract));
     let (again, faults) = record.recheck(contract, AGAIN, progress);
     let path = record.path.display().to_string().replace('\\', "/");
     let words = format!(

@@ -16,10 +16,10 @@ use super::{Loaded, load, verdict};
 use crate::base::text;
 use crate::cli::failure::WrongUsage;
 use crate::cli::{Configs, Output, TimeLimit, count, progress, tables};
-use crate::core::{TEST_POINTS, TEST_SEED};
-use crate::cosim::exhaustive::Shard;
+use crate::core::{Core, TEST_POINTS, TEST_SEED};
+use crate::cosim::exhaustive::{AxisValues, Shard, axis};
 use crate::cosim::{Outcome, Worst};
-use crate::golden::Bound;
+use crate::golden::{Bound, Sweep};
 use crate::registry::Registry;
 use crate::tools;
 use benches::benches;
@@ -57,11 +57,29 @@ pub struct Arguments {
     /// With --exhaustive: do part I of N, for a job array; `glint merge` joins the parts
     #[arg(long, value_name = "I/N", requires = "exhaustive", requires = "resume")]
     shard: Option<Shard>,
+    #[command(flatten)]
+    sweep: SweepValues,
     /// Write a waveform (VCD) of one configuration (built-in simulator only)
     #[arg(long, value_name = "FILE")]
     vcd: Option<PathBuf>,
     #[command(flatten)]
     time_limit: TimeLimit,
+}
+
+/// What an exhaustive check goes through in place of the contract's values.
+#[derive(Args)]
+pub struct SweepValues {
+    /// Visit these raw values of an operand in place of those of the contract, as `cos_dgamma=1000,2000..3000/50`;
+    /// may be given for several operands
+    #[arg(long = "values", value_name = "OPERAND=VALUES")]
+    others: Vec<AxisValues>,
+}
+
+impl SweepValues {
+    /// The sweep of a core.
+    pub fn of(&self, core: &Core) -> Result<Sweep> {
+        axis::sweep(core.contract.as_ref(), &self.others)
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -78,6 +96,9 @@ pub enum Simulator {
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     if arguments.exhaustive {
         return exhaustive::run(registry, output, arguments);
+    }
+    if !arguments.sweep.others.is_empty() {
+        bail!(WrongUsage("--values is for --exhaustive".to_owned()));
     }
     let loaded = load(registry, &arguments.configs.paths)?;
     if arguments.vcd.is_some() && loaded.len() != 1 {

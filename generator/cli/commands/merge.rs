@@ -6,6 +6,7 @@ use anyhow::{Context, Result, ensure};
 use clap::Args;
 use serde_json::json;
 
+use super::cosim::SweepValues;
 use super::cosim::exhaustive::read;
 use super::cosim::exhaustive::show::{announce, report};
 use super::load;
@@ -25,22 +26,26 @@ pub struct Arguments {
     /// The files of all parts
     #[arg(value_name = "FILE", required = true)]
     files: Vec<PathBuf>,
+    #[command(flatten)]
+    sweep: SweepValues,
 }
 
 /// `glint merge`: what the shards of one job give together.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
-    let Arguments { config, files } = arguments;
+    let Arguments { config, files, .. } = arguments;
     let loaded = load(registry, std::slice::from_ref(config))?;
     let one = &loaded[0];
-    let job = one.core.job()?;
+    let sweep = arguments.sweep.of(&one.core)?;
+    let fingerprint = one.core.fingerprint(&sweep);
+    let job = one.core.job_of(sweep)?;
     let names: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();
     let states = files
         .iter()
         .map(|path| read(path)?.with_context(|| format!("there is no `{}`", path.display())))
         .collect::<Result<Vec<_>>>()?;
     ensure!(
-        states.iter().any(|state| state.digest == one.core.fingerprint()),
-        "these shards are not of `{}` as it stands, or of another build of Glint",
+        states.iter().any(|state| state.digest == fingerprint),
+        "these shards are not of `{}` as it stands, of another sweep (--values), or of another build of Glint",
         one.path
     );
     let merged = job.merge(&states, &names)?;

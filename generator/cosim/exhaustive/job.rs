@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 use super::clocks::{Clocks, Steps};
 use super::places::{Peak, Places};
 use crate::base::text::grouped;
-use crate::golden::Contract;
+use crate::golden::{Contract, Sweep};
 
 /// A division into more parts than machines would ever take is a slip of the pen.
 pub const MOST_SHARDS: u64 = 1_000_000;
@@ -136,7 +136,13 @@ pub struct Job<'a> {
 impl<'a> Job<'a> {
     /// The proof of a contract.
     pub fn new(contract: &'a dyn Contract) -> Self {
-        Self { f: Places::of_f(contract), colours: Places::of_colours(contract), clocks: None }
+        Self::of_sweep(contract, contract.sweep())
+    }
+
+    /// The same by a sweep with other values than those of the contract.
+    pub fn of_sweep(contract: &'a dyn Contract, sweep: Sweep) -> Self {
+        let (f, colours) = (Places::of_sweep(contract, sweep), Places::of_colours(contract));
+        Self { f, colours, clocks: None }
     }
 
     /// How much there is to evaluate, in words.

@@ -5,6 +5,7 @@
 //! Places are numbered, the last axis fastest, and cut into blocks; any set of blocks can be checked
 //! anywhere, in any order, and the outcomes joined: the result does not depend on how the work was divided.
 
+pub mod axis;
 mod clocks;
 mod job;
 pub mod kept;
@@ -14,6 +15,7 @@ mod record;
 #[cfg(test)]
 mod tests;
 
+pub use axis::AxisValues;
 pub use clocks::{Clocks, Difference, MOST_BITS, Steps};
 pub use job::{Job, MOST_SHARDS, Progress, Shard, State};
 pub use places::{Peak, Places};

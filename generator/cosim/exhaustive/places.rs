@@ -54,7 +54,12 @@ pub struct Places<'a> {
 impl<'a> Places<'a> {
     /// The contract's sweep of `f`.
     pub fn of_f(contract: &'a dyn Contract) -> Self {
-        Self { contract, measure: Measure::F, sweep: contract.sweep() }
+        Self::of_sweep(contract, contract.sweep())
+    }
+
+    /// A sweep of `f` with other values than those of the contract.
+    pub fn of_sweep(contract: &'a dyn Contract, sweep: Sweep) -> Self {
+        Self { contract, measure: Measure::F, sweep }
     }
 
     /// Every word `f` with every value of a colour operand (they are all alike).

@@ -8,7 +8,7 @@ use serde::Deserialize;
 
 use super::{Peak, Places, Proof};
 use crate::base::input;
-use crate::golden::{Axis, Contract, Values};
+use crate::golden::{Axis, Contract, Sweep, Values};
 
 /// How near a recorded figure must come to that of today.
 const SAME: f64 = 1e-9;
@@ -59,12 +59,21 @@ struct RecordedAxis {
 }
 
 impl RecordedAxis {
-    fn is(&self, axis: &Axis) -> bool {
+    /// Whether the record visited every value of an axis, and perhaps more.
+    fn covers(&self, axis: &Axis) -> bool {
         self.name == axis.name
             && match &axis.values {
                 Values::Range(low, high) => (self.from, self.to) == (Some(*low), Some(*high)),
-                Values::List(values) => self.values == *values,
+                Values::List(values) => values.iter().all(|value| self.values.contains(value)),
             }
+    }
+
+    fn axis(&self) -> Axis {
+        let values = match (self.from, self.to) {
+            (Some(low), Some(high)) => Values::Range(low, high),
+            _ => Values::List(self.values.clone()),
+        };
+        Axis { name: self.name.clone(), values }
     }
 }
 
@@ -91,11 +100,17 @@ impl Record {
         Ok(None)
     }
 
-    /// Refuses a record whose sweep or bound are not those of the contract.
+    /// What the check went through: the contract's sweep, or more values of an axis that lists some.
+    pub fn sweep(&self, contract: &dyn Contract) -> Sweep {
+        let axes = self.axes.iter().map(RecordedAxis::axis).collect();
+        Sweep { axes, omits: contract.sweep().omits }
+    }
+
+    /// Refuses a record that leaves out a part of the contract's sweep, or has another bound.
     fn is_of(&self, contract: &dyn Contract) -> Result<()> {
         let sweep = contract.sweep();
         let same_axes = self.axes.len() == sweep.axes.len()
-            && self.axes.iter().zip(&sweep.axes).all(|(found, axis)| found.is(axis));
+            && self.axes.iter().zip(&sweep.axes).all(|(found, axis)| found.covers(axis));
         let same_bound = (self.bound - contract.bound().units).abs() < SAME;
         anyhow::ensure!(
             same_axes && same_bound,
@@ -113,8 +128,9 @@ impl Record {
     }
 
     /// How many evaluations [`Record::recheck`] makes if it is to make about `places` of `f`.
-    pub fn steps(contract: &dyn Contract, places: u64) -> u64 {
-        let (f, colours) = (Places::of_f(contract), Places::of_colours(contract));
+    pub fn steps(&self, contract: &dyn Contract, places: u64) -> u64 {
+        let f = Places::of_sweep(contract, self.sweep(contract));
+        let colours = Places::of_colours(contract);
         f.visits(part(&f, places).into_iter()) + colours.count()
     }
 
@@ -126,7 +142,8 @@ impl Record {
         places: u64,
         progress: &(dyn Fn(u64) + Sync),
     ) -> (u64, Vec<String>) {
-        let (f, colours) = (Places::of_f(contract), Places::of_colours(contract));
+        let f = Places::of_sweep(contract, self.sweep(contract));
+        let colours = Places::of_colours(contract);
         let mut faults = Vec::new();
         let path = self.path.display();
         let mut differs = |what: &str, found: f64, recorded: f64| {

@@ -240,6 +240,29 @@ fn exhaustive() {
     assert!(run.err.contains("--exhaustive"), "{run:?}");
 }
 
+/// A sweep of other values than the contract's: what it says, in one piece and in parts.
+#[test]
+fn exhaustive_with_other_values() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    let check = ["cosim", "core.toml", "--exhaustive", "--values", "exponent=7,1..9/4"];
+    let value = place.glint(check.iter().chain(&["--json"])).json();
+    let one = &value["configurations"][0];
+    assert_eq!(one["axes"][1], serde_json::json!({ "name": "exponent", "values": [1, 5, 7, 9] }));
+    assert_eq!(one["not_covered"], "values of exponent that are not named");
+    assert_eq!(one["verdict"], "passed, not proved");
+    let part = check.iter().chain(&["--json", "--resume", "part.json", "--shard", "1/1"]);
+    place.done(part);
+    let merge = ["merge", "core.toml", "part.json", "--json", "--values", "exponent=1..9/4,7"];
+    assert_eq!(place.glint(merge).json(), value);
+    place.glint(&merge[..4]).refused(1, &["of another sweep (--values)"]);
+    let refused = |values: &str, text: &str| {
+        place.glint(["cosim", "core.toml", "--exhaustive", "--values", values]).refused(1, &[text]);
+    };
+    refused("n=1", "no operand `n`; its operands are cos_gamma, exponent");
+    refused("exponent=0..9", "`exponent` is 1 to 1000 in this check, not 0");
+    place.glint(["cosim", "core.toml", "--values", "exponent=1"]).refused(2, &["--exhaustive"]);
+}
+
 #[test]
 fn a_division_into_more_shards_than_there_can_be() {
     let place = Place::with("core.toml", COSINE_POWER);
@@ -301,7 +324,7 @@ fn in_parts(text: &str) {
     let error = refused(&["merge", "core.toml", "part2.json", "core.toml"]);
     assert!(error.contains("`core.toml` does not hold the state"), "{error}");
     let error = refused(&["cosim", "core.toml", "--exhaustive", "--resume", "part1.json"]);
-    assert!(error.contains("another configuration, shard"), "{error}");
+    assert!(error.contains("another configuration, sweep, shard"), "{error}");
     // A bit that a disk has turned over.
     let part = place.read("part1.json");
     let damaged = part.replacen("\"done\": ", "\"done\": 1", 1);

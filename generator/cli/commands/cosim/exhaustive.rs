@@ -37,15 +37,16 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let mut list = Vec::new();
     let mut holds = true;
     for one in &loaded {
-        let job = one.core.job()?;
-        let mut state =
-            State::new(&one.core.fingerprint(), arguments.shard.unwrap_or(Shard::WHOLE));
+        let sweep = arguments.sweep.of(&one.core).with_context(|| format!("`{}`", one.path))?;
+        let fingerprint = one.core.fingerprint(&sweep);
+        let job = one.core.job_of(sweep)?;
+        let mut state = State::new(&fingerprint, arguments.shard.unwrap_or(Shard::WHOLE));
         if let Some(path) = &arguments.resume
             && let Some(found) = read(path)?
         {
             ensure!(
                 found.digest == state.digest && found.shard == state.shard,
-                "`{}` is of another configuration, shard or build of Glint; name another file",
+                "`{}` is of another configuration, sweep, shard or build of Glint; name another file",
                 path.display()
             );
             job.validate(&found)
