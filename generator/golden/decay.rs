@@ -9,7 +9,7 @@ use super::contract::{self, ErrorShare};
 use super::curve::{self, Curve, Piece};
 use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
 use super::halving::{self, Halving};
-use super::highlight::{Highlight, Keys, ProductSlots, Reflectance};
+use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading};
 use super::narrow::Narrow;
 use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
@@ -259,6 +259,17 @@ impl Datapath for Device {
     }
 }
 
+impl Shading for Device {
+    #[inline]
+    fn reflectance(&self, s: &State) -> i64 {
+        s[self.reflectance]
+    }
+
+    fn products(&self) -> &ProductSlots {
+        &self.products
+    }
+}
+
 fn clocked(it: &Arithmetic) -> Clocked<Device> {
     let mut frame = Frame::default();
     let [cosine, exponent] = it.keys.slots(&mut frame);
@@ -279,7 +290,10 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
     let halve = step(|d: &Device, s| {
         s[d.reflectance] = d.it.reflectance(s[d.cosine], s[d.halvings]);
     });
-    frame.model(device, [idle(), decay, multiply, idle(), halve, idle().valid().end()])
+    let mut program = vec![idle(), decay, multiply, idle(), halve];
+    program.extend(device.products.program());
+    program.push(idle().valid().end());
+    frame.model(device, program)
 }
 
 /// The accuracy contract of one of the devices. Control operands: `cos_gamma`, `exponent`.

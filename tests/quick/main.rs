@@ -20,6 +20,7 @@ mod devices;
 mod diagnostics;
 mod divider;
 mod lines;
+mod multipliers;
 mod pages;
 mod pipelines;
 mod proofs;
