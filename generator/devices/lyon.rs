@@ -285,13 +285,22 @@ fn clocks_note(config: &Config) -> String {
     let shift = config.choice("scale") == "shift";
     let [squares, colours] =
         ["distance.multipliers", "colour.multipliers"].map(|key| config.choice(key) == "1");
+    let output = config.flag("output.registered") && !colours;
     format!(
         "Valid is {}{} clocks after start: one each for {}D^2, scaling, base{} and result, and one for each squaring \
          after the first{}.",
-        common::squarings(config) + 4 + if squares { 2 } else { 0 } + if colours { 3 } else { 0 },
+        common::squarings(config)
+            + 4
+            + 2 * u32::from(squares)
+            + 3 * u32::from(colours)
+            + u32::from(output),
         if shift { " + shift" } else { "" },
         if squares { "the squares of dx and dy, " } else { "" },
-        if colours { ", each colour" } else { "" },
+        match (colours, output) {
+            (true, _) => ", each colour",
+            (_, true) => ", the output registers",
+            _ => "",
+        },
         if shift { " and for each place shifted after the first" } else { "" },
     )
 }

@@ -306,10 +306,10 @@ fn about(config: &Config) -> About {
         format!(
             "Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1; the control \
              ROM is its table 1, {}.",
-            if config.choice("colour.multipliers") == "1" {
-                "with a microinstruction more for each colour"
-            } else {
-                "bit for bit"
+            match (config.choice("colour.multipliers"), config.flag("output.registered")) {
+                ("1", _) => "with a microinstruction more for each colour",
+                (_, true) => "with a microinstruction more for the output registers",
+                _ => "bit for bit",
             }
         ),
         "Muxes 8 and 9 are followed by registers: the multiplier takes what the microinstruction before \

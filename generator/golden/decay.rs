@@ -248,14 +248,12 @@ struct Device {
     decay: Slot,
     halvings: Slot,
     reflectance: Slot,
-    f: Slot,
     products: ProductSlots,
 }
 
 impl Datapath for Device {
     fn outputs(&self, s: &mut State) {
-        s[self.f] = s[self.reflectance];
-        self.products.show(s[self.f], s);
+        self.products.show(s[self.reflectance], s);
     }
 }
 
@@ -280,9 +278,9 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
         decay: frame.register("decay", Format::unsigned(0, it.params.decay_fraction as i32)),
         halvings: frame.register("halvings", it.halvings),
         reflectance: frame.register("reflectance", it.keys.f_format()),
-        f: frame.output("f_out", it.keys.f_format()),
         products: it.keys.products().slots(&mut frame),
     };
+    frame.shows("f_out", device.reflectance);
     let decay = step(|d: &Device, s| s[d.decay] = d.it.decay(s[d.cosine]));
     let multiply = step(|d: &Device, s| {
         s[d.halvings] = d.it.halvings(s[d.cosine], s[d.decay], s[d.exponent]);

@@ -21,6 +21,7 @@ mod diagnostics;
 mod divider;
 mod lines;
 mod multipliers;
+mod output_registers;
 mod pages;
 mod pipelines;
 mod proofs;

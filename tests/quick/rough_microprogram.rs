@@ -132,7 +132,8 @@ fn random_configurations_have_the_words_of_the_patent() {
 /// patent's lines, and in fields of its own.
 #[test]
 fn keys_that_add_microinstructions_leave_the_lines_of_the_patent() {
-    for (more, added) in [("[colour]\nmultipliers = 1\n", 3)] {
+    for (more, added) in [("[colour]\nmultipliers = 1\n", 3), ("[output]\nregistered = true\n", 1)]
+    {
         let toml = format!("device = \"rough\"\n{more}");
         let design = design(&configuration(&toml));
         assert_eq!(design.control.microprogram.len(), TABLE.len() + added, "{toml}");
