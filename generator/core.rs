@@ -72,6 +72,7 @@ impl Core {
         if let Some(pipeline) = &design.pipeline {
             package::check_clock(&config, pipeline)?;
         }
+        device.check_golden(&config)?;
         let contract = (device.contract)(&config);
         Ok(Self { device, config, design, contract })
     }
@@ -129,7 +130,7 @@ impl Core {
     /// # Errors
     /// Model and design do not name the same signals.
     pub fn lockstep(&self, seed: u64) -> Result<Lockstep<'_>> {
-        let model = (self.device.model)(&self.config);
+        let model = self.device.golden(&self.config);
         Lockstep::new(&self.design, model, self.contract.as_ref(), seed)
     }
 
@@ -155,7 +156,7 @@ impl Core {
     /// # Errors
     /// Model and design do not name the same signals.
     pub fn clocks(&self) -> Result<Clocks<'_>> {
-        let model = (self.device.model)(&self.config);
+        let model = self.device.golden(&self.config);
         Clocks::new(&self.design, model, self.contract.as_ref())
     }
 

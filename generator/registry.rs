@@ -1,5 +1,7 @@
 //! What a device is to the command line: keys, description, golden model, contract.
 
+use anyhow::{Result, ensure};
+
 use crate::base::diagnostic::Diagnostics;
 use crate::config::{Config, Schema};
 use crate::devices;
@@ -7,6 +9,9 @@ use crate::golden::{self, Contract, Model};
 use crate::hdl::dsl::Designer;
 use crate::hdl::netlist::Design;
 use crate::hdl::pipeline;
+
+/// The key that asks for registers behind the results.
+const OUTPUT_REGISTERED: &str = "output.registered";
 
 /// A device that Glint can generate, simulate and check.
 ///
@@ -48,7 +53,35 @@ impl Device {
     pub fn sequential(&self, config: &Config) -> Result<Design, Diagnostics> {
         let designer = Designer::new(&config.name);
         (self.describe)(&designer, config);
+        if config.flag(OUTPUT_REGISTERED) {
+            designer.register_outputs();
+        }
         designer.finish()
+    }
+
+    /// The golden model of the design with the microprogram.
+    pub fn golden(&self, config: &Config) -> Box<dyn Model> {
+        let model = (self.model)(config);
+        if !config.flag(OUTPUT_REGISTERED) {
+            return model;
+        }
+        // What does not know how differs from the design, and that is reported.
+        model.with_output_registers().unwrap_or(model)
+    }
+
+    /// Whether the golden model can do what the configuration asks for.
+    ///
+    /// # Errors
+    /// It cannot.
+    pub fn check_golden(&self, config: &Config) -> Result<()> {
+        let wanted = config.flag(OUTPUT_REGISTERED);
+        ensure!(
+            !wanted || (self.model)(config).with_output_registers().is_some(),
+            "the golden model of `{}` does not say what registers behind the results do \
+             (`Model::with_output_registers`): leave {OUTPUT_REGISTERED} out",
+            self.name
+        );
+        Ok(())
     }
 }
 

@@ -34,6 +34,8 @@ pub struct Key {
     /// The key applies only when another key (the first) has a value (the second, written without
     /// quotes). Elsewhere it may not be given, and it keeps its default.
     pub only_when: Option<(&'static str, &'static str)>,
+    /// At its default it is not written, as a shared key: digests of configurations from before there was the key hold.
+    pub joined_later: bool,
 }
 
 /// The type of a key, and which of its values are accepted.
@@ -55,7 +57,7 @@ pub enum Kind {
 
 impl Key {
     fn new(name: &'static str, kind: Kind, default: Value, doc: &'static str) -> Self {
-        Key { name, kind, default, doc, only_when: None }
+        Key { name, kind, default, doc, only_when: None, joined_later: false }
     }
 
     /// An integer in a range.
@@ -137,6 +139,11 @@ impl Key {
     pub fn only_when(mut self, other: &'static str, value: &'static str) -> Self {
         self.only_when = Some((other, value));
         self
+    }
+
+    /// The key came to a device of which there were configurations.
+    pub fn joined_later(self) -> Self {
+        Self { joined_later: true, ..self }
     }
 
     /// The table and the last part of the name: `("cosine", "fraction")`. The table of a key at

@@ -57,6 +57,12 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
         )
         .only_when("architecture", "pipelined"),
         Key::flag(
+            "output.registered",
+            false,
+            "Registers behind results that are logic: a multiplier and a rounding adder for a colour. They are valid a clock later.",
+        )
+        .only_when("architecture", "sequential"),
+        Key::flag(
             "interface.stream",
             false,
             "Write an AXI4-Stream wrapper of the core, <name>_axis.v.",

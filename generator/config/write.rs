@@ -47,14 +47,14 @@ pub fn commented(schema: &Schema, name: &str) -> String {
 
 impl Config {
     /// The configuration as a TOML file that reads back as the same: every key of the device that
-    /// applies, and of those that every device shares the ones that differ from their defaults.
+    /// applies, and of those that joined later or that every device shares the ones that differ from their defaults.
     pub fn to_toml(&self, schema: &Schema) -> String {
         plain(schema, self)
     }
 }
 
-/// The keys of a configuration that apply, without comments; of those that every device shares, the ones
-/// that differ from their defaults.
+/// The keys of a configuration that apply, without comments; of those that joined later or that every device shares,
+/// the ones that differ from their defaults.
 fn plain(schema: &Schema, config: &Config) -> String {
     let mut text = String::new();
     for (key, value) in common(config) {
@@ -74,8 +74,8 @@ fn plain(schema: &Schema, config: &Config) -> String {
 }
 
 fn is_written(schema: &Schema, config: &Config, key: &Key) -> bool {
-    let shared = shared_keys().contains(key);
-    config.applies(schema, key.name) && !(shared && *config.value(key.name) == key.default)
+    let is_quiet = key.joined_later || shared_keys().contains(key);
+    config.applies(schema, key.name) && !(is_quiet && *config.value(key.name) == key.default)
 }
 
 /// The keys that every device has, in the order of [`super::COMMON`], with their values as TOML.

@@ -31,7 +31,7 @@ fn check(config: &Config, problems: &mut Problems) {
 
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
-    d.about(about());
+    d.about(about(config));
     let cos_gamma = decay::cosine(d, config);
     let bits = config.integer("cosine.fraction") as u32;
     let fraction = cos_gamma.bits(0, Format::unsigned(0, bits as i32));
@@ -57,14 +57,14 @@ pub fn describe(d: &Designer, config: &Config) {
     );
 }
 
-fn about() -> About {
+fn about(config: &Config) -> About {
     let mut notes = vec![
         "The seeds hold every device against this function and give no circuit for it; structure and formats \
          are Glint's own."
             .to_owned(),
         "Phong's function is this device with cos psi = V.R at the input in place of N.H.".to_owned(),
     ];
-    notes.extend(decay::notes());
+    notes.extend(decay::notes(config));
     About {
         device: "blinn".to_owned(),
         title: "Specular intensity by Blinn's function itself".to_owned(),

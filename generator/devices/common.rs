@@ -1,7 +1,11 @@
 //! Keys that several devices share, so that one name means one thing everywhere.
 
 use crate::config::{Config, Key, Problems};
+use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::line::{LineBlocks, OperandBlocks};
+use crate::hdl::dsl::{Signal, Step};
+
+use super::rounding;
 
 /// The names of the roundings.
 pub const ROUNDINGS: [&str; 2] = ["truncate", "nearest"];
@@ -44,6 +48,49 @@ pub fn squarings(config: &Config) -> u32 {
 /// `colour.bits`.
 pub fn colour_bits() -> Key {
     Key::integer("colour.bits", 8, 1..=12, "Bits of a colour operand, and of an output.")
+}
+
+/// `colour.multipliers`.
+pub fn colour_multipliers() -> Key {
+    Key::choice(
+        "colour.multipliers",
+        "3",
+        &["1", "3"],
+        "Multipliers for f times the colours: one for each, or one for all, which takes three clocks a point more and saves DSP blocks. A pipeline has one for each.",
+    )
+    .only_when("architecture", "sequential")
+    .joined_later()
+}
+
+/// The outputs of colours by as many multipliers as `colour.multipliers` says, and the microinstructions that make
+/// them, which stand before the one with the result.
+#[track_caller]
+pub fn colour_outputs<'d>(config: &Config, colours: &Colours<'d>, f: Signal<'d>) -> Vec<Step> {
+    let rounding = rounding(config, "output.rounding");
+    if shares_multiplier(config) {
+        return colours.outputs_in_turn(f, rounding);
+    }
+    colours.outputs(f, rounding);
+    Vec::new()
+}
+
+/// Whether one multiplier makes the products with all colours.
+fn shares_multiplier(config: &Config) -> bool {
+    config.choice("colour.multipliers") == "1"
+}
+
+/// What a device says of writes while it is busy and of how long its outputs hold, where each colour has a
+/// multiplier of its own behind the register that `follow` names, until `until`.
+pub fn outputs_note(config: &Config, follow: &str, until: &str) -> String {
+    if shares_multiplier(config) {
+        return "Writes while busy are ignored. One multiplier multiplies f by the colours, one after the other, and the \
+                outputs are registers: they hold from valid until the next computation reaches the products."
+            .to_owned();
+    }
+    format!(
+        "Writes while busy are ignored. The outputs follow {follow} and the colour registers: they hold from valid \
+         until a colour is written or the next computation {until}."
+    )
 }
 
 /// `intensity.fraction`.

@@ -24,6 +24,7 @@ pub fn schema() -> Schema {
             common::cosine_signed(),
             common::exponent_bits(),
             common::colour_bits(),
+            common::colour_multipliers(),
             common::intensity_fraction(16),
             common::intensity_rounding(),
             common::output_rounding(),
@@ -83,7 +84,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let square = d.narrow("square", square, f, rounding_f, Overflow::Saturate);
     let next = d.mux_on("accumulator_next", operand_select, [distance, square, square]);
     accumulator.takes(next.out());
-    colours.outputs(accumulator.q(), rounding(config, "output.rounding"));
+    let outputs = common::colour_outputs(config, &colours, accumulator.q());
 
     let mut steps = vec![
         step("operands 1 - cos gamma, n/m", []),
@@ -97,6 +98,7 @@ pub fn describe(d: &Designer, config: &Config) {
         [first.pick(base), second.pick(base)],
         [first.pick(accumulator.q()), second.pick(accumulator.q())],
     ));
+    steps.extend(outputs);
     steps.push(step("result", [valid(), end()]));
     d.microprogram(steps);
 }
@@ -128,9 +130,7 @@ fn about(config: &Config) -> About {
             "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0, and so does everything \
              beyond the zero of W at cos gamma = (n - m)/n."
                 .to_owned(),
-            "Writes while busy are ignored. The outputs follow the accumulator and the colour registers: they \
-             hold from valid until a colour is written or the next computation begins."
-                .to_owned(),
+            common::outputs_note(config, "the accumulator", "begins"),
         ],
     }
 }

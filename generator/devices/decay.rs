@@ -48,6 +48,7 @@ pub fn keys(defaults: &Defaults) -> Vec<Key> {
         common::cosine_signed(),
         common::exponent_bits(),
         common::colour_bits(),
+        common::colour_multipliers(),
         Key::integer(
             "decay.fraction",
             26,
@@ -265,16 +266,18 @@ pub fn describe<'d>(d: &'d Designer, config: &Config, cos_gamma: Signal<'d>, cur
     );
     reflectance.takes(ends(d, cos_gamma, halvings.q(), rounded));
     let _ = d.output("f_out", reflectance.q()).doc("the reflectance, for a user's own multipliers");
-    colours.outputs(reflectance.q(), rounding(config, "output.rounding"));
+    let outputs = common::colour_outputs(config, &colours, reflectance.q());
 
-    d.microprogram([
+    let mut steps = vec![
         step("segment of the decay addressed by cos gamma", []),
         step("decay <- base + slope * rest", [decay.load()]),
         step("halvings <- n * decay", [first.pick(factor), second.pick(exponent), halvings.load()]),
         step("tables of 2^-x addressed by the fraction", []),
         step("reflectance <- 2^-halvings", [reflectance.load()]),
-        step("result", [valid(), end()]),
-    ]);
+    ];
+    steps.extend(outputs);
+    steps.push(step("result", [valid(), end()]));
+    d.microprogram(steps);
 }
 
 /// How the fraction of n·decay is cut.
@@ -399,7 +402,7 @@ fn ends<'d>(
 }
 
 /// What [`crate::hdl::netlist::About::notes`] says of both devices.
-pub fn notes() -> Vec<String> {
+pub fn notes(config: &Config) -> Vec<String> {
     vec![
         "Two products a point, in one shared multiplier (a second one would save a clock of six and cost one to \
          two DSP blocks): the rise within a segment of the decay, and n times the decay. 2^-x over the fraction \
@@ -413,8 +416,6 @@ pub fn notes() -> Vec<String> {
         "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0, for n = 0 too. Else n = 0 \
          gives what cos gamma = 1.0 gives: all ones, an ulp below 1.0."
             .to_owned(),
-        "Writes while busy are ignored. The outputs follow the register of f and the colour registers: they \
-         hold from valid until a colour is written or the next computation reaches microinstruction 4."
-            .to_owned(),
+        common::outputs_note(config, "the register of f", "reaches microinstruction 4"),
     ]
 }

@@ -31,7 +31,7 @@ fn check(config: &Config, problems: &mut Problems) {
 
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
-    d.about(about());
+    d.about(about(config));
     let cos_gamma = decay::cosine(d, config);
     let bits = config.integer("cosine.fraction") as u32;
     let fraction = cos_gamma.bits(0, Format::unsigned(bits as i32, 0));
@@ -56,13 +56,13 @@ pub fn describe(d: &Designer, config: &Config) {
     );
 }
 
-fn about() -> About {
+fn about(config: &Config) -> About {
     let mut notes = vec![
         "The seed gives no circuit. It prints gamma as the angle between H and L; the angle between N and H, \
          which is what makes the function comparable with cos^n, is taken here."
             .to_owned(),
     ];
-    notes.extend(decay::notes());
+    notes.extend(decay::notes(config));
     About {
         device: "gauss".to_owned(),
         title: "Specular intensity by a Gaussian of the angle".to_owned(),

@@ -4,7 +4,7 @@
 //! The seed lists the parts only: two adders, four multipliers, shift register, counter, comparator and
 //! mux. The wiring is our reading. Numbers count each kind of block.
 
-use crate::base::fixed::{Format, Overflow};
+use crate::base::fixed::{Format, Overflow, Rounding};
 use crate::config::{Config, Key, Problems, Schema};
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::squaring::Squarings;
@@ -43,8 +43,17 @@ pub fn schema() -> Schema {
                 &common::ROUNDINGS,
                 "Rounding into the register that holds D^2.",
             ),
+            Key::choice(
+                "distance.multipliers",
+                "3",
+                &["1", "3"],
+                "Multipliers that square the components of D: one for each, or one for all, which takes two clocks a point more and saves DSP blocks. A pipeline has one for each.",
+            )
+            .only_when("architecture", "sequential")
+            .joined_later(),
             common::exponent_bits(),
             common::colour_bits(),
+            common::colour_multipliers(),
             common::intensity_fraction(16),
             common::intensity_rounding(),
             common::output_rounding(),
@@ -68,6 +77,15 @@ fn check(config: &Config, problems: &mut Problems) {
     }
 }
 
+/// How D² is formed, to the fraction bits of the register that takes it.
+struct Distance<'d> {
+    value: Signal<'d>,
+    /// The microinstructions before the one that takes it.
+    steps: Vec<Step>,
+    /// The settings of that one.
+    settings: Vec<Setting>,
+}
+
 /// How beta·D² is formed: the words that do it, and the result.
 struct Scaled<'d> {
     /// β·D², not limited to the fraction bits of f yet where a shift makes it.
@@ -87,7 +105,11 @@ pub fn describe(d: &Designer, config: &Config) {
         d.operand(name, vector).doc(&format!("{of} of N - H, normal less half vector")).q()
     };
     let components = [component("dx", "x"), component("dy", "y"), component("dz", "z")];
-    let distance = distance(d, config, components);
+    let distance = if config.choice("distance.multipliers") == "1" {
+        distance_in_turn(d, config, components)
+    } else {
+        distance(d, config, components)
+    };
     let scaled = match config.choice("scale") {
         "shift" => by_shift(d, config, distance),
         _ => by_multiplier(d, config, distance),
@@ -107,18 +129,19 @@ pub fn describe(d: &Designer, config: &Config) {
         d.mux("multiplier4_operand", [base, accumulator.q()]).doc("what multiplier 4 squares");
     let multiplier4 = d.mul("multiplier4", operand.out(), operand.out()).block(4);
     accumulator.takes(d.narrow("square", multiplier4, f, rounding_f, Overflow::Saturate));
-    colours.outputs(accumulator.q(), rounding(config, "output.rounding"));
+    let outputs = common::colour_outputs(config, &colours, accumulator.q());
 
     let mut steps = scaled.steps;
     let first = [operand.pick(base)].into_iter().chain(scaled.squarings.load());
     let again = [operand.pick(accumulator.q())];
     steps.extend(scaled.squarings.steps(accumulator, first, again));
+    steps.extend(outputs);
     steps.push(step("result", [valid(), end()]));
     d.microprogram(steps);
 }
 
-/// D² = dx² + dy² + dz², 0 … 12.0, to the fraction bits of the register that takes it.
-fn distance<'d>(d: &'d Designer, config: &Config, components: [Signal<'d>; 3]) -> Signal<'d> {
+/// D² = dx² + dy² + dz², 0 … 12.0.
+fn distance<'d>(d: &'d Designer, config: &Config, components: [Signal<'d>; 3]) -> Distance<'d> {
     let mut number = 0;
     let squares = components.map(|component| {
         number += 1;
@@ -126,9 +149,41 @@ fn distance<'d>(d: &'d Designer, config: &Config, components: [Signal<'d>; 3]) -
     });
     let adder1 = d.add("adder1", squares[0], squares[1]).block(1);
     let adder2 = d.add("adder2", adder1, squares[2]).block(2).doc("D^2");
+    Distance { value: rounded_distance(d, config, adder2), steps: Vec::new(), settings: Vec::new() }
+}
+
+/// The same by one multiplier and one adder: two squares to a register, before the third comes to them.
+fn distance_in_turn<'d>(
+    d: &'d Designer,
+    config: &Config,
+    components: [Signal<'d>; 3],
+) -> Distance<'d> {
+    let sum = d
+        .register("distance_sum", Format::unsigned(4, 2 * components[0].format().frac))
+        .doc("dx^2, then dx^2 + dy^2");
+    let component = d.mux("component", components).doc("the component that is squared");
+    let zero = d.raw_constant("no_sum", 0, sum.format());
+    let addend = d.mux("addend", [zero, sum.q()]).doc("the squares before it");
+    let multiplier1 = d.mul("multiplier1", component.out(), component.out()).block(1);
+    let adder1 = d.add("adder1", multiplier1, addend.out()).block(1).doc("in the end D^2");
+    // As below, the interval knows nothing of squares.
+    let (rounding, overflow) = (Rounding::Truncate, Overflow::Wrap);
+    sum.takes(d.narrow("sum_next", adder1, sum.format(), rounding, overflow));
+    let [x, y, z] = components.map(|it| component.pick(it));
+    Distance {
+        value: rounded_distance(d, config, adder1),
+        steps: vec![
+            step("distance_sum <- dx^2", [x, addend.pick(zero), sum.load()]),
+            step("distance_sum <- distance_sum + dy^2", [y, addend.pick(sum.q()), sum.load()]),
+        ],
+        settings: vec![z, addend.pick(sum.q())],
+    }
+}
+
+fn rounded_distance<'d>(d: &'d Designer, config: &Config, sum: Signal<'d>) -> Signal<'d> {
     d.narrow(
         "distance_rounded",
-        adder2,
+        sum,
         Format::unsigned(4, config.integer("distance.fraction") as i32),
         rounding(config, "distance.rounding"),
         // The interval of the sum knows nothing of squares; it is never negative, and 12.0 at most.
@@ -140,7 +195,7 @@ fn distance<'d>(d: &'d Designer, config: &Config, components: [Signal<'d>; 3]) -
 ///
 /// It starts from half of D²/2^(s+1), by wiring, so that it shifts once at least. What has left the
 /// range stays at the largest word, above 1.0.
-fn by_shift<'d>(d: &'d Designer, config: &Config, distance: Signal<'d>) -> Scaled<'d> {
+fn by_shift<'d>(d: &'d Designer, config: &Config, distance: Distance<'d>) -> Scaled<'d> {
     let count = common::squarings(config);
     let half_down = count as i32 + 2;
     let shift = d
@@ -148,11 +203,12 @@ fn by_shift<'d>(d: &'d Designer, config: &Config, distance: Signal<'d>) -> Scale
         .doc("log2 of the specular exponent n, rounded")
         .q();
     let register = d
-        .register("shift_register", Format::unsigned(1, distance.format().frac + half_down))
+        .register("shift_register", Format::unsigned(1, distance.value.format().frac + half_down))
         .doc("beta*D^2, once it has shifted");
     let (squarings, counter, load_shift) = Squarings::sharing(d, count, shift);
     let counter = counter.doc("shifts, then squarings, to come");
     let small = distance
+        .value
         .shift_right(half_down)
         .named("distance_at_least_shift")
         .doc("half of D^2 at shift 0, by wiring");
@@ -160,7 +216,7 @@ fn by_shift<'d>(d: &'d Designer, config: &Config, distance: Signal<'d>) -> Scale
         "doubled",
         register.q().shift_left(1),
         register.format(),
-        crate::base::fixed::Rounding::Truncate,
+        Rounding::Truncate,
         Overflow::Saturate,
     );
     let input = d.mux("shift_input", [small, doubled]).doc("loads or shifts");
@@ -170,26 +226,22 @@ fn by_shift<'d>(d: &'d Designer, config: &Config, distance: Signal<'d>) -> Scale
     let load = [input.pick(small), register.load()];
     let shift_on: [Setting; 4] =
         [input.pick(doubled), register.load(), counter.count(), loop_while(more, name)];
-    Scaled {
-        value: register.q(),
-        steps: vec![
-            step("operands dx, dy, dz", []),
-            step("shift_register <- D^2 / (4*power)", load.into_iter().chain(load_shift)),
-            step(name, shift_on),
-        ],
-        squarings,
-    }
+    let load = load.into_iter().chain(load_shift).chain(distance.settings);
+    let mut steps = vec![step("operands dx, dy, dz", [])];
+    steps.extend(distance.steps);
+    steps.extend([step("shift_register <- D^2 / (4*power)", load), step(name, shift_on)]);
+    Scaled { value: register.q(), steps, squarings }
 }
 
 /// The exact β: a multiplier of ours, and n/2^(s+1) by wiring.
-fn by_multiplier<'d>(d: &'d Designer, config: &Config, distance: Signal<'d>) -> Scaled<'d> {
+fn by_multiplier<'d>(d: &'d Designer, config: &Config, distance: Distance<'d>) -> Scaled<'d> {
     let count = common::squarings(config);
     let exponent = d
         .operand("exponent", Format::unsigned(config.integer("exponent.bits") as i32, 0))
         .doc("specular exponent n")
         .q();
-    let register = d.register("distance", distance.format()).doc("D^2");
-    register.takes(distance);
+    let register = d.register("distance", distance.value.format()).doc("D^2");
+    register.takes(distance.value);
     let squarings = Squarings::new(d, count);
     let beta = exponent.shift_right(count as i32 + 1).named("beta").doc("n/(2*power), by wiring");
     let multiplier5 = d.mul("multiplier5", register.q(), beta).block(5);
@@ -203,15 +255,14 @@ fn by_multiplier<'d>(d: &'d Designer, config: &Config, distance: Signal<'d>) -> 
         rounding(config, "intensity.rounding"),
         Overflow::Saturate,
     ));
-    Scaled {
-        value: scaled.q(),
-        steps: vec![
-            step("operands dx, dy, dz", []),
-            step("distance <- D^2", [register.load()]),
-            step("scaled <- beta * distance", [scaled.load()]),
-        ],
-        squarings,
-    }
+    let load = [register.load()].into_iter().chain(distance.settings);
+    let mut steps = vec![step("operands dx, dy, dz", [])];
+    steps.extend(distance.steps);
+    steps.extend([
+        step("distance <- D^2", load),
+        step("scaled <- beta * distance", [scaled.load()]),
+    ]);
+    Scaled { value: scaled.q(), steps, squarings }
 }
 
 /// `1 − β·D²` as the complement of β·D²: an ulp too small, which is what keeps it a fraction. The comparator
@@ -227,6 +278,31 @@ fn base<'d>(d: &'d Designer, value: Signal<'d>, f: Format) -> Signal<'d> {
 /// Holds every log2 of an exponent, rounded: 0 … `exponent.bits`.
 fn shift_format(config: &Config) -> Format {
     Format::holding(0, i128::from(config.integer("exponent.bits")), 0)
+}
+
+/// From what the clocks of a point come.
+fn clocks_note(config: &Config) -> String {
+    let shift = config.choice("scale") == "shift";
+    let [squares, colours] =
+        ["distance.multipliers", "colour.multipliers"].map(|key| config.choice(key) == "1");
+    let output = config.flag("output.registered") && !colours;
+    format!(
+        "Valid is {}{} clocks after start: one each for {}D^2, scaling, base{} and result, and one for each squaring \
+         after the first{}.",
+        common::squarings(config)
+            + 4
+            + 2 * u32::from(squares)
+            + 3 * u32::from(colours)
+            + u32::from(output),
+        if shift { " + shift" } else { "" },
+        if squares { "the squares of dx and dy, " } else { "" },
+        match (colours, output) {
+            (true, _) => ", each colour",
+            (_, true) => ", the output registers",
+            _ => "",
+        },
+        if shift { " and for each place shifted after the first" } else { "" },
+    )
 }
 
 fn about(config: &Config) -> About {
@@ -256,21 +332,13 @@ fn about(config: &Config) -> About {
              is the function of cosine-power, reached without a scalar product."
                 .to_owned(),
             scaling.to_owned(),
-            format!(
-                "Valid is {}{} clocks after start: one each for D^2, scaling, base and result, and one for each squaring \
-                 after the first{}.",
-                common::squarings(config) + 4,
-                if shift { " + shift" } else { "" },
-                if shift { " and for each place shifted after the first" } else { "" },
-            ),
+            clocks_note(config),
             "The formula knows no side that faces away: where cos gamma <= 0, that is D^2 >= 2, f is not 0 for small n. \
              A host that wants it to be 0 does not start the device there."
                 .to_owned(),
             "Components may have any value; D^2 is whole up to 12.0, which is the most that three of them give."
                 .to_owned(),
-            "Writes while busy are ignored. The outputs follow the accumulator and the colour registers: they \
-             hold from valid until a colour is written or the next computation begins."
-                .to_owned(),
+            common::outputs_note(config, "the accumulator", "begins"),
         ],
     }
 }

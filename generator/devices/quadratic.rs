@@ -31,6 +31,7 @@ pub fn schema() -> Schema {
             common::cosine_signed(),
             common::exponent_bits(),
             common::colour_bits(),
+            common::colour_multipliers(),
             Key::integer(
                 "difference.fraction",
                 19,
@@ -124,14 +125,16 @@ pub fn describe(d: &Designer, config: &Config) {
         rounding(config, "intensity.rounding"),
         Overflow::Saturate,
     ));
-    colours.outputs(intensity.q(), rounding(config, "output.rounding"));
+    let outputs = common::colour_outputs(config, &colours, intensity.q());
 
-    d.microprogram([
+    let mut steps = vec![
         step("operands; ROM(n) addressed", []),
         step("difference <- c^2 - c", [difference.load()]),
         step("intensity <- c + a(n) * difference, not below 0", [intensity.load()]),
-        step("result", [valid(), end()]),
-    ]);
+    ];
+    steps.extend(outputs);
+    steps.push(step("result", [valid(), end()]));
+    d.microprogram(steps);
 }
 
 /// Adder 1: multiplier 5's c² plus the inverted c plus its carry-in.
@@ -196,9 +199,7 @@ fn about(config: &Config) -> About {
             ),
             "n = 0 is taken as n = 1, where a(n) = 0 and f = c.".to_owned(),
             "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.".to_owned(),
-            "Writes while busy are ignored. The outputs follow register intensity and the colour registers: they \
-             hold from valid until a colour is written or the next computation has its result."
-                .to_owned(),
+            common::outputs_note(config, "register intensity", "has its result"),
         ],
     }
 }

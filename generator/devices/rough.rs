@@ -14,7 +14,7 @@ use crate::hdl::blocks::colour::{ChannelBlocks, Colours};
 use crate::hdl::dsl::{Designer, Register, Signal, end, hold, step, valid};
 use crate::hdl::netlist::About;
 
-use super::rounding;
+use super::{common, rounding};
 use sine::sine_rom;
 
 /// The patent's numbers of the colour channels.
@@ -177,10 +177,10 @@ pub fn describe(d: &Designer, config: &Config) {
         // Without the clamp the square can be 1.0 or more, where f saturates.
         d.narrow("f", r13.q(), formats.f, Rounding::Truncate, Overflow::Saturate).doc(doc)
     };
-    colours.outputs(f, rounding(config, "output.rounding"));
+    let outputs = common::colour_outputs(config, &colours, f);
 
     d.sequencer_lines(43, 44);
-    d.microprogram([
+    let mut steps = vec![
         step("operands cos gamma, cos dgamma; sine of gamma addressed", []),
         step("19 <- sin gamma; 11 <- cos gamma * cos dgamma", [hold(), r19.load(), r11.load()]),
         step(
@@ -198,12 +198,16 @@ pub fn describe(d: &Designer, config: &Config) {
             [mux8.pick(adder16), mux9.pick(adder16), sine_of.pick(cos_dgamma)],
         ),
         step("13 <- (... + 1)^2", [hold(), r13.load()]),
+    ];
+    steps.extend(outputs);
+    steps.extend([
         step(
             "valid: intensities on the outputs",
             [mux8.pick(adder15), mux9.pick(half_n), sine_of.pick(cos_dgamma), valid()],
         ),
         step("end: clears the triggers and counter 29", [end()]),
     ]);
+    d.microprogram(steps);
 }
 
 /// Registers 1 and 2. Exact arithmetic limits both to 0 … 1.0 as they are written; a negative cos γ
@@ -299,16 +303,20 @@ fn facing_only<'d>(d: &'d Designer, cos_gamma: Signal<'d>, result: Signal<'d>) -
 fn about(config: &Config) -> About {
     let patent = config.choice("arithmetic") == "patent";
     let mut notes = vec![
-        "Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1; the control \
-         ROM is its table 1, bit for bit."
-            .to_owned(),
+        format!(
+            "Registers, muxes, adders and multipliers carry the numbers of the patent's figure 1; the control \
+             ROM is its table 1, {}.",
+            match (config.choice("colour.multipliers"), config.flag("output.registered")) {
+                ("1", _) => "with a microinstruction more for each colour",
+                (_, true) => "with a microinstruction more for the output registers",
+                _ => "bit for bit",
+            }
+        ),
         "Muxes 8 and 9 are followed by registers: the multiplier takes what the microinstruction before \
          selected. The patent's settling microinstructions leave the time for that. A synchronous ROM 18 is addressed \
          with dgamma one microinstruction before line 47 says so."
             .to_owned(),
-        "Writes while busy are ignored. The outputs follow register 13 and the colour registers: they hold \
-         from valid until a colour is written or the next computation reaches microinstruction 5."
-            .to_owned(),
+        common::outputs_note(config, "register 13", "reaches microinstruction 5"),
     ];
     notes.push(if patent {
         "Numbers are fractions modulo 1.0, as in the patent: every '- 1' is a missing carry, n loses its low \

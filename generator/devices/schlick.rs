@@ -11,7 +11,7 @@ use crate::hdl::blocks::divider::Divider;
 use crate::hdl::dsl::{Designer, Signal, end, loop_while, step, valid};
 use crate::hdl::netlist::About;
 
-use super::{common, rounding};
+use super::common;
 
 /// The keys of the device.
 pub fn schema() -> Schema {
@@ -22,6 +22,7 @@ pub fn schema() -> Schema {
             common::cosine_signed(),
             common::exponent_bits(),
             common::colour_bits(),
+            common::colour_multipliers(),
             Key {
                 doc: "Fraction bits of the reflectance f, the quotient; each takes a clock. It is truncated: \
                       one bit more is as near as rounding.",
@@ -58,9 +59,9 @@ pub fn describe(d: &Designer, config: &Config) {
 
     let divisor = divisor(d, cos_gamma, exponent);
     let quotient = Divider::new(d, "quotient", cos_gamma, divisor, integer("intensity.fraction"));
-    colours.outputs(quotient.quotient(), rounding(config, "output.rounding"));
+    let outputs = common::colour_outputs(config, &colours, quotient.quotient());
 
-    d.microprogram([
+    let mut steps = vec![
         step("operands cos gamma, n", []),
         step("cos gamma by n*(1 - cos gamma) + cos gamma", quotient.load()),
         step(
@@ -70,8 +71,10 @@ pub fn describe(d: &Designer, config: &Config) {
                 .into_iter()
                 .chain([loop_while(quotient.more(), "next bit of the quotient")]),
         ),
-        step("result", [valid(), end()]),
-    ]);
+    ];
+    steps.extend(outputs);
+    steps.push(step("result", [valid(), end()]));
+    d.microprogram(steps);
 }
 
 /// `n·(1 − cos γ) + cos γ`, exact; an ulp more where cos γ = 0, which only keeps it above 0: the
@@ -115,9 +118,7 @@ fn about(config: &Config) -> About {
             "The seed prints the fraction as cos/n - n*cos + cos, without the fraction bar; the denominator is \
              n - n*cos + cos."
                 .to_owned(),
-            "Writes while busy are ignored. The outputs follow the quotient and the colour registers: they hold \
-             from valid until a colour is written or the next computation begins."
-                .to_owned(),
+            common::outputs_note(config, "the quotient", "begins"),
         ],
     }
 }

@@ -22,6 +22,7 @@ pub fn schema() -> Schema {
             common::cosine_signed(),
             common::exponent_bits(),
             common::colour_bits(),
+            common::colour_multipliers(),
             common::intensity_fraction(16),
             common::intensity_rounding(),
             common::output_rounding(),
@@ -109,14 +110,16 @@ pub fn describe(d: &Designer, config: &Config) {
     let multiplier2 = d.mul("multiplier2", adder2, adder2).block(2);
     let square = d.narrow("square", multiplier2, f, rounding_f, Overflow::Saturate);
     intensity.takes(gates(d, config, cos_gamma, exponent, square));
-    colours.outputs(intensity.q(), rounding(config, "output.rounding"));
+    let outputs = common::colour_outputs(config, &colours, intensity.q());
 
-    d.microprogram([
+    let mut steps = vec![
         step("operands; ROM(n) addressed", []),
         step("scaled <- n/2 * (cos gamma - 1)", [scaled.load()]),
         step("intensity <- (scaled + 1)^2, or 0 below ROM(n)", [intensity.load()]),
-        step("result", [valid(), end()]),
-    ]);
+    ];
+    steps.extend(outputs);
+    steps.push(step("result", [valid(), end()]));
+    d.microprogram(steps);
 }
 
 /// The square, or 0 where it is below ROM(n) or the surface faces away.
@@ -187,9 +190,7 @@ fn about(config: &Config) -> About {
                 .to_owned(),
             comparator_note(config),
             "Cosines are limited to 0 ... 1.0 as they are written; cos gamma <= 0 gives 0.".to_owned(),
-            "Writes while busy are ignored. The outputs follow register intensity and the colour registers: they \
-             hold from valid until a colour is written or the next computation has its result."
-                .to_owned(),
+            common::outputs_note(config, "register intensity", "has its result"),
         ],
     }
 }

@@ -2,7 +2,7 @@
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
-use super::highlight::{Highlight, Keys, ProductSlots, Reflectance};
+use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
@@ -80,7 +80,18 @@ struct Device {
 
 impl Datapath for Device {
     fn outputs(&self, s: &mut State) {
-        self.products.show(s[self.accumulator], s);
+        self.products.show(self.reflectance(s), s);
+    }
+}
+
+impl Shading for Device {
+    #[inline]
+    fn reflectance(&self, s: &State) -> i64 {
+        s[self.accumulator]
+    }
+
+    fn products(&self) -> &ProductSlots {
+        &self.products
     }
 }
 
@@ -118,6 +129,7 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
     .repeat_while(|d, s| s[d.remaining] > 1);
     let mut program = vec![idle(), scale, base];
     program.extend(counted.then_some(square));
+    program.extend(device.products.program());
     program.push(idle().valid().end());
     frame.model(device, program)
 }
@@ -228,6 +240,7 @@ mod tests {
             cosine_signed: false,
             exponent_bits: 4,
             colour_bits: 4,
+            colours_in_turn: false,
             intensity_fraction: 4,
             output_rounding: Rounding::Nearest,
             exponents: (1, 15),

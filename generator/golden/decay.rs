@@ -9,7 +9,7 @@ use super::contract::{self, ErrorShare};
 use super::curve::{self, Curve, Piece};
 use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
 use super::halving::{self, Halving};
-use super::highlight::{Highlight, Keys, ProductSlots, Reflectance};
+use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading};
 use super::narrow::Narrow;
 use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
@@ -248,14 +248,23 @@ struct Device {
     decay: Slot,
     halvings: Slot,
     reflectance: Slot,
-    f: Slot,
     products: ProductSlots,
 }
 
 impl Datapath for Device {
     fn outputs(&self, s: &mut State) {
-        s[self.f] = s[self.reflectance];
-        self.products.show(s[self.f], s);
+        self.products.show(s[self.reflectance], s);
+    }
+}
+
+impl Shading for Device {
+    #[inline]
+    fn reflectance(&self, s: &State) -> i64 {
+        s[self.reflectance]
+    }
+
+    fn products(&self) -> &ProductSlots {
+        &self.products
     }
 }
 
@@ -269,9 +278,9 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
         decay: frame.register("decay", Format::unsigned(0, it.params.decay_fraction as i32)),
         halvings: frame.register("halvings", it.halvings),
         reflectance: frame.register("reflectance", it.keys.f_format()),
-        f: frame.output("f_out", it.keys.f_format()),
         products: it.keys.products().slots(&mut frame),
     };
+    frame.shows("f_out", device.reflectance);
     let decay = step(|d: &Device, s| s[d.decay] = d.it.decay(s[d.cosine]));
     let multiply = step(|d: &Device, s| {
         s[d.halvings] = d.it.halvings(s[d.cosine], s[d.decay], s[d.exponent]);
@@ -279,7 +288,10 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
     let halve = step(|d: &Device, s| {
         s[d.reflectance] = d.it.reflectance(s[d.cosine], s[d.halvings]);
     });
-    frame.model(device, [idle(), decay, multiply, idle(), halve, idle().valid().end()])
+    let mut program = vec![idle(), decay, multiply, idle(), halve];
+    program.extend(device.products.program());
+    program.push(idle().valid().end());
+    frame.model(device, program)
 }
 
 /// The accuracy contract of one of the devices. Control operands: `cos_gamma`, `exponent`.

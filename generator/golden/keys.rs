@@ -19,6 +19,11 @@ pub fn rounding(config: &Config, key: &str) -> Rounding {
     }
 }
 
+/// `colour.multipliers`: whether one multiplier makes the products with the colours, one after the other.
+pub fn colours_in_turn(config: &Config) -> bool {
+    config.choice("colour.multipliers") == "1"
+}
+
 /// `domain.exponent_min` and `domain.exponent_max`.
 pub fn exponents(config: &Config) -> (i64, i64) {
     (config.integer("domain.exponent_min"), config.integer("domain.exponent_max"))

@@ -7,7 +7,7 @@ mod tests;
 pub use contract::contract;
 
 use super::frame::{Clocked, Datapath, Frame, Microinstruction, Slot, State, idle, step};
-use super::highlight::{ProductSlots, Products};
+use super::highlight::{ProductSlots, Products, Shading};
 use super::narrow::Narrow;
 use super::{Model, keys};
 use crate::base::fixed::{Format, Rounding};
@@ -33,12 +33,16 @@ struct Params {
     vector_fraction: u32,
     /// `distance.fraction`: fraction bits of D².
     distance_fraction: u32,
+    /// `distance.multipliers`: one for all components, which squares them in turn.
+    squares_in_turn: bool,
     /// `distance.rounding`: of D².
     distance_rounding: Rounding,
     /// `exponent.bits`: bits of n.
     exponent_bits: u32,
     /// `colour.bits`: bits of a colour operand and of a colour output.
     colour_bits: u32,
+    /// `colour.multipliers`: one for all colours, which takes them in turn.
+    colours_in_turn: bool,
     /// `intensity.fraction`: fraction bits of the accumulator.
     intensity_fraction: u32,
     /// `intensity.rounding`: of β·D² and of the squares.
@@ -59,9 +63,11 @@ impl Params {
             },
             vector_fraction: keys::bits(config, "vector.fraction"),
             distance_fraction: keys::bits(config, "distance.fraction"),
+            squares_in_turn: config.choice("distance.multipliers") == "1",
             distance_rounding: keys::rounding(config, "distance.rounding"),
             exponent_bits: keys::bits(config, "exponent.bits"),
             colour_bits: keys::bits(config, "colour.bits"),
+            colours_in_turn: keys::colours_in_turn(config),
             intensity_fraction: keys::bits(config, "intensity.fraction"),
             intensity_rounding: keys::rounding(config, "intensity.rounding"),
             output_rounding: keys::rounding(config, "output.rounding"),
@@ -92,6 +98,7 @@ impl Params {
 
     fn products(&self) -> Products {
         Products::colours(self.f_format(), self.colour_bits, self.output_rounding)
+            .in_turn(self.colours_in_turn)
     }
 
     /// The operand `shift` or `exponent` for an exponent: log₂ n to the nearest, or n itself.
@@ -171,7 +178,13 @@ impl Arithmetic {
     #[inline]
     fn distance(&self, vector: [i64; 3]) -> i64 {
         let [x, y, z] = vector;
-        self.distance.apply(x * x + y * y + z * z)
+        self.rounded_distance(x * x + y * y + z * z)
+    }
+
+    /// The sum of the squares as the register takes it.
+    #[inline]
+    fn rounded_distance(&self, sum: i64) -> i64 {
+        self.distance.apply(sum)
     }
 
     /// One place of the shift register.
@@ -228,6 +241,8 @@ struct Device {
     vector: [Slot; 3],
     /// `shift` or `exponent`.
     scale: Slot,
+    /// The sum of the first squares, where one multiplier makes all.
+    sum: Slot,
     /// D², where a multiplier scales it; otherwise the shift register.
     distance: Slot,
     /// β·D² behind the multiplier.
@@ -239,7 +254,18 @@ struct Device {
 
 impl Datapath for Device {
     fn outputs(&self, s: &mut State) {
-        self.products.show(s[self.accumulator], s);
+        self.products.show(self.reflectance(s), s);
+    }
+}
+
+impl Shading for Device {
+    #[inline]
+    fn reflectance(&self, s: &State) -> i64 {
+        s[self.accumulator]
+    }
+
+    fn products(&self) -> &ProductSlots {
+        &self.products
     }
 }
 
@@ -261,6 +287,11 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
         vector: ["dx", "dy", "dz"].map(|name| frame.operand(name, vector)),
         scale: frame.operand(params.scale_name(), scale),
         products: params.products().slots(&mut frame),
+        sum: if params.squares_in_turn {
+            frame.register("distance_sum", Format::unsigned(4, 2 * params.vector_fraction as i32))
+        } else {
+            frame.hidden()
+        },
         distance: if shift {
             frame.register("shift_register", shifted)
         } else {
@@ -279,7 +310,12 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
         },
     };
     let distance = step(|d: &Device, s| {
-        s[d.distance] = d.it.distance(d.vector.map(|component| s[component]));
+        let vector = d.vector.map(|component| s[component]);
+        s[d.distance] = if d.it.params.squares_in_turn {
+            d.it.rounded_distance(s[d.sum] + vector[2] * vector[2])
+        } else {
+            d.it.distance(vector)
+        };
         if d.it.params.scale == Scale::Shift {
             s[d.remaining] = s[d.scale];
         }
@@ -301,8 +337,14 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
         s[d.remaining] -= 1;
     })
     .repeat_while(|d, s| s[d.remaining] > 1);
-    let mut program = vec![idle(), distance, scale_step(params.scale), base];
+    let mut program = vec![idle()];
+    if params.squares_in_turn {
+        program.push(step(|d: &Device, s| s[d.sum] = s[d.vector[0]] * s[d.vector[0]]));
+        program.push(step(|d: &Device, s| s[d.sum] += s[d.vector[1]] * s[d.vector[1]]));
+    }
+    program.extend([distance, scale_step(params.scale), base]);
     program.extend((squarings > 1).then_some(square));
+    program.extend(device.products.program());
     program.push(idle().valid().end());
     frame.model(device, program)
 }

@@ -55,6 +55,15 @@ pub trait Model: CloneModel + Send + Sync {
     /// One rising edge, with the inputs as they stand just before it.
     fn clock(&mut self, inputs: &[u64]);
 
+    /// The same device at power-up with a register `<output>_reg` behind each result that is logic, loaded in the
+    /// microinstruction that was to set `valid`; one after it sets `valid`. What is no result stays as it is.
+    ///
+    /// A device of a [`frame::Frame`] has it, unless it goes on by a condition from such a microinstruction; for any other
+    /// its author writes it, or there is none.
+    fn with_output_registers(&self) -> Option<Box<dyn Model>> {
+        None
+    }
+
     /// The values after the latest edge, in the order of [`Model::signals`].
     fn values(&self) -> &[u64];
 

@@ -6,7 +6,7 @@ mod tests;
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
-use super::highlight::{Highlight, Keys, ProductSlots, Reflectance};
+use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
@@ -126,7 +126,18 @@ struct Device {
 
 impl Datapath for Device {
     fn outputs(&self, s: &mut State) {
-        self.products.show(s[self.intensity], s);
+        self.products.show(self.reflectance(s), s);
+    }
+}
+
+impl Shading for Device {
+    #[inline]
+    fn reflectance(&self, s: &State) -> i64 {
+        s[self.intensity]
+    }
+
+    fn products(&self) -> &ProductSlots {
+        &self.products
     }
 }
 
@@ -145,7 +156,10 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
     let blend = step(|d: &Device, s| {
         s[d.intensity] = d.it.intensity(s[d.cosine], s[d.exponent], s[d.difference]);
     });
-    frame.model(device, [idle(), subtract, blend, idle().valid().end()])
+    let mut program = vec![idle(), subtract, blend];
+    program.extend(device.products.program());
+    program.push(idle().valid().end());
+    frame.model(device, program)
 }
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.

@@ -39,6 +39,8 @@ struct Params {
     exponent_bits: u32,
     /// `colour.bits`: bits of a colour operand and of a colour output, K.
     colour_bits: u32,
+    /// `colour.multipliers`: one for all colours, which takes them in turn.
+    colours_in_turn: bool,
     /// `arithmetic`.
     arithmetic: Kind,
     /// `clamp`: a negative base becomes 0.
@@ -84,6 +86,7 @@ impl Params {
             cosine_signed: config.flag("cosine.signed"),
             exponent_bits: keys::bits(config, "exponent.bits"),
             colour_bits: keys::bits(config, "colour.bits"),
+            colours_in_turn: keys::colours_in_turn(config),
             arithmetic: match config.choice("arithmetic") {
                 "patent" => Kind::Patent,
                 _ => Kind::Exact,
@@ -139,6 +142,7 @@ impl Params {
 
     fn products(&self) -> Products {
         Products::colours(self.f_format(), self.colour_bits, self.output_rounding)
+            .in_turn(self.colours_in_turn)
     }
 
     /// The largest raw cosine that a register holds: 1.0, or in the patent's words an ulp less.

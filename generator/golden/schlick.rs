@@ -2,7 +2,7 @@
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
-use super::highlight::{Highlight, Keys, ProductSlots, Reflectance};
+use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading};
 use super::{Contract, Model};
 use crate::base::fixed::{Format, exp2, mask};
 use crate::config::Config;
@@ -55,7 +55,18 @@ struct Device {
 
 impl Datapath for Device {
     fn outputs(&self, s: &mut State) {
-        self.products.show(s[self.quotient], s);
+        self.products.show(self.reflectance(s), s);
+    }
+}
+
+impl Shading for Device {
+    #[inline]
+    fn reflectance(&self, s: &State) -> i64 {
+        s[self.quotient]
+    }
+
+    fn products(&self) -> &ProductSlots {
+        &self.products
     }
 }
 
@@ -97,8 +108,9 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
         s[d.remainder] = remainder;
         s[d.remaining] -= 1;
     });
-    let program =
-        [idle(), begin, bit.repeat_while(|d, s| s[d.remaining] != 0), idle().valid().end()];
+    let mut program = vec![idle(), begin, bit.repeat_while(|d, s| s[d.remaining] != 0)];
+    program.extend(device.products.program());
+    program.push(idle().valid().end());
     frame.model(device, program)
 }
 
@@ -144,6 +156,7 @@ mod tests {
             cosine_signed: false,
             exponent_bits: 4,
             colour_bits: 4,
+            colours_in_turn: false,
             intensity_fraction: 4,
             output_rounding: Rounding::Nearest,
             exponents: (1, 15),

@@ -5,7 +5,7 @@ mod tests;
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
-use super::highlight::{Highlight, Keys, ProductSlots, Reflectance};
+use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
@@ -111,7 +111,18 @@ struct Device {
 
 impl Datapath for Device {
     fn outputs(&self, s: &mut State) {
-        self.products.show(s[self.intensity], s);
+        self.products.show(self.reflectance(s), s);
+    }
+}
+
+impl Shading for Device {
+    #[inline]
+    fn reflectance(&self, s: &State) -> i64 {
+        s[self.intensity]
+    }
+
+    fn products(&self) -> &ProductSlots {
+        &self.products
     }
 }
 
@@ -131,7 +142,10 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
     let gate = step(|d: &Device, s| {
         s[d.intensity] = d.it.gated(s[d.cosine], s[d.exponent], s[d.scaled]);
     });
-    frame.model(device, [idle(), scale, gate, idle().valid().end()])
+    let mut program = vec![idle(), scale, gate];
+    program.extend(device.products.program());
+    program.push(idle().valid().end());
+    frame.model(device, program)
 }
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.

@@ -39,7 +39,7 @@ pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operand
 /// # Errors
 /// The mutant cannot be simulated.
 pub(super) fn drawn(core: &Core, mutant: &Design, held: Operands) -> Result<Option<Difference>> {
-    let model = (core.device.model)(&core.config);
+    let model = core.device.golden(&core.config);
     let lockstep = Lockstep::new(mutant, model, core.contract.as_ref(), SEED)?.holding(&held);
     let mismatch = lockstep.run(POINTS, &|_| ())?.mismatch;
     Ok(mismatch.map(|mismatch| Difference { held, mismatch }))
@@ -67,7 +67,7 @@ pub(super) fn all(core: &Core, mutant: &Design, mut held: Operands) -> Result<Tr
     // A colour shows what f is; the register of f is compared.
     let colours = contract.operands().iter().filter(|it| it.colour);
     held.extend(colours.map(|it| (it.name.clone(), it.domain.1)));
-    let model = (core.device.model)(&core.config);
+    let model = core.device.golden(&core.config);
     let clocks = Clocks::new(mutant, model, contract)?.holding(&held);
     if clocks.bits() > MOST_BITS {
         return Ok(Tried::Nothing);

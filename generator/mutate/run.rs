@@ -38,7 +38,7 @@ pub fn run<'f>(
     let bench = Bench {
         core,
         sound: plant::bare(&core.design),
-        model: (core.device.model)(&core.config),
+        model: core.device.golden(&core.config),
         prover: Prover::new(&core.design),
         tested: Coverage::of(&core.design, &lockstep, core::TEST_POINTS)?,
         beyond: OnceLock::new(),

@@ -41,7 +41,7 @@ fn no_proof_of_what_shows() {
             .map(|fault| {
                 let is_proved = prover.proves(&fault.site).is_some();
                 let mutant = fault.planted(&sound);
-                let model = (core.device.model)(&core.config);
+                let model = core.device.golden(&core.config);
                 let lockstep = Lockstep::new(&mutant, model, core.contract.as_ref(), 5).unwrap();
                 let shows = lockstep.run_alone(POINTS).unwrap().mismatch.is_some();
                 assert!(!(is_proved && shows), "{path}: {}", fault.id);
@@ -64,7 +64,7 @@ fn what_is_never_reached_is_never_noticed() {
     assert!(unreached.len() * 4 < faults.len(), "{} of {}", unreached.len(), faults.len());
     for fault in &unreached {
         let mutant = fault.planted(&core.design);
-        let model = (core.device.model)(&core.config);
+        let model = core.device.golden(&core.config);
         let contract = core.contract.as_ref();
         let lockstep = Lockstep::new(&mutant, model, contract, TEST_SEED).unwrap();
         assert_eq!(lockstep.run(2_000, &|_| ()).unwrap().mismatch, None, "{}", fault.id);

@@ -23,7 +23,7 @@ pub struct Space {
 }
 
 impl Space {
-    /// Those of `base` that change neither ports nor formula, without those in `fixed`.
+    /// Those of `base` that change neither ports nor formula, and add no microinstructions, without those in `fixed`.
     ///
     /// # Errors
     /// `base` makes no design.
@@ -107,10 +107,12 @@ fn with(schema: &Schema, config: &Config, values: &[(&'static str, Value)]) -> O
     values.iter().all(|(key, value)| config.value(key) == value).then_some(config)
 }
 
-/// What somebody outside the core sees: its ports, and its formula at some points.
+/// What somebody outside the core sees: its ports, its microinstructions, each at least a clock of a point, and its
+/// formula at some points.
 #[derive(PartialEq)]
 struct Outside {
     ports: Vec<String>,
+    microinstructions: usize,
     formula: Vec<u64>,
 }
 
@@ -118,7 +120,11 @@ impl Outside {
     fn new(device: &Device, config: &Config) -> Result<Self> {
         let design = device.design(config).context("this configuration makes no design")?;
         let contract = (device.contract)(config);
-        Ok(Self { ports: ports(&design), formula: formula(contract.as_ref()) })
+        Ok(Self {
+            ports: ports(&design),
+            microinstructions: design.control.microprogram.len(),
+            formula: formula(contract.as_ref()),
+        })
     }
 }
 

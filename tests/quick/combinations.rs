@@ -91,7 +91,7 @@ impl Model for Wrong {
 
 /// The job of a configuration whose model is wrong.
 fn job(core: &Core, aim: Aim) -> Job<'_> {
-    let model = Wrong::new((core.device.model)(&core.config), aim);
+    let model = Wrong::new(core.device.golden(&core.config), aim);
     let contract = core.contract.as_ref();
     let clocks = Clocks::new(&core.design, Box::new(model), contract).expect("they fit");
     Job::new(contract).with(clocks)

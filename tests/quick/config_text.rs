@@ -85,6 +85,12 @@ deviation = 30.0
 # An integer from 0 to 64, default 0; only with architecture = \"pipelined\".
 # side = 0
 
+[output]
+# Registers behind results that are logic: a multiplier and a rounding adder for a colour.
+# They are valid a clock later.
+# True or false, default false; only with architecture = \"sequential\".
+registered = false
+
 [interface]
 # Write an AXI4-Stream wrapper of the core, <name>_axis.v.
 # True or false, default false.

@@ -20,6 +20,8 @@ mod devices;
 mod diagnostics;
 mod divider;
 mod lines;
+mod multipliers;
+mod output_registers;
 mod pages;
 mod pipelines;
 mod proofs;

@@ -256,6 +256,48 @@ fn area(figures: &Figures) -> String {
     format!("{}, {}, {}", usage.luts, usage.dsps, usage.block_rams)
 }
 
+/// Rows of the records in `benches/small/`, and of the sequential cores beside them in `synthesis/`.
+#[test]
+fn fewer_multipliers_fewer_stages() {
+    let small = input::records::<Record>(Path::new("benches/small")).expect("records");
+    let mut shown = BTreeSet::new();
+    for (head, target) in
+        [("| core on a UP5K |", Target::Ice40), ("| core on ECP5 |", Target::Ecp5)]
+    {
+        for row in table("README.md", head) {
+            let own = small.iter().find(|(_, it)| it.name == row[0]).map(|(_, it)| it);
+            let of_all;
+            let record = match own {
+                Some(own) => own,
+                None => {
+                    of_all = record(&row[0]);
+                    &of_all
+                }
+            };
+            shown.extend(own.map(|own| own.name.clone()));
+            let core = configuration(&record.config);
+            assert_eq!(core.core_digest(), record.core, "{}: another configuration", row[0]);
+            let figures = figures(record, target);
+            let Frequency { lowest, median, highest, .. } = figures.frequency.expect("a frequency");
+            let rate = Rate::new(figures, record.clocks_per_point).expect("a rate");
+            let flip_flops = figures.area.usage().expect("an FPGA").flip_flops;
+            assert_eq!(
+                row[1..],
+                [
+                    record.clocks_per_point.to_string(),
+                    area(figures),
+                    flip_flops.to_string(),
+                    format!("{median:.1} ({lowest:.1}–{highest:.1})"),
+                    format!("{:.1}", rate.points),
+                ],
+                "{}",
+                row[0]
+            );
+        }
+    }
+    assert_eq!(shown.len(), small.len());
+}
+
 /// Rows of Glint's own devices: gates and rate of the records in `benches/literature/`, and the error against cosⁿγ at n = 20,
 /// over γ = 0…90°.
 #[test]

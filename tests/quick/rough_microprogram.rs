@@ -1,7 +1,7 @@
 //! The control ROM of `rough` is table 1 of UA 60139, bit for bit, whatever the configuration.
 
 use glint::config::{Config, parse, sample};
-use glint::hdl::netlist::Design;
+use glint::hdl::netlist::{Design, Field};
 use glint::package::{EmitInputs, emit};
 use glint::registry::{Device, Registry};
 
@@ -60,6 +60,30 @@ fn assert_is_the_table(design: &Design, what: &str) {
     assert_eq!(words, table, "{what}");
 }
 
+/// The patent's lines have the patent's values in its microinstructions; in any other no register of the patent is loaded.
+fn assert_has_the_lines(design: &Design, what: &str) {
+    let control = &design.control;
+    let rows: Vec<Vec<u64>> = (control.microprogram.iter())
+        .map(|microinstruction| {
+            let fields = control.fields.iter().zip(&microinstruction.values);
+            let of_patent = fields.filter(|(field, _)| !field.lines.is_empty());
+            let bits = |(field, value): (&Field, &u64)| {
+                let lines = field.lines.len();
+                (0..lines).rev().map(|bit| value >> bit & 1).collect::<Vec<_>>()
+            };
+            of_patent.flat_map(bits).collect()
+        })
+        .collect();
+    let (first, last) = (&rows[..8], &rows[rows.len() - 2..]);
+    let patent = |row: &[u64; 9]| row.to_vec();
+    assert_eq!(first, TABLE[..8].iter().map(patent).collect::<Vec<_>>(), "{what}");
+    assert_eq!(last, TABLE[8..].iter().map(patent).collect::<Vec<_>>(), "{what}");
+    for added in &rows[8..rows.len() - 2] {
+        // V4 to V7 load registers 19, 11, 12 and 13; V9 goes on.
+        assert_eq!((&added[3..7], added[8]), (&[0; 4][..], 1), "{what}");
+    }
+}
+
 #[test]
 fn every_option_has_the_words_of_the_patent() {
     let either = |key: &str, values: [&str; 2]| values.map(|value| format!("{key} = {value}\n"));
@@ -96,6 +120,23 @@ fn random_configurations_have_the_words_of_the_patent() {
     let schema = (rough().schema)();
     for seed in 0..200 {
         let config = sample(&schema, seed);
-        assert_is_the_table(&design(&config), &config.to_toml(&schema));
+        let (design, toml) = (design(&config), config.to_toml(&schema));
+        if config.choice("colour.multipliers") == "3" {
+            assert_is_the_table(&design, &toml);
+        }
+        assert_has_the_lines(&design, &toml);
+    }
+}
+
+/// What the microprogram has beyond the patent's stands between microinstructions 7 and 8, where it moves none of the
+/// patent's lines, and in fields of its own.
+#[test]
+fn keys_that_add_microinstructions_leave_the_lines_of_the_patent() {
+    for (more, added) in [("[colour]\nmultipliers = 1\n", 3), ("[output]\nregistered = true\n", 1)]
+    {
+        let toml = format!("device = \"rough\"\n{more}");
+        let design = design(&configuration(&toml));
+        assert_eq!(design.control.microprogram.len(), TABLE.len() + added, "{toml}");
+        assert_has_the_lines(&design, &toml);
     }
 }

@@ -20,7 +20,7 @@ fn core(name: &str) -> Core {
 }
 
 fn lockstep<'a>(core: &'a Core, design: &'a Design, seed: u64) -> Lockstep<'a> {
-    let model = (core.device.model)(&core.config);
+    let model = core.device.golden(&core.config);
     Lockstep::new(design, model, core.contract.as_ref(), seed).expect("they fit")
 }
 

@@ -85,7 +85,7 @@ fn assert_unnoticed(path: &str, core: &Core, found: &[Found]) {
     let step = (proved.len() / PROVED).max(1);
     for one in proved.into_iter().step_by(step) {
         let mutant = one.fault.planted(&core.design);
-        let model = (core.device.model)(&core.config);
+        let model = core.device.golden(&core.config);
         let outcome = Lockstep::new(&mutant, model, core.contract.as_ref(), SEED)
             .and_then(|lockstep| lockstep.run(TEST_POINTS / 5, &|_| ()))
             .unwrap_or_else(|error| panic!("{path}: {}: {error:?}", one.fault.id));

@@ -85,7 +85,7 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
     let contract = one.core.contract.as_ref();
     let operands = contract.operands();
     let raw = operands::completed(operands, given);
-    let mut model = (one.core.device.model)(&one.core.config);
+    let mut model = one.core.device.golden(&one.core.config);
     let signals = signals(model.as_mut(), operands, &raw)?;
     let outside = outside(operands, &raw);
     let (f, exact) = formula(contract, &raw);

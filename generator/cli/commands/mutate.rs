@@ -188,7 +188,7 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
     let mut waveform = None;
     if let Verdict::Caught(_, Difference { held, mismatch }) = verdict {
         let mutant = fault.planted(&one.core.design);
-        let model = (one.core.device.model)(&one.core.config);
+        let model = one.core.device.golden(&one.core.config);
         let lockstep = Lockstep::new(&mutant, model, one.core.contract.as_ref(), mismatch.seed)?;
         let lockstep = lockstep.holding(held);
         let path = PathBuf::from(format!("{}_mutant.vcd", one.core.config.name));

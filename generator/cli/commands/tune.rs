@@ -22,8 +22,8 @@ use crate::tune::{self, Answer, Candidate, ErrorUnit, Objective, Wish};
 /// Find the smallest configuration of a device for an error
 ///
 /// The proved bound of the accuracy contract decides, so that the answer keeps the error for every operand of the domain.
-/// Keys that change neither ports nor formula are searched. Formats, domain and formula stay at their defaults, or as
-/// `--set` states them. Area and clock are estimates that were fitted to synthesis; `glint synth` measures the answer.
+/// Keys that change neither ports nor formula, and add no microinstructions, are searched. Formats, domain and formula stay at
+/// their defaults, or as `--set` states them. Area and clock are estimates that were fitted to synthesis; `glint synth` measures the answer.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:

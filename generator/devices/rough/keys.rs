@@ -16,6 +16,7 @@ pub fn schema() -> Schema {
             common::cosine_signed().only_when(exact.0, exact.1),
             common::exponent_bits(),
             common::colour_bits(),
+            common::colour_multipliers(),
             Key::integer("product.fraction", 22, 8..=28, "Fraction bits of registers 11 and 12, the products of cosines and of sines.").only_when(exact.0, exact.1),
             Key::choice("product.rounding", "truncate", &common::ROUNDINGS, "Rounding into registers 11 and 12.").only_when(exact.0, exact.1),
             common::intensity_fraction(16).only_when(exact.0, exact.1),

@@ -11,6 +11,7 @@ fn small(function: Function) -> Arithmetic {
             cosine_signed: false,
             exponent_bits: 4,
             colour_bits: 4,
+            colours_in_turn: false,
             intensity_fraction: 6,
             output_rounding: Rounding::Nearest,
             exponents: (1, 15),

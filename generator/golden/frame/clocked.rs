@@ -8,7 +8,7 @@ use crate::golden::Model;
 use crate::golden::handshake::{After, Handshake};
 
 /// The handshake's own, which stand before the device's.
-const HANDSHAKE: [&str; 5] = ["valid", "busy", "done", "run", "word_address"];
+pub(super) const HANDSHAKE: [&str; 5] = ["valid", "busy", "done", "run", "word_address"];
 
 impl Frame {
     /// The model at power-up. The first microinstruction is the one in which the device idles, the last ends
@@ -32,7 +32,14 @@ impl Frame {
         let names = |first: &[&str], then: Vec<String>| {
             first.iter().map(|&name| name.to_owned()).chain(then).collect::<Vec<_>>()
         };
+        let is_register =
+            |slot: Slot| self.shown.iter().any(|shown| !shown.output && shown.slot == slot);
+        let logic = (self.shown.iter().enumerate())
+            .filter(|(_, it)| it.output && !self.flags.contains(&it.slot) && !is_register(it.slot))
+            .map(|(at, _)| at)
+            .collect();
         let mut model = Clocked {
+            datapath: Arc::new(datapath),
             handshake: Handshake::default(),
             pulses: 0,
             state: State(vec![0; self.slots].into()),
@@ -48,8 +55,9 @@ impl Frame {
                     .collect(),
                 flags: self.flags,
                 valid_delay: self.valid_delay,
-                datapath,
                 program,
+                logic,
+                taken: Vec::new(),
             }),
         };
         model.settle();
@@ -58,30 +66,35 @@ impl Frame {
 }
 
 /// What does not change.
-struct Fixed<D> {
-    datapath: D,
-    program: Vec<Microinstruction<D>>,
-    operands: Vec<Operand>,
-    shown: Vec<(Slot, u64)>,
-    flags: Vec<Slot>,
-    valid_delay: u32,
-    inputs: Vec<String>,
-    signals: Vec<String>,
+pub(super) struct Fixed<D> {
+    pub(super) program: Vec<Microinstruction<D>>,
+    pub(super) operands: Vec<Operand>,
+    pub(super) shown: Vec<(Slot, u64)>,
+    /// Where among these the results are that are logic.
+    pub(super) logic: Vec<usize>,
+    /// Results with the registers that take them.
+    pub(super) taken: Vec<(Slot, Slot)>,
+    pub(super) flags: Vec<Slot>,
+    pub(super) valid_delay: u32,
+    pub(super) inputs: Vec<String>,
+    pub(super) signals: Vec<String>,
 }
 
 /// A device, clock by clock.
 pub struct Clocked<D> {
-    fixed: Arc<Fixed<D>>,
-    handshake: Handshake,
+    pub(super) datapath: Arc<D>,
+    pub(super) fixed: Arc<Fixed<D>>,
+    pub(super) handshake: Handshake,
     /// Whether the microinstructions of the latest clocks said `valid`, the latest in bit 0.
-    pulses: u64,
-    state: State,
-    values: Box<[u64]>,
+    pub(super) pulses: u64,
+    pub(super) state: State,
+    pub(super) values: Box<[u64]>,
 }
 
 impl<D> Clone for Clocked<D> {
     fn clone(&self) -> Self {
         Self {
+            datapath: self.datapath.clone(),
             fixed: self.fixed.clone(),
             handshake: self.handshake,
             pulses: self.pulses,
@@ -99,7 +112,7 @@ impl<D: Datapath> Clocked<D> {
 
     /// What the outputs show of the state.
     #[inline]
-    fn settle(&mut self) {
+    pub(super) fn settle(&mut self) {
         let it = &*self.fixed;
         let Handshake { run, address } = self.handshake;
         let here = &it.program[address as usize];
@@ -109,7 +122,7 @@ impl<D: Datapath> Clocked<D> {
         for &flag in &here.asserts {
             self.state[flag] = 1;
         }
-        it.datapath.outputs(&mut self.state);
+        self.datapath.outputs(&mut self.state);
         let valid = match it.valid_delay {
             0 => here.valid,
             clocks => self.pulses >> (clocks - 1) & 1 == 1,
@@ -137,17 +150,23 @@ impl<D: Datapath> Model for Clocked<D> {
         let it = &*self.fixed;
         let (rst_n, start) = (inputs[0] & 1 == 1, inputs[1] & 1 == 1);
         let here = &it.program[self.handshake.address as usize];
-        it.datapath.edge(&mut self.state);
+        let datapath = &*self.datapath;
+        if here.takes_results {
+            for &(logic, register) in &it.taken {
+                self.state[register] = self.state[logic];
+            }
+        }
+        datapath.edge(&mut self.state);
         let after = match here.next {
             Next::Following => After::Next,
-            Next::RepeatWhile(condition) if condition(&it.datapath, &self.state) => After::Again,
-            Next::SkipIf(count, condition) if condition(&it.datapath, &self.state) => {
+            Next::RepeatWhile(condition) if condition(datapath, &self.state) => After::Again,
+            Next::SkipIf(count, condition) if condition(datapath, &self.state) => {
                 After::To(self.handshake.address + 1 + count)
             }
             Next::RepeatWhile(_) | Next::SkipIf(..) => After::Next,
             Next::End => After::End,
         };
-        (here.does)(&it.datapath, &mut self.state);
+        (here.does)(datapath, &mut self.state);
         if !self.handshake.run {
             for (operand, ports) in it.operands.iter().zip(inputs[2..].chunks_exact(2)) {
                 if ports[1] & 1 == 1 {
@@ -163,5 +182,10 @@ impl<D: Datapath> Model for Clocked<D> {
 
     fn values(&self) -> &[u64] {
         &self.values
+    }
+
+    fn with_output_registers(&self) -> Option<Box<dyn Model>> {
+        let model: Self = Self::with_output_registers(self)?;
+        Some(Box::new(model))
     }
 }

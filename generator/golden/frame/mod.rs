@@ -41,6 +41,7 @@
 //! ```
 
 mod clocked;
+mod registered;
 
 #[cfg(test)]
 mod tests;
@@ -102,12 +103,28 @@ enum Next<D> {
     End,
 }
 
+impl<D> Clone for Next<D> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<D> Copy for Next<D> {}
+
 /// One microinstruction.
 pub struct Microinstruction<D> {
     does: Does<D>,
     next: Next<D>,
     valid: bool,
     asserts: Vec<Slot>,
+    /// Registers behind the results take them.
+    takes_results: bool,
+}
+
+impl<D> Clone for Microinstruction<D> {
+    fn clone(&self) -> Self {
+        Self { asserts: self.asserts.clone(), ..*self }
+    }
 }
 
 /// A microinstruction that changes no register.
@@ -117,7 +134,13 @@ pub fn idle<D>() -> Microinstruction<D> {
 
 /// A microinstruction by what its rising edge does to the registers.
 pub fn step<D>(does: fn(&D, &mut State)) -> Microinstruction<D> {
-    Microinstruction { does, next: Next::Following, valid: false, asserts: Vec::new() }
+    Microinstruction {
+        does,
+        next: Next::Following,
+        valid: false,
+        asserts: Vec::new(),
+        takes_results: false,
+    }
 }
 
 impl<D> Microinstruction<D> {
@@ -150,6 +173,7 @@ impl<D> Microinstruction<D> {
 
 /// An operand register with its write strobe. It ignores writes while the device is busy, and does not know
 /// the reset.
+#[derive(Clone)]
 struct Operand {
     name: String,
     slot: Slot,
@@ -194,7 +218,7 @@ impl Frame {
         self.shown(name.to_owned(), format, false)
     }
 
-    /// An output, which [`Datapath::outputs`] sets.
+    /// An output that is logic, which [`Datapath::outputs`] sets.
     pub fn output(&mut self, name: &str, format: Format) -> Slot {
         self.shown(name.to_owned(), format, true)
     }

@@ -103,3 +103,100 @@ fn an_operand_clamps_and_is_written_by_its_strobe() {
     assert_eq!(model.inputs(), ["rst_n", "start", "from", "from_write"]);
     assert_eq!(model.value("nothing"), None);
 }
+
+/// `valid` moves to a microinstruction more, and the result to a register that is loaded before it.
+#[test]
+fn results_in_registers() {
+    let model = model(0).with_output_registers().expect("one result");
+    // The register shows −2 · 0 only after a load, and keeps it while `twice` itself would be −2 · 2.
+    let course = [
+        [1, 0, 0, 0, 0, 0, 0],
+        [1, 1, 0, 0, 0, 0, 0],
+        [1, 2, 2, 0, 1, 0, 0],
+        [1, 2, 1, 0, 1, 0, 0],
+        [1, 3, 0, 0, 0, 0, 0],
+        [1, 4, 0, 0, 0, 1, 1],
+        [0, 0, 0, 0, 0, 0, 0],
+    ];
+    assert_course(model, 2, &course);
+}
+
+/// What is skipped is as far as before where a microinstruction was put in between; the result holds from one
+/// computation to the next.
+#[test]
+fn a_jump_beyond_a_result_in_a_register() {
+    let mut frame = Frame::default();
+    let device = Countdown {
+        from: frame.clamped("from", Format::signed(1, 2), 0, 4),
+        count: frame.register("count", Format::unsigned(3, 0)),
+        twice: frame.output("twice", Format::signed(4, 0)),
+    };
+    let counts = frame.flag("counts");
+    let load = step(|it: &Countdown, s| s[it.count] = s[it.from]);
+    let program = [
+        idle(),
+        load,
+        idle().skip_if(1, |it: &Countdown, s| s[it.from] == 0),
+        idle().valid().asserts(counts),
+        idle().end(),
+    ];
+    let mut model = frame.model(device, program).with_output_registers().expect("one result");
+    let mut course = |from: u64, clocks: usize| {
+        let mut seen = Vec::new();
+        for clock in 0..clocks {
+            model.clock(&[1, u64::from(clock == 0), from, 1]);
+            seen.push(NAMES.map(|name| model.value(name).unwrap()));
+        }
+        seen
+    };
+    let expected = [
+        [1, 0, 0, 0, 0, 0, 0],
+        [1, 1, 0, 0, 0, 0, 0],
+        [1, 2, 3, 0, 0, 0, 0],
+        // It is taken here: −6 in five bits.
+        [1, 3, 3, 0, 1, 0, 0],
+        [1, 4, 3, 26, 0, 1, 0],
+        [1, 5, 3, 26, 0, 0, 1],
+        [0, 0, 3, 26, 0, 0, 0],
+    ];
+    assert_eq!(course(3, 7), expected);
+    let expected = [
+        [1, 0, 3, 26, 0, 0, 0],
+        [1, 1, 3, 26, 0, 0, 0],
+        [1, 2, 0, 26, 0, 0, 0],
+        [1, 5, 0, 26, 0, 0, 1],
+        [0, 0, 0, 26, 0, 0, 0],
+    ];
+    assert_eq!(course(0, 5), expected);
+}
+
+/// Where `valid` comes later than a microinstruction says, results are taken in every clock.
+#[test]
+fn results_in_registers_that_follow() {
+    let model = model(2).with_output_registers().expect("one result");
+    let course = [
+        [1, 0, 0, 0, 0, 0, 0],
+        [1, 1, 0, 0, 0, 0, 0],
+        [1, 2, 2, 0, 1, 0, 0],
+        [1, 2, 1, 28, 1, 0, 0],
+        [1, 3, 0, 30, 0, 0, 0],
+        [1, 4, 0, 0, 0, 0, 1],
+        [0, 0, 0, 0, 0, 0, 0],
+        [0, 0, 0, 0, 0, 1, 0],
+    ];
+    assert_course(model, 2, &course);
+}
+
+/// Before a microinstruction that decides where to go on, there is none that could load.
+#[test]
+fn no_registers_behind_a_result_that_decides() {
+    let mut frame = Frame::default();
+    let device = Countdown {
+        from: frame.clamped("from", Format::signed(1, 2), 0, 4),
+        count: frame.register("count", Format::unsigned(3, 0)),
+        twice: frame.output("twice", Format::signed(4, 0)),
+    };
+    let again = idle().valid().repeat_while(|it: &Countdown, s| s[it.count] > 0);
+    let model = frame.model(device, [idle(), again, idle().end()]);
+    assert!(model.with_output_registers().is_none());
+}

@@ -17,6 +17,8 @@ pub struct Keys {
     pub exponent_bits: u32,
     /// `colour.bits`: bits of a colour operand and of a colour output.
     pub colour_bits: u32,
+    /// `colour.multipliers`: one for all colours, which takes them in turn.
+    pub colours_in_turn: bool,
     /// `intensity.fraction`: fraction bits of f.
     pub intensity_fraction: u32,
     /// `output.rounding`: of the colour outputs.
@@ -33,6 +35,7 @@ impl Keys {
             cosine_signed: config.flag("cosine.signed"),
             exponent_bits: keys::bits(config, "exponent.bits"),
             colour_bits: keys::bits(config, "colour.bits"),
+            colours_in_turn: keys::colours_in_turn(config),
             intensity_fraction: keys::bits(config, "intensity.fraction"),
             output_rounding: keys::rounding(config, "output.rounding"),
             exponents: keys::exponents(config),
@@ -67,6 +70,7 @@ impl Keys {
     /// The products of f with the colours.
     pub fn products(&self) -> Products {
         Products::colours(self.f_format(), self.colour_bits, self.output_rounding)
+            .in_turn(self.colours_in_turn)
     }
 
     /// The operands cos γ and n.

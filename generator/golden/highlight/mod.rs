@@ -4,7 +4,7 @@ mod keys;
 mod products;
 
 pub use keys::Keys;
-pub use products::{ProductSlots, Products};
+pub use products::{ProductSlots, Products, Shading};
 
 use std::borrow::Cow;
 

@@ -1,7 +1,7 @@
 //! What a reflectance multiplies.
 
 use crate::base::fixed::{Format, Rounding};
-use crate::golden::frame::{Frame, Slot, State};
+use crate::golden::frame::{Datapath, Frame, Microinstruction, Slot, State, step};
 use crate::golden::narrow::Narrow;
 use crate::golden::{Operand, Output};
 
@@ -15,6 +15,7 @@ pub struct Products {
     pub(super) narrow: Narrow,
     pub(super) operands: Vec<Operand>,
     pub(super) outputs: Vec<Output>,
+    in_turn: bool,
 }
 
 impl Products {
@@ -61,32 +62,70 @@ impl Products {
             narrow: Narrow::new(f.frac as u32, format, rounding),
             operands: operands.into_iter().map(operand).collect(),
             outputs: outputs.into_iter().map(|name| Output { name, format }).collect(),
+            in_turn: false,
         }
+    }
+
+    /// The same colours made one after the other, a microinstruction each, if `in_turn`; each at once otherwise.
+    #[must_use]
+    pub fn in_turn(self, in_turn: bool) -> Self {
+        Self { in_turn, ..self }
     }
 
     /// Their operands and outputs in a clock model.
     pub fn slots(&self, frame: &mut Frame) -> ProductSlots {
         let pairs = self.operands.iter().zip(&self.outputs).map(|(operand, output)| {
-            (
-                frame.operand(&operand.name, operand.format),
-                frame.output(&output.name, output.format),
-            )
+            let slot = if self.in_turn {
+                let held = frame.register(&format!("{}_intensity", operand.name), output.format);
+                frame.shows(&output.name, held);
+                held
+            } else {
+                frame.output(&output.name, output.format)
+            };
+            (frame.operand(&operand.name, operand.format), slot)
         });
-        ProductSlots { pairs: pairs.collect(), narrow: self.narrow }
+        ProductSlots { pairs: pairs.collect(), narrow: self.narrow, in_turn: self.in_turn }
     }
 }
 
 /// Products in a clock model.
 pub struct ProductSlots {
-    /// Operand and output.
+    /// Operand and output, or the register that holds it.
     pairs: Vec<(Slot, Slot)>,
     narrow: Narrow,
+    in_turn: bool,
+}
+
+/// A device with three colours, which it multiplies by f.
+pub trait Shading: Datapath {
+    /// The raw f.
+    fn reflectance(&self, state: &State) -> i64;
+
+    /// The products.
+    fn products(&self) -> &ProductSlots;
 }
 
 impl ProductSlots {
-    /// The outputs for a raw f.
+    /// The microinstructions that make the products, before the one with the result; none where they are made at once.
+    pub fn program<D: Shading>(&self) -> Vec<Microinstruction<D>> {
+        fn make<D: Shading, const COLOUR: usize>(device: &D, state: &mut State) {
+            let it = device.products();
+            let (operand, held) = it.pairs[COLOUR];
+            state[held] = it.narrow.apply(device.reflectance(state) * state[operand]);
+        }
+        if self.in_turn {
+            vec![step(make::<D, 0>), step(make::<D, 1>), step(make::<D, 2>)]
+        } else {
+            Vec::new()
+        }
+    }
+
+    /// The outputs for a raw f, where they are made at once.
     #[inline]
     pub fn show(&self, f: i64, state: &mut State) {
+        if self.in_turn {
+            return;
+        }
         for &(operand, output) in &self.pairs {
             state[output] = self.narrow.apply(f * state[operand]);
         }

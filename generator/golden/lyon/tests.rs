@@ -14,6 +14,8 @@ fn small(power: u32, scale: Scale) -> Params {
         distance_fraction: 6,
         exponent_bits: 4,
         colour_bits: 4,
+        colours_in_turn: false,
+        squares_in_turn: false,
         intensity_fraction: 4,
         distance_rounding: Rounding::Truncate,
         intensity_rounding: Rounding::Truncate,
@@ -101,4 +103,34 @@ fn a_point_clock_by_clock() {
     ];
     assert_eq!(seen, expected);
     assert_eq!(model.value("dx_reg").unwrap(), 1);
+}
+
+/// The same point by one multiplier for all components: two microinstructions more.
+#[test]
+fn squares_in_turn_clock_by_clock() {
+    let params = Params { squares_in_turn: true, ..small(4, Scale::Shift) };
+    let mut model = clocked(&Arithmetic::new(params));
+    model.clock(&[1, 1, 3, 1, 62, 1, 1, 1, 2, 1, 15, 1, 0, 0, 0, 0]);
+    let names = ["run", "word_address", "distance_sum", "shift_register", "accumulator", "valid"];
+    let mut seen = Vec::new();
+    for _ in 0..11 {
+        seen.push(names.map(|name| model.value(name).unwrap()));
+        model.clock(&[1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0]);
+    }
+    let expected = [
+        [1, 0, 0, 0, 0, 0],
+        [1, 1, 0, 0, 0, 0],
+        // 9/256, and 4/256 more.
+        [1, 2, 9, 0, 0, 0],
+        [1, 3, 13, 0, 0, 0],
+        // 14/256 of D².
+        [1, 4, 13, 3, 0, 0],
+        [1, 4, 13, 6, 0, 0],
+        [1, 4, 13, 12, 0, 0],
+        [1, 5, 13, 24, 0, 0],
+        [1, 6, 13, 24, 14, 0],
+        [1, 7, 13, 24, 12, 1],
+        [0, 0, 13, 24, 12, 0],
+    ];
+    assert_eq!(seen, expected);
 }

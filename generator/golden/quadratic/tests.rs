@@ -9,6 +9,7 @@ fn small(scheme: CoefficientScheme) -> Arithmetic {
         cosine_signed: false,
         exponent_bits: 4,
         colour_bits: 4,
+        colours_in_turn: false,
         intensity_fraction: 4,
         output_rounding: Rounding::Nearest,
         exponents: (1, 15),
@@ -85,4 +86,36 @@ fn a_point_clock_by_clock() {
     assert_eq!(seen, expected);
     // 7/16 of 15 units.
     assert_eq!(model.value("red_out").unwrap(), 7);
+}
+
+/// The same point by one multiplier for all colours: three microinstructions more, and outputs that hold.
+#[test]
+fn colours_in_turn_clock_by_clock() {
+    let it = small(CoefficientScheme::Taylor);
+    let keys = Keys { colours_in_turn: true, ..it.keys.clone() };
+    let mut model = clocked(&Arithmetic { keys, ..it });
+    // As above, with green 9 and blue 4.
+    model.clock(&[1, 1, 14, 1, 5, 1, 15, 1, 9, 1, 4, 1]);
+    let names = ["run", "word_address", "intensity", "red_out", "green_out", "blue_out", "valid"];
+    let mut seen = Vec::new();
+    for _ in 0..8 {
+        seen.push(names.map(|name| model.value(name).unwrap()));
+        // The last of these writes come when it is idle again, and change no output.
+        model.clock(&[1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]);
+    }
+    seen.push(names.map(|name| model.value(name).unwrap()));
+    let expected = [
+        [1, 0, 0, 0, 0, 0, 0],
+        [1, 1, 0, 0, 0, 0, 0],
+        [1, 2, 0, 0, 0, 0, 0],
+        [1, 3, 7, 0, 0, 0, 0],
+        // 7/16 of 15, of 9 and of 4: 6.6, 3.9 and 1.8 units.
+        [1, 4, 7, 7, 0, 0, 0],
+        [1, 5, 7, 7, 4, 0, 0],
+        [1, 6, 7, 7, 4, 2, 1],
+        [0, 0, 7, 7, 4, 2, 0],
+        [0, 0, 7, 7, 4, 2, 0],
+    ];
+    assert_eq!(seen, expected);
+    assert_eq!(model.value("red_reg").unwrap(), 1);
 }

@@ -5,7 +5,7 @@ use crate::base::fixed::Format;
 use crate::config::Config;
 use crate::golden::Model;
 use crate::golden::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
-use crate::golden::highlight::ProductSlots;
+use crate::golden::highlight::{ProductSlots, Shading};
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
@@ -40,7 +40,18 @@ impl Datapath for Device {
     }
 
     fn outputs(&self, s: &mut State) {
-        self.products.show(self.it.f_of(s[self.result]), s);
+        self.products.show(self.reflectance(s), s);
+    }
+}
+
+impl Shading for Device {
+    #[inline]
+    fn reflectance(&self, s: &State) -> i64 {
+        self.it.f_of(s[self.result])
+    }
+
+    fn products(&self) -> &ProductSlots {
+        &self.products
     }
 }
 
@@ -92,19 +103,17 @@ pub(super) fn clocked(params: Params) -> Clocked<Device> {
     });
     // Register 13 takes the square of itself plus 1.0.
     let fourth = step(|d: &Device, s| s[d.result] = d.it.squared(s[d.result], s[d.cos_gamma]));
-    frame.model(
-        device,
-        [
-            idle(),
-            first,
-            settle(),
-            second.asserts(turned),
-            settle(),
-            third.asserts(turned),
-            settle(),
-            fourth.asserts(turned),
-            settle().valid(),
-            idle().end(),
-        ],
-    )
+    let mut program = vec![
+        idle(),
+        first,
+        settle(),
+        second.asserts(turned),
+        settle(),
+        third.asserts(turned),
+        settle(),
+        fourth.asserts(turned),
+    ];
+    program.extend(device.products.program());
+    program.extend([settle().valid(), idle().end()]);
+    frame.model(device, program)
 }

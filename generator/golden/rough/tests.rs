@@ -12,6 +12,7 @@ fn small() -> Params {
         cosine_fraction: 4,
         exponent_bits: 4,
         colour_bits: 4,
+        colours_in_turn: false,
         product_fraction: 6,
         intensity_fraction: 4,
         sine_scheme: TableScheme::Segmented { segments: vec![2], slope_fraction: 5 },

@@ -9,6 +9,7 @@ fn small(levels: &[i64]) -> Arithmetic {
         cosine_signed: false,
         exponent_bits: 4,
         colour_bits: 4,
+        colours_in_turn: false,
         intensity_fraction: 4,
         output_rounding: Rounding::Nearest,
         exponents: (1, 15),
@@ -91,6 +92,7 @@ fn levels_that_are_seen_are_remarked_on() {
             cosine_fraction: 20,
             exponent_bits: 10,
             colour_bits: 8,
+            colours_in_turn: false,
             intensity_fraction: 16,
             exponents: (1, 1000),
             ..small(&[0]).keys

@@ -1,7 +1,7 @@
-//! Colour operands and output multipliers.
+//! Colour operands and output multipliers: one for each colour, or one for all.
 
 use crate::base::fixed::{Format, Overflow, Rounding};
-use crate::hdl::dsl::{Designer, Operand, Signal};
+use crate::hdl::dsl::{Designer, Operand, Signal, Step, step};
 
 /// The numbers of one colour channel in the source's figure.
 #[derive(Clone, Copy, Debug)]
@@ -63,6 +63,33 @@ impl<'d> Colours<'d> {
         Self { designer, format, channels: vec![Channel { name: "intensity", operand, blocks }] }
     }
 
+    /// The same outputs by one multiplier, and the microinstructions in which it makes them, one after the other. Each is
+    /// a register, `<colour>_intensity`. `f` must hold meanwhile.
+    #[must_use]
+    #[track_caller]
+    pub fn outputs_in_turn(&self, f: Signal<'d>, rounding: Rounding) -> Vec<Step> {
+        let d = self.designer;
+        let operands = self.channels.iter().map(|channel| channel.operand.q());
+        let colour = d.mux("colour", operands).doc("the colour that is multiplied");
+        let product =
+            d.mul("colour_product", f, colour.out()).doc("an output before it is rounded");
+        let narrowed =
+            d.narrow("colour_rounded", product, self.format, rounding, Overflow::Saturate);
+        let mut steps = Vec::new();
+        for Channel { name, operand, blocks } in &self.channels {
+            let register_name = intensity_name(name);
+            let register = d.register(&register_name, self.format).doc("holds the output");
+            register.takes(narrowed);
+            let out = d.output(&format!("{name}_out"), register.q()).doc("intensity on the output");
+            if let Some(blocks) = blocks {
+                let _ = out.block(blocks.output);
+            }
+            let does = format!("{register_name} <- f * {}", operand.q().name());
+            steps.push(step(&does, [colour.pick(operand.q()), register.load()]));
+        }
+        steps
+    }
+
     /// The outputs, `<colour>_out` or `intensity_out`, each f times its operand, rounded to integers.
     #[track_caller]
     pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) {
@@ -72,10 +99,7 @@ impl<'d> Colours<'d> {
             let mut product = d
                 .mul(&format!("{name}_product"), f, operand.q())
                 .doc("an output before it is rounded");
-            let rounded = match *name {
-                "intensity" => "intensity_rounded".to_owned(),
-                colour => format!("{colour}_intensity"),
-            };
+            let rounded = intensity_name(name);
             let narrowed = d.narrow(&rounded, product, self.format, rounding, Overflow::Saturate);
             let mut out = d.output(&format!("{name}_out"), narrowed).doc("intensity on the output");
             if let Some(blocks) = blocks {
@@ -84,5 +108,13 @@ impl<'d> Colours<'d> {
             }
             let _ = (product, out);
         }
+    }
+}
+
+/// What is on the output `<name>_out`, rounded.
+fn intensity_name(name: &str) -> String {
+    match name {
+        "intensity" => "intensity_rounded".to_owned(),
+        colour => format!("{colour}_intensity"),
     }
 }

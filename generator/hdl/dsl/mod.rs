@@ -34,6 +34,7 @@
 
 mod narrow;
 mod operand_mux;
+mod output_registers;
 mod program;
 mod registers;
 mod rules;
@@ -88,6 +89,8 @@ pub(crate) struct Inner {
     program: Option<Program>,
     /// What `valid` follows, and how many clocks later, when no microinstruction raises it.
     valid: Option<(NetId, u32)>,
+    /// Whether results that are logic get registers.
+    registers_outputs: bool,
     /// The numbers of the lines of `valid_word` and of `go_on` in the source's figure.
     sequencer_lines: Option<[u16; 2]>,
     diagnostics: Vec<Diagnostic>,
@@ -116,6 +119,7 @@ impl Designer {
             views: HashMap::new(),
             program: None,
             valid: None,
+            registers_outputs: false,
             sequencer_lines: None,
             diagnostics: Vec::new(),
             names: HashMap::new(),
@@ -306,15 +310,26 @@ impl Designer {
         self.inner.borrow_mut().sequencer_lines = Some([valid, go_on]);
     }
 
+    /// Puts registers behind results that are logic. The microinstruction that sets `valid` loads them, and one more after
+    /// it sets `valid`; other outputs stay as they are. The key `output.registered` asks for it.
+    pub fn register_outputs(&self) {
+        self.inner.borrow_mut().registers_outputs = true;
+    }
+
     /// The finished design, assembled and checked.
     ///
     /// # Errors
     /// Every mistake of the description, each with the signals and the Rust source line.
     pub fn finish(self) -> Result<Design, Diagnostics> {
         let program = self.inner.borrow_mut().program.take();
-        if let Some(program) = program {
+        if let Some(mut program) = program {
             let place = program.location;
-            self.placed(place, || program::assemble(&self, &program));
+            self.placed(place, || {
+                if self.with(|inner| inner.registers_outputs) {
+                    output_registers::insert(&self, &mut program);
+                }
+                program::assemble(&self, &program);
+            });
         } else {
             let place = self.net(self.start).location;
             self.report(Diagnostic::new("the design has no microprogram".to_owned(), place));

@@ -14,7 +14,7 @@ use crate::hdl::netlist::{
 /// What a microinstruction says of one field, or of its successor.
 #[derive(Clone)]
 pub struct Setting {
-    kind: Kind,
+    pub(super) kind: Kind,
     /// The designer whose field or condition it is; none where it has neither.
     of: Option<Origin>,
     location: SourceLocation,
@@ -28,7 +28,7 @@ fn origin(d: &Designer) -> Origin {
 }
 
 #[derive(Clone)]
-enum Kind {
+pub(super) enum Kind {
     Field {
         field: FieldId,
         value: u64,
@@ -160,9 +160,9 @@ pub fn end() -> Setting {
 /// A microinstruction of the microprogram.
 #[derive(Clone)]
 pub struct Step {
-    name: String,
-    settings: Vec<Setting>,
-    location: SourceLocation,
+    pub(super) name: String,
+    pub(super) settings: Vec<Setting>,
+    pub(super) location: SourceLocation,
 }
 
 /// A microinstruction with its name and settings. Muxes that are not mentioned pass on their first input;

@@ -1,0 +1,138 @@
+//! Registers behind results that are logic, as the key `output.registered` asks for.
+//!
+//! The microinstruction that set `valid` loads them, and one after it sets `valid`: a result comes a clock later.
+//! Where `valid` follows a signal, they take what is in front of them in every clock.
+
+use super::program::{Kind, Program, Step};
+use super::{Designer, Setting, hold, step, valid};
+use crate::base::diagnostic::Diagnostic;
+use crate::hdl::netlist::{Design, Driver, FieldKind, NetId, Op, RegisterKind, Role};
+
+/// Inserts the registers, and the microinstructions that they take.
+pub(super) fn insert(d: &Designer, program: &mut Program) {
+    let results = d.with(|inner| logic(&inner.design));
+    if results.is_empty() {
+        return;
+    }
+    let follows = d.with(|inner| inner.valid);
+    let (kind, load) = match follows {
+        Some(_) => (RegisterKind::Internal, None),
+        None => {
+            let field = d.add_field("outputs_load", 1, FieldKind::Enable);
+            (RegisterKind::Architectural, Some(field))
+        }
+    };
+    for port in results {
+        behind(d, port, kind, load.map(|field| d.field_net(field).id()));
+    }
+    let note = match load {
+        Some(field) => {
+            let load = Setting::field(d, field, 1, "outputs.load".to_owned());
+            loaded(d, &mut program.steps, &load);
+            "Writes while busy are ignored. The outputs are registers: they hold from valid until the next \
+             computation has its results."
+        }
+        None => {
+            d.with(|inner| inner.valid = follows.map(|(signal, clocks)| (signal, clocks + 1)));
+            followed(&mut program.steps);
+            "Writes while busy are ignored. The outputs are registers, a clock behind the datapath."
+        }
+    };
+    d.with(|inner| {
+        let notes = &mut inner.design.about.notes;
+        notes.retain(|note| !note.starts_with("Writes while busy"));
+        notes.push(note.to_owned());
+    });
+}
+
+/// The ports of results that are no registers.
+fn logic(design: &Design) -> Vec<NetId> {
+    let results = design.ports.iter().filter(|port| port.role == Role::Result);
+    let is_register = |port: NetId| {
+        let mut net = port;
+        while let Driver::Op(Op::Relabel(of)) = design.net(net).driver {
+            net = of;
+        }
+        matches!(design.net(net).driver, Driver::Register(_))
+    };
+    results.map(|port| port.net).filter(|&port| !is_register(port)).collect()
+}
+
+/// Puts the register `<port>_reg` between a port and what drives it.
+fn behind(d: &Designer, port: NetId, kind: RegisterKind, enable: Option<NetId>) {
+    let net = d.net(port);
+    let Driver::Op(Op::Relabel(source)) = net.driver else {
+        unreachable!("an output port names what it shows")
+    };
+    // It holds 0 from power-up to its first load.
+    let range = (net.range.0.min(0), net.range.1.max(0));
+    let q = d.placed(net.location, || {
+        d.add_register(&format!("{}_reg", net.name), net.format, range, kind)
+    });
+    d.set_doc(q, "holds the output");
+    d.connect(q, source, enable);
+    d.with(|inner| {
+        let shown = &mut inner.design.nets[port.index()];
+        shown.driver = Driver::Op(Op::Relabel(q));
+        shown.range = range;
+    });
+}
+
+/// Every microinstruction that sets `valid` loads instead, and one after it sets `valid`.
+fn loaded(d: &Designer, steps: &mut Vec<Step>, load: &Setting) {
+    let mut at = 0;
+    while at < steps.len() {
+        if steps[at].sets(|kind| matches!(kind, Kind::Valid)) {
+            if steps[at].sets(|kind| matches!(kind, Kind::LoopWhile { .. })) {
+                let message = format!(
+                    "microinstruction `{}` sets valid and goes on by a condition: its results cannot be taken into \
+                     registers before it goes on. Let another microinstruction decide, or leave output.registered out",
+                    steps[at].name
+                );
+                d.report(Diagnostic::new(message, steps[at].location));
+                return;
+            }
+            let after = steps[at].divided();
+            steps[at].settings.push(load.clone());
+            steps.insert(at + 1, after.with(valid()));
+            at += 1;
+        }
+        at += 1;
+    }
+}
+
+/// One more microinstruction at the end, while the last result goes through the registers.
+fn followed(steps: &mut Vec<Step>) {
+    if let Some(last) = steps.last_mut() {
+        let after = last.divided();
+        steps.push(after);
+    }
+}
+
+impl Step {
+    fn sets(&self, kind: impl Fn(&Kind) -> bool) -> bool {
+        self.settings.iter().any(|setting| kind(&setting.kind))
+    }
+
+    fn with(mut self, setting: Setting) -> Self {
+        self.settings.push(setting);
+        self
+    }
+
+    /// Keeps what it does to registers, and returns a microinstruction after it with what comes then.
+    fn divided(&mut self) -> Self {
+        let comes_then =
+            |setting: &Setting| matches!(setting.kind, Kind::Next | Kind::WaitForStart | Kind::End);
+        let (then, own) = self
+            .settings
+            .drain(..)
+            .filter(|setting| !matches!(setting.kind, Kind::Valid))
+            .partition(comes_then);
+        self.settings = own;
+        // What is selected stays so, for a microinstruction after it that holds it.
+        let mut after = step(&format!("{}, in output registers", self.name), [hold()]);
+        after.location = self.location;
+        after.settings.extend::<Vec<Setting>>(then);
+        after
+    }
+}

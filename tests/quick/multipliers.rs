@@ -1,0 +1,57 @@
+//! One multiplier in place of three: the same results, fewer multipliers, more clocks.
+
+use glint::config;
+use glint::core::Core;
+use glint::evidence::comparison::multipliers;
+use glint::registry::{Device, Registry};
+
+/// Results that golden model and simulation are compared on.
+const POINTS: u64 = 2000;
+
+/// A device by its defaults and more keys, as TOML.
+fn core(device: &Device, more: &str) -> Core {
+    let text = format!("device = \"{}\"\n{more}", device.name);
+    let config = config::parse("multipliers.toml", &text, &[(device.schema)()])
+        .unwrap_or_else(|problems| panic!("{problems}"));
+    Core::new(*device, config).unwrap_or_else(|error| panic!("{error:?}"))
+}
+
+/// The device with one multiplier for what has three: two multipliers fewer, so many clocks more, and the same results.
+#[track_caller]
+fn assert_one_for_three(device: &Device, table: &str, clocks: u32) {
+    let three = core(device, "");
+    let one = core(device, &format!("[{table}]\nmultipliers = 1\n"));
+    let count = |core: &Core| multipliers(&core.design).len();
+    assert_eq!(count(&one), count(&three) - 2, "{}", device.name);
+    let computations = |core: &Core| {
+        let listed = glint::cosim::trial::computations(&core.design, core.contract.as_ref());
+        listed.expect("computations that agree with the golden model")
+    };
+    for (one, three) in computations(&one).iter().zip(computations(&three)) {
+        assert_eq!(one.operands, three.operands);
+        let outputs = |it: &glint::package::Computation| it.results[0].outputs.clone();
+        assert_eq!(outputs(one), outputs(&three), "{}: {:?}", device.name, one.operands);
+        assert_eq!(one.done, three.done + clocks, "{}", device.name);
+    }
+    let outcome = one.lockstep(1).and_then(|it| it.run(POINTS, &|_| ())).expect("a run");
+    assert!(outcome.mismatch.is_none(), "{}: {:?}", device.name, outcome.mismatch);
+}
+
+#[test]
+fn for_the_colours_of_every_device_that_has_three() {
+    let mut seen = 0;
+    for device in Registry::catalogue().devices() {
+        if (device.schema)().key("colour.multipliers").is_some() {
+            assert_one_for_three(device, "colour", 3);
+            seen += 1;
+        }
+    }
+    assert_eq!(seen, 8);
+}
+
+#[test]
+fn for_the_components_of_lyon() {
+    let registry = Registry::catalogue();
+    let lyon = registry.device("lyon").expect("lyon");
+    assert_one_for_three(lyon, "distance", 2);
+}

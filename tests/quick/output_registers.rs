@@ -1,0 +1,145 @@
+//! `output.registered`: registers behind results that are logic, valid a clock later.
+
+use glint::config;
+use glint::core::Core;
+use glint::cosim::trial;
+use glint::dsl::{Designer, Step, end, loop_while, step, valid};
+use glint::fixed::{Format, Overflow, Rounding};
+use glint::golden::Model;
+use glint::hdl::netlist::{Design, Driver, NetId, Op, Role};
+use glint::registry::{Device, Registry};
+
+/// Results that golden model and simulation are compared on.
+const POINTS: u64 = 2000;
+
+const REGISTERED: &str = "[output]\nregistered = true\n";
+
+/// A device by its defaults and more keys, as TOML.
+fn core(device: Device, more: &str) -> anyhow::Result<Core> {
+    let text = format!("device = \"{}\"\n{more}", device.name);
+    let config = config::parse("registered.toml", &text, &[(device.schema)()])
+        .unwrap_or_else(|problems| panic!("{problems}"));
+    Core::new(device, config)
+}
+
+/// Whether a port shows a register, whatever it is called on the way.
+fn shows_register(design: &Design, mut net: NetId) -> bool {
+    while let Driver::Op(Op::Relabel(of)) = design.net(net).driver {
+        net = of;
+    }
+    matches!(design.net(net).driver, Driver::Register(_))
+}
+
+#[test]
+fn every_device_has_its_results_in_registers_a_clock_later() {
+    for device in Registry::catalogue().devices() {
+        let [plain, registered] =
+            ["", REGISTERED].map(|more| core(*device, more).expect("a design"));
+        let design = &registered.design;
+        let results = design.ports.iter().filter(|port| port.role == Role::Result);
+        for port in results {
+            assert!(shows_register(design, port.net), "{}", design.net(port.net).name);
+        }
+        let computations = |core: &Core| {
+            let listed = trial::computations(&core.design, core.contract.as_ref());
+            listed.expect("computations that agree with the golden model")
+        };
+        for (one, other) in computations(&registered).iter().zip(computations(&plain)) {
+            assert_eq!(one.operands, other.operands);
+            assert_eq!(one.done, other.done + 1, "{}", device.name);
+            let clocks: Vec<u32> = one.results.iter().map(|it| it.clock).collect();
+            let before: Vec<u32> = other.results.iter().map(|it| it.clock + 1).collect();
+            assert_eq!(clocks, before, "{}", device.name);
+            let outputs = one.results.iter().map(|it| &it.outputs);
+            assert!(outputs.eq(other.results.iter().map(|it| &it.outputs)), "{}", device.name);
+        }
+        let outcome = registered.lockstep(1).and_then(|it| it.run(POINTS, &|_| ())).expect("a run");
+        assert!(outcome.mismatch.is_none(), "{}: {:?}", device.name, outcome.mismatch);
+    }
+}
+
+/// Results that are registers already get no other, and no clock.
+#[test]
+fn registers_are_left_alone() {
+    let lyon = *Registry::catalogue().device("lyon").expect("lyon");
+    let shared = "[colour]\nmultipliers = 1\n";
+    let [one, other] = [shared.to_owned(), format!("{shared}{REGISTERED}")]
+        .map(|more| core(lyon, &more).expect("a design"));
+    let clocks = |core: &Core| core.design.control.microprogram.len();
+    assert_eq!(clocks(&one), clocks(&other));
+    assert_eq!(one.design.registers.len(), other.design.registers.len());
+}
+
+#[test]
+fn a_pipeline_has_none_to_ask_for() {
+    let text = format!("device = \"lyon\"\narchitecture = \"pipelined\"\n{REGISTERED}");
+    let problems = config::parse("both.toml", &text, &Registry::catalogue().schemas())
+        .expect_err("a key of sequential cores")
+        .to_string();
+    assert!(problems.contains("output.registered"), "{problems}");
+    assert!(problems.contains("architecture = \"sequential\""), "{problems}");
+}
+
+/// A golden model that was written by hand, and does not say what such registers do.
+#[test]
+fn a_model_that_does_not_know_them_is_refused() {
+    #[derive(Clone)]
+    struct ByHand;
+
+    impl Model for ByHand {
+        fn inputs(&self) -> &[String] {
+            &[]
+        }
+
+        fn signals(&self) -> &[String] {
+            &[]
+        }
+
+        fn clock(&mut self, _: &[u64]) {}
+
+        fn values(&self) -> &[u64] {
+            &[]
+        }
+    }
+
+    let threshold = *Registry::catalogue().device("threshold").expect("threshold");
+    let device = Device { model: |_| Box::new(ByHand), ..threshold };
+    assert!(core(device, "").is_ok());
+    let error = core(device, REGISTERED).err().expect("no model").to_string();
+    assert!(
+        error.contains("`threshold`") && error.contains("leave output.registered out"),
+        "{error}"
+    );
+}
+
+/// The squarer of the builder's documentation with this program's last microinstructions.
+fn squarer(last: impl Fn(glint::dsl::Signal<'_>) -> Vec<Step>) -> Result<Design, String> {
+    let d = Designer::new("squarer");
+    let x = d.operand("x", Format::unsigned(0, 8));
+    let y = d.register("y", Format::unsigned(0, 8));
+    let square = d.mul("square", x.q(), x.q());
+    y.takes(d.narrow("cut", square, y.format(), Rounding::Truncate, Overflow::Saturate));
+    let odd = y.q().bit(0).named("odd");
+    d.output("y_out", d.not("inverse", y.q()));
+    let mut steps = vec![step("idle", []), step("square", [y.load()])];
+    steps.extend(last(odd));
+    d.register_outputs();
+    d.microprogram(steps);
+    d.finish().map_err(|mistakes| mistakes.to_string())
+}
+
+#[test]
+fn a_result_that_decides_is_refused_with_its_place() {
+    let design = squarer(|_| vec![step("result", [valid(), end()])]).expect("a design");
+    let names: Vec<&str> = design.control.microprogram.iter().map(|it| it.name.as_str()).collect();
+    assert_eq!(names, ["idle", "square", "result", "result, in output registers"]);
+    let mistakes = squarer(|odd| {
+        vec![step("result", [valid(), loop_while(odd, "square")]), step("last", [end()])]
+    })
+    .expect_err("it goes on by a condition");
+    assert!(
+        mistakes.contains("microinstruction `result` sets valid and goes on by a condition"),
+        "{mistakes}"
+    );
+    assert!(mistakes.contains("output_registers.rs"), "{mistakes}");
+}
