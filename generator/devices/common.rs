@@ -133,6 +133,17 @@ pub fn angle_fraction(default: i64) -> Key {
     )
 }
 
+/// `line.stages`.
+pub fn line_stages(choices: &'static [&'static str]) -> Key {
+    Key::choice(
+        "line.stages",
+        "2",
+        choices,
+        "Clocks from a point's angle to its result: the fewest, or one for each memory and multiplier, at twice the frequency.",
+    )
+    .joined_later()
+}
+
 /// `table.address`.
 pub fn table_address(default: i64) -> Key {
     Key::integer(

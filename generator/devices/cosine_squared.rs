@@ -27,6 +27,7 @@ pub fn schema() -> Schema {
             common::angle_fraction(22),
             common::table_address(10),
             common::length_bits(),
+            common::line_stages(&["2", "5"]),
             common::colour_bits(),
             common::intensity_fraction(10),
             common::output_rounding(),
@@ -59,7 +60,9 @@ pub fn describe(d: &Designer, config: &Config) {
     let integer = |key: &str| config.integer(key) as i32;
     let table = integer("table.address");
     let f = Format::unsigned(0, integer("intensity.fraction"));
-    d.about(about());
+    // Registers behind the address and the word of ROM 12, and behind multiplier 13.
+    let staged = integer("line.stages") == 5;
+    d.about(about(integer("line.stages")));
 
     let colours = Colours::amplitude(d, integer("colour.bits"), Some(quad_cosine::AMPLITUDE));
     let line = Line::new(
@@ -69,18 +72,26 @@ pub fn describe(d: &Designer, config: &Config) {
         Some(common::LINE_BLOCKS),
     );
     let folded = angle::fold(d, line.angle(), table);
-    let address = angle::address(d, "table_address", folded.magnitude, folded.within, table);
+    let mut address = angle::address(d, "table_address", folded.magnitude, folded.within, table);
+    if staged {
+        address = d.pipeline("table_address_held", address);
+    }
     let cosine = d
         .rom("cosine", address, f, &angle::cosine_power_table(2, table, f.frac), true)
         .block(12)
         .doc(&format!("cos^2 in 2^{table} steps of a right angle"))
         .comments(angle::step_comments(2, table));
-    colours.outputs(cosine.out(), rounding(config, "output.rounding"));
-    // Register 8, then ROM 12.
-    line.microprogram(2);
+    let rounding = rounding(config, "output.rounding");
+    if staged {
+        colours.outputs_staged(d.pipeline("cosine_held", cosine.out()), rounding);
+    } else {
+        colours.outputs(cosine.out(), rounding);
+    }
+    // Register 8, ROM 12, and what is between.
+    line.microprogram(integer("line.stages") as u32);
 }
 
-fn about() -> About {
+fn about(stages: i32) -> About {
     About {
         device: "cosine-squared".to_owned(),
         title: "Specular intensity along a scan line by a stretched cosine squared".to_owned(),
@@ -104,9 +115,11 @@ fn about() -> About {
             "The seed does not draw the prototype. Its accumulator is taken to be that of the claimed device, and \
              bears its block numbers: registers 1 to 3, counter 5, adder 6, mux 7, register 8, ROM 12, multiplier 13."
                 .to_owned(),
-            "A start makes length + 1 points, one a clock: valid is high for each, two clocks after output 37 \
-             (write_angle) has written its angle. busy is high to the last point and done is high with it."
-                .to_owned(),
+            format!(
+                "A start makes length + 1 points, one a clock: valid is high for each, {} clocks after output 37 \
+                 (write_angle) has written its angle. busy is high to the last point and done is high with it.",
+                if stages == 2 { "two".to_owned() } else { stages.to_string() }
+            ),
             "Writes while busy are ignored. The output follows the operand register of the amplitude: it holds from \
              valid until that is written or the next computation begins."
                 .to_owned(),

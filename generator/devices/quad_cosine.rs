@@ -35,6 +35,7 @@ pub fn schema() -> Schema {
             Key::integer("root.fraction", 14, 8..=20, "Fraction bits of sqrt(n/k) in ROM 9."),
             common::table_address(11),
             common::length_bits(),
+            common::line_stages(&["2", "7"]),
             common::exponent_bits(),
             common::colour_bits(),
             common::intensity_fraction(10),
@@ -82,11 +83,15 @@ fn check(config: &Config, problems: &mut Problems) {
 }
 
 /// The device.
-pub fn describe(d: &Designer, config: &Config) {
+pub fn describe<'d>(d: &'d Designer, config: &Config) {
     let integer = |key: &str| config.integer(key) as i32;
     let table = integer("table.address");
     let f = Format::unsigned(0, integer("intensity.fraction"));
-    d.about(about());
+    // Registers behind the magnitude and the root, multiplier 11, the address and the word of ROM 12, and multiplier 13.
+    let staged = integer("line.stages") == 7;
+    let held =
+        |name: &str, source: Signal<'d>| if staged { d.pipeline(name, source) } else { source };
+    d.about(about(integer("line.stages")));
 
     let colours = Colours::amplitude(d, integer("colour.bits"), Some(AMPLITUDE));
     let line = Line::new(
@@ -112,13 +117,17 @@ pub fn describe(d: &Designer, config: &Config) {
                 .collect(),
         );
     let folded = angle::fold(d, line.angle(), integer("angle.multiplied"));
+    let magnitude = held("angle_magnitude_held", folded.magnitude);
+    let within = held("angle_within_held", folded.within);
     let scaled = d
-        .mul("scaled_angle", folded.magnitude, root.out())
+        .mul("scaled_angle", magnitude, held("root_held", root.out()))
         .block(11)
         .doc("sqrt(n/k) * |angle|, in right angles");
-    let step = angle::address(d, "table_step", scaled, folded.within, table);
+    let (scaled, within) = (held("scaled_angle_held", scaled), held("scaled_within_held", within));
+    let step = angle::address(d, "table_step", scaled, within, table);
     let address =
         d.concat("table_address", decoder(d, exponent), step).doc("which table, and where in it");
+    let address = held("table_address_held", address);
     let words: Vec<i128> =
         POWERS.iter().flat_map(|&power| angle::cosine_power_table(power, table, f.frac)).collect();
     let comments = POWERS.iter().flat_map(|&power| angle::step_comments(power, table)).collect();
@@ -129,9 +138,14 @@ pub fn describe(d: &Designer, config: &Config) {
             "cos^k for k = 1, 2, 4, 16, one table after another; 2^{table} steps of a right angle each"
         ))
         .comments(comments);
-    colours.outputs(cosine.out(), rounding(config, "output.rounding"));
-    // Register 8, then ROM 12.
-    line.microprogram(2);
+    let rounding = rounding(config, "output.rounding");
+    if staged {
+        colours.outputs_staged(d.pipeline("cosine_held", cosine.out()), rounding);
+    } else {
+        colours.outputs(cosine.out(), rounding);
+    }
+    // Register 8, ROM 12, and what is between.
+    line.microprogram(integer("line.stages") as u32);
 }
 
 /// Decoder 10: outputs 30 to 33, one of them 1, and the number of the one.
@@ -175,7 +189,7 @@ fn root_format(config: &Config) -> Format {
     Format::holding(0, largest, config.integer("root.fraction") as i32)
 }
 
-fn about() -> About {
+fn about(stages: i32) -> About {
     About {
         device: "quad-cosine".to_owned(),
         title: "Specular intensity along a scan line by powers of a stretched cosine".to_owned(),
@@ -187,10 +201,15 @@ fn about() -> About {
              angles do, so no line overflows it. The intensity is 0 where the angle is not in -90 (included) to 90 \
              degrees, and where the stretched angle is 90 degrees or more."
                 .to_owned(),
-            "A start makes length + 1 points, one a clock: valid is high for each. Output 37 (write_angle) writes \
-             the angle of a point; valid, which is the same net in the patent, follows it by two clocks, for register \
-             8 and for the synchronous ROM 12. busy is high to the last point and done is high with it."
-                .to_owned(),
+            format!(
+                "A start makes length + 1 points, one a clock: valid is high for each. Output 37 (write_angle) writes \
+                 the angle of a point; valid, which is the same net in the patent, follows it by {}. busy is high to the \
+                 last point and done is high with it.",
+                match stages {
+                    2 => "two clocks, for register 8 and for the synchronous ROM 12".to_owned(),
+                    stages => format!("{stages} clocks, for the registers on the way"),
+                }
+            ),
             "Decoder 10 picks k = 1 for n = 1, 2 for n = 2, 4 for n = 3 to 6 and 16 for all other n, with n = 0 among \
              them: its root is 0 and its intensity the amplitude wherever the surface faces. The patent drives four \
              address bits of ROM 12 with the decoder's outputs 30 to 33; here their number drives two, and the ROM is \

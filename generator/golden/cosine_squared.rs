@@ -22,6 +22,8 @@ struct Params {
     table_address: u32,
     /// `length.bits`: bits of counter 5.
     length_bits: u32,
+    /// `line.stages`: clocks from an angle to its result.
+    stages: u32,
     /// `colour.bits`: bits of the amplitude and of the output, K.
     colour_bits: u32,
     /// `intensity.fraction`: fraction bits of ROM 12.
@@ -37,6 +39,7 @@ impl Params {
             angle_fraction: keys::bits(config, "angle.fraction"),
             table_address: keys::bits(config, "table.address"),
             length_bits: keys::bits(config, "length.bits"),
+            stages: keys::bits(config, "line.stages"),
             colour_bits: keys::bits(config, "colour.bits"),
             intensity_fraction: keys::bits(config, "intensity.fraction"),
             output_rounding: keys::rounding(config, "output.rounding"),
@@ -66,13 +69,18 @@ impl Arithmetic {
         Self { table: CosineTable::new(2, params.table_address, params.intensity_fraction), params }
     }
 
+    /// The address of ROM 12 for a stretched angle.
+    #[inline]
+    fn step_of(&self, angle: i64) -> i64 {
+        let params = &self.params;
+        magnitude(angle, params.angle_fraction, params.table_address)
+            .unwrap_or(self.table.words.len() as i64 - 1)
+    }
+
     /// The word of ROM 12 for a stretched angle.
     #[inline]
     fn cosine_of(&self, angle: i64) -> i64 {
-        let params = &self.params;
-        let words = &self.table.words;
-        magnitude(angle, params.angle_fraction, params.table_address)
-            .map_or(words[words.len() - 1], |step| words[step as usize])
+        self.table.words[self.step_of(angle) as usize]
     }
 }
 
@@ -87,6 +95,8 @@ struct Device {
     walker: Walker,
     /// What ROM 12 read at the latest edge.
     cosine: Slot,
+    /// Of a staged line: the address of ROM 12, and the word that it read an edge earlier.
+    stages: Option<(Slot, Slot)>,
     products: ProductSlots,
 }
 
@@ -98,21 +108,33 @@ impl AsRef<Walker> for Device {
 
 impl Datapath for Device {
     fn edge(&self, s: &mut State) {
-        s[self.cosine] = self.it.cosine_of(s[self.walker.angle]);
+        let Some((address, cosine)) = self.stages else {
+            s[self.cosine] = self.it.cosine_of(s[self.walker.angle]);
+            return;
+        };
+        // From the output back to the angle: each takes what the one before it held.
+        self.products.show(s[cosine], s);
+        s[cosine] = s[self.cosine];
+        s[self.cosine] = self.it.table.words[s[address] as usize];
+        s[address] = self.it.step_of(s[self.walker.angle]);
     }
 
     fn outputs(&self, s: &mut State) {
-        self.products.show(s[self.cosine], s);
+        // Of a staged line an edge makes them.
+        if self.stages.is_none() {
+            self.products.show(s[self.cosine], s);
+        }
     }
 }
 
 fn clocked(params: Params) -> Clocked<Device> {
     let mut frame = Frame::default();
-    let walker = Walker::new(&mut frame, params.angle_format(), params.length_bits);
+    let walker = Walker::new(&mut frame, params.angle_format(), params.length_bits, params.stages);
     let program = walker.program();
     let device = Device {
         walker,
         cosine: frame.hidden(),
+        stages: (params.stages > 2).then(|| (frame.hidden(), frame.hidden())),
         products: params.products().slots(&mut frame),
         it: Arithmetic::new(params),
     };
@@ -219,6 +241,7 @@ mod tests {
             angle_fraction: 6,
             table_address: 3,
             length_bits: 12,
+            stages: 2,
             colour_bits: 8,
             intensity_fraction: 6,
             output_rounding: Rounding::Nearest,

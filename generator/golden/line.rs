@@ -31,12 +31,13 @@ pub struct Walker {
     count: Slot,
     accumulate: Slot,
     write_angle: Slot,
+    stages: u32,
 }
 
 impl Walker {
-    /// With angles of `format`. The outputs show a point two clocks after the pulse on output 37.
-    pub fn new(frame: &mut Frame, format: Format, length_bits: u32) -> Self {
-        frame.delay_valid(2);
+    /// With angles of `format`. The outputs show a point `stages` clocks after the pulse on output 37.
+    pub fn new(frame: &mut Frame, format: Format, length_bits: u32, stages: u32) -> Self {
+        frame.delay_valid(stages);
         let length = length_format(length_bits);
         Self {
             format,
@@ -48,11 +49,12 @@ impl Walker {
             count: frame.flag("count"),
             accumulate: frame.flag("accumulate"),
             write_angle: frame.flag("write_angle"),
+            stages,
         }
     }
 
     /// The microinstructions of a device that has this walker.
-    pub fn program<D: AsRef<Walker>>(&self) -> [Microinstruction<D>; 5] {
+    pub fn program<D: AsRef<Walker>>(&self) -> Vec<Microinstruction<D>> {
         // The first pulse on output 37 loads ζ(X_start), and the counter is set to l.
         let first = step(|d: &D, s| {
             let it = d.as_ref();
@@ -67,14 +69,15 @@ impl Walker {
             s[it.intervals] -= 1;
         })
         .repeat_while(|d, s| s[d.as_ref().intervals] > 1);
-        [
+        let mut program = vec![
             idle(),
             first.valid().asserts(self.write_angle),
             next.valid().asserts(self.write_angle).asserts(self.count).asserts(self.accumulate),
-            // The last point comes out.
-            idle(),
-            idle().end(),
-        ]
+        ];
+        // The last point comes out.
+        program.extend((1..self.stages).map(|_| idle()));
+        program.push(idle().end());
+        program
     }
 }
 
@@ -250,7 +253,7 @@ mod tests {
     #[test]
     fn a_line_of_three_intervals_event_by_event() {
         let mut frame = Frame::default();
-        let walker = Alone(Walker::new(&mut frame, Format::signed(1, 4), 4));
+        let walker = Alone(Walker::new(&mut frame, Format::signed(1, 4), 4, 2));
         let program = walker.0.program();
         let mut model = frame.model(walker, program);
         // Outputs 28, 29, 34, 36, 37, then done, counter 5 and register 8.

@@ -26,6 +26,8 @@ struct Params {
     table_address: u32,
     /// `length.bits`: bits of counter 5.
     length_bits: u32,
+    /// `line.stages`: clocks from an angle to its result.
+    stages: u32,
     /// `exponent.bits`: bits of n.
     exponent_bits: u32,
     /// `colour.bits`: bits of the amplitude and of the output, K.
@@ -46,6 +48,7 @@ impl Params {
             root_fraction: keys::bits(config, "root.fraction"),
             table_address: keys::bits(config, "table.address"),
             length_bits: keys::bits(config, "length.bits"),
+            stages: keys::bits(config, "line.stages"),
             exponent_bits: keys::bits(config, "exponent.bits"),
             colour_bits: keys::bits(config, "colour.bits"),
             intensity_fraction: keys::bits(config, "intensity.fraction"),
@@ -117,11 +120,15 @@ impl Arithmetic {
     /// The word of ROM 12 for n, the magnitude, and ROM 9's word.
     #[inline]
     fn cosine_of(&self, n: i64, magnitude: Option<i64>, root: i64) -> i64 {
-        let params = &self.params;
-        let fraction = params.angle_multiplied + params.root_fraction;
         let scaled = magnitude.map_or(i64::MAX, |magnitude| magnitude * root);
-        let address = CosineTable::address(scaled, fraction, params.table_address);
-        self.tables[range_of(n)].words[address]
+        self.tables[range_of(n)].words[self.step_of(scaled)]
+    }
+
+    /// The step of a table for an angle times ROM 9's word.
+    #[inline]
+    fn step_of(&self, scaled: i64) -> usize {
+        let fraction = self.params.angle_multiplied + self.params.root_fraction;
+        CosineTable::address(scaled, fraction, self.params.table_address)
     }
 
     #[inline]
@@ -153,7 +160,57 @@ struct Device {
     root: Slot,
     /// What ROM 12 read.
     cosine: Slot,
+    stages: Option<Stages>,
     products: ProductSlots,
+}
+
+/// The registers on the way from the angle to the output that a staged line has beyond ROM 9 and ROM 12.
+struct Stages {
+    /// The magnitude of the angle, or nothing.
+    magnitude: Slot,
+    within: Slot,
+    root: Slot,
+    /// The magnitude times the root, and whether there was one.
+    scaled: Slot,
+    scaled_within: Slot,
+    /// The address of ROM 12: the range of n, and the step.
+    range: Slot,
+    step: Slot,
+    /// The word of ROM 12.
+    cosine: Slot,
+}
+
+impl Stages {
+    fn new(frame: &mut Frame) -> Self {
+        Self {
+            magnitude: frame.hidden(),
+            within: frame.hidden(),
+            root: frame.hidden(),
+            scaled: frame.hidden(),
+            scaled_within: frame.hidden(),
+            range: frame.hidden(),
+            step: frame.hidden(),
+            cosine: frame.hidden(),
+        }
+    }
+
+    /// A rising edge, from the output back to the angle: each takes what the one before it held.
+    #[inline]
+    fn edge(&self, device: &Device, s: &mut State) {
+        let Device { it, walker, exponent, root, cosine, products, .. } = device;
+        products.show(s[self.cosine], s);
+        s[self.cosine] = s[*cosine];
+        s[*cosine] = it.tables[s[self.range] as usize].words[s[self.step] as usize];
+        let scaled = if s[self.scaled_within] == 1 { s[self.scaled] } else { i64::MAX };
+        s[self.step] = it.step_of(scaled) as i64;
+        s[self.range] = range_of(s[*exponent]) as i64;
+        s[self.scaled] = s[self.magnitude] * s[self.root];
+        s[self.scaled_within] = s[self.within];
+        s[self.root] = s[*root];
+        let magnitude = it.magnitude(s[walker.angle]);
+        s[self.magnitude] = magnitude.unwrap_or_default();
+        s[self.within] = magnitude.is_some().into();
+    }
 }
 
 impl AsRef<Walker> for Device {
@@ -165,25 +222,33 @@ impl AsRef<Walker> for Device {
 impl Datapath for Device {
     fn edge(&self, s: &mut State) {
         let n = s[self.exponent];
-        s[self.cosine] =
-            self.it.cosine_of(n, self.it.magnitude(s[self.walker.angle]), s[self.root]);
+        if let Some(stages) = &self.stages {
+            stages.edge(self, s);
+        } else {
+            let magnitude = self.it.magnitude(s[self.walker.angle]);
+            s[self.cosine] = self.it.cosine_of(n, magnitude, s[self.root]);
+        }
         s[self.root] = self.it.root(n);
     }
 
     fn outputs(&self, s: &mut State) {
-        self.products.show(s[self.cosine], s);
+        // Of a staged line an edge makes them.
+        if self.stages.is_none() {
+            self.products.show(s[self.cosine], s);
+        }
     }
 }
 
 fn clocked(params: Params) -> Clocked<Device> {
     let mut frame = Frame::default();
-    let walker = Walker::new(&mut frame, params.angle_format(), params.length_bits);
+    let walker = Walker::new(&mut frame, params.angle_format(), params.length_bits, params.stages);
     let program = walker.program();
     let device = Device {
         walker,
         exponent: frame.operand("exponent", params.exponent_format()),
         root: frame.hidden(),
         cosine: frame.hidden(),
+        stages: (params.stages > 2).then(|| Stages::new(&mut frame)),
         products: params.products().slots(&mut frame),
         it: Arithmetic::new(params),
     };

@@ -4,6 +4,7 @@ use super::*;
 /// The default with 4 + 4 bits of angle and root, and tables of 8 steps.
 fn small() -> Params {
     Params {
+        stages: 2,
         angle_fraction: 6,
         angle_multiplied: 4,
         root_fraction: 4,

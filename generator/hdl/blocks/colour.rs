@@ -93,14 +93,27 @@ impl<'d> Colours<'d> {
     /// The outputs, `<colour>_out` or `intensity_out`, each f times its operand, rounded to integers.
     #[track_caller]
     pub fn outputs(&self, f: Signal<'d>, rounding: Rounding) {
+        self.outputs_of(f, rounding, false);
+    }
+
+    /// The same with a register behind every multiplier, loaded on every clock.
+    #[track_caller]
+    pub fn outputs_staged(&self, f: Signal<'d>, rounding: Rounding) {
+        self.outputs_of(f, rounding, true);
+    }
+
+    #[track_caller]
+    fn outputs_of(&self, f: Signal<'d>, rounding: Rounding, staged: bool) {
         let d = self.designer;
         for channel in &self.channels {
             let Channel { name, operand, blocks } = channel;
             let mut product = d
                 .mul(&format!("{name}_product"), f, operand.q())
                 .doc("an output before it is rounded");
+            let exact =
+                if staged { d.pipeline(&format!("{name}_product_held"), product) } else { product };
             let rounded = intensity_name(name);
-            let narrowed = d.narrow(&rounded, product, self.format, rounding, Overflow::Saturate);
+            let narrowed = d.narrow(&rounded, exact, self.format, rounding, Overflow::Saturate);
             let mut out = d.output(&format!("{name}_out"), narrowed).doc("intensity on the output");
             if let Some(blocks) = blocks {
                 product = product.block(blocks.multiplier);
