@@ -4,10 +4,12 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use glint::config::Config;
+use glint::config::{self, Config};
 use glint::core::Core;
+use glint::cosim::trial;
 use glint::golden::formulas;
 use glint::hdl::sim::Simulator;
+use glint::package::Computation;
 use glint::registry::Registry;
 use glint::render::setup::{Arc, Line, Operands};
 use rand_chacha::ChaCha8Rng;
@@ -348,4 +350,31 @@ fn the_worst_rounding_of_the_longest_line_stays_within_two_units() {
     }
     println!("{worst} units");
     assert!(worst > 1.0 && worst <= 2.0, "{worst}");
+}
+
+/// A register behind every memory and multiplier changes no result, only when it comes.
+#[test]
+fn a_staged_line_shows_the_same_results_later() {
+    let registry = Registry::catalogue();
+    for (name, stages, later) in [("quad-cosine", 7, 5), ("cosine-squared", 5, 3)] {
+        let device = *registry.device(name).expect("a device");
+        let text = format!("device = \"{name}\"\n[line]\nstages = {stages}\n");
+        let config = config::parse("staged.toml", &text, &[(device.schema)()]);
+        let staged = Core::new(device, config.unwrap_or_else(|problems| panic!("{problems}")));
+        let (staged, short) = (staged.expect("a design"), core(name));
+        let computations = |core: &Core| {
+            let listed = trial::computations(&core.design, core.contract.as_ref());
+            listed.expect("computations that agree with the golden model")
+        };
+        let outputs = |it: &Computation| -> Vec<Vec<i64>> {
+            it.results.iter().map(|result| result.outputs.clone()).collect()
+        };
+        for (staged, short) in computations(&staged).iter().zip(computations(&short)) {
+            assert_eq!(staged.operands, short.operands);
+            assert_eq!(outputs(staged), outputs(&short), "{name}: {:?}", short.operands);
+            assert_eq!(staged.done, short.done + later, "{name}");
+        }
+        let outcome = staged.lockstep(1).and_then(|it| it.run(5000, &|_| ())).expect("a run");
+        assert!(outcome.mismatch.is_none(), "{name}: {:?}", outcome.mismatch);
+    }
 }
