@@ -241,11 +241,19 @@ impl Core {
     /// # Errors
     /// The design cannot be written as Verilog.
     pub fn verilog(&self) -> Result<Vec<(String, String)>> {
+        self.verilog_of(&self.design)
+    }
+
+    /// The same of the core's design with something changed.
+    ///
+    /// # Errors
+    /// The design cannot be written as Verilog.
+    pub fn verilog_of(&self, design: &Design) -> Result<Vec<(String, String)>> {
         let around = Surroundings {
             inline_memories: Surroundings::new(&self.config, None).inline_memories,
             ..Surroundings::default()
         };
-        let files = package::emit(&self.design, &EmitInputs { around, ..EmitInputs::default() })?;
+        let files = package::emit(design, &EmitInputs { around, ..EmitInputs::default() })?;
         Ok(package::sources(files))
     }
 

@@ -4,6 +4,7 @@
     target/tools/venv/bin/python benches/pipeline/ecp5.py                  every rtl_out/*_pipelined
     target/tools/venv/bin/python benches/pipeline/ecp5.py rough schlick    some of them
     target/tools/venv/bin/python benches/pipeline/ecp5.py --paths rough    the longest path of each, too
+    target/tools/venv/bin/python benches/pipeline/ecp5.py --seeds 0        areas alone
 
 The limit is a register, an inferred 18x18 multiplier and a register, in the same run. Frequencies are those that
 nextpnr-ecp5 gives for the clock, the median of the seeds with the lowest and the highest; the whole of every path between
@@ -23,7 +24,20 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-CELLS = ["LUT4", "CCU2C", "MULT18X18D", "DP16KD", "TRELLIS_FF"]
+CELLS = ["LUT4", "CCU2C", "TRELLIS_DPR16X4", "MULT18X18D", "DP16KD", "TRELLIS_FF"]
+# Look-up tables that a cell takes: a slice of a carry chain two, 16 words of 4 bits four, and two for their address.
+TABLES = {"LUT4": 1, "CCU2C": 2, "TRELLIS_DPR16X4": 6}
+# Pipelines written by hand for the same default configurations, bit for bit: LUT4, CCU2C, DSP, BRAM, FF, latency. How many
+# memories in look-up tables they have was not written down.
+BY_HAND = {
+    "cosine_power": (57, 35, 8, 0, 317, 11),
+    "schlick": (300, 209, 4, 0, 977, 17),
+    "rough": (446, 151, 12, 2, 1169, 18),
+    "blinn": (750, 93, 6, 2, 946, 25),
+    "lyon": (102, 48, 10, 0, 723, 13),
+    "threshold": (31, 58, 5, 0, 454, 10),
+    "quadratic": (65, 79, 5, 1, 561, 9),
+}
 LIMIT = """
 module limit(input clk, input [17:0] a, input [17:0] b, output reg [35:0] p);
     reg [17:0] x, y;
@@ -88,8 +102,19 @@ def path(place, top):
     return []
 
 
+def by_hand(name, cells):
+    """How many times the look-up tables, memories apart, and the registers of the pipeline written by hand."""
+    if name not in BY_HAND:
+        return "– | –"
+    lut4, ccu2c, _, _, registers, _ = BY_HAND[name]
+    tables = cells["LUT4"] + 2 * cells["CCU2C"]
+    return f"{tables / (lut4 + 2 * ccu2c):.2f} | {cells['TRELLIS_FF'] / registers:.2f}"
+
+
 def spread(frequencies):
     """The median with the lowest and the highest."""
+    if not frequencies:
+        return "–"
     return f"{statistics.median(frequencies):.1f} ({frequencies[0]:.1f}–{frequencies[-1]:.1f})"
 
 
@@ -105,23 +130,26 @@ def main():
             path.name.removesuffix("_pipelined") for path in (ROOT / "rtl_out").glob("*_pipelined")
         )
         (place / "limit.v").write_text(LIMIT)
-        limits, _, _ = measure(place, "limit", arguments.seeds)
+        limits, _, _ = measure(place, "limit", max(arguments.seeds, 1))
         limit = statistics.median(limits)
         print(f"limit of the flow: {spread(limits)} MHz, {arguments.seeds} seeds\n")
-        print("| device | stages | LUT4 | CCU2C | DSP | BRAM | FF | MHz = M points/s | of the limit | thousand/s per LUT | million/s per DSP |")
-        print("|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|--:|")
+        print(
+            "| device | stages | LUT4 | CCU2C | DPR16X4 | DSP | BRAM | FF | MHz = M points/s | of the limit "
+            "| thousand/s per LUT | million/s per DSP | LUT4 and CCU2C to those by hand | FF to those by hand |"
+        )
+        print("|---" + "|--:" * 13 + "|")
         for name in names:
             source = ROOT / "rtl_out" / f"{name}_pipelined"
             for file in [*source.glob("*.v"), *source.glob("*.mem")]:
                 shutil.copy(file, place)
             frequencies, cells, longest = measure(place, f"{name}_pipelined", arguments.seeds)
-            frequency = statistics.median(frequencies)
+            frequency = statistics.median(frequencies or [0.0])
             stages = json.loads((source / f"{name}_pipelined.json").read_text())["pipeline"]["latency"]
-            # A point every clock. A slice of a carry chain takes two look-up tables.
-            per_lut = 1000 * frequency / (cells["LUT4"] + 2 * cells["CCU2C"])
+            # A point every clock.
+            per_lut = 1000 * frequency / sum(count * cells[cell] for cell, count in TABLES.items())
             per_dsp = frequency / cells["MULT18X18D"]
             counts = " | ".join(str(cells[cell]) for cell in CELLS)
-            row = f"| `{name}` | {stages} | {counts} | {spread(frequencies)} | {frequency / limit:.2f} | {per_lut:.0f} | {per_dsp:.1f} |"
+            row = f"| `{name}` | {stages} | {counts} | {spread(frequencies)} | {frequency / limit:.2f} | {per_lut:.0f} | {per_dsp:.1f} | {by_hand(name, cells)} |"
             print(row, flush=True)
             if arguments.paths:
                 print("\n".join(longest), flush=True)

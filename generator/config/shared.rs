@@ -49,6 +49,14 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
             "Whether out_ready can hold the results back; without it every register moves in every clock.",
         )
         .only_when("architecture", "pipelined"),
+        Key::choice(
+            "pipeline.delays",
+            "memory",
+            &["memory", "registers"],
+            "What holds values that no stage reads for some time: memory in look-up tables, where the target has such, \
+             or a register a stage.",
+        )
+        .only_when("architecture", "pipelined"),
         Key::integer(
             "pipeline.side",
             0,

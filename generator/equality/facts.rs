@@ -87,11 +87,8 @@ fn in_parts(terms: &mut Terms, factor: Id, other: Id) -> Option<Parts> {
         Term::Join(top, bits) if terms.constant_of(top) == Some(0) => (bits, false),
         _ => return None,
     };
-    let Term::Slice { of, low } = *terms.term(bits) else { return None };
-    if low == 0 {
-        return None;
-    }
-    let whole = terms.slice(of, 0, low + terms.width(bits));
+    let (whole, low) = whole(terms, bits)?;
+    let rest = terms.slice(whole, 0, low);
     let whole = if signed {
         terms.sign_extended(whole, MAX_WIDTH)
     } else {
@@ -100,7 +97,6 @@ fn in_parts(terms: &mut Terms, factor: Id, other: Id) -> Option<Parts> {
     let product = terms.make(Term::Product(whole, other), MAX_WIDTH);
     let upper = terms.make(Term::Product(factor, other), MAX_WIDTH);
     let upper = shifted(terms, upper, low);
-    let rest = terms.slice(of, 0, low);
     let lower = terms.resized(rest, MAX_WIDTH);
     let lower = Term::Product(lower, other);
     let is_product = terms.has(&lower, MAX_WIDTH);
@@ -112,6 +108,21 @@ fn in_parts(terms: &mut Terms, factor: Id, other: Id) -> Option<Parts> {
     };
     let sum = terms.make(Term::Add(upper, lower), MAX_WIDTH);
     Some(Parts { product, sum, there })
+}
+
+/// Bits with those of the same term below their lowest, and how many these are.
+fn whole(terms: &mut Terms, bits: Id) -> Option<(Id, u32)> {
+    match *terms.term(bits) {
+        Term::Slice { of, low } if low > 0 => {
+            Some((terms.slice(of, 0, low + terms.width(bits)), low))
+        }
+        Term::Join(upper, lower) => {
+            let (below, low) = whole(terms, lower)?;
+            let width = terms.width(bits) + low;
+            Some((terms.make(Term::Join(upper, below), width), low))
+        }
+        _ => None,
+    }
 }
 
 /// Whether there is the first row of the product of a few bits with 64.

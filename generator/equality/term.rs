@@ -320,10 +320,17 @@ impl Terms {
             Term::Add(a, b) => match (self.constant_of(a), self.constant_of(b)) {
                 (Some(0), _) => Some(b),
                 (_, Some(0)) => Some(a),
-                _ => None,
+                (Some(1), _) if width == 1 => Some(self.not(b)),
+                (_, Some(1)) if width == 1 => Some(self.not(a)),
+                _ if self.zeros(a) > self.zeros(b) => self.passed_by(b, a, width, Term::Add),
+                _ => self.passed_by(a, b, width, Term::Add),
             },
             Term::Sub(a, b) if a == b => Some(self.constant(0, width)),
-            Term::Sub(a, b) => (self.constant_of(b) == Some(0)).then_some(a),
+            Term::Sub(a, b) => match self.constant_of(b) {
+                Some(0) => Some(a),
+                Some(1) if width == 1 => Some(self.not(a)),
+                _ => self.passed_by(a, b, width, Term::Sub),
+            },
             Term::Equal(a, b) if a == b => Some(self.constant(1, 1)),
             Term::Equal(a, b) if self.width(a) == 1 => {
                 match (self.constant_of(a), self.constant_of(b)) {
@@ -377,6 +384,31 @@ impl Terms {
                 same.then(|| self.constant(first, width))
             }
             _ => None,
+        }
+    }
+
+    /// A sum or a difference: what stands below the lowest bits of `b`, which are 0, passes it by.
+    fn passed_by(&mut self, a: Id, b: Id, width: u32, op: fn(Id, Id) -> Term) -> Option<Id> {
+        let low = self.zeros(b);
+        if low == 0 || low >= width {
+            return None;
+        }
+        let upper = width - low;
+        let lower = self.slice(a, 0, low);
+        let (a, b) = (self.slice(a, low, upper), self.slice(b, low, upper));
+        let upper = self.make(op(a, b), upper);
+        Some(self.make(Term::Join(upper, lower), width))
+    }
+
+    /// How many of the lowest bits are known to be 0.
+    fn zeros(&self, id: Id) -> u32 {
+        match *self.term(id) {
+            Term::Constant(bits) => bits.trailing_zeros().min(self.width(id)),
+            Term::Join(upper, lower) => match self.zeros(lower) {
+                all if all == self.width(lower) => all + self.zeros(upper),
+                some => some,
+            },
+            _ => 0,
         }
     }
 

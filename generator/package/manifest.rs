@@ -242,13 +242,14 @@ fn control(design: &Design) -> Value {
     })
 }
 
-/// Latency and interval are in clocks; a register bit counts in each stage that it ends.
+/// Latency and interval are in clocks; a register bit counts in each stage that it ends, and a bit of a delay line in each that it passes.
 fn pipeline(pipeline: &Pipeline) -> Value {
     let stages = pipeline.stages.iter().map(|stage| {
         json!({
             "microinstructions": stage.microinstructions,
             "logic_ns": (stage.logic_ns * 100.0).round() / 100.0,
             "register_bits": stage.register_bits,
+            "delayed_bits": stage.delayed_bits,
         })
     });
     json!({

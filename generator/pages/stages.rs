@@ -45,6 +45,7 @@ pub fn table(design: &Design, pipeline: &Pipeline) -> Table {
         ("logic, ns", Align::Right),
         ("slack, ns", Align::Right),
         ("register bits", Align::Right),
+        ("in delay lines", Align::Right),
         ("computes", Align::Left),
     ]);
     for (number, stage) in pipeline.stages.iter().enumerate() {
@@ -58,6 +59,7 @@ pub fn table(design: &Design, pipeline: &Pipeline) -> Table {
             format!("{:.2}", stage.logic_ns),
             format!("{:.2}", stage.slack_ns),
             stage.register_bits.to_string(),
+            stage.delayed_bits.to_string(),
             values.collect::<Vec<_>>().join(", "),
         ]);
     }
@@ -82,7 +84,10 @@ pub fn drawing(design: &Design, pipeline: &Pipeline) -> Drawing {
         let time = format!("{:.2} of {period:.2} ns", period - stage.slack_ns);
         items.push(Item::text("step small", BAR, top + 34, time));
         top += (PITCH * rows).max(LINE * steps.len() as i32 + 4).max(40) + 4;
-        let bits = format!("{} register bits", stage.register_bits);
+        let mut bits = format!("{} register bits", stage.register_bits);
+        if stage.delayed_bits > 0 {
+            bits += &format!(", {} in delay lines", stage.delayed_bits);
+        }
         items.push(Item::Open { class: "block", title: bits.clone() });
         items.push(Item::path("box register", outline(BORDER, top, WIDTH - 2 * BORDER, REGISTERS)));
         items.push(Item::text("tick small", WIDTH / 2, top + 13, bits));

@@ -78,7 +78,8 @@ pub const FAMILIES: [Family; 3] = [
         title: "ECP5",
         prepare: "",
         command: "synth_ecp5",
-        luts: &[("LUT4", 1), ("CCU2C", 2)],
+        // 16 words of 4 bits are four tables, and two for what writes them.
+        luts: &[("LUT4", 1), ("CCU2C", 2), ("TRELLIS_DPR16X4", 6)],
         dsps: &[("MULT18X18D", 1)],
         block_rams: &[("DP16KD", 1), ("PDPW16KD", 1)],
         flip_flops: &[("TRELLIS_FF", 1)],

@@ -4,7 +4,7 @@
 //
 // Source: Seeds 000 to 002, the function that all devices approximate
 //
-// Pipeline: a point every clock, its results 19 clocks later; stages for 130 MHz on ecp5. While
+// Pipeline: a point every clock, its results 20 clocks later; stages for 138 MHz on ecp5. While
 // out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
@@ -95,10 +95,11 @@ module blinn_pipelined #(
     reg  valid_s16;  // stage 16 has a point
     reg  valid_s17;  // stage 17 has a point
     reg  valid_s18;  // stage 18 has a point
-    reg  valid_s19;  // the results are on the outputs
+    reg  valid_s19;  // stage 19 has a point
+    reg  valid_s20;  // the results are on the outputs
 
-    assign out_valid = valid_s19;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s19;  // every point moves on by a stage
+    assign out_valid = valid_s20;  // the results are on the outputs
+    wire advance = out_ready | ~valid_s20;  // every point moves on by a stage
     assign in_ready = advance;  // a point that is offered is taken in this clock
 
     always @(posedge clk) begin
@@ -122,6 +123,7 @@ module blinn_pipelined #(
             valid_s17 <= 1'b0;
             valid_s18 <= 1'b0;
             valid_s19 <= 1'b0;
+            valid_s20 <= 1'b0;
         end else if (advance) begin
             valid_s1 <= in_valid;
             valid_s2 <= valid_s1;
@@ -142,728 +144,644 @@ module blinn_pipelined #(
             valid_s17 <= valid_s16;
             valid_s18 <= valid_s17;
             valid_s19 <= valid_s18;
+            valid_s20 <= valid_s19;
         end
     end
 
     // Stage 0, part of: segment of the decay addressed by cos gamma
     reg  [20:0] cos_gamma_reg_s1;  // u1.20: cosine of the angle between normal and half vector
-    reg  [9:0]  exponent_s1;       // specular exponent n
-    reg  [7:0]  red_s1;            // intensity of the light times k_s
-    reg  [7:0]  green_s1;          // intensity of the light times k_s
-    reg  [7:0]  blue_s1;           // intensity of the light times k_s
-    reg         octave_top16_s1;
 
     wire cos_gamma_over_s0 = cos_gamma[20];
 
     // u1.20: cosine of the angle between normal and half vector
     wire [20:0] cos_gamma_reg_s0 = cos_gamma_over_s0 ? COS_GAMMA_MOST : cos_gamma;
 
-    wire octave_top16_s0 = |cos_gamma_reg_s0[19:4];
-
     always @(posedge clk) begin
         if (advance) begin
             cos_gamma_reg_s1 <= cos_gamma_reg_s0;
-            exponent_s1 <= exponent;
-            red_s1 <= red;
-            green_s1 <= green;
-            blue_s1 <= blue;
-            octave_top16_s1 <= octave_top16_s0;
         end
     end
 
     // Stage 1, part of: segment of the decay addressed by cos gamma
-    reg  [9:0]  exponent_s2;       // specular exponent n
-    reg  [7:0]  red_s2;            // intensity of the light times k_s
-    reg  [7:0]  green_s2;          // intensity of the light times k_s
-    reg  [7:0]  blue_s2;           // intensity of the light times k_s
-    reg  [19:0] octave_by8_s2;
-    reg         octave_top4_s2;
+    reg  [19:0] octave_by16_s2;
     reg         octave_free16_s2;
-    reg         octave_free8_s2;
-    reg         facing_s2;         // the surface faces the half vector
     reg         aligned_s2;        // cos gamma is 1.0
+
+    wire octave_top16_s1 = |cos_gamma_reg_s1[19:4];
 
     wire [19:0] octave_by16_s1 = octave_top16_s1 ? cos_gamma_reg_s1[19:0] : {cos_gamma_reg_s1[3:0],
             16'd0};
 
-    wire octave_top8_s1 = |octave_by16_s1[19:12];
-    wire [19:0] octave_by8_s1 = octave_top8_s1 ? octave_by16_s1 : {octave_by16_s1[11:0], 8'd0};
-    wire octave_top4_s1 = |octave_by8_s1[19:16];
     wire octave_free16_s1 = ~octave_top16_s1;
-    wire octave_free8_s1 = ~octave_top8_s1;
     wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
     wire aligned_s1 = cos_gamma_reg_s1[20];  // cos gamma is 1.0
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s2 <= exponent_s1;
-            red_s2 <= red_s1;
-            green_s2 <= green_s1;
-            blue_s2 <= blue_s1;
-            octave_by8_s2 <= octave_by8_s1;
-            octave_top4_s2 <= octave_top4_s1;
+            octave_by16_s2 <= octave_by16_s1;
             octave_free16_s2 <= octave_free16_s1;
-            octave_free8_s2 <= octave_free8_s1;
-            facing_s2 <= facing_s1;
             aligned_s2 <= aligned_s1;
         end
     end
 
     // Stage 2, part of: segment of the decay addressed by cos gamma
-    reg  [9:0]  exponent_s3;         // specular exponent n
-    reg  [7:0]  red_s3;              // intensity of the light times k_s
-    reg  [7:0]  green_s3;            // intensity of the light times k_s
-    reg  [7:0]  blue_s3;             // intensity of the light times k_s
-    reg  [18:0] distance_s3;         // 1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half
-    reg         curve_in_range3_s3;  // u is in range 3 or in one above
-    reg         curve_in_range4_s3;  // u is in range 4 or in one above
-    reg         curve_in_range1_s3;  // u is in range 1 or in one above
-    reg  [4:0]  octave_s3;           // leading zeros of cos gamma
-    reg         facing_s3;           // the surface faces the half vector
-    reg         aligned_s3;          // cos gamma is 1.0
+    reg  [19:0] octave_by4_s3;
+    reg         octave_free16_s3;
+    reg         octave_free8_s3;
+    reg         octave_free4_s3;
+    reg         aligned_s3;        // cos gamma is 1.0
 
+    wire octave_top8_s2 = |octave_by16_s2[19:12];
+    wire [19:0] octave_by8_s2 = octave_top8_s2 ? octave_by16_s2 : {octave_by16_s2[11:0], 8'd0};
+    wire octave_top4_s2 = |octave_by8_s2[19:16];
     wire [19:0] octave_by4_s2 = octave_top4_s2 ? octave_by8_s2 : {octave_by8_s2[15:0], 4'd0};
-    wire octave_top2_s2 = |octave_by4_s2[19:18];
-    wire [19:0] octave_by2_s2 = octave_top2_s2 ? octave_by4_s2 : {octave_by4_s2[17:0], 2'd0};
-    wire octave_top1_s2 = octave_by2_s2[19];
-    wire [19:0] octave_by1_s2 = octave_top1_s2 ? octave_by2_s2 : {octave_by2_s2[18:0], 1'b0};
-
-    // 1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half
-    wire [18:0] distance_s2 = ~octave_by1_s2[18:0];
-
-    wire curve_in_range3_s2 = |distance_s2[18:11];  // u is in range 3 or in one above
-    wire curve_in_range4_s2 = |distance_s2[18:9];  // u is in range 4 or in one above
-    wire curve_in_range1_s2 = |distance_s2[18:15];  // u is in range 1 or in one above
+    wire octave_free8_s2 = ~octave_top8_s2;
     wire octave_free4_s2 = ~octave_top4_s2;
-    wire octave_free2_s2 = ~octave_top2_s2;
-    wire octave_free1_s2 = ~octave_top1_s2;
-
-    // leading zeros of cos gamma
-    wire [4:0] octave_s2 = {octave_free16_s2, octave_free8_s2, octave_free4_s2, octave_free2_s2,
-            octave_free1_s2};
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s3 <= exponent_s2;
-            red_s3 <= red_s2;
-            green_s3 <= green_s2;
-            blue_s3 <= blue_s2;
-            distance_s3 <= distance_s2;
-            curve_in_range3_s3 <= curve_in_range3_s2;
-            curve_in_range4_s3 <= curve_in_range4_s2;
-            curve_in_range1_s3 <= curve_in_range1_s2;
-            octave_s3 <= octave_s2;
-            facing_s3 <= facing_s2;
+            octave_by4_s3 <= octave_by4_s2;
+            octave_free16_s3 <= octave_free16_s2;
+            octave_free8_s3 <= octave_free8_s2;
+            octave_free4_s3 <= octave_free4_s2;
             aligned_s3 <= aligned_s2;
         end
     end
 
     // Stage 3, part of: segment of the decay addressed by cos gamma
-    reg  [9:0]  exponent_s4;     // specular exponent n
-    reg  [7:0]  red_s4;          // intensity of the light times k_s
-    reg  [7:0]  green_s4;        // intensity of the light times k_s
-    reg  [7:0]  blue_s4;         // intensity of the light times k_s
-    reg  [12:0] curve_rest2_s4;  // u0.13
-    reg  [4:0]  octave_s4;       // leading zeros of cos gamma
-    reg         facing_s4;       // the surface faces the half vector
-    reg         aligned_s4;      // cos gamma is 1.0
-    reg  [44:0] curve_word_s4;
+    reg  [18:0] distance_s4;         // 1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half
+    reg         curve_in_range3_s4;  // u is in range 3 or in one above
+    reg         curve_in_range4_s4;  // u is in range 4 or in one above
+    reg         curve_in_range1_s4;  // u is in range 1 or in one above
+    reg         aligned_s4;          // cos gamma is 1.0
 
-    wire curve_in_range2_s3 = |distance_s3[18:13];  // u is in range 2 or in one above
+    wire octave_top2_s3 = |octave_by4_s3[19:18];
+    wire [19:0] octave_by2_s3 = octave_top2_s3 ? octave_by4_s3 : {octave_by4_s3[17:0], 2'd0};
+    wire octave_top1_s3 = octave_by2_s3[19];
+    wire [19:0] octave_by1_s3 = octave_top1_s3 ? octave_by2_s3 : {octave_by2_s3[18:0], 1'b0};
 
-    // u0.13
-    wire [12:0] curve_rest4_s3 = curve_in_range4_s3 ? {distance_s3[8:0], 4'd0} : {distance_s3[7:0],
-            5'd0};
+    // 1.0 - cos gamma * 2^octave, less an ulp, from 0 to one half
+    wire [18:0] distance_s3 = ~octave_by1_s3[18:0];
 
-    // u0.13
-    wire [12:0] curve_rest3_s3 = curve_in_range3_s3 ? {distance_s3[9:0], 3'd0} : curve_rest4_s3;
+    wire curve_in_range3_s3 = |distance_s3[18:11];  // u is in range 3 or in one above
+    wire curve_in_range4_s3 = |distance_s3[18:9];  // u is in range 4 or in one above
+    wire curve_in_range1_s3 = |distance_s3[18:15];  // u is in range 1 or in one above
+    wire octave_free2_s3 = ~octave_top2_s3;
+    wire octave_free1_s3 = ~octave_top1_s3;
 
-    wire curve_in_range0_s3 = |distance_s3[18:17];  // u is in range 0 or in one above
-
-    // u0.13
-    wire [12:0] curve_rest1_s3 = curve_in_range1_s3 ? {distance_s3[11:0], 1'b0} :
-            {distance_s3[10:0], 2'd0};
-
-    wire [12:0] curve_rest0_s3 = curve_in_range0_s3 ? distance_s3[12:0] : curve_rest1_s3;  // u0.13
-    wire [12:0] curve_rest2_s3 = curve_in_range2_s3 ? curve_rest0_s3 : curve_rest3_s3;  // u0.13
-
-    wire [6:0] curve_word4_s3 = curve_in_range4_s3 ? {5'd0, distance_s3[10:9]} : {6'd32,
-            distance_s3[8]};
-
-    wire [6:0] curve_word3_s3 = curve_in_range3_s3 ? {4'd8, distance_s3[12:10]} : curve_word4_s3;
-
-    wire [6:0] curve_word1_s3 = curve_in_range1_s3 ? {2'd2, distance_s3[16:12]} : {3'd0,
-            distance_s3[14:11]};
-
-    wire [6:0] curve_word0_s3 = curve_in_range0_s3 ? {1'b0, distance_s3[18:13]} : curve_word1_s3;
-    wire [6:0] curve_word2_s3 = curve_in_range2_s3 ? curve_word0_s3 : curve_word3_s3;
-
-    // ROM curve: value at the start of a segment (u0.26), then its rise over the segment in units
-    // of 2^-24 (19 bits)
-    reg [44:0] curve_rom [0:95];
-    initial $readmemh(CURVE_FILE, curve_rom);
-    always @(posedge clk) if (advance) curve_word_s4 <= curve_rom[curve_word2_s3];
+    // leading zeros of cos gamma
+    wire [4:0] octave_s3 = {octave_free16_s3, octave_free8_s3, octave_free4_s3, octave_free2_s3,
+            octave_free1_s3};
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s4 <= exponent_s3;
-            red_s4 <= red_s3;
-            green_s4 <= green_s3;
-            blue_s4 <= blue_s3;
-            curve_rest2_s4 <= curve_rest2_s3;
-            octave_s4 <= octave_s3;
-            facing_s4 <= facing_s3;
+            distance_s4 <= distance_s3;
+            curve_in_range3_s4 <= curve_in_range3_s3;
+            curve_in_range4_s4 <= curve_in_range4_s3;
+            curve_in_range1_s4 <= curve_in_range1_s3;
             aligned_s4 <= aligned_s3;
         end
     end
 
     // Stage 4, part of: segment of the decay addressed by cos gamma
-    reg  [9:0]  exponent_s5;     // specular exponent n
-    reg  [7:0]  red_s5;          // intensity of the light times k_s
-    reg  [7:0]  green_s5;        // intensity of the light times k_s
-    reg  [7:0]  blue_s5;         // intensity of the light times k_s
     reg  [12:0] curve_rest2_s5;  // u0.13
-    reg  [4:0]  octave_s5;       // leading zeros of cos gamma
-    reg         facing_s5;       // the surface faces the half vector
-    reg  [44:0] curve_word_s5;
     reg         aligned_s5;      // cos gamma is 1.0
+    reg  [44:0] curve_word_s5;
+
+    wire curve_in_range2_s4 = |distance_s4[18:13];  // u is in range 2 or in one above
+
+    // u0.13
+    wire [12:0] curve_rest4_s4 = curve_in_range4_s4 ? {distance_s4[8:0], 4'd0} : {distance_s4[7:0],
+            5'd0};
+
+    // u0.13
+    wire [12:0] curve_rest3_s4 = curve_in_range3_s4 ? {distance_s4[9:0], 3'd0} : curve_rest4_s4;
+
+    wire curve_in_range0_s4 = |distance_s4[18:17];  // u is in range 0 or in one above
+
+    // u0.13
+    wire [12:0] curve_rest1_s4 = curve_in_range1_s4 ? {distance_s4[11:0], 1'b0} :
+            {distance_s4[10:0], 2'd0};
+
+    wire [12:0] curve_rest0_s4 = curve_in_range0_s4 ? distance_s4[12:0] : curve_rest1_s4;  // u0.13
+    wire [12:0] curve_rest2_s4 = curve_in_range2_s4 ? curve_rest0_s4 : curve_rest3_s4;  // u0.13
+
+    wire [6:0] curve_word4_s4 = curve_in_range4_s4 ? {5'd0, distance_s4[10:9]} : {6'd32,
+            distance_s4[8]};
+
+    wire [6:0] curve_word3_s4 = curve_in_range3_s4 ? {4'd8, distance_s4[12:10]} : curve_word4_s4;
+
+    wire [6:0] curve_word1_s4 = curve_in_range1_s4 ? {2'd2, distance_s4[16:12]} : {3'd0,
+            distance_s4[14:11]};
+
+    wire [6:0] curve_word0_s4 = curve_in_range0_s4 ? {1'b0, distance_s4[18:13]} : curve_word1_s4;
+    wire [6:0] curve_word2_s4 = curve_in_range2_s4 ? curve_word0_s4 : curve_word3_s4;
+
+    // ROM curve: value at the start of a segment (u0.26), then its rise over the segment in units
+    // of 2^-24 (19 bits)
+    reg [44:0] curve_rom [0:95];
+    initial $readmemh(CURVE_FILE, curve_rom);
+    always @(posedge clk) if (advance) curve_word_s5 <= curve_rom[curve_word2_s4];
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s5 <= exponent_s4;
-            red_s5 <= red_s4;
-            green_s5 <= green_s4;
-            blue_s5 <= blue_s4;
             curve_rest2_s5 <= curve_rest2_s4;
-            octave_s5 <= octave_s4;
-            facing_s5 <= facing_s4;
-            curve_word_s5 <= curve_word_s4;
             aligned_s5 <= aligned_s4;
         end
     end
 
-    // Stage 5, part of: decay <- base + slope * rest
-    reg  [9:0]  exponent_s6;          // specular exponent n
-    reg  [7:0]  red_s6;               // intensity of the light times k_s
-    reg  [7:0]  green_s6;             // intensity of the light times k_s
-    reg  [7:0]  blue_s6;              // intensity of the light times k_s
-    reg  [4:0]  octave_s6;            // leading zeros of cos gamma
-    reg         facing_s6;            // the surface faces the half vector
-    reg  [25:0] curve_base_s6;        // u0.26
-    reg  [30:0] product_upper_s6;
-    reg         product_low_bits_s6;
-    reg  [11:0] product_carried_s6;
-    reg         aligned_s6;           // cos gamma is 1.0
-
-    wire [25:0] curve_base_s5 = curve_word_s5[44:19];  // u0.26
-    wire [30:0] product_upper_s5 = curve_word_s5[18:1] * curve_rest2_s5;
-    wire [12:0] product_row_2_s5 = curve_word_s5[0] ? curve_rest2_s5 : 13'd0;
+    // Stage 5, part of: segment of the decay addressed by cos gamma
+    reg  [12:0] curve_rest2_s6;  // u0.13
+    reg  [44:0] curve_word_s6;
+    reg         aligned_s6;      // cos gamma is 1.0
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s6 <= exponent_s5;
-            red_s6 <= red_s5;
-            green_s6 <= green_s5;
-            blue_s6 <= blue_s5;
-            octave_s6 <= octave_s5;
-            facing_s6 <= facing_s5;
-            curve_base_s6 <= curve_base_s5;
-            product_upper_s6 <= product_upper_s5;
-            product_low_bits_s6 <= product_row_2_s5[0];
-            product_carried_s6 <= product_row_2_s5[12:1];
+            curve_rest2_s6 <= curve_rest2_s5;
+            curve_word_s6 <= curve_word_s5;
             aligned_s6 <= aligned_s5;
         end
     end
 
     // Stage 6, part of: decay <- base + slope * rest
-    reg  [9:0]  exponent_s7;          // specular exponent n
-    reg  [7:0]  red_s7;               // intensity of the light times k_s
-    reg  [7:0]  green_s7;             // intensity of the light times k_s
-    reg  [7:0]  blue_s7;              // intensity of the light times k_s
-    reg  [4:0]  octave_s7;            // leading zeros of cos gamma
-    reg         facing_s7;            // the surface faces the half vector
-    reg         curve_sum_bits_s7;
-    reg  [25:0] curve_sum_inside_s7;  // u0.26
+    reg  [25:0] curve_base_s7;        // u0.26
+    reg  [30:0] product_upper_s7;
+    reg         product_low_bits_s7;
+    reg  [11:0] product_carried_s7;
     reg         aligned_s7;           // cos gamma is 1.0
 
-    wire [30:0] product_sum_s6 = product_upper_s6 + {19'd0, product_carried_s6};
-
-    // its point depends on the operands
-    wire [31:0] product_s6 = {product_sum_s6, product_low_bits_s6};
-
-    wire [26:0] curve_sum_s6 = {1'b0, curve_base_s6} + {6'd0, product_s6[31:11]};  // u1.26
+    wire [25:0] curve_base_s6 = curve_word_s6[44:19];  // u0.26
+    wire [30:0] product_upper_s6 = curve_word_s6[18:1] * curve_rest2_s6;
+    wire [12:0] product_row_2_s6 = curve_word_s6[0] ? curve_rest2_s6 : 13'd0;
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s7 <= exponent_s6;
-            red_s7 <= red_s6;
-            green_s7 <= green_s6;
-            blue_s7 <= blue_s6;
-            octave_s7 <= octave_s6;
-            facing_s7 <= facing_s6;
-            curve_sum_bits_s7 <= curve_sum_s6[26];
-            curve_sum_inside_s7 <= curve_sum_s6[25:0];
+            curve_base_s7 <= curve_base_s6;
+            product_upper_s7 <= product_upper_s6;
+            product_low_bits_s7 <= product_row_2_s6[0];
+            product_carried_s7 <= product_row_2_s6[12:1];
             aligned_s7 <= aligned_s6;
         end
     end
 
-    // Stage 7, part of: segment of the decay addressed by cos gamma; decay <- base + slope * rest;
-    // halvings <- n * decay
-    reg  [9:0]  exponent_s8;              // specular exponent n
-    reg  [7:0]  red_s8;                   // intensity of the light times k_s
-    reg  [7:0]  green_s8;                 // intensity of the light times k_s
-    reg  [7:0]  blue_s8;                  // intensity of the light times k_s
-    reg         facing_s8;                // the surface faces the half vector
-    reg         decay_small_s8;           // the decay is below 1/4, and all its bits count
-    reg  [17:0] product_upper_bits_2_s8;
-    reg  [5:0]  product_lower_bits_s8;
-    reg         aligned_s8;               // cos gamma is 1.0
+    // Stage 7, part of: decay <- base + slope * rest
+    reg  [4:0]  octave_s8;            // leading zeros of cos gamma
+    reg         curve_sum_bits_s8;
+    reg  [25:0] curve_sum_inside_s8;  // u0.26
+    reg         aligned_s8;           // cos gamma is 1.0
 
-    wire octave_any_s7 = |octave_s7;  // cos gamma is below one half
+    wire [30:0] product_sum_s7 = product_upper_s7 + {19'd0, product_carried_s7};
 
-    // u0.26: -log2(cos gamma * 2^octave)
-    wire [25:0] decay_s7 = curve_sum_bits_s7 ? 26'h3ffffff : curve_sum_inside_s7;
+    // its point depends on the operands
+    wire [31:0] product_s7 = {product_sum_s7, product_low_bits_s7};
 
-    wire decay_large_s7 = |decay_s7[25:24];
-    wire decay_far_s7 = decay_large_s7 | octave_any_s7;
-    wire decay_small_s7 = ~decay_far_s7;  // the decay is below 1/4, and all its bits count
-
-    // the decay, its point by decay_small
-    wire [23:0] factor_s7 = decay_small_s7 ? decay_s7[23:0] : {octave_s7, decay_s7[25:7]};
+    wire [26:0] curve_sum_s7 = {1'b0, curve_base_s7} + {6'd0, product_s7[31:11]};  // u1.26
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s8 <= exponent_s7;
-            red_s8 <= red_s7;
-            green_s8 <= green_s7;
-            blue_s8 <= blue_s7;
-            facing_s8 <= facing_s7;
-            decay_small_s8 <= decay_small_s7;
-            product_upper_bits_2_s8 <= factor_s7[23:6];
-            product_lower_bits_s8 <= factor_s7[5:0];
+            curve_sum_bits_s8 <= curve_sum_s7[26];
+            curve_sum_inside_s8 <= curve_sum_s7[25:0];
             aligned_s8 <= aligned_s7;
         end
     end
 
-    // Stage 8, part of: halvings <- n * decay
-    reg  [7:0]  red_s9;                 // intensity of the light times k_s
-    reg  [7:0]  green_s9;               // intensity of the light times k_s
-    reg  [7:0]  blue_s9;                // intensity of the light times k_s
-    reg         facing_s9;              // the surface faces the half vector
-    reg         decay_small_s9;         // the decay is below 1/4, and all its bits count
-    reg  [27:0] product_upper_2_s9;
-    reg  [5:0]  product_low_bits_2_s9;
-    reg  [9:0]  product_carried_2_s9;
-    reg         aligned_s9;             // cos gamma is 1.0
+    // Stage 8, part of: segment of the decay addressed by cos gamma; decay <- base + slope * rest;
+    // halvings <- n * decay
+    reg  [9:0]  exponent_s9;              // specular exponent n
+    reg         decay_small_s9;           // the decay is below 1/4, and all its bits count
+    reg  [17:0] product_upper_bits_2_s9;
+    reg  [5:0]  product_lower_bits_s9;
+    reg         aligned_s9;               // cos gamma is 1.0
 
-    wire [27:0] product_upper_2_s8 = product_upper_bits_2_s8 * exponent_s8;
-    wire [15:0] product_lower_s8 = product_lower_bits_s8 * exponent_s8;
+    wire octave_any_s8 = |octave_s8;  // cos gamma is below one half
+
+    // u0.26: -log2(cos gamma * 2^octave)
+    wire [25:0] decay_s8 = curve_sum_bits_s8 ? 26'h3ffffff : curve_sum_inside_s8;
+
+    wire decay_large_s8 = |decay_s8[25:24];
+    wire decay_far_s8 = decay_large_s8 | octave_any_s8;
+    wire decay_small_s8 = ~decay_far_s8;  // the decay is below 1/4, and all its bits count
+
+    // the decay, its point by decay_small
+    wire [23:0] factor_s8 = decay_small_s8 ? decay_s8[23:0] : {octave_s8, decay_s8[25:7]};
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s9 <= red_s8;
-            green_s9 <= green_s8;
-            blue_s9 <= blue_s8;
-            facing_s9 <= facing_s8;
             decay_small_s9 <= decay_small_s8;
-            product_upper_2_s9 <= product_upper_2_s8;
-            product_low_bits_2_s9 <= product_lower_s8[5:0];
-            product_carried_2_s9 <= product_lower_s8[15:6];
+            product_upper_bits_2_s9 <= factor_s8[23:6];
+            product_lower_bits_s9 <= factor_s8[5:0];
             aligned_s9 <= aligned_s8;
         end
     end
 
     // Stage 9, part of: halvings <- n * decay
-    reg  [7:0]  red_s10;          // intensity of the light times k_s
-    reg  [7:0]  green_s10;        // intensity of the light times k_s
-    reg  [7:0]  blue_s10;         // intensity of the light times k_s
-    reg         facing_s10;       // the surface faces the half vector
-    reg         decay_small_s10;  // the decay is below 1/4, and all its bits count
-    reg  [33:0] product_2_s10;    // its point depends on the operands
-    reg         aligned_s10;      // cos gamma is 1.0
+    reg         decay_small_s10;         // the decay is below 1/4, and all its bits count
+    reg  [27:0] product_upper_2_s10;
+    reg  [5:0]  product_low_bits_2_s10;
+    reg  [9:0]  product_carried_2_s10;
+    reg         aligned_s10;             // cos gamma is 1.0
 
-    wire [27:0] product_sum_2_s9 = product_upper_2_s9 + {18'd0, product_carried_2_s9};
-
-    // its point depends on the operands
-    wire [33:0] product_2_s9 = {product_sum_2_s9, product_low_bits_2_s9};
+    wire [27:0] product_upper_2_s9 = product_upper_bits_2_s9 * exponent_s9;
+    wire [15:0] product_lower_s9 = product_lower_bits_s9 * exponent_s9;
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s10 <= red_s9;
-            green_s10 <= green_s9;
-            blue_s10 <= blue_s9;
-            facing_s10 <= facing_s9;
             decay_small_s10 <= decay_small_s9;
-            product_2_s10 <= product_2_s9;
+            product_upper_2_s10 <= product_upper_2_s9;
+            product_low_bits_2_s10 <= product_lower_s9[5:0];
+            product_carried_2_s10 <= product_lower_s9[15:6];
             aligned_s10 <= aligned_s9;
         end
     end
 
     // Stage 10, part of: halvings <- n * decay
-    reg  [7:0]  red_s11;       // intensity of the light times k_s
-    reg  [7:0]  green_s11;     // intensity of the light times k_s
-    reg  [7:0]  blue_s11;      // intensity of the light times k_s
-    reg         facing_s11;    // the surface faces the half vector
-    reg  [20:0] halvings_s11;  // u5.16: n*decay: how often f is half of 1.0
-    reg         aligned_s11;   // cos gamma is 1.0
+    reg         decay_small_s11;  // the decay is below 1/4, and all its bits count
+    reg  [33:0] product_2_s11;    // its point depends on the operands
+    reg         aligned_s11;      // cos gamma is 1.0
 
-    // u5.16
-    wire [20:0] halvings_coarse_s10 = (|product_2_s10[33:24]) ? 21'h1fffff : product_2_s10[23:3];
+    wire [27:0] product_sum_2_s10 = product_upper_2_s10 + {18'd0, product_carried_2_s10};
 
-    // u5.16
-    wire [20:0] halvings_fine_s10 = (|product_2_s10[33:31]) ? 21'h1fffff : product_2_s10[30:10];
-
-    // u5.16: n*decay: how often f is half of 1.0
-    wire [20:0] halvings_s10 = decay_small_s10 ? halvings_fine_s10 : halvings_coarse_s10;
+    // its point depends on the operands
+    wire [33:0] product_2_s10 = {product_sum_2_s10, product_low_bits_2_s10};
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s11 <= red_s10;
-            green_s11 <= green_s10;
-            blue_s11 <= blue_s10;
-            facing_s11 <= facing_s10;
-            halvings_s11 <= halvings_s10;
+            decay_small_s11 <= decay_small_s10;
+            product_2_s11 <= product_2_s10;
             aligned_s11 <= aligned_s10;
         end
     end
 
-    // Stage 11, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
-    reg         [7:0]  red_s12;                     // intensity of the light times k_s
-    reg         [7:0]  green_s12;                   // intensity of the light times k_s
-    reg         [7:0]  blue_s12;                    // intensity of the light times k_s
-    reg                facing_s12;                  // the surface faces the half vector
-    reg         [20:0] halvings_s12;                // u5.16: n*decay: how often f is half of 1.0
-    reg         [14:0] exp2_bend_value_word_s12;    // u-4.19
-    reg                peak_s12;                    // f is 1.0, less an ulp
-    // s-10.19: what the field adds, less half an ulp
-    reg  signed [9:0]  exp2_bend_offset1_term_s12;
-    // s-12.19: what the field adds, less half an ulp
-    reg  signed [7:0]  exp2_bend_offset2_term_s12;
+    // Stage 11, part of: halvings <- n * decay
+    reg  [20:0] halvings_s12;  // u5.16: n*decay: how often f is half of 1.0
+    reg         aligned_s12;   // cos gamma is 1.0
 
-    wire exp2_bend_offset1_upper_s11 = halvings_s11[8];
-    wire exp2_bend_offset2_upper_s11 = halvings_s11[6];
+    // u5.16
+    wire [20:0] halvings_coarse_s11 = (|product_2_s11[33:24]) ? 21'h1fffff : product_2_s11[23:3];
+
+    // u5.16
+    wire [20:0] halvings_fine_s11 = (|product_2_s11[33:31]) ? 21'h1fffff : product_2_s11[30:10];
+
+    // u5.16: n*decay: how often f is half of 1.0
+    wire [20:0] halvings_s11 = decay_small_s11 ? halvings_fine_s11 : halvings_coarse_s11;
+
+    always @(posedge clk) begin
+        if (advance) begin
+            halvings_s12 <= halvings_s11;
+            aligned_s12 <= aligned_s11;
+        end
+    end
+
+    // Stage 12, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
+    reg         [20:0] halvings_s13;                // u5.16: n*decay: how often f is half of 1.0
+    reg         [14:0] exp2_bend_value_word_s13;    // u-4.19
+    reg                peak_s13;                    // f is 1.0, less an ulp
+    // s-10.19: what the field adds, less half an ulp
+    reg  signed [9:0]  exp2_bend_offset1_term_s13;
+    // s-12.19: what the field adds, less half an ulp
+    reg  signed [7:0]  exp2_bend_offset2_term_s13;
+
+    wire exp2_bend_offset1_upper_s12 = halvings_s12[8];
+    wire exp2_bend_offset2_upper_s12 = halvings_s12[6];
 
     // ROM exp2_bend_value: 1 - x/2 - 2^-x at the middle of each of 128 intervals of x, in units of
     // 2^-19
     reg [14:0] exp2_bend_value_rom [0:127];
     initial $readmemh(EXP2_BEND_VALUE_FILE, exp2_bend_value_rom);
-    wire [14:0] exp2_bend_value_word_s11 = exp2_bend_value_rom[halvings_s11[15:9]];
+    wire [14:0] exp2_bend_value_word_s12 = exp2_bend_value_rom[halvings_s12[15:9]];
 
-    wire exp2_bend_offset1_mirrored_s11 = ~halvings_s11[7];
+    wire exp2_bend_offset1_mirrored_s12 = ~halvings_s12[7];
 
     // distance from the middle of the field
-    wire exp2_bend_offset1_distance_s11 = exp2_bend_offset1_upper_s11 ? halvings_s11[7] :
-            exp2_bend_offset1_mirrored_s11;
+    wire exp2_bend_offset1_distance_s12 = exp2_bend_offset1_upper_s12 ? halvings_s12[7] :
+            exp2_bend_offset1_mirrored_s12;
 
-    wire [6:0] exp2_bend_offset1_address_s11 = {halvings_s11[15:10],
-            exp2_bend_offset1_distance_s11};
+    wire [6:0] exp2_bend_offset1_address_s12 = {halvings_s12[15:10],
+            exp2_bend_offset1_distance_s12};
 
     // ROM exp2_bend_offset1: slope of 1 - x/2 - 2^-x over 2^-6 of x, times the distance from the
     // middle of bits 8 to 7 of x, in units of 2^-19, less a half
     reg [9:0] exp2_bend_offset1_rom [0:127];
     initial $readmemh(EXP2_BEND_OFFSET1_FILE, exp2_bend_offset1_rom);
-    wire signed [9:0] exp2_bend_offset1_word_s11 =
-            exp2_bend_offset1_rom[exp2_bend_offset1_address_s11];
+    wire signed [9:0] exp2_bend_offset1_word_s12 =
+            exp2_bend_offset1_rom[exp2_bend_offset1_address_s12];
 
-    wire [1:0] exp2_bend_offset2_mirrored_s11 = ~halvings_s11[5:4];
+    wire [1:0] exp2_bend_offset2_mirrored_s12 = ~halvings_s12[5:4];
 
     // distance from the middle of the field
-    wire [1:0] exp2_bend_offset2_distance_s11 = exp2_bend_offset2_upper_s11 ? halvings_s11[5:4] :
-            exp2_bend_offset2_mirrored_s11;
+    wire [1:0] exp2_bend_offset2_distance_s12 = exp2_bend_offset2_upper_s12 ? halvings_s12[5:4] :
+            exp2_bend_offset2_mirrored_s12;
 
-    wire [6:0] exp2_bend_offset2_address_s11 = {halvings_s11[15:11],
-            exp2_bend_offset2_distance_s11};
+    wire [6:0] exp2_bend_offset2_address_s12 = {halvings_s12[15:11],
+            exp2_bend_offset2_distance_s12};
 
     // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-5 of x, times the distance from the
     // middle of bits 6 to 4 of x, in units of 2^-19, less a half
     reg [7:0] exp2_bend_offset2_rom [0:127];
     initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
-    wire signed [7:0] exp2_bend_offset2_word_s11 =
-            exp2_bend_offset2_rom[exp2_bend_offset2_address_s11];
+    wire signed [7:0] exp2_bend_offset2_word_s12 =
+            exp2_bend_offset2_rom[exp2_bend_offset2_address_s12];
 
-    wire fades_s11 = |halvings_s11;
-    wire level_s11 = ~fades_s11;
-    wire peak_s11 = aligned_s11 | level_s11;  // f is 1.0, less an ulp
-    wire signed [9:0] exp2_bend_offset1_opposite_s11 = ~exp2_bend_offset1_word_s11;  // s-10.19
+    wire fades_s12 = |halvings_s12;
+    wire level_s12 = ~fades_s12;
+    wire peak_s12 = aligned_s12 | level_s12;  // f is 1.0, less an ulp
+    wire signed [9:0] exp2_bend_offset1_opposite_s12 = ~exp2_bend_offset1_word_s12;  // s-10.19
 
     // s-10.19: what the field adds, less half an ulp
-    wire signed [9:0] exp2_bend_offset1_term_s11 = exp2_bend_offset1_upper_s11 ?
-            exp2_bend_offset1_word_s11 : exp2_bend_offset1_opposite_s11;
+    wire signed [9:0] exp2_bend_offset1_term_s12 = exp2_bend_offset1_upper_s12 ?
+            exp2_bend_offset1_word_s12 : exp2_bend_offset1_opposite_s12;
 
-    wire signed [7:0] exp2_bend_offset2_opposite_s11 = ~exp2_bend_offset2_word_s11;  // s-12.19
+    wire signed [7:0] exp2_bend_offset2_opposite_s12 = ~exp2_bend_offset2_word_s12;  // s-12.19
 
     // s-12.19: what the field adds, less half an ulp
-    wire signed [7:0] exp2_bend_offset2_term_s11 = exp2_bend_offset2_upper_s11 ?
-            exp2_bend_offset2_word_s11 : exp2_bend_offset2_opposite_s11;
+    wire signed [7:0] exp2_bend_offset2_term_s12 = exp2_bend_offset2_upper_s12 ?
+            exp2_bend_offset2_word_s12 : exp2_bend_offset2_opposite_s12;
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s12 <= red_s11;
-            green_s12 <= green_s11;
-            blue_s12 <= blue_s11;
-            facing_s12 <= facing_s11;
-            halvings_s12 <= halvings_s11;
-            exp2_bend_value_word_s12 <= exp2_bend_value_word_s11;
-            peak_s12 <= peak_s11;
-            exp2_bend_offset1_term_s12 <= exp2_bend_offset1_term_s11;
-            exp2_bend_offset2_term_s12 <= exp2_bend_offset2_term_s11;
+            halvings_s13 <= halvings_s12;
+            exp2_bend_value_word_s13 <= exp2_bend_value_word_s12;
+            peak_s13 <= peak_s12;
+            exp2_bend_offset1_term_s13 <= exp2_bend_offset1_term_s12;
+            exp2_bend_offset2_term_s13 <= exp2_bend_offset2_term_s12;
         end
     end
 
-    // Stage 12, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
-    reg         [7:0]  red_s13;                     // intensity of the light times k_s
-    reg         [7:0]  green_s13;                   // intensity of the light times k_s
-    reg         [7:0]  blue_s13;                    // intensity of the light times k_s
-    reg                facing_s13;                  // the surface faces the half vector
-    reg         [15:0] exp2_x_s13;                  // u0.16
-    reg                peak_s13;                    // f is 1.0, less an ulp
-    reg                halvings_bits_2_bits_5_s13;
-    reg                halvings_bits_2_bits_4_s13;
-    reg                halvings_bits_2_bits_3_s13;
-    reg                halvings_bits_2_bits_2_s13;
-    reg                halvings_bits_2_bits_s13;
-    reg  signed [15:0] exp2_bend_offset2_sum_s13;   // s-4.19
+    // Stage 13, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
+    reg         [15:0] exp2_x_s14;                  // u0.16
+    reg                peak_s14;                    // f is 1.0, less an ulp
+    reg                halvings_bits_2_bits_5_s14;
+    reg                halvings_bits_2_bits_4_s14;
+    reg                halvings_bits_2_bits_3_s14;
+    reg                halvings_bits_2_bits_2_s14;
+    reg                halvings_bits_2_bits_s14;
+    reg  signed [15:0] exp2_bend_offset2_sum_s14;   // s-4.19
     // s-15.19: what the field adds, less half an ulp
-    reg  signed [4:0]  exp2_bend_offset3_term_s13;
+    reg  signed [4:0]  exp2_bend_offset3_term_s14;
 
-    wire [15:0] exp2_x_s12 = halvings_s12[15:0];  // u0.16
-    wire exp2_bend_offset3_upper_s12 = halvings_s12[3];
-    wire [2:0] exp2_bend_offset3_mirrored_s12 = ~halvings_s12[2:0];
+    wire [15:0] exp2_x_s13 = halvings_s13[15:0];  // u0.16
+    wire exp2_bend_offset3_upper_s13 = halvings_s13[3];
+    wire [2:0] exp2_bend_offset3_mirrored_s13 = ~halvings_s13[2:0];
 
     // distance from the middle of the field
-    wire [2:0] exp2_bend_offset3_distance_s12 = exp2_bend_offset3_upper_s12 ? halvings_s12[2:0] :
-            exp2_bend_offset3_mirrored_s12;
+    wire [2:0] exp2_bend_offset3_distance_s13 = exp2_bend_offset3_upper_s13 ? halvings_s13[2:0] :
+            exp2_bend_offset3_mirrored_s13;
 
-    wire [5:0] exp2_bend_offset3_address_s12 = {halvings_s12[15:13],
-            exp2_bend_offset3_distance_s12};
+    wire [5:0] exp2_bend_offset3_address_s13 = {halvings_s13[15:13],
+            exp2_bend_offset3_distance_s13};
 
     // ROM exp2_bend_offset3: slope of 1 - x/2 - 2^-x over 2^-3 of x, times the distance from the
     // middle of bits 3 to 0 of x, in units of 2^-19, less a half
     reg [4:0] exp2_bend_offset3_rom [0:63];
     initial $readmemh(EXP2_BEND_OFFSET3_FILE, exp2_bend_offset3_rom);
-    wire signed [4:0] exp2_bend_offset3_word_s12 =
-            exp2_bend_offset3_rom[exp2_bend_offset3_address_s12];
+    wire signed [4:0] exp2_bend_offset3_word_s13 =
+            exp2_bend_offset3_rom[exp2_bend_offset3_address_s13];
 
     // s-4.19
-    wire signed [15:0] exp2_bend_offset1_sum_s12 = {1'b0, exp2_bend_value_word_s12} +
-            {{6{exp2_bend_offset1_term_s12[9]}}, exp2_bend_offset1_term_s12};
+    wire signed [15:0] exp2_bend_offset1_sum_s13 = {1'b0, exp2_bend_value_word_s13} +
+            {{6{exp2_bend_offset1_term_s13[9]}}, exp2_bend_offset1_term_s13};
 
     // s-4.19
-    wire signed [15:0] exp2_bend_offset2_sum_s12 = exp2_bend_offset1_sum_s12 +
-            {{8{exp2_bend_offset2_term_s12[7]}}, exp2_bend_offset2_term_s12};
+    wire signed [15:0] exp2_bend_offset2_sum_s13 = exp2_bend_offset1_sum_s13 +
+            {{8{exp2_bend_offset2_term_s13[7]}}, exp2_bend_offset2_term_s13};
 
-    wire signed [4:0] exp2_bend_offset3_opposite_s12 = ~exp2_bend_offset3_word_s12;  // s-15.19
+    wire signed [4:0] exp2_bend_offset3_opposite_s13 = ~exp2_bend_offset3_word_s13;  // s-15.19
 
     // s-15.19: what the field adds, less half an ulp
-    wire signed [4:0] exp2_bend_offset3_term_s12 = exp2_bend_offset3_upper_s12 ?
-            exp2_bend_offset3_word_s12 : exp2_bend_offset3_opposite_s12;
+    wire signed [4:0] exp2_bend_offset3_term_s13 = exp2_bend_offset3_upper_s13 ?
+            exp2_bend_offset3_word_s13 : exp2_bend_offset3_opposite_s13;
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s13 <= red_s12;
-            green_s13 <= green_s12;
-            blue_s13 <= blue_s12;
-            facing_s13 <= facing_s12;
-            exp2_x_s13 <= exp2_x_s12;
-            peak_s13 <= peak_s12;
-            halvings_bits_2_bits_5_s13 <= halvings_s12[16];
-            halvings_bits_2_bits_4_s13 <= halvings_s12[17];
-            halvings_bits_2_bits_3_s13 <= halvings_s12[18];
-            halvings_bits_2_bits_2_s13 <= halvings_s12[19];
-            halvings_bits_2_bits_s13 <= halvings_s12[20];
-            exp2_bend_offset2_sum_s13 <= exp2_bend_offset2_sum_s12;
-            exp2_bend_offset3_term_s13 <= exp2_bend_offset3_term_s12;
-        end
-    end
-
-    // Stage 13, part of: reflectance <- 2^-halvings
-    reg  [7:0]  red_s14;                        // intensity of the light times k_s
-    reg  [7:0]  green_s14;                      // intensity of the light times k_s
-    reg  [7:0]  blue_s14;                       // intensity of the light times k_s
-    reg         facing_s14;                     // the surface faces the half vector
-    reg         peak_s14;                       // f is 1.0, less an ulp
-    reg         halvings_bits_2_bits_5_s14;
-    reg         halvings_bits_2_bits_4_s14;
-    reg         halvings_bits_2_bits_3_s14;
-    reg         halvings_bits_2_bits_2_s14;
-    reg         halvings_bits_2_bits_s14;
-    reg         exp2_mantissa_kept_bits_s14;
-    reg  [16:0] exp2_mantissa_kept_inside_s14;  // u0.17
-
-    wire [15:0] exp2_inverse_s13 = ~exp2_x_s13;  // u0.16
-
-    // s-4.19
-    wire signed [15:0] exp2_bend_offset3_sum_s13 = exp2_bend_offset2_sum_s13 +
-            {{11{exp2_bend_offset3_term_s13[4]}}, exp2_bend_offset3_term_s13};
-
-    // u1.19: 2^-x of the fraction x
-    wire [19:0] exp2_mantissa_s13 = {2'd1, exp2_inverse_s13, 2'd0} -
-            {{4{exp2_bend_offset3_sum_s13[15]}}, exp2_bend_offset3_sum_s13};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_s14 <= red_s13;
-            green_s14 <= green_s13;
-            blue_s14 <= blue_s13;
-            facing_s14 <= facing_s13;
+            exp2_x_s14 <= exp2_x_s13;
             peak_s14 <= peak_s13;
-            halvings_bits_2_bits_5_s14 <= halvings_bits_2_bits_5_s13;
-            halvings_bits_2_bits_4_s14 <= halvings_bits_2_bits_4_s13;
-            halvings_bits_2_bits_3_s14 <= halvings_bits_2_bits_3_s13;
-            halvings_bits_2_bits_2_s14 <= halvings_bits_2_bits_2_s13;
-            halvings_bits_2_bits_s14 <= halvings_bits_2_bits_s13;
-            exp2_mantissa_kept_bits_s14 <= exp2_mantissa_s13[19];
-            exp2_mantissa_kept_inside_s14 <= exp2_mantissa_s13[18:2];
+            halvings_bits_2_bits_5_s14 <= halvings_s13[16];
+            halvings_bits_2_bits_4_s14 <= halvings_s13[17];
+            halvings_bits_2_bits_3_s14 <= halvings_s13[18];
+            halvings_bits_2_bits_2_s14 <= halvings_s13[19];
+            halvings_bits_2_bits_s14 <= halvings_s13[20];
+            exp2_bend_offset2_sum_s14 <= exp2_bend_offset2_sum_s13;
+            exp2_bend_offset3_term_s14 <= exp2_bend_offset3_term_s13;
         end
     end
 
     // Stage 14, part of: reflectance <- 2^-halvings
-    reg  [7:0]  red_s15;             // intensity of the light times k_s
-    reg  [7:0]  green_s15;           // intensity of the light times k_s
-    reg  [7:0]  blue_s15;            // intensity of the light times k_s
-    reg         facing_s15;          // the surface faces the half vector
-    reg         peak_s15;            // f is 1.0, less an ulp
-    reg  [16:0] exp2_shift_by1_s15;  // u0.17
+    reg         peak_s15;                       // f is 1.0, less an ulp
+    reg         halvings_bits_2_bits_5_s15;
+    reg         halvings_bits_2_bits_4_s15;
+    reg         halvings_bits_2_bits_3_s15;
+    reg         halvings_bits_2_bits_2_s15;
+    reg         halvings_bits_2_bits_s15;
+    reg         exp2_mantissa_kept_bits_s15;
+    reg  [16:0] exp2_mantissa_kept_inside_s15;  // u0.17
 
-    // u0.17
-    wire [16:0] exp2_kept_s14 = exp2_mantissa_kept_bits_s14 ? 17'h1ffff :
-            exp2_mantissa_kept_inside_s14;
+    wire [15:0] exp2_inverse_s14 = ~exp2_x_s14;  // u0.16
 
-    // u0.17
-    wire [16:0] exp2_shift_by16_s14 = halvings_bits_2_bits_s14 ? {16'd0, exp2_kept_s14[16]} :
-            exp2_kept_s14;
+    // s-4.19
+    wire signed [15:0] exp2_bend_offset3_sum_s14 = exp2_bend_offset2_sum_s14 +
+            {{11{exp2_bend_offset3_term_s14[4]}}, exp2_bend_offset3_term_s14};
 
-    // u0.17
-    wire [16:0] exp2_shift_by8_s14 = halvings_bits_2_bits_2_s14 ? {8'd0, exp2_shift_by16_s14[16:8]}
-            : exp2_shift_by16_s14;
-
-    // u0.17
-    wire [16:0] exp2_shift_by4_s14 = halvings_bits_2_bits_3_s14 ? {4'd0, exp2_shift_by8_s14[16:4]} :
-            exp2_shift_by8_s14;
-
-    // u0.17
-    wire [16:0] exp2_shift_by2_s14 = halvings_bits_2_bits_4_s14 ? {2'd0, exp2_shift_by4_s14[16:2]} :
-            exp2_shift_by4_s14;
-
-    // u0.17
-    wire [16:0] exp2_shift_by1_s14 = halvings_bits_2_bits_5_s14 ? {1'b0, exp2_shift_by2_s14[16:1]} :
-            exp2_shift_by2_s14;
+    // u1.19: 2^-x of the fraction x
+    wire [19:0] exp2_mantissa_s14 = {2'd1, exp2_inverse_s14, 2'd0} -
+            {{4{exp2_bend_offset3_sum_s14[15]}}, exp2_bend_offset3_sum_s14};
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s15 <= red_s14;
-            green_s15 <= green_s14;
-            blue_s15 <= blue_s14;
-            facing_s15 <= facing_s14;
             peak_s15 <= peak_s14;
-            exp2_shift_by1_s15 <= exp2_shift_by1_s14;
+            halvings_bits_2_bits_5_s15 <= halvings_bits_2_bits_5_s14;
+            halvings_bits_2_bits_4_s15 <= halvings_bits_2_bits_4_s14;
+            halvings_bits_2_bits_3_s15 <= halvings_bits_2_bits_3_s14;
+            halvings_bits_2_bits_2_s15 <= halvings_bits_2_bits_2_s14;
+            halvings_bits_2_bits_s15 <= halvings_bits_2_bits_s14;
+            exp2_mantissa_kept_bits_s15 <= exp2_mantissa_s14[19];
+            exp2_mantissa_kept_inside_s15 <= exp2_mantissa_s14[18:2];
         end
     end
 
     // Stage 15, part of: reflectance <- 2^-halvings
-    reg  [7:0]  red_s16;     // intensity of the light times k_s
-    reg  [7:0]  green_s16;   // intensity of the light times k_s
-    reg  [7:0]  blue_s16;    // intensity of the light times k_s
-    reg         facing_s16;  // the surface faces the half vector
-    reg  [15:0] lit_s16;     // u0.16
+    reg         peak_s16;                    // f is 1.0, less an ulp
+    reg         halvings_bits_2_bits_5_s16;
+    reg  [16:0] exp2_shift_by2_s16;          // u0.17
 
-    // u1.16
-    wire [16:0] exp2_rounded_nearest_s15 = {1'b0, exp2_shift_by1_s15[16:1]} + {16'd0,
-            exp2_shift_by1_s15[0]};
+    // u0.17
+    wire [16:0] exp2_kept_s15 = exp2_mantissa_kept_bits_s15 ? 17'h1ffff :
+            exp2_mantissa_kept_inside_s15;
 
-    // u0.16
-    wire [15:0] exp2_rounded_s15 = exp2_rounded_nearest_s15[16] ? 16'hffff :
-            exp2_rounded_nearest_s15[15:0];
+    // u0.17
+    wire [16:0] exp2_shift_by16_s15 = halvings_bits_2_bits_s15 ? {16'd0, exp2_kept_s15[16]} :
+            exp2_kept_s15;
 
-    wire [15:0] lit_s15 = peak_s15 ? 16'hffff : exp2_rounded_s15;  // u0.16
+    // u0.17
+    wire [16:0] exp2_shift_by8_s15 = halvings_bits_2_bits_2_s15 ? {8'd0, exp2_shift_by16_s15[16:8]}
+            : exp2_shift_by16_s15;
+
+    // u0.17
+    wire [16:0] exp2_shift_by4_s15 = halvings_bits_2_bits_3_s15 ? {4'd0, exp2_shift_by8_s15[16:4]} :
+            exp2_shift_by8_s15;
+
+    // u0.17
+    wire [16:0] exp2_shift_by2_s15 = halvings_bits_2_bits_4_s15 ? {2'd0, exp2_shift_by4_s15[16:2]} :
+            exp2_shift_by4_s15;
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s16 <= red_s15;
-            green_s16 <= green_s15;
-            blue_s16 <= blue_s15;
-            facing_s16 <= facing_s15;
-            lit_s16 <= lit_s15;
+            peak_s16 <= peak_s15;
+            halvings_bits_2_bits_5_s16 <= halvings_bits_2_bits_5_s15;
+            exp2_shift_by2_s16 <= exp2_shift_by2_s15;
         end
     end
 
     // Stage 16, part of: reflectance <- 2^-halvings
-    reg  [7:0]  red_s17;          // intensity of the light times k_s
-    reg  [7:0]  green_s17;        // intensity of the light times k_s
-    reg  [7:0]  blue_s17;         // intensity of the light times k_s
-    reg  [15:0] reflectance_s17;  // u0.16: f
+    reg         facing_s17;        // the surface faces the half vector
+    reg         peak_s17;          // f is 1.0, less an ulp
+    reg  [15:0] exp2_rounded_s17;  // u0.16
 
-    wire [15:0] reflectance_s16 = facing_s16 ? lit_s16 : 16'd0;  // u0.16: f
+    // u0.17
+    wire [16:0] exp2_shift_by1_s16 = halvings_bits_2_bits_5_s16 ? {1'b0, exp2_shift_by2_s16[16:1]} :
+            exp2_shift_by2_s16;
+
+    // u1.16
+    wire [16:0] exp2_rounded_nearest_s16 = {1'b0, exp2_shift_by1_s16[16:1]} + {16'd0,
+            exp2_shift_by1_s16[0]};
+
+    // u0.16
+    wire [15:0] exp2_rounded_s16 = exp2_rounded_nearest_s16[16] ? 16'hffff :
+            exp2_rounded_nearest_s16[15:0];
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s17 <= red_s16;
-            green_s17 <= green_s16;
-            blue_s17 <= blue_s16;
-            reflectance_s17 <= reflectance_s16;
+            peak_s17 <= peak_s16;
+            exp2_rounded_s17 <= exp2_rounded_s16;
         end
     end
 
-    // Stage 17, part of: result
-    reg  [15:0] reflectance_s18;         // u0.16: f
-    reg  [7:0]  red_product_kept_s18;
-    reg         red_product_bits_s18;
-    reg  [7:0]  green_product_kept_s18;
-    reg         green_product_bits_s18;
-    reg  [7:0]  blue_product_kept_s18;
-    reg         blue_product_bits_s18;
+    // Stage 17, part of: reflectance <- 2^-halvings
+    reg  [7:0]  red_s18;          // intensity of the light times k_s
+    reg  [7:0]  green_s18;        // intensity of the light times k_s
+    reg  [7:0]  blue_s18;         // intensity of the light times k_s
+    reg  [15:0] reflectance_s18;  // u0.16: f
 
-    // u8.16: an output before it is rounded
-    wire [23:0] red_product_s17 = reflectance_s17 * red_s17;
-
-    // u8.16: an output before it is rounded
-    wire [23:0] green_product_s17 = reflectance_s17 * green_s17;
-
-    // u8.16: an output before it is rounded
-    wire [23:0] blue_product_s17 = reflectance_s17 * blue_s17;
+    wire [15:0] lit_s17 = peak_s17 ? 16'hffff : exp2_rounded_s17;  // u0.16
+    wire [15:0] reflectance_s17 = facing_s17 ? lit_s17 : 16'd0;  // u0.16: f
 
     always @(posedge clk) begin
         if (advance) begin
             reflectance_s18 <= reflectance_s17;
-            red_product_kept_s18 <= red_product_s17[23:16];
-            red_product_bits_s18 <= red_product_s17[15];
-            green_product_kept_s18 <= green_product_s17[23:16];
-            green_product_bits_s18 <= green_product_s17[15];
-            blue_product_kept_s18 <= blue_product_s17[23:16];
-            blue_product_bits_s18 <= blue_product_s17[15];
         end
     end
 
     // Stage 18, part of: result
-    reg  [15:0] reflectance_s19;      // u0.16: f
-    reg  [7:0]  red_intensity_s19;
-    reg  [7:0]  green_intensity_s19;
-    reg  [7:0]  blue_intensity_s19;
+    reg  [15:0] reflectance_s19;         // u0.16: f
+    reg  [7:0]  red_product_kept_s19;
+    reg         red_product_bits_s19;
+    reg  [7:0]  green_product_kept_s19;
+    reg         green_product_bits_s19;
+    reg  [7:0]  blue_product_kept_s19;
+    reg         blue_product_bits_s19;
 
-    wire [7:0] red_intensity_s18 = red_product_kept_s18 + {7'd0, red_product_bits_s18};
-    wire [7:0] green_intensity_s18 = green_product_kept_s18 + {7'd0, green_product_bits_s18};
-    wire [7:0] blue_intensity_s18 = blue_product_kept_s18 + {7'd0, blue_product_bits_s18};
+    // u8.16: an output before it is rounded
+    wire [23:0] red_product_s18 = reflectance_s18 * red_s18;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] green_product_s18 = reflectance_s18 * green_s18;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] blue_product_s18 = reflectance_s18 * blue_s18;
 
     always @(posedge clk) begin
         if (advance) begin
             reflectance_s19 <= reflectance_s18;
-            red_intensity_s19 <= red_intensity_s18;
-            green_intensity_s19 <= green_intensity_s18;
-            blue_intensity_s19 <= blue_intensity_s18;
+            red_product_kept_s19 <= red_product_s18[23:16];
+            red_product_bits_s19 <= red_product_s18[15];
+            green_product_kept_s19 <= green_product_s18[23:16];
+            green_product_bits_s19 <= green_product_s18[15];
+            blue_product_kept_s19 <= blue_product_s18[23:16];
+            blue_product_bits_s19 <= blue_product_s18[15];
+        end
+    end
+
+    // Stage 19, part of: result
+    reg  [15:0] reflectance_s20;      // u0.16: f
+    reg  [7:0]  red_intensity_s20;
+    reg  [7:0]  green_intensity_s20;
+    reg  [7:0]  blue_intensity_s20;
+
+    wire [7:0] red_intensity_s19 = red_product_kept_s19 + {7'd0, red_product_bits_s19};
+    wire [7:0] green_intensity_s19 = green_product_kept_s19 + {7'd0, green_product_bits_s19};
+    wire [7:0] blue_intensity_s19 = blue_product_kept_s19 + {7'd0, blue_product_bits_s19};
+
+    always @(posedge clk) begin
+        if (advance) begin
+            reflectance_s20 <= reflectance_s19;
+            red_intensity_s20 <= red_intensity_s19;
+            green_intensity_s20 <= green_intensity_s19;
+            blue_intensity_s20 <= blue_intensity_s19;
+        end
+    end
+
+    // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
+    // points move on, a slot gives the value that it holds and takes a new one; its turn comes
+    // again when all others have had theirs.
+    reg [1:0] slot_of_4;
+    initial slot_of_4 = 2'd0;
+    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
+    reg [4:0] delay_s3_s8 [0:3];
+    reg [2:0] slot_of_8;
+    initial slot_of_8 = 3'd0;
+    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
+    reg [9:0] delay_s0_s9 [0:7];
+    reg [3:0] slot_of_15;
+    initial slot_of_15 = 4'd0;
+    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
+    reg  delay_s1_s17 [0:14];
+    reg [4:0] slot_of_17;
+    initial slot_of_17 = 5'd0;
+    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
+    reg [23:0] delay_s0_s18 [0:16];
+
+    always @(posedge clk) begin
+        if (advance) begin
+            slot_of_4 <= slot_of_4 == 2'd3 ? 2'd0 : slot_of_4 + 2'd1;
+            octave_s8 <= delay_s3_s8[slot_of_4];
+            delay_s3_s8[slot_of_4] <= octave_s3;
+        end
+    end
+
+    always @(posedge clk) begin
+        if (advance) begin
+            slot_of_8 <= slot_of_8 == 3'd7 ? 3'd0 : slot_of_8 + 3'd1;
+            exponent_s9 <= delay_s0_s9[slot_of_8];
+            delay_s0_s9[slot_of_8] <= exponent;
+        end
+    end
+
+    always @(posedge clk) begin
+        if (advance) begin
+            slot_of_15 <= slot_of_15 == 4'd14 ? 4'd0 : slot_of_15 + 4'd1;
+            facing_s17 <= delay_s1_s17[slot_of_15];
+            delay_s1_s17[slot_of_15] <= facing_s1;
+        end
+    end
+
+    always @(posedge clk) begin
+        if (advance) begin
+            slot_of_17 <= slot_of_17 == 5'd16 ? 5'd0 : slot_of_17 + 5'd1;
+            {red_s18, green_s18, blue_s18} <= delay_s0_s18[slot_of_17];
+            delay_s0_s18[slot_of_17] <= {red, green, blue};
         end
     end
 
     // Results
 
-    assign f_out = reflectance_s19;  // u0.16: the reflectance, for a user's own multipliers
-    assign red_out = red_intensity_s19;  // intensity on the output
-    assign green_out = green_intensity_s19;  // intensity on the output
-    assign blue_out = blue_intensity_s19;  // intensity on the output
+    assign f_out = reflectance_s20;  // u0.16: the reflectance, for a user's own multipliers
+    assign red_out = red_intensity_s20;  // intensity on the output
+    assign green_out = green_intensity_s20;  // intensity on the output
+    assign blue_out = blue_intensity_s20;  // intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, octave_by1_s2[19], product_s6[10:0], product_2_s10[2:0],
-            exp2_mantissa_s13[1:0], red_product_s17[14:0], green_product_s17[14:0],
-            blue_product_s17[14:0]};
+    wire unused = &{1'b0, octave_by1_s3[19], product_s7[10:0], product_2_s11[2:0],
+            exp2_mantissa_s14[1:0], red_product_s18[14:0], green_product_s18[14:0],
+            blue_product_s18[14:0]};
 endmodule
 
 `default_nettype wire

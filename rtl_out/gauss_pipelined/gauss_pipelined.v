@@ -138,10 +138,6 @@ module gauss_pipelined #(
     end
 
     // Stage 0, part of: segment of the decay addressed by cos gamma
-    reg  [9:0]  exponent_s1;         // specular exponent n
-    reg  [7:0]  red_s1;              // intensity of the light times k_s
-    reg  [7:0]  green_s1;            // intensity of the light times k_s
-    reg  [7:0]  blue_s1;             // intensity of the light times k_s
     reg  [19:0] distance_s1;         // 1.0 - cos gamma, less an ulp
     reg         curve_in_range3_s1;  // u is in range 3 or in one above
     reg         curve_in_range4_s1;  // u is in range 4 or in one above
@@ -163,10 +159,6 @@ module gauss_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s1 <= exponent;
-            red_s1 <= red;
-            green_s1 <= green;
-            blue_s1 <= blue;
             distance_s1 <= distance_s0;
             curve_in_range3_s1 <= curve_in_range3_s0;
             curve_in_range4_s1 <= curve_in_range4_s0;
@@ -177,10 +169,6 @@ module gauss_pipelined #(
     end
 
     // Stage 1, part of: segment of the decay addressed by cos gamma
-    reg  [9:0]  exponent_s2;     // specular exponent n
-    reg  [7:0]  red_s2;          // intensity of the light times k_s
-    reg  [7:0]  green_s2;        // intensity of the light times k_s
-    reg  [7:0]  blue_s2;         // intensity of the light times k_s
     reg  [13:0] curve_rest2_s2;  // u0.14
     reg         facing_s2;       // the surface faces the half vector
     reg         aligned_s2;      // cos gamma is 1.0
@@ -223,10 +211,6 @@ module gauss_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s2 <= exponent_s1;
-            red_s2 <= red_s1;
-            green_s2 <= green_s1;
-            blue_s2 <= blue_s1;
             curve_rest2_s2 <= curve_rest2_s1;
             facing_s2 <= facing_s1;
             aligned_s2 <= aligned_s1;
@@ -234,10 +218,6 @@ module gauss_pipelined #(
     end
 
     // Stage 2, part of: segment of the decay addressed by cos gamma
-    reg  [9:0]  exponent_s3;     // specular exponent n
-    reg  [7:0]  red_s3;          // intensity of the light times k_s
-    reg  [7:0]  green_s3;        // intensity of the light times k_s
-    reg  [7:0]  blue_s3;         // intensity of the light times k_s
     reg  [13:0] curve_rest2_s3;  // u0.14
     reg         facing_s3;       // the surface faces the half vector
     reg  [44:0] curve_word_s3;
@@ -245,10 +225,6 @@ module gauss_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s3 <= exponent_s2;
-            red_s3 <= red_s2;
-            green_s3 <= green_s2;
-            blue_s3 <= blue_s2;
             curve_rest2_s3 <= curve_rest2_s2;
             facing_s3 <= facing_s2;
             curve_word_s3 <= curve_word_s2;
@@ -257,10 +233,6 @@ module gauss_pipelined #(
     end
 
     // Stage 3, part of: decay <- base + slope * rest
-    reg  [9:0]  exponent_s4;          // specular exponent n
-    reg  [7:0]  red_s4;               // intensity of the light times k_s
-    reg  [7:0]  green_s4;             // intensity of the light times k_s
-    reg  [7:0]  blue_s4;              // intensity of the light times k_s
     reg         facing_s4;            // the surface faces the half vector
     reg  [25:0] curve_base_s4;        // u0.26
     reg  [31:0] product_upper_s4;
@@ -274,10 +246,6 @@ module gauss_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s4 <= exponent_s3;
-            red_s4 <= red_s3;
-            green_s4 <= green_s3;
-            blue_s4 <= blue_s3;
             facing_s4 <= facing_s3;
             curve_base_s4 <= curve_base_s3;
             product_upper_s4 <= product_upper_s3;
@@ -288,13 +256,9 @@ module gauss_pipelined #(
     end
 
     // Stage 4, part of: decay <- base + slope * rest
-    reg  [9:0]  exponent_s5;  // specular exponent n
-    reg  [7:0]  red_s5;       // intensity of the light times k_s
-    reg  [7:0]  green_s5;     // intensity of the light times k_s
-    reg  [7:0]  blue_s5;      // intensity of the light times k_s
-    reg         facing_s5;    // the surface faces the half vector
-    reg  [25:0] decay_s5;     // u0.26: gamma^2/(4 ln 2), half the decay
-    reg         aligned_s5;   // cos gamma is 1.0
+    reg         facing_s5;   // the surface faces the half vector
+    reg  [25:0] decay_s5;    // u0.26: gamma^2/(4 ln 2), half the decay
+    reg         aligned_s5;  // cos gamma is 1.0
 
     wire [31:0] product_sum_s4 = product_upper_s4 + {19'd0, product_carried_s4};
 
@@ -306,10 +270,6 @@ module gauss_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s5 <= exponent_s4;
-            red_s5 <= red_s4;
-            green_s5 <= green_s4;
-            blue_s5 <= blue_s4;
             facing_s5 <= facing_s4;
             decay_s5 <= decay_s4;
             aligned_s5 <= aligned_s4;
@@ -318,9 +278,6 @@ module gauss_pipelined #(
 
     // Stage 5, part of: halvings <- n * decay
     reg  [9:0]  exponent_s6;     // specular exponent n
-    reg  [7:0]  red_s6;          // intensity of the light times k_s
-    reg  [7:0]  green_s6;        // intensity of the light times k_s
-    reg  [7:0]  blue_s6;         // intensity of the light times k_s
     reg         facing_s6;       // the surface faces the half vector
     reg         decay_small_s6;  // the decay is below 1/4, and all its bits count
     reg  [23:0] factor_s6;       // the decay, its point by decay_small
@@ -334,10 +291,6 @@ module gauss_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s6 <= exponent_s5;
-            red_s6 <= red_s5;
-            green_s6 <= green_s5;
-            blue_s6 <= blue_s5;
             facing_s6 <= facing_s5;
             decay_small_s6 <= decay_small_s5;
             factor_s6 <= factor_s5;
@@ -346,9 +299,6 @@ module gauss_pipelined #(
     end
 
     // Stage 6, part of: halvings <- n * decay
-    reg  [7:0]  red_s7;              // intensity of the light times k_s
-    reg  [7:0]  green_s7;            // intensity of the light times k_s
-    reg  [7:0]  blue_s7;             // intensity of the light times k_s
     reg         facing_s7;           // the surface faces the half vector
     reg         decay_small_s7;      // the decay is below 1/4, and all its bits count
     reg  [27:0] product_upper_2_s7;
@@ -360,9 +310,6 @@ module gauss_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s7 <= red_s6;
-            green_s7 <= green_s6;
-            blue_s7 <= blue_s6;
             facing_s7 <= facing_s6;
             decay_small_s7 <= decay_small_s6;
             product_upper_2_s7 <= product_upper_2_s6;
@@ -372,9 +319,6 @@ module gauss_pipelined #(
     end
 
     // Stage 7, part of: halvings <- n * decay
-    reg  [7:0]  red_s8;          // intensity of the light times k_s
-    reg  [7:0]  green_s8;        // intensity of the light times k_s
-    reg  [7:0]  blue_s8;         // intensity of the light times k_s
     reg         facing_s8;       // the surface faces the half vector
     reg         decay_small_s8;  // the decay is below 1/4, and all its bits count
     reg  [33:0] product_2_s8;    // its point depends on the operands
@@ -387,9 +331,6 @@ module gauss_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s8 <= red_s7;
-            green_s8 <= green_s7;
-            blue_s8 <= blue_s7;
             facing_s8 <= facing_s7;
             decay_small_s8 <= decay_small_s7;
             product_2_s8 <= product_2_s7;
@@ -398,9 +339,6 @@ module gauss_pipelined #(
     end
 
     // Stage 8, part of: halvings <- n * decay
-    reg  [7:0]  red_s9;       // intensity of the light times k_s
-    reg  [7:0]  green_s9;     // intensity of the light times k_s
-    reg  [7:0]  blue_s9;      // intensity of the light times k_s
     reg         facing_s9;    // the surface faces the half vector
     reg  [20:0] halvings_s9;  // u5.16: n*decay: how often f is half of 1.0
     reg         aligned_s9;   // cos gamma is 1.0
@@ -416,9 +354,6 @@ module gauss_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s9 <= red_s8;
-            green_s9 <= green_s8;
-            blue_s9 <= blue_s8;
             facing_s9 <= facing_s8;
             halvings_s9 <= halvings_s8;
             aligned_s9 <= aligned_s8;
@@ -426,9 +361,6 @@ module gauss_pipelined #(
     end
 
     // Stage 9, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
-    reg         [7:0]  red_s10;                     // intensity of the light times k_s
-    reg         [7:0]  green_s10;                   // intensity of the light times k_s
-    reg         [7:0]  blue_s10;                    // intensity of the light times k_s
     reg                facing_s10;                  // the surface faces the half vector
     reg         [20:0] halvings_s10;                // u5.16: n*decay: how often f is half of 1.0
     reg         [14:0] exp2_bend_value_word_s10;    // u-4.19
@@ -494,9 +426,6 @@ module gauss_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s10 <= red_s9;
-            green_s10 <= green_s9;
-            blue_s10 <= blue_s9;
             facing_s10 <= facing_s9;
             halvings_s10 <= halvings_s9;
             exp2_bend_value_word_s10 <= exp2_bend_value_word_s9;
@@ -507,9 +436,6 @@ module gauss_pipelined #(
     end
 
     // Stage 10, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
-    reg         [7:0]  red_s11;                     // intensity of the light times k_s
-    reg         [7:0]  green_s11;                   // intensity of the light times k_s
-    reg         [7:0]  blue_s11;                    // intensity of the light times k_s
     reg                facing_s11;                  // the surface faces the half vector
     reg                peak_s11;                    // f is 1.0, less an ulp
     reg                halvings_bits_2_bits_5_s11;
@@ -558,9 +484,6 @@ module gauss_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s11 <= red_s10;
-            green_s11 <= green_s10;
-            blue_s11 <= blue_s10;
             facing_s11 <= facing_s10;
             peak_s11 <= peak_s10;
             halvings_bits_2_bits_5_s11 <= halvings_s10[16];
@@ -575,9 +498,6 @@ module gauss_pipelined #(
     end
 
     // Stage 11, part of: reflectance <- 2^-halvings
-    reg  [7:0]  red_s12;                        // intensity of the light times k_s
-    reg  [7:0]  green_s12;                      // intensity of the light times k_s
-    reg  [7:0]  blue_s12;                       // intensity of the light times k_s
     reg         facing_s12;                     // the surface faces the half vector
     reg         peak_s12;                       // f is 1.0, less an ulp
     reg         halvings_bits_2_bits_5_s12;
@@ -598,9 +518,6 @@ module gauss_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s12 <= red_s11;
-            green_s12 <= green_s11;
-            blue_s12 <= blue_s11;
             facing_s12 <= facing_s11;
             peak_s12 <= peak_s11;
             halvings_bits_2_bits_5_s12 <= halvings_bits_2_bits_5_s11;
@@ -614,9 +531,6 @@ module gauss_pipelined #(
     end
 
     // Stage 12, part of: reflectance <- 2^-halvings
-    reg  [7:0]  red_s13;                  // intensity of the light times k_s
-    reg  [7:0]  green_s13;                // intensity of the light times k_s
-    reg  [7:0]  blue_s13;                 // intensity of the light times k_s
     reg         facing_s13;               // the surface faces the half vector
     reg         peak_s13;                 // f is 1.0, less an ulp
     reg  [15:0] exp2_shift_by1_kept_s13;  // u0.16
@@ -648,9 +562,6 @@ module gauss_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s13 <= red_s12;
-            green_s13 <= green_s12;
-            blue_s13 <= blue_s12;
             facing_s13 <= facing_s12;
             peak_s13 <= peak_s12;
             exp2_shift_by1_kept_s13 <= exp2_shift_by1_s12[16:1];
@@ -659,9 +570,6 @@ module gauss_pipelined #(
     end
 
     // Stage 13, part of: reflectance <- 2^-halvings
-    reg  [7:0]  red_s14;     // intensity of the light times k_s
-    reg  [7:0]  green_s14;   // intensity of the light times k_s
-    reg  [7:0]  blue_s14;    // intensity of the light times k_s
     reg         facing_s14;  // the surface faces the half vector
     reg  [15:0] lit_s14;     // u0.16
 
@@ -677,9 +585,6 @@ module gauss_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s14 <= red_s13;
-            green_s14 <= green_s13;
-            blue_s14 <= blue_s13;
             facing_s14 <= facing_s13;
             lit_s14 <= lit_s13;
         end
@@ -695,9 +600,6 @@ module gauss_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s15 <= red_s14;
-            green_s15 <= green_s14;
-            blue_s15 <= blue_s14;
             reflectance_s15 <= reflectance_s14;
         end
     end
@@ -748,6 +650,34 @@ module gauss_pipelined #(
             red_intensity_s17 <= red_intensity_s16;
             green_intensity_s17 <= green_intensity_s16;
             blue_intensity_s17 <= blue_intensity_s16;
+        end
+    end
+
+    // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
+    // points move on, a slot gives the value that it holds and takes a new one; its turn comes
+    // again when all others have had theirs.
+    reg [2:0] slot_of_5;
+    initial slot_of_5 = 3'd0;
+    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
+    reg [9:0] delay_s0_s6 [0:4];
+    reg [3:0] slot_of_14;
+    initial slot_of_14 = 4'd0;
+    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
+    reg [23:0] delay_s0_s15 [0:13];
+
+    always @(posedge clk) begin
+        if (advance) begin
+            slot_of_5 <= slot_of_5 == 3'd4 ? 3'd0 : slot_of_5 + 3'd1;
+            exponent_s6 <= delay_s0_s6[slot_of_5];
+            delay_s0_s6[slot_of_5] <= exponent;
+        end
+    end
+
+    always @(posedge clk) begin
+        if (advance) begin
+            slot_of_14 <= slot_of_14 == 4'd13 ? 4'd0 : slot_of_14 + 4'd1;
+            {red_s15, green_s15, blue_s15} <= delay_s0_s15[slot_of_14];
+            delay_s0_s15[slot_of_14] <= {red, green, blue};
         end
     end
 

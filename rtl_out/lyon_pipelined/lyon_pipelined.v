@@ -4,7 +4,7 @@
 //
 // Source: US 5 739 820, Fig. 7C and 7D, the first analogue in seed 000
 //
-// Pipeline: a point every clock, its results 15 clocks later; stages for 130 MHz on ecp5. While
+// Pipeline: a point every clock, its results 13 clocks later; stages for 138 MHz on ecp5. While
 // out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
@@ -64,7 +64,6 @@ module lyon_pipelined (
 );
 
     // Constants
-    localparam [3:0] remaining_less_one = 4'd1;
     localparam [16:0] ONE = 17'h10000;  // 1.0 in u1.16
 
     // The handshake: which stage has a point, and when all of them move on
@@ -80,12 +79,10 @@ module lyon_pipelined (
     reg  valid_s10;  // stage 10 has a point
     reg  valid_s11;  // stage 11 has a point
     reg  valid_s12;  // stage 12 has a point
-    reg  valid_s13;  // stage 13 has a point
-    reg  valid_s14;  // stage 14 has a point
-    reg  valid_s15;  // the results are on the outputs
+    reg  valid_s13;  // the results are on the outputs
 
-    assign out_valid = valid_s15;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s15;  // every point moves on by a stage
+    assign out_valid = valid_s13;  // the results are on the outputs
+    wire advance = out_ready | ~valid_s13;  // every point moves on by a stage
     assign in_ready = advance;  // a point that is offered is taken in this clock
 
     always @(posedge clk) begin
@@ -103,8 +100,6 @@ module lyon_pipelined (
             valid_s11 <= 1'b0;
             valid_s12 <= 1'b0;
             valid_s13 <= 1'b0;
-            valid_s14 <= 1'b0;
-            valid_s15 <= 1'b0;
         end else if (advance) begin
             valid_s1 <= in_valid;
             valid_s2 <= valid_s1;
@@ -119,420 +114,181 @@ module lyon_pipelined (
             valid_s11 <= valid_s10;
             valid_s12 <= valid_s11;
             valid_s13 <= valid_s12;
-            valid_s14 <= valid_s13;
-            valid_s15 <= valid_s14;
         end
     end
 
     // Stage 0: values on their way
-    reg  signed [17:0] dx_s1;     // s1.16: x of N - H, normal less half vector
-    reg  signed [17:0] dy_s1;     // s1.16: y of N - H, normal less half vector
-    reg  signed [17:0] dz_s1;     // s1.16: z of N - H, normal less half vector
-    reg         [3:0]  shift_s1;  // log2 of the specular exponent n, rounded
-    reg         [7:0]  red_s1;    // intensity of the light times k_s
-    reg         [7:0]  green_s1;  // intensity of the light times k_s
-    reg         [7:0]  blue_s1;   // intensity of the light times k_s
+    reg  signed [17:0] dx_s1;  // s1.16: x of N - H, normal less half vector
+    reg  signed [17:0] dy_s1;  // s1.16: y of N - H, normal less half vector
+    reg  signed [17:0] dz_s1;  // s1.16: z of N - H, normal less half vector
 
     always @(posedge clk) begin
         if (advance) begin
             dx_s1 <= dx;
             dy_s1 <= dy;
             dz_s1 <= dz;
-            shift_s1 <= shift;
-            red_s1 <= red;
-            green_s1 <= green;
-            blue_s1 <= blue;
         end
     end
 
     // Stage 1, part of: operands dx, dy, dz
-    reg         [3:0]  shift_s2;        // log2 of the specular exponent n, rounded
-    reg         [7:0]  red_s2;          // intensity of the light times k_s
-    reg         [7:0]  green_s2;        // intensity of the light times k_s
-    reg         [7:0]  blue_s2;         // intensity of the light times k_s
+    reg  signed [17:0] dz_s2;           // s1.16: z of N - H, normal less half vector
     reg  signed [35:0] multiplier1_s2;  // register 1, s3.32
     reg  signed [35:0] multiplier2_s2;  // register 2, s3.32
-    reg  signed [35:0] multiplier3_s2;  // register 3, s3.32
 
     wire signed [35:0] multiplier1_s1 = dx_s1 * dx_s1;  // multiplier 1, s3.32
     wire signed [35:0] multiplier2_s1 = dy_s1 * dy_s1;  // multiplier 2, s3.32
-    wire signed [35:0] multiplier3_s1 = dz_s1 * dz_s1;  // multiplier 3, s3.32
 
     always @(posedge clk) begin
         if (advance) begin
-            shift_s2 <= shift_s1;
-            red_s2 <= red_s1;
-            green_s2 <= green_s1;
-            blue_s2 <= blue_s1;
+            dz_s2 <= dz_s1;
             multiplier1_s2 <= multiplier1_s1;
             multiplier2_s2 <= multiplier2_s1;
-            multiplier3_s2 <= multiplier3_s1;
         end
     end
 
-    // Stage 2, part of: shift_register <- D^2 / (4*power); shift_register <- 2 * shift_register
-    reg  [7:0]  red_s3;               // intensity of the light times k_s
-    reg  [7:0]  green_s3;             // intensity of the light times k_s
-    reg  [7:0]  blue_s3;              // intensity of the light times k_s
-    reg  [23:0] distance_rounded_s3;  // u4.20
-    reg         more_shifts_s3;       // not the last shift
-    reg  [3:0]  remaining_s3;         // shifts, then squarings, to come
+    // Stage 2, part of: operands dx, dy, dz; shift_register <- D^2 / (4*power)
+    reg  signed [35:0] multiplier3_s3;  // register 3, s3.32
+    reg  signed [36:0] adder1_s3;       // register 1, s4.32
+
+    wire signed [35:0] multiplier3_s2 = dz_s2 * dz_s2;  // multiplier 3, s3.32
 
     // adder 1, s4.32
     wire signed [36:0] adder1_s2 = {multiplier1_s2[35], multiplier1_s2} + {multiplier2_s2[35],
             multiplier2_s2};
 
-    // adder 2, s4.32: D^2
-    wire signed [36:0] adder2_s2 = adder1_s2 + {multiplier3_s2[35], multiplier3_s2};
-
-    wire [23:0] distance_rounded_s2 = adder2_s2[35:12];  // u4.20
-    wire more_shifts_s2 = |shift_s2;  // not the last shift
-    wire [3:0] remaining_s2 = shift_s2 - remaining_less_one;  // shifts, then squarings, to come
-
     always @(posedge clk) begin
         if (advance) begin
-            red_s3 <= red_s2;
-            green_s3 <= green_s2;
-            blue_s3 <= blue_s2;
-            distance_rounded_s3 <= distance_rounded_s2;
-            more_shifts_s3 <= more_shifts_s2;
-            remaining_s3 <= remaining_s2;
+            multiplier3_s3 <= multiplier3_s2;
+            adder1_s3 <= adder1_s2;
         end
     end
 
-    // Stage 3, part of: shift_register <- 2 * shift_register
-    reg  [7:0]  red_s4;               // intensity of the light times k_s
-    reg  [7:0]  green_s4;             // intensity of the light times k_s
-    reg  [7:0]  blue_s4;              // intensity of the light times k_s
-    reg  [3:0]  remaining_4_s4;       // shifts, then squarings, to come
-    reg  [26:0] shift_register_8_s4;  // u1.26: beta*D^2, once it has shifted
-    reg         more_shifts_7_s4;     // not the last shift
+    // Stage 3, part of: shift_register <- D^2 / (4*power); shift_register <- 2 * shift_register
+    // log2 of the specular exponent n, rounded
+    reg         [3:0]  shift_s4;
+    reg  signed [36:0] adder2_s4;                                // register 2, s4.32: D^2
+    reg                shift_register_shifted_scaled_bits_2_s4;
 
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_s3 = {2'd0, distance_rounded_s3, 1'b0};
-
-    wire more_shifts_2_s3 = |remaining_s3;  // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_3_s3 = {1'b0, distance_rounded_s3, 2'd0};
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_2_s3 = remaining_s3 - remaining_less_one;
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_4_s3 = more_shifts_s3 ? shift_register_3_s3 : shift_register_s3;
-
-    wire more_shifts_3_s3 = more_shifts_s3 & more_shifts_2_s3;  // not the last shift
-    wire more_shifts_4_s3 = |remaining_2_s3;  // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_5_s3 = {shift_register_4_s3[25:0], 1'b0};
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_3_s3 = remaining_2_s3 - remaining_less_one;
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_6_s3 = more_shifts_3_s3 ? shift_register_5_s3 : shift_register_4_s3;
-
-    wire more_shifts_5_s3 = more_shifts_3_s3 & more_shifts_4_s3;  // not the last shift
-    wire more_shifts_6_s3 = |remaining_3_s3;  // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_7_s3 = shift_register_6_s3[26] ? 27'h7ffffff :
-            {shift_register_6_s3[25:0], 1'b0};
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_4_s3 = remaining_3_s3 - remaining_less_one;
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_8_s3 = more_shifts_5_s3 ? shift_register_7_s3 : shift_register_6_s3;
-
-    wire more_shifts_7_s3 = more_shifts_5_s3 & more_shifts_6_s3;  // not the last shift
+    // adder 2, s4.32: D^2
+    wire signed [36:0] adder2_s3 = adder1_s3 + {multiplier3_s3[35], multiplier3_s3};
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s4 <= red_s3;
-            green_s4 <= green_s3;
-            blue_s4 <= blue_s3;
-            remaining_4_s4 <= remaining_4_s3;
-            shift_register_8_s4 <= shift_register_8_s3;
-            more_shifts_7_s4 <= more_shifts_7_s3;
+            adder2_s4 <= adder2_s3;
+            shift_register_shifted_scaled_bits_2_s4 <= |adder2_s3[35:30];
         end
     end
 
     // Stage 4, part of: shift_register <- 2 * shift_register
-    reg  [7:0]  red_s5;                // intensity of the light times k_s
-    reg  [7:0]  green_s5;              // intensity of the light times k_s
-    reg  [7:0]  blue_s5;               // intensity of the light times k_s
-    reg  [3:0]  remaining_7_s5;        // shifts, then squarings, to come
-    reg  [26:0] shift_register_14_s5;  // u1.26: beta*D^2, once it has shifted
-    reg         more_shifts_13_s5;     // not the last shift
+    reg  [26:0] shift_register_9_s5;  // u1.26: beta*D^2, once it has shifted
+    reg         shift_reg_3_s5;       // log2 of the specular exponent n, rounded
+    reg         shift_reg_4_s5;       // log2 of the specular exponent n, rounded
 
-    wire more_shifts_8_s4 = |remaining_4_s4;  // not the last shift
+    wire [23:0] distance_rounded_s4 = adder2_s4[35:12];  // u4.20
 
     // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_9_s4 = shift_register_8_s4[26] ? 27'h7ffffff :
-            {shift_register_8_s4[25:0], 1'b0};
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_5_s4 = remaining_4_s4 - remaining_less_one;
+    wire [26:0] shift_register_s4 = {2'd0, distance_rounded_s4, 1'b0};
 
     // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_10_s4 = more_shifts_7_s4 ? shift_register_9_s4 : shift_register_8_s4;
-
-    wire more_shifts_9_s4 = more_shifts_7_s4 & more_shifts_8_s4;  // not the last shift
-    wire more_shifts_10_s4 = |remaining_5_s4;  // not the last shift
+    wire [26:0] shift_register_6_s4 = shift_register_shifted_scaled_bits_2_s4 ? 27'h7ffffff :
+            {adder2_s4[29:12], 9'd0};
 
     // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_11_s4 = shift_register_10_s4[26] ? 27'h7ffffff :
-            {shift_register_10_s4[25:0], 1'b0};
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_6_s4 = remaining_5_s4 - remaining_less_one;
+    wire [26:0] shift_register_7_s4 = shift_s4[3] ? shift_register_6_s4 : shift_register_s4;
 
     // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_12_s4 = more_shifts_9_s4 ? shift_register_11_s4 :
-            shift_register_10_s4;
-
-    wire more_shifts_11_s4 = more_shifts_9_s4 & more_shifts_10_s4;  // not the last shift
-    wire more_shifts_12_s4 = |remaining_6_s4;  // not the last shift
+    wire [26:0] shift_register_8_s4 = (|shift_register_7_s4[26:23]) ? 27'h7ffffff :
+            {shift_register_7_s4[22:0], 4'd0};
 
     // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_13_s4 = shift_register_12_s4[26] ? 27'h7ffffff :
-            {shift_register_12_s4[25:0], 1'b0};
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_7_s4 = remaining_6_s4 - remaining_less_one;
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_14_s4 = more_shifts_11_s4 ? shift_register_13_s4 :
-            shift_register_12_s4;
-
-    wire more_shifts_13_s4 = more_shifts_11_s4 & more_shifts_12_s4;  // not the last shift
+    wire [26:0] shift_register_9_s4 = shift_s4[2] ? shift_register_8_s4 : shift_register_7_s4;
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s5 <= red_s4;
-            green_s5 <= green_s4;
-            blue_s5 <= blue_s4;
-            remaining_7_s5 <= remaining_7_s4;
-            shift_register_14_s5 <= shift_register_14_s4;
-            more_shifts_13_s5 <= more_shifts_13_s4;
+            shift_register_9_s5 <= shift_register_9_s4;
+            shift_reg_3_s5 <= shift_s4[1];
+            shift_reg_4_s5 <= shift_s4[0];
         end
     end
 
     // Stage 5, part of: shift_register <- 2 * shift_register
-    reg  [7:0]  red_s6;                // intensity of the light times k_s
-    reg  [7:0]  green_s6;              // intensity of the light times k_s
-    reg  [7:0]  blue_s6;               // intensity of the light times k_s
-    reg  [3:0]  remaining_10_s6;       // shifts, then squarings, to come
-    reg  [26:0] shift_register_20_s6;  // u1.26: beta*D^2, once it has shifted
-    reg         more_shifts_19_s6;     // not the last shift
-
-    wire more_shifts_14_s5 = |remaining_7_s5;  // not the last shift
+    reg  [26:0] shift_register_13_s6;  // u1.26: beta*D^2, once it has shifted
 
     // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_15_s5 = shift_register_14_s5[26] ? 27'h7ffffff :
-            {shift_register_14_s5[25:0], 1'b0};
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_8_s5 = remaining_7_s5 - remaining_less_one;
+    wire [26:0] shift_register_10_s5 = (|shift_register_9_s5[26:25]) ? 27'h7ffffff :
+            {shift_register_9_s5[24:0], 2'd0};
 
     // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_16_s5 = more_shifts_13_s5 ? shift_register_15_s5 :
-            shift_register_14_s5;
-
-    wire more_shifts_15_s5 = more_shifts_13_s5 & more_shifts_14_s5;  // not the last shift
-    wire more_shifts_16_s5 = |remaining_8_s5;  // not the last shift
+    wire [26:0] shift_register_11_s5 = shift_reg_3_s5 ? shift_register_10_s5 : shift_register_9_s5;
 
     // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_17_s5 = shift_register_16_s5[26] ? 27'h7ffffff :
-            {shift_register_16_s5[25:0], 1'b0};
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_9_s5 = remaining_8_s5 - remaining_less_one;
+    wire [26:0] shift_register_12_s5 = shift_register_11_s5[26] ? 27'h7ffffff :
+            {shift_register_11_s5[25:0], 1'b0};
 
     // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_18_s5 = more_shifts_15_s5 ? shift_register_17_s5 :
-            shift_register_16_s5;
-
-    wire more_shifts_17_s5 = more_shifts_15_s5 & more_shifts_16_s5;  // not the last shift
-    wire more_shifts_18_s5 = |remaining_9_s5;  // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_19_s5 = shift_register_18_s5[26] ? 27'h7ffffff :
-            {shift_register_18_s5[25:0], 1'b0};
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_10_s5 = remaining_9_s5 - remaining_less_one;
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_20_s5 = more_shifts_17_s5 ? shift_register_19_s5 :
-            shift_register_18_s5;
-
-    wire more_shifts_19_s5 = more_shifts_17_s5 & more_shifts_18_s5;  // not the last shift
+    wire [26:0] shift_register_13_s5 = shift_reg_4_s5 ? shift_register_12_s5 : shift_register_11_s5;
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s6 <= red_s5;
-            green_s6 <= green_s5;
-            blue_s6 <= blue_s5;
-            remaining_10_s6 <= remaining_10_s5;
-            shift_register_20_s6 <= shift_register_20_s5;
-            more_shifts_19_s6 <= more_shifts_19_s5;
+            shift_register_13_s6 <= shift_register_13_s5;
         end
     end
 
-    // Stage 6, part of: shift_register <- 2 * shift_register
-    reg  [7:0]  red_s7;                // intensity of the light times k_s
-    reg  [7:0]  green_s7;              // intensity of the light times k_s
-    reg  [7:0]  blue_s7;               // intensity of the light times k_s
-    reg  [3:0]  remaining_13_s7;       // shifts, then squarings, to come
-    reg  [26:0] shift_register_26_s7;  // u1.26: beta*D^2, once it has shifted
-    reg         more_shifts_25_s7;     // not the last shift
-
-    wire more_shifts_20_s6 = |remaining_10_s6;  // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_21_s6 = shift_register_20_s6[26] ? 27'h7ffffff :
-            {shift_register_20_s6[25:0], 1'b0};
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_11_s6 = remaining_10_s6 - remaining_less_one;
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_22_s6 = more_shifts_19_s6 ? shift_register_21_s6 :
-            shift_register_20_s6;
-
-    wire more_shifts_21_s6 = more_shifts_19_s6 & more_shifts_20_s6;  // not the last shift
-    wire more_shifts_22_s6 = |remaining_11_s6;  // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_23_s6 = shift_register_22_s6[26] ? 27'h7ffffff :
-            {shift_register_22_s6[25:0], 1'b0};
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_12_s6 = remaining_11_s6 - remaining_less_one;
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_24_s6 = more_shifts_21_s6 ? shift_register_23_s6 :
-            shift_register_22_s6;
-
-    wire more_shifts_23_s6 = more_shifts_21_s6 & more_shifts_22_s6;  // not the last shift
-    wire more_shifts_24_s6 = |remaining_12_s6;  // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_25_s6 = shift_register_24_s6[26] ? 27'h7ffffff :
-            {shift_register_24_s6[25:0], 1'b0};
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_13_s6 = remaining_12_s6 - remaining_less_one;
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_26_s6 = more_shifts_23_s6 ? shift_register_25_s6 :
-            shift_register_24_s6;
-
-    wire more_shifts_25_s6 = more_shifts_23_s6 & more_shifts_24_s6;  // not the last shift
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_s7 <= red_s6;
-            green_s7 <= green_s6;
-            blue_s7 <= blue_s6;
-            remaining_13_s7 <= remaining_13_s6;
-            shift_register_26_s7 <= shift_register_26_s6;
-            more_shifts_25_s7 <= more_shifts_25_s6;
-        end
-    end
-
-    // Stage 7, part of: shift_register <- 2 * shift_register
-    reg  [7:0]  red_s8;                // intensity of the light times k_s
-    reg  [7:0]  green_s8;              // intensity of the light times k_s
-    reg  [7:0]  blue_s8;               // intensity of the light times k_s
-    reg  [26:0] shift_register_32_s8;  // u1.26: beta*D^2, once it has shifted
-
-    wire more_shifts_26_s7 = |remaining_13_s7;  // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_27_s7 = shift_register_26_s7[26] ? 27'h7ffffff :
-            {shift_register_26_s7[25:0], 1'b0};
-
-    // shifts, then squarings, to come
-    wire [3:0] remaining_14_s7 = remaining_13_s7 - remaining_less_one;
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_28_s7 = more_shifts_25_s7 ? shift_register_27_s7 :
-            shift_register_26_s7;
-
-    wire more_shifts_27_s7 = more_shifts_25_s7 & more_shifts_26_s7;  // not the last shift
-    wire more_shifts_28_s7 = |remaining_14_s7;  // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_29_s7 = shift_register_28_s7[26] ? 27'h7ffffff :
-            {shift_register_28_s7[25:0], 1'b0};
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_30_s7 = more_shifts_27_s7 ? shift_register_29_s7 :
-            shift_register_28_s7;
-
-    wire more_shifts_29_s7 = more_shifts_27_s7 & more_shifts_28_s7;  // not the last shift
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_31_s7 = shift_register_30_s7[26] ? 27'h7ffffff :
-            {shift_register_30_s7[25:0], 1'b0};
-
-    // u1.26: beta*D^2, once it has shifted
-    wire [26:0] shift_register_32_s7 = more_shifts_29_s7 ? shift_register_31_s7 :
-            shift_register_30_s7;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_s8 <= red_s7;
-            green_s8 <= green_s7;
-            blue_s8 <= blue_s7;
-            shift_register_32_s8 <= shift_register_32_s7;
-        end
-    end
-
-    // Stage 8, part of: accumulator <- base^2
-    reg  [7:0]  red_s9;    // intensity of the light times k_s
-    reg  [7:0]  green_s9;  // intensity of the light times k_s
-    reg  [7:0]  blue_s9;   // intensity of the light times k_s
-    reg  [15:0] base_s9;   // u0.16: base of the power, or 0
+    // Stage 6, part of: accumulator <- base^2
+    reg  [15:0] base_s7;  // u0.16: base of the power, or 0
 
     // u1.16: beta*D^2, to the point of f
-    wire [16:0] beta_distance_s8 = shift_register_32_s8[26:10];
+    wire [16:0] beta_distance_s6 = shift_register_13_s6[26:10];
 
-    wire comparator_s8 = beta_distance_s8 < ONE;  // beta*D^2 is below 1.0
-    wire [15:0] inverse_s8 = ~shift_register_32_s8[25:10];  // u0.16: 1.0 - beta*D^2, less an ulp
-    wire [15:0] base_s8 = comparator_s8 ? inverse_s8 : 16'd0;  // u0.16: base of the power, or 0
+    wire comparator_s6 = beta_distance_s6 < ONE;  // beta*D^2 is below 1.0
+    wire [15:0] inverse_s6 = ~shift_register_13_s6[25:10];  // u0.16: 1.0 - beta*D^2, less an ulp
+    wire [15:0] base_s6 = comparator_s6 ? inverse_s6 : 16'd0;  // u0.16: base of the power, or 0
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s9 <= red_s8;
-            green_s9 <= green_s8;
-            blue_s9 <= blue_s8;
-            base_s9 <= base_s8;
+            base_s7 <= base_s6;
         end
     end
 
-    // Stage 9, part of: accumulator <- base^2
-    reg  [7:0]  red_s10;          // intensity of the light times k_s
-    reg  [7:0]  green_s10;        // intensity of the light times k_s
-    reg  [7:0]  blue_s10;         // intensity of the light times k_s
-    reg  [15:0] accumulator_s10;  // u0.16: the powers of the base, in the end f
+    // Stage 7, part of: accumulator <- base^2
+    reg  [15:0] accumulator_s8;  // u0.16: the powers of the base, in the end f
 
-    wire [31:0] multiplier4_s9 = base_s9 * base_s9;  // multiplier 4, u0.32
+    wire [31:0] multiplier4_s7 = base_s7 * base_s7;  // multiplier 4, u0.32
 
     // u0.16: the powers of the base, in the end f
-    wire [15:0] accumulator_s9 = multiplier4_s9[31:16];
+    wire [15:0] accumulator_s7 = multiplier4_s7[31:16];
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s10 <= red_s9;
-            green_s10 <= green_s9;
-            blue_s10 <= blue_s9;
-            accumulator_s10 <= accumulator_s9;
+            accumulator_s8 <= accumulator_s7;
+        end
+    end
+
+    // Stage 8, part of: accumulator <- accumulator^2
+    reg  [15:0] accumulator_2_s9;  // u0.16: the powers of the base, in the end f
+
+    wire [31:0] multiplier4_2_s8 = accumulator_s8 * accumulator_s8;  // multiplier 4, u0.32
+
+    // u0.16: the powers of the base, in the end f
+    wire [15:0] accumulator_2_s8 = multiplier4_2_s8[31:16];
+
+    always @(posedge clk) begin
+        if (advance) begin
+            accumulator_2_s9 <= accumulator_2_s8;
+        end
+    end
+
+    // Stage 9, part of: accumulator <- accumulator^2
+    reg  [15:0] accumulator_3_s10;  // u0.16: the powers of the base, in the end f
+
+    wire [31:0] multiplier4_3_s9 = accumulator_2_s9 * accumulator_2_s9;  // multiplier 4, u0.32
+
+    // u0.16: the powers of the base, in the end f
+    wire [15:0] accumulator_3_s9 = multiplier4_3_s9[31:16];
+
+    always @(posedge clk) begin
+        if (advance) begin
+            accumulator_3_s10 <= accumulator_3_s9;
         end
     end
 
@@ -540,118 +296,103 @@ module lyon_pipelined (
     reg  [7:0]  red_s11;            // intensity of the light times k_s
     reg  [7:0]  green_s11;          // intensity of the light times k_s
     reg  [7:0]  blue_s11;           // intensity of the light times k_s
-    reg  [15:0] accumulator_2_s11;  // u0.16: the powers of the base, in the end f
+    reg  [15:0] accumulator_4_s11;  // u0.16: the powers of the base, in the end f
 
-    wire [31:0] multiplier4_2_s10 = accumulator_s10 * accumulator_s10;  // multiplier 4, u0.32
-
-    // u0.16: the powers of the base, in the end f
-    wire [15:0] accumulator_2_s10 = multiplier4_2_s10[31:16];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_s11 <= red_s10;
-            green_s11 <= green_s10;
-            blue_s11 <= blue_s10;
-            accumulator_2_s11 <= accumulator_2_s10;
-        end
-    end
-
-    // Stage 11, part of: accumulator <- accumulator^2
-    reg  [7:0]  red_s12;            // intensity of the light times k_s
-    reg  [7:0]  green_s12;          // intensity of the light times k_s
-    reg  [7:0]  blue_s12;           // intensity of the light times k_s
-    reg  [15:0] accumulator_3_s12;  // u0.16: the powers of the base, in the end f
-
-    wire [31:0] multiplier4_3_s11 = accumulator_2_s11 * accumulator_2_s11;  // multiplier 4, u0.32
+    wire [31:0] multiplier4_4_s10 = accumulator_3_s10 * accumulator_3_s10;  // multiplier 4, u0.32
 
     // u0.16: the powers of the base, in the end f
-    wire [15:0] accumulator_3_s11 = multiplier4_3_s11[31:16];
+    wire [15:0] accumulator_4_s10 = multiplier4_4_s10[31:16];
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s12 <= red_s11;
-            green_s12 <= green_s11;
-            blue_s12 <= blue_s11;
-            accumulator_3_s12 <= accumulator_3_s11;
+            accumulator_4_s11 <= accumulator_4_s10;
         end
     end
 
-    // Stage 12, part of: accumulator <- accumulator^2
-    reg  [7:0]  red_s13;            // intensity of the light times k_s
-    reg  [7:0]  green_s13;          // intensity of the light times k_s
-    reg  [7:0]  blue_s13;           // intensity of the light times k_s
-    reg  [15:0] accumulator_4_s13;  // u0.16: the powers of the base, in the end f
+    // Stage 11, part of: result
+    reg  [7:0] red_product_kept_s12;
+    reg        red_product_bits_s12;
+    reg  [7:0] green_product_kept_s12;
+    reg        green_product_bits_s12;
+    reg  [7:0] blue_product_kept_s12;
+    reg        blue_product_bits_s12;
 
-    wire [31:0] multiplier4_4_s12 = accumulator_3_s12 * accumulator_3_s12;  // multiplier 4, u0.32
+    // u8.16: an output before it is rounded
+    wire [23:0] red_product_s11 = accumulator_4_s11 * red_s11;
 
-    // u0.16: the powers of the base, in the end f
-    wire [15:0] accumulator_4_s12 = multiplier4_4_s12[31:16];
+    // u8.16: an output before it is rounded
+    wire [23:0] green_product_s11 = accumulator_4_s11 * green_s11;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] blue_product_s11 = accumulator_4_s11 * blue_s11;
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s13 <= red_s12;
-            green_s13 <= green_s12;
-            blue_s13 <= blue_s12;
-            accumulator_4_s13 <= accumulator_4_s12;
+            red_product_kept_s12 <= red_product_s11[23:16];
+            red_product_bits_s12 <= red_product_s11[15];
+            green_product_kept_s12 <= green_product_s11[23:16];
+            green_product_bits_s12 <= green_product_s11[15];
+            blue_product_kept_s12 <= blue_product_s11[23:16];
+            blue_product_bits_s12 <= blue_product_s11[15];
         end
     end
 
-    // Stage 13, part of: result
-    reg  [7:0] red_product_kept_s14;
-    reg        red_product_bits_s14;
-    reg  [7:0] green_product_kept_s14;
-    reg        green_product_bits_s14;
-    reg  [7:0] blue_product_kept_s14;
-    reg        blue_product_bits_s14;
+    // Stage 12, part of: result
+    reg  [7:0] red_intensity_s13;
+    reg  [7:0] green_intensity_s13;
+    reg  [7:0] blue_intensity_s13;
 
-    // u8.16: an output before it is rounded
-    wire [23:0] red_product_s13 = accumulator_4_s13 * red_s13;
-
-    // u8.16: an output before it is rounded
-    wire [23:0] green_product_s13 = accumulator_4_s13 * green_s13;
-
-    // u8.16: an output before it is rounded
-    wire [23:0] blue_product_s13 = accumulator_4_s13 * blue_s13;
+    wire [7:0] red_intensity_s12 = red_product_kept_s12 + {7'd0, red_product_bits_s12};
+    wire [7:0] green_intensity_s12 = green_product_kept_s12 + {7'd0, green_product_bits_s12};
+    wire [7:0] blue_intensity_s12 = blue_product_kept_s12 + {7'd0, blue_product_bits_s12};
 
     always @(posedge clk) begin
         if (advance) begin
-            red_product_kept_s14 <= red_product_s13[23:16];
-            red_product_bits_s14 <= red_product_s13[15];
-            green_product_kept_s14 <= green_product_s13[23:16];
-            green_product_bits_s14 <= green_product_s13[15];
-            blue_product_kept_s14 <= blue_product_s13[23:16];
-            blue_product_bits_s14 <= blue_product_s13[15];
+            red_intensity_s13 <= red_intensity_s12;
+            green_intensity_s13 <= green_intensity_s12;
+            blue_intensity_s13 <= blue_intensity_s12;
         end
     end
 
-    // Stage 14, part of: result
-    reg  [7:0] red_intensity_s15;
-    reg  [7:0] green_intensity_s15;
-    reg  [7:0] blue_intensity_s15;
-
-    wire [7:0] red_intensity_s14 = red_product_kept_s14 + {7'd0, red_product_bits_s14};
-    wire [7:0] green_intensity_s14 = green_product_kept_s14 + {7'd0, green_product_bits_s14};
-    wire [7:0] blue_intensity_s14 = blue_product_kept_s14 + {7'd0, blue_product_bits_s14};
+    // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
+    // points move on, a slot gives the value that it holds and takes a new one; its turn comes
+    // again when all others have had theirs.
+    reg [1:0] slot_of_3;
+    initial slot_of_3 = 2'd0;
+    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
+    reg [3:0] delay_s0_s4 [0:2];
+    reg [3:0] slot_of_10;
+    initial slot_of_10 = 4'd0;
+    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
+    reg [23:0] delay_s0_s11 [0:9];
 
     always @(posedge clk) begin
         if (advance) begin
-            red_intensity_s15 <= red_intensity_s14;
-            green_intensity_s15 <= green_intensity_s14;
-            blue_intensity_s15 <= blue_intensity_s14;
+            slot_of_3 <= slot_of_3 == 2'd2 ? 2'd0 : slot_of_3 + 2'd1;
+            shift_s4 <= delay_s0_s4[slot_of_3];
+            delay_s0_s4[slot_of_3] <= shift;
+        end
+    end
+
+    always @(posedge clk) begin
+        if (advance) begin
+            slot_of_10 <= slot_of_10 == 4'd9 ? 4'd0 : slot_of_10 + 4'd1;
+            {red_s11, green_s11, blue_s11} <= delay_s0_s11[slot_of_10];
+            delay_s0_s11[slot_of_10] <= {red, green, blue};
         end
     end
 
     // Results
 
-    assign red_out = red_intensity_s15;  // intensity on the output
-    assign green_out = green_intensity_s15;  // intensity on the output
-    assign blue_out = blue_intensity_s15;  // intensity on the output
+    assign red_out = red_intensity_s13;  // intensity on the output
+    assign green_out = green_intensity_s13;  // intensity on the output
+    assign blue_out = blue_intensity_s13;  // intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, adder2_s2[11:0], adder2_s2[36], shift_register_32_s8[9:0],
-            multiplier4_s9[15:0], multiplier4_2_s10[15:0], multiplier4_3_s11[15:0],
-            multiplier4_4_s12[15:0], red_product_s13[14:0], green_product_s13[14:0],
-            blue_product_s13[14:0]};
+    wire unused = &{1'b0, adder2_s4[11:0], adder2_s4[36], shift_register_13_s6[9:0],
+            multiplier4_s7[15:0], multiplier4_2_s8[15:0], multiplier4_3_s9[15:0],
+            multiplier4_4_s10[15:0], red_product_s11[14:0], green_product_s11[14:0],
+            blue_product_s11[14:0]};
 endmodule
 
 `default_nettype wire

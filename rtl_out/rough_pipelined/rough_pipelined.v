@@ -4,7 +4,7 @@
 //
 // Source: UA 60139, claim 1, figures 1, 2 and 4
 //
-// Pipeline: a point every clock, its results 18 clocks later; stages for 130 MHz on ecp5. While
+// Pipeline: a point every clock, its results 18 clocks later; stages for 138 MHz on ecp5. While
 // out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
@@ -67,11 +67,8 @@ module rough_pipelined #(
 
     // Constants
     localparam [20:0] COS_GAMMA_MOST = 21'h100000;  // 1.0 in u1.20
-    localparam [22:0] ONE = 23'h400000;  // 1.0 in u1.22
-    localparam [22:0] ONE_2_SAME = 23'h400000;  // -1.0 in s0.22
     localparam [16:0] RESULT_MOST = 17'hffff;  // 0.9999847412109375 in s0.16
     localparam [16:0] MINUS_ONE = 17'h10000;  // -1.0 in s0.16
-    localparam [16:0] ONE_2 = 17'h10000;  // 1.0 in u1.16
 
     // The handshake: which stage has a point, and when all of them move on
     reg  valid_s1;   // stage 1 has a point
@@ -141,18 +138,16 @@ module rough_pipelined #(
 
     // Stage 0, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
     // 11 <- cos gamma * cos dgamma
+    reg         cos_gamma_over_s1;
     // register 1, u1.20: cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s1;
+    reg         cos_dgamma_over_s1;
     // register 2, u1.20: cosine of the angle by which the normal is perturbed
     reg  [20:0] cos_dgamma_reg_s1;
-    reg  [9:0]  exponent_s1;         // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s1;
-    reg  [7:0]  red_s1;              // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s1;            // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s1;             // register 7: intensity of the light times k_s
-    reg  [20:0] complement_s1;       // u1.20: 1.0 - cos
-    reg  [20:0] complement_2_s1;     // u1.20: 1.0 - cos
+    reg  [20:0] complement_before_s1;    // u1.20: 1.0 - cos
+    reg  [20:0] complement_before_2_s1;  // u1.20: 1.0 - cos
 
     wire cos_gamma_over_s0 = cos_gamma[20];
 
@@ -164,102 +159,72 @@ module rough_pipelined #(
     // mux 2, u1.20: cosine of the angle by which the normal is perturbed
     wire [20:0] cos_dgamma_reg_s0 = cos_dgamma_over_s0 ? COS_GAMMA_MOST : cos_dgamma;
 
-    wire [20:0] complement_s0 = COS_GAMMA_MOST - cos_gamma_reg_s0;  // u1.20: 1.0 - cos
-    wire [20:0] complement_2_s0 = COS_GAMMA_MOST - cos_dgamma_reg_s0;  // u1.20: 1.0 - cos
-
     always @(posedge clk) begin
         if (advance) begin
+            cos_gamma_over_s1 <= cos_gamma_over_s0;
             cos_gamma_reg_s1 <= cos_gamma_reg_s0;
+            cos_dgamma_over_s1 <= cos_dgamma_over_s0;
             cos_dgamma_reg_s1 <= cos_dgamma_reg_s0;
-            exponent_s1 <= exponent;
             dgamma_negative_s1 <= dgamma_negative;
-            red_s1 <= red;
-            green_s1 <= green;
-            blue_s1 <= blue;
-            complement_s1 <= complement_s0;
-            complement_2_s1 <= complement_2_s0;
+            complement_before_s1 <= COS_GAMMA_MOST - cos_gamma;
+            complement_before_2_s1 <= COS_GAMMA_MOST - cos_dgamma;
         end
     end
 
     // Stage 1, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
     // 11 <- cos gamma * cos dgamma
-    reg  [9:0]  exponent_s2;                     // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s2;
-    reg  [7:0]  red_s2;                          // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s2;                        // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s2;                         // register 7: intensity of the light times k_s
-    reg         sine_in_range4_s2;               // u is in range 4 or in one above
-    reg  [13:0] sine_rest6_s2;                   // u0.14
-    reg  [13:0] sine_rest1_s2;                   // u0.14
-    reg         facing_s2;                       // the surface faces the half vector
-    reg  [9:0]  sine_word6_s2;
-    reg  [9:0]  sine_word1_s2;
-    reg  [35:0] multiplier10_upper_upper_s2;     // register 10
-    reg  [2:0]  multiplier10_upper_low_bits_s2;  // register 10
-    reg  [17:0] multiplier10_upper_carried_s2;   // register 10
-    reg  [23:0] multiplier10_rows_2_s2;          // register 10
-    reg         sine_in_range4_2_s2;             // u is in range 4 or in one above
-    reg  [13:0] sine_rest6_2_s2;                 // u0.14
-    reg  [13:0] sine_rest1_2_s2;                 // u0.14
-    reg  [9:0]  sine_word6_2_s2;
-    reg  [9:0]  sine_word1_2_s2;
+    reg  [20:0] complement_s2;                       // u1.20: 1.0 - cos
+    reg         sine_in_range6_s2;                   // u is in range 6 or in one above
+    reg         sine_in_range7_s2;                   // u is in range 7 or in one above
+    reg         sine_in_range8_s2;                   // u is in range 8 or in one above
+    reg  [1:0]  complement_shifted_bits_18_s2;       // u0.2
+    reg         sine_in_range5_s2;                   // u is in range 5 or in one above
+    reg         sine_in_range1_s2;                   // u is in range 1 or in one above
+    reg         sine_in_range2_s2;                   // u is in range 2 or in one above
+    reg         sine_in_range3_s2;                   // u is in range 3 or in one above
+    reg         sine_in_range0_s2;                   // u is in range 0 or in one above
+    reg         facing_s2;                           // the surface faces the half vector
+    reg  [9:0]  sine_word8_s2;
+    reg  [9:0]  sine_word3_s2;
+    reg  [35:0] multiplier10_upper_upper_s2;         // register 10
+    reg  [18:0] multiplier10_upper_rows_upper_7_s2;  // register 10
+    reg  [1:0]  multiplier10_upper_rows_3_s2;        // register 10
+    reg  [21:0] multiplier10_rows_upper_3_s2;        // register 10
+    reg         multiplier10_rows_upper_4_s2;        // register 10
+    reg  [20:0] multiplier10_row_7_s2;               // register 10
+    reg  [20:0] complement_2_s2;                     // u1.20: 1.0 - cos
+    reg         sine_in_range6_2_s2;                 // u is in range 6 or in one above
+    reg         sine_in_range7_2_s2;                 // u is in range 7 or in one above
+    reg         sine_in_range8_2_s2;                 // u is in range 8 or in one above
+    reg  [1:0]  complement_shifted_bits_18_2_s2;     // u0.2
+    reg         sine_in_range5_2_s2;                 // u is in range 5 or in one above
+    reg         sine_in_range1_2_s2;                 // u is in range 1 or in one above
+    reg         sine_in_range2_2_s2;                 // u is in range 2 or in one above
+    reg         sine_in_range3_2_s2;                 // u is in range 3 or in one above
+    reg         sine_in_range0_2_s2;                 // u is in range 0 or in one above
+    reg  [9:0]  sine_word8_2_s2;
+    reg  [9:0]  sine_word2_2_s2;
 
-    wire sine_in_range4_s1 = |complement_s1[20:10];  // u is in range 4 or in one above
+    // u1.20: 1.0 - cos
+    wire [20:0] complement_s1 = cos_gamma_over_s1 ? 21'd0 : complement_before_s1;
+
     wire sine_in_range6_s1 = |complement_s1[20:6];  // u is in range 6 or in one above
     wire sine_in_range7_s1 = |complement_s1[20:4];  // u is in range 7 or in one above
     wire sine_in_range8_s1 = |complement_s1[20:2];  // u is in range 8 or in one above
-    wire [13:0] sine_rest8_s1 = sine_in_range8_s1 ? {complement_s1[1:0], 12'd0} : 14'd0;  // u0.14
-
-    // u0.14
-    wire [13:0] sine_rest7_s1 = sine_in_range7_s1 ? {complement_s1[2:0], 11'd0} : sine_rest8_s1;
-
     wire sine_in_range5_s1 = |complement_s1[20:8];  // u is in range 5 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest5_s1 = sine_in_range5_s1 ? {complement_s1[5:0], 8'd0} :
-            {complement_s1[4:0], 9'd0};
-
-    wire [13:0] sine_rest6_s1 = sine_in_range6_s1 ? sine_rest5_s1 : sine_rest7_s1;  // u0.14
     wire sine_in_range1_s1 = |complement_s1[20:16];  // u is in range 1 or in one above
     wire sine_in_range2_s1 = |complement_s1[20:14];  // u is in range 2 or in one above
     wire sine_in_range3_s1 = |complement_s1[20:12];  // u is in range 3 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest3_s1 = sine_in_range3_s1 ? {complement_s1[7:0], 6'd0} :
-            {complement_s1[6:0], 7'd0};
-
-    // u0.14
-    wire [13:0] sine_rest2_s1 = sine_in_range2_s1 ? {complement_s1[8:0], 5'd0} : sine_rest3_s1;
-
     wire sine_in_range0_s1 = |complement_s1[20:18];  // u is in range 0 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest0_s1 = sine_in_range0_s1 ? complement_s1[13:0] : {complement_s1[9:0],
-            4'd0};
-
-    wire [13:0] sine_rest1_s1 = sine_in_range1_s1 ? sine_rest0_s1 : sine_rest2_s1;  // u0.14
     wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
 
     wire [9:0] sine_word8_s1 = sine_in_range8_s1 ? {8'd144, complement_s1[3:2]} : {8'd145,
             complement_s1[1:0]};
 
-    wire [9:0] sine_word7_s1 = sine_in_range7_s1 ? {7'd71, complement_s1[5:3]} : sine_word8_s1;
-
-    wire [9:0] sine_word5_s1 = sine_in_range5_s1 ? {6'd34, complement_s1[9:6]} : {7'd70,
-            complement_s1[7:5]};
-
-    wire [9:0] sine_word6_s1 = sine_in_range6_s1 ? sine_word5_s1 : sine_word7_s1;
-
     wire [9:0] sine_word3_s1 = sine_in_range3_s1 ? {4'd7, complement_s1[13:8]} : {5'd16,
             complement_s1[11:7]};
-
-    wire [9:0] sine_word2_s1 = sine_in_range2_s1 ? {3'd2, complement_s1[15:9]} : sine_word3_s1;
-
-    wire [8:0] sine_word0_s1 = sine_in_range0_s1 ? {3'd6, complement_s1[19:14]} : {1'b0,
-            complement_s1[17:10]};
-
-    wire [9:0] sine_word1_s1 = sine_in_range1_s1 ? {1'b0, sine_word0_s1} : sine_word2_s1;
 
     // multiplier 10
     wire [35:0] multiplier10_upper_upper_s1 = cos_dgamma_reg_s1[20:3] * cos_gamma_reg_s1[20:3];
@@ -271,78 +236,33 @@ module rough_pipelined #(
     wire [17:0] multiplier10_upper_row_4_s1 = cos_dgamma_reg_s1[1] ? cos_gamma_reg_s1[20:3] : 18'd0;
 
     // adder 10
-    wire [19:0] multiplier10_upper_rows_s1 = {2'd0, multiplier10_upper_row_2_s1} + {1'b0,
-            multiplier10_upper_row_4_s1, 1'b0};
+    wire [18:0] multiplier10_upper_rows_upper_3_s1 = {2'd0, multiplier10_upper_row_2_s1[17:1]} +
+            {1'b0, multiplier10_upper_row_4_s1};
+
+    // block 10
+    wire [19:0] multiplier10_upper_rows_s1 = {multiplier10_upper_rows_upper_3_s1,
+            multiplier10_upper_row_2_s1[0]};
 
     // mux 10
     wire [17:0] multiplier10_upper_row_7_s1 = cos_dgamma_reg_s1[2] ? cos_gamma_reg_s1[20:3] : 18'd0;
 
-    // adder 10
-    wire [20:0] multiplier10_upper_rows_2_s1 = {1'b0, multiplier10_upper_rows_s1} + {1'b0,
-            multiplier10_upper_row_7_s1, 2'd0};
-
     wire [20:0] multiplier10_row_2_s1 = cos_gamma_reg_s1[0] ? cos_dgamma_reg_s1 : 21'd0;  // mux 10
     wire [20:0] multiplier10_row_4_s1 = cos_gamma_reg_s1[1] ? cos_dgamma_reg_s1 : 21'd0;  // mux 10
 
-    // adder 10
-    wire [22:0] multiplier10_rows_s1 = {2'd0, multiplier10_row_2_s1} + {1'b0, multiplier10_row_4_s1,
-            1'b0};
+    // u1.20: 1.0 - cos
+    wire [20:0] complement_2_s1 = cos_dgamma_over_s1 ? 21'd0 : complement_before_2_s1;
 
-    wire [20:0] multiplier10_row_7_s1 = cos_gamma_reg_s1[2] ? cos_dgamma_reg_s1 : 21'd0;  // mux 10
-
-    // adder 10
-    wire [23:0] multiplier10_rows_2_s1 = {1'b0, multiplier10_rows_s1} + {1'b0,
-            multiplier10_row_7_s1, 2'd0};
-
-    wire sine_in_range4_2_s1 = |complement_2_s1[20:10];  // u is in range 4 or in one above
     wire sine_in_range6_2_s1 = |complement_2_s1[20:6];  // u is in range 6 or in one above
     wire sine_in_range7_2_s1 = |complement_2_s1[20:4];  // u is in range 7 or in one above
     wire sine_in_range8_2_s1 = |complement_2_s1[20:2];  // u is in range 8 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest8_2_s1 = sine_in_range8_2_s1 ? {complement_2_s1[1:0], 12'd0} : 14'd0;
-
-    // u0.14
-    wire [13:0] sine_rest7_2_s1 = sine_in_range7_2_s1 ? {complement_2_s1[2:0], 11'd0} :
-            sine_rest8_2_s1;
-
     wire sine_in_range5_2_s1 = |complement_2_s1[20:8];  // u is in range 5 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest5_2_s1 = sine_in_range5_2_s1 ? {complement_2_s1[5:0], 8'd0} :
-            {complement_2_s1[4:0], 9'd0};
-
-    wire [13:0] sine_rest6_2_s1 = sine_in_range6_2_s1 ? sine_rest5_2_s1 : sine_rest7_2_s1;  // u0.14
     wire sine_in_range1_2_s1 = |complement_2_s1[20:16];  // u is in range 1 or in one above
     wire sine_in_range2_2_s1 = |complement_2_s1[20:14];  // u is in range 2 or in one above
     wire sine_in_range3_2_s1 = |complement_2_s1[20:12];  // u is in range 3 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest3_2_s1 = sine_in_range3_2_s1 ? {complement_2_s1[7:0], 6'd0} :
-            {complement_2_s1[6:0], 7'd0};
-
-    // u0.14
-    wire [13:0] sine_rest2_2_s1 = sine_in_range2_2_s1 ? {complement_2_s1[8:0], 5'd0} :
-            sine_rest3_2_s1;
-
     wire sine_in_range0_2_s1 = |complement_2_s1[20:18];  // u is in range 0 or in one above
-
-    // u0.14
-    wire [13:0] sine_rest0_2_s1 = sine_in_range0_2_s1 ? complement_2_s1[13:0] :
-            {complement_2_s1[9:0], 4'd0};
-
-    wire [13:0] sine_rest1_2_s1 = sine_in_range1_2_s1 ? sine_rest0_2_s1 : sine_rest2_2_s1;  // u0.14
 
     wire [9:0] sine_word8_2_s1 = sine_in_range8_2_s1 ? {8'd144, complement_2_s1[3:2]} : {8'd145,
             complement_2_s1[1:0]};
-
-    wire [9:0] sine_word7_2_s1 = sine_in_range7_2_s1 ? {7'd71, complement_2_s1[5:3]} :
-            sine_word8_2_s1;
-
-    wire [9:0] sine_word5_2_s1 = sine_in_range5_2_s1 ? {6'd34, complement_2_s1[9:6]} : {7'd70,
-            complement_2_s1[7:5]};
-
-    wire [9:0] sine_word6_2_s1 = sine_in_range6_2_s1 ? sine_word5_2_s1 : sine_word7_2_s1;
 
     wire [9:0] sine_word3_2_s1 = sine_in_range3_2_s1 ? {4'd7, complement_2_s1[13:8]} : {5'd16,
             complement_2_s1[11:7]};
@@ -350,71 +270,154 @@ module rough_pipelined #(
     wire [9:0] sine_word2_2_s1 = sine_in_range2_2_s1 ? {3'd2, complement_2_s1[15:9]} :
             sine_word3_2_s1;
 
-    wire [8:0] sine_word0_2_s1 = sine_in_range0_2_s1 ? {3'd6, complement_2_s1[19:14]} : {1'b0,
-            complement_2_s1[17:10]};
-
-    wire [9:0] sine_word1_2_s1 = sine_in_range1_2_s1 ? {1'b0, sine_word0_2_s1} : sine_word2_2_s1;
-
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s2 <= exponent_s1;
             dgamma_negative_s2 <= dgamma_negative_s1;
-            red_s2 <= red_s1;
-            green_s2 <= green_s1;
-            blue_s2 <= blue_s1;
-            sine_in_range4_s2 <= sine_in_range4_s1;
-            sine_rest6_s2 <= sine_rest6_s1;
-            sine_rest1_s2 <= sine_rest1_s1;
+            complement_s2 <= complement_s1;
+            sine_in_range6_s2 <= sine_in_range6_s1;
+            sine_in_range7_s2 <= sine_in_range7_s1;
+            sine_in_range8_s2 <= sine_in_range8_s1;
+            complement_shifted_bits_18_s2 <= complement_s1[1:0];
+            sine_in_range5_s2 <= sine_in_range5_s1;
+            sine_in_range1_s2 <= sine_in_range1_s1;
+            sine_in_range2_s2 <= sine_in_range2_s1;
+            sine_in_range3_s2 <= sine_in_range3_s1;
+            sine_in_range0_s2 <= sine_in_range0_s1;
             facing_s2 <= facing_s1;
-            sine_word6_s2 <= sine_word6_s1;
-            sine_word1_s2 <= sine_word1_s1;
+            sine_word8_s2 <= sine_word8_s1;
+            sine_word3_s2 <= sine_word3_s1;
             multiplier10_upper_upper_s2 <= multiplier10_upper_upper_s1;
-            multiplier10_upper_low_bits_s2 <= multiplier10_upper_rows_2_s1[2:0];
-            multiplier10_upper_carried_s2 <= multiplier10_upper_rows_2_s1[20:3];
-            multiplier10_rows_2_s2 <= multiplier10_rows_2_s1;
-            sine_in_range4_2_s2 <= sine_in_range4_2_s1;
-            sine_rest6_2_s2 <= sine_rest6_2_s1;
-            sine_rest1_2_s2 <= sine_rest1_2_s1;
-            sine_word6_2_s2 <= sine_word6_2_s1;
-            sine_word1_2_s2 <= sine_word1_2_s1;
+            multiplier10_upper_rows_upper_7_s2 <= {1'b0, multiplier10_upper_rows_s1[19:2]} + {1'b0,
+                    multiplier10_upper_row_7_s1};
+            multiplier10_upper_rows_3_s2 <= {multiplier10_upper_rows_upper_3_s1[0],
+                    multiplier10_upper_row_2_s1[0]};
+            multiplier10_rows_upper_3_s2 <= {2'd0, multiplier10_row_2_s1[20:1]} + {1'b0,
+                    multiplier10_row_4_s1};
+            multiplier10_rows_upper_4_s2 <= multiplier10_row_2_s1[0];
+            multiplier10_row_7_s2 <= cos_gamma_reg_s1[2] ? cos_dgamma_reg_s1 : 21'd0;
+            complement_2_s2 <= complement_2_s1;
+            sine_in_range6_2_s2 <= sine_in_range6_2_s1;
+            sine_in_range7_2_s2 <= sine_in_range7_2_s1;
+            sine_in_range8_2_s2 <= sine_in_range8_2_s1;
+            complement_shifted_bits_18_2_s2 <= complement_2_s1[1:0];
+            sine_in_range5_2_s2 <= sine_in_range5_2_s1;
+            sine_in_range1_2_s2 <= sine_in_range1_2_s1;
+            sine_in_range2_2_s2 <= sine_in_range2_2_s1;
+            sine_in_range3_2_s2 <= sine_in_range3_2_s1;
+            sine_in_range0_2_s2 <= sine_in_range0_2_s1;
+            sine_word8_2_s2 <= sine_word8_2_s1;
+            sine_word2_2_s2 <= sine_word2_2_s1;
         end
     end
 
     // Stage 2, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
     // 11 <- cos gamma * cos dgamma
-    reg  [9:0]  exponent_s3;         // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s3;
-    reg  [7:0]  red_s3;              // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s3;            // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s3;             // register 7: intensity of the light times k_s
-    reg  [13:0] sine_rest4_s3;       // u0.14
-    reg         facing_s3;           // the surface faces the half vector
-    reg  [22:0] reg11_cos_cos_s3;    // register 11, u1.22: cos gamma * cos dgamma
-    reg  [13:0] sine_rest4_2_s3;     // u0.14
+    reg  [13:0] sine_rest4_s3;                 // u0.14
+    reg         facing_s3;                     // the surface faces the half vector
+    reg  [38:0] multiplier10_upper_s3;         // register 10
+    reg  [21:0] multiplier10_rows_upper_7_s3;  // register 10
+    reg  [1:0]  multiplier10_rows_3_s3;        // register 10
+    reg  [13:0] sine_rest4_2_s3;               // u0.14
     reg  [34:0] sine_word_s3;
     reg  [34:0] sine_word_2_s3;
 
+    wire sine_in_range4_s2 = |complement_s2[20:10];  // u is in range 4 or in one above
+
+    // u0.14
+    wire [13:0] sine_rest8_s2 = sine_in_range8_s2 ? {complement_shifted_bits_18_s2, 12'd0} : 14'd0;
+
+    // u0.14
+    wire [13:0] sine_rest7_s2 = sine_in_range7_s2 ? {complement_s2[2:0], 11'd0} : sine_rest8_s2;
+
+    // u0.14
+    wire [13:0] sine_rest5_s2 = sine_in_range5_s2 ? {complement_s2[5:0], 8'd0} :
+            {complement_s2[4:0], 9'd0};
+
+    wire [13:0] sine_rest6_s2 = sine_in_range6_s2 ? sine_rest5_s2 : sine_rest7_s2;  // u0.14
+
+    // u0.14
+    wire [13:0] sine_rest3_s2 = sine_in_range3_s2 ? {complement_s2[7:0], 6'd0} :
+            {complement_s2[6:0], 7'd0};
+
+    // u0.14
+    wire [13:0] sine_rest2_s2 = sine_in_range2_s2 ? {complement_s2[8:0], 5'd0} : sine_rest3_s2;
+
+    // u0.14
+    wire [13:0] sine_rest0_s2 = sine_in_range0_s2 ? complement_s2[13:0] : {complement_s2[9:0],
+            4'd0};
+
+    wire [13:0] sine_rest1_s2 = sine_in_range1_s2 ? sine_rest0_s2 : sine_rest2_s2;  // u0.14
     wire [13:0] sine_rest4_s2 = sine_in_range4_s2 ? sine_rest1_s2 : sine_rest6_s2;  // u0.14
+    wire [9:0] sine_word7_s2 = sine_in_range7_s2 ? {7'd71, complement_s2[5:3]} : sine_word8_s2;
+
+    wire [9:0] sine_word5_s2 = sine_in_range5_s2 ? {6'd34, complement_s2[9:6]} : {7'd70,
+            complement_s2[7:5]};
+
+    wire [9:0] sine_word6_s2 = sine_in_range6_s2 ? sine_word5_s2 : sine_word7_s2;
+    wire [9:0] sine_word2_s2 = sine_in_range2_s2 ? {3'd2, complement_s2[15:9]} : sine_word3_s2;
+
+    wire [8:0] sine_word0_s2 = sine_in_range0_s2 ? {3'd6, complement_s2[19:14]} : {1'b0,
+            complement_s2[17:10]};
+
+    wire [9:0] sine_word1_s2 = sine_in_range1_s2 ? {1'b0, sine_word0_s2} : sine_word2_s2;
     wire [9:0] sine_word4_s2 = sine_in_range4_s2 ? sine_word1_s2 : sine_word6_s2;
 
     // adder 10
     wire [35:0] multiplier10_upper_sum_s2 = multiplier10_upper_upper_s2 + {18'd0,
-            multiplier10_upper_carried_s2};
+            multiplier10_upper_rows_upper_7_s2[18:1]};
 
     // block 10
-    wire [38:0] multiplier10_upper_s2 = {multiplier10_upper_sum_s2, multiplier10_upper_low_bits_s2};
+    wire [38:0] multiplier10_upper_s2 = {multiplier10_upper_sum_s2,
+            multiplier10_upper_rows_upper_7_s2[0], multiplier10_upper_rows_3_s2};
 
-    // adder 10
-    wire [38:0] multiplier10_sum_s2 = multiplier10_upper_s2 + {18'd0, multiplier10_rows_2_s2[23:3]};
+    // block 10
+    wire [22:0] multiplier10_rows_s2 = {multiplier10_rows_upper_3_s2, multiplier10_rows_upper_4_s2};
 
-    // block 10: the shared product; its point depends on the operands
-    wire [41:0] multiplier10_s2 = {multiplier10_sum_s2, multiplier10_rows_2_s2[2:0]};
+    wire sine_in_range4_2_s2 = |complement_2_s2[20:10];  // u is in range 4 or in one above
 
-    // block 11, u1.22: cos gamma * cos dgamma
-    wire [22:0] reg11_cos_cos_s2 = multiplier10_s2[40:18];
+    // u0.14
+    wire [13:0] sine_rest8_2_s2 = sine_in_range8_2_s2 ? {complement_shifted_bits_18_2_s2, 12'd0} :
+            14'd0;
 
+    // u0.14
+    wire [13:0] sine_rest7_2_s2 = sine_in_range7_2_s2 ? {complement_2_s2[2:0], 11'd0} :
+            sine_rest8_2_s2;
+
+    // u0.14
+    wire [13:0] sine_rest5_2_s2 = sine_in_range5_2_s2 ? {complement_2_s2[5:0], 8'd0} :
+            {complement_2_s2[4:0], 9'd0};
+
+    wire [13:0] sine_rest6_2_s2 = sine_in_range6_2_s2 ? sine_rest5_2_s2 : sine_rest7_2_s2;  // u0.14
+
+    // u0.14
+    wire [13:0] sine_rest3_2_s2 = sine_in_range3_2_s2 ? {complement_2_s2[7:0], 6'd0} :
+            {complement_2_s2[6:0], 7'd0};
+
+    // u0.14
+    wire [13:0] sine_rest2_2_s2 = sine_in_range2_2_s2 ? {complement_2_s2[8:0], 5'd0} :
+            sine_rest3_2_s2;
+
+    // u0.14
+    wire [13:0] sine_rest0_2_s2 = sine_in_range0_2_s2 ? complement_2_s2[13:0] :
+            {complement_2_s2[9:0], 4'd0};
+
+    wire [13:0] sine_rest1_2_s2 = sine_in_range1_2_s2 ? sine_rest0_2_s2 : sine_rest2_2_s2;  // u0.14
     wire [13:0] sine_rest4_2_s2 = sine_in_range4_2_s2 ? sine_rest1_2_s2 : sine_rest6_2_s2;  // u0.14
+
+    wire [9:0] sine_word7_2_s2 = sine_in_range7_2_s2 ? {7'd71, complement_2_s2[5:3]} :
+            sine_word8_2_s2;
+
+    wire [9:0] sine_word5_2_s2 = sine_in_range5_2_s2 ? {6'd34, complement_2_s2[9:6]} : {7'd70,
+            complement_2_s2[7:5]};
+
+    wire [9:0] sine_word6_2_s2 = sine_in_range6_2_s2 ? sine_word5_2_s2 : sine_word7_2_s2;
+
+    wire [8:0] sine_word0_2_s2 = sine_in_range0_2_s2 ? {3'd6, complement_2_s2[19:14]} : {1'b0,
+            complement_2_s2[17:10]};
+
+    wire [9:0] sine_word1_2_s2 = sine_in_range1_2_s2 ? {1'b0, sine_word0_2_s2} : sine_word2_2_s2;
     wire [9:0] sine_word4_2_s2 = sine_in_range4_2_s2 ? sine_word1_2_s2 : sine_word6_2_s2;
 
     // ROM 18: value at the start of a segment (u0.22), then its rise over the segment in units of
@@ -429,49 +432,50 @@ module rough_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s3 <= exponent_s2;
             dgamma_negative_s3 <= dgamma_negative_s2;
-            red_s3 <= red_s2;
-            green_s3 <= green_s2;
-            blue_s3 <= blue_s2;
             sine_rest4_s3 <= sine_rest4_s2;
             facing_s3 <= facing_s2;
-            reg11_cos_cos_s3 <= reg11_cos_cos_s2;
+            multiplier10_upper_s3 <= multiplier10_upper_s2;
+            multiplier10_rows_upper_7_s3 <= {1'b0, multiplier10_rows_s2[22:2]} + {1'b0,
+                    multiplier10_row_7_s2};
+            multiplier10_rows_3_s3 <= {multiplier10_rows_upper_3_s2[0],
+                    multiplier10_rows_upper_4_s2};
             sine_rest4_2_s3 <= sine_rest4_2_s2;
         end
     end
 
     // Stage 3, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
     // 11 <- cos gamma * cos dgamma
-    reg  [9:0]  exponent_s4;         // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s4;
-    reg  [7:0]  red_s4;              // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s4;            // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s4;             // register 7: intensity of the light times k_s
     reg  [13:0] sine_rest4_s4;       // u0.14
     reg         facing_s4;           // the surface faces the half vector
     reg  [21:0] sine_base_s4;        // u0.22
     reg  [12:0] sine_slope_s4;       // u-5.18
-    reg  [22:0] reg11_cos_cos_s4;    // register 11, u1.22: cos gamma * cos dgamma
     reg  [13:0] sine_rest4_2_s4;     // u0.14
     reg  [34:0] sine_word_2_s4;
 
     wire [21:0] sine_base_s3 = sine_word_s3[34:13];  // u0.22
     wire [12:0] sine_slope_s3 = sine_word_s3[12:0];  // u-5.18
 
+    // adder 10
+    wire [38:0] multiplier10_sum_s3 = multiplier10_upper_s3 + {18'd0,
+            multiplier10_rows_upper_7_s3[21:1]};
+
+    // block 10: the shared product; its point depends on the operands
+    wire [41:0] multiplier10_s3 = {multiplier10_sum_s3, multiplier10_rows_upper_7_s3[0],
+            multiplier10_rows_3_s3};
+
+    // block 11, u1.22: cos gamma * cos dgamma
+    wire [22:0] reg11_cos_cos_s3 = multiplier10_s3[40:18];
+
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s4 <= exponent_s3;
             dgamma_negative_s4 <= dgamma_negative_s3;
-            red_s4 <= red_s3;
-            green_s4 <= green_s3;
-            blue_s4 <= blue_s3;
             sine_rest4_s4 <= sine_rest4_s3;
             facing_s4 <= facing_s3;
             sine_base_s4 <= sine_base_s3;
             sine_slope_s4 <= sine_slope_s3;
-            reg11_cos_cos_s4 <= reg11_cos_cos_s3;
             sine_rest4_2_s4 <= sine_rest4_2_s3;
             sine_word_2_s4 <= sine_word_2_s3;
         end
@@ -479,16 +483,11 @@ module rough_pipelined #(
 
     // Stage 4, part of: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin
     // gamma
-    reg  [9:0]  exponent_s5;          // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s5;
-    reg  [7:0]  red_s5;               // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s5;             // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s5;              // register 7: intensity of the light times k_s
     reg         facing_s5;            // the surface faces the half vector
     reg  [21:0] sine_base_s5;         // u0.22
     reg  [16:0] sine_rise_kept_s5;    // u-5.22
-    reg  [22:0] reg11_cos_cos_s5;     // register 11, u1.22: cos gamma * cos dgamma
     reg  [21:0] sine_base_2_s5;       // u0.22
     reg  [16:0] sine_rise_kept_2_s5;  // u-5.22
 
@@ -499,15 +498,10 @@ module rough_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s5 <= exponent_s4;
             dgamma_negative_s5 <= dgamma_negative_s4;
-            red_s5 <= red_s4;
-            green_s5 <= green_s4;
-            blue_s5 <= blue_s4;
             facing_s5 <= facing_s4;
             sine_base_s5 <= sine_base_s4;
             sine_rise_kept_s5 <= sine_rise_s4[26:10];
-            reg11_cos_cos_s5 <= reg11_cos_cos_s4;
             sine_base_2_s5 <= sine_base_2_s4;
             sine_rise_kept_2_s5 <= sine_rise_2_s4[26:10];
         end
@@ -515,15 +509,10 @@ module rough_pipelined #(
 
     // Stage 5, part of: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin
     // gamma
-    reg  [9:0]  exponent_s6;         // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s6;
-    reg  [7:0]  red_s6;              // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s6;            // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s6;             // register 7: intensity of the light times k_s
     reg         facing_s6;           // the surface faces the half vector
     reg  [21:0] reg19_sin_gamma_s6;  // register 19, u0.22: sin gamma
-    reg  [22:0] reg11_cos_cos_s6;    // register 11, u1.22: cos gamma * cos dgamma
     reg  [21:0] sine_value_s6;       // u0.22: sine of the addressed cosine
 
     wire [22:0] sine_sum_s5 = {1'b0, sine_base_s5} + {6'd0, sine_rise_kept_s5};  // u1.22
@@ -538,193 +527,147 @@ module rough_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s6 <= exponent_s5;
             dgamma_negative_s6 <= dgamma_negative_s5;
-            red_s6 <= red_s5;
-            green_s6 <= green_s5;
-            blue_s6 <= blue_s5;
             facing_s6 <= facing_s5;
             reg19_sin_gamma_s6 <= reg19_sin_gamma_s5;
-            reg11_cos_cos_s6 <= reg11_cos_cos_s5;
             sine_value_s6 <= sine_value_s5;
         end
     end
 
     // Stage 6, part of: 12 <- sin gamma * sin dgamma
-    reg  [9:0]  exponent_s7;                   // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s7;
-    reg  [7:0]  red_s7;                        // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s7;                      // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s7;                       // register 7: intensity of the light times k_s
-    reg         facing_s7;                     // the surface faces the half vector
-    reg  [21:0] reg19_sin_gamma_s7;            // register 19, u0.22: sin gamma
-    reg  [22:0] reg11_cos_cos_s7;              // register 11, u1.22: cos gamma * cos dgamma
-    reg  [17:0] multiplier10_upper_bits_2_s7;  // register 10
-    reg  [19:0] multiplier10_upper_rows_3_s7;  // register 10
-    reg         multiplier10_row_9_s7;         // register 10
-    reg         multiplier10_row_11_s7;        // register 10
-    reg         multiplier10_row_14_s7;        // register 10
-    reg         multiplier10_row_17_s7;        // register 10
+    reg         facing_s7;                           // the surface faces the half vector
+    reg  [35:0] multiplier10_upper_upper_2_s7;       // register 10
+    reg  [3:0]  multiplier10_upper_low_bits_s7;      // register 10
+    reg  [17:0] multiplier10_upper_carried_2_s7;     // register 10
+    reg  [21:0] multiplier10_lower_upper_s7;         // register 10
+    reg  [4:0]  multiplier10_lower_rows_upper_7_s7;  // register 10
+    reg  [1:0]  multiplier10_lower_rows_3_s7;        // register 10
+    reg  [3:0]  multiplier10_lower_row_10_s7;        // register 10
+
+    // multiplier 10
+    wire [35:0] multiplier10_upper_upper_2_s6 = reg19_sin_gamma_s6[21:4] * sine_value_s6[21:4];
+
+    // multiplier 10
+    wire [21:0] multiplier10_upper_lower_s6 = reg19_sin_gamma_s6[3:0] * sine_value_s6[21:4];
+
+    // multiplier 10
+    wire [21:0] multiplier10_lower_upper_s6 = reg19_sin_gamma_s6[21:4] * sine_value_s6[3:0];
 
     // mux 10
-    wire [17:0] multiplier10_upper_row_10_s6 = reg19_sin_gamma_s6[0] ? sine_value_s6[21:4] : 18'd0;
+    wire [3:0] multiplier10_lower_row_2_s6 = reg19_sin_gamma_s6[0] ? sine_value_s6[3:0] : 4'd0;
 
     // mux 10
-    wire [17:0] multiplier10_upper_row_12_s6 = reg19_sin_gamma_s6[1] ? sine_value_s6[21:4] : 18'd0;
+    wire [3:0] multiplier10_lower_row_4_s6 = reg19_sin_gamma_s6[1] ? sine_value_s6[3:0] : 4'd0;
 
     // adder 10
-    wire [19:0] multiplier10_upper_rows_3_s6 = {2'd0, multiplier10_upper_row_10_s6} + {1'b0,
-            multiplier10_upper_row_12_s6, 1'b0};
+    wire [4:0] multiplier10_lower_rows_upper_3_s6 = {2'd0, multiplier10_lower_row_2_s6[3:1]} +
+            {1'b0, multiplier10_lower_row_4_s6};
+
+    // block 10
+    wire [5:0] multiplier10_lower_rows_s6 = {multiplier10_lower_rows_upper_3_s6,
+            multiplier10_lower_row_2_s6[0]};
+
+    // mux 10
+    wire [3:0] multiplier10_lower_row_7_s6 = reg19_sin_gamma_s6[2] ? sine_value_s6[3:0] : 4'd0;
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s7 <= exponent_s6;
             dgamma_negative_s7 <= dgamma_negative_s6;
-            red_s7 <= red_s6;
-            green_s7 <= green_s6;
-            blue_s7 <= blue_s6;
             facing_s7 <= facing_s6;
-            reg19_sin_gamma_s7 <= reg19_sin_gamma_s6;
-            reg11_cos_cos_s7 <= reg11_cos_cos_s6;
-            multiplier10_upper_bits_2_s7 <= sine_value_s6[21:4];
-            multiplier10_upper_rows_3_s7 <= multiplier10_upper_rows_3_s6;
-            multiplier10_row_9_s7 <= sine_value_s6[0];
-            multiplier10_row_11_s7 <= sine_value_s6[1];
-            multiplier10_row_14_s7 <= sine_value_s6[2];
-            multiplier10_row_17_s7 <= sine_value_s6[3];
+            multiplier10_upper_upper_2_s7 <= multiplier10_upper_upper_2_s6;
+            multiplier10_upper_low_bits_s7 <= multiplier10_upper_lower_s6[3:0];
+            multiplier10_upper_carried_2_s7 <= multiplier10_upper_lower_s6[21:4];
+            multiplier10_lower_upper_s7 <= multiplier10_lower_upper_s6;
+            multiplier10_lower_rows_upper_7_s7 <= {1'b0, multiplier10_lower_rows_s6[5:2]} + {1'b0,
+                    multiplier10_lower_row_7_s6};
+            multiplier10_lower_rows_3_s7 <= {multiplier10_lower_rows_upper_3_s6[0],
+                    multiplier10_lower_row_2_s6[0]};
+            multiplier10_lower_row_10_s7 <= reg19_sin_gamma_s6[3] ? sine_value_s6[3:0] : 4'd0;
         end
     end
 
     // Stage 7, part of: 12 <- sin gamma * sin dgamma
-    reg  [9:0]  exponent_s8;                    // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s8;
-    reg  [7:0]  red_s8;                         // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s8;                       // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s8;                        // register 7: intensity of the light times k_s
-    reg         facing_s8;                      // the surface faces the half vector
-    reg  [22:0] reg11_cos_cos_s8;               // register 11, u1.22: cos gamma * cos dgamma
-    reg  [35:0] multiplier10_upper_upper_2_s8;  // register 10
-    reg  [21:0] multiplier10_upper_rows_5_s8;   // register 10
-    reg  [24:0] multiplier10_rows_4_s8;         // register 10
-    reg  [21:0] multiplier10_row_18_s8;         // register 10
-
-    // multiplier 10
-    wire [35:0] multiplier10_upper_upper_2_s7 = reg19_sin_gamma_s7[21:4] *
-            multiplier10_upper_bits_2_s7;
-
-    // mux 10
-    wire [17:0] multiplier10_upper_row_15_s7 = reg19_sin_gamma_s7[2] ? multiplier10_upper_bits_2_s7
-            : 18'd0;
+    reg         facing_s8;                     // the surface faces the half vector
+    reg  [39:0] multiplier10_upper_2_s8;       // register 10
+    reg  [2:0]  multiplier10_lower_rows_6_s8;  // register 10
+    reg         multiplier10_lower_rows_7_s8;  // register 10
+    reg  [21:0] multiplier10_lower_sum_s8;     // register 10
 
     // adder 10
-    wire [20:0] multiplier10_upper_rows_4_s7 = {1'b0, multiplier10_upper_rows_3_s7} + {1'b0,
-            multiplier10_upper_row_15_s7, 2'd0};
+    wire [35:0] multiplier10_upper_sum_2_s7 = multiplier10_upper_upper_2_s7 + {18'd0,
+            multiplier10_upper_carried_2_s7};
 
-    // mux 10
-    wire [17:0] multiplier10_upper_row_18_s7 = reg19_sin_gamma_s7[3] ? multiplier10_upper_bits_2_s7
-            : 18'd0;
+    // block 10
+    wire [39:0] multiplier10_upper_2_s7 = {multiplier10_upper_sum_2_s7,
+            multiplier10_upper_low_bits_s7};
 
-    // adder 10
-    wire [21:0] multiplier10_upper_rows_5_s7 = {1'b0, multiplier10_upper_rows_4_s7} + {1'b0,
-            multiplier10_upper_row_18_s7, 3'd0};
-
-    // mux 10
-    wire [21:0] multiplier10_row_10_s7 = multiplier10_row_9_s7 ? reg19_sin_gamma_s7 : 22'd0;
-
-    // mux 10
-    wire [21:0] multiplier10_row_12_s7 = multiplier10_row_11_s7 ? reg19_sin_gamma_s7 : 22'd0;
+    // block 10
+    wire [6:0] multiplier10_lower_rows_4_s7 = {multiplier10_lower_rows_upper_7_s7,
+            multiplier10_lower_rows_3_s7};
 
     // adder 10
-    wire [23:0] multiplier10_rows_3_s7 = {2'd0, multiplier10_row_10_s7} + {1'b0,
-            multiplier10_row_12_s7, 1'b0};
-
-    // mux 10
-    wire [21:0] multiplier10_row_15_s7 = multiplier10_row_14_s7 ? reg19_sin_gamma_s7 : 22'd0;
+    wire [4:0] multiplier10_lower_rows_upper_10_s7 = {1'b0, multiplier10_lower_rows_4_s7[6:3]} +
+            {1'b0, multiplier10_lower_row_10_s7};
 
     // adder 10
-    wire [24:0] multiplier10_rows_4_s7 = {1'b0, multiplier10_rows_3_s7} + {1'b0,
-            multiplier10_row_15_s7, 2'd0};
+    wire [21:0] multiplier10_lower_sum_s7 = multiplier10_lower_upper_s7 + {18'd0,
+            multiplier10_lower_rows_upper_10_s7[4:1]};
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s8 <= exponent_s7;
             dgamma_negative_s8 <= dgamma_negative_s7;
-            red_s8 <= red_s7;
-            green_s8 <= green_s7;
-            blue_s8 <= blue_s7;
             facing_s8 <= facing_s7;
-            reg11_cos_cos_s8 <= reg11_cos_cos_s7;
-            multiplier10_upper_upper_2_s8 <= multiplier10_upper_upper_2_s7;
-            multiplier10_upper_rows_5_s8 <= multiplier10_upper_rows_5_s7;
-            multiplier10_rows_4_s8 <= multiplier10_rows_4_s7;
-            multiplier10_row_18_s8 <= multiplier10_row_17_s7 ? reg19_sin_gamma_s7 : 22'd0;
+            multiplier10_upper_2_s8 <= multiplier10_upper_2_s7;
+            multiplier10_lower_rows_6_s8 <= {multiplier10_lower_rows_upper_7_s7[0],
+                    multiplier10_lower_rows_3_s7};
+            multiplier10_lower_rows_7_s8 <= multiplier10_lower_rows_upper_10_s7[0];
+            multiplier10_lower_sum_s8 <= multiplier10_lower_sum_s7;
         end
     end
 
     // Stage 8, part of: 12 <- sin gamma * sin dgamma
-    reg  [9:0]  exponent_s9;         // register 3: specular exponent n
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s9;
-    reg  [7:0]  red_s9;              // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s9;            // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s9;             // register 7: intensity of the light times k_s
     reg         facing_s9;           // the surface faces the half vector
     reg  [22:0] reg11_cos_cos_s9;    // register 11, u1.22: cos gamma * cos dgamma
     reg  [21:0] reg12_sin_sin_s9;    // register 12, u0.22: sin gamma * sin dgamma
 
     // adder 10
-    wire [35:0] multiplier10_upper_sum_2_s8 = multiplier10_upper_upper_2_s8 + {18'd0,
-            multiplier10_upper_rows_5_s8[21:4]};
-
-    // block 10
-    wire [39:0] multiplier10_upper_2_s8 = {multiplier10_upper_sum_2_s8,
-            multiplier10_upper_rows_5_s8[3:0]};
-
-    // adder 10
-    wire [25:0] multiplier10_rows_5_s8 = {1'b0, multiplier10_rows_4_s8} + {1'b0,
-            multiplier10_row_18_s8, 3'd0};
-
-    // adder 10
     wire [39:0] multiplier10_sum_2_s8 = multiplier10_upper_2_s8 + {18'd0,
-            multiplier10_rows_5_s8[25:4]};
+            multiplier10_lower_sum_s8};
 
     // block 10: the shared product; its point depends on the operands
-    wire [43:0] multiplier10_2_s8 = {multiplier10_sum_2_s8, multiplier10_rows_5_s8[3:0]};
+    wire [43:0] multiplier10_2_s8 = {multiplier10_sum_2_s8, multiplier10_lower_rows_7_s8,
+            multiplier10_lower_rows_6_s8};
 
     // block 12, u0.22: sin gamma * sin dgamma
     wire [21:0] reg12_sin_sin_s8 = multiplier10_2_s8[43:22];
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s9 <= exponent_s8;
             dgamma_negative_s9 <= dgamma_negative_s8;
-            red_s9 <= red_s8;
-            green_s9 <= green_s8;
-            blue_s9 <= blue_s8;
             facing_s9 <= facing_s8;
-            reg11_cos_cos_s9 <= reg11_cos_cos_s8;
             reg12_sin_sin_s9 <= reg12_sin_sin_s8;
         end
     end
 
     // Stage 9, part of: operands adder 15, n/2
-    reg         [9:0]  exponent_s10;  // register 3: specular exponent n
-    reg         [7:0]  red_s10;       // register 5: intensity of the light times k_s
-    reg         [7:0]  green_s10;     // register 6: intensity of the light times k_s
-    reg         [7:0]  blue_s10;      // register 7: intensity of the light times k_s
-    reg                facing_s10;    // the surface faces the half vector
-    reg  signed [23:0] adder15_s10;   // register 15, s1.22: cos(gamma +- dgamma) - 1.0
+    reg  [9:0]  exponent_s10;                   // register 3: specular exponent n
+    reg         facing_s10;                     // the surface faces the half vector
+    reg  [17:0] multiplier10_upper_bits_3_s10;  // register 10
+    reg  [4:0]  multiplier10_lower_bits_2_s10;  // register 10
+    reg         mux8_held_bits_2_s10;
 
-    // u1.22: register 12 + 1.0, by wiring
-    wire [22:0] raised12_s9 = {1'b0, reg12_sin_sin_s9} + ONE;
+    wire [22:0] raised12_s9 = {1'b1, reg12_sin_sin_s9};  // u1.22: register 12 + 1.0, by wiring
 
     // s1.22: -(register 12) - 1.0, less an ulp
     wire signed [23:0] inverse12_s9 = ~{1'b0, raised12_s9};
 
-    // adder 31, s0.22: register 12 - 1.0
-    wire signed [22:0] adder31_s9 = {1'b0, reg12_sin_sin_s9} - ONE_2_SAME;
+    wire signed [22:0] adder31_s9 = {1'b1, reg12_sin_sin_s9};  // block 31, s0.22: register 12 - 1.0
 
     // mux 14, s1.22: what adder 15 adds to register 11
     wire signed [23:0] mux14_s9 = dgamma_negative_s9 ? {adder31_s9[22], adder31_s9} : inverse12_s9;
@@ -736,63 +679,54 @@ module rough_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s10 <= exponent_s9;
-            red_s10 <= red_s9;
-            green_s10 <= green_s9;
-            blue_s10 <= blue_s9;
             facing_s10 <= facing_s9;
-            adder15_s10 <= adder15_s9;
+            multiplier10_upper_bits_3_s10 <= adder15_s9[22:5];
+            multiplier10_lower_bits_2_s10 <= adder15_s9[4:0];
+            mux8_held_bits_2_s10 <= adder15_s9[23];
         end
     end
 
     // Stage 10, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
-    reg  [7:0]  red_s11;                   // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s11;                 // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s11;                  // register 7: intensity of the light times k_s
-    reg         facing_s11;                // the surface faces the half vector
-    reg  [27:0] multiplier10_upper_3_s11;  // register 10
-    reg  [14:0] multiplier10_lower_s11;    // register 10
+    reg         facing_s11;                  // the surface faces the half vector
+    reg  [27:0] multiplier10_upper_3_s11;    // register 10
+    reg  [4:0]  multiplier10_low_bits_s11;   // register 10
+    reg  [9:0]  multiplier10_carried_2_s11;  // register 10
     // what the product of a negative operand is too large by, above its sign
     reg  [9:0]  multiplier10_excess_s11;
 
-    wire [27:0] multiplier10_upper_3_s10 = adder15_s10[22:5] * exponent_s10;  // multiplier 10
-    wire [14:0] multiplier10_lower_s10 = adder15_s10[4:0] * exponent_s10;  // multiplier 10
+    // multiplier 10
+    wire [27:0] multiplier10_upper_3_s10 = multiplier10_upper_bits_3_s10 * exponent_s10;
+
+    // multiplier 10
+    wire [14:0] multiplier10_lower_s10 = multiplier10_lower_bits_2_s10 * exponent_s10;
 
     // what the product of a negative operand is too large by, above its sign
-    wire [9:0] multiplier10_excess_s10 = adder15_s10[23] ? exponent_s10 : 10'd0;
+    wire [9:0] multiplier10_excess_s10 = mux8_held_bits_2_s10 ? exponent_s10 : 10'd0;
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s11 <= red_s10;
-            green_s11 <= green_s10;
-            blue_s11 <= blue_s10;
             facing_s11 <= facing_s10;
             multiplier10_upper_3_s11 <= multiplier10_upper_3_s10;
-            multiplier10_lower_s11 <= multiplier10_lower_s10;
+            multiplier10_low_bits_s11 <= multiplier10_lower_s10[4:0];
+            multiplier10_carried_2_s11 <= multiplier10_lower_s10[14:5];
             multiplier10_excess_s11 <= multiplier10_excess_s10;
         end
     end
 
     // Stage 11, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
-    reg  [7:0]  red_s12;                   // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s12;                 // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s12;                  // register 7: intensity of the light times k_s
     reg         facing_s12;                // the surface faces the half vector
     reg  [10:0] multiplier10_upper_4_s12;
     reg  [15:0] multiplier10_view_3_s12;
 
     // adder 10
     wire [27:0] multiplier10_sum_3_s11 = multiplier10_upper_3_s11 + {18'd0,
-            multiplier10_lower_s11[14:5]};
+            multiplier10_carried_2_s11};
 
     // block 10: the shared product; its point depends on the operands
-    wire [32:0] multiplier10_3_s11 = {multiplier10_sum_3_s11, multiplier10_lower_s11[4:0]};
+    wire [32:0] multiplier10_3_s11 = {multiplier10_sum_3_s11, multiplier10_low_bits_s11};
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s12 <= red_s11;
-            green_s12 <= green_s11;
-            blue_s12 <= blue_s11;
             facing_s12 <= facing_s11;
             multiplier10_upper_4_s12 <= {1'b0, multiplier10_3_s11[32:23]} - {1'b0,
                     multiplier10_excess_s11};
@@ -801,60 +735,45 @@ module rough_pipelined #(
     end
 
     // Stage 12, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
-    reg         [7:0]  red_s13;     // register 5: intensity of the light times k_s
-    reg         [7:0]  green_s13;   // register 6: intensity of the light times k_s
-    reg         [7:0]  blue_s13;    // register 7: intensity of the light times k_s
-    reg                facing_s13;  // the surface faces the half vector
-    reg  signed [16:0] result_s13;  // s0.16
+    reg                facing_s13;          // the surface faces the half vector
+    reg                result_under_s13;
+    reg  signed [16:0] result_limited_s13;  // s0.16
 
     // s0.16
     wire signed [16:0] result_limited_s12 = (~multiplier10_upper_4_s12[10] &
             (|multiplier10_upper_4_s12[9:0])) ? RESULT_MOST : {multiplier10_upper_4_s12[0],
             multiplier10_view_3_s12};
 
-    // s0.16
-    wire signed [16:0] result_s12 = (multiplier10_upper_4_s12[10] &
-            ~(&multiplier10_upper_4_s12[9:0])) ? MINUS_ONE : result_limited_s12;
-
     always @(posedge clk) begin
         if (advance) begin
-            red_s13 <= red_s12;
-            green_s13 <= green_s12;
-            blue_s13 <= blue_s12;
             facing_s13 <= facing_s12;
-            result_s13 <= result_s12;
+            result_under_s13 <= multiplier10_upper_4_s12[10] & ~(&multiplier10_upper_4_s12[9:0]);
+            result_limited_s13 <= result_limited_s12;
         end
     end
 
     // Stage 13, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1); operands adder 16, adder 16
-    reg  [7:0]  red_s14;      // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s14;    // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s14;     // register 7: intensity of the light times k_s
     reg         facing_s14;   // the surface faces the half vector
     reg  [16:0] adder16_s14;  // register 16, u1.16: register 13 + 1.0
+
+    wire signed [16:0] result_s13 = result_under_s13 ? MINUS_ONE : result_limited_s13;  // s0.16
 
     // mux 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
     wire signed [16:0] reg13_result_s13 = facing_s13 ? result_s13 : MINUS_ONE;
 
-    wire [16:0] adder16_s13 = reg13_result_s13 + ONE_2;  // adder 16, u1.16: register 13 + 1.0
+    wire adder16_upper_2_s13 = ~reg13_result_s13[16];  // block 16: register 13 + 1.0
+
+    // block 16, u1.16: register 13 + 1.0
+    wire [16:0] adder16_s13 = {adder16_upper_2_s13, reg13_result_s13[15:0]};
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s14 <= red_s13;
-            green_s14 <= green_s13;
-            blue_s14 <= blue_s13;
             facing_s14 <= facing_s13;
             adder16_s14 <= adder16_s13;
         end
     end
 
     // Stage 14, part of: 13 <- (... + 1)^2
-    // register 5: intensity of the light times k_s
-    reg         [7:0]  red_s15;
-    // register 6: intensity of the light times k_s
-    reg         [7:0]  green_s15;
-    // register 7: intensity of the light times k_s
-    reg         [7:0]  blue_s15;
     reg                facing_s15;                        // the surface faces the half vector
     reg         [9:0]  line_or_square_kept_bits_2_2_s15;
     reg  signed [16:0] line_or_square_kept_inside_s15;    // s0.16
@@ -864,9 +783,6 @@ module rough_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s15 <= red_s14;
-            green_s15 <= green_s14;
-            blue_s15 <= blue_s14;
             facing_s15 <= facing_s14;
             line_or_square_kept_bits_2_2_s15 <= {8'd0, multiplier10_4_s14[33:32]};
             line_or_square_kept_inside_s15 <= multiplier10_4_s14[32:16];
@@ -891,9 +807,6 @@ module rough_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s16 <= red_s15;
-            green_s16 <= green_s15;
-            blue_s16 <= blue_s15;
             f_s16 <= f_s15;
         end
     end
@@ -943,6 +856,46 @@ module rough_pipelined #(
         end
     end
 
+    // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
+    // points move on, a slot gives the value that it holds and takes a new one; its turn comes
+    // again when all others have had theirs.
+    reg [2:0] slot_of_5;
+    initial slot_of_5 = 3'd0;
+    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
+    reg [22:0] delay_s3_s9 [0:4];
+    reg [3:0] slot_of_9;
+    initial slot_of_9 = 4'd0;
+    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
+    reg [9:0] delay_s0_s10 [0:8];
+    reg [3:0] slot_of_15;
+    initial slot_of_15 = 4'd0;
+    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
+    reg [23:0] delay_s0_s16 [0:14];
+
+    always @(posedge clk) begin
+        if (advance) begin
+            slot_of_5 <= slot_of_5 == 3'd4 ? 3'd0 : slot_of_5 + 3'd1;
+            reg11_cos_cos_s9 <= delay_s3_s9[slot_of_5];
+            delay_s3_s9[slot_of_5] <= reg11_cos_cos_s3;
+        end
+    end
+
+    always @(posedge clk) begin
+        if (advance) begin
+            slot_of_9 <= slot_of_9 == 4'd8 ? 4'd0 : slot_of_9 + 4'd1;
+            exponent_s10 <= delay_s0_s10[slot_of_9];
+            delay_s0_s10[slot_of_9] <= exponent;
+        end
+    end
+
+    always @(posedge clk) begin
+        if (advance) begin
+            slot_of_15 <= slot_of_15 == 4'd14 ? 4'd0 : slot_of_15 + 4'd1;
+            {red_s16, green_s16, blue_s16} <= delay_s0_s16[slot_of_15];
+            delay_s0_s16[slot_of_15] <= {red, green, blue};
+        end
+    end
+
     // Results
 
     assign red_out = red_intensity_s18;  // output 40: intensity on the output
@@ -950,10 +903,12 @@ module rough_pipelined #(
     assign blue_out = blue_intensity_s18;  // output 42: intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, sine_rise_s4[9:0], multiplier10_s2[17:0], multiplier10_s2[41],
-            sine_rise_2_s4[9:0], multiplier10_2_s8[21:0], multiplier10_3_s11[6:0],
-            multiplier10_4_s14[15:0], reg13_result_2_s15[16], red_product_s16[14:0],
-            green_product_s16[14:0], blue_product_s16[14:0]};
+    wire unused = &{1'b0, sine_rise_s4[9:0], multiplier10_upper_rows_s1[1:0],
+            multiplier10_rows_s2[1:0], multiplier10_s3[17:0], multiplier10_s3[41],
+            sine_rise_2_s4[9:0], multiplier10_lower_rows_s6[1:0], multiplier10_lower_rows_4_s7[2:0],
+            multiplier10_2_s8[21:0], multiplier10_3_s11[6:0], multiplier10_4_s14[15:0],
+            reg13_result_2_s15[16], red_product_s16[14:0], green_product_s16[14:0],
+            blue_product_s16[14:0]};
 endmodule
 
 `default_nettype wire

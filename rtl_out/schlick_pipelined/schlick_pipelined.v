@@ -4,7 +4,7 @@
 //
 // Source: Seed 002, Schlick's function, with which the paper compares its own
 //
-// Pipeline: a point every clock, its results 15 clocks later; stages for 130 MHz on ecp5. While
+// Pipeline: a point every clock, its results 16 clocks later; stages for 130 MHz on ecp5. While
 // out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
@@ -75,10 +75,11 @@ module schlick_pipelined (
     reg  valid_s12;  // stage 12 has a point
     reg  valid_s13;  // stage 13 has a point
     reg  valid_s14;  // stage 14 has a point
-    reg  valid_s15;  // the results are on the outputs
+    reg  valid_s15;  // stage 15 has a point
+    reg  valid_s16;  // the results are on the outputs
 
-    assign out_valid = valid_s15;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s15;  // every point moves on by a stage
+    assign out_valid = valid_s16;  // the results are on the outputs
+    wire advance = out_ready | ~valid_s16;  // every point moves on by a stage
     assign in_ready = advance;  // a point that is offered is taken in this clock
 
     always @(posedge clk) begin
@@ -98,6 +99,7 @@ module schlick_pipelined (
             valid_s13 <= 1'b0;
             valid_s14 <= 1'b0;
             valid_s15 <= 1'b0;
+            valid_s16 <= 1'b0;
         end else if (advance) begin
             valid_s1 <= in_valid;
             valid_s2 <= valid_s1;
@@ -114,482 +116,453 @@ module schlick_pipelined (
             valid_s13 <= valid_s12;
             valid_s14 <= valid_s13;
             valid_s15 <= valid_s14;
+            valid_s16 <= valid_s15;
         end
     end
 
-    // Stage 0, part of: operands cos gamma, n
-    reg  [20:0] cos_gamma_reg_s1;  // u1.20: cosine of the angle between normal and half vector
-    reg  [9:0]  exponent_s1;       // specular exponent n
-    reg  [7:0]  red_s1;            // intensity of the light times k_s
-    reg  [7:0]  green_s1;          // intensity of the light times k_s
-    reg  [7:0]  blue_s1;           // intensity of the light times k_s
-    reg  [20:0] complement_s1;     // u1.20: 1.0 - cos gamma
-
-    wire cos_gamma_over_s0 = cos_gamma[20];
-
-    // u1.20: cosine of the angle between normal and half vector
-    wire [20:0] cos_gamma_reg_s0 = cos_gamma_over_s0 ? COS_GAMMA_MOST : cos_gamma;
-
-    wire [20:0] complement_s0 = COS_GAMMA_MOST - cos_gamma_reg_s0;  // u1.20: 1.0 - cos gamma
+    // Stage 0: values on their way
+    reg  [20:0] cos_gamma_s1;  // u1.20: cosine of the angle between normal and half vector
+    reg  [9:0]  exponent_s1;   // specular exponent n
 
     always @(posedge clk) begin
         if (advance) begin
-            cos_gamma_reg_s1 <= cos_gamma_reg_s0;
+            cos_gamma_s1 <= cos_gamma;
             exponent_s1 <= exponent;
-            red_s1 <= red;
-            green_s1 <= green;
-            blue_s1 <= blue;
-            complement_s1 <= complement_s0;
         end
     end
 
-    // Stage 1, part of: cos gamma by n*(1 - cos gamma) + cos gamma
-    reg  [20:0] cos_gamma_reg_s2;    // u1.20: cosine of the angle between normal and half vector
-    reg  [7:0]  red_s2;              // intensity of the light times k_s
-    reg  [7:0]  green_s2;            // intensity of the light times k_s
-    reg  [7:0]  blue_s2;             // intensity of the light times k_s
-    reg  [27:0] scaled_upper_s2;
-    reg  [2:0]  scaled_low_bits_s2;
-    reg  [9:0]  scaled_carried_s2;
+    // Stage 1, part of: operands cos gamma, n
+    reg  [20:0] cos_gamma_reg_s2;      // u1.20: cosine of the angle between normal and half vector
+    reg  [9:0]  exponent_s2;           // specular exponent n
+    reg  [17:0] scaled_upper_bits_s2;
+    reg         scaled_row_s2;
+    reg         scaled_row_3_s2;
+    reg         scaled_row_6_s2;
 
-    wire [27:0] scaled_upper_s1 = complement_s1[20:3] * exponent_s1;
-    wire [9:0] scaled_row_2_s1 = complement_s1[0] ? exponent_s1 : 10'd0;
-    wire [9:0] scaled_row_4_s1 = complement_s1[1] ? exponent_s1 : 10'd0;
-    wire [11:0] scaled_rows_s1 = {2'd0, scaled_row_2_s1} + {1'b0, scaled_row_4_s1, 1'b0};
-    wire [9:0] scaled_row_7_s1 = complement_s1[2] ? exponent_s1 : 10'd0;
-    wire [12:0] scaled_rows_2_s1 = {1'b0, scaled_rows_s1} + {1'b0, scaled_row_7_s1, 2'd0};
+    wire cos_gamma_over_s1 = cos_gamma_s1[20];
+
+    // u1.20: cosine of the angle between normal and half vector
+    wire [20:0] cos_gamma_reg_s1 = cos_gamma_over_s1 ? COS_GAMMA_MOST : cos_gamma_s1;
+
+    // u1.20: 1.0 - cos gamma
+    wire [20:0] complement_s1 = cos_gamma_over_s1 ? 21'd0 : (COS_GAMMA_MOST - cos_gamma_s1);
 
     always @(posedge clk) begin
         if (advance) begin
             cos_gamma_reg_s2 <= cos_gamma_reg_s1;
-            red_s2 <= red_s1;
-            green_s2 <= green_s1;
-            blue_s2 <= blue_s1;
-            scaled_upper_s2 <= scaled_upper_s1;
-            scaled_low_bits_s2 <= scaled_rows_2_s1[2:0];
-            scaled_carried_s2 <= scaled_rows_2_s1[12:3];
+            exponent_s2 <= exponent_s1;
+            scaled_upper_bits_s2 <= complement_s1[20:3];
+            scaled_row_s2 <= complement_s1[0];
+            scaled_row_3_s2 <= complement_s1[1];
+            scaled_row_6_s2 <= complement_s1[2];
         end
     end
 
     // Stage 2, part of: cos gamma by n*(1 - cos gamma) + cos gamma
-    reg  [20:0] cos_gamma_reg_s3;     // u1.20: cosine of the angle between normal and half vector
-    reg  [7:0]  red_s3;               // intensity of the light times k_s
-    reg  [7:0]  green_s3;             // intensity of the light times k_s
-    reg  [7:0]  blue_s3;              // intensity of the light times k_s
-    reg  [29:0] quotient_divisor_s3;  // u10.20: the divisor
+    reg  [20:0] cos_gamma_reg_s3;   // u1.20: cosine of the angle between normal and half vector
+    reg  [27:0] scaled_upper_s3;
+    reg  [2:0]  scaled_rows_5_s3;
+    reg  [9:0]  scaled_carried_s3;
 
-    wire [27:0] scaled_sum_s2 = scaled_upper_s2 + {18'd0, scaled_carried_s2};
-    wire [30:0] scaled_s2 = {scaled_sum_s2, scaled_low_bits_s2};  // u11.20: n*(1 - cos gamma)
-    wire facing_s2 = |cos_gamma_reg_s2;  // the surface faces the half vector
-    wire dark_s2 = ~facing_s2;  // an ulp for the divisor, which n = 0 would leave at 0
-
-    // u11.20
-    wire [30:0] denominator_s2 = scaled_s2 + {10'd0, cos_gamma_reg_s2} + {30'd0, dark_s2};
-
-    wire [29:0] quotient_divisor_s2 = denominator_s2[29:0];  // u10.20: the divisor
+    wire [27:0] scaled_upper_s2 = scaled_upper_bits_s2 * exponent_s2;
+    wire [9:0] scaled_row_2_s2 = scaled_row_s2 ? exponent_s2 : 10'd0;
+    wire [9:0] scaled_row_4_s2 = scaled_row_3_s2 ? exponent_s2 : 10'd0;
+    wire [10:0] scaled_rows_upper_3_s2 = {2'd0, scaled_row_2_s2[9:1]} + {1'b0, scaled_row_4_s2};
+    wire [11:0] scaled_rows_s2 = {scaled_rows_upper_3_s2, scaled_row_2_s2[0]};
+    wire [9:0] scaled_row_7_s2 = scaled_row_6_s2 ? exponent_s2 : 10'd0;
+    wire [10:0] scaled_rows_upper_7_s2 = {1'b0, scaled_rows_s2[11:2]} + {1'b0, scaled_row_7_s2};
 
     always @(posedge clk) begin
         if (advance) begin
             cos_gamma_reg_s3 <= cos_gamma_reg_s2;
-            red_s3 <= red_s2;
-            green_s3 <= green_s2;
-            blue_s3 <= blue_s2;
-            quotient_divisor_s3 <= quotient_divisor_s2;
+            scaled_upper_s3 <= scaled_upper_s2;
+            scaled_rows_5_s3 <= {scaled_rows_upper_7_s2[0], scaled_rows_upper_3_s2[0],
+                    scaled_row_2_s2[0]};
+            scaled_carried_s3 <= scaled_rows_upper_7_s2[10:1];
         end
     end
 
-    // Stage 3, part of: next bit of the quotient
-    reg  [7:0]  red_s4;                 // intensity of the light times k_s
-    reg  [7:0]  green_s4;               // intensity of the light times k_s
-    reg  [7:0]  blue_s4;                // intensity of the light times k_s
-    reg  [29:0] quotient_divisor_s4;    // u10.20: the divisor
-    reg         quotient_bit_s4;        // the divisor fits: the next bit of the quotient
-    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_s4;
+    // Stage 3, part of: cos gamma by n*(1 - cos gamma) + cos gamma
+    reg  [20:0] cos_gamma_reg_s4;     // u1.20: cosine of the angle between normal and half vector
+    reg  [29:0] quotient_divisor_s4;  // u10.20: the divisor
 
-    // s11.20: negative where the divisor does not fit
-    wire signed [31:0] quotient_trial_s3 = {10'd0, cos_gamma_reg_s3, 1'b0} - {2'd0,
-            quotient_divisor_s3};
+    wire [27:0] scaled_sum_s3 = scaled_upper_s3 + {18'd0, scaled_carried_s3};
+    wire [30:0] scaled_s3 = {scaled_sum_s3, scaled_rows_5_s3};  // u11.20: n*(1 - cos gamma)
+    wire facing_s3 = |cos_gamma_reg_s3;  // the surface faces the half vector
+    wire dark_s3 = ~facing_s3;  // an ulp for the divisor, which n = 0 would leave at 0
 
-    // the divisor fits: the next bit of the quotient
-    wire quotient_bit_s3 = ~quotient_trial_s3[31];
+    // u11.20
+    wire [30:0] denominator_s3 = scaled_s3 + {10'd0, cos_gamma_reg_s3} + {30'd0, dark_s3};
 
-    // s11.20
-    wire signed [31:0] quotient_left_s3 = quotient_bit_s3 ? quotient_trial_s3 : {10'd0,
-            cos_gamma_reg_s3, 1'b0};
-
-    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_s3 = quotient_left_s3[29:0];
+    wire [29:0] quotient_divisor_s3 = denominator_s3[29:0];  // u10.20: the divisor
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s4 <= red_s3;
-            green_s4 <= green_s3;
-            blue_s4 <= blue_s3;
+            cos_gamma_reg_s4 <= cos_gamma_reg_s3;
             quotient_divisor_s4 <= quotient_divisor_s3;
-            quotient_bit_s4 <= quotient_bit_s3;
-            quotient_remainder_s4 <= quotient_remainder_s3;
         end
     end
 
     // Stage 4, part of: next bit of the quotient
-    reg  [7:0]  red_s5;                   // intensity of the light times k_s
-    reg  [7:0]  green_s5;                 // intensity of the light times k_s
-    reg  [7:0]  blue_s5;                  // intensity of the light times k_s
-    reg  [29:0] quotient_divisor_s5;      // u10.20: the divisor
+    reg  [29:0] quotient_divisor_s5;    // u10.20: the divisor
+    reg         quotient_bit_s5;        // the divisor fits: the next bit of the quotient
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_2_s5;
-    reg  [1:0]  quotient_s5;              // the quotient, which bits enter at the bottom
+    reg  [29:0] quotient_remainder_s5;
 
     // s11.20: negative where the divisor does not fit
-    wire signed [31:0] quotient_trial_2_s4 = {1'b0, quotient_remainder_s4, 1'b0} - {2'd0,
+    wire signed [31:0] quotient_trial_s4 = {10'd0, cos_gamma_reg_s4, 1'b0} - {2'd0,
             quotient_divisor_s4};
 
     // the divisor fits: the next bit of the quotient
-    wire quotient_bit_2_s4 = ~quotient_trial_2_s4[31];
+    wire quotient_bit_s4 = ~quotient_trial_s4[31];
 
     // s11.20
-    wire signed [31:0] quotient_left_2_s4 = quotient_bit_2_s4 ? quotient_trial_2_s4 : {1'b0,
-            quotient_remainder_s4, 1'b0};
+    wire signed [31:0] quotient_left_s4 = quotient_bit_s4 ? quotient_trial_s4 : {10'd0,
+            cos_gamma_reg_s4, 1'b0};
 
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_2_s4 = quotient_left_2_s4[29:0];
+    wire [29:0] quotient_remainder_s4 = quotient_left_s4[29:0];
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s5 <= red_s4;
-            green_s5 <= green_s4;
-            blue_s5 <= blue_s4;
             quotient_divisor_s5 <= quotient_divisor_s4;
-            quotient_remainder_2_s5 <= quotient_remainder_2_s4;
-            quotient_s5 <= {quotient_bit_s4, quotient_bit_2_s4};
+            quotient_bit_s5 <= quotient_bit_s4;
+            quotient_remainder_s5 <= quotient_remainder_s4;
         end
     end
 
     // Stage 5, part of: next bit of the quotient
-    reg  [7:0]  red_s6;                   // intensity of the light times k_s
-    reg  [7:0]  green_s6;                 // intensity of the light times k_s
-    reg  [7:0]  blue_s6;                  // intensity of the light times k_s
     reg  [29:0] quotient_divisor_s6;      // u10.20: the divisor
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_3_s6;
-    reg  [2:0]  quotient_2_s6;            // the quotient, which bits enter at the bottom
+    reg  [29:0] quotient_remainder_2_s6;
+    reg  [1:0]  quotient_s6;              // the quotient, which bits enter at the bottom
 
     // s11.20: negative where the divisor does not fit
-    wire signed [31:0] quotient_trial_3_s5 = {1'b0, quotient_remainder_2_s5, 1'b0} - {2'd0,
+    wire signed [31:0] quotient_trial_2_s5 = {1'b0, quotient_remainder_s5, 1'b0} - {2'd0,
             quotient_divisor_s5};
 
     // the divisor fits: the next bit of the quotient
-    wire quotient_bit_3_s5 = ~quotient_trial_3_s5[31];
+    wire quotient_bit_2_s5 = ~quotient_trial_2_s5[31];
 
     // s11.20
-    wire signed [31:0] quotient_left_3_s5 = quotient_bit_3_s5 ? quotient_trial_3_s5 : {1'b0,
-            quotient_remainder_2_s5, 1'b0};
+    wire signed [31:0] quotient_left_2_s5 = quotient_bit_2_s5 ? quotient_trial_2_s5 : {1'b0,
+            quotient_remainder_s5, 1'b0};
 
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_3_s5 = quotient_left_3_s5[29:0];
+    wire [29:0] quotient_remainder_2_s5 = quotient_left_2_s5[29:0];
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s6 <= red_s5;
-            green_s6 <= green_s5;
-            blue_s6 <= blue_s5;
             quotient_divisor_s6 <= quotient_divisor_s5;
-            quotient_remainder_3_s6 <= quotient_remainder_3_s5;
-            quotient_2_s6 <= {quotient_s5, quotient_bit_3_s5};
+            quotient_remainder_2_s6 <= quotient_remainder_2_s5;
+            quotient_s6 <= {quotient_bit_s5, quotient_bit_2_s5};
         end
     end
 
     // Stage 6, part of: next bit of the quotient
-    reg  [7:0]  red_s7;                   // intensity of the light times k_s
-    reg  [7:0]  green_s7;                 // intensity of the light times k_s
-    reg  [7:0]  blue_s7;                  // intensity of the light times k_s
     reg  [29:0] quotient_divisor_s7;      // u10.20: the divisor
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_4_s7;
-    reg  [3:0]  quotient_3_s7;            // the quotient, which bits enter at the bottom
+    reg  [29:0] quotient_remainder_3_s7;
+    reg  [2:0]  quotient_2_s7;            // the quotient, which bits enter at the bottom
 
     // s11.20: negative where the divisor does not fit
-    wire signed [31:0] quotient_trial_4_s6 = {1'b0, quotient_remainder_3_s6, 1'b0} - {2'd0,
+    wire signed [31:0] quotient_trial_3_s6 = {1'b0, quotient_remainder_2_s6, 1'b0} - {2'd0,
             quotient_divisor_s6};
 
     // the divisor fits: the next bit of the quotient
-    wire quotient_bit_4_s6 = ~quotient_trial_4_s6[31];
+    wire quotient_bit_3_s6 = ~quotient_trial_3_s6[31];
 
     // s11.20
-    wire signed [31:0] quotient_left_4_s6 = quotient_bit_4_s6 ? quotient_trial_4_s6 : {1'b0,
-            quotient_remainder_3_s6, 1'b0};
+    wire signed [31:0] quotient_left_3_s6 = quotient_bit_3_s6 ? quotient_trial_3_s6 : {1'b0,
+            quotient_remainder_2_s6, 1'b0};
 
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_4_s6 = quotient_left_4_s6[29:0];
+    wire [29:0] quotient_remainder_3_s6 = quotient_left_3_s6[29:0];
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s7 <= red_s6;
-            green_s7 <= green_s6;
-            blue_s7 <= blue_s6;
             quotient_divisor_s7 <= quotient_divisor_s6;
-            quotient_remainder_4_s7 <= quotient_remainder_4_s6;
-            quotient_3_s7 <= {quotient_2_s6, quotient_bit_4_s6};
+            quotient_remainder_3_s7 <= quotient_remainder_3_s6;
+            quotient_2_s7 <= {quotient_s6, quotient_bit_3_s6};
         end
     end
 
     // Stage 7, part of: next bit of the quotient
-    reg  [7:0]  red_s8;                   // intensity of the light times k_s
-    reg  [7:0]  green_s8;                 // intensity of the light times k_s
-    reg  [7:0]  blue_s8;                  // intensity of the light times k_s
     reg  [29:0] quotient_divisor_s8;      // u10.20: the divisor
-    reg         quotient_bit_5_s8;        // the divisor fits: the next bit of the quotient
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_5_s8;
+    reg  [29:0] quotient_remainder_4_s8;
     reg  [3:0]  quotient_3_s8;            // the quotient, which bits enter at the bottom
 
     // s11.20: negative where the divisor does not fit
-    wire signed [31:0] quotient_trial_5_s7 = {1'b0, quotient_remainder_4_s7, 1'b0} - {2'd0,
+    wire signed [31:0] quotient_trial_4_s7 = {1'b0, quotient_remainder_3_s7, 1'b0} - {2'd0,
             quotient_divisor_s7};
 
     // the divisor fits: the next bit of the quotient
-    wire quotient_bit_5_s7 = ~quotient_trial_5_s7[31];
+    wire quotient_bit_4_s7 = ~quotient_trial_4_s7[31];
 
     // s11.20
-    wire signed [31:0] quotient_left_5_s7 = quotient_bit_5_s7 ? quotient_trial_5_s7 : {1'b0,
-            quotient_remainder_4_s7, 1'b0};
+    wire signed [31:0] quotient_left_4_s7 = quotient_bit_4_s7 ? quotient_trial_4_s7 : {1'b0,
+            quotient_remainder_3_s7, 1'b0};
 
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_5_s7 = quotient_left_5_s7[29:0];
+    wire [29:0] quotient_remainder_4_s7 = quotient_left_4_s7[29:0];
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s8 <= red_s7;
-            green_s8 <= green_s7;
-            blue_s8 <= blue_s7;
             quotient_divisor_s8 <= quotient_divisor_s7;
-            quotient_bit_5_s8 <= quotient_bit_5_s7;
-            quotient_remainder_5_s8 <= quotient_remainder_5_s7;
-            quotient_3_s8 <= quotient_3_s7;
+            quotient_remainder_4_s8 <= quotient_remainder_4_s7;
+            quotient_3_s8 <= {quotient_2_s7, quotient_bit_4_s7};
         end
     end
 
     // Stage 8, part of: next bit of the quotient
-    reg  [7:0]  red_s9;                   // intensity of the light times k_s
-    reg  [7:0]  green_s9;                 // intensity of the light times k_s
-    reg  [7:0]  blue_s9;                  // intensity of the light times k_s
     reg  [29:0] quotient_divisor_s9;      // u10.20: the divisor
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_6_s9;
-    reg  [5:0]  quotient_5_s9;            // the quotient, which bits enter at the bottom
+    reg  [29:0] quotient_remainder_5_s9;
+    reg  [4:0]  quotient_4_s9;            // the quotient, which bits enter at the bottom
 
     // s11.20: negative where the divisor does not fit
-    wire signed [31:0] quotient_trial_6_s8 = {1'b0, quotient_remainder_5_s8, 1'b0} - {2'd0,
+    wire signed [31:0] quotient_trial_5_s8 = {1'b0, quotient_remainder_4_s8, 1'b0} - {2'd0,
             quotient_divisor_s8};
 
     // the divisor fits: the next bit of the quotient
-    wire quotient_bit_6_s8 = ~quotient_trial_6_s8[31];
+    wire quotient_bit_5_s8 = ~quotient_trial_5_s8[31];
 
     // s11.20
-    wire signed [31:0] quotient_left_6_s8 = quotient_bit_6_s8 ? quotient_trial_6_s8 : {1'b0,
-            quotient_remainder_5_s8, 1'b0};
+    wire signed [31:0] quotient_left_5_s8 = quotient_bit_5_s8 ? quotient_trial_5_s8 : {1'b0,
+            quotient_remainder_4_s8, 1'b0};
 
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_6_s8 = quotient_left_6_s8[29:0];
+    wire [29:0] quotient_remainder_5_s8 = quotient_left_5_s8[29:0];
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s9 <= red_s8;
-            green_s9 <= green_s8;
-            blue_s9 <= blue_s8;
             quotient_divisor_s9 <= quotient_divisor_s8;
-            quotient_remainder_6_s9 <= quotient_remainder_6_s8;
-            quotient_5_s9 <= {quotient_3_s8, quotient_bit_5_s8, quotient_bit_6_s8};
+            quotient_remainder_5_s9 <= quotient_remainder_5_s8;
+            quotient_4_s9 <= {quotient_3_s8, quotient_bit_5_s8};
         end
     end
 
     // Stage 9, part of: next bit of the quotient
-    reg  [7:0]  red_s10;                   // intensity of the light times k_s
-    reg  [7:0]  green_s10;                 // intensity of the light times k_s
-    reg  [7:0]  blue_s10;                  // intensity of the light times k_s
     reg  [29:0] quotient_divisor_s10;      // u10.20: the divisor
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_7_s10;
-    reg  [6:0]  quotient_6_s10;            // the quotient, which bits enter at the bottom
+    reg  [29:0] quotient_remainder_6_s10;
+    reg  [5:0]  quotient_5_s10;            // the quotient, which bits enter at the bottom
 
     // s11.20: negative where the divisor does not fit
-    wire signed [31:0] quotient_trial_7_s9 = {1'b0, quotient_remainder_6_s9, 1'b0} - {2'd0,
+    wire signed [31:0] quotient_trial_6_s9 = {1'b0, quotient_remainder_5_s9, 1'b0} - {2'd0,
             quotient_divisor_s9};
 
     // the divisor fits: the next bit of the quotient
-    wire quotient_bit_7_s9 = ~quotient_trial_7_s9[31];
+    wire quotient_bit_6_s9 = ~quotient_trial_6_s9[31];
 
     // s11.20
-    wire signed [31:0] quotient_left_7_s9 = quotient_bit_7_s9 ? quotient_trial_7_s9 : {1'b0,
-            quotient_remainder_6_s9, 1'b0};
+    wire signed [31:0] quotient_left_6_s9 = quotient_bit_6_s9 ? quotient_trial_6_s9 : {1'b0,
+            quotient_remainder_5_s9, 1'b0};
 
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_7_s9 = quotient_left_7_s9[29:0];
+    wire [29:0] quotient_remainder_6_s9 = quotient_left_6_s9[29:0];
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s10 <= red_s9;
-            green_s10 <= green_s9;
-            blue_s10 <= blue_s9;
             quotient_divisor_s10 <= quotient_divisor_s9;
-            quotient_remainder_7_s10 <= quotient_remainder_7_s9;
-            quotient_6_s10 <= {quotient_5_s9, quotient_bit_7_s9};
+            quotient_remainder_6_s10 <= quotient_remainder_6_s9;
+            quotient_5_s10 <= {quotient_4_s9, quotient_bit_6_s9};
         end
     end
 
     // Stage 10, part of: next bit of the quotient
-    reg  [7:0]  red_s11;                   // intensity of the light times k_s
-    reg  [7:0]  green_s11;                 // intensity of the light times k_s
-    reg  [7:0]  blue_s11;                  // intensity of the light times k_s
     reg  [29:0] quotient_divisor_s11;      // u10.20: the divisor
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_8_s11;
-    reg  [7:0]  quotient_7_s11;            // the quotient, which bits enter at the bottom
+    reg  [29:0] quotient_remainder_7_s11;
+    reg  [6:0]  quotient_6_s11;            // the quotient, which bits enter at the bottom
 
     // s11.20: negative where the divisor does not fit
-    wire signed [31:0] quotient_trial_8_s10 = {1'b0, quotient_remainder_7_s10, 1'b0} - {2'd0,
+    wire signed [31:0] quotient_trial_7_s10 = {1'b0, quotient_remainder_6_s10, 1'b0} - {2'd0,
             quotient_divisor_s10};
 
     // the divisor fits: the next bit of the quotient
-    wire quotient_bit_8_s10 = ~quotient_trial_8_s10[31];
+    wire quotient_bit_7_s10 = ~quotient_trial_7_s10[31];
 
     // s11.20
-    wire signed [31:0] quotient_left_8_s10 = quotient_bit_8_s10 ? quotient_trial_8_s10 : {1'b0,
-            quotient_remainder_7_s10, 1'b0};
+    wire signed [31:0] quotient_left_7_s10 = quotient_bit_7_s10 ? quotient_trial_7_s10 : {1'b0,
+            quotient_remainder_6_s10, 1'b0};
 
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_8_s10 = quotient_left_8_s10[29:0];
+    wire [29:0] quotient_remainder_7_s10 = quotient_left_7_s10[29:0];
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s11 <= red_s10;
-            green_s11 <= green_s10;
-            blue_s11 <= blue_s10;
             quotient_divisor_s11 <= quotient_divisor_s10;
-            quotient_remainder_8_s11 <= quotient_remainder_8_s10;
-            quotient_7_s11 <= {quotient_6_s10, quotient_bit_8_s10};
+            quotient_remainder_7_s11 <= quotient_remainder_7_s10;
+            quotient_6_s11 <= {quotient_5_s10, quotient_bit_7_s10};
         end
     end
 
     // Stage 11, part of: next bit of the quotient
-    reg  [7:0]  red_s12;                   // intensity of the light times k_s
-    reg  [7:0]  green_s12;                 // intensity of the light times k_s
-    reg  [7:0]  blue_s12;                  // intensity of the light times k_s
     reg  [29:0] quotient_divisor_s12;      // u10.20: the divisor
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_9_s12;
-    reg  [8:0]  quotient_8_s12;            // the quotient, which bits enter at the bottom
+    reg  [29:0] quotient_remainder_8_s12;
 
     // s11.20: negative where the divisor does not fit
-    wire signed [31:0] quotient_trial_9_s11 = {1'b0, quotient_remainder_8_s11, 1'b0} - {2'd0,
+    wire signed [31:0] quotient_trial_8_s11 = {1'b0, quotient_remainder_7_s11, 1'b0} - {2'd0,
             quotient_divisor_s11};
 
     // the divisor fits: the next bit of the quotient
-    wire quotient_bit_9_s11 = ~quotient_trial_9_s11[31];
+    wire quotient_bit_8_s11 = ~quotient_trial_8_s11[31];
 
     // s11.20
-    wire signed [31:0] quotient_left_9_s11 = quotient_bit_9_s11 ? quotient_trial_9_s11 : {1'b0,
-            quotient_remainder_8_s11, 1'b0};
+    wire signed [31:0] quotient_left_8_s11 = quotient_bit_8_s11 ? quotient_trial_8_s11 : {1'b0,
+            quotient_remainder_7_s11, 1'b0};
 
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_9_s11 = quotient_left_9_s11[29:0];
+    wire [29:0] quotient_remainder_8_s11 = quotient_left_8_s11[29:0];
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s12 <= red_s11;
-            green_s12 <= green_s11;
-            blue_s12 <= blue_s11;
             quotient_divisor_s12 <= quotient_divisor_s11;
-            quotient_remainder_9_s12 <= quotient_remainder_9_s11;
-            quotient_8_s12 <= {quotient_7_s11, quotient_bit_9_s11};
+            quotient_remainder_8_s12 <= quotient_remainder_8_s11;
         end
     end
 
     // Stage 12, part of: next bit of the quotient
-    reg  [7:0] red_s13;              // intensity of the light times k_s
-    reg  [7:0] green_s13;            // intensity of the light times k_s
-    reg  [7:0] blue_s13;             // intensity of the light times k_s
-    reg        quotient_bit_10_s13;  // the divisor fits: the next bit of the quotient
-    reg  [8:0] quotient_8_s13;       // the quotient, which bits enter at the bottom
+    reg  [29:0] quotient_divisor_s13;      // u10.20: the divisor
+    reg         quotient_bit_9_s13;        // the divisor fits: the next bit of the quotient
+    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
+    reg  [29:0] quotient_remainder_9_s13;
 
     // s11.20: negative where the divisor does not fit
-    wire signed [31:0] quotient_trial_10_s12 = {1'b0, quotient_remainder_9_s12, 1'b0} - {2'd0,
+    wire signed [31:0] quotient_trial_9_s12 = {1'b0, quotient_remainder_8_s12, 1'b0} - {2'd0,
             quotient_divisor_s12};
 
     // the divisor fits: the next bit of the quotient
-    wire quotient_bit_10_s12 = ~quotient_trial_10_s12[31];
+    wire quotient_bit_9_s12 = ~quotient_trial_9_s12[31];
+
+    // s11.20
+    wire signed [31:0] quotient_left_9_s12 = quotient_bit_9_s12 ? quotient_trial_9_s12 : {1'b0,
+            quotient_remainder_8_s12, 1'b0};
+
+    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
+    wire [29:0] quotient_remainder_9_s12 = quotient_left_9_s12[29:0];
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s13 <= red_s12;
-            green_s13 <= green_s12;
-            blue_s13 <= blue_s12;
-            quotient_bit_10_s13 <= quotient_bit_10_s12;
-            quotient_8_s13 <= quotient_8_s12;
+            quotient_divisor_s13 <= quotient_divisor_s12;
+            quotient_bit_9_s13 <= quotient_bit_9_s12;
+            quotient_remainder_9_s13 <= quotient_remainder_9_s12;
         end
     end
 
-    // Stage 13, part of: result
-    reg  [7:0] red_product_kept_s14;
-    reg        red_product_bits_s14;
-    reg  [7:0] green_product_kept_s14;
-    reg        green_product_bits_s14;
-    reg  [7:0] blue_product_kept_s14;
-    reg        blue_product_bits_s14;
+    // Stage 13, part of: next bit of the quotient
+    reg  [7:0] red_s14;              // intensity of the light times k_s
+    reg  [7:0] green_s14;            // intensity of the light times k_s
+    reg  [7:0] blue_s14;             // intensity of the light times k_s
+    reg        quotient_bit_9_s14;   // the divisor fits: the next bit of the quotient
+    reg        quotient_bit_10_s14;  // the divisor fits: the next bit of the quotient
+    reg  [7:0] quotient_7_s14;       // the quotient, which bits enter at the bottom
 
-    // u0.10: the quotient, which bits enter at the bottom
-    wire [9:0] quotient_9_s13 = {quotient_8_s13, quotient_bit_10_s13};
+    // s11.20: negative where the divisor does not fit
+    wire signed [31:0] quotient_trial_10_s13 = {1'b0, quotient_remainder_9_s13, 1'b0} - {2'd0,
+            quotient_divisor_s13};
 
-    // u8.10: an output before it is rounded
-    wire [17:0] red_product_s13 = quotient_9_s13 * red_s13;
-
-    // u8.10: an output before it is rounded
-    wire [17:0] green_product_s13 = quotient_9_s13 * green_s13;
-
-    // u8.10: an output before it is rounded
-    wire [17:0] blue_product_s13 = quotient_9_s13 * blue_s13;
+    // the divisor fits: the next bit of the quotient
+    wire quotient_bit_10_s13 = ~quotient_trial_10_s13[31];
 
     always @(posedge clk) begin
         if (advance) begin
-            red_product_kept_s14 <= red_product_s13[17:10];
-            red_product_bits_s14 <= red_product_s13[9];
-            green_product_kept_s14 <= green_product_s13[17:10];
-            green_product_bits_s14 <= green_product_s13[9];
-            blue_product_kept_s14 <= blue_product_s13[17:10];
-            blue_product_bits_s14 <= blue_product_s13[9];
+            quotient_bit_9_s14 <= quotient_bit_9_s13;
+            quotient_bit_10_s14 <= quotient_bit_10_s13;
         end
     end
 
     // Stage 14, part of: result
-    reg  [7:0] red_intensity_s15;
-    reg  [7:0] green_intensity_s15;
-    reg  [7:0] blue_intensity_s15;
+    reg  [7:0] red_product_kept_s15;
+    reg        red_product_bits_s15;
+    reg  [7:0] green_product_kept_s15;
+    reg        green_product_bits_s15;
+    reg  [7:0] blue_product_kept_s15;
+    reg        blue_product_bits_s15;
 
-    wire [7:0] red_intensity_s14 = red_product_kept_s14 + {7'd0, red_product_bits_s14};
-    wire [7:0] green_intensity_s14 = green_product_kept_s14 + {7'd0, green_product_bits_s14};
-    wire [7:0] blue_intensity_s14 = blue_product_kept_s14 + {7'd0, blue_product_bits_s14};
+    // u0.10: the quotient, which bits enter at the bottom
+    wire [9:0] quotient_9_s14 = {quotient_7_s14, quotient_bit_9_s14, quotient_bit_10_s14};
+
+    // u8.10: an output before it is rounded
+    wire [17:0] red_product_s14 = quotient_9_s14 * red_s14;
+
+    // u8.10: an output before it is rounded
+    wire [17:0] green_product_s14 = quotient_9_s14 * green_s14;
+
+    // u8.10: an output before it is rounded
+    wire [17:0] blue_product_s14 = quotient_9_s14 * blue_s14;
 
     always @(posedge clk) begin
         if (advance) begin
-            red_intensity_s15 <= red_intensity_s14;
-            green_intensity_s15 <= green_intensity_s14;
-            blue_intensity_s15 <= blue_intensity_s14;
+            red_product_kept_s15 <= red_product_s14[17:10];
+            red_product_bits_s15 <= red_product_s14[9];
+            green_product_kept_s15 <= green_product_s14[17:10];
+            green_product_bits_s15 <= green_product_s14[9];
+            blue_product_kept_s15 <= blue_product_s14[17:10];
+            blue_product_bits_s15 <= blue_product_s14[9];
+        end
+    end
+
+    // Stage 15, part of: result
+    reg  [7:0] red_intensity_s16;
+    reg  [7:0] green_intensity_s16;
+    reg  [7:0] blue_intensity_s16;
+
+    wire [7:0] red_intensity_s15 = red_product_kept_s15 + {7'd0, red_product_bits_s15};
+    wire [7:0] green_intensity_s15 = green_product_kept_s15 + {7'd0, green_product_bits_s15};
+    wire [7:0] blue_intensity_s15 = blue_product_kept_s15 + {7'd0, blue_product_bits_s15};
+
+    always @(posedge clk) begin
+        if (advance) begin
+            red_intensity_s16 <= red_intensity_s15;
+            green_intensity_s16 <= green_intensity_s15;
+            blue_intensity_s16 <= blue_intensity_s15;
+        end
+    end
+
+    // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
+    // points move on, a slot gives the value that it holds and takes a new one; its turn comes
+    // again when all others have had theirs.
+    reg slot_of_2;
+    initial slot_of_2 = 1'b0;
+    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
+    reg [7:0] delay_s11_s14 [0:1];
+    reg [3:0] slot_of_13;
+    initial slot_of_13 = 4'd0;
+    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
+    reg [23:0] delay_s0_s14 [0:12];
+
+    always @(posedge clk) begin
+        if (advance) begin
+            slot_of_2 <= slot_of_2 == 1'b1 ? 1'b0 : slot_of_2 + 1'b1;
+            quotient_7_s14 <= delay_s11_s14[slot_of_2];
+            delay_s11_s14[slot_of_2] <= {quotient_6_s11, quotient_bit_8_s11};
+        end
+    end
+
+    always @(posedge clk) begin
+        if (advance) begin
+            slot_of_13 <= slot_of_13 == 4'd12 ? 4'd0 : slot_of_13 + 4'd1;
+            {red_s14, green_s14, blue_s14} <= delay_s0_s14[slot_of_13];
+            delay_s0_s14[slot_of_13] <= {red, green, blue};
         end
     end
 
     // Results
 
-    assign red_out = red_intensity_s15;  // intensity on the output
-    assign green_out = green_intensity_s15;  // intensity on the output
-    assign blue_out = blue_intensity_s15;  // intensity on the output
+    assign red_out = red_intensity_s16;  // intensity on the output
+    assign green_out = green_intensity_s16;  // intensity on the output
+    assign blue_out = blue_intensity_s16;  // intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, denominator_s2[30], quotient_left_s3[31:30], quotient_left_2_s4[31:30],
-            quotient_left_3_s5[31:30], quotient_left_4_s6[31:30], quotient_left_5_s7[31:30],
-            quotient_left_6_s8[31:30], quotient_left_7_s9[31:30], quotient_left_8_s10[31:30],
-            quotient_left_9_s11[31:30], quotient_trial_10_s12[30:0], red_product_s13[8:0],
-            green_product_s13[8:0], blue_product_s13[8:0]};
+    wire unused = &{1'b0, scaled_rows_s2[1:0], denominator_s3[30], quotient_left_s4[31:30],
+            quotient_left_2_s5[31:30], quotient_left_3_s6[31:30], quotient_left_4_s7[31:30],
+            quotient_left_5_s8[31:30], quotient_left_6_s9[31:30], quotient_left_7_s10[31:30],
+            quotient_left_8_s11[31:30], quotient_left_9_s12[31:30], quotient_trial_10_s13[30:0],
+            red_product_s14[8:0], green_product_s14[8:0], blue_product_s14[8:0]};
 endmodule
 
 `default_nettype wire

@@ -65,9 +65,7 @@ module threshold_pipelined #(
 
     // Constants
     localparam [20:0] COS_GAMMA_MOST = 21'h100000;  // 1.0 in u1.20
-    localparam [20:0] ONE_SAME = 21'h100000;  // -1.0 in s0.20
     localparam [16:0] MULTIPLIER1_ROUNDED_LEAST = 17'h10000;  // -1.0 in s0.16
-    localparam [16:0] BASE_ONE = 17'h10000;  // 1.0 in u1.16
 
     // The handshake: which stage has a point, and when all of them move on
     reg  valid_s1;  // stage 1 has a point
@@ -108,101 +106,86 @@ module threshold_pipelined #(
         end
     end
 
-    // Stage 0, part of: operands; ROM(n) addressed; scaled <- n/2 * (cos gamma - 1); intensity <-
-    // (scaled + 1)^2, or 0 below ROM(n)
-    reg         [9:0]  exponent_s1;  // register 2: specular exponent n
-    reg         [7:0]  red_s1;       // register 3: intensity of the light times k_s
-    reg         [7:0]  green_s1;     // register 4: intensity of the light times k_s
-    reg         [7:0]  blue_s1;      // register 5: intensity of the light times k_s
-    reg  signed [20:0] adder1_s1;    // register 1, s0.20: cos gamma - 1.0
-    reg                facing_s1;    // the surface faces the half vector
+    // Stage 0, part of: operands; ROM(n) addressed
+    // register 1, u1.20: cosine of the angle between normal and half vector
+    reg  [20:0] cos_gamma_reg_s1;
+    reg  [9:0]  exponent_s1;       // register 2: specular exponent n
 
     wire cos_gamma_over_s0 = cos_gamma[20];
 
     // mux 1, u1.20: cosine of the angle between normal and half vector
     wire [20:0] cos_gamma_reg_s0 = cos_gamma_over_s0 ? COS_GAMMA_MOST : cos_gamma;
 
-    wire signed [20:0] adder1_s0 = cos_gamma_reg_s0 - ONE_SAME;  // adder 1, s0.20: cos gamma - 1.0
-    wire facing_s0 = |cos_gamma_reg_s0;  // the surface faces the half vector
-
     always @(posedge clk) begin
         if (advance) begin
+            cos_gamma_reg_s1 <= cos_gamma_reg_s0;
             exponent_s1 <= exponent;
-            red_s1 <= red;
-            green_s1 <= green;
-            blue_s1 <= blue;
-            adder1_s1 <= adder1_s0;
-            facing_s1 <= facing_s0;
         end
     end
 
-    // Stage 1, part of: scaled <- n/2 * (cos gamma - 1)
-    reg         [9:0]  exponent_s2;            // register 2: specular exponent n
-    reg         [7:0]  red_s2;                 // register 3: intensity of the light times k_s
-    reg         [7:0]  green_s2;               // register 4: intensity of the light times k_s
-    reg         [7:0]  blue_s2;                // register 5: intensity of the light times k_s
-    reg  signed [28:0] multiplier1_upper_s2;   // register 1, s28.0
-    reg  signed [13:0] multiplier1_rows_2_s2;  // register 1, s13.0
-    reg                facing_s2;              // the surface faces the half vector
+    // Stage 1, part of: scaled <- n/2 * (cos gamma - 1); intensity <- (scaled + 1)^2, or 0 below
+    // ROM(n)
+    reg         [9:0]  exponent_s2;             // register 2: specular exponent n
+    reg  signed [28:0] multiplier1_upper_s2;    // register 1, s28.0
+    reg         [2:0]  multiplier1_rows_5_s2;   // register 1
+    reg  signed [10:0] multiplier1_carried_s2;  // register 1, s10.0
+    reg                facing_s2;               // the surface faces the half vector
+
+    wire adder1_upper_2_s1 = ~cos_gamma_reg_s1[20];  // block 1: cos gamma - 1.0
 
     // multiplier 1, s28.0
-    wire signed [28:0] multiplier1_upper_s1 = $signed(adder1_s1[20:3]) * $signed({1'b0,
-            exponent_s1});
+    wire signed [28:0] multiplier1_upper_s1 = $signed({adder1_upper_2_s1, cos_gamma_reg_s1[19:3]}) *
+            $signed({1'b0, exponent_s1});
 
     // mux 1, s10.0
-    wire signed [10:0] multiplier1_row_2_s1 = adder1_s1[0] ? {1'b0, exponent_s1} : 11'd0;
+    wire signed [10:0] multiplier1_row_2_s1 = cos_gamma_reg_s1[0] ? {1'b0, exponent_s1} : 11'd0;
 
     // mux 1, s10.0
-    wire signed [10:0] multiplier1_row_4_s1 = adder1_s1[1] ? {1'b0, exponent_s1} : 11'd0;
+    wire signed [10:0] multiplier1_row_4_s1 = cos_gamma_reg_s1[1] ? {1'b0, exponent_s1} : 11'd0;
 
-    // adder 1, s12.0
-    wire signed [12:0] multiplier1_rows_s1 = {{2{multiplier1_row_2_s1[10]}}, multiplier1_row_2_s1} +
-            {multiplier1_row_4_s1[10], multiplier1_row_4_s1, 1'b0};
+    // adder 1
+    wire [11:0] multiplier1_rows_upper_3_s1 = {{2{multiplier1_row_2_s1[10]}},
+            multiplier1_row_2_s1[10:1]} + {multiplier1_row_4_s1[10], multiplier1_row_4_s1};
+
+    // block 1, s12.0
+    wire signed [12:0] multiplier1_rows_s1 = {multiplier1_rows_upper_3_s1, multiplier1_row_2_s1[0]};
 
     // mux 1, s10.0
-    wire signed [10:0] multiplier1_row_7_s1 = adder1_s1[2] ? {1'b0, exponent_s1} : 11'd0;
+    wire signed [10:0] multiplier1_row_7_s1 = cos_gamma_reg_s1[2] ? {1'b0, exponent_s1} : 11'd0;
 
-    // adder 1, s13.0
-    wire signed [13:0] multiplier1_rows_2_s1 = {multiplier1_rows_s1[12], multiplier1_rows_s1} +
-            {multiplier1_row_7_s1[10], multiplier1_row_7_s1, 2'd0};
+    // adder 1
+    wire [11:0] multiplier1_rows_upper_7_s1 = {multiplier1_rows_s1[12], multiplier1_rows_s1[12:2]} +
+            {multiplier1_row_7_s1[10], multiplier1_row_7_s1};
+
+    wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
 
     always @(posedge clk) begin
         if (advance) begin
             exponent_s2 <= exponent_s1;
-            red_s2 <= red_s1;
-            green_s2 <= green_s1;
-            blue_s2 <= blue_s1;
             multiplier1_upper_s2 <= multiplier1_upper_s1;
-            multiplier1_rows_2_s2 <= multiplier1_rows_2_s1;
+            multiplier1_rows_5_s2 <= {multiplier1_rows_upper_7_s1[0],
+                    multiplier1_rows_upper_3_s1[0], multiplier1_row_2_s1[0]};
+            multiplier1_carried_s2 <= multiplier1_rows_upper_7_s1[11:1];
             facing_s2 <= facing_s1;
         end
     end
 
     // Stage 2, part of: scaled <- n/2 * (cos gamma - 1)
     reg         [9:0]  exponent_s3;                   // register 2: specular exponent n
-    // register 3: intensity of the light times k_s
-    reg         [7:0]  red_s3;
-    // register 4: intensity of the light times k_s
-    reg         [7:0]  green_s3;
-    // register 5: intensity of the light times k_s
-    reg         [7:0]  blue_s3;
     reg                multiplier1_rounded_under_s3;
     reg  signed [16:0] multiplier1_kept_inside_s3;    // s0.16
     reg                facing_s3;                     // the surface faces the half vector
 
     // adder 1, s28.0
-    wire signed [28:0] multiplier1_sum_s2 = multiplier1_upper_s2 + {{18{multiplier1_rows_2_s2[13]}},
-            multiplier1_rows_2_s2[13:3]};
+    wire signed [28:0] multiplier1_sum_s2 = multiplier1_upper_s2 +
+            {{18{multiplier1_carried_s2[10]}}, multiplier1_carried_s2};
 
     // block 1, s10.21
-    wire signed [31:0] multiplier1_s2 = {multiplier1_sum_s2, multiplier1_rows_2_s2[2:0]};
+    wire signed [31:0] multiplier1_s2 = {multiplier1_sum_s2, multiplier1_rows_5_s2};
 
     always @(posedge clk) begin
         if (advance) begin
             exponent_s3 <= exponent_s2;
-            red_s3 <= red_s2;
-            green_s3 <= green_s2;
-            blue_s3 <= blue_s2;
             multiplier1_rounded_under_s3 <= multiplier1_s2[31] & ~(&multiplier1_s2[30:21]);
             multiplier1_kept_inside_s3 <= multiplier1_s2[21:5];
             facing_s3 <= facing_s2;
@@ -211,9 +194,6 @@ module threshold_pipelined #(
 
     // Stage 3, part of: scaled <- n/2 * (cos gamma - 1); intensity <- (scaled + 1)^2, or 0 below
     // ROM(n)
-    reg  [7:0]  red_s4;          // register 3: intensity of the light times k_s
-    reg  [7:0]  green_s4;        // register 4: intensity of the light times k_s
-    reg  [7:0]  blue_s4;         // register 5: intensity of the light times k_s
     reg         facing_s4;       // the surface faces the half vector
     reg  [16:0] adder2_s4;       // register 2, u1.16: base of the square, 0 ... 1.0
     reg  [15:0] levels_word_s4;  // u0.16
@@ -222,7 +202,10 @@ module threshold_pipelined #(
     wire signed [16:0] scaled_s3 = multiplier1_rounded_under_s3 ? MULTIPLIER1_ROUNDED_LEAST :
             multiplier1_kept_inside_s3;
 
-    wire [16:0] adder2_s3 = scaled_s3 + BASE_ONE;  // adder 2, u1.16: base of the square, 0 ... 1.0
+    wire adder2_upper_2_s3 = ~scaled_s3[16];  // block 2: base of the square, 0 ... 1.0
+
+    // block 2, u1.16: base of the square, 0 ... 1.0
+    wire [16:0] adder2_s3 = {adder2_upper_2_s3, scaled_s3[15:0]};
 
     // ROM levels: the smallest f that is shown for an exponent n (the address)
     reg [15:0] levels_rom [0:1023];
@@ -231,18 +214,12 @@ module threshold_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s4 <= red_s3;
-            green_s4 <= green_s3;
-            blue_s4 <= blue_s3;
             facing_s4 <= facing_s3;
             adder2_s4 <= adder2_s3;
         end
     end
 
     // Stage 4, part of: operands; ROM(n) addressed; intensity <- (scaled + 1)^2, or 0 below ROM(n)
-    reg  [7:0]  red_s5;                      // register 3: intensity of the light times k_s
-    reg  [7:0]  green_s5;                    // register 4: intensity of the light times k_s
-    reg  [7:0]  blue_s5;                     // register 5: intensity of the light times k_s
     reg  [15:0] levels_word_s5;              // u0.16
     reg         facing_s5;                   // the surface faces the half vector
     reg  [1:0]  multiplier2_kept_bits_s5;
@@ -252,9 +229,6 @@ module threshold_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s5 <= red_s4;
-            green_s5 <= green_s4;
-            blue_s5 <= blue_s4;
             levels_word_s5 <= levels_word_s4;
             facing_s5 <= facing_s4;
             multiplier2_kept_bits_s5 <= multiplier2_s4[33:32];
@@ -263,9 +237,6 @@ module threshold_pipelined #(
     end
 
     // Stage 5, part of: intensity <- (scaled + 1)^2, or 0 below ROM(n)
-    reg  [7:0]  red_s6;     // register 3: intensity of the light times k_s
-    reg  [7:0]  green_s6;   // register 4: intensity of the light times k_s
-    reg  [7:0]  blue_s6;    // register 5: intensity of the light times k_s
     reg  [15:0] square_s6;  // u0.16
     reg         pass_s6;    // opens the gates
 
@@ -278,9 +249,6 @@ module threshold_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s6 <= red_s5;
-            green_s6 <= green_s5;
-            blue_s6 <= blue_s5;
             square_s6 <= square_s5;
             pass_s6 <= pass_s5;
         end
@@ -297,9 +265,6 @@ module threshold_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            red_s7 <= red_s6;
-            green_s7 <= green_s6;
-            blue_s7 <= blue_s6;
             intensity_s7 <= intensity_s6;
         end
     end
@@ -349,6 +314,22 @@ module threshold_pipelined #(
         end
     end
 
+    // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
+    // points move on, a slot gives the value that it holds and takes a new one; its turn comes
+    // again when all others have had theirs.
+    reg [2:0] slot_of_6;
+    initial slot_of_6 = 3'd0;
+    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
+    reg [23:0] delay_s0_s7 [0:5];
+
+    always @(posedge clk) begin
+        if (advance) begin
+            slot_of_6 <= slot_of_6 == 3'd5 ? 3'd0 : slot_of_6 + 3'd1;
+            {red_s7, green_s7, blue_s7} <= delay_s0_s7[slot_of_6];
+            delay_s0_s7[slot_of_6] <= {red, green, blue};
+        end
+    end
+
     // Results
 
     assign red_out = red_intensity_s9;  // output 1: intensity on the output
@@ -356,8 +337,8 @@ module threshold_pipelined #(
     assign blue_out = blue_intensity_s9;  // output 3: intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, multiplier1_s2[4:0], multiplier2_s4[15:0], red_product_s7[14:0],
-            green_product_s7[14:0], blue_product_s7[14:0]};
+    wire unused = &{1'b0, multiplier1_rows_s1[1:0], multiplier1_s2[4:0], multiplier2_s4[15:0],
+            red_product_s7[14:0], green_product_s7[14:0], blue_product_s7[14:0]};
 endmodule
 
 `default_nettype wire

@@ -16,8 +16,8 @@ module lyon_pipelined_tb #(
     parameter STIMULUS_FILE = "lyon_pipelined_stimulus.mem",
     parameter EXPECTED_FILE = "lyon_pipelined_expected.mem"
 );
-    localparam CLOCKS     = 4663;
-    localparam KNOWN_FROM = 20;  // results are compared from this clock on
+    localparam CLOCKS     = 4301;
+    localparam KNOWN_FROM = 18;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 
     reg [84:0] stimulus [0:CLOCKS-1];

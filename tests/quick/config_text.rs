@@ -81,6 +81,11 @@ deviation = 30.0
 # \"ready\" or \"none\", default \"ready\"; only with architecture = \"pipelined\".
 # stall = \"ready\"
 
+# What holds values that no stage reads for some time: memory in look-up tables, where the
+# target has such, or a register a stage.
+# \"memory\" or \"registers\", default \"memory\"; only with architecture = \"pipelined\".
+# delays = \"memory\"
+
 # Bits of side_in and side_out, which travel with a point: a pixel's address, say.
 # An integer from 0 to 64, default 0; only with architecture = \"pipelined\".
 # side = 0

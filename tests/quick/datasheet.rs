@@ -356,11 +356,15 @@ fn has_the_values_of_the_stages(path: &str, document: &Document, core: &Core) {
             assert!(drawn.contains(value), "{path}: `{name}` is not drawn");
         }
     }
-    let bits: u32 = pipeline.stages.iter().map(|stage| stage.register_bits).sum();
+    let bits = pipeline.stages.iter().map(|stage| stage.register_bits + stage.delayed_bits);
+    let bits: u32 = bits.sum();
     let registers = core.design.registers.iter();
     assert_eq!(bits, registers.map(|it| core.design.width(it.q)).sum::<u32>(), "{path}");
     for stage in &pipeline.stages {
-        let bits = format!("{} register bits", stage.register_bits);
+        let mut bits = format!("{} register bits", stage.register_bits);
+        if stage.delayed_bits > 0 {
+            bits += &format!(", {} in delay lines", stage.delayed_bits);
+        }
         assert!(picture.descendants().any(|node| node.text() == Some(&bits)), "{path}: {bits}");
     }
 }

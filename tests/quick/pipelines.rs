@@ -3,8 +3,10 @@
 //! With the proof by induction that the stages have points where a queue has them, this is why no result is of
 //! another point.
 
-use glint::hdl::netlist::{Driver, NetId, Role};
+use glint::hdl::netlist::{Driver, NetId, Op, Role};
 use glint::mutate::{self, Fault, Faults, Verdict};
+use glint::package::{self, EmitInputs};
+use regex::Regex;
 
 use crate::common::cores::{all_configurations, configuration_with};
 use crate::common::sample::sampled;
@@ -87,4 +89,69 @@ fn faults_of_a_pipeline_are_noticed_or_proved() {
     assert!(undecided.len() * 50 < found.len(), "{undecided:?}");
     let caught = found.iter().filter(|it| matches!(it.verdict, Verdict::Caught(..))).count();
     assert!(caught * 2 > found.len(), "{caught} of {}", found.len());
+}
+
+/// What a memory takes the place of can be read by nothing but the register behind it, and moves when that does.
+#[test]
+fn delay_lines_are_registers_that_nothing_reads_on_their_way() {
+    let mut lines = 0;
+    for (path, unit) in all_configurations() {
+        let design = &unit.design;
+        let Some(pipeline) = &design.pipeline else { continue };
+        for line in design.delay_lines() {
+            lines += 1;
+            for value in &line.values {
+                let mut from = value.data;
+                assert_eq!(value.registers.len(), line.to - line.from, "{path}");
+                for (at, &register) in value.registers.iter().enumerate() {
+                    let register = design.register(register);
+                    assert_eq!(register.data, Some(from), "{path}");
+                    assert_eq!((register.enable, register.reset), (line.enable, None), "{path}");
+                    let stage = pipeline.stage_of[register.q.index()];
+                    assert_eq!(stage, line.from + 1 + at, "{path}");
+                    from = register.q;
+                }
+                for &passed in value.passed() {
+                    let q = design.register(passed).q;
+                    let reads = |op: &Op| op.operands().contains(&q);
+                    let cells = design.iter().map(|(_, net)| &net.driver);
+                    let cells = cells.filter(|it| matches!(it, Driver::Op(op) if reads(op)));
+                    assert_eq!(cells.count(), 0, "{path}: `{}`", design.net(q).name);
+                    let taken = design.registers.iter().filter(|it| it.data == Some(q)).count();
+                    assert_eq!(taken, 1, "{path}: `{}`", design.net(q).name);
+                    assert!(design.roms.iter().all(|rom| rom.address != q), "{path}");
+                    assert!(design.ports.iter().all(|port| port.net != q), "{path}");
+                }
+            }
+        }
+    }
+    assert!(lines >= 8, "{lines} delay lines");
+}
+
+/// The words of a memory, with the register behind it, are as many as the stages that the value goes through: the
+/// names of the values have the stages.
+#[test]
+fn memories_of_delay_lines_have_a_word_less_than_there_are_stages() {
+    let memory = Regex::new(r"reg \[\d+:0\] delay_s(\d+)_s(\d+) \[0:(\d+)\];").expect("a pattern");
+    let number = |text: &str| text.parse::<usize>().expect("a number");
+    let mut seen = 0;
+    for (path, unit) in all_configurations() {
+        let files = package::emit(&unit.design, &EmitInputs::default()).expect("Verilog");
+        let Some(text) = files.iter().find(|file| file.path.ends_with("_pipelined.v")) else {
+            continue;
+        };
+        for found in memory.captures_iter(&text.contents) {
+            seen += 1;
+            let [from, to, last] = [1, 2, 3].map(|at| number(&found[at]));
+            assert_eq!(last + 2, to - from, "{path}: {}", &found[0]);
+            let name = format!("delay_s{from}_s{to}[slot_of_{}]", last + 1);
+            let leaves = text.contents.split(&format!(" <= {name};")).next().expect("text before");
+            let leaves = leaves.rsplit(';').next().expect("a statement");
+            let names = leaves.trim().trim_matches(['{', '}']).split(',').map(str::trim);
+            for q in names {
+                assert!(q.ends_with(&format!("_s{to}")), "{path}: `{q}` leaves {name}");
+            }
+        }
+    }
+    assert!(seen >= 8, "{seen} memories");
 }

@@ -193,8 +193,9 @@ fn pipelines() {
         let path = format!("configs/{}_pipelined.toml", row[0]);
         let slower = place.path().join(format!("{}.toml", row[0]));
         let text = read(&path);
-        assert!(text.contains("clock_mhz = 130"), "{path}");
-        fs::write(&slower, text.replace("clock_mhz = 130", "clock_mhz = 60")).expect("written");
+        let (before, rest) = text.split_once("clock_mhz = ").expect("a clock");
+        let (_, after) = rest.split_once('\n').expect("the end of its line");
+        fs::write(&slower, format!("{before}clock_mhz = 60\n{after}")).expect("written");
         let stages = |path: &str| configuration(path).design.pipeline.expect("a pipeline").stages;
         let bits = |stages: &[Stage]| stages.iter().map(|it| u64::from(it.register_bits)).sum();
         let now = stages(&path);

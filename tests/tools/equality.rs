@@ -7,7 +7,7 @@ use glint::dsl::{Designer, end, step, valid};
 use glint::equality::{Verdict, compare};
 use glint::fixed::Format;
 use glint::hdl::netlist::{Design, Driver, NetId, Op};
-use glint::hdl::pipeline::{Goal, Options, TARGETS, pipeline};
+use glint::hdl::pipeline::{Delays, Goal, Options, TARGETS, pipeline};
 use glint::tools::Tool;
 
 use crate::common::cores::{all_configurations, configuration};
@@ -141,7 +141,8 @@ fn square(faulty: bool) -> Design {
 #[test]
 fn the_solver_finds_the_point_that_differs() {
     let goal = Goal::ClockMhz(100.0);
-    let options = Options { target: &TARGETS[0], goal, stall: true, side: 0 };
+    let options =
+        Options { target: &TARGETS[0], goal, stall: true, side: 0, delays: Delays::Registers };
     let made_of = |design: &Design| pipeline(design, &options).expect("a pipeline");
     assert!(matches!(verdict(&square(false), &made_of(&square(false))), Verdict::Equal(_)));
     let Verdict::Different(difference) = verdict(&square(false), &made_of(&square(true))) else {

@@ -11,6 +11,7 @@ mod builder_fuzz;
 mod certificate_check;
 mod certify;
 mod cocotb;
+mod delay_lines;
 mod equality;
 mod example;
 mod external;

@@ -18,7 +18,7 @@ use crate::registry::Registry;
 ///
 /// For each stage: which microinstructions it is made of, what it computes, the delay of its longest path by the
 /// delays of the target, the slack (what the clock period leaves beside that and a register's own delay), and the
-/// bits of the registers behind it.
+/// bits of the registers behind it, and of the delay lines that pass there.
 #[derive(Args)]
 #[command(after_help = "\
 Examples:
@@ -76,8 +76,10 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
 fn print(one: &Loaded, pipeline: &Pipeline) {
     let period = 1000.0 / pipeline.clock_mhz;
     let bits: u32 = pipeline.stages.iter().map(|stage| stage.register_bits).sum();
+    let delayed: u32 = pipeline.stages.iter().map(|stage| stage.delayed_bits).sum();
+    let delayed = if delayed > 0 { format!(", {delayed} in delay lines") } else { String::new() };
     tables::print_line(&format!(
-        "{}: {} stages for {:.1} MHz ({period:.2} ns) on {}, {bits} register bits",
+        "{}: {} stages for {:.1} MHz ({period:.2} ns) on {}, {bits} register bits{delayed}",
         one.path,
         pipeline.stages.len(),
         pipeline.clock_mhz,
@@ -91,6 +93,7 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
             format!("{:.2}", stage.logic_ns),
             format!("{:.2}", stage.slack_ns),
             stage.register_bits.to_string(),
+            stage.delayed_bits.to_string(),
         ]
     });
     let columns = [
@@ -100,6 +103,7 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
         Column::numbers("logic ns"),
         Column::numbers("slack ns"),
         Column::numbers("bits"),
+        Column::numbers("delayed"),
     ];
     tables::print(&columns, rows);
 }
@@ -118,6 +122,7 @@ fn as_json(one: &Loaded, pipeline: &Pipeline) -> Value {
             "logic_ns": stage.logic_ns,
             "slack_ns": stage.slack_ns,
             "register_bits": stage.register_bits,
+            "delayed_bits": stage.delayed_bits,
         })
     });
     json!({

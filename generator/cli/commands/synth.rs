@@ -169,14 +169,14 @@ fn measure<'a>(
     let core = &one.core;
     let clocks_per_point =
         comparison::clocks_per_point(&core.design, core.contract.as_ref(), EXPONENT)?;
-    let files = core.verilog()?;
-    let subject = Subject {
-        design: &core.design,
-        files: &files,
-        seeds: arguments.seeds,
-        limit: arguments.time_limit.get(),
-    };
     let figures = flows.par_iter().map(|flow| {
+        let design = flow.target().written(&core.design);
+        let subject = Subject {
+            design: &design,
+            files: &core.verilog_of(&design)?,
+            seeds: arguments.seeds,
+            limit: arguments.time_limit.get(),
+        };
         let digest = flow.digest(&subject);
         let cache = (!arguments.no_cache).then(|| Cache::beside(&one.path)).flatten();
         if let Some(figures) =

@@ -15,6 +15,7 @@
 mod cell;
 mod control;
 mod decisions;
+mod delay;
 mod dump;
 pub mod eval;
 mod handshake;
@@ -30,6 +31,7 @@ use crate::base::fixed::Format;
 pub use cell::Op;
 pub use control::{Control, Field, FieldKind, Microinstruction, Sequence};
 pub use decisions::{decided_by_data, delay_of_valid};
+pub use delay::{DelayLine, DelayMemory, Delayed};
 pub use eval::Interpreter;
 pub use handshake::Handshake;
 pub use held::register_held;

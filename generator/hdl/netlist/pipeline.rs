@@ -1,6 +1,6 @@
 //! What a design says of itself that is a pipeline.
 
-use super::{Design, Driver, Net, NetId};
+use super::{DelayMemory, Design, Driver, Net, NetId};
 
 /// What a design is that takes a point every clock.
 #[derive(Clone, Debug)]
@@ -15,6 +15,8 @@ pub struct Pipeline {
     pub stall: bool,
     /// Bits that travel with a point.
     pub side: u32,
+    /// What takes the place of registers that nothing reads, where Verilog is emitted; none if they stay.
+    pub delay_memory: Option<DelayMemory>,
     /// From the operands on. Results are behind the registers of the last: there are as many stages as
     /// clocks from a point to its results.
     pub stages: Vec<Stage>,
@@ -41,6 +43,8 @@ pub struct Stage {
     pub slack_ns: f64,
     /// Bits of the registers that end it.
     pub register_bits: u32,
+    /// Bits that a memory holds in place of such registers.
+    pub delayed_bits: u32,
 }
 
 /// A value of a pipeline that a register of the sequential design has in some microinstruction.

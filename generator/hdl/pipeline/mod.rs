@@ -8,8 +8,10 @@
 mod graph;
 mod possible;
 mod schedule;
+mod settle;
 mod split;
 mod stages;
+mod sums;
 mod target;
 #[cfg(test)]
 mod tests;
@@ -32,6 +34,15 @@ pub enum Goal {
     Stages(usize),
 }
 
+/// What values are held in that nothing reads for several stages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Delays {
+    /// A small memory, where the target has such.
+    Memory,
+    /// A register a stage.
+    Registers,
+}
+
 /// What a configuration says of its pipeline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Options {
@@ -43,6 +54,8 @@ pub struct Options {
     pub stall: bool,
     /// Bits that travel with a point.
     pub side: u32,
+    /// What holds values on their way.
+    pub delays: Delays,
 }
 
 /// What a configuration says; none if its architecture is sequential.
@@ -55,6 +68,10 @@ pub fn options(config: &Config) -> Option<Options> {
         },
         stall: config.choice("pipeline.stall") == "ready",
         side: config.integer("pipeline.side") as u32,
+        delays: match config.choice("pipeline.delays") {
+            "registers" => Delays::Registers,
+            _ => Delays::Memory,
+        },
     })
 }
 
@@ -68,7 +85,8 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
         let remedy = || "set architecture = \"sequential\"".to_owned();
         Diagnostics(faults.0.into_iter().map(|it| it.of_key("architecture", remedy())).collect())
     };
-    let unrolled = split::split(&unroll::unroll(sequential).map_err(sequentially)?, options.target);
+    let unrolled =
+        split::split(&unroll::unroll_in_powers(sequential).map_err(sequentially)?, options.target);
     let results: Vec<_> = unrolled.results.iter().map(|&(_, value)| value).collect();
     let problems = schedule::Problems::new(&unrolled.graph, options.target, &results);
     let wrong = |key: &'static str, message: String, remedy: String, at: Option<NetId>| {

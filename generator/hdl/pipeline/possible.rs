@@ -3,51 +3,89 @@
 use std::collections::{HashMap, HashSet};
 
 use super::graph::{Cell, Graph};
+use crate::base::fixed::mask;
 use crate::hdl::netlist::{NetId, eval};
 
 /// The most bits of which all combinations are tried.
 const MOST_BITS: u32 = 16;
 
+/// The most bits of a node that selects among a number for each of its values.
+const MOST_SELECTED: u32 = 6;
+
 /// Whether `condition`, one bit, is ever 1, whatever the nodes `free` and all leaves are; `None` if it
 /// depends on too many bits to try them all.
 pub fn ever(graph: &Graph, condition: NetId, free: &[NetId]) -> Option<bool> {
-    let free: HashSet<NetId> = free.iter().copied().collect();
-    let (mut seen, mut pending) = (HashSet::new(), vec![condition]);
-    let (mut leaves, mut inside) = (Vec::new(), Vec::new());
-    while let Some(id) = pending.pop() {
-        if !seen.insert(id) {
-            continue;
-        }
-        match &graph.node(id).cell {
-            Cell::Constant(_) => inside.push(id),
-            Cell::Op(op) if !free.contains(&id) => {
-                inside.push(id);
-                pending.extend(op.operands());
-            }
-            _ => leaves.push(id),
-        }
-    }
-    inside.sort_unstable();
-    let widths: Vec<u32> = leaves.iter().map(|&id| graph.width(id)).collect();
-    let bits: u32 = widths.iter().sum();
-    if bits > MOST_BITS {
+    let cone = Cone::of(graph, &[condition], free);
+    if cone.bits > MOST_BITS {
         return None;
     }
-    let mut values: HashMap<NetId, [u64; 1]> = HashMap::new();
-    for number in 0..1u64 << bits {
+    let mut cases = (0..1u64 << cone.bits).filter_map(|number| cone.values(graph, number));
+    Some(cases.any(|values| values[&condition] == [1]))
+}
+
+/// The one node of a few bits among `free` and the leaves that all `conditions` depend on, and how many of them hold for
+/// each of its bit patterns; none for one that it never has.
+pub fn count(
+    graph: &Graph,
+    conditions: &[NetId],
+    free: &[NetId],
+) -> Option<(NetId, Vec<Option<usize>>)> {
+    let cone = Cone::of(graph, conditions, free);
+    let [leaf] = cone.leaves[..] else { return None };
+    let hold = |values: HashMap<NetId, [u64; 1]>| {
+        conditions.iter().filter(|condition| values[condition] == [1]).count()
+    };
+    let of = |number: u64| cone.values(graph, number).map(hold);
+    (cone.bits <= MOST_SELECTED).then(|| (leaf, (0..1 << cone.bits).map(of).collect()))
+}
+
+/// What conditions are made of.
+struct Cone {
+    leaves: Vec<NetId>,
+    /// The bits of all leaves.
+    bits: u32,
+    /// In order.
+    inside: Vec<NetId>,
+}
+
+impl Cone {
+    /// Down to leaves and the nodes `free`.
+    fn of(graph: &Graph, conditions: &[NetId], free: &[NetId]) -> Self {
+        let free: HashSet<NetId> = free.iter().copied().collect();
+        let (mut seen, mut pending) = (HashSet::new(), conditions.to_vec());
+        let (mut leaves, mut inside) = (Vec::new(), Vec::new());
+        while let Some(id) = pending.pop() {
+            if !seen.insert(id) {
+                continue;
+            }
+            match &graph.node(id).cell {
+                Cell::Constant(_) => inside.push(id),
+                Cell::Op(op) if !free.contains(&id) => {
+                    inside.push(id);
+                    pending.extend(op.operands());
+                }
+                _ => leaves.push(id),
+            }
+        }
+        inside.sort_unstable();
+        let bits = leaves.iter().map(|&id| graph.width(id)).sum();
+        Self { leaves, bits, inside }
+    }
+
+    /// All nodes where the bits of the leaves are those of a number; none if a leaf never has such a value.
+    fn values(&self, graph: &Graph, number: u64) -> Option<HashMap<NetId, [u64; 1]>> {
+        let mut values: HashMap<NetId, [u64; 1]> = HashMap::new();
         let mut rest = number;
-        for (&leaf, &width) in leaves.iter().zip(&widths) {
-            values.insert(leaf, [rest & crate::base::fixed::mask(width)]);
+        for &leaf in &self.leaves {
+            let (node, width) = (graph.node(leaf), graph.width(leaf));
+            let bits = rest & mask(width);
             rest >>= width;
+            if !(node.range.0..=node.range.1).contains(&node.format.raw(bits)) {
+                return None;
+            }
+            values.insert(leaf, [bits]);
         }
-        let within = |&id: &NetId| {
-            let (node, [bits]) = (graph.node(id), values[&id]);
-            (node.range.0..=node.range.1).contains(&node.format.raw(bits))
-        };
-        if !leaves.iter().all(within) {
-            continue;
-        }
-        for &id in &inside {
+        for &id in &self.inside {
             let node = graph.node(id);
             let bits = match &node.cell {
                 Cell::Op(op) => {
@@ -59,9 +97,6 @@ pub fn ever(graph: &Graph, condition: NetId, free: &[NetId]) -> Option<bool> {
             };
             values.insert(id, bits);
         }
-        if values[&condition] == [1] {
-            return Some(true);
-        }
+        Some(values)
     }
-    Some(false)
 }

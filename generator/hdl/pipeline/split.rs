@@ -2,9 +2,10 @@
 //!
 //! An operand that is too wide is cut in two: its upper bits, as many as a multiplier takes, and the rest.
 //! A rest of a few bits becomes rows of the product in look-up tables, as on paper: a synthesiser would
-//! spend a whole multiplier on it. A longer rest is a product of its own.
+//! spend a whole multiplier on it. A longer rest, or one of long rows, is a product of its own.
 
 use super::graph::{Cell, Graph, Label};
+use super::sums::shortened;
 use super::target::Target;
 use super::unroll::Unrolled;
 use crate::base::fixed::Format;
@@ -12,6 +13,10 @@ use crate::hdl::netlist::{NetId, Op};
 
 /// The most bits of an operand that become rows in look-up tables.
 const MOST_ROWS: u32 = 4;
+
+/// The most bits of all such rows together. Three rows of 21 bits and their sums are about 110 look-up tables on ECP5, and
+/// four of 22 bits 160: for those a multiplier is the better price.
+const MOST_ROW_BITS: u32 = 66;
 
 /// The same computation with products that the target's multipliers take.
 pub fn split(unrolled: &Unrolled, target: &Target) -> Unrolled {
@@ -30,7 +35,7 @@ pub fn split(unrolled: &Unrolled, target: &Target) -> Unrolled {
                 for operand in op.operands_mut() {
                     *operand = at(*operand);
                 }
-                graph.insert(Cell::Op(op), node.format, node.range, &node.label)
+                shortened(&mut graph, op, node.format, node.range, &node.label)
             }
             Cell::Read { rom, address } => {
                 let cell = Cell::Read { rom: *rom, address: at(*address) };
@@ -95,7 +100,7 @@ fn product(
     let upper_format = integer(signed, limit + graph.width(narrow));
     let upper = product(graph, target, upper_bits, narrow, upper_format, &part("upper"));
     // The lower bits have no sign; the product with them has that of the other operand.
-    let lower = if rest <= MOST_ROWS {
+    let lower = if rest <= MOST_ROWS && rest * graph.width(narrow) <= MOST_ROW_BITS {
         rows(graph, wide, rest, narrow, &part)
     } else {
         let lower_bits = graph.op(
@@ -165,7 +170,8 @@ fn rows(
                 let total = width + row + 1;
                 let (a, b) =
                     (graph.resize(sum, total, signed), graph.resize(shifted, total, signed));
-                graph.op(Op::Add { a, b, carry: None }, format(total), &part("rows"))
+                let (op, format) = (Op::Add { a, b, carry: None }, format(total));
+                shortened(graph, op, format, format.range(), &part("rows"))
             }
         });
     }

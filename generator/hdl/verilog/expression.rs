@@ -40,6 +40,11 @@ impl<'a> Expressions<'a> {
         Self { plan, names, constants: Vec::new() }
     }
 
+    /// `wish`, or a name like it that nothing else has.
+    pub fn fresh(&mut self, wish: &str) -> String {
+        self.names.fresh(wish)
+    }
+
     /// The right-hand side that drives a net.
     pub fn driver(&mut self, id: NetId) -> String {
         match &self.plan.design.net(id).driver {

@@ -2,6 +2,7 @@
 //! collect them, and the templates in `templates/` print views and decide nothing.
 
 pub(crate) mod bits;
+pub(crate) mod delays;
 pub(crate) mod expression;
 pub(crate) mod header;
 pub(crate) mod interface;

@@ -16,11 +16,11 @@ use crate::hdl::netlist::{Design, Driver, NetId, Op, Partition, RegId, RomId};
 
 /// Builds one partition.
 pub struct Builder<'a> {
-    plan: &'a Plan<'a>,
+    pub(super) plan: &'a Plan<'a>,
     naming: &'a Naming,
     interface: &'a Interface,
     partition: Partition,
-    expressions: Expressions<'a>,
+    pub(super) expressions: Expressions<'a>,
     /// The choices of fields that label a case, as (field, value).
     labels: BTreeSet<(usize, usize)>,
 }
@@ -97,7 +97,9 @@ impl<'a> Builder<'a> {
     /// The declarations of what the clock changes and is wanted, except ports.
     pub(super) fn state(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<String> {
         let design = self.plan.design;
-        let registers = design.registers.iter().map(|register| register.q);
+        let registers = (0..design.registers.len() as u32).map(RegId);
+        let declared = registers.filter(|it| self.plan.delayed(*it) != Some(false));
+        let registers = declared.map(|it| design.register(it).q);
         let roms = design.roms.iter().filter(|rom| rom.synchronous).map(|rom| rom.data);
         let rows: Vec<_> = registers
             .chain(roms)
@@ -273,6 +275,9 @@ impl<'a> Builder<'a> {
             }
             let key = (register.enable, register.reset.is_some());
             let member = RegId(at as u32);
+            if self.plan.delayed(member).is_some() {
+                continue;
+            }
             match groups.iter_mut().find(|(group, _)| *group == key) {
                 Some((_, members)) => members.push(member),
                 None => groups.push((key, vec![member])),

@@ -1,5 +1,6 @@
 //! The module of a pipeline: the handshake, then a section for every stage.
 
+use super::delays;
 use super::header::{self, Origin};
 use super::interface::Interface;
 use super::module::{Builder, parameters};
@@ -42,6 +43,7 @@ pub fn module(
             groups: builder.groups(&here),
         });
     }
+    stages.extend(delays::section(&mut builder));
     let results = |net: NetId| !flow(net) && section(net) == pipeline.stages.len();
     stages.push(StageSection {
         title: comment(4, "Results"),

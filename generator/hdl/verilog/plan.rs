@@ -11,7 +11,7 @@ use anyhow::{Result, ensure};
 use super::bits::{Bits, Piece};
 use crate::base::diagnostic::Diagnostics;
 use crate::base::fixed::mask;
-use crate::hdl::netlist::{Design, Driver, NetId, Op, Partition, RegId, Role, RomId};
+use crate::hdl::netlist::{DelayLine, Design, Driver, NetId, Op, Partition, RegId, Role, RomId};
 
 /// How a net appears in the Verilog.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,6 +51,8 @@ pub struct Plan<'a> {
     pub reads: BTreeMap<(Partition, NetId), u64>,
     /// The reset port, if a register is reset.
     pub reset: Option<NetId>,
+    /// The registers that are written as memories.
+    pub delays: Vec<DelayLine>,
 }
 
 impl<'a> Plan<'a> {
@@ -73,6 +75,7 @@ impl<'a> Plan<'a> {
             live: Vec::new(),
             reads: BTreeMap::new(),
             reset,
+            delays: design.delay_lines(),
         };
         plan.resolve_wiring(&order);
         plan.find_live(&order);
@@ -97,6 +100,13 @@ impl<'a> Plan<'a> {
     /// Whether a net is an input port, driven from outside.
     pub fn is_input(&self, net: NetId) -> bool {
         self.design.net(net).driver == Driver::Input
+    }
+
+    /// Whether a register is one of those of a delay line, and whether it is the last, which is read.
+    pub fn delayed(&self, register: RegId) -> Option<bool> {
+        let mut values = self.delays.iter().flat_map(|line| &line.values);
+        let value = values.find(|it| it.registers.contains(&register))?;
+        Some(value.last() == register)
     }
 
     /// The module that a reader is written in.

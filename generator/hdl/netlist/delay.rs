@@ -1,0 +1,145 @@
+//! Delay lines: values of a pipeline that nothing reads on their way through several stages.
+
+use std::collections::BTreeMap;
+
+use super::{Design, Driver, NetId, RegId};
+
+/// A memory in look-up tables, as a target has it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DelayMemory {
+    /// Its words.
+    pub words: u32,
+    /// Their bits.
+    pub width: u32,
+    /// The look-up tables that it takes, those of its addresses too.
+    pub tables: u32,
+}
+
+impl DelayMemory {
+    /// Whether a line with its counter takes fewer look-up tables and registers than it takes the place of.
+    fn pays(self, words: usize, bits: u32) -> bool {
+        let words = words as u32;
+        let memories = bits.div_ceil(self.width) * words.div_ceil(self.words);
+        let counter = words.next_power_of_two().trailing_zeros();
+        words > 1 && words * bits > memories * self.tables + 2 * counter
+    }
+}
+
+/// Values on the same way, from one stage to another.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct DelayLine {
+    /// The stage that makes the values.
+    pub from: usize,
+    /// The stage that reads them.
+    pub to: usize,
+    /// When they move on; none if they always do.
+    pub enable: Option<NetId>,
+    /// The values, in the order of their registers.
+    pub values: Vec<Delayed>,
+}
+
+/// A value on its way.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Delayed {
+    /// What comes in.
+    pub data: NetId,
+    /// The registers that it goes through, one for each stage. Only the last is read by anything but the next.
+    pub registers: Vec<RegId>,
+}
+
+impl DelayLine {
+    /// The words of a memory that does the same: the value that comes out of it is held by a register behind it.
+    pub fn words(&self) -> usize {
+        self.to - self.from - 1
+    }
+}
+
+impl Delayed {
+    /// The registers that a memory takes the place of: all but the last.
+    pub fn passed(&self) -> &[RegId] {
+        &self.registers[..self.registers.len() - 1]
+    }
+
+    /// The register in which the value leaves.
+    pub fn last(&self) -> RegId {
+        self.registers[self.registers.len() - 1]
+    }
+}
+
+impl Design {
+    /// The delay lines that are emitted as memories: those that take less so on a target that has small ones.
+    ///
+    /// What is found is the same as these registers on every clock, whatever the enable does. The side channel stays
+    /// in registers: the proof by induction follows its value from stage to stage.
+    pub fn delay_lines(&self) -> Vec<DelayLine> {
+        let Some(pipeline) = &self.pipeline else { return Vec::new() };
+        let Some(memory) = pipeline.delay_memory else { return Vec::new() };
+        let readers = self.readers();
+        // The register that alone reads another, and is like it but for its stage.
+        let next = |at: usize| {
+            let register = &self.registers[at];
+            let [Reader::Register(next)] = readers[register.q.index()][..] else { return None };
+            let after = &self.registers[next];
+            (after.enable == register.enable
+                && register.reset.is_none()
+                && after.reset.is_none()
+                && !pipeline.side_values.contains(&register.q))
+            .then_some(next)
+        };
+        let next: Vec<Option<usize>> = (0..self.registers.len()).map(next).collect();
+        let mut lines: BTreeMap<(usize, usize), DelayLine> = BTreeMap::new();
+        for (at, register) in self.registers.iter().enumerate() {
+            let Some(data) = register.data else { continue };
+            if next.contains(&Some(at)) {
+                continue;
+            }
+            let chain = std::iter::successors(Some(at), |&at| next[at]);
+            let registers: Vec<RegId> = chain.map(|at| RegId(at as u32)).collect();
+            let last = self.register(registers[registers.len() - 1]).q;
+            let to = pipeline.stage_of[last.index()];
+            let (from, enable) = (to - registers.len(), register.enable);
+            let line = lines.entry((from, to)).or_insert_with(|| DelayLine {
+                from,
+                to,
+                enable,
+                values: Vec::new(),
+            });
+            if line.enable == enable {
+                line.values.push(Delayed { data, registers });
+            }
+        }
+        let bits = |line: &DelayLine| line.values.iter().map(|it| self.width(it.data)).sum();
+        lines.into_values().filter(|line| memory.pays(line.words(), bits(line))).collect()
+    }
+
+    /// Of each net, who reads it.
+    fn readers(&self) -> Vec<Vec<Reader>> {
+        let mut readers = vec![Vec::new(); self.nets.len()];
+        for (at, register) in self.registers.iter().enumerate() {
+            register.data.iter().for_each(|it| readers[it.index()].push(Reader::Register(at)));
+            register.enable.iter().for_each(|it| readers[it.index()].push(Reader::Other));
+        }
+        for rom in &self.roms {
+            let nets = std::iter::once(rom.address).chain(rom.enable);
+            nets.for_each(|it| readers[it.index()].push(Reader::Other));
+        }
+        for net in &self.nets {
+            if let Driver::Op(op) = &net.driver {
+                op.operands().iter().for_each(|it| readers[it.index()].push(Reader::Other));
+            }
+        }
+        for port in &self.ports {
+            readers[port.net.index()].push(Reader::Other);
+        }
+        readers
+    }
+}
+
+/// Who reads a net.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Reader {
+    /// A register, as its data.
+    Register(usize),
+    /// Anything else.
+    Other,
+}

@@ -1,0 +1,92 @@
+//! A limit of a limit: what a step that limits its result gives when it is taken several times.
+//!
+//! `over₂ ? most : f(over₁ ? most : x)`, of which `over₂` asks for a bit of the inner choice, is one choice: `most` if
+//! either is over, and else `f(x)`.
+
+use super::graph::{Cell, Graph, Label};
+use crate::base::fixed::Format;
+use crate::hdl::netlist::{NetId, Op};
+
+/// The same value as one choice, where a choice between a constant and another such choice makes it.
+pub fn settled(graph: &mut Graph, id: NetId) -> NetId {
+    let node = graph.node(id).clone();
+    let Some((over, rest, most)) = limit(graph, id) else { return id };
+    let over = flag(graph, over);
+    let rest = below(graph, rest, over);
+    graph.op(Op::Mux { select: over, inputs: vec![rest, most] }, node.format, &node.label)
+}
+
+/// Of `over ? most : rest` with a constant: `over`, `rest` and the constant.
+fn limit(graph: &Graph, id: NetId) -> Option<(NetId, NetId, NetId)> {
+    let Cell::Op(Op::Mux { select, inputs }) = &graph.node(id).cell else { return None };
+    match inputs[..] {
+        [rest, most] if graph.constant_of(most).is_some() => Some((*select, rest, most)),
+        _ => None,
+    }
+}
+
+/// A condition without the choice of which it asks for a bit.
+fn flag(graph: &mut Graph, id: NetId) -> NetId {
+    let node = graph.node(id).clone();
+    let Cell::Op(Op::Slice { of, low }) = node.cell else { return id };
+    let Some((over, rest, most)) = limit(graph, of) else { return id };
+    if node.format.width() != 1 || graph.constant_of(most).is_none_or(|most| most >> low & 1 == 0) {
+        return id;
+    }
+    let label = Label { named: false, ..node.label };
+    let bit = graph.op(Op::Slice { of: rest, low }, Format::BIT, &label);
+    either(graph, over, bit, &label)
+}
+
+/// Whether one of two bits is 1; of bits side by side, whether any is.
+fn either(graph: &mut Graph, a: NetId, b: NetId, label: &Label) -> NetId {
+    if let (Some((of, low, width)), Some((other, below, 1))) = (run(graph, a), run(graph, b))
+        && of == other
+        && below + 1 == low
+    {
+        let format = Format::unsigned(width as i32 + 1, 0);
+        let bits = graph.op(Op::Slice { of, low: below }, format, label);
+        return graph.op(Op::Any(bits), Format::BIT, label);
+    }
+    graph.op(Op::Or(a, b), Format::BIT, label)
+}
+
+/// The bits of which a condition asks whether any is 1, as a net, the lowest bit and their number.
+fn run(graph: &Graph, id: NetId) -> Option<(NetId, u32, u32)> {
+    match graph.node(id).cell {
+        Cell::Op(Op::Any(of)) => run(graph, of),
+        Cell::Op(Op::Slice { of, low }) => Some((of, low, graph.width(id))),
+        _ => None,
+    }
+}
+
+/// `id` where `over` is 0, through wiring: choices whose own condition is 0 then are what they are below the limit.
+fn below(graph: &mut Graph, id: NetId, over: NetId) -> NetId {
+    let node = graph.node(id).clone();
+    if let Some((inner, rest, _)) = limit(graph, id) {
+        return if follows(graph, over, inner) { below(graph, rest, over) } else { id };
+    }
+    match node.cell {
+        Cell::Op(mut op @ (Op::Slice { .. } | Op::Concat(_) | Op::Extend(_) | Op::Relabel(_))) => {
+            for operand in op.operands_mut() {
+                *operand = below(graph, *operand, over);
+            }
+            graph.op(op, node.format, &node.label)
+        }
+        _ => id,
+    }
+}
+
+/// Whether `inner` is 0 wherever `over` is.
+fn follows(graph: &Graph, over: NetId, inner: NetId) -> bool {
+    match (run(graph, over), run(graph, inner)) {
+        _ if over == inner => true,
+        (Some((of, low, width)), Some((other, from, count))) => {
+            of == other && low <= from && from + count <= low + width
+        }
+        _ => match graph.node(over).cell {
+            Cell::Op(Op::Or(a, b)) => follows(graph, a, inner) || follows(graph, b, inner),
+            _ => false,
+        },
+    }
+}

@@ -1,0 +1,100 @@
+//! Sums and differences in fewer look-up tables: a synthesiser takes them as they are written, and a schedule counts them.
+//!
+//! Of a sum of which an operand has zeros in its lowest bits those of the other one pass it by. `a + ~b + 1` is `a - b`. What a
+//! constant less a limited value is, is chosen behind the difference, where the register takes it by its reset.
+
+use super::graph::{Cell, Graph, Interval, Label};
+use crate::base::fixed::Format;
+use crate::hdl::netlist::{NetId, Op};
+
+/// A cell; of a sum or a difference the chain has no more bits than it needs.
+pub fn shortened(
+    graph: &mut Graph,
+    op: Op,
+    format: Format,
+    range: Interval,
+    label: &Label,
+) -> NetId {
+    let op = match op {
+        Op::Add { a, b, carry: Some(one) } if graph.constant_of(one) == Some(1) => {
+            match (&graph.node(a).cell, &graph.node(b).cell) {
+                (_, Cell::Op(Op::Not(b))) => Op::Sub(a, *b),
+                (Cell::Op(Op::Not(a)), _) => Op::Sub(b, *a),
+                _ => op,
+            }
+        }
+        _ => op,
+    };
+    if let Some(id) = chosen_behind(graph, &op, format, range, label) {
+        return id;
+    }
+    let width = format.width();
+    let (passing, other) = match op {
+        Op::Add { a, b, carry: None } if zeros(graph, a) > zeros(graph, b) => (b, a),
+        Op::Add { a, b, carry: None } | Op::Sub(a, b) => (a, b),
+        _ => return graph.insert(Cell::Op(op), format, range, label),
+    };
+    let low = zeros(graph, other);
+    if low == 0 || low >= width {
+        return graph.insert(Cell::Op(op), format, range, label);
+    }
+    let label_of_part =
+        Label { name: format!("{}_upper", label.name), named: false, ..label.clone() };
+    let part = Format::unsigned((width - low) as i32, 0);
+    let [upper, addend] =
+        [passing, other].map(|of| graph.op(Op::Slice { of, low }, part, &label_of_part));
+    let upper = match (op, graph.constant_of(addend)) {
+        // The constant is 1: its lowest bit is not 0.
+        (_, Some(_)) if width - low == 1 => graph.op(Op::Not(upper), part, &label_of_part),
+        (Op::Sub(..), _) => graph.op(Op::Sub(upper, addend), part, &label_of_part),
+        _ => graph.op(Op::Add { a: upper, b: addend, carry: None }, part, &label_of_part),
+    };
+    let lower = Format::unsigned(low as i32, 0);
+    let lower = graph.op(Op::Slice { of: passing, low: 0 }, lower, &label_of_part);
+    graph.insert(Cell::Op(Op::Concat(vec![upper, lower])), format, range, label)
+}
+
+/// A constant less a choice between a value and a constant: the choice between their differences.
+fn chosen_behind(
+    graph: &mut Graph,
+    op: &Op,
+    format: Format,
+    range: Interval,
+    label: &Label,
+) -> Option<NetId> {
+    let Op::Sub(from, choice) = *op else { return None };
+    graph.constant_of(from)?;
+    let Cell::Op(Op::Mux { select, inputs }) = graph.node(choice).cell.clone() else { return None };
+    let constants = inputs.iter().filter(|it| graph.constant_of(**it).is_some());
+    if inputs.len() != 2 || constants.count() != 1 {
+        return None;
+    }
+    let each = Label { name: format!("{}_before", label.name), named: false, ..label.clone() };
+    let inputs = inputs.iter().map(|&it| graph.op(Op::Sub(from, it), format, &each)).collect();
+    Some(graph.insert(Cell::Op(Op::Mux { select, inputs }), format, range, label))
+}
+
+/// How many of the lowest bits are always 0.
+fn zeros(graph: &Graph, id: NetId) -> u32 {
+    let width = graph.width(id);
+    match &graph.node(id).cell {
+        Cell::Constant(bits) => bits.trailing_zeros().min(width),
+        Cell::Op(Op::Relabel(of)) => zeros(graph, *of),
+        Cell::Op(Op::Extend(of)) => match zeros(graph, *of) {
+            all if all == graph.width(*of) => width,
+            some => some,
+        },
+        Cell::Op(Op::Concat(parts)) => {
+            let mut total = 0;
+            for part in parts.iter().rev() {
+                let these = zeros(graph, *part);
+                total += these;
+                if these < graph.width(*part) {
+                    break;
+                }
+            }
+            total
+        }
+        _ => 0,
+    }
+}

@@ -1,0 +1,96 @@
+//! Delay lines of the emitted Verilog: memories in place of registers. A bench fails where one is too long or too short,
+//! or does not wait when points do.
+
+use glint::tools::{Simulator, run_bench};
+
+use crate::common::cores::{Emitted, Files, configuration, configuration_with};
+use crate::common::tools::LIMIT;
+
+/// Points with pauses and stalls.
+const POINTS: u64 = 60;
+
+const CONFIG: &str = "configs/threshold_pipelined.toml";
+
+fn passes(simulator: Simulator, files: &Files, bench: &str) -> bool {
+    let outcome = run_bench(simulator, files, bench, LIMIT);
+    outcome.unwrap_or_else(|error| panic!("{error:?}")).passed
+}
+
+/// The files with a change in the text of the module, which the change must find.
+fn changed(emitted: &Emitted, change: &dyn Fn(&str) -> String) -> Files {
+    let mut files = emitted.simulated();
+    let module = format!("{}.v", emitted.name);
+    let text = &mut files.iter_mut().find(|(name, _)| *name == module).expect("the module").1;
+    let wrong = change(text);
+    assert_ne!(*text, wrong);
+    *text = wrong;
+    files
+}
+
+/// Every delay line with so many words: the text up to them, and their number.
+fn slots(text: &str) -> Vec<usize> {
+    let counts = text.match_indices("    initial slot_of_");
+    let digits =
+        |at: usize| text[at..].chars().take_while(char::is_ascii_digit).collect::<String>();
+    counts.map(|(at, found)| digits(at + found.len()).parse().expect("a number")).collect()
+}
+
+/// The same with lines of `words` words that have another number of them, of as many bits.
+fn with_words(text: &str, words: usize, other: usize) -> String {
+    let (last, wrong) = (words - 1, other - 1);
+    let bits = words.next_power_of_two().trailing_zeros();
+    assert!(other <= 1 << bits, "{other} words need more bits than {words}");
+    text.replace(
+        &format!("slot_of_{words} == {bits}'d{last} ?"),
+        &format!("slot_of_{words} == {bits}'d{wrong} ?"),
+    )
+    .replace(&format!(" [0:{last}];"), &format!(" [0:{wrong}];"))
+}
+
+#[test]
+fn a_line_that_is_too_long_or_too_short_is_noticed() {
+    let emitted = Emitted::new(&configuration(CONFIG), POINTS, 1);
+    let text = emitted.rtl().into_iter().find(|(name, _)| name.ends_with("_pipelined.v"));
+    let slots = slots(&text.expect("a module").1);
+    assert!(!slots.is_empty(), "no delay lines");
+    for simulator in [Simulator::Icarus, Simulator::Verilator] {
+        assert!(passes(simulator, &emitted.simulated(), &emitted.bench()), "{simulator}");
+        for &words in &slots {
+            for other in [words - 1, words + 1] {
+                let files = changed(&emitted, &|text| with_words(text, words, other));
+                let passed = passes(simulator, &files, &emitted.bench());
+                assert!(!passed, "{simulator}: {other} words for {words}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_line_that_does_not_wait_is_noticed() {
+    let emitted = Emitted::new(&configuration(CONFIG), POINTS, 1);
+    let forgets = |text: &str| {
+        let (before, lines) = text.split_once("    // Delay lines").expect("a section");
+        format!("{before}    // Delay lines{}", lines.replace("if (advance)", "if (1'b1)"))
+    };
+    for simulator in [Simulator::Icarus, Simulator::Verilator] {
+        let files = changed(&emitted, &forgets);
+        assert!(!passes(simulator, &files, &emitted.bench()), "{simulator}");
+    }
+}
+
+/// Without stalls there is nothing to wait for, and with `pipeline.delays = "registers"` nothing but registers.
+#[test]
+fn lines_without_stalls_and_registers_in_their_place_do_the_same() {
+    for (keys, lines) in [("stall = \"none\"\n", true), ("delays = \"registers\"\n", false)] {
+        let core = configuration_with(CONFIG, &format!("[pipeline]\n{keys}"));
+        let emitted = Emitted::new(&core, POINTS, 2);
+        let has = emitted.rtl().iter().any(|(_, text)| text.contains("// Delay lines"));
+        assert_eq!(has, lines, "{keys}");
+        for simulator in [Simulator::Icarus, Simulator::Verilator] {
+            assert!(
+                passes(simulator, &emitted.simulated(), &emitted.bench()),
+                "{simulator} {keys}"
+            );
+        }
+    }
+}
