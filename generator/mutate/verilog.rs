@@ -186,8 +186,8 @@ impl Text {
             modules: Vec::new(),
         };
         // Wrappers around the core have a bench and proofs of their own.
-        let core =
-            ["", "_control", "_datapath"].map(|part| format!("rtl_out/{name}/{name}{part}.v"));
+        let core = ["", "_control", "_datapath", "_multiplier"]
+            .map(|part| format!("rtl_out/{name}/{name}{part}.v"));
         for file in files {
             let plain = file.path.rsplit('/').next().unwrap_or(&file.path).to_owned();
             let module = core.contains(&file.path);

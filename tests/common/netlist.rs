@@ -21,7 +21,7 @@ pub const POINTS: u64 = 40;
 /// # Panics
 /// Yosys fails or warns, or there is a latch.
 pub fn synthesise(directory: &Path, emitted: &Emitted, family: &Family) {
-    write(directory, &emitted.rtl());
+    write(directory, &emitted.rtl_for(family.name));
     let commands = format!(
         "read_verilog {}; hierarchy -check -top {top}; proc; \
          select -assert-none t:$dlatch t:$adlatch t:$dlatchsr t:$sr; \

@@ -17,6 +17,7 @@ mod external;
 mod formal;
 mod gate_level;
 mod litex;
+mod multipliers;
 mod mutants;
 mod random_configurations;
 mod random_netlists;

@@ -7,6 +7,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::{Loaded, load, paths};
+use crate::base::text::counted;
 use crate::cli::tables::Column;
 use crate::cli::{Configs, Output, store, tables};
 use crate::hdl::netlist::{Design, Pipeline, value_name};
@@ -76,8 +77,12 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
 fn print(one: &Loaded, pipeline: &Pipeline) {
     let period = 1000.0 / pipeline.clock_mhz;
     let bits: u32 = pipeline.stages.iter().map(|stage| stage.register_bits).sum();
+    let multipliers = match pipeline.registered.len() {
+        0 => String::new(),
+        some => format!(" beside those in {}", counted(some, "multiplier")),
+    };
     tables::print_line(&format!(
-        "{}: {} stages for {:.1} MHz ({period:.2} ns) on {}, {bits} register bits",
+        "{}: {} stages for {:.1} MHz ({period:.2} ns) on {}, {bits} register bits{multipliers}",
         one.path,
         pipeline.stages.len(),
         pipeline.clock_mhz,
@@ -127,6 +132,7 @@ fn as_json(one: &Loaded, pipeline: &Pipeline) -> Value {
         "clock_mhz": pipeline.clock_mhz,
         "latency": pipeline.stages.len(),
         "interval": 1,
+        "registered_multipliers": pipeline.registered.len(),
         "stages": stages.collect::<Vec<_>>(),
     })
 }

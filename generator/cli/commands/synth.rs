@@ -169,14 +169,14 @@ fn measure<'a>(
     let core = &one.core;
     let clocks_per_point =
         comparison::clocks_per_point(&core.design, core.contract.as_ref(), EXPONENT)?;
-    let files = core.verilog()?;
-    let subject = Subject {
-        design: &core.design,
-        files: &files,
-        seeds: arguments.seeds,
-        limit: arguments.time_limit.get(),
-    };
     let figures = flows.par_iter().map(|flow| {
+        let files = core.verilog_for(flow.target().name())?;
+        let subject = Subject {
+            design: &core.design,
+            files: &files,
+            seeds: arguments.seeds,
+            limit: arguments.time_limit.get(),
+        };
         let digest = flow.digest(&subject);
         let cache = (!arguments.no_cache).then(|| Cache::beside(&one.path)).flatten();
         if let Some(figures) =

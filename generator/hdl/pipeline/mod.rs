@@ -39,6 +39,8 @@ pub struct Options {
     pub target: &'static Target,
     /// What is asked of the schedule.
     pub goal: Goal,
+    /// Products end in the register of a multiplier, where the target has a delay for it.
+    pub registered: bool,
     /// The environment can hold the results back.
     pub stall: bool,
     /// Bits that travel with a point.
@@ -53,6 +55,7 @@ pub fn options(config: &Config) -> Option<Options> {
             0 => Goal::ClockMhz(config.number("pipeline.clock_mhz")),
             stages => Goal::Stages(stages as usize),
         },
+        registered: config.choice("pipeline.multipliers") == "registered",
         stall: config.choice("pipeline.stall") == "ready",
         side: config.integer("pipeline.side") as u32,
     })
@@ -70,7 +73,12 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
     };
     let unrolled = split::split(&unroll::unroll(sequential).map_err(sequentially)?, options.target);
     let results: Vec<_> = unrolled.results.iter().map(|&(_, value)| value).collect();
-    let problems = schedule::Problems::new(&unrolled.graph, options.target, &results);
+    let problems = |registered: bool| {
+        let registered = options.target.registered.filter(|_| registered);
+        schedule::Problems::new(&unrolled.graph, options.target, registered, &results)
+    };
+    let unregistered = (!options.registered).then_some(&problems);
+    let problems = problems(options.registered);
     let wrong = |key: &'static str, message: String, remedy: String, at: Option<NetId>| {
         let place =
             at.map_or(sequential.nets[0].location, |at| unrolled.graph.node(at).label.location);
@@ -86,7 +94,11 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
                  most",
                 unrolled.graph.node(limiting).label.name
             );
-            let remedy = format!("set pipeline.clock_mhz to {nearest} or less");
+            let faster = unregistered.is_some_and(|problems| {
+                problems(true).fastest().is_some_and(|it| it.period * clock <= 1000.0)
+            });
+            let faster = if faster { ", or pipeline.multipliers = \"registered\"" } else { "" };
+            let remedy = format!("set pipeline.clock_mhz to {nearest} or less{faster}");
             wrong("pipeline.clock_mhz", message, remedy, Some(limiting))
         })?,
         Goal::Stages(stages) => {
