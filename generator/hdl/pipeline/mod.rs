@@ -5,8 +5,10 @@
 //! and `stages` makes a design of it again, without a microprogram: a register wherever a value
 //! crosses from a stage to the next. Nothing here knows a device.
 
+mod gates;
 mod graph;
 mod possible;
+mod rebuild;
 mod schedule;
 mod split;
 mod stages;
@@ -72,6 +74,7 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
         Diagnostics(faults.0.into_iter().map(|it| it.of_key("architecture", remedy())).collect())
     };
     let unrolled = split::split(&unroll::unroll(sequential).map_err(sequentially)?, options.target);
+    let unrolled = if options.registered { gates::gated(&unrolled) } else { unrolled };
     let results: Vec<_> = unrolled.results.iter().map(|&(_, value)| value).collect();
     let problems = |registered: bool| {
         let registered = options.target.registered.filter(|_| registered);
