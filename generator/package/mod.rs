@@ -96,9 +96,8 @@ pub fn sources_for(files: Vec<OutputFile>, target: &str) -> Vec<(String, String)
     let needed = |file: &OutputFile| [".v", ".mem"].iter().any(|it| file.name().ends_with(it));
     let (primitives, portable): (Vec<_>, Vec<_>) =
         files.into_iter().filter(needed).partition(|file| file.target().is_some());
-    let own = |name: &str| {
-        primitives.iter().find(|it| it.target() == Some(target) && it.name() == name)
-    };
+    let own =
+        |name: &str| primitives.iter().find(|it| it.target() == Some(target) && it.name() == name);
     portable
         .into_iter()
         .map(|file| {

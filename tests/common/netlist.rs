@@ -23,9 +23,10 @@ pub const POINTS: u64 = 40;
 pub fn synthesise(directory: &Path, emitted: &Emitted, family: &Family) {
     write(directory, &emitted.rtl_for(family.name));
     let commands = format!(
-        "read_verilog {}; hierarchy -check -top {top}; proc; \
+        "{}read_verilog {}; hierarchy -check -top {top}; proc; \
          select -assert-none t:$dlatch t:$adlatch t:$dlatchsr t:$sr; \
          {}; check -assert; write_json netlist.json; write_verilog -noattr netlist.v",
+        family.library,
         verilog_files(directory).join(" "),
         family.script(&emitted.name),
         top = emitted.name,
