@@ -241,20 +241,28 @@ impl Core {
     /// # Errors
     /// The design cannot be written as Verilog.
     pub fn verilog(&self) -> Result<Vec<(String, String)>> {
-        self.verilog_of(&self.design)
+        self.verilog_for("")
+    }
+
+    /// The same for a target, by name, with what it has of its own.
+    ///
+    /// # Errors
+    /// The design cannot be written as Verilog.
+    pub fn verilog_for(&self, target: &str) -> Result<Vec<(String, String)>> {
+        self.verilog_of(&self.design, target)
     }
 
     /// The same of the core's design with something changed.
     ///
     /// # Errors
     /// The design cannot be written as Verilog.
-    pub fn verilog_of(&self, design: &Design) -> Result<Vec<(String, String)>> {
+    pub fn verilog_of(&self, design: &Design, target: &str) -> Result<Vec<(String, String)>> {
         let around = Surroundings {
             inline_memories: Surroundings::new(&self.config, None).inline_memories,
             ..Surroundings::default()
         };
         let files = package::emit(design, &EmitInputs { around, ..EmitInputs::default() })?;
-        Ok(package::sources(files))
+        Ok(package::sources_for(files, target))
     }
 
     /// What computes many points of the device; see [`crate::cosim::batch`].

@@ -43,5 +43,18 @@ ${ line }$
 <%- for line in rom.read %>
 ${ line }$
 <%- endfor %>
+<%- when Item::Instance with { declaration, instance } %>
+<%- for line in declaration %>
+${ line }$
+<%- endfor %>
+    ${ instance.module }$ #(
+<%- for line in instance.parameters %>
+        ${ line }$
+<%- endfor %>
+    ) ${ instance.name }$ (
+<%- for line in instance.connections %>
+        ${ line }$
+<%- endfor %>
+    );
 <%- endmatch %>
 <%- endfor %>

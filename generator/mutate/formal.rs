@@ -35,17 +35,26 @@ fn pattern(text: &str) -> Regex {
 /// Whether every port and register of the module `name` carries the same in both for all inputs: temporal induction
 /// from a state in which they agree, cells with the same inputs, multipliers and ROMs among them, taken together
 /// first. At first all other nets of the same name are shown to be equal too, which makes the proof short; those
-/// that are not are then left free. The fault-free text is in `directory` as `<name>.v`, the other as [`MUTANT`]. A
-/// proof that fails or takes more than `limit` proves nothing.
+/// that are not are then left free. The files of either are in `directory`, the fault-free ones and those in which [`MUTANT`] is
+/// one; instances of a module in another file are taken as they are. A proof that fails or takes more than `limit` proves
+/// nothing.
 ///
 /// # Errors
 /// Yosys is missing; a file cannot be read or written.
-pub(super) fn proves(directory: &Path, name: &str, limit: Duration) -> Result<bool> {
+pub(super) fn proves(
+    directory: &Path,
+    name: &str,
+    [gold, gate]: [&[&str]; 2],
+    limit: Duration,
+) -> Result<bool> {
     let yosys = Tool::find("yosys")?;
     let end = Instant::now() + limit;
-    let path = directory.join(format!("{name}.v"));
-    let text =
-        fs::read_to_string(&path).with_context(|| format!("cannot read `{}`", path.display()))?;
+    let mut text = String::new();
+    for file in gold {
+        let path = directory.join(file);
+        text += &fs::read_to_string(&path)
+            .with_context(|| format!("cannot read `{}`", path.display()))?;
+    }
     let kept: BTreeSet<&str> =
         KEPT.captures_iter(&text).filter_map(|it| Some(it.get(1)?.as_str())).collect();
     let mut free = BTreeSet::new();
@@ -53,7 +62,7 @@ pub(super) fn proves(directory: &Path, name: &str, limit: Duration) -> Result<bo
         let names: Vec<&str> = free.iter().map(String::as_str).collect();
         fs::write(directory.join(FREE), names.join("\n"))
             .with_context(|| format!("cannot write `{FREE}`"))?;
-        let commands = commands(name, !free.is_empty());
+        let commands = commands(name, [gold, gate], !free.is_empty());
         let left = end.saturating_duration_since(Instant::now());
         let run = yosys.run(["-q", "-p", &commands], directory, left);
         if !run.is_ok_and(|run| run.status.success()) {
@@ -75,10 +84,12 @@ pub(super) fn proves(directory: &Path, name: &str, limit: Duration) -> Result<bo
     Ok(false)
 }
 
-fn commands(name: &str, is_free: bool) -> String {
-    let read = |file: &str, by: &str| {
+fn commands(name: &str, [gold, gate]: [&[&str]; 2], is_free: bool) -> String {
+    let read = |files: &[&str], by: &str| {
+        let flatten = if files.len() > 1 { " -flatten" } else { "" };
+        let files = files.join(" ");
         format!(
-            "read_verilog {file}; prep -top {name}; opt; rename {name} {by}; design -stash {by}; "
+            "read_verilog {files}; prep{flatten} -top {name}; opt; rename {name} {by}; design -stash {by}; "
         )
     };
     // Going backward, cells whose results are equal would have their inputs compared, those that are free too.
@@ -91,8 +102,8 @@ fn commands(name: &str, is_free: bool) -> String {
         "{}{}design -copy-from gold -as gold gold; design -copy-from gate -as gate gate; \
          {make} gold gate equiv; prep -top equiv; opt_clean; \
          {join}; equiv_simple -short; equiv_induct; tee -o {STATUS} equiv_status",
-        read(&format!("{name}.v"), "gold"),
-        read(MUTANT, "gate"),
+        read(gold, "gold"),
+        read(gate, "gate"),
     )
 }
 

@@ -186,8 +186,8 @@ impl Text {
             modules: Vec::new(),
         };
         // Wrappers around the core have a bench and proofs of their own.
-        let core =
-            ["", "_control", "_datapath"].map(|part| format!("rtl_out/{name}/{name}{part}.v"));
+        let core = ["", "_control", "_datapath", "_multiplier"]
+            .map(|part| format!("rtl_out/{name}/{name}{part}.v"));
         for file in files {
             let plain = file.path.rsplit('/').next().unwrap_or(&file.path).to_owned();
             let module = core.contains(&file.path);
@@ -315,7 +315,8 @@ impl Text {
         })
     }
 
-    /// Whether the module in a file is proved to behave as without the fault, in a directory that holds all files.
+    /// Whether the module in a file is proved to behave as without the fault, in a directory that holds all files; of
+    /// a pipeline with its multiplier, the pipeline.
     fn proves(
         &self,
         mutant: &[(String, String)],
@@ -327,7 +328,17 @@ impl Text {
         fs::write(place.join(formal::MUTANT), &mutant[file].1)
             .and_then(|()| fs::write(place.join(name), fault_free))
             .with_context(|| format!("cannot write `{name}`"))?;
-        formal::proves(place, name.trim_end_matches(".v"), limit.min(PROOF_LIMIT))
+        let top = self.top.trim_end_matches("_tb");
+        let multiplier = format!("{top}_multiplier.v");
+        let gold: Vec<&str> = match self.files.iter().any(|(name, _)| *name == multiplier) {
+            // By itself it is that of default parameters, which no instance has.
+            true => self.modules.iter().map(|&at| self.files[at].0.as_str()).collect(),
+            false => vec![name],
+        };
+        let gate = gold.iter().map(|file| if file == name { formal::MUTANT } else { file });
+        let gate: Vec<&str> = gate.collect();
+        let module = gold[0].trim_end_matches(".v");
+        formal::proves(place, module, [&gold, &gate], limit.min(PROOF_LIMIT))
     }
 }
 

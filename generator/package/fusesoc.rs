@@ -26,10 +26,24 @@ struct DeviceCore<'a> {
 pub struct Sources<'a> {
     /// Verilog, the top module first.
     pub rtl: &'a [String],
+    /// Verilog of a target, `<target>/<file>`, in place of the file of that name in `rtl`.
+    pub primitives: &'a [String],
     /// Verilog around it.
     pub wrappers: &'a [String],
     /// ROM contents.
     pub memories: &'a [String],
+}
+
+impl Sources<'_> {
+    /// The Verilog of the core for all targets: none that a target has its own of.
+    fn common(&self) -> impl Iterator<Item = &String> {
+        self.rtl.iter().filter(|file| !self.replaced().any(|it| it == *file))
+    }
+
+    /// The portable files that a target has its own of.
+    fn replaced(&self) -> impl Iterator<Item = &str> {
+        self.primitives.iter().filter_map(|file| Some(file.split_once('/')?.1))
+    }
 }
 
 /// The core of the bench.

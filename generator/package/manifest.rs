@@ -59,6 +59,8 @@ struct Computations<'a> {
 pub struct Files<'a> {
     /// Verilog, the top module first.
     pub rtl: &'a [String],
+    /// Verilog of a target, `<target>/<file>`, in place of the file of that name in `rtl`, or nothing.
+    pub primitives: &'a [String],
     /// Verilog around the core, or nothing.
     pub wrappers: &'a [String],
     /// ROM contents.
@@ -132,6 +134,7 @@ fn listed(files: &Files) -> Value {
         "testbench": files.testbench,
     });
     for (kind, names) in [
+        ("primitives", files.primitives),
         ("wrappers", files.wrappers),
         ("software", files.software),
         ("constraints", files.constraints),
@@ -252,7 +255,7 @@ fn pipeline(pipeline: &Pipeline) -> Value {
             "delayed_bits": stage.delayed_bits,
         })
     });
-    json!({
+    let mut entry = json!({
         "latency": pipeline.stages.len(),
         "interval": 1,
         "target": pipeline.target,
@@ -260,7 +263,11 @@ fn pipeline(pipeline: &Pipeline) -> Value {
         "stall": pipeline.stall,
         "side_bits": pipeline.side,
         "stages": stages.collect::<Vec<_>>(),
-    })
+    });
+    if !pipeline.registered.is_empty() {
+        entry["registered_multipliers"] = json!(pipeline.registered.len());
+    }
+    entry
 }
 
 fn quantities(quantities: &[Quantity]) -> Vec<Value> {

@@ -16,6 +16,7 @@ mod manifest;
 mod map;
 mod memory;
 pub mod module_names;
+mod multiplier;
 mod points;
 mod points_pipeline;
 pub(crate) mod seal;
@@ -75,15 +76,35 @@ impl OutputFile {
     pub fn name(&self) -> &str {
         self.path.rsplit('/').next().unwrap_or(&self.path)
     }
+
+    /// The target that the file is for, of one that stands in its directory: `rtl_out/<name>/<target>/…`.
+    fn target(&self) -> Option<&str> {
+        match self.path.split('/').collect::<Vec<_>>()[..] {
+            [_, _, target, _] => Some(target),
+            _ => None,
+        }
+    }
 }
 
 /// What simulators and synthesisers read of some files: Verilog and memories, each with its plain name.
 pub fn sources(files: Vec<OutputFile>) -> Vec<(String, String)> {
-    let needed = |name: &str| name.ends_with(".v") || name.ends_with(".mem");
-    files
+    sources_for(files, "")
+}
+
+/// The same for a target, whose own files take the place of portable ones of the same name.
+pub fn sources_for(files: Vec<OutputFile>, target: &str) -> Vec<(String, String)> {
+    let needed = |file: &OutputFile| [".v", ".mem"].iter().any(|it| file.name().ends_with(it));
+    let (primitives, portable): (Vec<_>, Vec<_>) =
+        files.into_iter().filter(needed).partition(|file| file.target().is_some());
+    let own =
+        |name: &str| primitives.iter().find(|it| it.target() == Some(target) && it.name() == name);
+    portable
         .into_iter()
-        .filter(|file| needed(file.name()))
-        .map(|file| (file.name().to_owned(), file.contents))
+        .map(|file| {
+            let name = file.name().to_owned();
+            let contents = own(&name).map_or(file.contents, |own| own.contents.clone());
+            (name, contents)
+        })
         .collect()
 }
 
@@ -125,13 +146,18 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     let plan = Plan::new(design)?;
     let naming = Naming::new(design).inlined(inputs.around.inline_memories);
     let name = &design.name;
-    let rtl = match &design.pipeline {
+    let mut rtl = match &design.pipeline {
         Some(pipeline) => {
             let module = pipeline::module(&plan, &naming, pipeline, &inputs.origin());
             vec![(format!("{name}.v"), render(&module)?)]
         }
         None => units(&plan, &naming, inputs)?,
     };
+    let mut primitives = Vec::new();
+    if let Some(multiplier) = multiplier::multiplier(design, &naming, inputs)? {
+        rtl.push(multiplier.portable);
+        primitives = multiplier.primitives;
+    }
     let mut memories = Vec::new();
     for (at, file) in naming.files.iter().enumerate() {
         let id = RomId(at as u32);
@@ -189,8 +215,10 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     let mut cores = vec![format!("{name}.core")];
     let mut bench_names = names_of(&testbench);
     cores.extend(bench_names.pop());
+    let primitive_names = names_of(&primitives);
     let files = manifest::Files {
         rtl: &rtl_names,
+        primitives: &primitive_names,
         wrappers: &wrapper_names,
         memories: &memory_names,
         cores: &cores,
@@ -200,11 +228,16 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         scripts: &names_of(&scripts),
     };
     let has_bench = !testbench.is_empty();
-    let sources =
-        fusesoc::Sources { rtl: &rtl_names, wrappers: &wrapper_names, memories: &memory_names };
+    let sources = fusesoc::Sources {
+        rtl: &rtl_names,
+        primitives: &primitive_names,
+        wrappers: &wrapper_names,
+        memories: &memory_names,
+    };
     let core = fusesoc::device(design, inputs, sources, has_bench)?;
     let mut all: Vec<OutputFile> = rtl
         .into_iter()
+        .chain(primitives)
         .chain(wrappers)
         .chain(memories)
         .chain([(format!("{name}.core"), core)])

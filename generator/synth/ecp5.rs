@@ -77,13 +77,15 @@ impl Chip {
     }
 }
 
-/// Makes sure that no delay is left out: nextpnr-ecp5 times a multiplier only when no register is inside.
+/// Makes sure that no delay is left out: nextpnr-ecp5 does not time the inside of a multiplier with a register before its
+/// product.
 fn no_registers_in_blocks(netlist: &Netlist) -> Result<()> {
     for (name, cell) in netlist.cells("MULT18X18D") {
         let parameters = cell["parameters"].as_object().into_iter().flatten();
         for (parameter, value) in parameters {
             let clocked = parameter.starts_with("REG_") && parameter.ends_with("_CLK");
-            if clocked && value != "NONE" {
+            // To the register at the output the way through the multiplier is timed.
+            if clocked && parameter != "REG_OUTPUT_CLK" && value != "NONE" {
                 bail!(
                     "the DSP block `{name}` has registers inside ({parameter} is {value}), which nextpnr does not time"
                 );

@@ -20,6 +20,8 @@ pub struct Family {
     pub name: &'static str,
     /// For people.
     pub title: &'static str,
+    /// The command of Yosys that reads the cells which a core may instantiate, or nothing.
+    pub library: &'static str,
     /// What Yosys does before `command`.
     prepare: &'static str,
     /// The command of Yosys, without the top module.
@@ -38,7 +40,8 @@ impl Family {
     /// The commands of Yosys that map the module `top`, and what it instantiates, to cells of the family.
     pub fn script(&self, top: &str) -> String {
         format!(
-            "hierarchy -check -top {top}; {}{} -top {top}",
+            "{}hierarchy -check -top {top}; {}{} -top {top}",
+            self.library,
             self.prepare.replace("{top}", top),
             self.command
         )
@@ -59,6 +62,7 @@ pub const FAMILIES: [Family; 3] = [
     Family {
         name: "ice40",
         title: "iCE40",
+        library: "",
         prepare: PURE_MULTIPLIERS,
         command: "synth_ice40 -run coarse:",
         luts: &[("SB_LUT4", 1)],
@@ -76,6 +80,7 @@ pub const FAMILIES: [Family; 3] = [
     Family {
         name: "ecp5",
         title: "ECP5",
+        library: "read_verilog -lib +/ecp5/cells_sim.v +/ecp5/cells_bb.v; ",
         prepare: "",
         command: "synth_ecp5",
         // 16 words of 4 bits are four tables, and two for what writes them.
@@ -87,6 +92,7 @@ pub const FAMILIES: [Family; 3] = [
     Family {
         name: "xilinx7",
         title: "Xilinx 7",
+        library: "",
         prepare: "",
         // Not -abc9: Yosys 0.23 crashes in it.
         command: "synth_xilinx -flatten",

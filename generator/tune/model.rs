@@ -4,9 +4,11 @@
 //! fitted by `benches/tune/fit` to the records in `synthesis/`. The clock is the longest path by the delays of
 //! the pipelines' targets, which were measured.
 
+use std::collections::BTreeSet;
+
 use serde::{Deserialize, Serialize};
 
-use crate::hdl::netlist::{Design, Driver, NetId, Op};
+use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId};
 use crate::hdl::pipeline::{self, TARGETS};
 use crate::synth::Target;
 
@@ -211,6 +213,9 @@ fn period(design: &Design, chip: &Chip) -> f64 {
     let levels = |inputs: u32| f64::from(inputs.max(2).ilog2().div_ceil(2).max(1));
     let chain = |width: u32| delays.carry + delays.carry_bit * f64::from(width);
     let mut longest = 0.0_f64;
+    let registers = (0..design.registers.len()).map(|at| RegId(at as u32));
+    let inside = registers.filter_map(|register| design.multiplier(register));
+    let inside: BTreeSet<NetId> = inside.map(|multiplier| multiplier.product).collect();
     for id in order {
         let net = design.net(id);
         let before = design.combinational_inputs(id);
@@ -219,6 +224,9 @@ fn period(design: &Design, chip: &Chip) -> f64 {
             Driver::Op(op) => match op {
                 Op::And(..) | Op::Or(..) | Op::Xor(..) => delays.logic,
                 Op::Add { a, .. } | Op::Sub(a, _) | Op::Less(a, _) => chain(design.width(*a)),
+                Op::Mul(..) if inside.contains(&id) => {
+                    delays.registered.map_or(delays.product, |it| it.product)
+                }
                 Op::Mul(a, b) => {
                     let blocks = blocks(chip, design.width(*a), design.width(*b));
                     let sums = if blocks > 1 { chain(design.width(id) / 2) } else { 0.0 };

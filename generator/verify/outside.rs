@@ -204,10 +204,10 @@ pub const SYNTHESIS: Check = Check {
     steps: |_| FAMILIES.len() as u64,
     run: |subject, tools, progress| {
         let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
-        let files = subject.core.verilog()?;
         let taken: Vec<String> = FAMILIES
             .par_iter()
             .map(|family| {
+                let files = subject.core.verilog_for(family.name)?;
                 let usage = synthesise(&tools[0], &files, name, family, limit)?;
                 progress(1);
                 Ok(format!(
@@ -241,6 +241,10 @@ pub const FORMAL: Check = Check {
             let directory = place.path().join(directory).join(name);
             for entry in directory.read_dir().context("cannot read what was emitted")? {
                 let entry = entry.context("cannot read what was emitted")?;
+                if entry.path().is_dir() {
+                    // What a target has of its own.
+                    continue;
+                }
                 fs::copy(entry.path(), flat.join(entry.file_name()))
                     .context("cannot copy what was emitted")?;
             }
@@ -342,12 +346,12 @@ pub const GATES: Check = Check {
         let vectors = subject.core.vectors(GATE_POINTS, BENCH_SEED)?;
         let clocks = vectors.inputs.len() as u64;
         let sources = package::sources(subject.core.files(subject.path, vectors)?);
-        let rtl = subject.core.verilog()?;
-        let names: Vec<String> = rtl.iter().map(|(name, _)| name.clone()).collect();
         let families: Vec<_> = simulated().collect();
         let faults: Vec<Option<String>> = families
             .par_iter()
             .map(|family| {
+                let rtl = subject.core.verilog_for(family.name)?;
+                let names: Vec<String> = rtl.iter().map(|(name, _)| name.clone()).collect();
                 let netlist = gates::netlist(&tools[0], &rtl, name, family, limit)?;
                 let files = gates::bench(&tools[0], sources.clone(), &names, netlist, family)?;
                 let outcome = run_bench(Simulator::Icarus, &files, &format!("{name}_tb"), limit)?;

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use glint::config;
 use glint::core::Core;
-use glint::package::{OutputFile, sources};
+use glint::package::{OutputFile, sources, sources_for};
 use glint::registry::{Device, Registry};
 
 /// Pairs of a plain file name and contents.
@@ -137,6 +137,12 @@ impl Emitted {
     /// Verilog and memories of the device, without its bench.
     pub fn rtl(&self) -> Files {
         self.below("rtl_out/")
+    }
+
+    /// The same for a family of FPGAs, with what it has of its own.
+    pub fn rtl_for(&self, family: &str) -> Files {
+        let rtl = self.files.iter().filter(|file| file.path.starts_with("rtl_out/"));
+        sources_for(rtl.cloned().collect(), family)
     }
 
     /// Verilog and memories of the device and of its bench.

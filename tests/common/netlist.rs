@@ -21,11 +21,12 @@ pub const POINTS: u64 = 40;
 /// # Panics
 /// Yosys fails or warns, or there is a latch.
 pub fn synthesise(directory: &Path, emitted: &Emitted, family: &Family) {
-    write(directory, &emitted.rtl());
+    write(directory, &emitted.rtl_for(family.name));
     let commands = format!(
-        "read_verilog {}; hierarchy -check -top {top}; proc; \
+        "{}read_verilog {}; hierarchy -check -top {top}; proc; \
          select -assert-none t:$dlatch t:$adlatch t:$dlatchsr t:$sr; \
          {}; check -assert; write_json netlist.json; write_verilog -noattr netlist.v",
+        family.library,
         verilog_files(directory).join(" "),
         family.script(&emitted.name),
         top = emitted.name,

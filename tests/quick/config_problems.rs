@@ -150,6 +150,33 @@ fn an_unknown_bus_is_told_of() {
 }
 
 #[test]
+fn registered_multipliers_are_for_a_pipeline_on_ecp5() {
+    let of_target = |target: &str| {
+        of_lamp(&format!(
+            "architecture = \"pipelined\"\n[pipeline]\ntarget = \"{target}\"\nmultipliers = \"registered\"\n"
+        ))
+    };
+    for target in ["ice40", "xilinx7", "generic"] {
+        assert_eq!(
+            of_target(target),
+            [format!(
+                "5:15 pipeline.multipliers | `pipeline.multipliers` has no effect with pipeline.target = \"{target}\" \
+                 | remove it, or set pipeline.target = \"ecp5\""
+            )]
+        );
+    }
+    let said = of_target("ecp5");
+    assert!(said[0].starts_with("accepted"), "{said:?}");
+    assert_eq!(
+        of_lamp("[pipeline]\nmultipliers = \"registered\"\n"),
+        [
+            "3:15 pipeline.multipliers | `pipeline.multipliers` has no effect with architecture = \"sequential\" \
+             | remove it, or set architecture = \"pipelined\""
+        ]
+    );
+}
+
+#[test]
 fn a_stream_that_does_not_fit_is_told_of() {
     assert_eq!(
         of_lamp("[interface]\nstream = true\nuser_bits = 1025\n"),

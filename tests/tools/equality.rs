@@ -141,8 +141,14 @@ fn square(faulty: bool) -> Design {
 #[test]
 fn the_solver_finds_the_point_that_differs() {
     let goal = Goal::ClockMhz(100.0);
-    let options =
-        Options { target: &TARGETS[0], goal, stall: true, side: 0, delays: Delays::Registers };
+    let options = Options {
+        target: &TARGETS[0],
+        goal,
+        registered: false,
+        stall: true,
+        side: 0,
+        delays: Delays::Registers,
+    };
     let made_of = |design: &Design| pipeline(design, &options).expect("a pipeline");
     assert!(matches!(verdict(&square(false), &made_of(&square(false))), Verdict::Equal(_)));
     let Verdict::Different(difference) = verdict(&square(false), &made_of(&square(true))) else {

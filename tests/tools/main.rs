@@ -18,6 +18,7 @@ mod external;
 mod formal;
 mod gate_level;
 mod litex;
+mod multipliers;
 mod mutants;
 mod random_configurations;
 mod random_netlists;

@@ -7,6 +7,7 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::{Loaded, load, paths};
+use crate::base::text::counted;
 use crate::cli::tables::Column;
 use crate::cli::{Configs, Output, store, tables};
 use crate::hdl::netlist::{Design, Pipeline, value_name};
@@ -78,8 +79,12 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
     let bits: u32 = pipeline.stages.iter().map(|stage| stage.register_bits).sum();
     let delayed: u32 = pipeline.stages.iter().map(|stage| stage.delayed_bits).sum();
     let delayed = if delayed > 0 { format!(", {delayed} in delay lines") } else { String::new() };
+    let multipliers = match pipeline.registered.len() {
+        0 => String::new(),
+        some => format!(" beside those in {}", counted(some, "multiplier")),
+    };
     tables::print_line(&format!(
-        "{}: {} stages for {:.1} MHz ({period:.2} ns) on {}, {bits} register bits{delayed}",
+        "{}: {} stages for {:.1} MHz ({period:.2} ns) on {}, {bits} register bits{multipliers}{delayed}",
         one.path,
         pipeline.stages.len(),
         pipeline.clock_mhz,
@@ -132,6 +137,7 @@ fn as_json(one: &Loaded, pipeline: &Pipeline) -> Value {
         "clock_mhz": pipeline.clock_mhz,
         "latency": pipeline.stages.len(),
         "interval": 1,
+        "registered_multipliers": pipeline.registered.len(),
         "stages": stages.collect::<Vec<_>>(),
     })
 }

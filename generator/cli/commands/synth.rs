@@ -171,9 +171,10 @@ fn measure<'a>(
         comparison::clocks_per_point(&core.design, core.contract.as_ref(), EXPONENT)?;
     let figures = flows.par_iter().map(|flow| {
         let design = flow.target().written(&core.design);
+        let files = core.verilog_of(&design, flow.target().name())?;
         let subject = Subject {
             design: &design,
-            files: &core.verilog_of(&design)?,
+            files: &files,
             seeds: arguments.seeds,
             limit: arguments.time_limit.get(),
         };

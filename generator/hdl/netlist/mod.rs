@@ -36,7 +36,7 @@ pub use eval::Interpreter;
 pub use handshake::Handshake;
 pub use held::register_held;
 pub use needed::turned;
-pub use pipeline::{Checkpoint, Pipeline, Stage, value_name};
+pub use pipeline::{Checkpoint, Multiplier, Pipeline, Stage, value_name};
 pub use termination::latest_done;
 
 macro_rules! id {

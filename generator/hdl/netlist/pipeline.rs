@@ -1,6 +1,6 @@
 //! What a design says of itself that is a pipeline.
 
-use super::{DelayMemory, Design, Driver, Net, NetId};
+use super::{DelayMemory, Design, Driver, Net, NetId, Op, RegId};
 
 /// What a design is that takes a point every clock.
 #[derive(Clone, Debug)]
@@ -28,6 +28,8 @@ pub struct Pipeline {
     pub valid: Vec<NetId>,
     /// For each of them, what travels with the point; none without a side channel.
     pub side_values: Vec<NetId>,
+    /// The registers that are inside a multiplier, with the product that they take.
+    pub registered: Vec<RegId>,
     /// Where values are to be seen that the sequential design has in registers.
     pub checkpoints: Vec<Checkpoint>,
 }
@@ -78,6 +80,27 @@ impl Pipeline {
             net.named && !self.handshake.contains(id) && made(net, **at)
         });
         nets.map(|((_, net), _)| net)
+    }
+}
+
+/// A multiplier with a register at its output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Multiplier {
+    /// What the register takes.
+    pub product: NetId,
+    /// The factors.
+    pub factors: [NetId; 2],
+}
+
+impl Design {
+    /// The multiplier that a register is inside of, if it is.
+    pub fn multiplier(&self, register: RegId) -> Option<Multiplier> {
+        self.pipeline.as_ref().filter(|it| it.registered.contains(&register))?;
+        let product = self.register(register).data?;
+        match self.net(product).driver {
+            Driver::Op(Op::Mul(a, b)) => Some(Multiplier { product, factors: [a, b] }),
+            _ => None,
+        }
     }
 }
 

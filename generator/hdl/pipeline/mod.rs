@@ -5,8 +5,10 @@
 //! and `stages` makes a design of it again, without a microprogram: a register wherever a value
 //! crosses from a stage to the next. Nothing here knows a device.
 
+mod gates;
 mod graph;
 mod possible;
+mod rebuild;
 mod schedule;
 mod settle;
 mod split;
@@ -50,6 +52,8 @@ pub struct Options {
     pub target: &'static Target,
     /// What is asked of the schedule.
     pub goal: Goal,
+    /// Products end in the register of a multiplier, where the target has a delay for it.
+    pub registered: bool,
     /// The environment can hold the results back.
     pub stall: bool,
     /// Bits that travel with a point.
@@ -66,6 +70,7 @@ pub fn options(config: &Config) -> Option<Options> {
             0 => Goal::ClockMhz(config.number("pipeline.clock_mhz")),
             stages => Goal::Stages(stages as usize),
         },
+        registered: config.choice("pipeline.multipliers") == "registered",
         stall: config.choice("pipeline.stall") == "ready",
         side: config.integer("pipeline.side") as u32,
         delays: match config.choice("pipeline.delays") {
@@ -87,8 +92,14 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
     };
     let unrolled =
         split::split(&unroll::unroll_in_powers(sequential).map_err(sequentially)?, options.target);
+    let unrolled = if options.registered { gates::gated(&unrolled) } else { unrolled };
     let results: Vec<_> = unrolled.results.iter().map(|&(_, value)| value).collect();
-    let problems = schedule::Problems::new(&unrolled.graph, options.target, &results);
+    let problems = |registered: bool| {
+        let registered = options.target.registered.filter(|_| registered);
+        schedule::Problems::new(&unrolled.graph, options.target, registered, &results)
+    };
+    let unregistered = (!options.registered).then_some(&problems);
+    let problems = problems(options.registered);
     let wrong = |key: &'static str, message: String, remedy: String, at: Option<NetId>| {
         let place =
             at.map_or(sequential.nets[0].location, |at| unrolled.graph.node(at).label.location);
@@ -104,7 +115,11 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
                  most",
                 unrolled.graph.node(limiting).label.name
             );
-            let remedy = format!("set pipeline.clock_mhz to {nearest} or less");
+            let faster = unregistered.is_some_and(|problems| {
+                problems(true).fastest().is_some_and(|it| it.period * clock <= 1000.0)
+            });
+            let faster = if faster { ", or pipeline.multipliers = \"registered\"" } else { "" };
+            let remedy = format!("set pipeline.clock_mhz to {nearest} or less{faster}");
             wrong("pipeline.clock_mhz", message, remedy, Some(limiting))
         })?,
         Goal::Stages(stages) => {

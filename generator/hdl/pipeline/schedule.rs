@@ -11,8 +11,8 @@ use std::collections::BTreeSet;
 
 use microlp::{ComparisonOp, OptimizationDirection, Problem, SolveOutcome};
 
-use super::graph::{Cell, Graph};
-use super::target::Target;
+use super::graph::{Cell, Graph, Node};
+use super::target::{Registered, Target};
 use crate::hdl::netlist::{NetId, Op};
 
 /// When each value is computed.
@@ -49,7 +49,9 @@ pub struct Problems<'a> {
     delay: Vec<f64>,
     /// What a register behind the node takes beyond any other.
     setup: Vec<f64>,
-    block: Vec<bool>,
+    /// Of what the clock makes, a word of a block memory or a product in the register of a multiplier: what it takes
+    /// from its operands to the clock, beyond the way to a register.
+    clocked: Vec<Option<f64>>,
 }
 
 /// The clock of a period in nanoseconds, in MHz to a decimal. Rounded down, so that what is stated can be reached.
@@ -76,7 +78,12 @@ fn held(graph: &Graph, results: &[NetId], mut id: NetId) -> NetId {
 
 impl<'a> Problems<'a> {
     /// For the nodes that `results` need.
-    pub fn new(graph: &'a Graph, target: &'a Target, results: &'a [NetId]) -> Self {
+    pub fn new(
+        graph: &'a Graph,
+        target: &'a Target,
+        registered: Option<Registered>,
+        results: &'a [NetId],
+    ) -> Self {
         let live: Vec<NetId> = graph
             .cone(results.iter().copied())
             .into_iter()
@@ -100,17 +107,36 @@ impl<'a> Problems<'a> {
             }
         }
         let nodes = || (0..graph.nodes.len()).map(|at| NetId(at as u32));
-        let delay = nodes().map(|id| target.delay(graph, id)).collect();
+        let product =
+            |id: NetId| registered.filter(|_| matches!(graph.node(id).cell, Cell::Op(Op::Mul(..))));
+        let delay = nodes().map(|id| match product(id) {
+            Some(registered) => registered.output,
+            None => target.delay(graph, id),
+        });
+        let delay = delay.collect();
         let setup = nodes().map(|id| target.setup(graph, id)).collect();
-        let block = nodes().map(|id| target.is_block(graph, id)).collect();
-        Self { graph, target, live, results, users, delay, setup, block }
+        let clocked = nodes().map(|id| match product(id) {
+            Some(registered) => Some(registered.product),
+            None => target.is_block(graph, id).then_some(target.address),
+        });
+        let clocked = clocked.collect();
+        Self { graph, target, live, results, users, delay, setup, clocked }
     }
 
-    /// The shortest period that one operation alone allows, and the operation.
+    /// The shortest period that one operation alone allows, and the operation. What the environment takes for an operand
+    /// never makes a period unreachable.
     pub fn fastest(&self) -> Option<Unreachable> {
-        let delay = |id: &NetId| self.delay[id.index()] + self.setup[id.index()];
-        let operand = |id: &&NetId| matches!(self.graph.node(**id).cell, Cell::Operand(_));
-        let operations = self.live.iter().filter(|id| !operand(id));
+        let delay = |id: &NetId| {
+            let at = id.index();
+            (self.delay[at] + self.setup[at]).max(self.clocked[at].unwrap_or(0.0))
+        };
+        // Nor does a memory whose words are all the same: synthesis makes a constant of it.
+        let settled = |id: &&NetId| match self.graph.node(**id) {
+            Node { cell: Cell::Operand(_), .. } => true,
+            Node { cell: Cell::Read { .. }, range, .. } => range.0 == range.1,
+            _ => false,
+        };
+        let operations = self.live.iter().filter(|id| !settled(id));
         let limiting = *operations.max_by(|a, b| delay(a).total_cmp(&delay(b)))?;
         Some(Unreachable { limiting, period: delay(&limiting) + self.target.register })
     }
@@ -162,7 +188,7 @@ impl<'a> Problems<'a> {
 
     /// How many boundaries lie between the operands of `user` and `user`.
     fn apart(&self, user: NetId) -> usize {
-        usize::from(self.block[user.index()])
+        usize::from(self.is_clocked(user))
     }
 
     fn differences(&self, period: f64) -> Vec<Difference> {
@@ -181,9 +207,9 @@ impl<'a> Problems<'a> {
             reached[from.index()] = from;
             while let Some(at) = pending.pop_first() {
                 for &user in &self.users[at.index()] {
-                    if self.block[user.index()] {
-                        // Room for a register between the logic and the memory.
-                        if longest[at.index()] + self.target.address > most {
+                    if let Some(operands) = self.clocked[user.index()] {
+                        // Room for a register between the logic and the memory or the multiplier.
+                        if longest[at.index()] + operands > most {
                             differences.push((from, user, 2));
                         }
                         continue;
@@ -276,7 +302,7 @@ impl<'a> Problems<'a> {
             let before = operands
                 .into_iter()
                 .map(|operand| held(self.graph, self.results, operand))
-                .filter(|operand| !self.block[id.index()] && stage[operand.index()] == at)
+                .filter(|operand| !self.is_clocked(id) && stage[operand.index()] == at)
                 .filter(|operand| self.graph.constant_of(*operand).is_none())
                 .map(|operand| arrival[operand.index()])
                 .fold(0.0, f64::max);
@@ -284,10 +310,9 @@ impl<'a> Problems<'a> {
             let later = |user: &NetId| stage[user.index()] - self.apart(*user) > at;
             let is_held = self.users[id.index()].iter().any(later) || self.results.contains(&id);
             let setup = if is_held { self.setup[id.index()] } else { 0.0 };
-            let read = |user: &NetId| self.block[user.index()] && !later(user);
-            let is_address = self.users[id.index()].iter().any(read);
-            let address = if is_address { self.target.address } else { 0.0 };
-            longest[at] = longest[at].max(arrival[id.index()] + setup.max(address));
+            let users = self.users[id.index()].iter().filter(|user| !later(user));
+            let operand = users.filter_map(|user| self.clocked[user.index()]).fold(setup, f64::max);
+            longest[at] = longest[at].max(arrival[id.index()] + operand);
         }
         longest
     }
@@ -317,8 +342,8 @@ impl<'a> Problems<'a> {
         last
     }
 
-    /// Whether a node is read from a block memory.
-    pub fn is_block(&self, id: NetId) -> bool {
-        self.block[id.index()]
+    /// Whether the clock makes a node: a word of a block memory, or a product in the register of a multiplier.
+    pub fn is_clocked(&self, id: NetId) -> bool {
+        self.clocked[id.index()].is_some()
     }
 }

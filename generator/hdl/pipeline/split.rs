@@ -4,7 +4,8 @@
 //! A rest of a few bits becomes rows of the product in look-up tables, as on paper: a synthesiser would
 //! spend a whole multiplier on it. A longer rest, or one of long rows, is a product of its own.
 
-use super::graph::{Cell, Graph, Label};
+use super::graph::{Graph, Label};
+use super::rebuild::rebuilt;
 use super::sums::shortened;
 use super::target::Target;
 use super::unroll::Unrolled;
@@ -20,47 +21,12 @@ const MOST_ROW_BITS: u32 = 66;
 
 /// The same computation with products that the target's multipliers take.
 pub fn split(unrolled: &Unrolled, target: &Target) -> Unrolled {
-    let mut graph = Graph::default();
-    let mut place: Vec<NetId> = Vec::with_capacity(unrolled.graph.nodes.len());
-    for node in &unrolled.graph.nodes {
-        graph.step = node.step;
-        let at = |id: NetId| place[id.index()];
-        let id = match &node.cell {
-            Cell::Op(Op::Mul(a, b)) => {
-                let (a, b) = (at(*a), at(*b));
-                product(&mut graph, target, a, b, node.format, &node.label)
-            }
-            Cell::Op(op) => {
-                let mut op = op.clone();
-                for operand in op.operands_mut() {
-                    *operand = at(*operand);
-                }
-                shortened(&mut graph, op, node.format, node.range, &node.label)
-            }
-            Cell::Read { rom, address } => {
-                let cell = Cell::Read { rom: *rom, address: at(*address) };
-                graph.insert(cell, node.format, node.range, &node.label)
-            }
-            leaf => graph.insert(leaf.clone(), node.format, node.range, &node.label),
-        };
-        graph.refine(id, node.range);
-        if node.held {
-            graph.name_after(id, &node.label);
-        }
-        place.push(id);
-    }
-    let steps = unrolled.steps.iter().cloned().map(|mut step| {
-        for (_, node) in &mut step.registers {
-            *node = place[node.index()];
-        }
-        step
-    });
-    Unrolled {
-        steps: steps.collect(),
-        operands: unrolled.operands.clone(),
-        results: unrolled.results.iter().map(|&(port, id)| (port, place[id.index()])).collect(),
-        graph,
-    }
+    rebuilt(unrolled, |graph, op, node| {
+        Some(match op {
+            Op::Mul(a, b) => product(graph, target, *a, *b, node.format, &node.label),
+            op => shortened(graph, op.clone(), node.format, node.range, &node.label),
+        })
+    })
 }
 
 /// `a·b`, of one sign, exact.

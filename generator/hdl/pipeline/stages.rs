@@ -54,6 +54,7 @@ pub fn assemble(
         flow: Vec::new(),
         valid: Vec::new(),
         side_values: Vec::new(),
+        registered: Vec::new(),
         memories: HashMap::new(),
     };
     builder.ports(unrolled, options);
@@ -63,7 +64,7 @@ pub fn assemble(
     builder.results(unrolled);
     let stages = builder.stages(unrolled);
     let checkpoints = builder.checkpoints(unrolled);
-    let Builder { mut design, stage_of, flow, valid, side_values, .. } = builder;
+    let Builder { mut design, stage_of, flow, valid, side_values, registered, .. } = builder;
     design.ports.sort_by_key(|port| match port.role {
         role if role.is_input() => 0,
         Role::InReady => 1,
@@ -86,6 +87,7 @@ pub fn assemble(
         handshake: flow,
         valid,
         side_values,
+        registered,
         checkpoints,
     });
     count_delayed(&mut design);
@@ -132,6 +134,8 @@ struct Builder<'a> {
     valid: Vec<NetId>,
     /// What travels with the point of a stage, from stage 1 on.
     side_values: Vec<NetId>,
+    /// The registers inside multipliers.
+    registered: Vec<RegId>,
     /// The read ports of each memory.
     memories: HashMap<RomId, Vec<RomId>>,
 }
@@ -317,33 +321,46 @@ impl Builder<'_> {
         for &id in self.problems.live() {
             let stage = self.schedule.stage[id.index()];
             let node = self.graph.node(id);
-            let name = self.names[&id].clone();
             let mut value = match &node.cell {
                 Cell::Operand(_) => self.values[&(id, 0)],
                 Cell::Read { rom, address } => self.read(id, *rom, *address, stage),
-                Cell::Op(op) => {
-                    let mut op = op.clone();
-                    for operand in op.operands_mut() {
-                        *operand = self.value(*operand, stage);
-                    }
-                    let name = self.staged(&name, stage);
-                    let net = self.net(name, stage, node.format, Driver::Op(op));
-                    self.labelled(net, id);
-                    self.design.nets[net.index()].named = node.label.named;
-                    net
+                Cell::Op(op) if self.problems.is_clocked(id) => {
+                    let product = self.cell(id, op, stage - 1);
+                    self.registered.push(RegId(self.design.registers.len() as u32));
+                    self.behind(id, product, stage)
                 }
+                Cell::Op(op) => self.cell(id, op, stage),
                 Cell::Constant(_) | Cell::Unknown(_) => continue,
             };
             self.values.insert((id, stage), value);
             for stage in stage + 1..=last[id.index()] {
-                let name = self.staged(&name, stage);
-                let q = self.net(name, stage, node.format, Driver::Undriven);
-                self.labelled(q, id);
-                self.register(q, value, self.advance, None);
-                self.values.insert((id, stage), q);
-                value = q;
+                value = self.behind(id, value, stage);
+                self.values.insert((id, stage), value);
             }
         }
+    }
+
+    /// What a cell computes in a stage.
+    fn cell(&mut self, id: NetId, op: &Op, stage: usize) -> NetId {
+        let mut op = op.clone();
+        for operand in op.operands_mut() {
+            *operand = self.value(*operand, stage);
+        }
+        let label = &self.graph.node(id).label;
+        let name = self.staged(&self.names[&id], stage);
+        let net = self.net(name, stage, self.graph.node(id).format, Driver::Op(op));
+        self.labelled(net, id);
+        self.design.nets[net.index()].named = label.named;
+        net
+    }
+
+    /// A register of a stage that takes what the stage before has of a node.
+    fn behind(&mut self, id: NetId, value: NetId, stage: usize) -> NetId {
+        let name = self.staged(&self.names[&id], stage);
+        let q = self.net(name, stage, self.graph.node(id).format, Driver::Undriven);
+        self.labelled(q, id);
+        self.register(q, value, self.advance, None);
+        q
     }
 
     fn value(&mut self, id: NetId, stage: usize) -> NetId {
@@ -390,7 +407,7 @@ impl Builder<'_> {
 
     /// A read port of a memory: of a block memory the word comes a stage after the address.
     fn read(&mut self, id: NetId, rom: RomId, address: NetId, stage: usize) -> NetId {
-        let synchronous = self.problems.is_block(id);
+        let synchronous = self.problems.is_clocked(id);
         let address = self.value(address, stage - usize::from(synchronous));
         let node = self.graph.node(id);
         let source = self.sequential.rom(rom).clone();
@@ -437,7 +454,7 @@ impl Builder<'_> {
                     .problems
                     .live()
                     .iter()
-                    .filter(|id| self.schedule.stage[id.index()] == stage)
+                    .filter(|id| self.computed_in(**id) == stage)
                     .filter(|id| !self.graph.node(**id).cell.is_wiring())
                     .filter(|id| !matches!(self.graph.node(**id).cell, Cell::Operand(_)))
                     .map(|id| self.graph.node(*id).step)
@@ -453,7 +470,10 @@ impl Builder<'_> {
                     }
                 }
                 let boundary = stage + 1;
-                let bits = self.design.registers.iter().map(|register| register.q);
+                let registers = (0..).map(RegId).zip(&self.design.registers);
+                // A multiplier's own register is none of the fabric, as that of a block memory.
+                let registers = registers.filter(|(id, _)| !self.registered.contains(id));
+                let bits = registers.map(|(_, register)| register.q);
                 let bits = bits.filter(|q| self.stage_of[q.index()] == boundary);
                 Stage {
                     microinstructions,
@@ -466,6 +486,12 @@ impl Builder<'_> {
                 }
             })
             .collect()
+    }
+
+    /// The stage whose logic makes a node: of a product in the register of a multiplier, that before its own.
+    fn computed_in(&self, id: NetId) -> usize {
+        let product = matches!(self.graph.node(id).cell, Cell::Op(_));
+        self.schedule.stage[id.index()] - usize::from(product && self.problems.is_clocked(id))
     }
 
     /// Where values that architectural registers hold are to be seen.

@@ -2,11 +2,11 @@ use super::{Delays, Goal, Options, Target, pipeline};
 use crate::base::fixed::Format;
 use crate::hdl::blocks::divider::Divider;
 use crate::hdl::dsl::{Designer, end, loop_while, step, valid, wait_for_start};
-use crate::hdl::netlist::Design;
+use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId};
 
 fn options(goal: Goal) -> Options {
     let target = Target::named("ecp5").expect("a target");
-    Options { target, goal, stall: true, side: 0, delays: Delays::Memory }
+    Options { target, goal, registered: false, stall: true, side: 0, delays: Delays::Memory }
 }
 
 /// A quotient of 8 bits, a bit a clock.
@@ -120,4 +120,52 @@ fn what_an_earlier_computation_left_cannot_be_a_result() {
     ]);
     let text = refused(&d.finish().unwrap(), Goal::ClockMhz(100.0));
     assert!(text.contains("`total_out` depends on what `total` held before"), "{text}");
+}
+
+/// The fourth power of an operand, by two products.
+fn power() -> Design {
+    let d = Designer::new("power");
+    let x = d.operand("x", Format::unsigned(9, 0));
+    let square = d.register("square", Format::unsigned(18, 0));
+    let fourth = d.register("fourth", Format::unsigned(36, 0));
+    square.takes(d.mul("x_square", x.q(), x.q()));
+    fourth.takes(d.mul("x_fourth", square.q(), square.q()));
+    d.output("fourth_out", fourth.q());
+    d.microprogram([
+        step("operands", []),
+        step("square", [square.load()]),
+        step("fourth", [fourth.load()]),
+        step("result", [valid(), end()]),
+    ]);
+    d.finish().unwrap()
+}
+
+#[test]
+fn a_registered_multiplier_is_named_where_it_reaches_the_clock_and_holds_every_product() {
+    let goal = Goal::ClockMhz(165.0);
+    let text = refused(&power(), goal);
+    assert!(text.contains("cannot run at 165 MHz: `fourth`"), "{text}");
+    assert!(text.contains("or less, or pipeline.multipliers = \"registered\""), "{text}");
+    let made = pipeline(&power(), &Options { registered: true, ..options(goal) }).unwrap();
+    let products = made.iter().filter(|(_, net)| matches!(net.driver, Driver::Op(Op::Mul(..))));
+    let products: Vec<NetId> = products.map(|(id, _)| id).collect();
+    assert_eq!(products.len(), 2);
+    let registered = &made.pipeline.as_ref().expect("a pipeline").registered;
+    let inside: Vec<NetId> =
+        registered.iter().filter_map(|&it| Some(made.multiplier(it)?.product)).collect();
+    assert_eq!(inside, products);
+    // Nothing else takes what is inside a multiplier.
+    let data = made.registers.iter().filter_map(|register| register.data);
+    let taken = made.iter().flat_map(|(id, _)| made.combinational_inputs(id)).chain(data);
+    assert_eq!(taken.filter(|net| products.contains(net)).count(), products.len());
+    let beyond = Options { registered: true, ..options(Goal::ClockMhz(250.0)) };
+    let text = pipeline(&power(), &beyond).expect_err("too fast").to_string();
+    assert!(text.contains("which allows 173.9 MHz") && !text.contains("registered"), "{text}");
+}
+
+#[test]
+fn without_registered_multipliers_no_register_is_inside_one() {
+    let made = pipeline(&power(), &options(Goal::ClockMhz(100.0))).unwrap();
+    let mut registers = (0..made.registers.len()).map(|at| RegId(at as u32));
+    assert!(registers.all(|register| made.multiplier(register).is_none()));
 }

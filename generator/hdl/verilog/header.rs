@@ -96,8 +96,10 @@ fn stages(pipeline: &Pipeline) -> String {
     } else {
         "It does not stall: results are on the outputs for one clock."
     };
+    let products =
+        if pipeline.registered.is_empty() { "" } else { ", products in registered multipliers" };
     format!(
-        "Pipeline: a point every clock, its results {clocks} clocks later; stages for {clock:.0} MHz on {}. {stall}",
+        "Pipeline: a point every clock, its results {clocks} clocks later; stages for {clock:.0} MHz on {}{products}. {stall}",
         pipeline.target
     )
 }

@@ -10,9 +10,11 @@ use super::naming::{Naming, is_control_rom, remark, rom_label};
 use super::plan::{NetForm, Plan};
 use super::rows::{Row, separated};
 use super::text::{annotated, comment, literal, range, statement};
-use super::view::{Contents, Item, Module, RomItem, Section, Spaced};
+use super::view::{Contents, Instance, Item, Module, RomItem, Section, Spaced};
 use super::words::{in_fields, in_hex, word_note};
-use crate::hdl::netlist::{Design, Driver, NetId, Op, Partition, RegId, RomId};
+use crate::hdl::netlist::{
+    Design, Driver, Multiplier, NetId, Op, Partition, RegId, Register, RomId,
+};
 
 /// Builds one partition.
 pub struct Builder<'a> {
@@ -97,9 +99,10 @@ impl<'a> Builder<'a> {
     /// The declarations of what the clock changes and is wanted, except ports.
     pub(super) fn state(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<String> {
         let design = self.plan.design;
-        let registers = (0..design.registers.len() as u32).map(RegId);
-        let declared = registers.filter(|it| self.plan.delayed(*it) != Some(false));
-        let registers = declared.map(|it| design.register(it).q);
+        let registers = (0..).map(RegId).zip(&design.registers).filter(|(id, _)| {
+            design.multiplier(*id).is_none() && self.plan.delayed(*id) != Some(false)
+        });
+        let registers = registers.map(|(_, register)| register.q);
         let roms = design.roms.iter().filter(|rom| rom.synchronous).map(|rom| rom.data);
         let rows: Vec<_> = registers
             .chain(roms)
@@ -149,6 +152,13 @@ impl<'a> Builder<'a> {
         for &rom in &self.interface.roms {
             if design.rom(rom).synchronous && wanted(design.rom(rom).data) {
                 items.push(self.rom(rom));
+            }
+        }
+        for (at, register) in design.registers.iter().enumerate() {
+            if let Some(multiplier) = design.multiplier(RegId(at as u32))
+                && wanted(register.q)
+            {
+                items.push(self.multiplier(register, multiplier));
             }
         }
         // One-liners stand together.
@@ -263,6 +273,36 @@ impl<'a> Builder<'a> {
         })
     }
 
+    /// The instance that computes a product and holds it.
+    fn multiplier(&mut self, register: &Register, multiplier: Multiplier) -> Item {
+        let design = self.plan.design;
+        let Multiplier { product, factors } = multiplier;
+        let [a, b] = factors.map(|factor| self.expressions.whole(factor));
+        let enable = register.enable.map(|enable| self.expressions.whole(enable));
+        let enable = enable.unwrap_or_else(|| literal(1, 1));
+        let parameters = [
+            format!(".A_WIDTH({})", design.width(factors[0])),
+            format!(".B_WIDTH({})", design.width(factors[1])),
+            format!(".SIGNED({})", u8::from(design.net(product).format.signed)),
+        ];
+        let connections = [
+            ".clk(clk)".to_owned(),
+            format!(".enable({enable})"),
+            format!(".a({a})"),
+            format!(".b({b})"),
+            format!(".product({})", design.net(register.q).name),
+        ];
+        Item::Instance {
+            declaration: Row::declarations(&[Row::net(self.plan, "", "wire", register.q)]),
+            instance: Instance {
+                module: self.naming.multiplier(),
+                name: design.net(product).name.clone(),
+                parameters: separated(parameters.to_vec()),
+                connections: separated(connections.to_vec()),
+            },
+        }
+    }
+
     /// Registers with the same enable and the same reset behaviour share a block.
     pub(super) fn groups(&mut self, wanted: &dyn Fn(NetId) -> bool) -> Vec<Vec<String>> {
         /// The enable, and whether reset sets the registers.
@@ -270,7 +310,8 @@ impl<'a> Builder<'a> {
         let design = self.plan.design;
         let mut groups: Vec<(Key, Vec<RegId>)> = Vec::new();
         for (at, register) in design.registers.iter().enumerate() {
-            if self.plan.partition(register.q) != self.partition || !wanted(register.q) {
+            let inside = design.multiplier(RegId(at as u32)).is_some();
+            if self.plan.partition(register.q) != self.partition || inside || !wanted(register.q) {
                 continue;
             }
             let key = (register.enable, register.reset.is_some());

@@ -81,6 +81,11 @@ impl Naming {
         }
     }
 
+    /// The module of a product with a register at its output.
+    pub fn multiplier(&self) -> String {
+        format!("{}_multiplier", self.design)
+    }
+
     /// The instance of a partition.
     pub fn instance(&self, partition: Partition) -> &str {
         match partition {

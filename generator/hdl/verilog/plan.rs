@@ -22,6 +22,8 @@ pub enum NetForm {
     Declared,
     /// Written into the one expression that uses it.
     Inline,
+    /// A product in the multiplier whose register takes it: not written at all.
+    Inside,
 }
 
 /// Something that reads nets, and the module that it is written in.
@@ -130,8 +132,10 @@ impl<'a> Plan<'a> {
                 _ => Vec::new(),
             },
             Reader::Register(register) => {
+                let factors = self.design.multiplier(register).map(|it| it.factors);
                 let register = self.design.register(register);
-                register.data.into_iter().chain(register.enable).collect()
+                let data = factors.map_or(register.data.into_iter().collect(), Vec::from);
+                data.into_iter().chain(register.enable).collect()
             }
             Reader::Rom(rom) => vec![self.design.rom(rom).address],
         }
@@ -224,6 +228,10 @@ impl<'a> Plan<'a> {
                 }
                 _ => whole,
             };
+        }
+        let registers = (0..self.design.registers.len()).map(|at| RegId(at as u32));
+        for multiplier in registers.filter_map(|register| self.design.multiplier(register)) {
+            self.forms[multiplier.product.index()] = NetForm::Inside;
         }
     }
 
@@ -325,6 +333,10 @@ impl<'a> Plan<'a> {
                 Driver::Op(_) => false,
                 _ => return false,
             },
+            // The factors of a multiplier are wiring.
+            Reader::Register(register) if self.design.multiplier(register).is_some() => {
+                return false;
+            }
             Reader::Register(register) => {
                 // Registers with one enable share an always block: the enable must have a name if
                 // several use it, and `uses` has seen that it has one reader only.

@@ -61,6 +61,13 @@ pub enum Item {
     },
     /// A memory and its read port.
     Rom(RomItem),
+    /// An instance, and what it drives.
+    Instance {
+        /// What it drives.
+        declaration: Vec<String>,
+        /// The instance.
+        instance: Instance,
+    },
 }
 
 /// A memory and its read port.

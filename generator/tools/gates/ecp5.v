@@ -141,23 +141,28 @@ module DP16KD #(
     } = PAIRED ? out_b[35:18] : out_b[17:0];
 endmodule
 
-// A product, all registers bypassed; the C input has no part in it. The pins that say
-// whether a factor is signed take part in the product: they extend it to 19 bits.
+// A product, its registers bypassed but for that of the output, which is by the clock CLK0 and the enable CE0 if
+// it is there; the C input has no part in it. The pins that say whether a factor is signed take part in the
+// product: they extend it to 19 bits.
 module MULT18X18D #(
     parameter REG_INPUTA_CLK = "NONE", REG_INPUTB_CLK = "NONE", REG_INPUTC_CLK = "NONE",
-    parameter REG_PIPELINE_CLK = "NONE", REG_OUTPUT_CLK = "NONE"
+    parameter REG_PIPELINE_CLK = "NONE", REG_OUTPUT_CLK = "NONE", REG_OUTPUT_CE = "CE0",
+    parameter REG_OUTPUT_RST = "RST0"
 ) (
     input wire
         A17, A16, A15, A14, A13, A12, A11, A10, A9, A8, A7, A6, A5, A4, A3, A2, A1, A0,
         B17, B16, B15, B14, B13, B12, B11, B10, B9, B8, B7, B6, B5, B4, B3, B2, B1, B0,
         C17, C16, C15, C14, C13, C12, C11, C10, C9, C8, C7, C6, C5, C4, C3, C2, C1, C0,
         SIGNEDA, SIGNEDB, SOURCEA, SOURCEB,
+        CLK0, CLK1, CLK2, CLK3, CE0, CE1, CE2, CE3, RST0, RST1, RST2, RST3,
     output wire
         P35, P34, P33, P32, P31, P30, P29, P28, P27, P26, P25, P24, P23, P22, P21, P20, P19, P18,
         P17, P16, P15, P14, P13, P12, P11, P10, P9, P8, P7, P6, P5, P4, P3, P2, P1, P0
 );
     initial if (REG_INPUTA_CLK != "NONE" || REG_INPUTB_CLK != "NONE" || REG_INPUTC_CLK != "NONE"
-            || REG_PIPELINE_CLK != "NONE" || REG_OUTPUT_CLK != "NONE") begin
+            || REG_PIPELINE_CLK != "NONE"
+            || (REG_OUTPUT_CLK != "NONE" && (REG_OUTPUT_CLK != "CLK0" || REG_OUTPUT_CE != "CE0"
+            || REG_OUTPUT_RST != "RST0"))) begin
         $display("FAIL %m: a register that has no model");
         $fatal;
     end
@@ -173,10 +178,20 @@ module MULT18X18D #(
         B17, B16, B15, B14, B13, B12, B11, B10, B9, B8, B7, B6, B5, B4, B3, B2, B1, B0
     };
     wire signed [37:0] product = a * b;
+
+    reg [35:0] held;
+    always @(posedge CLK0) if (REG_OUTPUT_CLK != "NONE") begin
+        if (RST0 !== 1'b0) begin
+            $display("FAIL %m: the reset has no model");
+            $fatal;
+        end
+        if (CE0 === 1'b1) held <= product[35:0];
+        else if (CE0 !== 1'b0) held <= {36{1'bx}};
+    end
     assign {
         P35, P34, P33, P32, P31, P30, P29, P28, P27, P26, P25, P24, P23, P22, P21, P20, P19, P18,
         P17, P16, P15, P14, P13, P12, P11, P10, P9, P8, P7, P6, P5, P4, P3, P2, P1, P0
-    } = product[35:0];
+    } = REG_OUTPUT_CLK != "NONE" ? held : product[35:0];
 endmodule
 
 `default_nettype wire

@@ -1,0 +1,183 @@
+//! Gates in place of muxes whose one input is a constant.
+//!
+//! Synthesis makes such a mux the set or the reset of the register behind it, and joins its select with the clock
+//! enable in a look-up table. The way through that to the set or reset is longer than any through a gate: too long for
+//! clocks for which products have registers of their own. It does so bit for bit, so that bits are told apart here.
+
+use super::graph::{Cell, Graph, Label};
+use super::rebuild::rebuilt;
+use super::unroll::Unrolled;
+use crate::base::fixed::Format;
+use crate::hdl::netlist::{NetId, Op};
+
+/// The same computation without muxes of two inputs one of which has bits that are constants.
+pub fn gated(unrolled: &Unrolled) -> Unrolled {
+    rebuilt(unrolled, |graph, op, node| match op {
+        Op::Mux { select, inputs } => {
+            let [zero, one] = inputs[..] else { return None };
+            let bits: Vec<Pair> = known(graph, zero).into_iter().zip(known(graph, one)).collect();
+            if bits.iter().all(|bit| *bit == (None, None)) {
+                return None;
+            }
+            let name = format!("{}_part", node.label.name);
+            let label = Label { name, named: false, doc: String::new(), ..node.label.clone() };
+            let mut parts = Vec::new();
+            let mut low = 0;
+            for run in bits.chunk_by(|a, b| a == b) {
+                let width = run.len() as u32;
+                parts.push(part(graph, *select, (zero, one), run[0], (low, width), &label));
+                low += width;
+            }
+            parts.reverse();
+            Some(graph.op(Op::Concat(parts), node.format, &node.label))
+        }
+        _ => None,
+    })
+}
+
+/// A bit of either input, where it is known.
+type Pair = (Option<bool>, Option<bool>);
+
+/// The bits from `low` on of a mux, of whose inputs the same is known in each.
+fn part(
+    graph: &mut Graph,
+    select: NetId,
+    (zero, one): (NetId, NetId),
+    pair: Pair,
+    (low, width): (u32, u32),
+    label: &Label,
+) -> NetId {
+    let format = Format::unsigned(width as i32, 0);
+    let slice = |graph: &mut Graph, of: NetId| graph.op(Op::Slice { of, low }, format, label);
+    // The select, or its inverse, on every bit.
+    let spread = |graph: &mut Graph, inverted: bool| {
+        let select = if inverted { graph.op(Op::Not(select), Format::BIT, label) } else { select };
+        let sign = graph.op(Op::Relabel(select), Format::signed(0, 0), label);
+        graph.resize(sign, width, true)
+    };
+    let (value, inverse, ones) = match pair {
+        (None, None) => {
+            let inputs = vec![slice(graph, zero), slice(graph, one)];
+            return graph.op(Op::Mux { select, inputs }, format, label);
+        }
+        (Some(a), Some(b)) if a == b => {
+            let bits = if a { u64::MAX } else { 0 };
+            return graph.constant(bits, format, label);
+        }
+        (Some(_), Some(one)) => {
+            let all = spread(graph, !one);
+            return graph.op(Op::Relabel(all), format, label);
+        }
+        // The input that is not known shows while the select is the other's.
+        (Some(constant), None) => (slice(graph, one), false, constant),
+        (None, Some(constant)) => (slice(graph, zero), true, constant),
+    };
+    let gate = spread(graph, inverse != ones);
+    let gate = graph.op(Op::Relabel(gate), format, label);
+    let op = if ones { Op::Or(value, gate) } else { Op::And(value, gate) };
+    graph.op(op, format, label)
+}
+
+/// What wiring alone says of the bits of a node, from the lowest up.
+fn known(graph: &Graph, id: NetId) -> Vec<Option<bool>> {
+    let node = graph.node(id);
+    let width = graph.width(id) as usize;
+    match &node.cell {
+        Cell::Constant(bits) => (0..width).map(|bit| Some(bits >> bit & 1 == 1)).collect(),
+        Cell::Op(Op::Relabel(a)) => known(graph, *a),
+        Cell::Op(Op::Extend(a)) => {
+            let mut bits = known(graph, *a);
+            let sign =
+                if graph.node(*a).format.signed { bits[bits.len() - 1] } else { Some(false) };
+            bits.resize(width, sign);
+            bits
+        }
+        Cell::Op(Op::Slice { of, low }) => {
+            known(graph, *of)[*low as usize..*low as usize + width].to_vec()
+        }
+        Cell::Op(Op::Concat(parts)) => {
+            parts.iter().rev().flat_map(|part| known(graph, *part)).collect()
+        }
+        _ => vec![None; width],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::panic::Location;
+
+    use super::*;
+    use crate::hdl::netlist::eval;
+
+    /// What a node is while the operands are these.
+    fn value(graph: &Graph, id: NetId, operands: &[u64]) -> u64 {
+        let node = graph.node(id);
+        match &node.cell {
+            Cell::Operand(at) => operands[*at],
+            Cell::Constant(bits) => *bits,
+            Cell::Op(op) => {
+                let inputs = op.operands().into_iter();
+                let inputs = inputs.map(|it| (it, [value(graph, it, operands)]));
+                let inputs: std::collections::HashMap<_, _> = inputs.collect();
+                let formats = |id: NetId| graph.node(id).format;
+                let [bits] = eval::cell(op, node.format.width(), &formats, &|id| &inputs[&id]);
+                bits
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn a_mux_with_bits_that_are_constants_is_the_same_without_them() {
+        let label = Label {
+            name: "value".to_owned(),
+            doc: String::new(),
+            block: None,
+            named: true,
+            location: Location::caller(),
+        };
+        let mut graph = Graph::default();
+        let operand = |graph: &mut Graph, at: usize, width: u32| {
+            let range = (0, (1 << width) - 1);
+            graph.leaf(Cell::Operand(at), Format::unsigned(width as i32, 0), range, &label)
+        };
+        let select = operand(&mut graph, 0, 1);
+        let (a, b) = (operand(&mut graph, 1, 2), operand(&mut graph, 2, 3));
+        let constant = |graph: &mut Graph, bits: u64, width: i32| {
+            graph.constant(bits, Format::unsigned(width, 0), &label)
+        };
+        let word = |graph: &mut Graph, parts: Vec<NetId>| {
+            graph.op(Op::Concat(parts), Format::unsigned(7, 0), &label)
+        };
+        // Bits of every kind: both known, either, none.
+        let (high, low) = (constant(&mut graph, 0b101, 3), constant(&mut graph, 0b01, 2));
+        let zero = word(&mut graph, vec![high, a, low]);
+        let ends = constant(&mut graph, 0b1100, 4);
+        let one = word(&mut graph, vec![ends, b]);
+        let mux = Op::Mux { select, inputs: vec![zero, one] };
+        let result = graph.op(mux, Format::unsigned(7, 0), &label);
+        let before = Unrolled {
+            graph,
+            steps: Vec::new(),
+            operands: Vec::new(),
+            results: vec![(result, result)],
+        };
+        let after = gated(&before);
+        let muxes = after.graph.cone([after.results[0].1]);
+        let muxes = muxes
+            .into_iter()
+            .filter(|&id| matches!(after.graph.node(id).cell, Cell::Op(Op::Mux { .. })));
+        for mux in muxes {
+            let known = after.graph.node(mux).cell.operands();
+            assert!(known.iter().skip(1).all(|&it| super::known(&after.graph, it).contains(&None)));
+        }
+        for bits in 0..64 {
+            let operands = [bits & 1, bits >> 1 & 3, bits >> 3];
+            assert_eq!(
+                value(&after.graph, after.results[0].1, &operands),
+                value(&before.graph, result, &operands),
+                "{operands:?}"
+            );
+        }
+    }
+}

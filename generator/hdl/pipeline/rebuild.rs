@@ -1,0 +1,54 @@
+//! The same computation in a new graph, with other nodes in place of some.
+
+use super::graph::{Cell, Graph, Node};
+use super::unroll::Unrolled;
+use crate::hdl::netlist::{NetId, Op};
+
+/// A copy in which `replace` says what stands for a cell, whose operands are those of the new graph; the cell itself where
+/// it says nothing.
+pub fn rebuilt(
+    unrolled: &Unrolled,
+    mut replace: impl FnMut(&mut Graph, &Op, &Node) -> Option<NetId>,
+) -> Unrolled {
+    let mut graph = Graph::default();
+    let mut place: Vec<NetId> = Vec::with_capacity(unrolled.graph.nodes.len());
+    for node in &unrolled.graph.nodes {
+        graph.step = node.step;
+        let cell = match &node.cell {
+            Cell::Op(op) => {
+                let mut op = op.clone();
+                for operand in op.operands_mut() {
+                    *operand = place[operand.index()];
+                }
+                Cell::Op(op)
+            }
+            Cell::Read { rom, address } => {
+                Cell::Read { rom: *rom, address: place[address.index()] }
+            }
+            leaf => leaf.clone(),
+        };
+        let replaced = match &cell {
+            Cell::Op(op) => replace(&mut graph, op, node),
+            _ => None,
+        };
+        let id =
+            replaced.unwrap_or_else(|| graph.insert(cell, node.format, node.range, &node.label));
+        graph.refine(id, node.range);
+        if node.held {
+            graph.name_after(id, &node.label);
+        }
+        place.push(id);
+    }
+    let steps = unrolled.steps.iter().cloned().map(|mut step| {
+        for (_, node) in &mut step.registers {
+            *node = place[node.index()];
+        }
+        step
+    });
+    Unrolled {
+        steps: steps.collect(),
+        operands: unrolled.operands.clone(),
+        results: unrolled.results.iter().map(|&(port, id)| (port, place[id.index()])).collect(),
+        graph,
+    }
+}
