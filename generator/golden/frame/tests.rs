@@ -14,13 +14,17 @@ impl Datapath for Countdown {
     }
 }
 
-fn model(valid_delay: u32) -> Clocked<Countdown> {
-    let mut frame = Frame::default();
-    let device = Countdown {
+fn countdown(frame: &mut Frame) -> Countdown {
+    Countdown {
         from: frame.clamped("from", Format::signed(1, 2), 0, 4),
         count: frame.register("count", Format::unsigned(3, 0)),
         twice: frame.output("twice", Format::signed(4, 0)),
-    };
+    }
+}
+
+fn model(valid_delay: u32) -> Clocked<Countdown> {
+    let mut frame = Frame::default();
+    let device = countdown(&mut frame);
     let counts = frame.flag("counts");
     frame.delay_valid(valid_delay);
     let load = step(|it: &Countdown, s| s[it.count] = s[it.from]);
@@ -126,11 +130,7 @@ fn results_in_registers() {
 #[test]
 fn a_jump_beyond_a_result_in_a_register() {
     let mut frame = Frame::default();
-    let device = Countdown {
-        from: frame.clamped("from", Format::signed(1, 2), 0, 4),
-        count: frame.register("count", Format::unsigned(3, 0)),
-        twice: frame.output("twice", Format::signed(4, 0)),
-    };
+    let device = countdown(&mut frame);
     let counts = frame.flag("counts");
     let load = step(|it: &Countdown, s| s[it.count] = s[it.from]);
     let program = [
@@ -191,11 +191,7 @@ fn results_in_registers_that_follow() {
 #[test]
 fn no_registers_behind_a_result_that_decides() {
     let mut frame = Frame::default();
-    let device = Countdown {
-        from: frame.clamped("from", Format::signed(1, 2), 0, 4),
-        count: frame.register("count", Format::unsigned(3, 0)),
-        twice: frame.output("twice", Format::signed(4, 0)),
-    };
+    let device = countdown(&mut frame);
     let again = idle().valid().repeat_while(|it: &Countdown, s| s[it.count] > 0);
     let model = frame.model(device, [idle(), again, idle().end()]);
     assert!(model.with_output_registers().is_none());
