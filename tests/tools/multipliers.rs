@@ -154,8 +154,8 @@ fn fusesoc_takes_the_file_of_the_target() {
         let arguments = arguments.iter().copied().chain(["--target", target, &core]);
         let run = tool("fusesoc").run_to_success(arguments, place.path(), LIMIT);
         run.unwrap_or_else(|error| panic!("{error:#}"));
-        let sources = place.path().join(target).join("src");
-        let core = sources.join(format!("glint_device_{}_0.1.0", emitted.name));
+        let full = format!("glint_device_{}_0.1.0", emitted.name);
+        let core = place.path().join(target).join(&full).join(target).join("src").join(&full);
         let file = format!("{}_multiplier.v", emitted.name);
         assert_eq!(core.join("ecp5").join(&file).exists(), own, "{target}");
         assert_eq!(core.join(&file).exists(), !own, "{target}");
