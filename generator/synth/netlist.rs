@@ -13,7 +13,7 @@ use crate::hdl::netlist::{Design, Driver, Op};
 pub struct Netlist {
     /// By the name of a net's bit, `core.datapath.product[3]`: the name in the description.
     names: BTreeMap<String, String>,
-    /// By the name of a flip-flop: the name in the description.
+    /// By the name of a flip-flop, or of a DSP block: the name in the description.
     registers: BTreeMap<String, String>,
     /// The cells, by name.
     cells: Map<String, Value>,
@@ -60,9 +60,13 @@ impl Netlist {
                 names.insert(name, (*shown).to_owned());
             }
         }
+        // A flip-flop, or a DSP block with a register at its output.
+        let outputs: Vec<String> =
+            std::iter::once("Q".to_owned()).chain((0..36).map(|bit| format!("P{bit}"))).collect();
         let registers = cells.iter().filter_map(|(name, cell)| {
-            let q = cell["connections"]["Q"][0].as_u64()?;
-            Some((name.clone(), best.get(&q)?.1.to_owned()))
+            let bits = outputs.iter().filter_map(|pin| cell["connections"][pin][0].as_u64());
+            let (_, shown) = bits.filter_map(|bit| best.get(&bit)).next()?;
+            Some((name.clone(), (*shown).to_owned()))
         });
         Ok(Self { names, registers: registers.collect(), cells: cells.clone() })
     }

@@ -8,7 +8,7 @@ use std::fs;
 use crate::common::bench::Bench;
 use crate::common::cores::{Emitted, Files, configuration};
 use crate::common::netlist::{self, POINTS, synthesise};
-use crate::common::tools::tool;
+use crate::common::tools::{LIMIT, tool};
 use glint::tools::synthesis::{FAMILIES, Family};
 use glint::tools::{Simulator, gates};
 use rayon::prelude::*;
@@ -136,4 +136,28 @@ fn another_family_takes_the_portable_form() {
     synthesise(place.path(), &emitted, ice40);
     let text = fs::read_to_string(place.path().join("netlist.v")).expect("a netlist");
     netlist::bench(&emitted, text, ice40).assert_passes();
+}
+
+/// The flow for ECP5 takes the file for ECP5 and no other of that name; a simulation takes the portable one.
+#[test]
+fn fusesoc_takes_the_file_of_the_target() {
+    let (emitted, _) = emitted();
+    let place = tempfile::tempdir().expect("a directory");
+    for file in &emitted.files {
+        let path = place.path().join(&file.path);
+        fs::create_dir_all(path.parent().expect("a directory")).expect("a directory");
+        fs::write(path, &file.contents).expect("written");
+    }
+    let core = format!("glint:device:{}", emitted.name);
+    for (target, own) in [("ecp5", true), ("sim", false)] {
+        let arguments = ["--cores-root", ".", "run", "--setup", "--build-root", target];
+        let arguments = arguments.iter().copied().chain(["--target", target, &core]);
+        let run = tool("fusesoc").run_to_success(arguments, place.path(), LIMIT);
+        run.unwrap_or_else(|error| panic!("{error:#}"));
+        let full = format!("glint_device_{}_0.1.0", emitted.name);
+        let core = place.path().join(target).join(&full).join(target).join("src").join(&full);
+        let file = format!("{}_multiplier.v", emitted.name);
+        assert_eq!(core.join("ecp5").join(&file).exists(), own, "{target}");
+        assert_eq!(core.join(&file).exists(), !own, "{target}");
+    }
 }
