@@ -15,10 +15,6 @@ use crate::hdl::netlist::{NetId, Op};
 /// The most bits of an operand that become rows in look-up tables.
 const MOST_ROWS: u32 = 4;
 
-/// The most bits of all such rows together. Three rows of 21 bits and their sums are about 110 look-up tables on ECP5, and
-/// four of 22 bits 160: for those a multiplier is the better price.
-const MOST_ROW_BITS: u32 = 66;
-
 /// The same computation with products that the target's multipliers take.
 pub fn split(unrolled: &Unrolled, target: &Target) -> Unrolled {
     rebuilt(unrolled, |graph, op, node| {
@@ -66,7 +62,7 @@ fn product(
     let upper_format = integer(signed, limit + graph.width(narrow));
     let upper = product(graph, target, upper_bits, narrow, upper_format, &part("upper"));
     // The lower bits have no sign; the product with them has that of the other operand.
-    let lower = if rest <= MOST_ROWS && rest * graph.width(narrow) <= MOST_ROW_BITS {
+    let lower = if rest <= MOST_ROWS && rest * graph.width(narrow) <= target.row_bits {
         rows(graph, wide, rest, narrow, &part)
     } else {
         let lower_bits = graph.op(

@@ -43,6 +43,9 @@ pub struct Target {
     pub about: &'static str,
     /// The widest operands of a multiplier, unsigned, the wider one first.
     pub multiplier: (u32, u32),
+    /// The most bits of all rows of a product together that are worth less than a multiplier. On ECP5 three rows of 21 bits
+    /// and their sums are about 110 look-up tables, and four of 22 bits 160; the smaller iCE40 have few multipliers.
+    pub row_bits: u32,
     /// From the clock to the output of a register, to the input of the next and its setup.
     pub register: f64,
     /// What the environment takes of the clock before an operand is there.
@@ -74,6 +77,7 @@ pub const TARGETS: [Target; 4] = [
         name: "ecp5",
         about: "Lattice ECP5, speed grade 6",
         multiplier: (18, 18),
+        row_bits: 66,
         register: 1.6,
         input: 2.0,
         logic: 1.0,
@@ -90,6 +94,7 @@ pub const TARGETS: [Target; 4] = [
         name: "ice40",
         about: "Lattice iCE40 UP5K",
         multiplier: (16, 16),
+        row_bits: 256,
         register: 3.6,
         input: 4.0,
         logic: 3.2,
@@ -106,6 +111,7 @@ pub const TARGETS: [Target; 4] = [
         name: "xilinx7",
         about: "AMD 7 series, speed grade -1",
         multiplier: (24, 17),
+        row_bits: 256,
         register: 1.2,
         input: 2.0,
         logic: 0.8,
@@ -122,6 +128,7 @@ pub const TARGETS: [Target; 4] = [
         name: "generic",
         about: "any device: a gate is one unit of about a nanosecond",
         multiplier: (18, 18),
+        row_bits: 256,
         register: 1.5,
         input: 2.0,
         logic: 1.0,
