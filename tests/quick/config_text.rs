@@ -76,6 +76,11 @@ deviation = 30.0
 # An integer from 0 to 1000, default 0; only with architecture = \"pipelined\".
 # stages = 0
 
+# Products as the synthesiser finds them, or in instances of <name>_multiplier, whose
+# output register is that of the DSP block: faster, and every product takes a block.
+# \"inferred\" or \"registered\", default \"inferred\"; only with pipeline.target = \"ecp5\".
+# multipliers = \"inferred\"
+
 # Whether out_ready can hold the results back; without it every register moves in every
 # clock.
 # \"ready\" or \"none\", default \"ready\"; only with architecture = \"pipelined\".

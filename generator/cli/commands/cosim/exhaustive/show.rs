@@ -89,7 +89,7 @@ fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &State) {
         .map(|(axis, value)| format!("{}={value}", axis.name))
         .collect();
     let verdict = match state.shard == Shard::WHOLE {
-        true => proof.verdict(one.core.contract.as_ref()).to_owned(),
+        true => proof.verdict(one.core.contract.as_ref(), job.f.sweep()).to_owned(),
         false if proof.faults.is_empty() => {
             "holds so far; `glint merge` joins the shards".to_owned()
         }
@@ -144,7 +144,7 @@ fn as_json(
         "together": proof.together(),
         "bound": one.core.contract.bound().units,
         "holds": proof.faults.is_empty(),
-        "verdict": proof.verdict(one.core.contract.as_ref()),
+        "verdict": proof.verdict(one.core.contract.as_ref(), places.sweep()),
         "faults": proof.faults,
     });
     if let Some(clocks) = &job.clocks {
