@@ -1,5 +1,6 @@
 //! From a configuration to everything that is made of it.
 
+use std::borrow::Cow;
 use std::time::Duration;
 
 use anyhow::{Context, Result};
@@ -249,7 +250,14 @@ impl Core {
     /// # Errors
     /// The design cannot be written as Verilog.
     pub fn verilog_for(&self, target: &str) -> Result<Vec<(String, String)>> {
-        self.verilog_of(&self.design, target)
+        let mut design = Cow::Borrowed(&self.design);
+        // Delay lines are memories for the devices alone that have such.
+        if self.design.pipeline.as_ref().is_some_and(|it| !target.is_empty() && target != it.target)
+        {
+            let pipeline = &mut design.to_mut().pipeline;
+            pipeline.iter_mut().for_each(|it| it.delay_memory = None);
+        }
+        self.verilog_of(&design, target)
     }
 
     /// The same of the core's design with something changed.

@@ -9,7 +9,7 @@ use askama::Template;
 
 use super::{Computation, EmitInputs, Timing};
 use crate::hdl::netlist::termination::{self, Left};
-use crate::hdl::netlist::{Design, NetId, Partition, RegId, Sequence};
+use crate::hdl::netlist::{Design, Driver, NetId, Op, Partition, RegId, Sequence};
 use crate::hdl::verilog::naming::Naming;
 use crate::hdl::verilog::rows::{Row, separated};
 use crate::hdl::verilog::text::{Names, literal, range};
@@ -114,6 +114,23 @@ pub struct Sources<'a> {
     pub memories: &'a [String],
 }
 
+/// The clocks by which `valid` follows what sets it.
+fn valid_delay(design: &Design) -> Result<u32> {
+    let mut at = design.handshake()?.valid;
+    let mut clocks = 0;
+    for _ in &design.nets {
+        at = match design.net(at).driver {
+            Driver::Op(Op::Relabel(of)) => of,
+            Driver::Register(id) => {
+                clocks += 1;
+                design.register(id).data.unwrap_or(at)
+            }
+            _ => break,
+        };
+    }
+    Ok(clocks)
+}
+
 /// Wrapper and script, as names and texts.
 ///
 /// # Errors
@@ -138,7 +155,8 @@ pub fn files(
     let depth = match &exact {
         // An induction that is longer than a computation has seen its start.
         Some((_, start)) => start + 2,
-        None => UNROLLED,
+        // One longer than the registers before valid knows what comes out of them.
+        None => UNROLLED.max(valid_delay(design)? + 3),
     };
     let largest_age = match (&exact, &bounded) {
         (Some((_, start)), _) => Some(*start),

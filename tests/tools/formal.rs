@@ -197,7 +197,8 @@ fn a_proof_that_takes_too_much_says_so() {
 fn emitted(core: &glint::core::Core) -> (tempfile::TempDir, String) {
     let emitted = Emitted::new(core, 1, 1);
     let place = tempfile::tempdir().expect("a directory");
-    let files = emitted.files.iter();
+    // The form of a file for one target has the name of the portable one.
+    let files = emitted.files.iter().filter(|file| !file.path.contains("/ecp5/"));
     let files = files.map(|file| (file.name().to_owned(), file.contents.clone()));
     let files = files.collect();
     write(place.path(), &files);
