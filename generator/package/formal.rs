@@ -9,7 +9,7 @@ use askama::Template;
 
 use super::{Computation, EmitInputs, Timing};
 use crate::hdl::netlist::termination::{self, Left};
-use crate::hdl::netlist::{Design, Driver, NetId, Op, Partition, RegId, Sequence};
+use crate::hdl::netlist::{Design, Driver, NetId, Op, Partition, RegId, Role, Sequence};
 use crate::hdl::verilog::naming::Naming;
 use crate::hdl::verilog::rows::{Row, separated};
 use crate::hdl::verilog::text::{Names, literal, range};
@@ -114,9 +114,10 @@ pub struct Sources<'a> {
     pub memories: &'a [String],
 }
 
-/// The clocks by which `valid` follows what sets it.
-fn valid_delay(design: &Design) -> Result<u32> {
-    let mut at = design.handshake()?.valid;
+/// The clocks by which `valid` follows what sets it, none in a design without it.
+fn valid_delay(design: &Design) -> u32 {
+    let Some(valid) = design.port(|role| role == Role::Valid) else { return 0 };
+    let mut at = valid.net;
     let mut clocks = 0;
     for _ in &design.nets {
         at = match design.net(at).driver {
@@ -128,7 +129,7 @@ fn valid_delay(design: &Design) -> Result<u32> {
             _ => break,
         };
     }
-    Ok(clocks)
+    clocks
 }
 
 /// Wrapper and script, as names and texts.
@@ -156,7 +157,7 @@ pub fn files(
         // An induction that is longer than a computation has seen its start.
         Some((_, start)) => start + 2,
         // One longer than the registers before valid knows what comes out of them.
-        None => UNROLLED.max(valid_delay(design)? + 3),
+        None => UNROLLED.max(valid_delay(design) + 3),
     };
     let largest_age = match (&exact, &bounded) {
         (Some((_, start)), _) => Some(*start),
