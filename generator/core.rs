@@ -1,6 +1,5 @@
 //! From a configuration to everything that is made of it.
 
-use std::borrow::Cow;
 use std::time::Duration;
 
 use anyhow::{Context, Result};
@@ -242,7 +241,7 @@ impl Core {
     /// # Errors
     /// The design cannot be written as Verilog.
     pub fn verilog(&self) -> Result<Vec<(String, String)>> {
-        self.verilog_for("")
+        self.verilog_of(&self.design, "")
     }
 
     /// The same for a target, by name, with what it has of its own.
@@ -250,21 +249,10 @@ impl Core {
     /// # Errors
     /// The design cannot be written as Verilog.
     pub fn verilog_for(&self, target: &str) -> Result<Vec<(String, String)>> {
-        let mut design = Cow::Borrowed(&self.design);
-        // Delay lines are memories for the devices alone that have such.
-        if self.design.pipeline.as_ref().is_some_and(|it| !target.is_empty() && target != it.target)
-        {
-            let pipeline = &mut design.to_mut().pipeline;
-            pipeline.iter_mut().for_each(|it| it.delay_memory = None);
-        }
-        self.verilog_of(&design, target)
+        self.verilog_of(&self.design.written_for(target), target)
     }
 
-    /// The same of the core's design with something changed.
-    ///
-    /// # Errors
-    /// The design cannot be written as Verilog.
-    pub fn verilog_of(&self, design: &Design, target: &str) -> Result<Vec<(String, String)>> {
+    fn verilog_of(&self, design: &Design, target: &str) -> Result<Vec<(String, String)>> {
         let around = Surroundings {
             inline_memories: Surroundings::new(&self.config, None).inline_memories,
             ..Surroundings::default()

@@ -13,7 +13,6 @@ mod netlist;
 mod place;
 mod record;
 
-use std::borrow::Cow;
 use std::ffi::OsStr;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -66,17 +65,6 @@ impl Target {
             Self::Xilinx7 => "Xilinx 7",
             Self::Osu018 => "0.18 µm cells",
         }
-    }
-
-    /// The design as it is written for the target. Delay lines are memories for ECP5 alone: the others have no small ones, or
-    /// shift registers in look-up tables.
-    pub fn written(self, design: &Design) -> Cow<'_, Design> {
-        let mut written = Cow::Borrowed(design);
-        if self != Self::Ecp5 && design.pipeline.is_some() {
-            let pipeline = &mut written.to_mut().pipeline;
-            pipeline.iter_mut().for_each(|it| it.delay_memory = None);
-        }
-        written
     }
 }
 

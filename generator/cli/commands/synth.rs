@@ -170,8 +170,8 @@ fn measure<'a>(
     let clocks_per_point =
         comparison::clocks_per_point(&core.design, core.contract.as_ref(), EXPONENT)?;
     let figures = flows.par_iter().map(|flow| {
-        let design = flow.target().written(&core.design);
-        let files = core.verilog_of(&design, flow.target().name())?;
+        let design = core.design.written_for(flow.target().name());
+        let files = core.verilog_for(flow.target().name())?;
         let subject = Subject {
             design: &design,
             files: &files,

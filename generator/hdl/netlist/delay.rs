@@ -1,5 +1,6 @@
 //! Delay lines: values of a pipeline that nothing reads on their way through several stages.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::{Design, Driver, NetId, RegId};
@@ -70,7 +71,7 @@ impl Design {
     /// The delay lines that are emitted as memories: those that take less so on a target that has small ones.
     ///
     /// What is found is the same as these registers on every clock, whatever the enable does. The side channel stays
-    /// in registers: the proof by induction follows its value from stage to stage.
+    /// in registers: the proof by induction follows its value from stage to stage. So does what is inside a multiplier.
     pub fn delay_lines(&self) -> Vec<DelayLine> {
         let Some(pipeline) = &self.pipeline else { return Vec::new() };
         let Some(memory) = pipeline.delay_memory else { return Vec::new() };
@@ -83,7 +84,8 @@ impl Design {
             (after.enable == register.enable
                 && register.reset.is_none()
                 && after.reset.is_none()
-                && !pipeline.side_values.contains(&register.q))
+                && !pipeline.side_values.contains(&register.q)
+                && self.multiplier(RegId(at as u32)).is_none())
             .then_some(next)
         };
         let next: Vec<Option<usize>> = (0..self.registers.len()).map(next).collect();
@@ -110,6 +112,16 @@ impl Design {
         }
         let bits = |line: &DelayLine| line.values.iter().map(|it| self.width(it.data)).sum();
         lines.into_values().filter(|line| memory.pays(line.words(), bits(line))).collect()
+    }
+
+    /// The design as it is written for a target, by name: delay lines are memories for that of the pipeline alone.
+    pub fn written_for(&self, target: &str) -> Cow<'_, Self> {
+        let mut written = Cow::Borrowed(self);
+        if self.pipeline.as_ref().is_some_and(|it| it.target != target) {
+            let pipeline = &mut written.to_mut().pipeline;
+            pipeline.iter_mut().for_each(|it| it.delay_memory = None);
+        }
+        written
     }
 
     /// Of each net, who reads it.

@@ -2,7 +2,7 @@ use super::{Delays, Goal, Options, Target, pipeline};
 use crate::base::fixed::Format;
 use crate::hdl::blocks::divider::Divider;
 use crate::hdl::dsl::{Designer, end, loop_while, step, valid, wait_for_start};
-use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId};
+use crate::hdl::netlist::{Design, Driver, Net, NetId, Op, RegId, Register};
 
 fn options(goal: Goal) -> Options {
     let target = Target::named("ecp5").expect("a target");
@@ -168,4 +168,30 @@ fn without_registered_multipliers_no_register_is_inside_one() {
     let made = pipeline(&power(), &options(Goal::ClockMhz(100.0))).unwrap();
     let mut registers = (0..made.registers.len()).map(|at| RegId(at as u32));
     assert!(registers.all(|register| made.multiplier(register).is_none()));
+}
+
+/// A product that waits is a value of its own: the memory begins behind the multiplier.
+#[test]
+fn a_delay_line_begins_behind_a_registered_multiplier() {
+    let goal = Goal::ClockMhz(165.0);
+    let mut made = pipeline(&power(), &Options { registered: true, ..options(goal) }).unwrap();
+    let registered = made.pipeline.as_ref().expect("a pipeline").registered.clone();
+    let product = made.register(registered[0]).q;
+    let second = made.multiplier(registered[1]).expect("a multiplier");
+    // A schedule holds the factors where they are no wider, so that the waiting is put here by hand.
+    let mut waiting = second.factors[0];
+    for clocks in 1..=4 {
+        let register = RegId(made.registers.len() as u32);
+        let data = Some(waiting);
+        waiting = NetId(made.nets.len() as u32);
+        made.registers.push(Register { q: waiting, data, ..made.register(registered[0]).clone() });
+        made.nets.push(Net { driver: Driver::Register(register), ..made.net(product).clone() });
+        let stages = &mut made.pipeline.as_mut().expect("a pipeline").stage_of;
+        stages.push(stages[second.product.index()] + clocks);
+    }
+    made.nets[second.product.index()].driver = Driver::Op(Op::Mul(waiting, waiting));
+    let lines = made.delay_lines();
+    let values: Vec<_> = lines.iter().flat_map(|line| &line.values).collect();
+    assert!(values.iter().any(|it| it.data == product && it.registers.len() == 5), "{lines:?}");
+    assert!(values.iter().all(|it| it.registers.iter().all(|at| !registered.contains(at))));
 }
