@@ -330,10 +330,11 @@ impl Text {
             .with_context(|| format!("cannot write `{name}`"))?;
         let top = self.top.trim_end_matches("_tb");
         let multiplier = format!("{top}_multiplier.v");
-        let gold: Vec<&str> = match self.files.iter().any(|(name, _)| *name == multiplier) {
+        let gold: Vec<&str> = if self.files.iter().any(|(name, _)| *name == multiplier) {
             // By itself it is that of default parameters, which no instance has.
-            true => self.modules.iter().map(|&at| self.files[at].0.as_str()).collect(),
-            false => vec![name],
+            self.modules.iter().map(|&at| self.files[at].0.as_str()).collect()
+        } else {
+            vec![name]
         };
         let gate = gold.iter().map(|file| if file == name { formal::MUTANT } else { file });
         let gate: Vec<&str> = gate.collect();

@@ -37,7 +37,10 @@ mod operand_mux;
 mod output_registers;
 mod program;
 mod registers;
+mod rom;
 mod rules;
+mod sequencer;
+mod shared;
 mod signal;
 
 use std::cell::RefCell;
@@ -50,16 +53,17 @@ pub use program::{
     Program, Setting, Step, end, hold, jump_if, loop_while, next, step, valid, wait_for_start,
 };
 pub use registers::{Counter, Flag, Operand, Register, Select};
+pub use rom::Rom;
 pub use signal::{Mux, Signal};
 
 pub use crate::hdl::netlist::About;
 use crate::hdl::netlist::register_held;
 
-use crate::base::diagnostic::{Diagnostic, Diagnostics, SourceLocation};
-use crate::base::fixed::{Format, MAX_POINT, MAX_WIDTH};
+use crate::base::diagnostic::{Diagnostic, Diagnostics};
+use crate::base::fixed::Format;
 use crate::hdl::netlist::{
-    Control, Design, Driver, Field, FieldId, FieldKind, Net, NetId, Op, Partition, Port,
-    Register as NetRegister, RegisterKind, Role, Rom as NetRom, RomId,
+    Control, Design, Driver, FieldId, NetId, Op, Partition, RegisterKind, Role, Rom as NetRom,
+    RomId,
 };
 
 /// Builds a [`Design`]; see the [module documentation](self).
@@ -346,274 +350,5 @@ impl Designer {
         }
         register_held(&mut design);
         Ok(design)
-    }
-}
-
-/// What the parts of the DSL share.
-impl Designer {
-    pub(crate) fn signal(&self, id: NetId) -> Signal<'_> {
-        Signal::new(self, id)
-    }
-
-    pub(crate) fn net(&self, id: NetId) -> Net {
-        self.inner.borrow().design.net(id).clone()
-    }
-
-    pub(crate) fn with<T>(&self, act: impl FnOnce(&mut Inner) -> T) -> T {
-        act(&mut self.inner.borrow_mut())
-    }
-
-    /// A net that the author named.
-    #[track_caller]
-    pub(crate) fn add_named(&self, name: &str, format: Format, driver: Driver) -> NetId {
-        let format = self.sound(name, format);
-        self.add_net(name, format, format.range(), driver, true)
-    }
-
-    /// A net that the DSL adds; `name` is made distinct.
-    #[track_caller]
-    pub(crate) fn add_wiring(
-        &self,
-        name: &str,
-        format: Format,
-        range: (i128, i128),
-        driver: Driver,
-    ) -> NetId {
-        let name = self.with(|inner| {
-            let taken = |name: &str| inner.design.nets.iter().any(|net| net.name == name);
-            if !taken(name) {
-                return name.to_owned();
-            }
-            let count = inner.names.entry(name.to_owned()).or_insert(1);
-            loop {
-                *count += 1;
-                let candidate = format!("{name}_{count}");
-                if !inner.design.nets.iter().any(|net| net.name == candidate) {
-                    return candidate;
-                }
-            }
-        });
-        self.add_net(&name, format, range, driver, false)
-    }
-
-    /// What `act` adds stands at `place`, wherever in the builder it is made: its names may be at fault.
-    pub(crate) fn placed<T>(&self, place: SourceLocation, act: impl FnOnce() -> T) -> T {
-        let own = self.with(|inner| (inner.design.nets.len(), inner.design.roms.len()));
-        let made = act();
-        self.with(|Inner { design, .. }| {
-            let nets = design.nets[own.0..].iter_mut();
-            let roms = design.roms[own.1..].iter_mut();
-            let places = nets.map(|net| &mut net.location);
-            for location in places.chain(roms.map(|rom| &mut rom.location)) {
-                *location = place;
-            }
-        });
-        made
-    }
-
-    /// The format, if a net can have it. If not that is an error, and one bit is what to go on with, so that
-    /// the rest of the description is checked too.
-    #[track_caller]
-    pub(crate) fn sound(&self, name: &str, format: Format) -> Format {
-        let width = i64::from(format.int) + i64::from(format.frac) + i64::from(format.signed);
-        let point = format.frac.clamp(-MAX_POINT, MAX_POINT);
-        if !(1..=i64::from(MAX_WIDTH)).contains(&width) {
-            self.error(format!(
-                "`{name}` would be {width} bits wide ({format}); a net has 1 to {MAX_WIDTH}"
-            ));
-        } else if point != format.frac {
-            self.error(format!(
-                "`{name}` would have {} fraction bits ({format}); -{MAX_POINT} to {MAX_POINT} are possible",
-                format.frac
-            ));
-        } else {
-            return format;
-        }
-        Format::unsigned(1 - point, point)
-    }
-
-    #[track_caller]
-    pub(crate) fn add_net(
-        &self,
-        name: &str,
-        format: Format,
-        range: (i128, i128),
-        driver: Driver,
-        named: bool,
-    ) -> NetId {
-        let sound = self.sound(name, format);
-        let range = if sound == format { range } else { (0, 1) };
-        let format = sound;
-        // Inside the closure the caller would be this file.
-        let location = Location::caller();
-        self.with(|inner| {
-            let id = NetId(inner.design.nets.len() as u32);
-            inner.design.nets.push(Net {
-                name: name.to_owned(),
-                format,
-                range,
-                driver,
-                block: None,
-                doc: String::new(),
-                named,
-                partition: inner.partition,
-                location,
-            });
-            id
-        })
-    }
-
-    /// A register; returns the net that it drives.
-    #[track_caller]
-    pub(crate) fn add_register(
-        &self,
-        name: &str,
-        format: Format,
-        range: (i128, i128),
-        kind: RegisterKind,
-    ) -> NetId {
-        let id = self.with(|inner| crate::hdl::netlist::RegId(inner.design.registers.len() as u32));
-        let q = self.add_net(name, format, range, Driver::Register(id), true);
-        self.with(|inner| {
-            inner.design.registers.push(NetRegister {
-                q,
-                data: None,
-                enable: None,
-                reset: None,
-                kind,
-            });
-        });
-        q
-    }
-
-    #[track_caller]
-    pub(crate) fn add_field(&self, name: &str, width: u32, kind: FieldKind) -> FieldId {
-        let id = self.with(|inner| FieldId(inner.design.control.fields.len() as u32));
-        let net = self.add_named(name, Format::unsigned(width as i32, 0), Driver::Field(id));
-        self.with(|inner| {
-            // Fields come out of the control unit, whoever uses them.
-            inner.design.nets[net.index()].partition = Partition::Control;
-            inner.design.control.fields.push(Field {
-                name: name.to_owned(),
-                net,
-                kind,
-                lines: Vec::new(),
-            });
-        });
-        id
-    }
-
-    pub(crate) fn port(&self, net: NetId, role: Role) {
-        self.with(|inner| inner.design.ports.push(Port { net, role }));
-    }
-
-    pub(crate) fn set_doc(&self, id: NetId, doc: &str) {
-        self.with(|inner| doc.clone_into(&mut inner.design.nets[id.index()].doc));
-    }
-
-    pub(crate) fn field_net(&self, field: FieldId) -> Signal<'_> {
-        let net = self.with(|inner| inner.design.control.fields[field.index()].net);
-        self.signal(net)
-    }
-
-    /// The signal; of another designer that is an error, and what to go on with a constant like it.
-    #[track_caller]
-    pub(crate) fn own(&self, signal: Signal<'_>) -> Signal<'_> {
-        let other = signal.designer();
-        if other.serial == self.serial {
-            return self.signal(signal.id());
-        }
-        let name = |designer: &Self| designer.with(|inner| inner.design.name.clone());
-        self.error(format!(
-            "`{}` is a signal of the designer of `{}`, and not of that of `{}`",
-            signal.name(),
-            name(other),
-            name(self)
-        ));
-        let driver = Driver::Constant(0);
-        self.signal(self.add_wiring(&signal.name(), signal.format(), signal.range(), driver))
-    }
-
-    /// The same of several. (In a closure the caller would be this library.)
-    #[track_caller]
-    pub(crate) fn own_all(&self, signals: &[Signal<'_>]) -> Vec<Signal<'_>> {
-        let mut own = Vec::with_capacity(signals.len());
-        for signal in signals {
-            own.push(self.own(*signal));
-        }
-        own
-    }
-
-    /// `source` as a net of exactly `format`, or an error that names `what` it was for.
-    #[track_caller]
-    pub(crate) fn fitted(&self, source: Signal<'_>, format: Format, what: &str) -> Option<NetId> {
-        let (low, high) = source.range();
-        if source.format().frac != format.frac || !format.holds(low) || !format.holds(high) {
-            self.error(format!(
-                "{what} is {format}, but `{}` is {} with values from {low} to {high} ulp: narrow it or change the format",
-                source.name(),
-                source.format(),
-            ));
-            return None;
-        }
-        Some(self.resized(source, format))
-    }
-
-    #[track_caller]
-    pub(crate) fn error(&self, message: String) {
-        self.report(Diagnostic::new(message, Location::caller()));
-    }
-
-    #[track_caller]
-    pub(crate) fn error_at<const N: usize>(
-        &self,
-        message: String,
-        notes: [(&str, SourceLocation); N],
-    ) {
-        let mut diagnostic = Diagnostic::new(message, Location::caller());
-        for (note, place) in notes {
-            diagnostic = diagnostic.note(note.to_owned(), place);
-        }
-        self.report(diagnostic);
-    }
-
-    pub(crate) fn report(&self, diagnostic: Diagnostic) {
-        self.with(|inner| inner.diagnostics.push(diagnostic));
-    }
-}
-
-/// A read-only memory.
-#[derive(Clone, Copy)]
-pub struct Rom<'d> {
-    designer: &'d Designer,
-    id: RomId,
-}
-
-impl<'d> Rom<'d> {
-    /// The word read.
-    pub fn out(self) -> Signal<'d> {
-        let data = self.designer.with(|inner| inner.design.rom(self.id).data);
-        self.designer.signal(data)
-    }
-
-    /// States the block number in the source's figure.
-    #[must_use]
-    pub fn block(self, number: u16) -> Self {
-        self.designer.with(|inner| inner.design.roms[self.id.index()].block = Some(number));
-        self
-    }
-
-    /// Adds a line to the ROM's comment: what an entry means.
-    #[must_use]
-    pub fn doc(self, line: &str) -> Self {
-        self.designer.with(|inner| inner.design.roms[self.id.index()].doc.push(line.to_owned()));
-        self
-    }
-
-    /// States a comment for each word.
-    #[must_use]
-    pub fn comments(self, comments: Vec<String>) -> Self {
-        self.designer.with(|inner| inner.design.roms[self.id.index()].comments = comments);
-        self
     }
 }

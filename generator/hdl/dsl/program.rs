@@ -1,14 +1,12 @@
-//! The microprogram: microinstructions as lists of settings, and the sequencer that executes them.
+//! The microprogram: microinstructions as lists of settings, lowered to the values of fields.
 
 use std::panic::Location;
 
+use super::sequencer::{SequenceFields, Sequencer};
 use super::{Designer, Signal};
 use crate::base::diagnostic::{Diagnostic, SourceLocation};
-use crate::base::fixed::Format;
-use crate::hdl::netlist::microcode;
 use crate::hdl::netlist::{
-    Control, Driver, FieldId, FieldKind, Microinstruction, NetId, Op, Partition, RegisterKind,
-    Role, Rom as NetRom, RomId, Sequence,
+    Driver, FieldId, FieldKind, Microinstruction, NetId, Op, Partition, Sequence,
 };
 
 /// What a microinstruction says of one field, or of its successor.
@@ -182,17 +180,6 @@ pub struct Program {
     pub(crate) location: SourceLocation,
 }
 
-/// The fields that the sequencer uses, as far as the program needs them.
-struct SequenceFields {
-    /// None when `valid` follows a signal.
-    valid: Option<FieldId>,
-    wait: Option<FieldId>,
-    again: Option<FieldId>,
-    condition: Option<FieldId>,
-    target: Option<FieldId>,
-    go_on: FieldId,
-}
-
 /// Lowers the program: microinstructions, control ROM, sequencer, and the outputs of the handshake.
 pub(crate) fn assemble(d: &Designer, program: &Program) {
     let steps = &program.steps;
@@ -246,7 +233,8 @@ pub(crate) fn assemble(d: &Designer, program: &Program) {
     let line = lines.map(|[_, go_on]| go_on);
     describe(fields.go_on, "0 in the last microinstruction", line);
     let microinstructions = microinstructions(d, steps, &sequences, &fields, &conditions);
-    sequencer(d, program, microinstructions, &fields, &conditions, &targets, address_width);
+    let sequencer = Sequencer { fields, conditions, targets, address_width };
+    sequencer.build(d, microinstructions, program.location);
 }
 
 /// Whether a setting is of another designer, which is reported: its numbers would mean other nets and fields here.
@@ -428,179 +416,4 @@ fn microinstructions(
         });
     }
     microinstructions
-}
-
-/// The sequencer: address counter, run flag, control ROM, and the outputs of the handshake.
-fn sequencer(
-    d: &Designer,
-    program: &Program,
-    microinstructions: Vec<Microinstruction>,
-    fields: &SequenceFields,
-    conditions: &[NetId],
-    targets: &[usize],
-    address_width: u32,
-) {
-    let op =
-        |name: &str, format: Format, op: Op| d.signal(d.add_named(name, format, Driver::Op(op)));
-    let bit = |name: &str, cell: Op| op(name, Format::BIT, cell);
-    let wide = Format::unsigned(address_width as i32, 0);
-    let last_word = microinstructions.len() as i128 - 1;
-    let run = d.run;
-    let start = d.start;
-    let go_on = d.field_net(fields.go_on).id();
-    let zero = d.raw_constant("first_word", 0, wide);
-    let one = d.raw_constant("one_word", 1, wide);
-
-    let address = d.add_register("word_address", wide, (0, last_word), RegisterKind::Sequencer);
-    d.set_doc(address, "the microinstruction that is executed");
-    let following = op("following_word", wide, Op::Add { a: address, b: one.id(), carry: None });
-    // Where control goes while the program goes on: around a loop, or to the following microinstruction.
-    let mut onward = following;
-    if let Some(again) = fields.again {
-        let condition = match (fields.condition, conditions) {
-            (Some(select), inputs) => bit(
-                "condition",
-                Op::Mux { select: d.field_net(select).id(), inputs: inputs.to_vec() },
-            ),
-            (None, [only, ..]) => bit("condition", Op::Relabel(*only)),
-            (None, []) => return,
-        };
-        let again = bit("loop_back", Op::And(d.field_net(again).id(), condition.id()));
-        let target = match fields.target {
-            Some(field) => d.field_net(field),
-            None => d.raw_constant("loop_start", targets.first().map_or(0, |&to| to as i128), wide),
-        };
-        onward = op(
-            "onward_word",
-            wide,
-            Op::Mux { select: again.id(), inputs: vec![following.id(), target.id()] },
-        );
-    }
-    let next =
-        op("next_word", wide, Op::Mux { select: go_on, inputs: vec![zero.id(), onward.id()] });
-    // The address moves while a program runs and does not wait.
-    let (busy, advance) = match fields.wait {
-        None => (bit("busy", Op::Relabel(run)), run),
-        Some(wait) => {
-            let wait = d.field_net(wait).id();
-            let working = bit("working", Op::Not(wait));
-            let busy = bit("busy", Op::And(run, working.id()));
-            let released = bit("released", Op::Or(working.id(), start));
-            (busy, bit("advance", Op::And(run, released.id())).id())
-        }
-    };
-    d.set_doc(busy.id(), "high from the clock after start to the end");
-    d.connect(address, next.id(), Some(advance));
-    let next_run = bit("next_run", Op::Mux { select: run, inputs: vec![start, go_on] });
-    d.connect(run, next_run.id(), None);
-    let not_busy = bit("not_busy", Op::Not(busy.id()));
-    d.with(|inner| {
-        inner.design.nets[d.idle.index()].driver = Driver::Op(Op::Relabel(not_busy.id()));
-        for register in &mut inner.design.registers {
-            if register.q == run || register.q == address {
-                register.reset = Some(0);
-            }
-        }
-    });
-    let last = bit("last_word", Op::Not(go_on));
-    let done = bit("done", Op::And(run, last.id()));
-    d.set_doc(done.id(), "high in the last clock of a computation");
-    let source = match fields.valid {
-        Some(field) => d.field_net(field).id(),
-        None => valid_line(d),
-    };
-    let valid = bit("valid", Op::Relabel(source));
-    d.set_doc(valid.id(), "the results are on the outputs");
-    control_rom(d, program, microinstructions, address);
-
-    d.port(valid.id(), Role::Valid);
-    d.port(busy.id(), Role::Busy);
-    d.port(done.id(), Role::Done);
-    d.with(|inner| {
-        inner.partition = Partition::Datapath;
-        // Inputs first, then the handshake, then results.
-        inner.design.ports.sort_by_key(|port| match port.role {
-            role if role.is_input() => 0,
-            Role::Valid | Role::Busy | Role::Done => 1,
-            _ => 2,
-        });
-    });
-}
-
-/// The signal that `valid` follows, as many clocks later as was said. A reset drops what is on its way.
-fn valid_line(d: &Designer) -> NetId {
-    let Some((mut source, clocks)) = d.with(|inner| inner.valid) else {
-        return d.run;
-    };
-    for clock in 1..=clocks {
-        let q = d.add_register(
-            &format!("valid_in_{}", clocks - clock),
-            Format::BIT,
-            (0, 1),
-            RegisterKind::Internal,
-        );
-        d.set_doc(
-            q,
-            &match clocks - clock {
-                0 => "a result has come through the datapath".to_owned(),
-                1 => "a result is a clock away".to_owned(),
-                left => format!("a result is {left} clocks away"),
-            },
-        );
-        d.connect(q, source, None);
-        d.with(|inner| {
-            if let Some(register) = inner.design.registers.last_mut() {
-                register.reset = Some(0);
-            }
-        });
-        source = q;
-    }
-    source
-}
-
-fn control_rom(
-    d: &Designer,
-    program: &Program,
-    microinstructions: Vec<Microinstruction>,
-    address: NetId,
-) {
-    let fields = d.with(|inner| inner.design.control.fields.clone());
-    let widths: Vec<u32> = fields.iter().map(|field| d.net(field.net).format.width()).collect();
-    let packed: Vec<u64> = microinstructions
-        .iter()
-        .map(|microinstruction| microcode::pack(&widths, &microinstruction.values))
-        .collect();
-    let comments =
-        microinstructions.iter().map(|microinstruction| microinstruction.name.clone()).collect();
-    let width: u32 = widths.iter().sum();
-    let format = Format::unsigned(width as i32, 0);
-    let rom = d.with(|inner| RomId(inner.design.roms.len() as u32));
-    let data = d.add_named("control_word", format, Driver::Rom(rom));
-    let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
-    let doc = vec![format!(
-        "the microprogram, a line for each microinstruction; fields: {}",
-        names.join(", ")
-    )];
-    d.with(|inner| {
-        inner.design.roms.push(NetRom {
-            name: "control".to_owned(),
-            address,
-            data,
-            synchronous: false,
-            enable: None,
-            shares: None,
-            words: packed,
-            doc,
-            comments,
-            block: None,
-            location: program.location,
-        });
-        let register = |q: NetId| match inner.design.net(q).driver {
-            Driver::Register(id) => id,
-            _ => unreachable!("the sequencer's registers drive their nets"),
-        };
-        let (address, run) = (register(address), register(d.run));
-        inner.design.control =
-            Control { fields, microprogram: microinstructions, rom, address, run };
-    });
 }

@@ -262,8 +262,8 @@ impl Executor<'_> {
     }
 
     /// The state after the turns of a loop, of which there are as many as `conditions` hold, but for the registers that
-    /// count them: 8, 4, 2 and 1 turns, each under a bit of their number. None if a turn depends on the registers that count them, on a memory, or the number
-    /// on more than a few bits.
+    /// count them: 8, 4, 2 and 1 turns, each under a bit of their number. None if a turn depends on the registers that
+    /// count them or on a memory, or the number on more than a few bits.
     fn in_powers(
         &mut self,
         first: &State,

@@ -1,0 +1,40 @@
+//! A memory of the description.
+
+use super::{Designer, Signal};
+use crate::hdl::netlist::RomId;
+
+/// A read-only memory.
+#[derive(Clone, Copy)]
+pub struct Rom<'d> {
+    pub(super) designer: &'d Designer,
+    pub(super) id: RomId,
+}
+
+impl<'d> Rom<'d> {
+    /// The word read.
+    pub fn out(self) -> Signal<'d> {
+        let data = self.designer.with(|inner| inner.design.rom(self.id).data);
+        self.designer.signal(data)
+    }
+
+    /// States the block number in the source's figure.
+    #[must_use]
+    pub fn block(self, number: u16) -> Self {
+        self.designer.with(|inner| inner.design.roms[self.id.index()].block = Some(number));
+        self
+    }
+
+    /// Adds a line to the ROM's comment: what an entry means.
+    #[must_use]
+    pub fn doc(self, line: &str) -> Self {
+        self.designer.with(|inner| inner.design.roms[self.id.index()].doc.push(line.to_owned()));
+        self
+    }
+
+    /// States a comment for each word.
+    #[must_use]
+    pub fn comments(self, comments: Vec<String>) -> Self {
+        self.designer.with(|inner| inner.design.roms[self.id.index()].comments = comments);
+        self
+    }
+}
