@@ -116,12 +116,9 @@ module cosine_power_pipelined (
     end
 
     // Stage 1, part of: operands 1 - cos gamma, n/m
-    reg  [9:0]  exponent_s2;            // specular exponent n
-    reg         facing_s2;              // the surface faces the half vector
-    reg  [17:0] product_upper_bits_s2;
-    reg         product_row_s2;
-    reg         product_row_3_s2;
-    reg         product_row_6_s2;
+    reg  [9:0]  exponent_s2;    // specular exponent n
+    reg  [20:0] complement_s2;  // u1.20: 1.0 - cos gamma
+    reg         facing_s2;      // the surface faces the half vector
 
     wire cos_gamma_over_s1 = cos_gamma_s1[20];
 
@@ -136,35 +133,35 @@ module cosine_power_pipelined (
     always @(posedge clk) begin
         if (advance) begin
             exponent_s2 <= exponent_s1;
+            complement_s2 <= complement_s1;
             facing_s2 <= facing_s1;
-            product_upper_bits_s2 <= complement_s1[20:3];
-            product_row_s2 <= complement_s1[0];
-            product_row_3_s2 <= complement_s1[1];
-            product_row_6_s2 <= complement_s1[2];
         end
     end
 
     // Stage 2, part of: accumulator <- n/m * (1 - cos gamma)
-    reg         facing_s3;           // the surface faces the half vector
-    reg  [27:0] product_upper_s3;
-    reg  [2:0]  product_rows_5_s3;
-    reg  [9:0]  product_carried_s3;
+    reg         facing_s3;                  // the surface faces the half vector
+    reg  [27:0] product_inside_upper_s3;
+    reg  [1:0]  product_inside_rows_2_s3;
+    reg  [9:0]  product_inside_carried_s3;
+    reg  [9:0]  product_at_highest_s3;
 
-    wire [27:0] product_upper_s2 = product_upper_bits_s2 * exponent_s2;
-    wire [9:0] product_row_2_s2 = product_row_s2 ? exponent_s2 : 10'd0;
-    wire [9:0] product_row_4_s2 = product_row_3_s2 ? exponent_s2 : 10'd0;
-    wire [10:0] product_rows_upper_3_s2 = {2'd0, product_row_2_s2[9:1]} + {1'b0, product_row_4_s2};
-    wire [11:0] product_rows_s2 = {product_rows_upper_3_s2, product_row_2_s2[0]};
-    wire [9:0] product_row_7_s2 = product_row_6_s2 ? exponent_s2 : 10'd0;
-    wire [10:0] product_rows_upper_7_s2 = {1'b0, product_rows_s2[11:2]} + {1'b0, product_row_7_s2};
+    wire [27:0] product_inside_upper_s2 = complement_s2[19:2] * exponent_s2;
+    wire [9:0] product_inside_row_2_s2 = complement_s2[0] ? exponent_s2 : 10'd0;
+    wire [9:0] product_inside_row_4_s2 = complement_s2[1] ? exponent_s2 : 10'd0;
+
+    wire [10:0] product_inside_rows_upper_3_s2 = {2'd0, product_inside_row_2_s2[9:1]} + {1'b0,
+            product_inside_row_4_s2};
+
+    wire [9:0] product_at_highest_s2 = complement_s2[20] ? exponent_s2 : 10'd0;
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s3 <= facing_s2;
-            product_upper_s3 <= product_upper_s2;
-            product_rows_5_s3 <= {product_rows_upper_7_s2[0], product_rows_upper_3_s2[0],
-                    product_row_2_s2[0]};
-            product_carried_s3 <= product_rows_upper_7_s2[10:1];
+            product_inside_upper_s3 <= product_inside_upper_s2;
+            product_inside_rows_2_s3 <= {product_inside_rows_upper_3_s2[0],
+                    product_inside_row_2_s2[0]};
+            product_inside_carried_s3 <= product_inside_rows_upper_3_s2[10:1];
+            product_at_highest_s3 <= product_at_highest_s2;
         end
     end
 
@@ -173,16 +170,16 @@ module cosine_power_pipelined (
     reg         distance_over_s4;
     reg  [15:0] product_view_kept_inside_s4;  // u0.16
 
-    wire [27:0] product_sum_s3 = product_upper_s3 + {18'd0, product_carried_s3};
+    wire [27:0] product_inside_sum_s3 = product_inside_upper_s3 + {18'd0,
+            product_inside_carried_s3};
 
-    // the shared product; its point depends on the operands
-    wire [30:0] product_s3 = {product_sum_s3, product_rows_5_s3};
+    wire [9:0] product_2_s3 = product_inside_sum_s3[27:18] | product_at_highest_s3;
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s4 <= facing_s3;
-            distance_over_s4 <= |product_s3[29:24];
-            product_view_kept_inside_s4 <= product_s3[23:8];
+            distance_over_s4 <= |product_2_s3[9:4];
+            product_view_kept_inside_s4 <= {product_2_s3[3:0], product_inside_sum_s3[17:6]};
         end
     end
 
@@ -205,10 +202,10 @@ module cosine_power_pipelined (
     reg  [15:0] accumulator_2_s6;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
 
     // the shared product; its point depends on the operands
-    wire [31:0] product_2_s5 = base_s5 * base_s5;
+    wire [31:0] product_4_s5 = base_s5 * base_s5;
 
     // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_2_s5 = product_2_s5[31:16];
+    wire [15:0] accumulator_2_s5 = product_4_s5[31:16];
 
     always @(posedge clk) begin
         if (advance) begin
@@ -220,10 +217,10 @@ module cosine_power_pipelined (
     reg  [15:0] accumulator_3_s7;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
 
     // the shared product; its point depends on the operands
-    wire [31:0] product_3_s6 = accumulator_2_s6 * accumulator_2_s6;
+    wire [31:0] product_5_s6 = accumulator_2_s6 * accumulator_2_s6;
 
     // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_3_s6 = product_3_s6[31:16];
+    wire [15:0] accumulator_3_s6 = product_5_s6[31:16];
 
     always @(posedge clk) begin
         if (advance) begin
@@ -235,10 +232,10 @@ module cosine_power_pipelined (
     reg  [15:0] accumulator_4_s8;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
 
     // the shared product; its point depends on the operands
-    wire [31:0] product_4_s7 = accumulator_3_s7 * accumulator_3_s7;
+    wire [31:0] product_6_s7 = accumulator_3_s7 * accumulator_3_s7;
 
     // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_4_s7 = product_4_s7[31:16];
+    wire [15:0] accumulator_4_s7 = product_6_s7[31:16];
 
     always @(posedge clk) begin
         if (advance) begin
@@ -253,10 +250,10 @@ module cosine_power_pipelined (
     reg  [15:0] accumulator_5_s9;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
 
     // the shared product; its point depends on the operands
-    wire [31:0] product_5_s8 = accumulator_4_s8 * accumulator_4_s8;
+    wire [31:0] product_7_s8 = accumulator_4_s8 * accumulator_4_s8;
 
     // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_5_s8 = product_5_s8[31:16];
+    wire [15:0] accumulator_5_s8 = product_7_s8[31:16];
 
     always @(posedge clk) begin
         if (advance) begin
@@ -332,8 +329,8 @@ module cosine_power_pipelined (
     assign blue_out = blue_intensity_s11;  // intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, product_rows_s2[1:0], product_s3[7:0], product_s3[30], product_2_s5[15:0],
-            product_3_s6[15:0], product_4_s7[15:0], product_5_s8[15:0], red_product_s9[14:0],
+    wire unused = &{1'b0, product_inside_rows_2_s3, product_inside_sum_s3[5:0], product_4_s5[15:0],
+            product_5_s6[15:0], product_6_s7[15:0], product_7_s8[15:0], red_product_s9[14:0],
             green_product_s9[14:0], blue_product_s9[14:0]};
 endmodule
 

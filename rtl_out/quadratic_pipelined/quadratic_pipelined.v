@@ -5,12 +5,11 @@
 //
 // Source: UA 20998, the analogue in seed 001
 //
-// Pipeline: a point every clock, its results 10 clocks later; stages for 138 MHz on ecp5. While
+// Pipeline: a point every clock, its results 8 clocks later; stages for 138 MHz on ecp5. While
 // out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
-// fraction bits; the value of a signal is its integer times 2^-F. With negative I the first
-// fraction bits are always 0 and left out.
+// fraction bits; the value of a signal is its integer times 2^-F.
 //
 //  rst_n              reset, active low, synchronous
 //  in_valid           a point is offered: the operands are its own
@@ -66,19 +65,17 @@ module quadratic_pipelined #(
     localparam [20:0] COS_GAMMA_MOST = 21'h100000;  // 1.0 in u1.20
 
     // The handshake: which stage has a point, and when all of them move on
-    reg  valid_s1;   // stage 1 has a point
-    reg  valid_s2;   // stage 2 has a point
-    reg  valid_s3;   // stage 3 has a point
-    reg  valid_s4;   // stage 4 has a point
-    reg  valid_s5;   // stage 5 has a point
-    reg  valid_s6;   // stage 6 has a point
-    reg  valid_s7;   // stage 7 has a point
-    reg  valid_s8;   // stage 8 has a point
-    reg  valid_s9;   // stage 9 has a point
-    reg  valid_s10;  // the results are on the outputs
+    reg  valid_s1;  // stage 1 has a point
+    reg  valid_s2;  // stage 2 has a point
+    reg  valid_s3;  // stage 3 has a point
+    reg  valid_s4;  // stage 4 has a point
+    reg  valid_s5;  // stage 5 has a point
+    reg  valid_s6;  // stage 6 has a point
+    reg  valid_s7;  // stage 7 has a point
+    reg  valid_s8;  // the results are on the outputs
 
-    assign out_valid = valid_s10;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s10;  // every point moves on by a stage
+    assign out_valid = valid_s8;  // the results are on the outputs
+    wire advance = out_ready | ~valid_s8;  // every point moves on by a stage
     assign in_ready = advance;  // a point that is offered is taken in this clock
 
     always @(posedge clk) begin
@@ -91,8 +88,6 @@ module quadratic_pipelined #(
             valid_s6 <= 1'b0;
             valid_s7 <= 1'b0;
             valid_s8 <= 1'b0;
-            valid_s9 <= 1'b0;
-            valid_s10 <= 1'b0;
         end else if (advance) begin
             valid_s1 <= in_valid;
             valid_s2 <= valid_s1;
@@ -102,8 +97,6 @@ module quadratic_pipelined #(
             valid_s6 <= valid_s5;
             valid_s7 <= valid_s6;
             valid_s8 <= valid_s7;
-            valid_s9 <= valid_s8;
-            valid_s10 <= valid_s9;
         end
     end
 
@@ -125,277 +118,206 @@ module quadratic_pipelined #(
     end
 
     // Stage 1, part of: operands; ROM(n) addressed
-    reg  [9:0]  exponent_s2;                        // register 1: specular exponent n
     // register 2, u1.20: c, the cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s2;
-    reg  [35:0] multiplier5_upper_upper_s2;         // register 5
-    reg         multiplier5_upper_row_6_s2;         // register 5
-    reg  [18:0] multiplier5_upper_rows_upper_7_s2;  // register 5
-    reg  [1:0]  multiplier5_upper_rows_3_s2;        // register 5
-    reg  [21:0] multiplier5_rows_upper_3_s2;        // register 5
-    reg         multiplier5_rows_upper_4_s2;        // register 5
+    reg  [35:0] multiplier5_inside_upper_s2;    // register 5
+    reg  [3:0]  multiplier5_inside_rows_2_s2;   // register 5
+    reg  [18:0] multiplier5_inside_carried_s2;  // register 5
+    reg  [17:0] coefficient_word_s2;            // u10.8
 
     // multiplier 5
-    wire [35:0] multiplier5_upper_upper_s1 = cos_gamma_reg_s1[20:3] * cos_gamma_reg_s1[20:3];
+    wire [35:0] multiplier5_inside_upper_s1 = cos_gamma_reg_s1[19:2] * cos_gamma_reg_s1[19:2];
 
     // mux 5
-    wire [17:0] multiplier5_upper_row_2_s1 = cos_gamma_reg_s1[0] ? cos_gamma_reg_s1[20:3] : 18'd0;
+    wire [20:0] multiplier5_inside_row_2_s1 = cos_gamma_reg_s1[0] ? {cos_gamma_reg_s1[19:2], 1'b0,
+            cos_gamma_reg_s1[1:0]} : 21'd0;
 
     // mux 5
-    wire [17:0] multiplier5_upper_row_4_s1 = cos_gamma_reg_s1[1] ? cos_gamma_reg_s1[20:3] : 18'd0;
+    wire [20:0] multiplier5_inside_row_4_s1 = cos_gamma_reg_s1[1] ? {cos_gamma_reg_s1[19:2], 1'b0,
+            cos_gamma_reg_s1[1:0]} : 21'd0;
 
     // adder 5
-    wire [18:0] multiplier5_upper_rows_upper_3_s1 = {2'd0, multiplier5_upper_row_2_s1[17:1]} +
-            {1'b0, multiplier5_upper_row_4_s1};
-
-    // block 5
-    wire [19:0] multiplier5_upper_rows_s1 = {multiplier5_upper_rows_upper_3_s1,
-            multiplier5_upper_row_2_s1[0]};
-
-    // mux 5
-    wire [17:0] multiplier5_upper_row_7_s1 = cos_gamma_reg_s1[2] ? cos_gamma_reg_s1[20:3] : 18'd0;
-
-    wire [20:0] multiplier5_row_s1 = cos_gamma_reg_s1[0] ? cos_gamma_reg_s1 : 21'd0;  // mux 5
-    wire [20:0] multiplier5_row_2_s1 = cos_gamma_reg_s1[1] ? cos_gamma_reg_s1 : 21'd0;  // mux 5
-
-    always @(posedge clk) begin
-        if (advance) begin
-            exponent_s2 <= exponent_s1;
-            cos_gamma_reg_s2 <= cos_gamma_reg_s1;
-            multiplier5_upper_upper_s2 <= multiplier5_upper_upper_s1;
-            multiplier5_upper_row_6_s2 <= cos_gamma_reg_s1[2];
-            multiplier5_upper_rows_upper_7_s2 <= {1'b0, multiplier5_upper_rows_s1[19:2]} + {1'b0,
-                    multiplier5_upper_row_7_s1};
-            multiplier5_upper_rows_3_s2 <= {multiplier5_upper_rows_upper_3_s1[0],
-                    multiplier5_upper_row_2_s1[0]};
-            multiplier5_rows_upper_3_s2 <= {2'd0, multiplier5_row_s1[20:1]} + {1'b0,
-                    multiplier5_row_2_s1};
-            multiplier5_rows_upper_4_s2 <= multiplier5_row_s1[0];
-        end
-    end
-
-    // Stage 2, part of: operands; ROM(n) addressed
-    // register 2, u1.20: c, the cosine of the angle between normal and half vector
-    reg  [20:0] cos_gamma_reg_s3;
-    reg  [2:0]  multiplier5_upper_rows_5_s3;  // register 5
-    reg  [35:0] multiplier5_upper_sum_s3;     // register 5
-    reg  [2:0]  multiplier5_rows_5_s3;        // register 5
-    reg  [20:0] multiplier5_carried_s3;       // register 5
-    reg  [17:0] coefficient_word_s3;          // u10.8
-
-    // adder 5
-    wire [35:0] multiplier5_upper_sum_s2 = multiplier5_upper_upper_s2 + {18'd0,
-            multiplier5_upper_rows_upper_7_s2[18:1]};
-
-    // block 5
-    wire [22:0] multiplier5_rows_s2 = {multiplier5_rows_upper_3_s2, multiplier5_rows_upper_4_s2};
-
-    // mux 5
-    wire [20:0] multiplier5_row_4_s2 = multiplier5_upper_row_6_s2 ? cos_gamma_reg_s2 : 21'd0;
-
-    // adder 5
-    wire [21:0] multiplier5_rows_upper_7_s2 = {1'b0, multiplier5_rows_s2[22:2]} + {1'b0,
-            multiplier5_row_4_s2};
+    wire [21:0] multiplier5_inside_rows_upper_3_s1 = {2'd0, multiplier5_inside_row_2_s1[20:1]} +
+            {1'b0, multiplier5_inside_row_4_s1};
 
     // ROM coefficient: a(n), minimax, for an exponent n (the address)
     reg [17:0] coefficient_rom [0:1023];
     initial $readmemh(COEFFICIENT_FILE, coefficient_rom);
-    always @(posedge clk) if (advance) coefficient_word_s3 <= coefficient_rom[exponent_s2];
+    always @(posedge clk) if (advance) coefficient_word_s2 <= coefficient_rom[exponent_s1];
+
+    always @(posedge clk) begin
+        if (advance) begin
+            cos_gamma_reg_s2 <= cos_gamma_reg_s1;
+            multiplier5_inside_upper_s2 <= multiplier5_inside_upper_s1;
+            multiplier5_inside_rows_2_s2 <= {multiplier5_inside_rows_upper_3_s1[2:0],
+                    multiplier5_inside_row_2_s1[0]};
+            multiplier5_inside_carried_s2 <= multiplier5_inside_rows_upper_3_s1[21:3];
+        end
+    end
+
+    // Stage 2, part of: operands; ROM(n) addressed; difference <- c^2 - c
+    // register 2, u1.20: c, the cosine of the angle between normal and half vector
+    reg  [20:0] cos_gamma_reg_s3;
+    reg  [17:0] coefficient_word_s3;   // u10.8
+    reg         multiplier1_sign_s3;   // register 1
+    reg  [16:0] multiplier1_below_s3;  // register 1
+
+    // adder 5
+    wire [35:0] multiplier5_inside_sum_s2 = multiplier5_inside_upper_s2 + {17'd0,
+            multiplier5_inside_carried_s2};
+
+    // block 5
+    wire [39:0] multiplier5_inside_2_s2 = {multiplier5_inside_sum_s2, multiplier5_inside_rows_2_s2};
+
+    // adder 1: c^2 - c
+    wire [21:0] adder1_upper_3_s2 = {1'b0, cos_gamma_reg_s2[20], multiplier5_inside_2_s2[39:20]} -
+            {1'b0, cos_gamma_reg_s2};
 
     always @(posedge clk) begin
         if (advance) begin
             cos_gamma_reg_s3 <= cos_gamma_reg_s2;
-            multiplier5_upper_rows_5_s3 <= {multiplier5_upper_rows_upper_7_s2[0],
-                    multiplier5_upper_rows_3_s2};
-            multiplier5_upper_sum_s3 <= multiplier5_upper_sum_s2;
-            multiplier5_rows_5_s3 <= {multiplier5_rows_upper_7_s2[0],
-                    multiplier5_rows_upper_3_s2[0], multiplier5_rows_upper_4_s2};
-            multiplier5_carried_s3 <= multiplier5_rows_upper_7_s2[21:1];
+            coefficient_word_s3 <= coefficient_word_s2;
+            multiplier1_sign_s3 <= adder1_upper_3_s2[18];
+            multiplier1_below_s3 <= adder1_upper_3_s2[17:1];
         end
     end
 
-    // Stage 3, part of: operands; ROM(n) addressed; difference <- c^2 - c
-    reg         [17:0] coefficient_word_s4;  // u10.8
-    reg  signed [17:0] difference_s4;        // s-2.19: c^2 - c, from -0.25 to 0
+    // Stage 3, part of: intensity <- c + a(n) * difference, not below 0
+    // register 2, u1.20: c, the cosine of the angle between normal and half vector
+    reg  [20:0] cos_gamma_reg_s4;
+    reg  [17:0] multiplier1_at_sign_s4;  // register 1
+    reg  [17:0] multiplier1_s4;          // register 1
+    reg  [9:0]  multiplier1_2_s4;        // register 1
+    reg  [6:0]  adder2_upper_3_s4;       // register 2: c + a(n)*(c^2 - c)
 
-    // block 5
-    wire [38:0] multiplier5_upper_s3 = {multiplier5_upper_sum_s3, multiplier5_upper_rows_5_s3};
+    wire [34:0] multiplier1_inside_s3 = coefficient_word_s3 * multiplier1_below_s3;  // multiplier 1
 
-    // adder 5
-    wire [38:0] multiplier5_sum_s3 = multiplier5_upper_s3 + {18'd0, multiplier5_carried_s3};
-
-    // adder 1: c^2 - c
-    wire [21:0] adder1_upper_3_s3 = multiplier5_sum_s3[38:17] - {1'b0, cos_gamma_reg_s3};
-
-    // block 1, s1.40: c^2 - c
-    wire signed [41:0] adder1_s3 = {adder1_upper_3_s3, multiplier5_sum_s3[16:0],
-            multiplier5_rows_5_s3};
-
-    wire signed [17:0] difference_s3 = adder1_s3[38:21];  // s-2.19: c^2 - c, from -0.25 to 0
+    // mux 1
+    wire [17:0] multiplier1_at_sign_s3 = multiplier1_sign_s3 ? coefficient_word_s3 : 18'd0;
 
     always @(posedge clk) begin
         if (advance) begin
-            coefficient_word_s4 <= coefficient_word_s3;
-            difference_s4 <= difference_s3;
+            cos_gamma_reg_s4 <= cos_gamma_reg_s3;
+            multiplier1_at_sign_s4 <= multiplier1_at_sign_s3;
+            multiplier1_s4 <= multiplier1_inside_s3[34:17];
+            multiplier1_2_s4 <= multiplier1_inside_s3[16:7];
+            adder2_upper_3_s4 <= multiplier1_inside_s3[6:0];
         end
     end
 
     // Stage 4, part of: intensity <- c + a(n) * difference, not below 0
-    reg  signed [35:0] multiplier1_upper_s5;     // register 1, s35.0
-    reg                multiplier1_low_bits_s5;  // register 1
-    reg  signed [16:0] multiplier1_carried_s5;   // register 1, s16.0
+    reg         adder2_kept_bits_s5;
+    reg  [7:0]  adder2_kept_bits_2_s5;
+    reg  [15:0] adder2_kept_inside_s5;  // u0.16
 
-    // multiplier 1, s35.0
-    wire signed [35:0] multiplier1_upper_s4 = $signed({1'b0, coefficient_word_s4[17:1]}) *
-            difference_s4;
+    // adder 1, s18.0
+    wire signed [18:0] multiplier1_upper_s4 = {1'b0, multiplier1_s4} - {1'b0,
+            multiplier1_at_sign_s4};
 
-    // mux 1, s17.0
-    wire signed [17:0] multiplier1_row_2_s4 = coefficient_word_s4[0] ? difference_s4 : 18'd0;
+    // adder 2: c + a(n)*(c^2 - c)
+    wire [28:0] adder2_upper_2_s4 = {multiplier1_upper_s4, multiplier1_2_s4} + {8'd0,
+            cos_gamma_reg_s4};
+
+    // block 2, s8.27: c + a(n)*(c^2 - c)
+    wire signed [35:0] adder2_s4 = {adder2_upper_2_s4, adder2_upper_3_s4};
 
     always @(posedge clk) begin
         if (advance) begin
-            multiplier1_upper_s5 <= multiplier1_upper_s4;
-            multiplier1_low_bits_s5 <= multiplier1_row_2_s4[0];
-            multiplier1_carried_s5 <= multiplier1_row_2_s4[17:1];
+            adder2_kept_bits_s5 <= adder2_s4[35];
+            adder2_kept_bits_2_s5 <= adder2_s4[34:27];
+            adder2_kept_inside_s5 <= adder2_s4[26:11];
         end
     end
 
     // Stage 5, part of: intensity <- c + a(n) * difference, not below 0
-    // register 2, u1.20: c, the cosine of the angle between normal and half vector
-    reg  [20:0] cos_gamma_reg_s6;
-    reg  [28:0] adder2_upper_s6;   // register 2: c + a(n)*(c^2 - c)
-    reg  [6:0]  multiplier1_2_s6;  // register 1
+    reg  [7:0]  red_s6;        // register 3: intensity of the light times k_s
+    reg  [7:0]  green_s6;      // register 4: intensity of the light times k_s
+    reg  [7:0]  blue_s6;       // register 5: intensity of the light times k_s
+    reg  [15:0] intensity_s6;  // u0.16: the reflectance f
 
-    // adder 1, s35.0
-    wire signed [35:0] multiplier1_sum_s5 = multiplier1_upper_s5 +
-            {{19{multiplier1_carried_s5[16]}}, multiplier1_carried_s5};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            adder2_upper_s6 <= multiplier1_sum_s5[34:6];
-            multiplier1_2_s6 <= {multiplier1_sum_s5[5:0], multiplier1_low_bits_s5};
-        end
-    end
-
-    // Stage 6, part of: intensity <- c + a(n) * difference, not below 0
-    reg         adder2_kept_bits_s7;
-    reg         clamped_over_s7;
-    reg  [15:0] adder2_kept_inside_s7;  // u0.16
-
-    // adder 2: c + a(n)*(c^2 - c)
-    wire [28:0] adder2_upper_3_s6 = adder2_upper_s6 + {8'd0, cos_gamma_reg_s6};
-
-    // block 2, s8.27: c + a(n)*(c^2 - c)
-    wire signed [35:0] adder2_s6 = {adder2_upper_3_s6, multiplier1_2_s6};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            adder2_kept_bits_s7 <= adder2_s6[35];
-            clamped_over_s7 <= |adder2_s6[34:27];
-            adder2_kept_inside_s7 <= adder2_s6[26:11];
-        end
-    end
-
-    // Stage 7, part of: intensity <- c + a(n) * difference, not below 0
-    reg  [7:0]  red_s8;        // register 3: intensity of the light times k_s
-    reg  [7:0]  green_s8;      // register 4: intensity of the light times k_s
-    reg  [7:0]  blue_s8;       // register 5: intensity of the light times k_s
-    reg  [15:0] intensity_s8;  // u0.16: the reflectance f
-
-    wire [15:0] clamped_limited_s7 = clamped_over_s7 ? 16'hffff : adder2_kept_inside_s7;  // u0.16
+    // u0.16
+    wire [15:0] clamped_limited_s5 = (|adder2_kept_bits_2_s5) ? 16'hffff : adder2_kept_inside_s5;
 
     // u0.16: the reflectance f
-    wire [15:0] intensity_s7 = adder2_kept_bits_s7 ? 16'd0 : clamped_limited_s7;
+    wire [15:0] intensity_s5 = adder2_kept_bits_s5 ? 16'd0 : clamped_limited_s5;
 
     always @(posedge clk) begin
         if (advance) begin
-            intensity_s8 <= intensity_s7;
+            intensity_s6 <= intensity_s5;
         end
     end
 
-    // Stage 8, part of: result
-    reg  [7:0] red_product_kept_s9;
-    reg        red_product_bits_s9;
-    reg  [7:0] green_product_kept_s9;
-    reg        green_product_bits_s9;
-    reg  [7:0] blue_product_kept_s9;
-    reg        blue_product_bits_s9;
+    // Stage 6, part of: result
+    reg  [7:0] red_product_kept_s7;
+    reg        red_product_bits_s7;
+    reg  [7:0] green_product_kept_s7;
+    reg        green_product_bits_s7;
+    reg  [7:0] blue_product_kept_s7;
+    reg        blue_product_bits_s7;
 
     // multiplier 2, u8.16: an output before it is rounded
-    wire [23:0] red_product_s8 = intensity_s8 * red_s8;
+    wire [23:0] red_product_s6 = intensity_s6 * red_s6;
 
     // multiplier 3, u8.16: an output before it is rounded
-    wire [23:0] green_product_s8 = intensity_s8 * green_s8;
+    wire [23:0] green_product_s6 = intensity_s6 * green_s6;
 
     // multiplier 4, u8.16: an output before it is rounded
-    wire [23:0] blue_product_s8 = intensity_s8 * blue_s8;
+    wire [23:0] blue_product_s6 = intensity_s6 * blue_s6;
 
     always @(posedge clk) begin
         if (advance) begin
-            red_product_kept_s9 <= red_product_s8[23:16];
-            red_product_bits_s9 <= red_product_s8[15];
-            green_product_kept_s9 <= green_product_s8[23:16];
-            green_product_bits_s9 <= green_product_s8[15];
-            blue_product_kept_s9 <= blue_product_s8[23:16];
-            blue_product_bits_s9 <= blue_product_s8[15];
+            red_product_kept_s7 <= red_product_s6[23:16];
+            red_product_bits_s7 <= red_product_s6[15];
+            green_product_kept_s7 <= green_product_s6[23:16];
+            green_product_bits_s7 <= green_product_s6[15];
+            blue_product_kept_s7 <= blue_product_s6[23:16];
+            blue_product_bits_s7 <= blue_product_s6[15];
         end
     end
 
-    // Stage 9, part of: result
-    reg  [7:0] red_intensity_s10;
-    reg  [7:0] green_intensity_s10;
-    reg  [7:0] blue_intensity_s10;
+    // Stage 7, part of: result
+    reg  [7:0] red_intensity_s8;
+    reg  [7:0] green_intensity_s8;
+    reg  [7:0] blue_intensity_s8;
 
-    wire [7:0] red_intensity_s9 = red_product_kept_s9 + {7'd0, red_product_bits_s9};
-    wire [7:0] green_intensity_s9 = green_product_kept_s9 + {7'd0, green_product_bits_s9};
-    wire [7:0] blue_intensity_s9 = blue_product_kept_s9 + {7'd0, blue_product_bits_s9};
+    wire [7:0] red_intensity_s7 = red_product_kept_s7 + {7'd0, red_product_bits_s7};
+    wire [7:0] green_intensity_s7 = green_product_kept_s7 + {7'd0, green_product_bits_s7};
+    wire [7:0] blue_intensity_s7 = blue_product_kept_s7 + {7'd0, blue_product_bits_s7};
 
     always @(posedge clk) begin
         if (advance) begin
-            red_intensity_s10 <= red_intensity_s9;
-            green_intensity_s10 <= green_intensity_s9;
-            blue_intensity_s10 <= blue_intensity_s9;
+            red_intensity_s8 <= red_intensity_s7;
+            green_intensity_s8 <= green_intensity_s7;
+            blue_intensity_s8 <= blue_intensity_s7;
         end
     end
 
     // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
     // points move on, a slot gives the value that it holds and takes a new one; its turn comes
     // again when all others have had theirs.
-    reg slot_of_2;
-    initial slot_of_2 = 1'b0;
+    reg [2:0] slot_of_5;
+    initial slot_of_5 = 3'd0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [20:0] delay_s3_s6 [0:1];
-    reg [2:0] slot_of_7;
-    initial slot_of_7 = 3'd0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [23:0] delay_s0_s8 [0:6];
+    reg [23:0] delay_s0_s6 [0:4];
 
     always @(posedge clk) begin
         if (advance) begin
-            slot_of_2 <= slot_of_2 == 1'b1 ? 1'b0 : slot_of_2 + 1'b1;
-            cos_gamma_reg_s6 <= delay_s3_s6[slot_of_2];
-            delay_s3_s6[slot_of_2] <= cos_gamma_reg_s3;
-        end
-    end
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_7 <= slot_of_7 == 3'd6 ? 3'd0 : slot_of_7 + 3'd1;
-            {red_s8, green_s8, blue_s8} <= delay_s0_s8[slot_of_7];
-            delay_s0_s8[slot_of_7] <= {red, green, blue};
+            slot_of_5 <= slot_of_5 == 3'd4 ? 3'd0 : slot_of_5 + 3'd1;
+            {red_s6, green_s6, blue_s6} <= delay_s0_s6[slot_of_5];
+            delay_s0_s6[slot_of_5] <= {red, green, blue};
         end
     end
 
     // Results
 
-    assign red_out = red_intensity_s10;  // output 1: intensity on the output
-    assign green_out = green_intensity_s10;  // output 2: intensity on the output
-    assign blue_out = blue_intensity_s10;  // output 3: intensity on the output
+    assign red_out = red_intensity_s8;  // output 1: intensity on the output
+    assign green_out = green_intensity_s8;  // output 2: intensity on the output
+    assign blue_out = blue_intensity_s8;  // output 3: intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, multiplier5_upper_rows_s1[1:0], multiplier5_rows_s2[1:0], adder1_s3[20:0],
-            adder1_s3[41:39], multiplier1_sum_s5[35], adder2_s6[10:0], red_product_s8[14:0],
-            green_product_s8[14:0], blue_product_s8[14:0]};
+    wire unused = &{1'b0, multiplier5_inside_2_s2[19:0], adder1_upper_3_s2[0],
+            adder1_upper_3_s2[21:19], adder2_s4[10:0], red_product_s6[14:0], green_product_s6[14:0],
+            blue_product_s6[14:0]};
 endmodule
 
 `default_nettype wire

@@ -173,37 +173,37 @@ module rough_pipelined #(
 
     // Stage 1, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
     // 11 <- cos gamma * cos dgamma
+    // register 1, u1.20: cosine of the angle between normal and half vector
+    reg  [20:0] cos_gamma_reg_s2;
+    // register 2, u1.20: cosine of the angle by which the normal is perturbed
+    reg  [20:0] cos_dgamma_reg_s2;
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s2;
-    reg  [20:0] complement_s2;                       // u1.20: 1.0 - cos
-    reg         sine_in_range6_s2;                   // u is in range 6 or in one above
-    reg         sine_in_range7_s2;                   // u is in range 7 or in one above
-    reg         sine_in_range8_s2;                   // u is in range 8 or in one above
-    reg  [1:0]  complement_shifted_bits_18_s2;       // u0.2
-    reg         sine_in_range5_s2;                   // u is in range 5 or in one above
-    reg         sine_in_range1_s2;                   // u is in range 1 or in one above
-    reg         sine_in_range2_s2;                   // u is in range 2 or in one above
-    reg         sine_in_range3_s2;                   // u is in range 3 or in one above
-    reg         sine_in_range0_s2;                   // u is in range 0 or in one above
-    reg         facing_s2;                           // the surface faces the half vector
+    reg  [20:0] complement_s2;                                // u1.20: 1.0 - cos
+    reg         sine_in_range6_s2;                            // u is in range 6 or in one above
+    reg         sine_in_range7_s2;                            // u is in range 7 or in one above
+    reg         sine_in_range8_s2;                            // u is in range 8 or in one above
+    reg  [1:0]  complement_shifted_bits_18_s2;                // u0.2
+    reg         sine_in_range5_s2;                            // u is in range 5 or in one above
+    reg         sine_in_range1_s2;                            // u is in range 1 or in one above
+    reg         sine_in_range2_s2;                            // u is in range 2 or in one above
+    reg         sine_in_range3_s2;                            // u is in range 3 or in one above
+    reg         sine_in_range0_s2;                            // u is in range 0 or in one above
     reg  [9:0]  sine_word8_s2;
     reg  [9:0]  sine_word3_s2;
-    reg  [35:0] multiplier10_upper_upper_s2;         // register 10
-    reg  [18:0] multiplier10_upper_rows_upper_7_s2;  // register 10
-    reg  [1:0]  multiplier10_upper_rows_3_s2;        // register 10
-    reg  [21:0] multiplier10_rows_upper_3_s2;        // register 10
-    reg         multiplier10_rows_upper_4_s2;        // register 10
-    reg  [20:0] multiplier10_row_7_s2;               // register 10
-    reg  [20:0] complement_2_s2;                     // u1.20: 1.0 - cos
-    reg         sine_in_range6_2_s2;                 // u is in range 6 or in one above
-    reg         sine_in_range7_2_s2;                 // u is in range 7 or in one above
-    reg         sine_in_range8_2_s2;                 // u is in range 8 or in one above
-    reg  [1:0]  complement_shifted_bits_18_2_s2;     // u0.2
-    reg         sine_in_range5_2_s2;                 // u is in range 5 or in one above
-    reg         sine_in_range1_2_s2;                 // u is in range 1 or in one above
-    reg         sine_in_range2_2_s2;                 // u is in range 2 or in one above
-    reg         sine_in_range3_2_s2;                 // u is in range 3 or in one above
-    reg         sine_in_range0_2_s2;                 // u is in range 0 or in one above
+    reg  [35:0] multiplier10_inside_inside_upper_upper_s2;    // register 10
+    reg  [1:0]  multiplier10_inside_inside_upper_rows_2_s2;   // register 10
+    reg  [17:0] multiplier10_inside_inside_upper_carried_s2;  // register 10
+    reg  [20:0] complement_2_s2;                              // u1.20: 1.0 - cos
+    reg         sine_in_range6_2_s2;                          // u is in range 6 or in one above
+    reg         sine_in_range7_2_s2;                          // u is in range 7 or in one above
+    reg         sine_in_range8_2_s2;                          // u is in range 8 or in one above
+    reg  [1:0]  complement_shifted_bits_18_2_s2;              // u0.2
+    reg         sine_in_range5_2_s2;                          // u is in range 5 or in one above
+    reg         sine_in_range1_2_s2;                          // u is in range 1 or in one above
+    reg         sine_in_range2_2_s2;                          // u is in range 2 or in one above
+    reg         sine_in_range3_2_s2;                          // u is in range 3 or in one above
+    reg         sine_in_range0_2_s2;                          // u is in range 0 or in one above
     reg  [9:0]  sine_word8_2_s2;
     reg  [9:0]  sine_word2_2_s2;
 
@@ -218,7 +218,6 @@ module rough_pipelined #(
     wire sine_in_range2_s1 = |complement_s1[20:14];  // u is in range 2 or in one above
     wire sine_in_range3_s1 = |complement_s1[20:12];  // u is in range 3 or in one above
     wire sine_in_range0_s1 = |complement_s1[20:18];  // u is in range 0 or in one above
-    wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
 
     wire [9:0] sine_word8_s1 = sine_in_range8_s1 ? {8'd144, complement_s1[3:2]} : {8'd145,
             complement_s1[1:0]};
@@ -227,27 +226,21 @@ module rough_pipelined #(
             complement_s1[11:7]};
 
     // multiplier 10
-    wire [35:0] multiplier10_upper_upper_s1 = cos_dgamma_reg_s1[20:3] * cos_gamma_reg_s1[20:3];
+    wire [35:0] multiplier10_inside_inside_upper_upper_s1 = cos_gamma_reg_s1[19:2] *
+            cos_dgamma_reg_s1[19:2];
 
     // mux 10
-    wire [17:0] multiplier10_upper_row_2_s1 = cos_dgamma_reg_s1[0] ? cos_gamma_reg_s1[20:3] : 18'd0;
+    wire [17:0] multiplier10_inside_inside_upper_row_2_s1 = cos_gamma_reg_s1[0] ?
+            cos_dgamma_reg_s1[19:2] : 18'd0;
 
     // mux 10
-    wire [17:0] multiplier10_upper_row_4_s1 = cos_dgamma_reg_s1[1] ? cos_gamma_reg_s1[20:3] : 18'd0;
+    wire [17:0] multiplier10_inside_inside_upper_row_4_s1 = cos_gamma_reg_s1[1] ?
+            cos_dgamma_reg_s1[19:2] : 18'd0;
 
     // adder 10
-    wire [18:0] multiplier10_upper_rows_upper_3_s1 = {2'd0, multiplier10_upper_row_2_s1[17:1]} +
-            {1'b0, multiplier10_upper_row_4_s1};
-
-    // block 10
-    wire [19:0] multiplier10_upper_rows_s1 = {multiplier10_upper_rows_upper_3_s1,
-            multiplier10_upper_row_2_s1[0]};
-
-    // mux 10
-    wire [17:0] multiplier10_upper_row_7_s1 = cos_dgamma_reg_s1[2] ? cos_gamma_reg_s1[20:3] : 18'd0;
-
-    wire [20:0] multiplier10_row_2_s1 = cos_gamma_reg_s1[0] ? cos_dgamma_reg_s1 : 21'd0;  // mux 10
-    wire [20:0] multiplier10_row_4_s1 = cos_gamma_reg_s1[1] ? cos_dgamma_reg_s1 : 21'd0;  // mux 10
+    wire [18:0] multiplier10_inside_inside_upper_rows_upper_3_s1 = {2'd0,
+            multiplier10_inside_inside_upper_row_2_s1[17:1]} + {1'b0,
+            multiplier10_inside_inside_upper_row_4_s1};
 
     // u1.20: 1.0 - cos
     wire [20:0] complement_2_s1 = cos_dgamma_over_s1 ? 21'd0 : complement_before_2_s1;
@@ -272,6 +265,8 @@ module rough_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
+            cos_gamma_reg_s2 <= cos_gamma_reg_s1;
+            cos_dgamma_reg_s2 <= cos_dgamma_reg_s1;
             dgamma_negative_s2 <= dgamma_negative_s1;
             complement_s2 <= complement_s1;
             sine_in_range6_s2 <= sine_in_range6_s1;
@@ -283,18 +278,14 @@ module rough_pipelined #(
             sine_in_range2_s2 <= sine_in_range2_s1;
             sine_in_range3_s2 <= sine_in_range3_s1;
             sine_in_range0_s2 <= sine_in_range0_s1;
-            facing_s2 <= facing_s1;
             sine_word8_s2 <= sine_word8_s1;
             sine_word3_s2 <= sine_word3_s1;
-            multiplier10_upper_upper_s2 <= multiplier10_upper_upper_s1;
-            multiplier10_upper_rows_upper_7_s2 <= {1'b0, multiplier10_upper_rows_s1[19:2]} + {1'b0,
-                    multiplier10_upper_row_7_s1};
-            multiplier10_upper_rows_3_s2 <= {multiplier10_upper_rows_upper_3_s1[0],
-                    multiplier10_upper_row_2_s1[0]};
-            multiplier10_rows_upper_3_s2 <= {2'd0, multiplier10_row_2_s1[20:1]} + {1'b0,
-                    multiplier10_row_4_s1};
-            multiplier10_rows_upper_4_s2 <= multiplier10_row_2_s1[0];
-            multiplier10_row_7_s2 <= cos_gamma_reg_s1[2] ? cos_dgamma_reg_s1 : 21'd0;
+            multiplier10_inside_inside_upper_upper_s2 <= multiplier10_inside_inside_upper_upper_s1;
+            multiplier10_inside_inside_upper_rows_2_s2 <=
+                    {multiplier10_inside_inside_upper_rows_upper_3_s1[0],
+                    multiplier10_inside_inside_upper_row_2_s1[0]};
+            multiplier10_inside_inside_upper_carried_s2 <=
+                    multiplier10_inside_inside_upper_rows_upper_3_s1[18:1];
             complement_2_s2 <= complement_2_s1;
             sine_in_range6_2_s2 <= sine_in_range6_2_s1;
             sine_in_range7_2_s2 <= sine_in_range7_2_s1;
@@ -314,12 +305,15 @@ module rough_pipelined #(
     // 11 <- cos gamma * cos dgamma
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s3;
-    reg  [13:0] sine_rest4_s3;                 // u0.14
-    reg         facing_s3;                     // the surface faces the half vector
-    reg  [38:0] multiplier10_upper_s3;         // register 10
-    reg  [21:0] multiplier10_rows_upper_7_s3;  // register 10
-    reg  [1:0]  multiplier10_rows_3_s3;        // register 10
-    reg  [13:0] sine_rest4_2_s3;               // u0.14
+    reg  [13:0] sine_rest4_s3;                               // u0.14
+    reg         facing_s3;                                   // the surface faces the half vector
+    reg  [1:0]  multiplier10_inside_inside_upper_rows_2_s3;  // register 10
+    reg  [35:0] multiplier10_inside_inside_upper_sum_s3;     // register 10
+    reg  [1:0]  multiplier10_inside_inside_rows_2_s3;        // register 10
+    reg  [19:0] multiplier10_inside_inside_carried_s3;       // register 10
+    reg  [19:0] multiplier10_inside_at_highest_s3;           // register 10
+    reg  [20:0] multiplier10_at_highest_s3;                  // register 10
+    reg  [13:0] sine_rest4_2_s3;                             // u0.14
     reg  [34:0] sine_word_s3;
     reg  [34:0] sine_word_2_s3;
 
@@ -350,6 +344,7 @@ module rough_pipelined #(
 
     wire [13:0] sine_rest1_s2 = sine_in_range1_s2 ? sine_rest0_s2 : sine_rest2_s2;  // u0.14
     wire [13:0] sine_rest4_s2 = sine_in_range4_s2 ? sine_rest1_s2 : sine_rest6_s2;  // u0.14
+    wire facing_s2 = |cos_gamma_reg_s2;  // the surface faces the half vector
     wire [9:0] sine_word7_s2 = sine_in_range7_s2 ? {7'd71, complement_s2[5:3]} : sine_word8_s2;
 
     wire [9:0] sine_word5_s2 = sine_in_range5_s2 ? {6'd34, complement_s2[9:6]} : {7'd70,
@@ -365,15 +360,28 @@ module rough_pipelined #(
     wire [9:0] sine_word4_s2 = sine_in_range4_s2 ? sine_word1_s2 : sine_word6_s2;
 
     // adder 10
-    wire [35:0] multiplier10_upper_sum_s2 = multiplier10_upper_upper_s2 + {18'd0,
-            multiplier10_upper_rows_upper_7_s2[18:1]};
+    wire [35:0] multiplier10_inside_inside_upper_sum_s2 = multiplier10_inside_inside_upper_upper_s2
+            + {18'd0, multiplier10_inside_inside_upper_carried_s2};
 
-    // block 10
-    wire [38:0] multiplier10_upper_s2 = {multiplier10_upper_sum_s2,
-            multiplier10_upper_rows_upper_7_s2[0], multiplier10_upper_rows_3_s2};
+    // mux 10
+    wire [19:0] multiplier10_inside_inside_row_2_s2 = cos_dgamma_reg_s2[0] ? cos_gamma_reg_s2[19:0]
+            : 20'd0;
 
-    // block 10
-    wire [22:0] multiplier10_rows_s2 = {multiplier10_rows_upper_3_s2, multiplier10_rows_upper_4_s2};
+    // mux 10
+    wire [19:0] multiplier10_inside_inside_row_4_s2 = cos_dgamma_reg_s2[1] ? cos_gamma_reg_s2[19:0]
+            : 20'd0;
+
+    // adder 10
+    wire [20:0] multiplier10_inside_inside_rows_upper_3_s2 = {2'd0,
+            multiplier10_inside_inside_row_2_s2[19:1]} + {1'b0,
+            multiplier10_inside_inside_row_4_s2};
+
+    // mux 10
+    wire [19:0] multiplier10_inside_at_highest_s2 = cos_dgamma_reg_s2[20] ? cos_gamma_reg_s2[19:0] :
+            20'd0;
+
+    // mux 10
+    wire [20:0] multiplier10_at_highest_s2 = cos_gamma_reg_s2[20] ? cos_dgamma_reg_s2 : 21'd0;
 
     wire sine_in_range4_2_s2 = |complement_2_s2[20:10];  // u is in range 4 or in one above
 
@@ -435,11 +443,15 @@ module rough_pipelined #(
             dgamma_negative_s3 <= dgamma_negative_s2;
             sine_rest4_s3 <= sine_rest4_s2;
             facing_s3 <= facing_s2;
-            multiplier10_upper_s3 <= multiplier10_upper_s2;
-            multiplier10_rows_upper_7_s3 <= {1'b0, multiplier10_rows_s2[22:2]} + {1'b0,
-                    multiplier10_row_7_s2};
-            multiplier10_rows_3_s3 <= {multiplier10_rows_upper_3_s2[0],
-                    multiplier10_rows_upper_4_s2};
+            multiplier10_inside_inside_upper_rows_2_s3 <=
+                    multiplier10_inside_inside_upper_rows_2_s2;
+            multiplier10_inside_inside_upper_sum_s3 <= multiplier10_inside_inside_upper_sum_s2;
+            multiplier10_inside_inside_rows_2_s3 <= {multiplier10_inside_inside_rows_upper_3_s2[0],
+                    multiplier10_inside_inside_row_2_s2[0]};
+            multiplier10_inside_inside_carried_s3 <=
+                    multiplier10_inside_inside_rows_upper_3_s2[20:1];
+            multiplier10_inside_at_highest_s3 <= multiplier10_inside_at_highest_s2;
+            multiplier10_at_highest_s3 <= multiplier10_at_highest_s2;
             sine_rest4_2_s3 <= sine_rest4_2_s2;
         end
     end
@@ -453,21 +465,32 @@ module rough_pipelined #(
     reg  [21:0] sine_base_s4;        // u0.22
     reg  [12:0] sine_slope_s4;       // u-5.18
     reg  [13:0] sine_rest4_2_s4;     // u0.14
-    reg  [34:0] sine_word_2_s4;
+    reg  [21:0] sine_base_2_s4;      // u0.22
+    reg  [12:0] sine_slope_2_s4;     // u-5.18
 
     wire [21:0] sine_base_s3 = sine_word_s3[34:13];  // u0.22
     wire [12:0] sine_slope_s3 = sine_word_s3[12:0];  // u-5.18
 
-    // adder 10
-    wire [38:0] multiplier10_sum_s3 = multiplier10_upper_s3 + {18'd0,
-            multiplier10_rows_upper_7_s3[21:1]};
+    // block 10
+    wire [37:0] multiplier10_inside_inside_upper_s3 = {multiplier10_inside_inside_upper_sum_s3,
+            multiplier10_inside_inside_upper_rows_2_s3};
 
-    // block 10: the shared product; its point depends on the operands
-    wire [41:0] multiplier10_s3 = {multiplier10_sum_s3, multiplier10_rows_upper_7_s3[0],
-            multiplier10_rows_3_s3};
+    // adder 10
+    wire [37:0] multiplier10_inside_inside_sum_s3 = multiplier10_inside_inside_upper_s3 + {18'd0,
+            multiplier10_inside_inside_carried_s3};
+
+    // block 10
+    wire [19:0] multiplier10_inside_2_s3 = multiplier10_inside_inside_sum_s3[37:18] |
+            multiplier10_inside_at_highest_s3;
+
+    // block 10
+    wire [20:0] multiplier10_2_s3 = {1'b0, multiplier10_inside_2_s3} | multiplier10_at_highest_s3;
 
     // block 11, u1.22: cos gamma * cos dgamma
-    wire [22:0] reg11_cos_cos_s3 = multiplier10_s3[40:18];
+    wire [22:0] reg11_cos_cos_s3 = {multiplier10_2_s3, multiplier10_inside_inside_sum_s3[17:16]};
+
+    wire [21:0] sine_base_2_s3 = sine_word_2_s3[34:13];  // u0.22
+    wire [12:0] sine_slope_2_s3 = sine_word_2_s3[12:0];  // u-5.18
 
     always @(posedge clk) begin
         if (advance) begin
@@ -477,7 +500,8 @@ module rough_pipelined #(
             sine_base_s4 <= sine_base_s3;
             sine_slope_s4 <= sine_slope_s3;
             sine_rest4_2_s4 <= sine_rest4_2_s3;
-            sine_word_2_s4 <= sine_word_2_s3;
+            sine_base_2_s4 <= sine_base_2_s3;
+            sine_slope_2_s4 <= sine_slope_2_s3;
         end
     end
 
@@ -492,8 +516,6 @@ module rough_pipelined #(
     reg  [16:0] sine_rise_kept_2_s5;  // u-5.22
 
     wire [26:0] sine_rise_s4 = sine_slope_s4 * sine_rest4_s4;  // u-5.32
-    wire [21:0] sine_base_2_s4 = sine_word_2_s4[34:13];  // u0.22
-    wire [12:0] sine_slope_2_s4 = sine_word_2_s4[12:0];  // u-5.18
     wire [26:0] sine_rise_2_s4 = sine_slope_2_s4 * sine_rest4_2_s4;  // u-5.32
 
     always @(posedge clk) begin
@@ -511,9 +533,10 @@ module rough_pipelined #(
     // gamma
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s6;
-    reg         facing_s6;           // the surface faces the half vector
-    reg  [21:0] reg19_sin_gamma_s6;  // register 19, u0.22: sin gamma
-    reg  [21:0] sine_value_s6;       // u0.22: sine of the addressed cosine
+    reg         facing_s6;                   // the surface faces the half vector
+    reg  [21:0] reg19_sin_gamma_s6;          // register 19, u0.22: sin gamma
+    reg  [17:0] multiplier10_upper_bits_s6;  // register 10
+    reg  [3:0]  multiplier10_lower_bits_s6;  // register 10
 
     wire [22:0] sine_sum_s5 = {1'b0, sine_base_s5} + {6'd0, sine_rise_kept_s5};  // u1.22
 
@@ -530,7 +553,8 @@ module rough_pipelined #(
             dgamma_negative_s6 <= dgamma_negative_s5;
             facing_s6 <= facing_s5;
             reg19_sin_gamma_s6 <= reg19_sin_gamma_s5;
-            sine_value_s6 <= sine_value_s5;
+            multiplier10_upper_bits_s6 <= sine_value_s5[21:4];
+            multiplier10_lower_bits_s6 <= sine_value_s5[3:0];
         end
     end
 
@@ -538,28 +562,30 @@ module rough_pipelined #(
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s7;
     reg         facing_s7;                           // the surface faces the half vector
-    reg  [35:0] multiplier10_upper_upper_2_s7;       // register 10
+    reg  [35:0] multiplier10_upper_upper_s7;         // register 10
     reg  [3:0]  multiplier10_upper_low_bits_s7;      // register 10
-    reg  [17:0] multiplier10_upper_carried_2_s7;     // register 10
+    reg  [17:0] multiplier10_upper_carried_s7;       // register 10
     reg  [21:0] multiplier10_lower_upper_s7;         // register 10
     reg  [4:0]  multiplier10_lower_rows_upper_7_s7;  // register 10
     reg  [1:0]  multiplier10_lower_rows_3_s7;        // register 10
     reg  [3:0]  multiplier10_lower_row_10_s7;        // register 10
 
     // multiplier 10
-    wire [35:0] multiplier10_upper_upper_2_s6 = reg19_sin_gamma_s6[21:4] * sine_value_s6[21:4];
+    wire [35:0] multiplier10_upper_upper_s6 = reg19_sin_gamma_s6[21:4] * multiplier10_upper_bits_s6;
 
     // multiplier 10
-    wire [21:0] multiplier10_upper_lower_s6 = reg19_sin_gamma_s6[3:0] * sine_value_s6[21:4];
+    wire [21:0] multiplier10_upper_lower_s6 = reg19_sin_gamma_s6[3:0] * multiplier10_upper_bits_s6;
 
     // multiplier 10
-    wire [21:0] multiplier10_lower_upper_s6 = reg19_sin_gamma_s6[21:4] * sine_value_s6[3:0];
+    wire [21:0] multiplier10_lower_upper_s6 = reg19_sin_gamma_s6[21:4] * multiplier10_lower_bits_s6;
 
     // mux 10
-    wire [3:0] multiplier10_lower_row_2_s6 = reg19_sin_gamma_s6[0] ? sine_value_s6[3:0] : 4'd0;
+    wire [3:0] multiplier10_lower_row_2_s6 = reg19_sin_gamma_s6[0] ? multiplier10_lower_bits_s6 :
+            4'd0;
 
     // mux 10
-    wire [3:0] multiplier10_lower_row_4_s6 = reg19_sin_gamma_s6[1] ? sine_value_s6[3:0] : 4'd0;
+    wire [3:0] multiplier10_lower_row_4_s6 = reg19_sin_gamma_s6[1] ? multiplier10_lower_bits_s6 :
+            4'd0;
 
     // adder 10
     wire [4:0] multiplier10_lower_rows_upper_3_s6 = {2'd0, multiplier10_lower_row_2_s6[3:1]} +
@@ -570,21 +596,23 @@ module rough_pipelined #(
             multiplier10_lower_row_2_s6[0]};
 
     // mux 10
-    wire [3:0] multiplier10_lower_row_7_s6 = reg19_sin_gamma_s6[2] ? sine_value_s6[3:0] : 4'd0;
+    wire [3:0] multiplier10_lower_row_7_s6 = reg19_sin_gamma_s6[2] ? multiplier10_lower_bits_s6 :
+            4'd0;
 
     always @(posedge clk) begin
         if (advance) begin
             dgamma_negative_s7 <= dgamma_negative_s6;
             facing_s7 <= facing_s6;
-            multiplier10_upper_upper_2_s7 <= multiplier10_upper_upper_2_s6;
+            multiplier10_upper_upper_s7 <= multiplier10_upper_upper_s6;
             multiplier10_upper_low_bits_s7 <= multiplier10_upper_lower_s6[3:0];
-            multiplier10_upper_carried_2_s7 <= multiplier10_upper_lower_s6[21:4];
+            multiplier10_upper_carried_s7 <= multiplier10_upper_lower_s6[21:4];
             multiplier10_lower_upper_s7 <= multiplier10_lower_upper_s6;
             multiplier10_lower_rows_upper_7_s7 <= {1'b0, multiplier10_lower_rows_s6[5:2]} + {1'b0,
                     multiplier10_lower_row_7_s6};
             multiplier10_lower_rows_3_s7 <= {multiplier10_lower_rows_upper_3_s6[0],
                     multiplier10_lower_row_2_s6[0]};
-            multiplier10_lower_row_10_s7 <= reg19_sin_gamma_s6[3] ? sine_value_s6[3:0] : 4'd0;
+            multiplier10_lower_row_10_s7 <= reg19_sin_gamma_s6[3] ? multiplier10_lower_bits_s6 :
+                    4'd0;
         end
     end
 
@@ -592,18 +620,16 @@ module rough_pipelined #(
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s8;
     reg         facing_s8;                     // the surface faces the half vector
-    reg  [39:0] multiplier10_upper_2_s8;       // register 10
-    reg  [2:0]  multiplier10_lower_rows_6_s8;  // register 10
-    reg         multiplier10_lower_rows_7_s8;  // register 10
+    reg  [39:0] multiplier10_upper_s8;         // register 10
+    reg  [3:0]  multiplier10_lower_rows_8_s8;  // register 10
     reg  [21:0] multiplier10_lower_sum_s8;     // register 10
 
     // adder 10
-    wire [35:0] multiplier10_upper_sum_2_s7 = multiplier10_upper_upper_2_s7 + {18'd0,
-            multiplier10_upper_carried_2_s7};
+    wire [35:0] multiplier10_upper_sum_s7 = multiplier10_upper_upper_s7 + {18'd0,
+            multiplier10_upper_carried_s7};
 
     // block 10
-    wire [39:0] multiplier10_upper_2_s7 = {multiplier10_upper_sum_2_s7,
-            multiplier10_upper_low_bits_s7};
+    wire [39:0] multiplier10_upper_s7 = {multiplier10_upper_sum_s7, multiplier10_upper_low_bits_s7};
 
     // block 10
     wire [6:0] multiplier10_lower_rows_4_s7 = {multiplier10_lower_rows_upper_7_s7,
@@ -621,10 +647,9 @@ module rough_pipelined #(
         if (advance) begin
             dgamma_negative_s8 <= dgamma_negative_s7;
             facing_s8 <= facing_s7;
-            multiplier10_upper_2_s8 <= multiplier10_upper_2_s7;
-            multiplier10_lower_rows_6_s8 <= {multiplier10_lower_rows_upper_7_s7[0],
-                    multiplier10_lower_rows_3_s7};
-            multiplier10_lower_rows_7_s8 <= multiplier10_lower_rows_upper_10_s7[0];
+            multiplier10_upper_s8 <= multiplier10_upper_s7;
+            multiplier10_lower_rows_8_s8 <= {multiplier10_lower_rows_upper_10_s7[0],
+                    multiplier10_lower_rows_upper_7_s7[0], multiplier10_lower_rows_3_s7};
             multiplier10_lower_sum_s8 <= multiplier10_lower_sum_s7;
         end
     end
@@ -637,15 +662,13 @@ module rough_pipelined #(
     reg  [21:0] reg12_sin_sin_s9;    // register 12, u0.22: sin gamma * sin dgamma
 
     // adder 10
-    wire [39:0] multiplier10_sum_2_s8 = multiplier10_upper_2_s8 + {18'd0,
-            multiplier10_lower_sum_s8};
+    wire [39:0] multiplier10_sum_s8 = multiplier10_upper_s8 + {18'd0, multiplier10_lower_sum_s8};
 
     // block 10: the shared product; its point depends on the operands
-    wire [43:0] multiplier10_2_s8 = {multiplier10_sum_2_s8, multiplier10_lower_rows_7_s8,
-            multiplier10_lower_rows_6_s8};
+    wire [43:0] multiplier10_4_s8 = {multiplier10_sum_s8, multiplier10_lower_rows_8_s8};
 
     // block 12, u0.22: sin gamma * sin dgamma
-    wire [21:0] reg12_sin_sin_s8 = multiplier10_2_s8[43:22];
+    wire [21:0] reg12_sin_sin_s8 = multiplier10_4_s8[43:22];
 
     always @(posedge clk) begin
         if (advance) begin
@@ -658,7 +681,7 @@ module rough_pipelined #(
     // Stage 9, part of: operands adder 15, n/2
     reg  [9:0]  exponent_s10;                   // register 3: specular exponent n
     reg         facing_s10;                     // the surface faces the half vector
-    reg  [17:0] multiplier10_upper_bits_3_s10;  // register 10
+    reg  [17:0] multiplier10_upper_bits_2_s10;  // register 10
     reg  [4:0]  multiplier10_lower_bits_2_s10;  // register 10
     reg         mux8_held_bits_2_s10;
 
@@ -680,22 +703,21 @@ module rough_pipelined #(
     always @(posedge clk) begin
         if (advance) begin
             facing_s10 <= facing_s9;
-            multiplier10_upper_bits_3_s10 <= adder15_s9[22:5];
+            multiplier10_upper_bits_2_s10 <= adder15_s9[22:5];
             multiplier10_lower_bits_2_s10 <= adder15_s9[4:0];
             mux8_held_bits_2_s10 <= adder15_s9[23];
         end
     end
 
     // Stage 10, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
-    reg         facing_s11;                  // the surface faces the half vector
-    reg  [27:0] multiplier10_upper_3_s11;    // register 10
-    reg  [4:0]  multiplier10_low_bits_s11;   // register 10
-    reg  [9:0]  multiplier10_carried_2_s11;  // register 10
+    reg         facing_s11;                // the surface faces the half vector
+    reg  [27:0] multiplier10_upper_2_s11;  // register 10
+    reg  [14:0] multiplier10_lower_s11;    // register 10
     // what the product of a negative operand is too large by, above its sign
     reg  [9:0]  multiplier10_excess_s11;
 
     // multiplier 10
-    wire [27:0] multiplier10_upper_3_s10 = multiplier10_upper_bits_3_s10 * exponent_s10;
+    wire [27:0] multiplier10_upper_2_s10 = multiplier10_upper_bits_2_s10 * exponent_s10;
 
     // multiplier 10
     wire [14:0] multiplier10_lower_s10 = multiplier10_lower_bits_2_s10 * exponent_s10;
@@ -706,31 +728,30 @@ module rough_pipelined #(
     always @(posedge clk) begin
         if (advance) begin
             facing_s11 <= facing_s10;
-            multiplier10_upper_3_s11 <= multiplier10_upper_3_s10;
-            multiplier10_low_bits_s11 <= multiplier10_lower_s10[4:0];
-            multiplier10_carried_2_s11 <= multiplier10_lower_s10[14:5];
+            multiplier10_upper_2_s11 <= multiplier10_upper_2_s10;
+            multiplier10_lower_s11 <= multiplier10_lower_s10;
             multiplier10_excess_s11 <= multiplier10_excess_s10;
         end
     end
 
     // Stage 11, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
     reg         facing_s12;                // the surface faces the half vector
-    reg  [10:0] multiplier10_upper_4_s12;
+    reg  [10:0] multiplier10_upper_3_s12;
     reg  [15:0] multiplier10_view_3_s12;
 
     // adder 10
-    wire [27:0] multiplier10_sum_3_s11 = multiplier10_upper_3_s11 + {18'd0,
-            multiplier10_carried_2_s11};
+    wire [27:0] multiplier10_sum_2_s11 = multiplier10_upper_2_s11 + {18'd0,
+            multiplier10_lower_s11[14:5]};
 
     // block 10: the shared product; its point depends on the operands
-    wire [32:0] multiplier10_3_s11 = {multiplier10_sum_3_s11, multiplier10_low_bits_s11};
+    wire [32:0] multiplier10_5_s11 = {multiplier10_sum_2_s11, multiplier10_lower_s11[4:0]};
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s12 <= facing_s11;
-            multiplier10_upper_4_s12 <= {1'b0, multiplier10_3_s11[32:23]} - {1'b0,
+            multiplier10_upper_3_s12 <= {1'b0, multiplier10_5_s11[32:23]} - {1'b0,
                     multiplier10_excess_s11};
-            multiplier10_view_3_s12 <= multiplier10_3_s11[22:7];
+            multiplier10_view_3_s12 <= multiplier10_5_s11[22:7];
         end
     end
 
@@ -740,14 +761,14 @@ module rough_pipelined #(
     reg  signed [16:0] result_limited_s13;  // s0.16
 
     // s0.16
-    wire signed [16:0] result_limited_s12 = (~multiplier10_upper_4_s12[10] &
-            (|multiplier10_upper_4_s12[9:0])) ? RESULT_MOST : {multiplier10_upper_4_s12[0],
+    wire signed [16:0] result_limited_s12 = (~multiplier10_upper_3_s12[10] &
+            (|multiplier10_upper_3_s12[9:0])) ? RESULT_MOST : {multiplier10_upper_3_s12[0],
             multiplier10_view_3_s12};
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s13 <= facing_s12;
-            result_under_s13 <= multiplier10_upper_4_s12[10] & ~(&multiplier10_upper_4_s12[9:0]);
+            result_under_s13 <= multiplier10_upper_3_s12[10] & ~(&multiplier10_upper_3_s12[9:0]);
             result_limited_s13 <= result_limited_s12;
         end
     end
@@ -779,13 +800,13 @@ module rough_pipelined #(
     reg  signed [16:0] line_or_square_kept_inside_s15;    // s0.16
 
     // multiplier 10: the shared product; its point depends on the operands
-    wire [33:0] multiplier10_4_s14 = adder16_s14 * adder16_s14;
+    wire [33:0] multiplier10_6_s14 = adder16_s14 * adder16_s14;
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s15 <= facing_s14;
-            line_or_square_kept_bits_2_2_s15 <= {8'd0, multiplier10_4_s14[33:32]};
-            line_or_square_kept_inside_s15 <= multiplier10_4_s14[32:16];
+            line_or_square_kept_bits_2_2_s15 <= {8'd0, multiplier10_6_s14[33:32]};
+            line_or_square_kept_inside_s15 <= multiplier10_6_s14[32:16];
         end
     end
 
@@ -903,10 +924,10 @@ module rough_pipelined #(
     assign blue_out = blue_intensity_s18;  // output 42: intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, sine_rise_s4[9:0], multiplier10_upper_rows_s1[1:0],
-            multiplier10_rows_s2[1:0], multiplier10_s3[17:0], multiplier10_s3[41],
-            sine_rise_2_s4[9:0], multiplier10_lower_rows_s6[1:0], multiplier10_lower_rows_4_s7[2:0],
-            multiplier10_2_s8[21:0], multiplier10_3_s11[6:0], multiplier10_4_s14[15:0],
+    wire unused = &{1'b0, sine_rise_s4[9:0], multiplier10_inside_inside_rows_2_s3,
+            multiplier10_inside_inside_sum_s3[15:0], sine_rise_2_s4[9:0],
+            multiplier10_lower_rows_s6[1:0], multiplier10_lower_rows_4_s7[2:0],
+            multiplier10_4_s8[21:0], multiplier10_5_s11[6:0], multiplier10_6_s14[15:0],
             reg13_result_2_s15[16], red_product_s16[14:0], green_product_s16[14:0],
             blue_product_s16[14:0]};
 endmodule

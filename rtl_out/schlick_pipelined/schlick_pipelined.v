@@ -132,12 +132,13 @@ module schlick_pipelined (
     end
 
     // Stage 1, part of: operands cos gamma, n
-    reg  [20:0] cos_gamma_reg_s2;      // u1.20: cosine of the angle between normal and half vector
-    reg  [9:0]  exponent_s2;           // specular exponent n
-    reg  [17:0] scaled_upper_bits_s2;
-    reg         scaled_row_s2;
-    reg         scaled_row_3_s2;
-    reg         scaled_row_6_s2;
+    // u1.20: cosine of the angle between normal and half vector
+    reg  [20:0] cos_gamma_reg_s2;
+    reg  [9:0]  exponent_s2;                  // specular exponent n
+    reg         scaled_highest_s2;
+    reg  [17:0] scaled_inside_upper_bits_s2;
+    reg         scaled_inside_row_s2;
+    reg         scaled_inside_row_3_s2;
 
     wire cos_gamma_over_s1 = cos_gamma_s1[20];
 
@@ -151,83 +152,79 @@ module schlick_pipelined (
         if (advance) begin
             cos_gamma_reg_s2 <= cos_gamma_reg_s1;
             exponent_s2 <= exponent_s1;
-            scaled_upper_bits_s2 <= complement_s1[20:3];
-            scaled_row_s2 <= complement_s1[0];
-            scaled_row_3_s2 <= complement_s1[1];
-            scaled_row_6_s2 <= complement_s1[2];
+            scaled_highest_s2 <= complement_s1[20];
+            scaled_inside_upper_bits_s2 <= complement_s1[19:2];
+            scaled_inside_row_s2 <= complement_s1[0];
+            scaled_inside_row_3_s2 <= complement_s1[1];
         end
     end
 
     // Stage 2, part of: cos gamma by n*(1 - cos gamma) + cos gamma
-    reg  [20:0] cos_gamma_reg_s3;   // u1.20: cosine of the angle between normal and half vector
-    reg  [27:0] scaled_upper_s3;
-    reg  [2:0]  scaled_rows_5_s3;
-    reg  [9:0]  scaled_carried_s3;
+    // u1.20: cosine of the angle between normal and half vector
+    reg  [20:0] cos_gamma_reg_s3;
+    reg  [27:0] scaled_inside_upper_s3;
+    reg  [1:0]  scaled_inside_rows_2_s3;
+    reg  [9:0]  scaled_inside_carried_s3;
+    reg  [9:0]  scaled_at_highest_s3;
 
-    wire [27:0] scaled_upper_s2 = scaled_upper_bits_s2 * exponent_s2;
-    wire [9:0] scaled_row_2_s2 = scaled_row_s2 ? exponent_s2 : 10'd0;
-    wire [9:0] scaled_row_4_s2 = scaled_row_3_s2 ? exponent_s2 : 10'd0;
-    wire [10:0] scaled_rows_upper_3_s2 = {2'd0, scaled_row_2_s2[9:1]} + {1'b0, scaled_row_4_s2};
-    wire [11:0] scaled_rows_s2 = {scaled_rows_upper_3_s2, scaled_row_2_s2[0]};
-    wire [9:0] scaled_row_7_s2 = scaled_row_6_s2 ? exponent_s2 : 10'd0;
-    wire [10:0] scaled_rows_upper_7_s2 = {1'b0, scaled_rows_s2[11:2]} + {1'b0, scaled_row_7_s2};
+    wire [27:0] scaled_inside_upper_s2 = scaled_inside_upper_bits_s2 * exponent_s2;
+    wire [9:0] scaled_inside_row_2_s2 = scaled_inside_row_s2 ? exponent_s2 : 10'd0;
+    wire [9:0] scaled_inside_row_4_s2 = scaled_inside_row_3_s2 ? exponent_s2 : 10'd0;
+
+    wire [10:0] scaled_inside_rows_upper_3_s2 = {2'd0, scaled_inside_row_2_s2[9:1]} + {1'b0,
+            scaled_inside_row_4_s2};
+
+    wire [9:0] scaled_at_highest_s2 = scaled_highest_s2 ? exponent_s2 : 10'd0;
 
     always @(posedge clk) begin
         if (advance) begin
             cos_gamma_reg_s3 <= cos_gamma_reg_s2;
-            scaled_upper_s3 <= scaled_upper_s2;
-            scaled_rows_5_s3 <= {scaled_rows_upper_7_s2[0], scaled_rows_upper_3_s2[0],
-                    scaled_row_2_s2[0]};
-            scaled_carried_s3 <= scaled_rows_upper_7_s2[10:1];
+            scaled_inside_upper_s3 <= scaled_inside_upper_s2;
+            scaled_inside_rows_2_s3 <= {scaled_inside_rows_upper_3_s2[0],
+                    scaled_inside_row_2_s2[0]};
+            scaled_inside_carried_s3 <= scaled_inside_rows_upper_3_s2[10:1];
+            scaled_at_highest_s3 <= scaled_at_highest_s2;
         end
     end
 
     // Stage 3, part of: cos gamma by n*(1 - cos gamma) + cos gamma
-    reg  [20:0] cos_gamma_reg_s4;     // u1.20: cosine of the angle between normal and half vector
-    reg  [29:0] quotient_divisor_s4;  // u10.20: the divisor
+    reg  [20:0] cos_gamma_reg_s4;  // u1.20: cosine of the angle between normal and half vector
+    reg  [29:0] scaled_3_s4;
+    reg         dark_s4;           // an ulp for the divisor, which n = 0 would leave at 0
 
-    wire [27:0] scaled_sum_s3 = scaled_upper_s3 + {18'd0, scaled_carried_s3};
-    wire [30:0] scaled_s3 = {scaled_sum_s3, scaled_rows_5_s3};  // u11.20: n*(1 - cos gamma)
+    wire [27:0] scaled_inside_sum_s3 = scaled_inside_upper_s3 + {18'd0, scaled_inside_carried_s3};
+    wire [9:0] scaled_2_s3 = scaled_inside_sum_s3[27:18] | scaled_at_highest_s3;
     wire facing_s3 = |cos_gamma_reg_s3;  // the surface faces the half vector
     wire dark_s3 = ~facing_s3;  // an ulp for the divisor, which n = 0 would leave at 0
-
-    // u11.20
-    wire [30:0] denominator_s3 = scaled_s3 + {10'd0, cos_gamma_reg_s3} + {30'd0, dark_s3};
-
-    wire [29:0] quotient_divisor_s3 = denominator_s3[29:0];  // u10.20: the divisor
 
     always @(posedge clk) begin
         if (advance) begin
             cos_gamma_reg_s4 <= cos_gamma_reg_s3;
-            quotient_divisor_s4 <= quotient_divisor_s3;
+            scaled_3_s4 <= {scaled_2_s3, scaled_inside_sum_s3[17:0], scaled_inside_rows_2_s3};
+            dark_s4 <= dark_s3;
         end
     end
 
-    // Stage 4, part of: next bit of the quotient
-    reg  [29:0] quotient_divisor_s5;    // u10.20: the divisor
-    reg         quotient_bit_s5;        // the divisor fits: the next bit of the quotient
-    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    reg  [29:0] quotient_remainder_s5;
+    // Stage 4, part of: cos gamma by n*(1 - cos gamma) + cos gamma; next bit of the quotient
+    reg         [29:0] quotient_divisor_s5;                   // u10.20: the divisor
+    reg         [30:0] quotient_remainder_shifted_scaled_s5;  // u11.20
+    // s11.20: negative where the divisor does not fit
+    reg  signed [31:0] quotient_trial_s5;
+
+    // u11.20
+    wire [30:0] denominator_s4 = {1'b0, scaled_3_s4} + {10'd0, cos_gamma_reg_s4} + {30'd0, dark_s4};
+
+    wire [29:0] quotient_divisor_s4 = denominator_s4[29:0];  // u10.20: the divisor
 
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_s4 = {10'd0, cos_gamma_reg_s4, 1'b0} - {2'd0,
             quotient_divisor_s4};
 
-    // the divisor fits: the next bit of the quotient
-    wire quotient_bit_s4 = ~quotient_trial_s4[31];
-
-    // s11.20
-    wire signed [31:0] quotient_left_s4 = quotient_bit_s4 ? quotient_trial_s4 : {10'd0,
-            cos_gamma_reg_s4, 1'b0};
-
-    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_s4 = quotient_left_s4[29:0];
-
     always @(posedge clk) begin
         if (advance) begin
             quotient_divisor_s5 <= quotient_divisor_s4;
-            quotient_bit_s5 <= quotient_bit_s4;
-            quotient_remainder_s5 <= quotient_remainder_s4;
+            quotient_remainder_shifted_scaled_s5 <= {9'd0, cos_gamma_reg_s4, 1'b0};
+            quotient_trial_s5 <= quotient_trial_s4;
         end
     end
 
@@ -236,6 +233,16 @@ module schlick_pipelined (
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
     reg  [29:0] quotient_remainder_2_s6;
     reg  [1:0]  quotient_s6;              // the quotient, which bits enter at the bottom
+
+    // the divisor fits: the next bit of the quotient
+    wire quotient_bit_s5 = ~quotient_trial_s5[31];
+
+    // s11.20
+    wire signed [31:0] quotient_left_s5 = quotient_bit_s5 ? quotient_trial_s5 : {1'b0,
+            quotient_remainder_shifted_scaled_s5};
+
+    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
+    wire [29:0] quotient_remainder_s5 = quotient_left_s5[29:0];
 
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_2_s5 = {1'b0, quotient_remainder_s5, 1'b0} - {2'd0,
@@ -345,9 +352,10 @@ module schlick_pipelined (
 
     // Stage 9, part of: next bit of the quotient
     reg  [29:0] quotient_divisor_s10;      // u10.20: the divisor
+    reg         quotient_bit_6_s10;        // the divisor fits: the next bit of the quotient
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
     reg  [29:0] quotient_remainder_6_s10;
-    reg  [5:0]  quotient_5_s10;            // the quotient, which bits enter at the bottom
+    reg  [4:0]  quotient_4_s10;            // the quotient, which bits enter at the bottom
 
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_6_s9 = {1'b0, quotient_remainder_5_s9, 1'b0} - {2'd0,
@@ -366,8 +374,9 @@ module schlick_pipelined (
     always @(posedge clk) begin
         if (advance) begin
             quotient_divisor_s10 <= quotient_divisor_s9;
+            quotient_bit_6_s10 <= quotient_bit_6_s9;
             quotient_remainder_6_s10 <= quotient_remainder_6_s9;
-            quotient_5_s10 <= {quotient_4_s9, quotient_bit_6_s9};
+            quotient_4_s10 <= quotient_4_s9;
         end
     end
 
@@ -395,7 +404,7 @@ module schlick_pipelined (
         if (advance) begin
             quotient_divisor_s11 <= quotient_divisor_s10;
             quotient_remainder_7_s11 <= quotient_remainder_7_s10;
-            quotient_6_s11 <= {quotient_5_s10, quotient_bit_7_s10};
+            quotient_6_s11 <= {quotient_4_s10, quotient_bit_6_s10, quotient_bit_7_s10};
         end
     end
 
@@ -403,6 +412,7 @@ module schlick_pipelined (
     reg  [29:0] quotient_divisor_s12;      // u10.20: the divisor
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
     reg  [29:0] quotient_remainder_8_s12;
+    reg  [7:0]  quotient_7_s12;            // the quotient, which bits enter at the bottom
 
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_8_s11 = {1'b0, quotient_remainder_7_s11, 1'b0} - {2'd0,
@@ -422,14 +432,15 @@ module schlick_pipelined (
         if (advance) begin
             quotient_divisor_s12 <= quotient_divisor_s11;
             quotient_remainder_8_s12 <= quotient_remainder_8_s11;
+            quotient_7_s12 <= {quotient_6_s11, quotient_bit_8_s11};
         end
     end
 
     // Stage 12, part of: next bit of the quotient
     reg  [29:0] quotient_divisor_s13;      // u10.20: the divisor
-    reg         quotient_bit_9_s13;        // the divisor fits: the next bit of the quotient
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
     reg  [29:0] quotient_remainder_9_s13;
+    reg  [8:0]  quotient_8_s13;            // the quotient, which bits enter at the bottom
 
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_9_s12 = {1'b0, quotient_remainder_8_s12, 1'b0} - {2'd0,
@@ -448,18 +459,16 @@ module schlick_pipelined (
     always @(posedge clk) begin
         if (advance) begin
             quotient_divisor_s13 <= quotient_divisor_s12;
-            quotient_bit_9_s13 <= quotient_bit_9_s12;
             quotient_remainder_9_s13 <= quotient_remainder_9_s12;
+            quotient_8_s13 <= {quotient_7_s12, quotient_bit_9_s12};
         end
     end
 
     // Stage 13, part of: next bit of the quotient
-    reg  [7:0] red_s14;              // intensity of the light times k_s
-    reg  [7:0] green_s14;            // intensity of the light times k_s
-    reg  [7:0] blue_s14;             // intensity of the light times k_s
-    reg        quotient_bit_9_s14;   // the divisor fits: the next bit of the quotient
-    reg        quotient_bit_10_s14;  // the divisor fits: the next bit of the quotient
-    reg  [7:0] quotient_7_s14;       // the quotient, which bits enter at the bottom
+    reg  [7:0] red_s14;         // intensity of the light times k_s
+    reg  [7:0] green_s14;       // intensity of the light times k_s
+    reg  [7:0] blue_s14;        // intensity of the light times k_s
+    reg  [9:0] quotient_9_s14;  // u0.10: the quotient, which bits enter at the bottom
 
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_10_s13 = {1'b0, quotient_remainder_9_s13, 1'b0} - {2'd0,
@@ -468,10 +477,12 @@ module schlick_pipelined (
     // the divisor fits: the next bit of the quotient
     wire quotient_bit_10_s13 = ~quotient_trial_10_s13[31];
 
+    // u0.10: the quotient, which bits enter at the bottom
+    wire [9:0] quotient_9_s13 = {quotient_8_s13, quotient_bit_10_s13};
+
     always @(posedge clk) begin
         if (advance) begin
-            quotient_bit_9_s14 <= quotient_bit_9_s13;
-            quotient_bit_10_s14 <= quotient_bit_10_s13;
+            quotient_9_s14 <= quotient_9_s13;
         end
     end
 
@@ -482,9 +493,6 @@ module schlick_pipelined (
     reg        green_product_bits_s15;
     reg  [7:0] blue_product_kept_s15;
     reg        blue_product_bits_s15;
-
-    // u0.10: the quotient, which bits enter at the bottom
-    wire [9:0] quotient_9_s14 = {quotient_7_s14, quotient_bit_9_s14, quotient_bit_10_s14};
 
     // u8.10: an output before it is rounded
     wire [17:0] red_product_s14 = quotient_9_s14 * red_s14;
@@ -526,22 +534,10 @@ module schlick_pipelined (
     // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
     // points move on, a slot gives the value that it holds and takes a new one; its turn comes
     // again when all others have had theirs.
-    reg slot_of_2;
-    initial slot_of_2 = 1'b0;
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [7:0] delay_s11_s14 [0:1];
     reg [3:0] slot_of_13;
     initial slot_of_13 = 4'd0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
     reg [23:0] delay_s0_s14 [0:12];
-
-    always @(posedge clk) begin
-        if (advance) begin
-            slot_of_2 <= slot_of_2 == 1'b1 ? 1'b0 : slot_of_2 + 1'b1;
-            quotient_7_s14 <= delay_s11_s14[slot_of_2];
-            delay_s11_s14[slot_of_2] <= {quotient_6_s11, quotient_bit_8_s11};
-        end
-    end
 
     always @(posedge clk) begin
         if (advance) begin
@@ -558,11 +554,11 @@ module schlick_pipelined (
     assign blue_out = blue_intensity_s16;  // intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, scaled_rows_s2[1:0], denominator_s3[30], quotient_left_s4[31:30],
-            quotient_left_2_s5[31:30], quotient_left_3_s6[31:30], quotient_left_4_s7[31:30],
-            quotient_left_5_s8[31:30], quotient_left_6_s9[31:30], quotient_left_7_s10[31:30],
-            quotient_left_8_s11[31:30], quotient_left_9_s12[31:30], quotient_trial_10_s13[30:0],
-            red_product_s14[8:0], green_product_s14[8:0], blue_product_s14[8:0]};
+    wire unused = &{1'b0, denominator_s4[30], quotient_left_s5[31:30], quotient_left_2_s5[31:30],
+            quotient_left_3_s6[31:30], quotient_left_4_s7[31:30], quotient_left_5_s8[31:30],
+            quotient_left_6_s9[31:30], quotient_left_7_s10[31:30], quotient_left_8_s11[31:30],
+            quotient_left_9_s12[31:30], quotient_trial_10_s13[30:0], red_product_s14[8:0],
+            green_product_s14[8:0], blue_product_s14[8:0]};
 endmodule
 
 `default_nettype wire

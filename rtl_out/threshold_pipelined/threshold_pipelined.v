@@ -125,87 +125,71 @@ module threshold_pipelined #(
 
     // Stage 1, part of: scaled <- n/2 * (cos gamma - 1); intensity <- (scaled + 1)^2, or 0 below
     // ROM(n)
-    reg         [9:0]  exponent_s2;             // register 2: specular exponent n
-    reg  signed [28:0] multiplier1_upper_s2;    // register 1, s28.0
-    reg         [2:0]  multiplier1_rows_5_s2;   // register 1
-    reg  signed [10:0] multiplier1_carried_s2;  // register 1, s10.0
-    reg                facing_s2;               // the surface faces the half vector
+    reg  [9:0]  exponent_s2;                    // register 2: specular exponent n
+    reg         adder1_upper_2_s2;              // register 1: cos gamma - 1.0
+    reg  [27:0] multiplier1_inside_upper_s2;    // register 1
+    reg  [1:0]  multiplier1_inside_rows_2_s2;   // register 1
+    reg  [9:0]  multiplier1_inside_carried_s2;  // register 1
+    reg         facing_s2;                      // the surface faces the half vector
 
-    wire adder1_upper_2_s1 = ~cos_gamma_reg_s1[20];  // block 1: cos gamma - 1.0
-
-    // multiplier 1, s28.0
-    wire signed [28:0] multiplier1_upper_s1 = $signed({adder1_upper_2_s1, cos_gamma_reg_s1[19:3]}) *
-            $signed({1'b0, exponent_s1});
-
-    // mux 1, s10.0
-    wire signed [10:0] multiplier1_row_2_s1 = cos_gamma_reg_s1[0] ? {1'b0, exponent_s1} : 11'd0;
-
-    // mux 1, s10.0
-    wire signed [10:0] multiplier1_row_4_s1 = cos_gamma_reg_s1[1] ? {1'b0, exponent_s1} : 11'd0;
+    wire [27:0] multiplier1_inside_upper_s1 = cos_gamma_reg_s1[19:2] * exponent_s1;  // multiplier 1
+    wire [9:0] multiplier1_inside_row_2_s1 = cos_gamma_reg_s1[0] ? exponent_s1 : 10'd0;  // mux 1
+    wire [9:0] multiplier1_inside_row_4_s1 = cos_gamma_reg_s1[1] ? exponent_s1 : 10'd0;  // mux 1
 
     // adder 1
-    wire [11:0] multiplier1_rows_upper_3_s1 = {{2{multiplier1_row_2_s1[10]}},
-            multiplier1_row_2_s1[10:1]} + {multiplier1_row_4_s1[10], multiplier1_row_4_s1};
-
-    // block 1, s12.0
-    wire signed [12:0] multiplier1_rows_s1 = {multiplier1_rows_upper_3_s1, multiplier1_row_2_s1[0]};
-
-    // mux 1, s10.0
-    wire signed [10:0] multiplier1_row_7_s1 = cos_gamma_reg_s1[2] ? {1'b0, exponent_s1} : 11'd0;
-
-    // adder 1
-    wire [11:0] multiplier1_rows_upper_7_s1 = {multiplier1_rows_s1[12], multiplier1_rows_s1[12:2]} +
-            {multiplier1_row_7_s1[10], multiplier1_row_7_s1};
+    wire [10:0] multiplier1_inside_rows_upper_3_s1 = {2'd0, multiplier1_inside_row_2_s1[9:1]} +
+            {1'b0, multiplier1_inside_row_4_s1};
 
     wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
 
     always @(posedge clk) begin
         if (advance) begin
             exponent_s2 <= exponent_s1;
-            multiplier1_upper_s2 <= multiplier1_upper_s1;
-            multiplier1_rows_5_s2 <= {multiplier1_rows_upper_7_s1[0],
-                    multiplier1_rows_upper_3_s1[0], multiplier1_row_2_s1[0]};
-            multiplier1_carried_s2 <= multiplier1_rows_upper_7_s1[11:1];
+            adder1_upper_2_s2 <= ~cos_gamma_reg_s1[20];
+            multiplier1_inside_upper_s2 <= multiplier1_inside_upper_s1;
+            multiplier1_inside_rows_2_s2 <= {multiplier1_inside_rows_upper_3_s1[0],
+                    multiplier1_inside_row_2_s1[0]};
+            multiplier1_inside_carried_s2 <= multiplier1_inside_rows_upper_3_s1[10:1];
             facing_s2 <= facing_s1;
         end
     end
 
     // Stage 2, part of: scaled <- n/2 * (cos gamma - 1)
-    reg         [9:0]  exponent_s3;                   // register 2: specular exponent n
-    reg                multiplier1_rounded_under_s3;
-    reg  signed [16:0] multiplier1_kept_inside_s3;    // s0.16
-    reg                facing_s3;                     // the surface faces the half vector
+    reg         [9:0]  exponent_s3;                 // register 2: specular exponent n
+    reg                multiplier1_kept_bits_s3;
+    reg         [9:0]  multiplier1_kept_bits_2_s3;
+    reg  signed [16:0] multiplier1_kept_inside_s3;  // s0.16
+    reg                facing_s3;                   // the surface faces the half vector
 
-    // adder 1, s28.0
-    wire signed [28:0] multiplier1_sum_s2 = multiplier1_upper_s2 +
-            {{18{multiplier1_carried_s2[10]}}, multiplier1_carried_s2};
+    // adder 1
+    wire [27:0] multiplier1_inside_sum_s2 = multiplier1_inside_upper_s2 + {18'd0,
+            multiplier1_inside_carried_s2};
 
-    // block 1, s10.21
-    wire signed [31:0] multiplier1_s2 = {multiplier1_sum_s2, multiplier1_rows_5_s2};
+    wire [9:0] multiplier1_at_sign_s2 = adder1_upper_2_s2 ? exponent_s2 : 10'd0;  // mux 1
+
+    // adder 1, s10.0
+    wire signed [10:0] multiplier1_upper_s2 = {1'b0, multiplier1_inside_sum_s2[27:18]} - {1'b0,
+            multiplier1_at_sign_s2};
 
     always @(posedge clk) begin
         if (advance) begin
             exponent_s3 <= exponent_s2;
-            multiplier1_rounded_under_s3 <= multiplier1_s2[31] & ~(&multiplier1_s2[30:21]);
-            multiplier1_kept_inside_s3 <= multiplier1_s2[21:5];
+            multiplier1_kept_bits_s3 <= multiplier1_upper_s2[10];
+            multiplier1_kept_bits_2_s3 <= multiplier1_upper_s2[10:1];
+            multiplier1_kept_inside_s3 <= {multiplier1_upper_s2[1:0],
+                    multiplier1_inside_sum_s2[17:3]};
             facing_s3 <= facing_s2;
         end
     end
 
-    // Stage 3, part of: scaled <- n/2 * (cos gamma - 1); intensity <- (scaled + 1)^2, or 0 below
-    // ROM(n)
-    reg         facing_s4;       // the surface faces the half vector
-    reg  [16:0] adder2_s4;       // register 2, u1.16: base of the square, 0 ... 1.0
-    reg  [15:0] levels_word_s4;  // u0.16
+    // Stage 3, part of: scaled <- n/2 * (cos gamma - 1)
+    reg  signed [16:0] scaled_s4;       // s0.16: n/2*(cos gamma - 1), not below -1.0
+    reg                facing_s4;       // the surface faces the half vector
+    reg         [15:0] levels_word_s4;  // u0.16
 
     // s0.16: n/2*(cos gamma - 1), not below -1.0
-    wire signed [16:0] scaled_s3 = multiplier1_rounded_under_s3 ? MULTIPLIER1_ROUNDED_LEAST :
-            multiplier1_kept_inside_s3;
-
-    wire adder2_upper_2_s3 = ~scaled_s3[16];  // block 2: base of the square, 0 ... 1.0
-
-    // block 2, u1.16: base of the square, 0 ... 1.0
-    wire [16:0] adder2_s3 = {adder2_upper_2_s3, scaled_s3[15:0]};
+    wire signed [16:0] scaled_s3 = (multiplier1_kept_bits_s3 & ~(&multiplier1_kept_bits_2_s3)) ?
+            MULTIPLIER1_ROUNDED_LEAST : multiplier1_kept_inside_s3;
 
     // ROM levels: the smallest f that is shown for an exponent n (the address)
     reg [15:0] levels_rom [0:1023];
@@ -214,8 +198,8 @@ module threshold_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
+            scaled_s4 <= scaled_s3;
             facing_s4 <= facing_s3;
-            adder2_s4 <= adder2_s3;
         end
     end
 
@@ -224,6 +208,11 @@ module threshold_pipelined #(
     reg         facing_s5;                   // the surface faces the half vector
     reg  [1:0]  multiplier2_kept_bits_s5;
     reg  [15:0] multiplier2_kept_inside_s5;  // u0.16
+
+    wire adder2_upper_2_s4 = ~scaled_s4[16];  // block 2: base of the square, 0 ... 1.0
+
+    // block 2, u1.16: base of the square, 0 ... 1.0
+    wire [16:0] adder2_s4 = {adder2_upper_2_s4, scaled_s4[15:0]};
 
     wire [33:0] multiplier2_s4 = adder2_s4 * adder2_s4;  // multiplier 2, u2.32
 
@@ -337,8 +326,9 @@ module threshold_pipelined #(
     assign blue_out = blue_intensity_s9;  // output 3: intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, multiplier1_rows_s1[1:0], multiplier1_s2[4:0], multiplier2_s4[15:0],
-            red_product_s7[14:0], green_product_s7[14:0], blue_product_s7[14:0]};
+    wire unused = &{1'b0, multiplier1_inside_rows_2_s2, multiplier1_inside_sum_s2[2:0],
+            multiplier2_s4[15:0], red_product_s7[14:0], green_product_s7[14:0],
+            blue_product_s7[14:0]};
 endmodule
 
 `default_nettype wire

@@ -16,8 +16,8 @@ module quadratic_pipelined_tb #(
     parameter STIMULUS_FILE = "quadratic_pipelined_stimulus.mem",
     parameter EXPECTED_FILE = "quadratic_pipelined_expected.mem"
 );
-    localparam CLOCKS     = 5989;
-    localparam KNOWN_FROM = 13;  // results are compared from this clock on
+    localparam CLOCKS     = 6338;
+    localparam KNOWN_FROM = 11;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 
     reg [57:0] stimulus [0:CLOCKS-1];

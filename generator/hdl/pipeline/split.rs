@@ -3,6 +3,9 @@
 //! An operand that is too wide is cut in two: its upper bits, as many as a multiplier takes, and the rest.
 //! A rest of a few bits becomes rows of the product in look-up tables, as on paper: a synthesiser would
 //! spend a whole multiplier on it. A longer rest, or one of long rows, is a product of its own.
+//!
+//! Two kinds of factors take less. Of the square `(u·2^r + l)² = u²·4^r + l·(u·2^(r+1) + l)` the rest is one factor for both.
+//! Of a factor that reaches a power of two, as a cosine does with 1.0, the highest bit is set where all others are 0.
 
 use super::graph::{Graph, Label};
 use super::rebuild::rebuilt;
@@ -34,68 +37,136 @@ fn product(
     format: Format,
     label: &Label,
 ) -> NetId {
-    let signed = format.signed;
     let (wide, narrow) = if graph.width(a) >= graph.width(b) { (a, b) } else { (b, a) };
     // The sizes of the target are of unsigned operands; most multipliers take a sign bit with them.
     let (most, other) = target.multiplier;
     let limit = if graph.width(narrow) <= other { most } else { other };
     if graph.width(wide) <= limit {
-        return graph.op(Op::Mul(a, b), format, label);
-    }
-    let part = |name: &str| Label {
-        name: format!("{}_{name}", label.name),
-        doc: String::new(),
-        named: true,
-        ..label.clone()
-    };
-    let integer = |signed: bool, width: u32| Format {
-        signed,
-        int: width as i32 - i32::from(signed),
-        frac: 0,
-    };
-    let rest = graph.width(wide) - limit;
-    let upper_bits = graph.op(
-        Op::Slice { of: wide, low: rest },
-        integer(signed, limit),
-        &Label { named: false, ..part("upper_bits") },
-    );
-    let upper_format = integer(signed, limit + graph.width(narrow));
-    let upper = product(graph, target, upper_bits, narrow, upper_format, &part("upper"));
-    // The lower bits have no sign; the product with them has that of the other operand.
-    let lower = if rest <= MOST_ROWS && rest * graph.width(narrow) <= target.row_bits {
-        rows(graph, wide, rest, narrow, &part)
+        graph.op(Op::Mul(a, b), format, label)
+    } else if !format.signed && reaches_a_power_of_two(graph, wide) {
+        below_the_highest(graph, target, [wide, narrow], format, label)
+    } else if let Some(&positive) =
+        [a, b].iter().find(|&&it| format.signed && graph.node(it).range.0 >= 0)
+    {
+        let other = if positive == a { b } else { a };
+        below_the_sign(graph, target, positive, other, format, label)
     } else {
-        let lower_bits = graph.op(
-            Op::Slice { of: wide, low: 0 },
-            integer(false, rest),
-            &Label { named: false, ..part("lower_bits") },
-        );
-        let sign = u32::from(signed);
-        let lower_bits = graph.resize(lower_bits, rest + sign, signed);
-        let format = integer(signed, rest + sign + graph.width(narrow));
-        product(graph, target, lower_bits, narrow, format, &part("lower"))
+        cut(graph, target, [wide, narrow], limit, format, label)
+    }
+}
+
+/// Whether the greatest value of an unsigned factor is a power of two, with a bit that no other value has.
+fn reaches_a_power_of_two(graph: &Graph, factor: NetId) -> bool {
+    let (low, high) = graph.node(factor).range;
+    low >= 0 && high == 1 << (graph.width(factor) - 1)
+}
+
+/// A product of a factor that is a power of two where its highest bit is set: the other factor there, else that of the bits
+/// below.
+fn below_the_highest(
+    graph: &mut Graph,
+    target: &Target,
+    [wide, narrow]: [NetId; 2],
+    format: Format,
+    label: &Label,
+) -> NetId {
+    let (places, width) = (graph.width(wide) - 1, graph.width(narrow));
+    let highest = slice(graph, wide, places, Format::BIT, &part(label, "highest"));
+    let below = slice(graph, wide, 0, unsigned(places), &part(label, "below"));
+    let inside = part(label, "inside");
+    let whole = if wide == narrow {
+        let square = product(graph, target, below, below, unsigned(2 * places), &inside);
+        Op::Concat(vec![highest, square])
+    } else {
+        let product = product(graph, target, below, narrow, unsigned(places + width), &inside);
+        let zero = graph.constant(0, unsigned(width), &unnamed(label));
+        let other = Op::Mux { select: highest, inputs: vec![zero, narrow] };
+        let other = graph.op(other, unsigned(width), &part(label, "at_highest"));
+        let upper = slice(graph, product, places, unsigned(width), label);
+        // One of the two is 0.
+        let upper = graph.op(Op::Or(upper, other), unsigned(width), &unnamed(label));
+        Op::Concat(vec![upper, slice(graph, product, 0, unsigned(places), label)])
     };
-    // upper·2^rest + lower: the lowest bits are those of the lower part.
-    let total = format.width() - rest;
+    let bits = if wide == narrow { 2 * places + 1 } else { places + width };
+    let whole = graph.op(whole, unsigned(bits), &unnamed(label));
+    graph.op(Op::Extend(whole), format, label)
+}
+
+/// A product of a factor that is never negative and one that may be: that of the bits below the sign, less the former where
+/// the sign is set. Of two signed factors more bits would be cut.
+fn below_the_sign(
+    graph: &mut Graph,
+    target: &Target,
+    positive: NetId,
+    other: NetId,
+    format: Format,
+    label: &Label,
+) -> NetId {
+    let (width, places) = (graph.width(positive) - 1, graph.width(other) - 1);
+    let positive = graph.resize(positive, width, false);
+    let sign = slice(graph, other, places, Format::BIT, &part(label, "sign"));
+    let below = slice(graph, other, 0, unsigned(places), &part(label, "below"));
+    let inside = part(label, "inside");
+    let product = product(graph, target, positive, below, unsigned(width + places), &inside);
+    let zero = graph.constant(0, unsigned(width), &unnamed(label));
+    let less = Op::Mux { select: sign, inputs: vec![zero, positive] };
+    let less = graph.op(less, unsigned(width), &part(label, "at_sign"));
+    let upper = slice(graph, product, places, unsigned(width), label);
+    let [upper, less] = [upper, less].map(|it| graph.resize(it, width + 1, true));
+    let upper = graph.op(Op::Sub(upper, less), integer(true, width + 1), &part(label, "upper"));
+    let lower = slice(graph, product, 0, unsigned(places), label);
+    let whole = Op::Concat(vec![upper, lower]);
+    let whole = graph.op(whole, integer(true, width + 1 + places), &unnamed(label));
+    graph.op(Op::Extend(whole), format, label)
+}
+
+/// A product of which the wider factor is cut into its `limit` upper bits and the rest.
+fn cut(
+    graph: &mut Graph,
+    target: &Target,
+    [wide, narrow]: [NetId; 2],
+    limit: u32,
+    format: Format,
+    label: &Label,
+) -> NetId {
+    let signed = format.signed;
+    let rest = graph.width(wide) - limit;
+    let upper_bits = slice(graph, wide, rest, integer(signed, limit), &part(label, "upper_bits"));
+    // What the upper bits are multiplied by, and the rest, and the places that the product of the upper bits is up.
+    let (upper_factor, rest_factor, places) = if wide == narrow {
+        let lower = slice(graph, wide, 0, unsigned(rest), &part(label, "lower_bits"));
+        let zero = graph.constant(0, Format::BIT, &unnamed(label));
+        let both = Op::Concat(vec![upper_bits, zero, lower]);
+        let both = graph.op(both, integer(signed, limit + 1 + rest), &unnamed(label));
+        (upper_bits, both, 2 * rest)
+    } else {
+        (narrow, narrow, rest)
+    };
+    let upper_format = integer(signed, limit + graph.width(upper_factor));
+    let upper_label = part(label, "upper");
+    let upper = product(graph, target, upper_bits, upper_factor, upper_format, &upper_label);
+    // The lower bits have no sign; the product with them has that of the other operand.
+    let width = graph.width(rest_factor);
+    let lower = if rest <= MOST_ROWS && rest * width <= target.row_bits {
+        rows(graph, wide, rest, rest_factor, label)
+    } else {
+        let lower_bits = slice(graph, wide, 0, unsigned(rest), &part(label, "lower_bits"));
+        let bits = rest + u32::from(signed);
+        let lower_bits = graph.resize(lower_bits, bits, signed);
+        let format = integer(signed, bits + width);
+        product(graph, target, lower_bits, rest_factor, format, &part(label, "lower"))
+    };
+    // upper·2^places + lower: the lowest bits are those of the lower part.
+    let total = format.width() - places;
     let (low_width, low_signed) = (graph.width(lower), graph.node(lower).format.signed);
-    let low_bits = graph.op(
-        Op::Slice { of: lower, low: 0 },
-        integer(false, rest),
-        &Label { named: false, ..part("low_bits") },
-    );
+    let low_bits = slice(graph, lower, 0, unsigned(places), &part(label, "low_bits"));
     let upper = graph.resize(upper, total, signed);
-    let sum = if low_width > rest {
-        let carried = graph.op(
-            Op::Slice { of: lower, low: rest },
-            integer(low_signed, low_width - rest),
-            &Label { named: false, ..part("carried") },
-        );
+    let sum = if low_width > places {
+        let format = integer(low_signed, low_width - places);
+        let carried = slice(graph, lower, places, format, &part(label, "carried"));
         let carried = graph.resize(carried, total, signed);
-        graph.op(
-            Op::Add { a: upper, b: carried, carry: None },
-            integer(signed, total),
-            &part("sum"),
-        )
+        let sum = Op::Add { a: upper, b: carried, carry: None };
+        graph.op(sum, integer(signed, total), &part(label, "sum"))
     } else {
         upper
     };
@@ -103,20 +174,14 @@ fn product(
 }
 
 /// The product of the lowest `rest` bits of `wide` with `narrow`, a row for each.
-fn rows(
-    graph: &mut Graph,
-    wide: NetId,
-    rest: u32,
-    narrow: NetId,
-    part: &impl Fn(&str) -> Label,
-) -> NetId {
+fn rows(graph: &mut Graph, wide: NetId, rest: u32, narrow: NetId, label: &Label) -> NetId {
     let signed = graph.node(narrow).format.signed;
     let width = graph.width(narrow);
-    let format = |width: u32| Format { signed, int: width as i32 - i32::from(signed), frac: 0 };
+    let format = |width: u32| integer(signed, width);
     let mut sum: Option<NetId> = None;
     for row in 0..rest {
-        let unnamed = Label { named: false, ..part("row") };
-        let bit = graph.op(Op::Slice { of: wide, low: row }, Format::BIT, &unnamed);
+        let bit = slice(graph, wide, row, Format::BIT, &part(label, "row"));
+        let unnamed = unnamed(&part(label, "row"));
         let zero = graph.constant(0, format(width), &unnamed);
         let mux = Op::Mux { select: bit, inputs: vec![zero, narrow] };
         let taken = graph.op(mux, format(width), &unnamed);
@@ -133,9 +198,158 @@ fn rows(
                 let (a, b) =
                     (graph.resize(sum, total, signed), graph.resize(shifted, total, signed));
                 let (op, format) = (Op::Add { a, b, carry: None }, format(total));
-                shortened(graph, op, format, format.range(), &part("rows"))
+                shortened(graph, op, format, format.range(), &part(label, "rows"))
             }
         });
     }
     sum.expect("there is a row for every bit of the rest, which is not empty")
+}
+
+fn integer(signed: bool, width: u32) -> Format {
+    Format { signed, int: width as i32 - i32::from(signed), frac: 0 }
+}
+
+fn unsigned(width: u32) -> Format {
+    integer(false, width)
+}
+
+/// The label of a part of a value.
+fn part(label: &Label, name: &str) -> Label {
+    let name = format!("{}_{name}", label.name);
+    Label { name, doc: String::new(), named: true, ..label.clone() }
+}
+
+/// The label of what needs no name.
+fn unnamed(label: &Label) -> Label {
+    Label { doc: String::new(), named: false, ..label.clone() }
+}
+
+fn slice(graph: &mut Graph, of: NetId, low: u32, format: Format, label: &Label) -> NetId {
+    graph.op(Op::Slice { of, low }, format, &unnamed(label))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::base::fixed::Format;
+    use crate::hdl::dsl::{Designer, Operand, Signal, end, step, valid};
+    use crate::hdl::netlist::{Design, Driver, Interpreter, Op};
+    use crate::hdl::pipeline::{Delays, Goal, Options, TARGETS, Target, pipeline};
+
+    /// A product in one stage, of a device whose multipliers take 4 bits by 4.
+    fn product(factors: impl for<'d> Fn(&'d Designer) -> [Signal<'d>; 2]) -> Design {
+        let d = Designer::new("factors");
+        let [a, b] = factors(&d);
+        let product = d.mul("product", a, b);
+        let held = d.register("held", product.format());
+        held.takes(product);
+        d.output("product_out", held.q());
+        d.microprogram([
+            step("operands", []),
+            step("product", [held.load()]),
+            step("result", [valid(), end()]),
+        ]);
+        let target: &Target =
+            Box::leak(Box::new(Target { multiplier: (4, 4), ..TARGETS[0].clone() }));
+        let options = Options {
+            target,
+            goal: Goal::Stages(1),
+            registered: false,
+            stall: true,
+            side: 0,
+            delays: Delays::Registers,
+        };
+        pipeline(&d.finish().expect("a design"), &options).expect("a pipeline")
+    }
+
+    /// What comes out for the bit patterns of its operands, and the widths of the factors of its multipliers.
+    fn result(design: &Design, operands: &[u64]) -> u64 {
+        let mut device = Interpreter::new(design).expect("no loop");
+        let mut operands = operands.iter();
+        let inputs: Vec<u64> = design
+            .inputs()
+            .map(|port| match design.net(port.net).name.as_str() {
+                "rst_n" | "in_valid" | "out_ready" => 1,
+                _ => *operands.next().expect("an operand"),
+            })
+            .collect();
+        device.settle(&inputs);
+        device.edge();
+        device.settle(&inputs);
+        device.value(design.find("product_out").expect("a result"))
+    }
+
+    /// How many multipliers there are; none takes more than it can.
+    fn multipliers(design: &Design) -> usize {
+        let products = design.iter().filter_map(|(_, net)| match net.driver {
+            Driver::Op(Op::Mul(a, b)) => Some([a, b]),
+            _ => None,
+        });
+        products.inspect(|it| assert!(it.iter().all(|&it| design.width(it) <= 4))).count()
+    }
+
+    fn limited<'d>(d: &'d Designer, name: &str, bits: i32, most: f64) -> Operand<'d> {
+        d.operand_clamped(name, Format::unsigned(bits, 0), 0.0, most)
+    }
+
+    #[test]
+    fn a_square_is_that_of_all_bits() {
+        for bits in 5..=8 {
+            let made = product(|d| [d.operand("x", Format::unsigned(bits, 0)).q(); 2]);
+            for x in 0..1 << bits {
+                assert_eq!(result(&made, &[x]), x * x, "{bits} bits");
+            }
+        }
+        for bits in 5..=8 {
+            let made = product(|d| [d.operand("x", Format::signed(bits - 1, 0)).q(); 2]);
+            for x in 0..1_u64 << bits {
+                let value = Format::signed(bits - 1, 0).raw(x);
+                assert_eq!(i128::from(result(&made, &[x])), value * value, "{bits} bits");
+            }
+        }
+    }
+
+    #[test]
+    fn a_factor_may_reach_a_power_of_two() {
+        let square = product(|d| [limited(d, "x", 6, 32.0).q(); 2]);
+        for x in 0..64 {
+            assert_eq!(result(&square, &[x]), x.min(32) * x.min(32));
+        }
+        for (bits, most, multipliers_of) in [(5, 16, 1), (6, 32, 1), (7, 64, 1)] {
+            let made = product(|d| {
+                [
+                    limited(d, "a", bits, f64::from(most)).q(),
+                    limited(d, "b", bits, f64::from(most)).q(),
+                ]
+            });
+            assert_eq!(multipliers(&made), multipliers_of, "{bits} bits");
+            for (a, b) in (0..1 << bits).flat_map(|a| (0..1 << bits).map(move |b| (a, b))) {
+                let [x, y] = [a, b].map(|it: u64| it.min(u64::from(most as u32)));
+                assert_eq!(result(&made, &[a, b]), x * y, "{a} by {b}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_signed_factor_meets_one_that_is_never_negative() {
+        for (unsigned, signed) in [(4, 5), (4, 6), (6, 5), (7, 7)] {
+            let made = product(|d| {
+                let a = d.operand("a", Format::unsigned(unsigned, 0)).q();
+                [a, d.operand("b", Format::signed(signed - 1, 0)).q()]
+            });
+            if (unsigned, signed) == (4, 5) {
+                assert_eq!(multipliers(&made), 1);
+            }
+            let out = design_format(&made);
+            for (a, b) in
+                (0..1_u64 << unsigned).flat_map(|a| (0..1_u64 << signed).map(move |b| (a, b)))
+            {
+                let expected = i128::from(a) * Format::signed(signed - 1, 0).raw(b);
+                assert_eq!(out.raw(result(&made, &[a, b])), expected, "{a} by {b}");
+            }
+        }
+    }
+
+    fn design_format(design: &Design) -> Format {
+        design.net(design.find("product_out").expect("a result")).format
+    }
 }
