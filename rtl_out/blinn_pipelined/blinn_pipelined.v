@@ -4,7 +4,7 @@
 //
 // Source: Seeds 000 to 002, the function that all devices approximate
 //
-// Pipeline: a point every clock, its results 20 clocks later; stages for 138 MHz on ecp5. While
+// Pipeline: a point every clock, its results 21 clocks later; stages for 138 MHz on ecp5. While
 // out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
@@ -96,10 +96,11 @@ module blinn_pipelined #(
     reg  valid_s17;  // stage 17 has a point
     reg  valid_s18;  // stage 18 has a point
     reg  valid_s19;  // stage 19 has a point
-    reg  valid_s20;  // the results are on the outputs
+    reg  valid_s20;  // stage 20 has a point
+    reg  valid_s21;  // the results are on the outputs
 
-    assign out_valid = valid_s20;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s20;  // every point moves on by a stage
+    assign out_valid = valid_s21;  // the results are on the outputs
+    wire advance = out_ready | ~valid_s21;  // every point moves on by a stage
     assign in_ready = advance;  // a point that is offered is taken in this clock
 
     always @(posedge clk) begin
@@ -124,6 +125,7 @@ module blinn_pipelined #(
             valid_s18 <= 1'b0;
             valid_s19 <= 1'b0;
             valid_s20 <= 1'b0;
+            valid_s21 <= 1'b0;
         end else if (advance) begin
             valid_s1 <= in_valid;
             valid_s2 <= valid_s1;
@@ -145,6 +147,7 @@ module blinn_pipelined #(
             valid_s18 <= valid_s17;
             valid_s19 <= valid_s18;
             valid_s20 <= valid_s19;
+            valid_s21 <= valid_s20;
         end
     end
 
@@ -303,485 +306,498 @@ module blinn_pipelined #(
         end
     end
 
-    // Stage 6, part of: decay <- base + slope * rest
-    reg  [25:0] curve_base_s7;        // u0.26
-    reg  [30:0] product_upper_s7;
-    reg         product_low_bits_s7;
-    reg  [11:0] product_carried_s7;
-    reg         aligned_s7;           // cos gamma is 1.0
-
-    wire [25:0] curve_base_s6 = curve_word_s6[44:19];  // u0.26
-    wire [30:0] product_upper_s6 = curve_word_s6[18:1] * curve_rest2_s6;
-    wire [12:0] product_row_2_s6 = curve_word_s6[0] ? curve_rest2_s6 : 13'd0;
+    // Stage 6: values on their way
+    reg  [12:0] curve_rest2_s7;  // u0.13
+    reg  [44:0] curve_word_s7;
+    reg         aligned_s7;      // cos gamma is 1.0
 
     always @(posedge clk) begin
         if (advance) begin
-            curve_base_s7 <= curve_base_s6;
-            product_upper_s7 <= product_upper_s6;
-            product_low_bits_s7 <= product_row_2_s6[0];
-            product_carried_s7 <= product_row_2_s6[12:1];
+            curve_rest2_s7 <= curve_rest2_s6;
+            curve_word_s7 <= curve_word_s6;
             aligned_s7 <= aligned_s6;
         end
     end
 
     // Stage 7, part of: decay <- base + slope * rest
-    reg  [4:0]  octave_s8;            // leading zeros of cos gamma
-    reg         curve_sum_bits_s8;
-    reg  [25:0] curve_sum_inside_s8;  // u0.26
+    reg  [25:0] curve_base_s8;        // u0.26
+    reg  [30:0] product_upper_s8;
+    reg         product_low_bits_s8;
+    reg  [11:0] product_carried_s8;
     reg         aligned_s8;           // cos gamma is 1.0
 
-    wire [30:0] product_sum_s7 = product_upper_s7 + {19'd0, product_carried_s7};
-
-    // its point depends on the operands
-    wire [31:0] product_s7 = {product_sum_s7, product_low_bits_s7};
-
-    wire [26:0] curve_sum_s7 = {1'b0, curve_base_s7} + {6'd0, product_s7[31:11]};  // u1.26
+    wire [25:0] curve_base_s7 = curve_word_s7[44:19];  // u0.26
+    wire [30:0] product_upper_s7 = curve_word_s7[18:1] * curve_rest2_s7;
+    wire [12:0] product_row_2_s7 = curve_word_s7[0] ? curve_rest2_s7 : 13'd0;
 
     always @(posedge clk) begin
         if (advance) begin
-            curve_sum_bits_s8 <= curve_sum_s7[26];
-            curve_sum_inside_s8 <= curve_sum_s7[25:0];
+            curve_base_s8 <= curve_base_s7;
+            product_upper_s8 <= product_upper_s7;
+            product_low_bits_s8 <= product_row_2_s7[0];
+            product_carried_s8 <= product_row_2_s7[12:1];
             aligned_s8 <= aligned_s7;
         end
     end
 
-    // Stage 8, part of: segment of the decay addressed by cos gamma; decay <- base + slope * rest;
-    // halvings <- n * decay
-    reg  [9:0]  exponent_s9;              // specular exponent n
-    reg         decay_small_s9;           // the decay is below 1/4, and all its bits count
-    reg  [17:0] product_upper_bits_2_s9;
-    reg  [5:0]  product_lower_bits_s9;
-    reg         aligned_s9;               // cos gamma is 1.0
+    // Stage 8, part of: decay <- base + slope * rest
+    reg  [4:0]  octave_s9;            // leading zeros of cos gamma
+    reg         curve_sum_bits_s9;
+    reg  [25:0] curve_sum_inside_s9;  // u0.26
+    reg         aligned_s9;           // cos gamma is 1.0
 
-    wire octave_any_s8 = |octave_s8;  // cos gamma is below one half
+    wire [30:0] product_sum_s8 = product_upper_s8 + {19'd0, product_carried_s8};
 
-    // u0.26: -log2(cos gamma * 2^octave)
-    wire [25:0] decay_s8 = curve_sum_bits_s8 ? 26'h3ffffff : curve_sum_inside_s8;
+    // its point depends on the operands
+    wire [31:0] product_s8 = {product_sum_s8, product_low_bits_s8};
 
-    wire decay_large_s8 = |decay_s8[25:24];
-    wire decay_far_s8 = decay_large_s8 | octave_any_s8;
-    wire decay_small_s8 = ~decay_far_s8;  // the decay is below 1/4, and all its bits count
-
-    // the decay, its point by decay_small
-    wire [23:0] factor_s8 = decay_small_s8 ? decay_s8[23:0] : {octave_s8, decay_s8[25:7]};
+    wire [26:0] curve_sum_s8 = {1'b0, curve_base_s8} + {6'd0, product_s8[31:11]};  // u1.26
 
     always @(posedge clk) begin
         if (advance) begin
-            decay_small_s9 <= decay_small_s8;
-            product_upper_bits_2_s9 <= factor_s8[23:6];
-            product_lower_bits_s9 <= factor_s8[5:0];
+            curve_sum_bits_s9 <= curve_sum_s8[26];
+            curve_sum_inside_s9 <= curve_sum_s8[25:0];
             aligned_s9 <= aligned_s8;
         end
     end
 
-    // Stage 9, part of: halvings <- n * decay
-    reg         decay_small_s10;         // the decay is below 1/4, and all its bits count
-    reg  [27:0] product_upper_2_s10;
-    reg  [5:0]  product_low_bits_2_s10;
-    reg  [9:0]  product_carried_2_s10;
-    reg         aligned_s10;             // cos gamma is 1.0
+    // Stage 9, part of: segment of the decay addressed by cos gamma; decay <- base + slope * rest;
+    // halvings <- n * decay
+    reg  [9:0]  exponent_s10;              // specular exponent n
+    reg         decay_small_s10;           // the decay is below 1/4, and all its bits count
+    reg  [17:0] product_upper_bits_2_s10;
+    reg  [5:0]  product_lower_bits_s10;
+    reg         aligned_s10;               // cos gamma is 1.0
 
-    wire [27:0] product_upper_2_s9 = product_upper_bits_2_s9 * exponent_s9;
-    wire [15:0] product_lower_s9 = product_lower_bits_s9 * exponent_s9;
+    wire octave_any_s9 = |octave_s9;  // cos gamma is below one half
+
+    // u0.26: -log2(cos gamma * 2^octave)
+    wire [25:0] decay_s9 = curve_sum_bits_s9 ? 26'h3ffffff : curve_sum_inside_s9;
+
+    wire decay_large_s9 = |decay_s9[25:24];
+    wire decay_far_s9 = decay_large_s9 | octave_any_s9;
+    wire decay_small_s9 = ~decay_far_s9;  // the decay is below 1/4, and all its bits count
+
+    // the decay, its point by decay_small
+    wire [23:0] factor_s9 = decay_small_s9 ? decay_s9[23:0] : {octave_s9, decay_s9[25:7]};
 
     always @(posedge clk) begin
         if (advance) begin
             decay_small_s10 <= decay_small_s9;
-            product_upper_2_s10 <= product_upper_2_s9;
-            product_low_bits_2_s10 <= product_lower_s9[5:0];
-            product_carried_2_s10 <= product_lower_s9[15:6];
+            product_upper_bits_2_s10 <= factor_s9[23:6];
+            product_lower_bits_s10 <= factor_s9[5:0];
             aligned_s10 <= aligned_s9;
         end
     end
 
     // Stage 10, part of: halvings <- n * decay
-    reg         decay_small_s11;  // the decay is below 1/4, and all its bits count
-    reg  [33:0] product_2_s11;    // its point depends on the operands
-    reg         aligned_s11;      // cos gamma is 1.0
+    reg         decay_small_s11;         // the decay is below 1/4, and all its bits count
+    reg  [27:0] product_upper_2_s11;
+    reg  [5:0]  product_low_bits_2_s11;
+    reg  [9:0]  product_carried_2_s11;
+    reg         aligned_s11;             // cos gamma is 1.0
 
-    wire [27:0] product_sum_2_s10 = product_upper_2_s10 + {18'd0, product_carried_2_s10};
-
-    // its point depends on the operands
-    wire [33:0] product_2_s10 = {product_sum_2_s10, product_low_bits_2_s10};
+    wire [27:0] product_upper_2_s10 = product_upper_bits_2_s10 * exponent_s10;
+    wire [15:0] product_lower_s10 = product_lower_bits_s10 * exponent_s10;
 
     always @(posedge clk) begin
         if (advance) begin
             decay_small_s11 <= decay_small_s10;
-            product_2_s11 <= product_2_s10;
+            product_upper_2_s11 <= product_upper_2_s10;
+            product_low_bits_2_s11 <= product_lower_s10[5:0];
+            product_carried_2_s11 <= product_lower_s10[15:6];
             aligned_s11 <= aligned_s10;
         end
     end
 
     // Stage 11, part of: halvings <- n * decay
-    reg  [20:0] halvings_s12;  // u5.16: n*decay: how often f is half of 1.0
-    reg         aligned_s12;   // cos gamma is 1.0
+    reg         decay_small_s12;  // the decay is below 1/4, and all its bits count
+    reg  [33:0] product_2_s12;    // its point depends on the operands
+    reg         aligned_s12;      // cos gamma is 1.0
 
-    // u5.16
-    wire [20:0] halvings_coarse_s11 = (|product_2_s11[33:24]) ? 21'h1fffff : product_2_s11[23:3];
+    wire [27:0] product_sum_2_s11 = product_upper_2_s11 + {18'd0, product_carried_2_s11};
 
-    // u5.16
-    wire [20:0] halvings_fine_s11 = (|product_2_s11[33:31]) ? 21'h1fffff : product_2_s11[30:10];
-
-    // u5.16: n*decay: how often f is half of 1.0
-    wire [20:0] halvings_s11 = decay_small_s11 ? halvings_fine_s11 : halvings_coarse_s11;
+    // its point depends on the operands
+    wire [33:0] product_2_s11 = {product_sum_2_s11, product_low_bits_2_s11};
 
     always @(posedge clk) begin
         if (advance) begin
-            halvings_s12 <= halvings_s11;
+            decay_small_s12 <= decay_small_s11;
+            product_2_s12 <= product_2_s11;
             aligned_s12 <= aligned_s11;
         end
     end
 
-    // Stage 12, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
-    reg         [20:0] halvings_s13;                // u5.16: n*decay: how often f is half of 1.0
-    reg         [14:0] exp2_bend_value_word_s13;    // u-4.19
-    reg                peak_s13;                    // f is 1.0, less an ulp
-    // s-10.19: what the field adds, less half an ulp
-    reg  signed [9:0]  exp2_bend_offset1_term_s13;
-    // s-12.19: what the field adds, less half an ulp
-    reg  signed [7:0]  exp2_bend_offset2_term_s13;
+    // Stage 12, part of: halvings <- n * decay
+    reg  [20:0] halvings_s13;  // u5.16: n*decay: how often f is half of 1.0
+    reg         aligned_s13;   // cos gamma is 1.0
 
-    wire exp2_bend_offset1_upper_s12 = halvings_s12[8];
-    wire exp2_bend_offset2_upper_s12 = halvings_s12[6];
+    // u5.16
+    wire [20:0] halvings_coarse_s12 = (|product_2_s12[33:24]) ? 21'h1fffff : product_2_s12[23:3];
+
+    // u5.16
+    wire [20:0] halvings_fine_s12 = (|product_2_s12[33:31]) ? 21'h1fffff : product_2_s12[30:10];
+
+    // u5.16: n*decay: how often f is half of 1.0
+    wire [20:0] halvings_s12 = decay_small_s12 ? halvings_fine_s12 : halvings_coarse_s12;
+
+    always @(posedge clk) begin
+        if (advance) begin
+            halvings_s13 <= halvings_s12;
+            aligned_s13 <= aligned_s12;
+        end
+    end
+
+    // Stage 13, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
+    reg         [20:0] halvings_s14;                // u5.16: n*decay: how often f is half of 1.0
+    reg         [14:0] exp2_bend_value_word_s14;    // u-4.19
+    reg                peak_s14;                    // f is 1.0, less an ulp
+    // s-10.19: what the field adds, less half an ulp
+    reg  signed [9:0]  exp2_bend_offset1_term_s14;
+    // s-12.19: what the field adds, less half an ulp
+    reg  signed [7:0]  exp2_bend_offset2_term_s14;
+
+    wire exp2_bend_offset1_upper_s13 = halvings_s13[8];
+    wire exp2_bend_offset2_upper_s13 = halvings_s13[6];
 
     // ROM exp2_bend_value: 1 - x/2 - 2^-x at the middle of each of 128 intervals of x, in units of
     // 2^-19
     reg [14:0] exp2_bend_value_rom [0:127];
     initial $readmemh(EXP2_BEND_VALUE_FILE, exp2_bend_value_rom);
-    wire [14:0] exp2_bend_value_word_s12 = exp2_bend_value_rom[halvings_s12[15:9]];
+    wire [14:0] exp2_bend_value_word_s13 = exp2_bend_value_rom[halvings_s13[15:9]];
 
-    wire exp2_bend_offset1_mirrored_s12 = ~halvings_s12[7];
+    wire exp2_bend_offset1_mirrored_s13 = ~halvings_s13[7];
 
     // distance from the middle of the field
-    wire exp2_bend_offset1_distance_s12 = exp2_bend_offset1_upper_s12 ? halvings_s12[7] :
-            exp2_bend_offset1_mirrored_s12;
+    wire exp2_bend_offset1_distance_s13 = exp2_bend_offset1_upper_s13 ? halvings_s13[7] :
+            exp2_bend_offset1_mirrored_s13;
 
-    wire [6:0] exp2_bend_offset1_address_s12 = {halvings_s12[15:10],
-            exp2_bend_offset1_distance_s12};
+    wire [6:0] exp2_bend_offset1_address_s13 = {halvings_s13[15:10],
+            exp2_bend_offset1_distance_s13};
 
     // ROM exp2_bend_offset1: slope of 1 - x/2 - 2^-x over 2^-6 of x, times the distance from the
     // middle of bits 8 to 7 of x, in units of 2^-19, less a half
     reg [9:0] exp2_bend_offset1_rom [0:127];
     initial $readmemh(EXP2_BEND_OFFSET1_FILE, exp2_bend_offset1_rom);
-    wire signed [9:0] exp2_bend_offset1_word_s12 =
-            exp2_bend_offset1_rom[exp2_bend_offset1_address_s12];
+    wire signed [9:0] exp2_bend_offset1_word_s13 =
+            exp2_bend_offset1_rom[exp2_bend_offset1_address_s13];
 
-    wire [1:0] exp2_bend_offset2_mirrored_s12 = ~halvings_s12[5:4];
+    wire [1:0] exp2_bend_offset2_mirrored_s13 = ~halvings_s13[5:4];
 
     // distance from the middle of the field
-    wire [1:0] exp2_bend_offset2_distance_s12 = exp2_bend_offset2_upper_s12 ? halvings_s12[5:4] :
-            exp2_bend_offset2_mirrored_s12;
+    wire [1:0] exp2_bend_offset2_distance_s13 = exp2_bend_offset2_upper_s13 ? halvings_s13[5:4] :
+            exp2_bend_offset2_mirrored_s13;
 
-    wire [6:0] exp2_bend_offset2_address_s12 = {halvings_s12[15:11],
-            exp2_bend_offset2_distance_s12};
+    wire [6:0] exp2_bend_offset2_address_s13 = {halvings_s13[15:11],
+            exp2_bend_offset2_distance_s13};
 
     // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-5 of x, times the distance from the
     // middle of bits 6 to 4 of x, in units of 2^-19, less a half
     reg [7:0] exp2_bend_offset2_rom [0:127];
     initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
-    wire signed [7:0] exp2_bend_offset2_word_s12 =
-            exp2_bend_offset2_rom[exp2_bend_offset2_address_s12];
+    wire signed [7:0] exp2_bend_offset2_word_s13 =
+            exp2_bend_offset2_rom[exp2_bend_offset2_address_s13];
 
-    wire fades_s12 = |halvings_s12;
-    wire level_s12 = ~fades_s12;
-    wire peak_s12 = aligned_s12 | level_s12;  // f is 1.0, less an ulp
-    wire signed [9:0] exp2_bend_offset1_opposite_s12 = ~exp2_bend_offset1_word_s12;  // s-10.19
+    wire fades_s13 = |halvings_s13;
+    wire level_s13 = ~fades_s13;
+    wire peak_s13 = aligned_s13 | level_s13;  // f is 1.0, less an ulp
+    wire signed [9:0] exp2_bend_offset1_opposite_s13 = ~exp2_bend_offset1_word_s13;  // s-10.19
 
     // s-10.19: what the field adds, less half an ulp
-    wire signed [9:0] exp2_bend_offset1_term_s12 = exp2_bend_offset1_upper_s12 ?
-            exp2_bend_offset1_word_s12 : exp2_bend_offset1_opposite_s12;
+    wire signed [9:0] exp2_bend_offset1_term_s13 = exp2_bend_offset1_upper_s13 ?
+            exp2_bend_offset1_word_s13 : exp2_bend_offset1_opposite_s13;
 
-    wire signed [7:0] exp2_bend_offset2_opposite_s12 = ~exp2_bend_offset2_word_s12;  // s-12.19
+    wire signed [7:0] exp2_bend_offset2_opposite_s13 = ~exp2_bend_offset2_word_s13;  // s-12.19
 
     // s-12.19: what the field adds, less half an ulp
-    wire signed [7:0] exp2_bend_offset2_term_s12 = exp2_bend_offset2_upper_s12 ?
-            exp2_bend_offset2_word_s12 : exp2_bend_offset2_opposite_s12;
+    wire signed [7:0] exp2_bend_offset2_term_s13 = exp2_bend_offset2_upper_s13 ?
+            exp2_bend_offset2_word_s13 : exp2_bend_offset2_opposite_s13;
 
     always @(posedge clk) begin
         if (advance) begin
-            halvings_s13 <= halvings_s12;
-            exp2_bend_value_word_s13 <= exp2_bend_value_word_s12;
-            peak_s13 <= peak_s12;
-            exp2_bend_offset1_term_s13 <= exp2_bend_offset1_term_s12;
-            exp2_bend_offset2_term_s13 <= exp2_bend_offset2_term_s12;
+            halvings_s14 <= halvings_s13;
+            exp2_bend_value_word_s14 <= exp2_bend_value_word_s13;
+            peak_s14 <= peak_s13;
+            exp2_bend_offset1_term_s14 <= exp2_bend_offset1_term_s13;
+            exp2_bend_offset2_term_s14 <= exp2_bend_offset2_term_s13;
         end
     end
 
-    // Stage 13, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
-    reg         [15:0] exp2_x_s14;                  // u0.16
-    reg                peak_s14;                    // f is 1.0, less an ulp
-    reg                halvings_bits_2_bits_5_s14;
-    reg                halvings_bits_2_bits_4_s14;
-    reg                halvings_bits_2_bits_3_s14;
-    reg                halvings_bits_2_bits_2_s14;
-    reg                halvings_bits_2_bits_s14;
-    reg  signed [15:0] exp2_bend_offset2_sum_s14;   // s-4.19
+    // Stage 14, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
+    reg         [15:0] exp2_x_s15;                  // u0.16
+    reg                peak_s15;                    // f is 1.0, less an ulp
+    reg                halvings_bits_2_bits_5_s15;
+    reg                halvings_bits_2_bits_4_s15;
+    reg                halvings_bits_2_bits_3_s15;
+    reg                halvings_bits_2_bits_2_s15;
+    reg                halvings_bits_2_bits_s15;
+    reg  signed [15:0] exp2_bend_offset2_sum_s15;   // s-4.19
     // s-15.19: what the field adds, less half an ulp
-    reg  signed [4:0]  exp2_bend_offset3_term_s14;
+    reg  signed [4:0]  exp2_bend_offset3_term_s15;
 
-    wire [15:0] exp2_x_s13 = halvings_s13[15:0];  // u0.16
-    wire exp2_bend_offset3_upper_s13 = halvings_s13[3];
-    wire [2:0] exp2_bend_offset3_mirrored_s13 = ~halvings_s13[2:0];
+    wire [15:0] exp2_x_s14 = halvings_s14[15:0];  // u0.16
+    wire exp2_bend_offset3_upper_s14 = halvings_s14[3];
+    wire [2:0] exp2_bend_offset3_mirrored_s14 = ~halvings_s14[2:0];
 
     // distance from the middle of the field
-    wire [2:0] exp2_bend_offset3_distance_s13 = exp2_bend_offset3_upper_s13 ? halvings_s13[2:0] :
-            exp2_bend_offset3_mirrored_s13;
+    wire [2:0] exp2_bend_offset3_distance_s14 = exp2_bend_offset3_upper_s14 ? halvings_s14[2:0] :
+            exp2_bend_offset3_mirrored_s14;
 
-    wire [5:0] exp2_bend_offset3_address_s13 = {halvings_s13[15:13],
-            exp2_bend_offset3_distance_s13};
+    wire [5:0] exp2_bend_offset3_address_s14 = {halvings_s14[15:13],
+            exp2_bend_offset3_distance_s14};
 
     // ROM exp2_bend_offset3: slope of 1 - x/2 - 2^-x over 2^-3 of x, times the distance from the
     // middle of bits 3 to 0 of x, in units of 2^-19, less a half
     reg [4:0] exp2_bend_offset3_rom [0:63];
     initial $readmemh(EXP2_BEND_OFFSET3_FILE, exp2_bend_offset3_rom);
-    wire signed [4:0] exp2_bend_offset3_word_s13 =
-            exp2_bend_offset3_rom[exp2_bend_offset3_address_s13];
+    wire signed [4:0] exp2_bend_offset3_word_s14 =
+            exp2_bend_offset3_rom[exp2_bend_offset3_address_s14];
 
     // s-4.19
-    wire signed [15:0] exp2_bend_offset1_sum_s13 = {1'b0, exp2_bend_value_word_s13} +
-            {{6{exp2_bend_offset1_term_s13[9]}}, exp2_bend_offset1_term_s13};
+    wire signed [15:0] exp2_bend_offset1_sum_s14 = {1'b0, exp2_bend_value_word_s14} +
+            {{6{exp2_bend_offset1_term_s14[9]}}, exp2_bend_offset1_term_s14};
 
     // s-4.19
-    wire signed [15:0] exp2_bend_offset2_sum_s13 = exp2_bend_offset1_sum_s13 +
-            {{8{exp2_bend_offset2_term_s13[7]}}, exp2_bend_offset2_term_s13};
+    wire signed [15:0] exp2_bend_offset2_sum_s14 = exp2_bend_offset1_sum_s14 +
+            {{8{exp2_bend_offset2_term_s14[7]}}, exp2_bend_offset2_term_s14};
 
-    wire signed [4:0] exp2_bend_offset3_opposite_s13 = ~exp2_bend_offset3_word_s13;  // s-15.19
+    wire signed [4:0] exp2_bend_offset3_opposite_s14 = ~exp2_bend_offset3_word_s14;  // s-15.19
 
     // s-15.19: what the field adds, less half an ulp
-    wire signed [4:0] exp2_bend_offset3_term_s13 = exp2_bend_offset3_upper_s13 ?
-            exp2_bend_offset3_word_s13 : exp2_bend_offset3_opposite_s13;
+    wire signed [4:0] exp2_bend_offset3_term_s14 = exp2_bend_offset3_upper_s14 ?
+            exp2_bend_offset3_word_s14 : exp2_bend_offset3_opposite_s14;
 
     always @(posedge clk) begin
         if (advance) begin
-            exp2_x_s14 <= exp2_x_s13;
-            peak_s14 <= peak_s13;
-            halvings_bits_2_bits_5_s14 <= halvings_s13[16];
-            halvings_bits_2_bits_4_s14 <= halvings_s13[17];
-            halvings_bits_2_bits_3_s14 <= halvings_s13[18];
-            halvings_bits_2_bits_2_s14 <= halvings_s13[19];
-            halvings_bits_2_bits_s14 <= halvings_s13[20];
-            exp2_bend_offset2_sum_s14 <= exp2_bend_offset2_sum_s13;
-            exp2_bend_offset3_term_s14 <= exp2_bend_offset3_term_s13;
-        end
-    end
-
-    // Stage 14, part of: reflectance <- 2^-halvings
-    reg         peak_s15;                       // f is 1.0, less an ulp
-    reg         halvings_bits_2_bits_5_s15;
-    reg         halvings_bits_2_bits_4_s15;
-    reg         halvings_bits_2_bits_3_s15;
-    reg         halvings_bits_2_bits_2_s15;
-    reg         halvings_bits_2_bits_s15;
-    reg         exp2_mantissa_kept_bits_s15;
-    reg  [16:0] exp2_mantissa_kept_inside_s15;  // u0.17
-
-    wire [15:0] exp2_inverse_s14 = ~exp2_x_s14;  // u0.16
-
-    // s-4.19
-    wire signed [15:0] exp2_bend_offset3_sum_s14 = exp2_bend_offset2_sum_s14 +
-            {{11{exp2_bend_offset3_term_s14[4]}}, exp2_bend_offset3_term_s14};
-
-    // u1.19: 2^-x of the fraction x
-    wire [19:0] exp2_mantissa_s14 = {2'd1, exp2_inverse_s14, 2'd0} -
-            {{4{exp2_bend_offset3_sum_s14[15]}}, exp2_bend_offset3_sum_s14};
-
-    always @(posedge clk) begin
-        if (advance) begin
+            exp2_x_s15 <= exp2_x_s14;
             peak_s15 <= peak_s14;
-            halvings_bits_2_bits_5_s15 <= halvings_bits_2_bits_5_s14;
-            halvings_bits_2_bits_4_s15 <= halvings_bits_2_bits_4_s14;
-            halvings_bits_2_bits_3_s15 <= halvings_bits_2_bits_3_s14;
-            halvings_bits_2_bits_2_s15 <= halvings_bits_2_bits_2_s14;
-            halvings_bits_2_bits_s15 <= halvings_bits_2_bits_s14;
-            exp2_mantissa_kept_bits_s15 <= exp2_mantissa_s14[19];
-            exp2_mantissa_kept_inside_s15 <= exp2_mantissa_s14[18:2];
+            halvings_bits_2_bits_5_s15 <= halvings_s14[16];
+            halvings_bits_2_bits_4_s15 <= halvings_s14[17];
+            halvings_bits_2_bits_3_s15 <= halvings_s14[18];
+            halvings_bits_2_bits_2_s15 <= halvings_s14[19];
+            halvings_bits_2_bits_s15 <= halvings_s14[20];
+            exp2_bend_offset2_sum_s15 <= exp2_bend_offset2_sum_s14;
+            exp2_bend_offset3_term_s15 <= exp2_bend_offset3_term_s14;
         end
     end
 
     // Stage 15, part of: reflectance <- 2^-halvings
-    reg         peak_s16;                    // f is 1.0, less an ulp
+    reg         peak_s16;                       // f is 1.0, less an ulp
     reg         halvings_bits_2_bits_5_s16;
-    reg  [16:0] exp2_shift_by2_s16;          // u0.17
+    reg         halvings_bits_2_bits_4_s16;
+    reg         halvings_bits_2_bits_3_s16;
+    reg         halvings_bits_2_bits_2_s16;
+    reg         halvings_bits_2_bits_s16;
+    reg         exp2_mantissa_kept_bits_s16;
+    reg  [16:0] exp2_mantissa_kept_inside_s16;  // u0.17
 
-    // u0.17
-    wire [16:0] exp2_kept_s15 = exp2_mantissa_kept_bits_s15 ? 17'h1ffff :
-            exp2_mantissa_kept_inside_s15;
+    wire [15:0] exp2_inverse_s15 = ~exp2_x_s15;  // u0.16
 
-    // u0.17
-    wire [16:0] exp2_shift_by16_s15 = halvings_bits_2_bits_s15 ? {16'd0, exp2_kept_s15[16]} :
-            exp2_kept_s15;
+    // s-4.19
+    wire signed [15:0] exp2_bend_offset3_sum_s15 = exp2_bend_offset2_sum_s15 +
+            {{11{exp2_bend_offset3_term_s15[4]}}, exp2_bend_offset3_term_s15};
 
-    // u0.17
-    wire [16:0] exp2_shift_by8_s15 = halvings_bits_2_bits_2_s15 ? {8'd0, exp2_shift_by16_s15[16:8]}
-            : exp2_shift_by16_s15;
-
-    // u0.17
-    wire [16:0] exp2_shift_by4_s15 = halvings_bits_2_bits_3_s15 ? {4'd0, exp2_shift_by8_s15[16:4]} :
-            exp2_shift_by8_s15;
-
-    // u0.17
-    wire [16:0] exp2_shift_by2_s15 = halvings_bits_2_bits_4_s15 ? {2'd0, exp2_shift_by4_s15[16:2]} :
-            exp2_shift_by4_s15;
+    // u1.19: 2^-x of the fraction x
+    wire [19:0] exp2_mantissa_s15 = {2'd1, exp2_inverse_s15, 2'd0} -
+            {{4{exp2_bend_offset3_sum_s15[15]}}, exp2_bend_offset3_sum_s15};
 
     always @(posedge clk) begin
         if (advance) begin
             peak_s16 <= peak_s15;
             halvings_bits_2_bits_5_s16 <= halvings_bits_2_bits_5_s15;
-            exp2_shift_by2_s16 <= exp2_shift_by2_s15;
+            halvings_bits_2_bits_4_s16 <= halvings_bits_2_bits_4_s15;
+            halvings_bits_2_bits_3_s16 <= halvings_bits_2_bits_3_s15;
+            halvings_bits_2_bits_2_s16 <= halvings_bits_2_bits_2_s15;
+            halvings_bits_2_bits_s16 <= halvings_bits_2_bits_s15;
+            exp2_mantissa_kept_bits_s16 <= exp2_mantissa_s15[19];
+            exp2_mantissa_kept_inside_s16 <= exp2_mantissa_s15[18:2];
         end
     end
 
     // Stage 16, part of: reflectance <- 2^-halvings
-    reg         facing_s17;        // the surface faces the half vector
-    reg         peak_s17;          // f is 1.0, less an ulp
-    reg  [15:0] exp2_rounded_s17;  // u0.16
+    reg         peak_s17;                    // f is 1.0, less an ulp
+    reg         halvings_bits_2_bits_5_s17;
+    reg  [16:0] exp2_shift_by2_s17;          // u0.17
 
     // u0.17
-    wire [16:0] exp2_shift_by1_s16 = halvings_bits_2_bits_5_s16 ? {1'b0, exp2_shift_by2_s16[16:1]} :
-            exp2_shift_by2_s16;
+    wire [16:0] exp2_kept_s16 = exp2_mantissa_kept_bits_s16 ? 17'h1ffff :
+            exp2_mantissa_kept_inside_s16;
 
-    // u1.16
-    wire [16:0] exp2_rounded_nearest_s16 = {1'b0, exp2_shift_by1_s16[16:1]} + {16'd0,
-            exp2_shift_by1_s16[0]};
+    // u0.17
+    wire [16:0] exp2_shift_by16_s16 = halvings_bits_2_bits_s16 ? {16'd0, exp2_kept_s16[16]} :
+            exp2_kept_s16;
 
-    // u0.16
-    wire [15:0] exp2_rounded_s16 = exp2_rounded_nearest_s16[16] ? 16'hffff :
-            exp2_rounded_nearest_s16[15:0];
+    // u0.17
+    wire [16:0] exp2_shift_by8_s16 = halvings_bits_2_bits_2_s16 ? {8'd0, exp2_shift_by16_s16[16:8]}
+            : exp2_shift_by16_s16;
+
+    // u0.17
+    wire [16:0] exp2_shift_by4_s16 = halvings_bits_2_bits_3_s16 ? {4'd0, exp2_shift_by8_s16[16:4]} :
+            exp2_shift_by8_s16;
+
+    // u0.17
+    wire [16:0] exp2_shift_by2_s16 = halvings_bits_2_bits_4_s16 ? {2'd0, exp2_shift_by4_s16[16:2]} :
+            exp2_shift_by4_s16;
 
     always @(posedge clk) begin
         if (advance) begin
             peak_s17 <= peak_s16;
-            exp2_rounded_s17 <= exp2_rounded_s16;
+            halvings_bits_2_bits_5_s17 <= halvings_bits_2_bits_5_s16;
+            exp2_shift_by2_s17 <= exp2_shift_by2_s16;
         end
     end
 
     // Stage 17, part of: reflectance <- 2^-halvings
-    reg  [7:0]  red_s18;          // intensity of the light times k_s
-    reg  [7:0]  green_s18;        // intensity of the light times k_s
-    reg  [7:0]  blue_s18;         // intensity of the light times k_s
-    reg  [15:0] reflectance_s18;  // u0.16: f
+    reg         facing_s18;        // the surface faces the half vector
+    reg         peak_s18;          // f is 1.0, less an ulp
+    reg  [15:0] exp2_rounded_s18;  // u0.16
 
-    wire [15:0] lit_s17 = peak_s17 ? 16'hffff : exp2_rounded_s17;  // u0.16
-    wire [15:0] reflectance_s17 = facing_s17 ? lit_s17 : 16'd0;  // u0.16: f
+    // u0.17
+    wire [16:0] exp2_shift_by1_s17 = halvings_bits_2_bits_5_s17 ? {1'b0, exp2_shift_by2_s17[16:1]} :
+            exp2_shift_by2_s17;
+
+    // u1.16
+    wire [16:0] exp2_rounded_nearest_s17 = {1'b0, exp2_shift_by1_s17[16:1]} + {16'd0,
+            exp2_shift_by1_s17[0]};
+
+    // u0.16
+    wire [15:0] exp2_rounded_s17 = exp2_rounded_nearest_s17[16] ? 16'hffff :
+            exp2_rounded_nearest_s17[15:0];
 
     always @(posedge clk) begin
         if (advance) begin
-            reflectance_s18 <= reflectance_s17;
+            peak_s18 <= peak_s17;
+            exp2_rounded_s18 <= exp2_rounded_s17;
         end
     end
 
-    // Stage 18, part of: result
-    reg  [15:0] reflectance_s19;         // u0.16: f
-    reg  [7:0]  red_product_kept_s19;
-    reg         red_product_bits_s19;
-    reg  [7:0]  green_product_kept_s19;
-    reg         green_product_bits_s19;
-    reg  [7:0]  blue_product_kept_s19;
-    reg         blue_product_bits_s19;
+    // Stage 18, part of: reflectance <- 2^-halvings
+    reg  [7:0]  red_s19;          // intensity of the light times k_s
+    reg  [7:0]  green_s19;        // intensity of the light times k_s
+    reg  [7:0]  blue_s19;         // intensity of the light times k_s
+    reg  [15:0] reflectance_s19;  // u0.16: f
 
-    // u8.16: an output before it is rounded
-    wire [23:0] red_product_s18 = reflectance_s18 * red_s18;
-
-    // u8.16: an output before it is rounded
-    wire [23:0] green_product_s18 = reflectance_s18 * green_s18;
-
-    // u8.16: an output before it is rounded
-    wire [23:0] blue_product_s18 = reflectance_s18 * blue_s18;
+    wire [15:0] lit_s18 = peak_s18 ? 16'hffff : exp2_rounded_s18;  // u0.16
+    wire [15:0] reflectance_s18 = facing_s18 ? lit_s18 : 16'd0;  // u0.16: f
 
     always @(posedge clk) begin
         if (advance) begin
             reflectance_s19 <= reflectance_s18;
-            red_product_kept_s19 <= red_product_s18[23:16];
-            red_product_bits_s19 <= red_product_s18[15];
-            green_product_kept_s19 <= green_product_s18[23:16];
-            green_product_bits_s19 <= green_product_s18[15];
-            blue_product_kept_s19 <= blue_product_s18[23:16];
-            blue_product_bits_s19 <= blue_product_s18[15];
         end
     end
 
     // Stage 19, part of: result
-    reg  [15:0] reflectance_s20;      // u0.16: f
-    reg  [7:0]  red_intensity_s20;
-    reg  [7:0]  green_intensity_s20;
-    reg  [7:0]  blue_intensity_s20;
+    reg  [15:0] reflectance_s20;         // u0.16: f
+    reg  [7:0]  red_product_kept_s20;
+    reg         red_product_bits_s20;
+    reg  [7:0]  green_product_kept_s20;
+    reg         green_product_bits_s20;
+    reg  [7:0]  blue_product_kept_s20;
+    reg         blue_product_bits_s20;
 
-    wire [7:0] red_intensity_s19 = red_product_kept_s19 + {7'd0, red_product_bits_s19};
-    wire [7:0] green_intensity_s19 = green_product_kept_s19 + {7'd0, green_product_bits_s19};
-    wire [7:0] blue_intensity_s19 = blue_product_kept_s19 + {7'd0, blue_product_bits_s19};
+    // u8.16: an output before it is rounded
+    wire [23:0] red_product_s19 = reflectance_s19 * red_s19;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] green_product_s19 = reflectance_s19 * green_s19;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] blue_product_s19 = reflectance_s19 * blue_s19;
 
     always @(posedge clk) begin
         if (advance) begin
             reflectance_s20 <= reflectance_s19;
-            red_intensity_s20 <= red_intensity_s19;
-            green_intensity_s20 <= green_intensity_s19;
-            blue_intensity_s20 <= blue_intensity_s19;
+            red_product_kept_s20 <= red_product_s19[23:16];
+            red_product_bits_s20 <= red_product_s19[15];
+            green_product_kept_s20 <= green_product_s19[23:16];
+            green_product_bits_s20 <= green_product_s19[15];
+            blue_product_kept_s20 <= blue_product_s19[23:16];
+            blue_product_bits_s20 <= blue_product_s19[15];
+        end
+    end
+
+    // Stage 20, part of: result
+    reg  [15:0] reflectance_s21;      // u0.16: f
+    reg  [7:0]  red_intensity_s21;
+    reg  [7:0]  green_intensity_s21;
+    reg  [7:0]  blue_intensity_s21;
+
+    wire [7:0] red_intensity_s20 = red_product_kept_s20 + {7'd0, red_product_bits_s20};
+    wire [7:0] green_intensity_s20 = green_product_kept_s20 + {7'd0, green_product_bits_s20};
+    wire [7:0] blue_intensity_s20 = blue_product_kept_s20 + {7'd0, blue_product_bits_s20};
+
+    always @(posedge clk) begin
+        if (advance) begin
+            reflectance_s21 <= reflectance_s20;
+            red_intensity_s21 <= red_intensity_s20;
+            green_intensity_s21 <= green_intensity_s20;
+            blue_intensity_s21 <= blue_intensity_s20;
         end
     end
 
     // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
     // points move on, a slot gives the value that it holds and takes a new one; its turn comes
     // again when all others have had theirs.
-    reg [1:0] slot_of_4;
-    initial slot_of_4 = 2'd0;
+    reg [2:0] slot_of_5;
+    initial slot_of_5 = 3'd0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [4:0] delay_s3_s8 [0:3];
-    reg [2:0] slot_of_8;
-    initial slot_of_8 = 3'd0;
+    reg [4:0] delay_s3_s9 [0:4];
+    reg [3:0] slot_of_9;
+    initial slot_of_9 = 4'd0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [9:0] delay_s0_s9 [0:7];
-    reg [3:0] slot_of_15;
-    initial slot_of_15 = 4'd0;
+    reg [9:0] delay_s0_s10 [0:8];
+    reg [3:0] slot_of_16;
+    initial slot_of_16 = 4'd0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg  delay_s1_s17 [0:14];
-    reg [4:0] slot_of_17;
-    initial slot_of_17 = 5'd0;
+    reg  delay_s1_s18 [0:15];
+    reg [4:0] slot_of_18;
+    initial slot_of_18 = 5'd0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [23:0] delay_s0_s18 [0:16];
+    reg [23:0] delay_s0_s19 [0:17];
 
     always @(posedge clk) begin
         if (advance) begin
-            slot_of_4 <= slot_of_4 == 2'd3 ? 2'd0 : slot_of_4 + 2'd1;
-            octave_s8 <= delay_s3_s8[slot_of_4];
-            delay_s3_s8[slot_of_4] <= octave_s3;
+            slot_of_5 <= slot_of_5 == 3'd4 ? 3'd0 : slot_of_5 + 3'd1;
+            octave_s9 <= delay_s3_s9[slot_of_5];
+            delay_s3_s9[slot_of_5] <= octave_s3;
         end
     end
 
     always @(posedge clk) begin
         if (advance) begin
-            slot_of_8 <= slot_of_8 == 3'd7 ? 3'd0 : slot_of_8 + 3'd1;
-            exponent_s9 <= delay_s0_s9[slot_of_8];
-            delay_s0_s9[slot_of_8] <= exponent;
+            slot_of_9 <= slot_of_9 == 4'd8 ? 4'd0 : slot_of_9 + 4'd1;
+            exponent_s10 <= delay_s0_s10[slot_of_9];
+            delay_s0_s10[slot_of_9] <= exponent;
         end
     end
 
     always @(posedge clk) begin
         if (advance) begin
-            slot_of_15 <= slot_of_15 == 4'd14 ? 4'd0 : slot_of_15 + 4'd1;
-            facing_s17 <= delay_s1_s17[slot_of_15];
-            delay_s1_s17[slot_of_15] <= facing_s1;
+            slot_of_16 <= slot_of_16 == 4'd15 ? 4'd0 : slot_of_16 + 4'd1;
+            facing_s18 <= delay_s1_s18[slot_of_16];
+            delay_s1_s18[slot_of_16] <= facing_s1;
         end
     end
 
     always @(posedge clk) begin
         if (advance) begin
-            slot_of_17 <= slot_of_17 == 5'd16 ? 5'd0 : slot_of_17 + 5'd1;
-            {red_s18, green_s18, blue_s18} <= delay_s0_s18[slot_of_17];
-            delay_s0_s18[slot_of_17] <= {red, green, blue};
+            slot_of_18 <= slot_of_18 == 5'd17 ? 5'd0 : slot_of_18 + 5'd1;
+            {red_s19, green_s19, blue_s19} <= delay_s0_s19[slot_of_18];
+            delay_s0_s19[slot_of_18] <= {red, green, blue};
         end
     end
 
     // Results
 
-    assign f_out = reflectance_s20;  // u0.16: the reflectance, for a user's own multipliers
-    assign red_out = red_intensity_s20;  // intensity on the output
-    assign green_out = green_intensity_s20;  // intensity on the output
-    assign blue_out = blue_intensity_s20;  // intensity on the output
+    assign f_out = reflectance_s21;  // u0.16: the reflectance, for a user's own multipliers
+    assign red_out = red_intensity_s21;  // intensity on the output
+    assign green_out = green_intensity_s21;  // intensity on the output
+    assign blue_out = blue_intensity_s21;  // intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, octave_by1_s3[19], product_s7[10:0], product_2_s11[2:0],
-            exp2_mantissa_s14[1:0], red_product_s18[14:0], green_product_s18[14:0],
-            blue_product_s18[14:0]};
+    wire unused = &{1'b0, octave_by1_s3[19], product_s8[10:0], product_2_s12[2:0],
+            exp2_mantissa_s15[1:0], red_product_s19[14:0], green_product_s19[14:0],
+            blue_product_s19[14:0]};
 endmodule
 
 `default_nettype wire

@@ -4,7 +4,7 @@
 //
 // Source: Seed 002, the fourth function that it weighs
 //
-// Pipeline: a point every clock, its results 17 clocks later; stages for 130 MHz on ecp5. While
+// Pipeline: a point every clock, its results 18 clocks later; stages for 130 MHz on ecp5. While
 // out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
@@ -91,10 +91,11 @@ module gauss_pipelined #(
     reg  valid_s14;  // stage 14 has a point
     reg  valid_s15;  // stage 15 has a point
     reg  valid_s16;  // stage 16 has a point
-    reg  valid_s17;  // the results are on the outputs
+    reg  valid_s17;  // stage 17 has a point
+    reg  valid_s18;  // the results are on the outputs
 
-    assign out_valid = valid_s17;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s17;  // every point moves on by a stage
+    assign out_valid = valid_s18;  // the results are on the outputs
+    wire advance = out_ready | ~valid_s18;  // every point moves on by a stage
     assign in_ready = advance;  // a point that is offered is taken in this clock
 
     always @(posedge clk) begin
@@ -116,6 +117,7 @@ module gauss_pipelined #(
             valid_s15 <= 1'b0;
             valid_s16 <= 1'b0;
             valid_s17 <= 1'b0;
+            valid_s18 <= 1'b0;
         end else if (advance) begin
             valid_s1 <= in_valid;
             valid_s2 <= valid_s1;
@@ -134,6 +136,7 @@ module gauss_pipelined #(
             valid_s15 <= valid_s14;
             valid_s16 <= valid_s15;
             valid_s17 <= valid_s16;
+            valid_s18 <= valid_s17;
         end
     end
 
@@ -169,9 +172,8 @@ module gauss_pipelined #(
     end
 
     // Stage 1, part of: segment of the decay addressed by cos gamma
-    reg  [13:0] curve_rest2_s2;  // u0.14
-    reg         facing_s2;       // the surface faces the half vector
-    reg         aligned_s2;      // cos gamma is 1.0
+    reg         facing_s2;      // the surface faces the half vector
+    reg         aligned_s2;     // cos gamma is 1.0
     reg  [44:0] curve_word_s2;
 
     wire curve_in_range2_s1 = |distance_s1[19:14];  // u is in range 2 or in one above
@@ -211,486 +213,511 @@ module gauss_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            curve_rest2_s2 <= curve_rest2_s1;
             facing_s2 <= facing_s1;
             aligned_s2 <= aligned_s1;
         end
     end
 
     // Stage 2, part of: segment of the decay addressed by cos gamma
-    reg  [13:0] curve_rest2_s3;  // u0.14
-    reg         facing_s3;       // the surface faces the half vector
+    reg         facing_s3;      // the surface faces the half vector
     reg  [44:0] curve_word_s3;
-    reg         aligned_s3;      // cos gamma is 1.0
+    reg         aligned_s3;     // cos gamma is 1.0
 
     always @(posedge clk) begin
         if (advance) begin
-            curve_rest2_s3 <= curve_rest2_s2;
             facing_s3 <= facing_s2;
             curve_word_s3 <= curve_word_s2;
             aligned_s3 <= aligned_s2;
         end
     end
 
-    // Stage 3, part of: decay <- base + slope * rest
-    reg         facing_s4;            // the surface faces the half vector
-    reg  [25:0] curve_base_s4;        // u0.26
-    reg  [31:0] product_upper_s4;
-    reg         product_low_bits_s4;
-    reg  [12:0] product_carried_s4;
-    reg         aligned_s4;           // cos gamma is 1.0
-
-    wire [25:0] curve_base_s3 = curve_word_s3[44:19];  // u0.26
-    wire [31:0] product_upper_s3 = curve_word_s3[18:1] * curve_rest2_s3;
-    wire [13:0] product_row_2_s3 = curve_word_s3[0] ? curve_rest2_s3 : 14'd0;
+    // Stage 3: values on their way
+    reg  [13:0] curve_rest2_s4;  // u0.14
+    reg         facing_s4;       // the surface faces the half vector
+    reg  [44:0] curve_word_s4;
+    reg         aligned_s4;      // cos gamma is 1.0
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s4 <= facing_s3;
-            curve_base_s4 <= curve_base_s3;
-            product_upper_s4 <= product_upper_s3;
-            product_low_bits_s4 <= product_row_2_s3[0];
-            product_carried_s4 <= product_row_2_s3[13:1];
+            curve_word_s4 <= curve_word_s3;
             aligned_s4 <= aligned_s3;
         end
     end
 
     // Stage 4, part of: decay <- base + slope * rest
-    reg         facing_s5;   // the surface faces the half vector
-    reg  [25:0] decay_s5;    // u0.26: gamma^2/(4 ln 2), half the decay
-    reg         aligned_s5;  // cos gamma is 1.0
+    reg         facing_s5;            // the surface faces the half vector
+    reg  [25:0] curve_base_s5;        // u0.26
+    reg  [31:0] product_upper_s5;
+    reg         product_low_bits_s5;
+    reg  [12:0] product_carried_s5;
+    reg         aligned_s5;           // cos gamma is 1.0
 
-    wire [31:0] product_sum_s4 = product_upper_s4 + {19'd0, product_carried_s4};
-
-    // its point depends on the operands
-    wire [32:0] product_s4 = {product_sum_s4, product_low_bits_s4};
-
-    // u0.26: gamma^2/(4 ln 2), half the decay
-    wire [25:0] decay_s4 = curve_base_s4 + {5'd0, product_s4[32:12]};
+    wire [25:0] curve_base_s4 = curve_word_s4[44:19];  // u0.26
+    wire [31:0] product_upper_s4 = curve_word_s4[18:1] * curve_rest2_s4;
+    wire [13:0] product_row_2_s4 = curve_word_s4[0] ? curve_rest2_s4 : 14'd0;
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s5 <= facing_s4;
-            decay_s5 <= decay_s4;
+            curve_base_s5 <= curve_base_s4;
+            product_upper_s5 <= product_upper_s4;
+            product_low_bits_s5 <= product_row_2_s4[0];
+            product_carried_s5 <= product_row_2_s4[13:1];
             aligned_s5 <= aligned_s4;
         end
     end
 
-    // Stage 5, part of: halvings <- n * decay
-    reg  [9:0]  exponent_s6;     // specular exponent n
-    reg         facing_s6;       // the surface faces the half vector
-    reg         decay_small_s6;  // the decay is below 1/4, and all its bits count
-    reg  [23:0] factor_s6;       // the decay, its point by decay_small
-    reg         aligned_s6;      // cos gamma is 1.0
+    // Stage 5, part of: decay <- base + slope * rest
+    reg         facing_s6;   // the surface faces the half vector
+    reg  [25:0] decay_s6;    // u0.26: gamma^2/(4 ln 2), half the decay
+    reg         aligned_s6;  // cos gamma is 1.0
 
-    wire decay_large_s5 = |decay_s5[25:24];
-    wire decay_small_s5 = ~decay_large_s5;  // the decay is below 1/4, and all its bits count
+    wire [31:0] product_sum_s5 = product_upper_s5 + {19'd0, product_carried_s5};
 
-    // the decay, its point by decay_small
-    wire [23:0] factor_s5 = decay_small_s5 ? decay_s5[23:0] : decay_s5[25:2];
+    // its point depends on the operands
+    wire [32:0] product_s5 = {product_sum_s5, product_low_bits_s5};
+
+    // u0.26: gamma^2/(4 ln 2), half the decay
+    wire [25:0] decay_s5 = curve_base_s5 + {5'd0, product_s5[32:12]};
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s6 <= facing_s5;
-            decay_small_s6 <= decay_small_s5;
-            factor_s6 <= factor_s5;
+            decay_s6 <= decay_s5;
             aligned_s6 <= aligned_s5;
         end
     end
 
     // Stage 6, part of: halvings <- n * decay
-    reg         facing_s7;           // the surface faces the half vector
-    reg         decay_small_s7;      // the decay is below 1/4, and all its bits count
-    reg  [27:0] product_upper_2_s7;
-    reg  [15:0] product_lower_s7;
-    reg         aligned_s7;          // cos gamma is 1.0
+    reg  [9:0]  exponent_s7;     // specular exponent n
+    reg         facing_s7;       // the surface faces the half vector
+    reg         decay_small_s7;  // the decay is below 1/4, and all its bits count
+    reg  [23:0] factor_s7;       // the decay, its point by decay_small
+    reg         aligned_s7;      // cos gamma is 1.0
 
-    wire [27:0] product_upper_2_s6 = factor_s6[23:6] * exponent_s6;
-    wire [15:0] product_lower_s6 = factor_s6[5:0] * exponent_s6;
+    wire decay_large_s6 = |decay_s6[25:24];
+    wire decay_small_s6 = ~decay_large_s6;  // the decay is below 1/4, and all its bits count
+
+    // the decay, its point by decay_small
+    wire [23:0] factor_s6 = decay_small_s6 ? decay_s6[23:0] : decay_s6[25:2];
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s7 <= facing_s6;
             decay_small_s7 <= decay_small_s6;
-            product_upper_2_s7 <= product_upper_2_s6;
-            product_lower_s7 <= product_lower_s6;
+            factor_s7 <= factor_s6;
             aligned_s7 <= aligned_s6;
         end
     end
 
     // Stage 7, part of: halvings <- n * decay
-    reg         facing_s8;       // the surface faces the half vector
-    reg         decay_small_s8;  // the decay is below 1/4, and all its bits count
-    reg  [33:0] product_2_s8;    // its point depends on the operands
-    reg         aligned_s8;      // cos gamma is 1.0
+    reg         facing_s8;           // the surface faces the half vector
+    reg         decay_small_s8;      // the decay is below 1/4, and all its bits count
+    reg  [27:0] product_upper_2_s8;
+    reg  [15:0] product_lower_s8;
+    reg         aligned_s8;          // cos gamma is 1.0
 
-    wire [27:0] product_sum_2_s7 = product_upper_2_s7 + {18'd0, product_lower_s7[15:6]};
-
-    // its point depends on the operands
-    wire [33:0] product_2_s7 = {product_sum_2_s7, product_lower_s7[5:0]};
+    wire [27:0] product_upper_2_s7 = factor_s7[23:6] * exponent_s7;
+    wire [15:0] product_lower_s7 = factor_s7[5:0] * exponent_s7;
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s8 <= facing_s7;
             decay_small_s8 <= decay_small_s7;
-            product_2_s8 <= product_2_s7;
+            product_upper_2_s8 <= product_upper_2_s7;
+            product_lower_s8 <= product_lower_s7;
             aligned_s8 <= aligned_s7;
         end
     end
 
     // Stage 8, part of: halvings <- n * decay
-    reg         facing_s9;    // the surface faces the half vector
-    reg  [20:0] halvings_s9;  // u5.16: n*decay: how often f is half of 1.0
-    reg         aligned_s9;   // cos gamma is 1.0
+    reg         facing_s9;       // the surface faces the half vector
+    reg         decay_small_s9;  // the decay is below 1/4, and all its bits count
+    reg  [33:0] product_2_s9;    // its point depends on the operands
+    reg         aligned_s9;      // cos gamma is 1.0
 
-    // u5.16
-    wire [20:0] halvings_coarse_s8 = (|product_2_s8[33:28]) ? 21'h1fffff : product_2_s8[27:7];
+    wire [27:0] product_sum_2_s8 = product_upper_2_s8 + {18'd0, product_lower_s8[15:6]};
 
-    // u5.16
-    wire [20:0] halvings_fine_s8 = (|product_2_s8[33:30]) ? 21'h1fffff : product_2_s8[29:9];
-
-    // u5.16: n*decay: how often f is half of 1.0
-    wire [20:0] halvings_s8 = decay_small_s8 ? halvings_fine_s8 : halvings_coarse_s8;
+    // its point depends on the operands
+    wire [33:0] product_2_s8 = {product_sum_2_s8, product_lower_s8[5:0]};
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s9 <= facing_s8;
-            halvings_s9 <= halvings_s8;
+            decay_small_s9 <= decay_small_s8;
+            product_2_s9 <= product_2_s8;
             aligned_s9 <= aligned_s8;
         end
     end
 
-    // Stage 9, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
-    reg                facing_s10;                  // the surface faces the half vector
-    reg         [20:0] halvings_s10;                // u5.16: n*decay: how often f is half of 1.0
-    reg         [14:0] exp2_bend_value_word_s10;    // u-4.19
-    reg                peak_s10;                    // f is 1.0, less an ulp
-    // s-10.19: what the field adds, less half an ulp
-    reg  signed [9:0]  exp2_bend_offset1_term_s10;
-    // s-12.19: what the field adds, less half an ulp
-    reg  signed [7:0]  exp2_bend_offset2_term_s10;
+    // Stage 9, part of: halvings <- n * decay
+    reg         facing_s10;    // the surface faces the half vector
+    reg  [20:0] halvings_s10;  // u5.16: n*decay: how often f is half of 1.0
+    reg         aligned_s10;   // cos gamma is 1.0
 
-    wire exp2_bend_offset1_upper_s9 = halvings_s9[8];
-    wire exp2_bend_offset2_upper_s9 = halvings_s9[6];
+    // u5.16
+    wire [20:0] halvings_coarse_s9 = (|product_2_s9[33:28]) ? 21'h1fffff : product_2_s9[27:7];
 
-    // ROM exp2_bend_value: 1 - x/2 - 2^-x at the middle of each of 128 intervals of x, in units of
-    // 2^-19
-    reg [14:0] exp2_bend_value_rom [0:127];
-    initial $readmemh(EXP2_BEND_VALUE_FILE, exp2_bend_value_rom);
-    wire [14:0] exp2_bend_value_word_s9 = exp2_bend_value_rom[halvings_s9[15:9]];
+    // u5.16
+    wire [20:0] halvings_fine_s9 = (|product_2_s9[33:30]) ? 21'h1fffff : product_2_s9[29:9];
 
-    wire exp2_bend_offset1_mirrored_s9 = ~halvings_s9[7];
-
-    // distance from the middle of the field
-    wire exp2_bend_offset1_distance_s9 = exp2_bend_offset1_upper_s9 ? halvings_s9[7] :
-            exp2_bend_offset1_mirrored_s9;
-
-    wire [6:0] exp2_bend_offset1_address_s9 = {halvings_s9[15:10], exp2_bend_offset1_distance_s9};
-
-    // ROM exp2_bend_offset1: slope of 1 - x/2 - 2^-x over 2^-6 of x, times the distance from the
-    // middle of bits 8 to 7 of x, in units of 2^-19, less a half
-    reg [9:0] exp2_bend_offset1_rom [0:127];
-    initial $readmemh(EXP2_BEND_OFFSET1_FILE, exp2_bend_offset1_rom);
-    wire signed [9:0] exp2_bend_offset1_word_s9 =
-            exp2_bend_offset1_rom[exp2_bend_offset1_address_s9];
-
-    wire [1:0] exp2_bend_offset2_mirrored_s9 = ~halvings_s9[5:4];
-
-    // distance from the middle of the field
-    wire [1:0] exp2_bend_offset2_distance_s9 = exp2_bend_offset2_upper_s9 ? halvings_s9[5:4] :
-            exp2_bend_offset2_mirrored_s9;
-
-    wire [6:0] exp2_bend_offset2_address_s9 = {halvings_s9[15:11], exp2_bend_offset2_distance_s9};
-
-    // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-5 of x, times the distance from the
-    // middle of bits 6 to 4 of x, in units of 2^-19, less a half
-    reg [7:0] exp2_bend_offset2_rom [0:127];
-    initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
-    wire signed [7:0] exp2_bend_offset2_word_s9 =
-            exp2_bend_offset2_rom[exp2_bend_offset2_address_s9];
-
-    wire fades_s9 = |halvings_s9;
-    wire level_s9 = ~fades_s9;
-    wire peak_s9 = aligned_s9 | level_s9;  // f is 1.0, less an ulp
-    wire signed [9:0] exp2_bend_offset1_opposite_s9 = ~exp2_bend_offset1_word_s9;  // s-10.19
-
-    // s-10.19: what the field adds, less half an ulp
-    wire signed [9:0] exp2_bend_offset1_term_s9 = exp2_bend_offset1_upper_s9 ?
-            exp2_bend_offset1_word_s9 : exp2_bend_offset1_opposite_s9;
-
-    wire signed [7:0] exp2_bend_offset2_opposite_s9 = ~exp2_bend_offset2_word_s9;  // s-12.19
-
-    // s-12.19: what the field adds, less half an ulp
-    wire signed [7:0] exp2_bend_offset2_term_s9 = exp2_bend_offset2_upper_s9 ?
-            exp2_bend_offset2_word_s9 : exp2_bend_offset2_opposite_s9;
+    // u5.16: n*decay: how often f is half of 1.0
+    wire [20:0] halvings_s9 = decay_small_s9 ? halvings_fine_s9 : halvings_coarse_s9;
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s10 <= facing_s9;
             halvings_s10 <= halvings_s9;
-            exp2_bend_value_word_s10 <= exp2_bend_value_word_s9;
-            peak_s10 <= peak_s9;
-            exp2_bend_offset1_term_s10 <= exp2_bend_offset1_term_s9;
-            exp2_bend_offset2_term_s10 <= exp2_bend_offset2_term_s9;
+            aligned_s10 <= aligned_s9;
         end
     end
 
     // Stage 10, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
     reg                facing_s11;                  // the surface faces the half vector
+    reg         [20:0] halvings_s11;                // u5.16: n*decay: how often f is half of 1.0
+    reg         [14:0] exp2_bend_value_word_s11;    // u-4.19
     reg                peak_s11;                    // f is 1.0, less an ulp
-    reg                halvings_bits_2_bits_5_s11;
-    reg                halvings_bits_2_bits_4_s11;
-    reg                halvings_bits_2_bits_3_s11;
-    reg                halvings_bits_2_bits_2_s11;
-    reg                halvings_bits_2_bits_s11;
-    reg         [15:0] exp2_inverse_s11;            // u0.16
-    reg  signed [15:0] exp2_bend_offset2_sum_s11;   // s-4.19
-    // s-15.19: what the field adds, less half an ulp
-    reg  signed [4:0]  exp2_bend_offset3_term_s11;
+    // s-10.19: what the field adds, less half an ulp
+    reg  signed [9:0]  exp2_bend_offset1_term_s11;
+    // s-12.19: what the field adds, less half an ulp
+    reg  signed [7:0]  exp2_bend_offset2_term_s11;
 
-    wire [15:0] exp2_x_s10 = halvings_s10[15:0];  // u0.16
-    wire exp2_bend_offset3_upper_s10 = halvings_s10[3];
-    wire [2:0] exp2_bend_offset3_mirrored_s10 = ~halvings_s10[2:0];
+    wire exp2_bend_offset1_upper_s10 = halvings_s10[8];
+    wire exp2_bend_offset2_upper_s10 = halvings_s10[6];
+
+    // ROM exp2_bend_value: 1 - x/2 - 2^-x at the middle of each of 128 intervals of x, in units of
+    // 2^-19
+    reg [14:0] exp2_bend_value_rom [0:127];
+    initial $readmemh(EXP2_BEND_VALUE_FILE, exp2_bend_value_rom);
+    wire [14:0] exp2_bend_value_word_s10 = exp2_bend_value_rom[halvings_s10[15:9]];
+
+    wire exp2_bend_offset1_mirrored_s10 = ~halvings_s10[7];
 
     // distance from the middle of the field
-    wire [2:0] exp2_bend_offset3_distance_s10 = exp2_bend_offset3_upper_s10 ? halvings_s10[2:0] :
-            exp2_bend_offset3_mirrored_s10;
+    wire exp2_bend_offset1_distance_s10 = exp2_bend_offset1_upper_s10 ? halvings_s10[7] :
+            exp2_bend_offset1_mirrored_s10;
 
-    wire [5:0] exp2_bend_offset3_address_s10 = {halvings_s10[15:13],
-            exp2_bend_offset3_distance_s10};
+    wire [6:0] exp2_bend_offset1_address_s10 = {halvings_s10[15:10],
+            exp2_bend_offset1_distance_s10};
+
+    // ROM exp2_bend_offset1: slope of 1 - x/2 - 2^-x over 2^-6 of x, times the distance from the
+    // middle of bits 8 to 7 of x, in units of 2^-19, less a half
+    reg [9:0] exp2_bend_offset1_rom [0:127];
+    initial $readmemh(EXP2_BEND_OFFSET1_FILE, exp2_bend_offset1_rom);
+    wire signed [9:0] exp2_bend_offset1_word_s10 =
+            exp2_bend_offset1_rom[exp2_bend_offset1_address_s10];
+
+    wire [1:0] exp2_bend_offset2_mirrored_s10 = ~halvings_s10[5:4];
+
+    // distance from the middle of the field
+    wire [1:0] exp2_bend_offset2_distance_s10 = exp2_bend_offset2_upper_s10 ? halvings_s10[5:4] :
+            exp2_bend_offset2_mirrored_s10;
+
+    wire [6:0] exp2_bend_offset2_address_s10 = {halvings_s10[15:11],
+            exp2_bend_offset2_distance_s10};
+
+    // ROM exp2_bend_offset2: slope of 1 - x/2 - 2^-x over 2^-5 of x, times the distance from the
+    // middle of bits 6 to 4 of x, in units of 2^-19, less a half
+    reg [7:0] exp2_bend_offset2_rom [0:127];
+    initial $readmemh(EXP2_BEND_OFFSET2_FILE, exp2_bend_offset2_rom);
+    wire signed [7:0] exp2_bend_offset2_word_s10 =
+            exp2_bend_offset2_rom[exp2_bend_offset2_address_s10];
+
+    wire fades_s10 = |halvings_s10;
+    wire level_s10 = ~fades_s10;
+    wire peak_s10 = aligned_s10 | level_s10;  // f is 1.0, less an ulp
+    wire signed [9:0] exp2_bend_offset1_opposite_s10 = ~exp2_bend_offset1_word_s10;  // s-10.19
+
+    // s-10.19: what the field adds, less half an ulp
+    wire signed [9:0] exp2_bend_offset1_term_s10 = exp2_bend_offset1_upper_s10 ?
+            exp2_bend_offset1_word_s10 : exp2_bend_offset1_opposite_s10;
+
+    wire signed [7:0] exp2_bend_offset2_opposite_s10 = ~exp2_bend_offset2_word_s10;  // s-12.19
+
+    // s-12.19: what the field adds, less half an ulp
+    wire signed [7:0] exp2_bend_offset2_term_s10 = exp2_bend_offset2_upper_s10 ?
+            exp2_bend_offset2_word_s10 : exp2_bend_offset2_opposite_s10;
+
+    always @(posedge clk) begin
+        if (advance) begin
+            facing_s11 <= facing_s10;
+            halvings_s11 <= halvings_s10;
+            exp2_bend_value_word_s11 <= exp2_bend_value_word_s10;
+            peak_s11 <= peak_s10;
+            exp2_bend_offset1_term_s11 <= exp2_bend_offset1_term_s10;
+            exp2_bend_offset2_term_s11 <= exp2_bend_offset2_term_s10;
+        end
+    end
+
+    // Stage 11, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
+    reg                facing_s12;                  // the surface faces the half vector
+    reg                peak_s12;                    // f is 1.0, less an ulp
+    reg                halvings_bits_2_bits_5_s12;
+    reg                halvings_bits_2_bits_4_s12;
+    reg                halvings_bits_2_bits_3_s12;
+    reg                halvings_bits_2_bits_2_s12;
+    reg                halvings_bits_2_bits_s12;
+    reg         [15:0] exp2_inverse_s12;            // u0.16
+    reg  signed [15:0] exp2_bend_offset2_sum_s12;   // s-4.19
+    // s-15.19: what the field adds, less half an ulp
+    reg  signed [4:0]  exp2_bend_offset3_term_s12;
+
+    wire [15:0] exp2_x_s11 = halvings_s11[15:0];  // u0.16
+    wire exp2_bend_offset3_upper_s11 = halvings_s11[3];
+    wire [2:0] exp2_bend_offset3_mirrored_s11 = ~halvings_s11[2:0];
+
+    // distance from the middle of the field
+    wire [2:0] exp2_bend_offset3_distance_s11 = exp2_bend_offset3_upper_s11 ? halvings_s11[2:0] :
+            exp2_bend_offset3_mirrored_s11;
+
+    wire [5:0] exp2_bend_offset3_address_s11 = {halvings_s11[15:13],
+            exp2_bend_offset3_distance_s11};
 
     // ROM exp2_bend_offset3: slope of 1 - x/2 - 2^-x over 2^-3 of x, times the distance from the
     // middle of bits 3 to 0 of x, in units of 2^-19, less a half
     reg [4:0] exp2_bend_offset3_rom [0:63];
     initial $readmemh(EXP2_BEND_OFFSET3_FILE, exp2_bend_offset3_rom);
-    wire signed [4:0] exp2_bend_offset3_word_s10 =
-            exp2_bend_offset3_rom[exp2_bend_offset3_address_s10];
+    wire signed [4:0] exp2_bend_offset3_word_s11 =
+            exp2_bend_offset3_rom[exp2_bend_offset3_address_s11];
 
-    wire [15:0] exp2_inverse_s10 = ~exp2_x_s10;  // u0.16
-
-    // s-4.19
-    wire signed [15:0] exp2_bend_offset1_sum_s10 = {1'b0, exp2_bend_value_word_s10} +
-            {{6{exp2_bend_offset1_term_s10[9]}}, exp2_bend_offset1_term_s10};
+    wire [15:0] exp2_inverse_s11 = ~exp2_x_s11;  // u0.16
 
     // s-4.19
-    wire signed [15:0] exp2_bend_offset2_sum_s10 = exp2_bend_offset1_sum_s10 +
-            {{8{exp2_bend_offset2_term_s10[7]}}, exp2_bend_offset2_term_s10};
+    wire signed [15:0] exp2_bend_offset1_sum_s11 = {1'b0, exp2_bend_value_word_s11} +
+            {{6{exp2_bend_offset1_term_s11[9]}}, exp2_bend_offset1_term_s11};
 
-    wire signed [4:0] exp2_bend_offset3_opposite_s10 = ~exp2_bend_offset3_word_s10;  // s-15.19
+    // s-4.19
+    wire signed [15:0] exp2_bend_offset2_sum_s11 = exp2_bend_offset1_sum_s11 +
+            {{8{exp2_bend_offset2_term_s11[7]}}, exp2_bend_offset2_term_s11};
+
+    wire signed [4:0] exp2_bend_offset3_opposite_s11 = ~exp2_bend_offset3_word_s11;  // s-15.19
 
     // s-15.19: what the field adds, less half an ulp
-    wire signed [4:0] exp2_bend_offset3_term_s10 = exp2_bend_offset3_upper_s10 ?
-            exp2_bend_offset3_word_s10 : exp2_bend_offset3_opposite_s10;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s11 <= facing_s10;
-            peak_s11 <= peak_s10;
-            halvings_bits_2_bits_5_s11 <= halvings_s10[16];
-            halvings_bits_2_bits_4_s11 <= halvings_s10[17];
-            halvings_bits_2_bits_3_s11 <= halvings_s10[18];
-            halvings_bits_2_bits_2_s11 <= halvings_s10[19];
-            halvings_bits_2_bits_s11 <= halvings_s10[20];
-            exp2_inverse_s11 <= exp2_inverse_s10;
-            exp2_bend_offset2_sum_s11 <= exp2_bend_offset2_sum_s10;
-            exp2_bend_offset3_term_s11 <= exp2_bend_offset3_term_s10;
-        end
-    end
-
-    // Stage 11, part of: reflectance <- 2^-halvings
-    reg         facing_s12;                     // the surface faces the half vector
-    reg         peak_s12;                       // f is 1.0, less an ulp
-    reg         halvings_bits_2_bits_5_s12;
-    reg         halvings_bits_2_bits_4_s12;
-    reg         halvings_bits_2_bits_3_s12;
-    reg         halvings_bits_2_bits_2_s12;
-    reg         halvings_bits_2_bits_s12;
-    reg         exp2_mantissa_kept_bits_s12;
-    reg  [16:0] exp2_mantissa_kept_inside_s12;  // u0.17
-
-    // s-4.19
-    wire signed [15:0] exp2_bend_offset3_sum_s11 = exp2_bend_offset2_sum_s11 +
-            {{11{exp2_bend_offset3_term_s11[4]}}, exp2_bend_offset3_term_s11};
-
-    // u1.19: 2^-x of the fraction x
-    wire [19:0] exp2_mantissa_s11 = {2'd1, exp2_inverse_s11, 2'd0} -
-            {{4{exp2_bend_offset3_sum_s11[15]}}, exp2_bend_offset3_sum_s11};
+    wire signed [4:0] exp2_bend_offset3_term_s11 = exp2_bend_offset3_upper_s11 ?
+            exp2_bend_offset3_word_s11 : exp2_bend_offset3_opposite_s11;
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s12 <= facing_s11;
             peak_s12 <= peak_s11;
-            halvings_bits_2_bits_5_s12 <= halvings_bits_2_bits_5_s11;
-            halvings_bits_2_bits_4_s12 <= halvings_bits_2_bits_4_s11;
-            halvings_bits_2_bits_3_s12 <= halvings_bits_2_bits_3_s11;
-            halvings_bits_2_bits_2_s12 <= halvings_bits_2_bits_2_s11;
-            halvings_bits_2_bits_s12 <= halvings_bits_2_bits_s11;
-            exp2_mantissa_kept_bits_s12 <= exp2_mantissa_s11[19];
-            exp2_mantissa_kept_inside_s12 <= exp2_mantissa_s11[18:2];
+            halvings_bits_2_bits_5_s12 <= halvings_s11[16];
+            halvings_bits_2_bits_4_s12 <= halvings_s11[17];
+            halvings_bits_2_bits_3_s12 <= halvings_s11[18];
+            halvings_bits_2_bits_2_s12 <= halvings_s11[19];
+            halvings_bits_2_bits_s12 <= halvings_s11[20];
+            exp2_inverse_s12 <= exp2_inverse_s11;
+            exp2_bend_offset2_sum_s12 <= exp2_bend_offset2_sum_s11;
+            exp2_bend_offset3_term_s12 <= exp2_bend_offset3_term_s11;
         end
     end
 
     // Stage 12, part of: reflectance <- 2^-halvings
-    reg         facing_s13;               // the surface faces the half vector
-    reg         peak_s13;                 // f is 1.0, less an ulp
-    reg  [15:0] exp2_shift_by1_kept_s13;  // u0.16
-    reg         exp2_shift_by1_bits_s13;
+    reg         facing_s13;                     // the surface faces the half vector
+    reg         peak_s13;                       // f is 1.0, less an ulp
+    reg         halvings_bits_2_bits_5_s13;
+    reg         halvings_bits_2_bits_4_s13;
+    reg         halvings_bits_2_bits_3_s13;
+    reg         halvings_bits_2_bits_2_s13;
+    reg         halvings_bits_2_bits_s13;
+    reg         exp2_mantissa_kept_bits_s13;
+    reg  [16:0] exp2_mantissa_kept_inside_s13;  // u0.17
 
-    // u0.17
-    wire [16:0] exp2_kept_s12 = exp2_mantissa_kept_bits_s12 ? 17'h1ffff :
-            exp2_mantissa_kept_inside_s12;
+    // s-4.19
+    wire signed [15:0] exp2_bend_offset3_sum_s12 = exp2_bend_offset2_sum_s12 +
+            {{11{exp2_bend_offset3_term_s12[4]}}, exp2_bend_offset3_term_s12};
 
-    // u0.17
-    wire [16:0] exp2_shift_by16_s12 = halvings_bits_2_bits_s12 ? {16'd0, exp2_kept_s12[16]} :
-            exp2_kept_s12;
-
-    // u0.17
-    wire [16:0] exp2_shift_by8_s12 = halvings_bits_2_bits_2_s12 ? {8'd0, exp2_shift_by16_s12[16:8]}
-            : exp2_shift_by16_s12;
-
-    // u0.17
-    wire [16:0] exp2_shift_by4_s12 = halvings_bits_2_bits_3_s12 ? {4'd0, exp2_shift_by8_s12[16:4]} :
-            exp2_shift_by8_s12;
-
-    // u0.17
-    wire [16:0] exp2_shift_by2_s12 = halvings_bits_2_bits_4_s12 ? {2'd0, exp2_shift_by4_s12[16:2]} :
-            exp2_shift_by4_s12;
-
-    // u0.17
-    wire [16:0] exp2_shift_by1_s12 = halvings_bits_2_bits_5_s12 ? {1'b0, exp2_shift_by2_s12[16:1]} :
-            exp2_shift_by2_s12;
+    // u1.19: 2^-x of the fraction x
+    wire [19:0] exp2_mantissa_s12 = {2'd1, exp2_inverse_s12, 2'd0} -
+            {{4{exp2_bend_offset3_sum_s12[15]}}, exp2_bend_offset3_sum_s12};
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s13 <= facing_s12;
             peak_s13 <= peak_s12;
-            exp2_shift_by1_kept_s13 <= exp2_shift_by1_s12[16:1];
-            exp2_shift_by1_bits_s13 <= exp2_shift_by1_s12[0];
+            halvings_bits_2_bits_5_s13 <= halvings_bits_2_bits_5_s12;
+            halvings_bits_2_bits_4_s13 <= halvings_bits_2_bits_4_s12;
+            halvings_bits_2_bits_3_s13 <= halvings_bits_2_bits_3_s12;
+            halvings_bits_2_bits_2_s13 <= halvings_bits_2_bits_2_s12;
+            halvings_bits_2_bits_s13 <= halvings_bits_2_bits_s12;
+            exp2_mantissa_kept_bits_s13 <= exp2_mantissa_s12[19];
+            exp2_mantissa_kept_inside_s13 <= exp2_mantissa_s12[18:2];
         end
     end
 
     // Stage 13, part of: reflectance <- 2^-halvings
-    reg         facing_s14;  // the surface faces the half vector
-    reg  [15:0] lit_s14;     // u0.16
+    reg         facing_s14;               // the surface faces the half vector
+    reg         peak_s14;                 // f is 1.0, less an ulp
+    reg  [15:0] exp2_shift_by1_kept_s14;  // u0.16
+    reg         exp2_shift_by1_bits_s14;
 
-    // u1.16
-    wire [16:0] exp2_rounded_nearest_s13 = {1'b0, exp2_shift_by1_kept_s13} + {16'd0,
-            exp2_shift_by1_bits_s13};
+    // u0.17
+    wire [16:0] exp2_kept_s13 = exp2_mantissa_kept_bits_s13 ? 17'h1ffff :
+            exp2_mantissa_kept_inside_s13;
 
-    // u0.16
-    wire [15:0] exp2_rounded_s13 = exp2_rounded_nearest_s13[16] ? 16'hffff :
-            exp2_rounded_nearest_s13[15:0];
+    // u0.17
+    wire [16:0] exp2_shift_by16_s13 = halvings_bits_2_bits_s13 ? {16'd0, exp2_kept_s13[16]} :
+            exp2_kept_s13;
 
-    wire [15:0] lit_s13 = peak_s13 ? 16'hffff : exp2_rounded_s13;  // u0.16
+    // u0.17
+    wire [16:0] exp2_shift_by8_s13 = halvings_bits_2_bits_2_s13 ? {8'd0, exp2_shift_by16_s13[16:8]}
+            : exp2_shift_by16_s13;
+
+    // u0.17
+    wire [16:0] exp2_shift_by4_s13 = halvings_bits_2_bits_3_s13 ? {4'd0, exp2_shift_by8_s13[16:4]} :
+            exp2_shift_by8_s13;
+
+    // u0.17
+    wire [16:0] exp2_shift_by2_s13 = halvings_bits_2_bits_4_s13 ? {2'd0, exp2_shift_by4_s13[16:2]} :
+            exp2_shift_by4_s13;
+
+    // u0.17
+    wire [16:0] exp2_shift_by1_s13 = halvings_bits_2_bits_5_s13 ? {1'b0, exp2_shift_by2_s13[16:1]} :
+            exp2_shift_by2_s13;
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s14 <= facing_s13;
-            lit_s14 <= lit_s13;
+            peak_s14 <= peak_s13;
+            exp2_shift_by1_kept_s14 <= exp2_shift_by1_s13[16:1];
+            exp2_shift_by1_bits_s14 <= exp2_shift_by1_s13[0];
         end
     end
 
     // Stage 14, part of: reflectance <- 2^-halvings
-    reg  [7:0]  red_s15;          // intensity of the light times k_s
-    reg  [7:0]  green_s15;        // intensity of the light times k_s
-    reg  [7:0]  blue_s15;         // intensity of the light times k_s
-    reg  [15:0] reflectance_s15;  // u0.16: f
+    reg         facing_s15;  // the surface faces the half vector
+    reg  [15:0] lit_s15;     // u0.16
 
-    wire [15:0] reflectance_s14 = facing_s14 ? lit_s14 : 16'd0;  // u0.16: f
+    // u1.16
+    wire [16:0] exp2_rounded_nearest_s14 = {1'b0, exp2_shift_by1_kept_s14} + {16'd0,
+            exp2_shift_by1_bits_s14};
+
+    // u0.16
+    wire [15:0] exp2_rounded_s14 = exp2_rounded_nearest_s14[16] ? 16'hffff :
+            exp2_rounded_nearest_s14[15:0];
+
+    wire [15:0] lit_s14 = peak_s14 ? 16'hffff : exp2_rounded_s14;  // u0.16
 
     always @(posedge clk) begin
         if (advance) begin
-            reflectance_s15 <= reflectance_s14;
+            facing_s15 <= facing_s14;
+            lit_s15 <= lit_s14;
         end
     end
 
-    // Stage 15, part of: result
-    reg  [15:0] reflectance_s16;         // u0.16: f
-    reg  [7:0]  red_product_kept_s16;
-    reg         red_product_bits_s16;
-    reg  [7:0]  green_product_kept_s16;
-    reg         green_product_bits_s16;
-    reg  [7:0]  blue_product_kept_s16;
-    reg         blue_product_bits_s16;
+    // Stage 15, part of: reflectance <- 2^-halvings
+    reg  [7:0]  red_s16;          // intensity of the light times k_s
+    reg  [7:0]  green_s16;        // intensity of the light times k_s
+    reg  [7:0]  blue_s16;         // intensity of the light times k_s
+    reg  [15:0] reflectance_s16;  // u0.16: f
 
-    // u8.16: an output before it is rounded
-    wire [23:0] red_product_s15 = reflectance_s15 * red_s15;
-
-    // u8.16: an output before it is rounded
-    wire [23:0] green_product_s15 = reflectance_s15 * green_s15;
-
-    // u8.16: an output before it is rounded
-    wire [23:0] blue_product_s15 = reflectance_s15 * blue_s15;
+    wire [15:0] reflectance_s15 = facing_s15 ? lit_s15 : 16'd0;  // u0.16: f
 
     always @(posedge clk) begin
         if (advance) begin
             reflectance_s16 <= reflectance_s15;
-            red_product_kept_s16 <= red_product_s15[23:16];
-            red_product_bits_s16 <= red_product_s15[15];
-            green_product_kept_s16 <= green_product_s15[23:16];
-            green_product_bits_s16 <= green_product_s15[15];
-            blue_product_kept_s16 <= blue_product_s15[23:16];
-            blue_product_bits_s16 <= blue_product_s15[15];
         end
     end
 
     // Stage 16, part of: result
-    reg  [15:0] reflectance_s17;      // u0.16: f
-    reg  [7:0]  red_intensity_s17;
-    reg  [7:0]  green_intensity_s17;
-    reg  [7:0]  blue_intensity_s17;
+    reg  [15:0] reflectance_s17;         // u0.16: f
+    reg  [7:0]  red_product_kept_s17;
+    reg         red_product_bits_s17;
+    reg  [7:0]  green_product_kept_s17;
+    reg         green_product_bits_s17;
+    reg  [7:0]  blue_product_kept_s17;
+    reg         blue_product_bits_s17;
 
-    wire [7:0] red_intensity_s16 = red_product_kept_s16 + {7'd0, red_product_bits_s16};
-    wire [7:0] green_intensity_s16 = green_product_kept_s16 + {7'd0, green_product_bits_s16};
-    wire [7:0] blue_intensity_s16 = blue_product_kept_s16 + {7'd0, blue_product_bits_s16};
+    // u8.16: an output before it is rounded
+    wire [23:0] red_product_s16 = reflectance_s16 * red_s16;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] green_product_s16 = reflectance_s16 * green_s16;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] blue_product_s16 = reflectance_s16 * blue_s16;
 
     always @(posedge clk) begin
         if (advance) begin
             reflectance_s17 <= reflectance_s16;
-            red_intensity_s17 <= red_intensity_s16;
-            green_intensity_s17 <= green_intensity_s16;
-            blue_intensity_s17 <= blue_intensity_s16;
+            red_product_kept_s17 <= red_product_s16[23:16];
+            red_product_bits_s17 <= red_product_s16[15];
+            green_product_kept_s17 <= green_product_s16[23:16];
+            green_product_bits_s17 <= green_product_s16[15];
+            blue_product_kept_s17 <= blue_product_s16[23:16];
+            blue_product_bits_s17 <= blue_product_s16[15];
+        end
+    end
+
+    // Stage 17, part of: result
+    reg  [15:0] reflectance_s18;      // u0.16: f
+    reg  [7:0]  red_intensity_s18;
+    reg  [7:0]  green_intensity_s18;
+    reg  [7:0]  blue_intensity_s18;
+
+    wire [7:0] red_intensity_s17 = red_product_kept_s17 + {7'd0, red_product_bits_s17};
+    wire [7:0] green_intensity_s17 = green_product_kept_s17 + {7'd0, green_product_bits_s17};
+    wire [7:0] blue_intensity_s17 = blue_product_kept_s17 + {7'd0, blue_product_bits_s17};
+
+    always @(posedge clk) begin
+        if (advance) begin
+            reflectance_s18 <= reflectance_s17;
+            red_intensity_s18 <= red_intensity_s17;
+            green_intensity_s18 <= green_intensity_s17;
+            blue_intensity_s18 <= blue_intensity_s17;
         end
     end
 
     // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
     // points move on, a slot gives the value that it holds and takes a new one; its turn comes
     // again when all others have had theirs.
-    reg [2:0] slot_of_5;
-    initial slot_of_5 = 3'd0;
+    reg slot_of_2;
+    initial slot_of_2 = 1'b0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [9:0] delay_s0_s6 [0:4];
-    reg [3:0] slot_of_14;
-    initial slot_of_14 = 4'd0;
+    reg [13:0] delay_s1_s4 [0:1];
+    reg [2:0] slot_of_6;
+    initial slot_of_6 = 3'd0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [23:0] delay_s0_s15 [0:13];
+    reg [9:0] delay_s0_s7 [0:5];
+    reg [3:0] slot_of_15;
+    initial slot_of_15 = 4'd0;
+    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
+    reg [23:0] delay_s0_s16 [0:14];
 
     always @(posedge clk) begin
         if (advance) begin
-            slot_of_5 <= slot_of_5 == 3'd4 ? 3'd0 : slot_of_5 + 3'd1;
-            exponent_s6 <= delay_s0_s6[slot_of_5];
-            delay_s0_s6[slot_of_5] <= exponent;
+            slot_of_2 <= slot_of_2 == 1'b1 ? 1'b0 : slot_of_2 + 1'b1;
+            curve_rest2_s4 <= delay_s1_s4[slot_of_2];
+            delay_s1_s4[slot_of_2] <= curve_rest2_s1;
         end
     end
 
     always @(posedge clk) begin
         if (advance) begin
-            slot_of_14 <= slot_of_14 == 4'd13 ? 4'd0 : slot_of_14 + 4'd1;
-            {red_s15, green_s15, blue_s15} <= delay_s0_s15[slot_of_14];
-            delay_s0_s15[slot_of_14] <= {red, green, blue};
+            slot_of_6 <= slot_of_6 == 3'd5 ? 3'd0 : slot_of_6 + 3'd1;
+            exponent_s7 <= delay_s0_s7[slot_of_6];
+            delay_s0_s7[slot_of_6] <= exponent;
+        end
+    end
+
+    always @(posedge clk) begin
+        if (advance) begin
+            slot_of_15 <= slot_of_15 == 4'd14 ? 4'd0 : slot_of_15 + 4'd1;
+            {red_s16, green_s16, blue_s16} <= delay_s0_s16[slot_of_15];
+            delay_s0_s16[slot_of_15] <= {red, green, blue};
         end
     end
 
     // Results
 
-    assign f_out = reflectance_s17;  // u0.16: the reflectance, for a user's own multipliers
-    assign red_out = red_intensity_s17;  // intensity on the output
-    assign green_out = green_intensity_s17;  // intensity on the output
-    assign blue_out = blue_intensity_s17;  // intensity on the output
+    assign f_out = reflectance_s18;  // u0.16: the reflectance, for a user's own multipliers
+    assign red_out = red_intensity_s18;  // intensity on the output
+    assign green_out = green_intensity_s18;  // intensity on the output
+    assign blue_out = blue_intensity_s18;  // intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, product_s4[11:0], product_2_s8[6:0], exp2_mantissa_s11[1:0],
-            red_product_s15[14:0], green_product_s15[14:0], blue_product_s15[14:0]};
+    wire unused = &{1'b0, product_s5[11:0], product_2_s9[6:0], exp2_mantissa_s12[1:0],
+            red_product_s16[14:0], green_product_s16[14:0], blue_product_s16[14:0]};
 endmodule
 
 `default_nettype wire

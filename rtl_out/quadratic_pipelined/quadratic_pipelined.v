@@ -101,18 +101,22 @@ module quadratic_pipelined #(
     end
 
     // Stage 0, part of: operands; ROM(n) addressed
-    reg  [9:0]  exponent_s1;       // register 1: specular exponent n
     // register 2, u1.20: c, the cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s1;
+    reg  [17:0] coefficient_word_s1;  // u10.8
 
     wire cos_gamma_over_s0 = cos_gamma[20];
 
     // mux 2, u1.20: c, the cosine of the angle between normal and half vector
     wire [20:0] cos_gamma_reg_s0 = cos_gamma_over_s0 ? COS_GAMMA_MOST : cos_gamma;
 
+    // ROM coefficient: a(n), minimax, for an exponent n (the address)
+    reg [17:0] coefficient_rom [0:1023];
+    initial $readmemh(COEFFICIENT_FILE, coefficient_rom);
+    always @(posedge clk) if (advance) coefficient_word_s1 <= coefficient_rom[exponent];
+
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s1 <= exponent;
             cos_gamma_reg_s1 <= cos_gamma_reg_s0;
         end
     end
@@ -140,11 +144,6 @@ module quadratic_pipelined #(
     wire [21:0] multiplier5_inside_rows_upper_3_s1 = {2'd0, multiplier5_inside_row_2_s1[20:1]} +
             {1'b0, multiplier5_inside_row_4_s1};
 
-    // ROM coefficient: a(n), minimax, for an exponent n (the address)
-    reg [17:0] coefficient_rom [0:1023];
-    initial $readmemh(COEFFICIENT_FILE, coefficient_rom);
-    always @(posedge clk) if (advance) coefficient_word_s2 <= coefficient_rom[exponent_s1];
-
     always @(posedge clk) begin
         if (advance) begin
             cos_gamma_reg_s2 <= cos_gamma_reg_s1;
@@ -152,6 +151,7 @@ module quadratic_pipelined #(
             multiplier5_inside_rows_2_s2 <= {multiplier5_inside_rows_upper_3_s1[2:0],
                     multiplier5_inside_row_2_s1[0]};
             multiplier5_inside_carried_s2 <= multiplier5_inside_rows_upper_3_s1[21:3];
+            coefficient_word_s2 <= coefficient_word_s1;
         end
     end
 

@@ -4,7 +4,7 @@
 //
 // Source: UA 60139, claim 1, figures 1, 2 and 4
 //
-// Pipeline: a point every clock, its results 18 clocks later; stages for 138 MHz on ecp5. While
+// Pipeline: a point every clock, its results 19 clocks later; stages for 138 MHz on ecp5. While
 // out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
@@ -88,10 +88,11 @@ module rough_pipelined #(
     reg  valid_s15;  // stage 15 has a point
     reg  valid_s16;  // stage 16 has a point
     reg  valid_s17;  // stage 17 has a point
-    reg  valid_s18;  // the results are on the outputs
+    reg  valid_s18;  // stage 18 has a point
+    reg  valid_s19;  // the results are on the outputs
 
-    assign out_valid = valid_s18;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s18;  // every point moves on by a stage
+    assign out_valid = valid_s19;  // the results are on the outputs
+    wire advance = out_ready | ~valid_s19;  // every point moves on by a stage
     assign in_ready = advance;  // a point that is offered is taken in this clock
 
     always @(posedge clk) begin
@@ -114,6 +115,7 @@ module rough_pipelined #(
             valid_s16 <= 1'b0;
             valid_s17 <= 1'b0;
             valid_s18 <= 1'b0;
+            valid_s19 <= 1'b0;
         end else if (advance) begin
             valid_s1 <= in_valid;
             valid_s2 <= valid_s1;
@@ -133,6 +135,7 @@ module rough_pipelined #(
             valid_s16 <= valid_s15;
             valid_s17 <= valid_s16;
             valid_s18 <= valid_s17;
+            valid_s19 <= valid_s18;
         end
     end
 
@@ -305,7 +308,6 @@ module rough_pipelined #(
     // 11 <- cos gamma * cos dgamma
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s3;
-    reg  [13:0] sine_rest4_s3;                               // u0.14
     reg         facing_s3;                                   // the surface faces the half vector
     reg  [1:0]  multiplier10_inside_inside_upper_rows_2_s3;  // register 10
     reg  [35:0] multiplier10_inside_inside_upper_sum_s3;     // register 10
@@ -313,7 +315,6 @@ module rough_pipelined #(
     reg  [19:0] multiplier10_inside_inside_carried_s3;       // register 10
     reg  [19:0] multiplier10_inside_at_highest_s3;           // register 10
     reg  [20:0] multiplier10_at_highest_s3;                  // register 10
-    reg  [13:0] sine_rest4_2_s3;                             // u0.14
     reg  [34:0] sine_word_s3;
     reg  [34:0] sine_word_2_s3;
 
@@ -441,7 +442,6 @@ module rough_pipelined #(
     always @(posedge clk) begin
         if (advance) begin
             dgamma_negative_s3 <= dgamma_negative_s2;
-            sine_rest4_s3 <= sine_rest4_s2;
             facing_s3 <= facing_s2;
             multiplier10_inside_inside_upper_rows_2_s3 <=
                     multiplier10_inside_inside_upper_rows_2_s2;
@@ -452,7 +452,6 @@ module rough_pipelined #(
                     multiplier10_inside_inside_rows_upper_3_s2[20:1];
             multiplier10_inside_at_highest_s3 <= multiplier10_inside_at_highest_s2;
             multiplier10_at_highest_s3 <= multiplier10_at_highest_s2;
-            sine_rest4_2_s3 <= sine_rest4_2_s2;
         end
     end
 
@@ -460,12 +459,8 @@ module rough_pipelined #(
     // 11 <- cos gamma * cos dgamma
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s4;
-    reg  [13:0] sine_rest4_s4;       // u0.14
     reg         facing_s4;           // the surface faces the half vector
-    reg  [21:0] sine_base_s4;        // u0.22
     reg  [12:0] sine_slope_s4;       // u-5.18
-    reg  [13:0] sine_rest4_2_s4;     // u0.14
-    reg  [21:0] sine_base_2_s4;      // u0.22
     reg  [12:0] sine_slope_2_s4;     // u-5.18
 
     wire [21:0] sine_base_s3 = sine_word_s3[34:13];  // u0.22
@@ -495,37 +490,27 @@ module rough_pipelined #(
     always @(posedge clk) begin
         if (advance) begin
             dgamma_negative_s4 <= dgamma_negative_s3;
-            sine_rest4_s4 <= sine_rest4_s3;
             facing_s4 <= facing_s3;
-            sine_base_s4 <= sine_base_s3;
             sine_slope_s4 <= sine_slope_s3;
-            sine_rest4_2_s4 <= sine_rest4_2_s3;
-            sine_base_2_s4 <= sine_base_2_s3;
             sine_slope_2_s4 <= sine_slope_2_s3;
         end
     end
 
-    // Stage 4, part of: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin
-    // gamma
+    // Stage 4: values on their way
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s5;
-    reg         facing_s5;            // the surface faces the half vector
-    reg  [21:0] sine_base_s5;         // u0.22
-    reg  [16:0] sine_rise_kept_s5;    // u-5.22
-    reg  [21:0] sine_base_2_s5;       // u0.22
-    reg  [16:0] sine_rise_kept_2_s5;  // u-5.22
-
-    wire [26:0] sine_rise_s4 = sine_slope_s4 * sine_rest4_s4;  // u-5.32
-    wire [26:0] sine_rise_2_s4 = sine_slope_2_s4 * sine_rest4_2_s4;  // u-5.32
+    reg  [13:0] sine_rest4_s5;       // u0.14
+    reg         facing_s5;           // the surface faces the half vector
+    reg  [12:0] sine_slope_s5;       // u-5.18
+    reg  [13:0] sine_rest4_2_s5;     // u0.14
+    reg  [12:0] sine_slope_2_s5;     // u-5.18
 
     always @(posedge clk) begin
         if (advance) begin
             dgamma_negative_s5 <= dgamma_negative_s4;
             facing_s5 <= facing_s4;
-            sine_base_s5 <= sine_base_s4;
-            sine_rise_kept_s5 <= sine_rise_s4[26:10];
-            sine_base_2_s5 <= sine_base_2_s4;
-            sine_rise_kept_2_s5 <= sine_rise_2_s4[26:10];
+            sine_slope_s5 <= sine_slope_s4;
+            sine_slope_2_s5 <= sine_slope_2_s4;
         end
     end
 
@@ -533,403 +518,443 @@ module rough_pipelined #(
     // gamma
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s6;
-    reg         facing_s6;                   // the surface faces the half vector
-    reg  [21:0] reg19_sin_gamma_s6;          // register 19, u0.22: sin gamma
-    reg  [17:0] multiplier10_upper_bits_s6;  // register 10
-    reg  [3:0]  multiplier10_lower_bits_s6;  // register 10
+    reg         facing_s6;            // the surface faces the half vector
+    reg  [21:0] sine_base_s6;         // u0.22
+    reg  [16:0] sine_rise_kept_s6;    // u-5.22
+    reg  [21:0] sine_base_2_s6;       // u0.22
+    reg  [16:0] sine_rise_kept_2_s6;  // u-5.22
 
-    wire [22:0] sine_sum_s5 = {1'b0, sine_base_s5} + {6'd0, sine_rise_kept_s5};  // u1.22
-
-    // mux 19, u0.22: sin gamma
-    wire [21:0] reg19_sin_gamma_s5 = sine_sum_s5[22] ? 22'h3fffff : sine_sum_s5[21:0];
-
-    wire [22:0] sine_sum_2_s5 = {1'b0, sine_base_2_s5} + {6'd0, sine_rise_kept_2_s5};  // u1.22
-
-    // u0.22: sine of the addressed cosine
-    wire [21:0] sine_value_s5 = sine_sum_2_s5[22] ? 22'h3fffff : sine_sum_2_s5[21:0];
+    wire [26:0] sine_rise_s5 = sine_slope_s5 * sine_rest4_s5;  // u-5.32
+    wire [26:0] sine_rise_2_s5 = sine_slope_2_s5 * sine_rest4_2_s5;  // u-5.32
 
     always @(posedge clk) begin
         if (advance) begin
             dgamma_negative_s6 <= dgamma_negative_s5;
             facing_s6 <= facing_s5;
-            reg19_sin_gamma_s6 <= reg19_sin_gamma_s5;
-            multiplier10_upper_bits_s6 <= sine_value_s5[21:4];
-            multiplier10_lower_bits_s6 <= sine_value_s5[3:0];
+            sine_rise_kept_s6 <= sine_rise_s5[26:10];
+            sine_rise_kept_2_s6 <= sine_rise_2_s5[26:10];
         end
     end
 
-    // Stage 6, part of: 12 <- sin gamma * sin dgamma
+    // Stage 6, part of: 19 <- sin gamma; 11 <- cos gamma * cos dgamma; operands sin dgamma, sin
+    // gamma
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s7;
-    reg         facing_s7;                           // the surface faces the half vector
-    reg  [35:0] multiplier10_upper_upper_s7;         // register 10
-    reg  [3:0]  multiplier10_upper_low_bits_s7;      // register 10
-    reg  [17:0] multiplier10_upper_carried_s7;       // register 10
-    reg  [21:0] multiplier10_lower_upper_s7;         // register 10
-    reg  [4:0]  multiplier10_lower_rows_upper_7_s7;  // register 10
-    reg  [1:0]  multiplier10_lower_rows_3_s7;        // register 10
-    reg  [3:0]  multiplier10_lower_row_10_s7;        // register 10
+    reg         facing_s7;                   // the surface faces the half vector
+    reg  [21:0] reg19_sin_gamma_s7;          // register 19, u0.22: sin gamma
+    reg  [17:0] multiplier10_upper_bits_s7;  // register 10
+    reg  [3:0]  multiplier10_lower_bits_s7;  // register 10
 
-    // multiplier 10
-    wire [35:0] multiplier10_upper_upper_s6 = reg19_sin_gamma_s6[21:4] * multiplier10_upper_bits_s6;
+    wire [22:0] sine_sum_s6 = {1'b0, sine_base_s6} + {6'd0, sine_rise_kept_s6};  // u1.22
 
-    // multiplier 10
-    wire [21:0] multiplier10_upper_lower_s6 = reg19_sin_gamma_s6[3:0] * multiplier10_upper_bits_s6;
+    // mux 19, u0.22: sin gamma
+    wire [21:0] reg19_sin_gamma_s6 = sine_sum_s6[22] ? 22'h3fffff : sine_sum_s6[21:0];
 
-    // multiplier 10
-    wire [21:0] multiplier10_lower_upper_s6 = reg19_sin_gamma_s6[21:4] * multiplier10_lower_bits_s6;
+    wire [22:0] sine_sum_2_s6 = {1'b0, sine_base_2_s6} + {6'd0, sine_rise_kept_2_s6};  // u1.22
 
-    // mux 10
-    wire [3:0] multiplier10_lower_row_2_s6 = reg19_sin_gamma_s6[0] ? multiplier10_lower_bits_s6 :
-            4'd0;
-
-    // mux 10
-    wire [3:0] multiplier10_lower_row_4_s6 = reg19_sin_gamma_s6[1] ? multiplier10_lower_bits_s6 :
-            4'd0;
-
-    // adder 10
-    wire [4:0] multiplier10_lower_rows_upper_3_s6 = {2'd0, multiplier10_lower_row_2_s6[3:1]} +
-            {1'b0, multiplier10_lower_row_4_s6};
-
-    // block 10
-    wire [5:0] multiplier10_lower_rows_s6 = {multiplier10_lower_rows_upper_3_s6,
-            multiplier10_lower_row_2_s6[0]};
-
-    // mux 10
-    wire [3:0] multiplier10_lower_row_7_s6 = reg19_sin_gamma_s6[2] ? multiplier10_lower_bits_s6 :
-            4'd0;
+    // u0.22: sine of the addressed cosine
+    wire [21:0] sine_value_s6 = sine_sum_2_s6[22] ? 22'h3fffff : sine_sum_2_s6[21:0];
 
     always @(posedge clk) begin
         if (advance) begin
             dgamma_negative_s7 <= dgamma_negative_s6;
             facing_s7 <= facing_s6;
-            multiplier10_upper_upper_s7 <= multiplier10_upper_upper_s6;
-            multiplier10_upper_low_bits_s7 <= multiplier10_upper_lower_s6[3:0];
-            multiplier10_upper_carried_s7 <= multiplier10_upper_lower_s6[21:4];
-            multiplier10_lower_upper_s7 <= multiplier10_lower_upper_s6;
-            multiplier10_lower_rows_upper_7_s7 <= {1'b0, multiplier10_lower_rows_s6[5:2]} + {1'b0,
-                    multiplier10_lower_row_7_s6};
-            multiplier10_lower_rows_3_s7 <= {multiplier10_lower_rows_upper_3_s6[0],
-                    multiplier10_lower_row_2_s6[0]};
-            multiplier10_lower_row_10_s7 <= reg19_sin_gamma_s6[3] ? multiplier10_lower_bits_s6 :
-                    4'd0;
+            reg19_sin_gamma_s7 <= reg19_sin_gamma_s6;
+            multiplier10_upper_bits_s7 <= sine_value_s6[21:4];
+            multiplier10_lower_bits_s7 <= sine_value_s6[3:0];
         end
     end
 
     // Stage 7, part of: 12 <- sin gamma * sin dgamma
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s8;
-    reg         facing_s8;                     // the surface faces the half vector
-    reg  [39:0] multiplier10_upper_s8;         // register 10
-    reg  [3:0]  multiplier10_lower_rows_8_s8;  // register 10
-    reg  [21:0] multiplier10_lower_sum_s8;     // register 10
+    reg         facing_s8;                           // the surface faces the half vector
+    reg  [35:0] multiplier10_upper_upper_s8;         // register 10
+    reg  [3:0]  multiplier10_upper_low_bits_s8;      // register 10
+    reg  [17:0] multiplier10_upper_carried_s8;       // register 10
+    reg  [21:0] multiplier10_lower_upper_s8;         // register 10
+    reg  [4:0]  multiplier10_lower_rows_upper_7_s8;  // register 10
+    reg  [1:0]  multiplier10_lower_rows_3_s8;        // register 10
+    reg  [3:0]  multiplier10_lower_row_10_s8;        // register 10
+
+    // multiplier 10
+    wire [35:0] multiplier10_upper_upper_s7 = reg19_sin_gamma_s7[21:4] * multiplier10_upper_bits_s7;
+
+    // multiplier 10
+    wire [21:0] multiplier10_upper_lower_s7 = reg19_sin_gamma_s7[3:0] * multiplier10_upper_bits_s7;
+
+    // multiplier 10
+    wire [21:0] multiplier10_lower_upper_s7 = reg19_sin_gamma_s7[21:4] * multiplier10_lower_bits_s7;
+
+    // mux 10
+    wire [3:0] multiplier10_lower_row_2_s7 = reg19_sin_gamma_s7[0] ? multiplier10_lower_bits_s7 :
+            4'd0;
+
+    // mux 10
+    wire [3:0] multiplier10_lower_row_4_s7 = reg19_sin_gamma_s7[1] ? multiplier10_lower_bits_s7 :
+            4'd0;
 
     // adder 10
-    wire [35:0] multiplier10_upper_sum_s7 = multiplier10_upper_upper_s7 + {18'd0,
-            multiplier10_upper_carried_s7};
+    wire [4:0] multiplier10_lower_rows_upper_3_s7 = {2'd0, multiplier10_lower_row_2_s7[3:1]} +
+            {1'b0, multiplier10_lower_row_4_s7};
 
     // block 10
-    wire [39:0] multiplier10_upper_s7 = {multiplier10_upper_sum_s7, multiplier10_upper_low_bits_s7};
+    wire [5:0] multiplier10_lower_rows_s7 = {multiplier10_lower_rows_upper_3_s7,
+            multiplier10_lower_row_2_s7[0]};
 
-    // block 10
-    wire [6:0] multiplier10_lower_rows_4_s7 = {multiplier10_lower_rows_upper_7_s7,
-            multiplier10_lower_rows_3_s7};
-
-    // adder 10
-    wire [4:0] multiplier10_lower_rows_upper_10_s7 = {1'b0, multiplier10_lower_rows_4_s7[6:3]} +
-            {1'b0, multiplier10_lower_row_10_s7};
-
-    // adder 10
-    wire [21:0] multiplier10_lower_sum_s7 = multiplier10_lower_upper_s7 + {18'd0,
-            multiplier10_lower_rows_upper_10_s7[4:1]};
+    // mux 10
+    wire [3:0] multiplier10_lower_row_7_s7 = reg19_sin_gamma_s7[2] ? multiplier10_lower_bits_s7 :
+            4'd0;
 
     always @(posedge clk) begin
         if (advance) begin
             dgamma_negative_s8 <= dgamma_negative_s7;
             facing_s8 <= facing_s7;
-            multiplier10_upper_s8 <= multiplier10_upper_s7;
-            multiplier10_lower_rows_8_s8 <= {multiplier10_lower_rows_upper_10_s7[0],
-                    multiplier10_lower_rows_upper_7_s7[0], multiplier10_lower_rows_3_s7};
-            multiplier10_lower_sum_s8 <= multiplier10_lower_sum_s7;
+            multiplier10_upper_upper_s8 <= multiplier10_upper_upper_s7;
+            multiplier10_upper_low_bits_s8 <= multiplier10_upper_lower_s7[3:0];
+            multiplier10_upper_carried_s8 <= multiplier10_upper_lower_s7[21:4];
+            multiplier10_lower_upper_s8 <= multiplier10_lower_upper_s7;
+            multiplier10_lower_rows_upper_7_s8 <= {1'b0, multiplier10_lower_rows_s7[5:2]} + {1'b0,
+                    multiplier10_lower_row_7_s7};
+            multiplier10_lower_rows_3_s8 <= {multiplier10_lower_rows_upper_3_s7[0],
+                    multiplier10_lower_row_2_s7[0]};
+            multiplier10_lower_row_10_s8 <= reg19_sin_gamma_s7[3] ? multiplier10_lower_bits_s7 :
+                    4'd0;
         end
     end
 
     // Stage 8, part of: 12 <- sin gamma * sin dgamma
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s9;
-    reg         facing_s9;           // the surface faces the half vector
-    reg  [22:0] reg11_cos_cos_s9;    // register 11, u1.22: cos gamma * cos dgamma
-    reg  [21:0] reg12_sin_sin_s9;    // register 12, u0.22: sin gamma * sin dgamma
+    reg         facing_s9;                     // the surface faces the half vector
+    reg  [39:0] multiplier10_upper_s9;         // register 10
+    reg  [3:0]  multiplier10_lower_rows_8_s9;  // register 10
+    reg  [21:0] multiplier10_lower_sum_s9;     // register 10
 
     // adder 10
-    wire [39:0] multiplier10_sum_s8 = multiplier10_upper_s8 + {18'd0, multiplier10_lower_sum_s8};
+    wire [35:0] multiplier10_upper_sum_s8 = multiplier10_upper_upper_s8 + {18'd0,
+            multiplier10_upper_carried_s8};
 
-    // block 10: the shared product; its point depends on the operands
-    wire [43:0] multiplier10_4_s8 = {multiplier10_sum_s8, multiplier10_lower_rows_8_s8};
+    // block 10
+    wire [39:0] multiplier10_upper_s8 = {multiplier10_upper_sum_s8, multiplier10_upper_low_bits_s8};
 
-    // block 12, u0.22: sin gamma * sin dgamma
-    wire [21:0] reg12_sin_sin_s8 = multiplier10_4_s8[43:22];
+    // block 10
+    wire [6:0] multiplier10_lower_rows_4_s8 = {multiplier10_lower_rows_upper_7_s8,
+            multiplier10_lower_rows_3_s8};
+
+    // adder 10
+    wire [4:0] multiplier10_lower_rows_upper_10_s8 = {1'b0, multiplier10_lower_rows_4_s8[6:3]} +
+            {1'b0, multiplier10_lower_row_10_s8};
+
+    // adder 10
+    wire [21:0] multiplier10_lower_sum_s8 = multiplier10_lower_upper_s8 + {18'd0,
+            multiplier10_lower_rows_upper_10_s8[4:1]};
 
     always @(posedge clk) begin
         if (advance) begin
             dgamma_negative_s9 <= dgamma_negative_s8;
             facing_s9 <= facing_s8;
-            reg12_sin_sin_s9 <= reg12_sin_sin_s8;
+            multiplier10_upper_s9 <= multiplier10_upper_s8;
+            multiplier10_lower_rows_8_s9 <= {multiplier10_lower_rows_upper_10_s8[0],
+                    multiplier10_lower_rows_upper_7_s8[0], multiplier10_lower_rows_3_s8};
+            multiplier10_lower_sum_s9 <= multiplier10_lower_sum_s8;
         end
     end
 
-    // Stage 9, part of: operands adder 15, n/2
-    reg  [9:0]  exponent_s10;                   // register 3: specular exponent n
-    reg         facing_s10;                     // the surface faces the half vector
-    reg  [17:0] multiplier10_upper_bits_2_s10;  // register 10
-    reg  [4:0]  multiplier10_lower_bits_2_s10;  // register 10
-    reg         mux8_held_bits_2_s10;
+    // Stage 9, part of: 12 <- sin gamma * sin dgamma
+    // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
+    reg         dgamma_negative_s10;
+    reg         facing_s10;           // the surface faces the half vector
+    reg  [22:0] reg11_cos_cos_s10;    // register 11, u1.22: cos gamma * cos dgamma
+    reg  [21:0] reg12_sin_sin_s10;    // register 12, u0.22: sin gamma * sin dgamma
 
-    wire [22:0] raised12_s9 = {1'b1, reg12_sin_sin_s9};  // u1.22: register 12 + 1.0, by wiring
+    // adder 10
+    wire [39:0] multiplier10_sum_s9 = multiplier10_upper_s9 + {18'd0, multiplier10_lower_sum_s9};
 
-    // s1.22: -(register 12) - 1.0, less an ulp
-    wire signed [23:0] inverse12_s9 = ~{1'b0, raised12_s9};
+    // block 10: the shared product; its point depends on the operands
+    wire [43:0] multiplier10_4_s9 = {multiplier10_sum_s9, multiplier10_lower_rows_8_s9};
 
-    wire signed [22:0] adder31_s9 = {1'b1, reg12_sin_sin_s9};  // block 31, s0.22: register 12 - 1.0
-
-    // mux 14, s1.22: what adder 15 adds to register 11
-    wire signed [23:0] mux14_s9 = dgamma_negative_s9 ? {adder31_s9[22], adder31_s9} : inverse12_s9;
-
-    wire subtracts_s9 = ~dgamma_negative_s9;  // carry-in of adder 15
-
-    // adder 15, s1.22: cos(gamma +- dgamma) - 1.0
-    wire signed [23:0] adder15_s9 = {1'b0, reg11_cos_cos_s9} + mux14_s9 + {23'd0, subtracts_s9};
+    // block 12, u0.22: sin gamma * sin dgamma
+    wire [21:0] reg12_sin_sin_s9 = multiplier10_4_s9[43:22];
 
     always @(posedge clk) begin
         if (advance) begin
+            dgamma_negative_s10 <= dgamma_negative_s9;
             facing_s10 <= facing_s9;
-            multiplier10_upper_bits_2_s10 <= adder15_s9[22:5];
-            multiplier10_lower_bits_2_s10 <= adder15_s9[4:0];
-            mux8_held_bits_2_s10 <= adder15_s9[23];
+            reg12_sin_sin_s10 <= reg12_sin_sin_s9;
         end
     end
 
-    // Stage 10, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
-    reg         facing_s11;                // the surface faces the half vector
-    reg  [27:0] multiplier10_upper_2_s11;  // register 10
-    reg  [14:0] multiplier10_lower_s11;    // register 10
-    // what the product of a negative operand is too large by, above its sign
-    reg  [9:0]  multiplier10_excess_s11;
+    // Stage 10, part of: operands adder 15, n/2
+    reg  [9:0]  exponent_s11;                   // register 3: specular exponent n
+    reg         facing_s11;                     // the surface faces the half vector
+    reg  [17:0] multiplier10_upper_bits_2_s11;  // register 10
+    reg  [4:0]  multiplier10_lower_bits_2_s11;  // register 10
+    reg         mux8_held_bits_2_s11;
 
-    // multiplier 10
-    wire [27:0] multiplier10_upper_2_s10 = multiplier10_upper_bits_2_s10 * exponent_s10;
+    wire [22:0] raised12_s10 = {1'b1, reg12_sin_sin_s10};  // u1.22: register 12 + 1.0, by wiring
 
-    // multiplier 10
-    wire [14:0] multiplier10_lower_s10 = multiplier10_lower_bits_2_s10 * exponent_s10;
+    // s1.22: -(register 12) - 1.0, less an ulp
+    wire signed [23:0] inverse12_s10 = ~{1'b0, raised12_s10};
 
-    // what the product of a negative operand is too large by, above its sign
-    wire [9:0] multiplier10_excess_s10 = mux8_held_bits_2_s10 ? exponent_s10 : 10'd0;
+    // block 31, s0.22: register 12 - 1.0
+    wire signed [22:0] adder31_s10 = {1'b1, reg12_sin_sin_s10};
+
+    // mux 14, s1.22: what adder 15 adds to register 11
+    wire signed [23:0] mux14_s10 = dgamma_negative_s10 ? {adder31_s10[22], adder31_s10} :
+            inverse12_s10;
+
+    wire subtracts_s10 = ~dgamma_negative_s10;  // carry-in of adder 15
+
+    // adder 15, s1.22: cos(gamma +- dgamma) - 1.0
+    wire signed [23:0] adder15_s10 = {1'b0, reg11_cos_cos_s10} + mux14_s10 + {23'd0, subtracts_s10};
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s11 <= facing_s10;
-            multiplier10_upper_2_s11 <= multiplier10_upper_2_s10;
-            multiplier10_lower_s11 <= multiplier10_lower_s10;
-            multiplier10_excess_s11 <= multiplier10_excess_s10;
+            multiplier10_upper_bits_2_s11 <= adder15_s10[22:5];
+            multiplier10_lower_bits_2_s11 <= adder15_s10[4:0];
+            mux8_held_bits_2_s11 <= adder15_s10[23];
         end
     end
 
     // Stage 11, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
     reg         facing_s12;                // the surface faces the half vector
-    reg  [10:0] multiplier10_upper_3_s12;
-    reg  [15:0] multiplier10_view_3_s12;
+    reg  [27:0] multiplier10_upper_2_s12;  // register 10
+    reg  [14:0] multiplier10_lower_s12;    // register 10
+    // what the product of a negative operand is too large by, above its sign
+    reg  [9:0]  multiplier10_excess_s12;
 
-    // adder 10
-    wire [27:0] multiplier10_sum_2_s11 = multiplier10_upper_2_s11 + {18'd0,
-            multiplier10_lower_s11[14:5]};
+    // multiplier 10
+    wire [27:0] multiplier10_upper_2_s11 = multiplier10_upper_bits_2_s11 * exponent_s11;
 
-    // block 10: the shared product; its point depends on the operands
-    wire [32:0] multiplier10_5_s11 = {multiplier10_sum_2_s11, multiplier10_lower_s11[4:0]};
+    // multiplier 10
+    wire [14:0] multiplier10_lower_s11 = multiplier10_lower_bits_2_s11 * exponent_s11;
+
+    // what the product of a negative operand is too large by, above its sign
+    wire [9:0] multiplier10_excess_s11 = mux8_held_bits_2_s11 ? exponent_s11 : 10'd0;
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s12 <= facing_s11;
-            multiplier10_upper_3_s12 <= {1'b0, multiplier10_5_s11[32:23]} - {1'b0,
-                    multiplier10_excess_s11};
-            multiplier10_view_3_s12 <= multiplier10_5_s11[22:7];
+            multiplier10_upper_2_s12 <= multiplier10_upper_2_s11;
+            multiplier10_lower_s12 <= multiplier10_lower_s11;
+            multiplier10_excess_s12 <= multiplier10_excess_s11;
         end
     end
 
     // Stage 12, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
-    reg                facing_s13;          // the surface faces the half vector
-    reg                result_under_s13;
-    reg  signed [16:0] result_limited_s13;  // s0.16
+    reg         facing_s13;                // the surface faces the half vector
+    reg  [10:0] multiplier10_upper_3_s13;
+    reg  [15:0] multiplier10_view_3_s13;
 
-    // s0.16
-    wire signed [16:0] result_limited_s12 = (~multiplier10_upper_3_s12[10] &
-            (|multiplier10_upper_3_s12[9:0])) ? RESULT_MOST : {multiplier10_upper_3_s12[0],
-            multiplier10_view_3_s12};
+    // adder 10
+    wire [27:0] multiplier10_sum_2_s12 = multiplier10_upper_2_s12 + {18'd0,
+            multiplier10_lower_s12[14:5]};
+
+    // block 10: the shared product; its point depends on the operands
+    wire [32:0] multiplier10_5_s12 = {multiplier10_sum_2_s12, multiplier10_lower_s12[4:0]};
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s13 <= facing_s12;
-            result_under_s13 <= multiplier10_upper_3_s12[10] & ~(&multiplier10_upper_3_s12[9:0]);
-            result_limited_s13 <= result_limited_s12;
+            multiplier10_upper_3_s13 <= {1'b0, multiplier10_5_s12[32:23]} - {1'b0,
+                    multiplier10_excess_s12};
+            multiplier10_view_3_s13 <= multiplier10_5_s12[22:7];
         end
     end
 
-    // Stage 13, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1); operands adder 16, adder 16
-    reg         facing_s14;   // the surface faces the half vector
-    reg  [16:0] adder16_s14;  // register 16, u1.16: register 13 + 1.0
+    // Stage 13, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
+    reg                facing_s14;          // the surface faces the half vector
+    reg                result_under_s14;
+    reg  signed [16:0] result_limited_s14;  // s0.16
 
-    wire signed [16:0] result_s13 = result_under_s13 ? MINUS_ONE : result_limited_s13;  // s0.16
-
-    // mux 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
-    wire signed [16:0] reg13_result_s13 = facing_s13 ? result_s13 : MINUS_ONE;
-
-    wire adder16_upper_2_s13 = ~reg13_result_s13[16];  // block 16: register 13 + 1.0
-
-    // block 16, u1.16: register 13 + 1.0
-    wire [16:0] adder16_s13 = {adder16_upper_2_s13, reg13_result_s13[15:0]};
+    // s0.16
+    wire signed [16:0] result_limited_s13 = (~multiplier10_upper_3_s13[10] &
+            (|multiplier10_upper_3_s13[9:0])) ? RESULT_MOST : {multiplier10_upper_3_s13[0],
+            multiplier10_view_3_s13};
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s14 <= facing_s13;
-            adder16_s14 <= adder16_s13;
+            result_under_s14 <= multiplier10_upper_3_s13[10] & ~(&multiplier10_upper_3_s13[9:0]);
+            result_limited_s14 <= result_limited_s13;
         end
     end
 
-    // Stage 14, part of: 13 <- (... + 1)^2
-    reg                facing_s15;                        // the surface faces the half vector
-    reg         [9:0]  line_or_square_kept_bits_2_2_s15;
-    reg  signed [16:0] line_or_square_kept_inside_s15;    // s0.16
+    // Stage 14, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1); operands adder 16, adder 16
+    reg         facing_s15;   // the surface faces the half vector
+    reg  [16:0] adder16_s15;  // register 16, u1.16: register 13 + 1.0
 
-    // multiplier 10: the shared product; its point depends on the operands
-    wire [33:0] multiplier10_6_s14 = adder16_s14 * adder16_s14;
+    wire signed [16:0] result_s14 = result_under_s14 ? MINUS_ONE : result_limited_s14;  // s0.16
+
+    // mux 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
+    wire signed [16:0] reg13_result_s14 = facing_s14 ? result_s14 : MINUS_ONE;
+
+    wire adder16_upper_2_s14 = ~reg13_result_s14[16];  // block 16: register 13 + 1.0
+
+    // block 16, u1.16: register 13 + 1.0
+    wire [16:0] adder16_s14 = {adder16_upper_2_s14, reg13_result_s14[15:0]};
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s15 <= facing_s14;
-            line_or_square_kept_bits_2_2_s15 <= {8'd0, multiplier10_6_s14[33:32]};
-            line_or_square_kept_inside_s15 <= multiplier10_6_s14[32:16];
+            adder16_s15 <= adder16_s14;
         end
     end
 
     // Stage 15, part of: 13 <- (... + 1)^2
-    reg  [7:0]  red_s16;    // register 5: intensity of the light times k_s
-    reg  [7:0]  green_s16;  // register 6: intensity of the light times k_s
-    reg  [7:0]  blue_s16;   // register 7: intensity of the light times k_s
-    reg  [15:0] f_s16;      // u0.16: the reflectance, once register 13 holds the square
+    reg                facing_s16;                        // the surface faces the half vector
+    reg         [9:0]  line_or_square_kept_bits_2_2_s16;
+    reg  signed [16:0] line_or_square_kept_inside_s16;    // s0.16
 
-    // s0.16
-    wire signed [16:0] result_2_s15 = (|line_or_square_kept_bits_2_2_s15) ? RESULT_MOST :
-            line_or_square_kept_inside_s15;
-
-    // mux 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
-    wire signed [16:0] reg13_result_2_s15 = facing_s15 ? result_2_s15 : MINUS_ONE;
-
-    // u0.16: the reflectance, once register 13 holds the square
-    wire [15:0] f_s15 = reg13_result_2_s15[15:0];
+    // multiplier 10: the shared product; its point depends on the operands
+    wire [33:0] multiplier10_6_s15 = adder16_s15 * adder16_s15;
 
     always @(posedge clk) begin
         if (advance) begin
-            f_s16 <= f_s15;
+            facing_s16 <= facing_s15;
+            line_or_square_kept_bits_2_2_s16 <= {8'd0, multiplier10_6_s15[33:32]};
+            line_or_square_kept_inside_s16 <= multiplier10_6_s15[32:16];
         end
     end
 
-    // Stage 16, part of: valid: intensities on the outputs
-    reg  [7:0] red_product_kept_s17;
-    reg        red_product_bits_s17;
-    reg  [7:0] green_product_kept_s17;
-    reg        green_product_bits_s17;
-    reg  [7:0] blue_product_kept_s17;
-    reg        blue_product_bits_s17;
+    // Stage 16, part of: 13 <- (... + 1)^2
+    reg  [7:0]  red_s17;    // register 5: intensity of the light times k_s
+    reg  [7:0]  green_s17;  // register 6: intensity of the light times k_s
+    reg  [7:0]  blue_s17;   // register 7: intensity of the light times k_s
+    reg  [15:0] f_s17;      // u0.16: the reflectance, once register 13 holds the square
 
-    // multiplier 20, u8.16: an output before it is rounded
-    wire [23:0] red_product_s16 = f_s16 * red_s16;
+    // s0.16
+    wire signed [16:0] result_2_s16 = (|line_or_square_kept_bits_2_2_s16) ? RESULT_MOST :
+            line_or_square_kept_inside_s16;
 
-    // multiplier 21, u8.16: an output before it is rounded
-    wire [23:0] green_product_s16 = f_s16 * green_s16;
+    // mux 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
+    wire signed [16:0] reg13_result_2_s16 = facing_s16 ? result_2_s16 : MINUS_ONE;
 
-    // multiplier 22, u8.16: an output before it is rounded
-    wire [23:0] blue_product_s16 = f_s16 * blue_s16;
+    // u0.16: the reflectance, once register 13 holds the square
+    wire [15:0] f_s16 = reg13_result_2_s16[15:0];
 
     always @(posedge clk) begin
         if (advance) begin
-            red_product_kept_s17 <= red_product_s16[23:16];
-            red_product_bits_s17 <= red_product_s16[15];
-            green_product_kept_s17 <= green_product_s16[23:16];
-            green_product_bits_s17 <= green_product_s16[15];
-            blue_product_kept_s17 <= blue_product_s16[23:16];
-            blue_product_bits_s17 <= blue_product_s16[15];
+            f_s17 <= f_s16;
         end
     end
 
     // Stage 17, part of: valid: intensities on the outputs
-    reg  [7:0] red_intensity_s18;
-    reg  [7:0] green_intensity_s18;
-    reg  [7:0] blue_intensity_s18;
+    reg  [7:0] red_product_kept_s18;
+    reg        red_product_bits_s18;
+    reg  [7:0] green_product_kept_s18;
+    reg        green_product_bits_s18;
+    reg  [7:0] blue_product_kept_s18;
+    reg        blue_product_bits_s18;
 
-    wire [7:0] red_intensity_s17 = red_product_kept_s17 + {7'd0, red_product_bits_s17};
-    wire [7:0] green_intensity_s17 = green_product_kept_s17 + {7'd0, green_product_bits_s17};
-    wire [7:0] blue_intensity_s17 = blue_product_kept_s17 + {7'd0, blue_product_bits_s17};
+    // multiplier 20, u8.16: an output before it is rounded
+    wire [23:0] red_product_s17 = f_s17 * red_s17;
+
+    // multiplier 21, u8.16: an output before it is rounded
+    wire [23:0] green_product_s17 = f_s17 * green_s17;
+
+    // multiplier 22, u8.16: an output before it is rounded
+    wire [23:0] blue_product_s17 = f_s17 * blue_s17;
 
     always @(posedge clk) begin
         if (advance) begin
-            red_intensity_s18 <= red_intensity_s17;
-            green_intensity_s18 <= green_intensity_s17;
-            blue_intensity_s18 <= blue_intensity_s17;
+            red_product_kept_s18 <= red_product_s17[23:16];
+            red_product_bits_s18 <= red_product_s17[15];
+            green_product_kept_s18 <= green_product_s17[23:16];
+            green_product_bits_s18 <= green_product_s17[15];
+            blue_product_kept_s18 <= blue_product_s17[23:16];
+            blue_product_bits_s18 <= blue_product_s17[15];
+        end
+    end
+
+    // Stage 18, part of: valid: intensities on the outputs
+    reg  [7:0] red_intensity_s19;
+    reg  [7:0] green_intensity_s19;
+    reg  [7:0] blue_intensity_s19;
+
+    wire [7:0] red_intensity_s18 = red_product_kept_s18 + {7'd0, red_product_bits_s18};
+    wire [7:0] green_intensity_s18 = green_product_kept_s18 + {7'd0, green_product_bits_s18};
+    wire [7:0] blue_intensity_s18 = blue_product_kept_s18 + {7'd0, blue_product_bits_s18};
+
+    always @(posedge clk) begin
+        if (advance) begin
+            red_intensity_s19 <= red_intensity_s18;
+            green_intensity_s19 <= green_intensity_s18;
+            blue_intensity_s19 <= blue_intensity_s18;
         end
     end
 
     // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
     // points move on, a slot gives the value that it holds and takes a new one; its turn comes
     // again when all others have had theirs.
-    reg [2:0] slot_of_5;
-    initial slot_of_5 = 3'd0;
+    reg slot_of_2;
+    initial slot_of_2 = 1'b0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [22:0] delay_s3_s9 [0:4];
-    reg [3:0] slot_of_9;
-    initial slot_of_9 = 4'd0;
+    reg [27:0] delay_s2_s5 [0:1];
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [9:0] delay_s0_s10 [0:8];
-    reg [3:0] slot_of_15;
-    initial slot_of_15 = 4'd0;
+    reg [43:0] delay_s3_s6 [0:1];
+    reg [2:0] slot_of_6;
+    initial slot_of_6 = 3'd0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [23:0] delay_s0_s16 [0:14];
+    reg [22:0] delay_s3_s10 [0:5];
+    reg [3:0] slot_of_10;
+    initial slot_of_10 = 4'd0;
+    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
+    reg [9:0] delay_s0_s11 [0:9];
+    reg [3:0] slot_of_16;
+    initial slot_of_16 = 4'd0;
+    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
+    reg [23:0] delay_s0_s17 [0:15];
 
     always @(posedge clk) begin
         if (advance) begin
-            slot_of_5 <= slot_of_5 == 3'd4 ? 3'd0 : slot_of_5 + 3'd1;
-            reg11_cos_cos_s9 <= delay_s3_s9[slot_of_5];
-            delay_s3_s9[slot_of_5] <= reg11_cos_cos_s3;
+            slot_of_2 <= slot_of_2 == 1'b1 ? 1'b0 : slot_of_2 + 1'b1;
+            {sine_rest4_s5, sine_rest4_2_s5} <= delay_s2_s5[slot_of_2];
+            delay_s2_s5[slot_of_2] <= {sine_rest4_s2, sine_rest4_2_s2};
+            {sine_base_s6, sine_base_2_s6} <= delay_s3_s6[slot_of_2];
+            delay_s3_s6[slot_of_2] <= {sine_base_s3, sine_base_2_s3};
         end
     end
 
     always @(posedge clk) begin
         if (advance) begin
-            slot_of_9 <= slot_of_9 == 4'd8 ? 4'd0 : slot_of_9 + 4'd1;
-            exponent_s10 <= delay_s0_s10[slot_of_9];
-            delay_s0_s10[slot_of_9] <= exponent;
+            slot_of_6 <= slot_of_6 == 3'd5 ? 3'd0 : slot_of_6 + 3'd1;
+            reg11_cos_cos_s10 <= delay_s3_s10[slot_of_6];
+            delay_s3_s10[slot_of_6] <= reg11_cos_cos_s3;
         end
     end
 
     always @(posedge clk) begin
         if (advance) begin
-            slot_of_15 <= slot_of_15 == 4'd14 ? 4'd0 : slot_of_15 + 4'd1;
-            {red_s16, green_s16, blue_s16} <= delay_s0_s16[slot_of_15];
-            delay_s0_s16[slot_of_15] <= {red, green, blue};
+            slot_of_10 <= slot_of_10 == 4'd9 ? 4'd0 : slot_of_10 + 4'd1;
+            exponent_s11 <= delay_s0_s11[slot_of_10];
+            delay_s0_s11[slot_of_10] <= exponent;
+        end
+    end
+
+    always @(posedge clk) begin
+        if (advance) begin
+            slot_of_16 <= slot_of_16 == 4'd15 ? 4'd0 : slot_of_16 + 4'd1;
+            {red_s17, green_s17, blue_s17} <= delay_s0_s17[slot_of_16];
+            delay_s0_s17[slot_of_16] <= {red, green, blue};
         end
     end
 
     // Results
 
-    assign red_out = red_intensity_s18;  // output 40: intensity on the output
-    assign green_out = green_intensity_s18;  // output 41: intensity on the output
-    assign blue_out = blue_intensity_s18;  // output 42: intensity on the output
+    assign red_out = red_intensity_s19;  // output 40: intensity on the output
+    assign green_out = green_intensity_s19;  // output 41: intensity on the output
+    assign blue_out = blue_intensity_s19;  // output 42: intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, sine_rise_s4[9:0], multiplier10_inside_inside_rows_2_s3,
-            multiplier10_inside_inside_sum_s3[15:0], sine_rise_2_s4[9:0],
-            multiplier10_lower_rows_s6[1:0], multiplier10_lower_rows_4_s7[2:0],
-            multiplier10_4_s8[21:0], multiplier10_5_s11[6:0], multiplier10_6_s14[15:0],
-            reg13_result_2_s15[16], red_product_s16[14:0], green_product_s16[14:0],
-            blue_product_s16[14:0]};
+    wire unused = &{1'b0, sine_rise_s5[9:0], multiplier10_inside_inside_rows_2_s3,
+            multiplier10_inside_inside_sum_s3[15:0], sine_rise_2_s5[9:0],
+            multiplier10_lower_rows_s7[1:0], multiplier10_lower_rows_4_s8[2:0],
+            multiplier10_4_s9[21:0], multiplier10_5_s12[6:0], multiplier10_6_s15[15:0],
+            reg13_result_2_s16[16], red_product_s17[14:0], green_product_s17[14:0],
+            blue_product_s17[14:0]};
 endmodule
 
 `default_nettype wire

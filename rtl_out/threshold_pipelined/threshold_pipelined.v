@@ -182,10 +182,12 @@ module threshold_pipelined #(
         end
     end
 
-    // Stage 3, part of: scaled <- n/2 * (cos gamma - 1)
-    reg  signed [16:0] scaled_s4;       // s0.16: n/2*(cos gamma - 1), not below -1.0
-    reg                facing_s4;       // the surface faces the half vector
-    reg         [15:0] levels_word_s4;  // u0.16
+    // Stage 3, part of: scaled <- n/2 * (cos gamma - 1); intensity <- (scaled + 1)^2, or 0 below
+    // ROM(n)
+    reg         facing_s4;          // the surface faces the half vector
+    reg         adder2_upper_2_s4;  // register 2: base of the square, 0 ... 1.0
+    reg  [15:0] adder2_upper_3_s4;  // register 2: base of the square, 0 ... 1.0
+    reg  [15:0] levels_word_s4;     // u0.16
 
     // s0.16: n/2*(cos gamma - 1), not below -1.0
     wire signed [16:0] scaled_s3 = (multiplier1_kept_bits_s3 & ~(&multiplier1_kept_bits_2_s3)) ?
@@ -198,8 +200,9 @@ module threshold_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            scaled_s4 <= scaled_s3;
             facing_s4 <= facing_s3;
+            adder2_upper_2_s4 <= ~scaled_s3[16];
+            adder2_upper_3_s4 <= scaled_s3[15:0];
         end
     end
 
@@ -209,10 +212,8 @@ module threshold_pipelined #(
     reg  [1:0]  multiplier2_kept_bits_s5;
     reg  [15:0] multiplier2_kept_inside_s5;  // u0.16
 
-    wire adder2_upper_2_s4 = ~scaled_s4[16];  // block 2: base of the square, 0 ... 1.0
-
     // block 2, u1.16: base of the square, 0 ... 1.0
-    wire [16:0] adder2_s4 = {adder2_upper_2_s4, scaled_s4[15:0]};
+    wire [16:0] adder2_s4 = {adder2_upper_2_s4, adder2_upper_3_s4};
 
     wire [33:0] multiplier2_s4 = adder2_s4 * adder2_s4;  // multiplier 2, u2.32
 

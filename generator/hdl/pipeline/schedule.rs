@@ -62,6 +62,24 @@ pub fn megahertz(period: f64) -> f64 {
 /// A node stands at least this number of stages after another.
 type Difference = (NetId, NetId, usize);
 
+/// The inverters whose bits are, through wiring, factors of products.
+fn inverted_factors(graph: &Graph, live: &[NetId]) -> Vec<NetId> {
+    let products = live.iter().filter_map(|&id| match graph.node(id).cell {
+        Cell::Op(Op::Mul(a, b)) => Some([a, b]),
+        _ => None,
+    });
+    let mut open: Vec<NetId> = products.flatten().collect();
+    let mut inverters = Vec::new();
+    while let Some(id) = open.pop() {
+        match &graph.node(id).cell {
+            Cell::Op(Op::Not(_)) => inverters.push(id),
+            cell if cell.is_wiring() => open.extend(cell.operands()),
+            _ => {}
+        }
+    }
+    inverters
+}
+
 /// Whether a node is another with more bits of its sign, or under another name: made anew wherever it is
 /// used, so that registers hold what it is made of.
 pub fn is_extension(graph: &Graph, id: NetId) -> bool {
@@ -113,7 +131,11 @@ impl<'a> Problems<'a> {
             Some(registered) => registered.output,
             None => target.delay(graph, id),
         });
-        let delay = delay.collect();
+        let mut delay: Vec<f64> = delay.collect();
+        // Look-up tables and sums take an inverter with them, a multiplier does not.
+        for id in inverted_factors(graph, &live) {
+            delay[id.index()] = target.logic;
+        }
         let setup = nodes().map(|id| target.setup(graph, id)).collect();
         let clocked = nodes().map(|id| match product(id) {
             Some(registered) => Some(registered.product),
@@ -191,6 +213,14 @@ impl<'a> Problems<'a> {
         usize::from(self.is_clocked(user))
     }
 
+    /// The registers between two nodes that are too long for one stage. Block memories and multipliers stand in columns of
+    /// their own: where the way to a multiplier has no room, the value of a memory takes one near each.
+    fn registers_between(&self, from: NetId, user: NetId, most: f64) -> usize {
+        let product = matches!(self.graph.node(user).cell, Cell::Op(Op::Mul(..)));
+        let far = product && self.target.is_block(self.graph, from);
+        1 + usize::from(far && self.delay[user.index()] + self.target.logic > most)
+    }
+
     fn differences(&self, period: f64) -> Vec<Difference> {
         let most = period - self.target.register + 1e-9;
         let mut differences = Vec::new();
@@ -216,7 +246,7 @@ impl<'a> Problems<'a> {
                     }
                     let through = longest[at.index()] + self.delay[user.index()];
                     if through + self.setup[user.index()] > most {
-                        differences.push((from, user, 1));
+                        differences.push((from, user, self.registers_between(from, user, most)));
                     } else if reached[user.index()] != from || longest[user.index()] < through {
                         reached[user.index()] = from;
                         longest[user.index()] = through;
