@@ -102,6 +102,16 @@ pub fn cases(view: View, results: &[NetId], known: &Known) -> Result<Vec<Case>, 
     Ok(found)
 }
 
+/// The raw values of a node, given `known` of the operands; none where a selection on the way to it is open.
+pub fn range(view: View, node: NetId, known: &Known) -> Option<Interval> {
+    let ranges = view.graph.nodes.iter().map(|node| node.range).collect();
+    let mut case = Case { known: known.clone(), ranges, parabolas: BTreeMap::new() };
+    match case.follow(view, &view.cone(&[node])) {
+        Way::Whole => Some(case.ranges[node.index()]),
+        Way::Never | Way::Splits(..) => None,
+    }
+}
+
 enum Way {
     /// Every selection is decided.
     Whole,

@@ -110,11 +110,13 @@ pub fn divisors(real: &Real, found: &mut HashMap<String, Option<i32>>) {
         Real::Add(a, b)
         | Real::Sub(a, b)
         | Real::Mul(a, b)
+        | Real::Mod(a, b)
         | Real::Max(a, b)
         | Real::Power(a, b) => {
             divisors(a, found);
             divisors(b, found);
         }
+        Real::Abs(a) | Real::Cos(a) => divisors(a, found),
         Real::If(comparison, a, b) => {
             let sides = [&comparison.left, &comparison.right, a, b];
             sides.into_iter().for_each(|side| divisors(side, found));
@@ -175,6 +177,9 @@ pub fn branches(real: &Real, setting: &Setting, terms: &mut Terms) -> Result<Vec
             }
             Ok(found)
         }
+        Real::Mod(..) => Err("the operator `%` has no translation".to_owned()),
+        Real::Abs(_) => Err("the function `abs` has no translation".to_owned()),
+        Real::Cos(_) => Err("the function `cos` has no translation".to_owned()),
         Real::Max(a, b) => {
             let mut found = Vec::new();
             for (branch, left, right) in pairs(terms, a, b)? {

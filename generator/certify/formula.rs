@@ -19,8 +19,14 @@ pub enum Real {
     Mul(Box<Real>, Box<Real>),
     /// The quotient.
     Div(Box<Real>, Box<Real>),
+    /// What is left of the first when multiples of the second are taken away, between 0 and the second.
+    Mod(Box<Real>, Box<Real>),
     /// The first to the power of the second.
     Power(Box<Real>, Box<Real>),
+    /// Without its sign.
+    Abs(Box<Real>),
+    /// The cosine of an angle in radians.
+    Cos(Box<Real>),
     /// The larger of the two.
     Max(Box<Real>, Box<Real>),
     /// The first where the comparison holds, else the second.
@@ -44,10 +50,12 @@ impl Real {
         match self {
             Self::Word(name, _) => name == rom,
             Self::Number(_) | Self::Operand(_) => false,
+            Self::Abs(a) | Self::Cos(a) => a.reads(rom),
             Self::Add(a, b)
             | Self::Sub(a, b)
             | Self::Mul(a, b)
             | Self::Div(a, b)
+            | Self::Mod(a, b)
             | Self::Max(a, b)
             | Self::Power(a, b) => a.reads(rom) || b.reads(rom),
             Self::If(Comparison { left, right, .. }, a, b) => {
@@ -61,10 +69,12 @@ impl Real {
         match self {
             Self::Power(a, b) => **b == Self::Operand(name.to_owned()) || a.has_exponent(name),
             Self::Number(_) | Self::Operand(_) | Self::Word(..) => false,
+            Self::Abs(a) | Self::Cos(a) => a.has_exponent(name),
             Self::Add(a, b)
             | Self::Sub(a, b)
             | Self::Mul(a, b)
             | Self::Div(a, b)
+            | Self::Mod(a, b)
             | Self::Max(a, b) => a.has_exponent(name) || b.has_exponent(name),
             Self::If(Comparison { left, right, .. }, a, b) => {
                 [left, right, a, b].into_iter().any(|side| side.has_exponent(name))
@@ -76,7 +86,7 @@ impl Real {
 /// The expression as a tree.
 ///
 /// # Errors
-/// What is no expression, or has a function that is none of `max`, `min` and `int`.
+/// What is no expression, or has a function that is none of `max`, `min`, `int`, `abs` and `cos`.
 pub fn parse(text: &str) -> Result<Real> {
     let mut parser = Parser { tokens: tokens(text)?, at: 0 };
     let real = parser.choice()?;
@@ -88,7 +98,7 @@ pub fn parse(text: &str) -> Result<Real> {
 
 fn tokens(text: &str) -> Result<Vec<String>> {
     let pattern = regex::Regex::new(
-        r"\s*([A-Za-z_][A-Za-z_0-9]*|[0-9]+\.?[0-9]*(?:e[-+]?[0-9]+)?|\*\*|>=|<=|[-+*/()\[\],<>])",
+        r"\s*([A-Za-z_][A-Za-z_0-9]*|[0-9]+\.?[0-9]*(?:e[-+]?[0-9]+)?|\*\*|>=|<=|[-+*/%()\[\],<>])",
     )?;
     let mut tokens = Vec::new();
     let mut rest = text.trim_end();
@@ -96,7 +106,12 @@ fn tokens(text: &str) -> Result<Vec<String>> {
         let found =
             pattern.captures(rest).filter(|found| found.get(0).is_some_and(|it| it.start() == 0));
         let Some(found) = found else {
-            bail!("`{}` in `{text}` is not understood", rest.trim_start())
+            let (rest, short) =
+                (rest.trim_start(), |text: &str| match text.char_indices().nth(40) {
+                    Some((at, _)) => format!("{} …", &text[..at]),
+                    None => text.to_owned(),
+                });
+            bail!("`{}` in `{}` is not understood", short(rest), short(text))
         };
         tokens.push(found[1].to_owned());
         rest = &rest[found[0].len()..];
@@ -166,12 +181,14 @@ impl Parser {
     fn product(&mut self) -> Result<Real> {
         let mut product = self.power()?;
         loop {
-            let times = self.taken("*");
-            if !times && !self.taken("/") {
-                return Ok(product);
-            }
-            let (left, right) = (Box::new(product), Box::new(self.power()?));
-            product = if times { Real::Mul(left, right) } else { Real::Div(left, right) };
+            let operation = match self.peek() {
+                "*" => Real::Mul,
+                "/" => Real::Div,
+                "%" => Real::Mod,
+                _ => return Ok(product),
+            };
+            self.at += 1;
+            product = operation(Box::new(product), Box::new(self.power()?));
         }
     }
 
@@ -211,6 +228,8 @@ impl Parser {
         let real = match token.as_str() {
             // Of an operand that is an integer.
             "int" => first,
+            "abs" => Real::Abs(Box::new(first)),
+            "cos" => Real::Cos(Box::new(first)),
             "max" => {
                 self.expect(",")?;
                 Real::Max(Box::new(first), Box::new(self.choice()?))
@@ -248,6 +267,8 @@ mod tests {
         assert_eq!(parse("4 - 2 - 1").unwrap(), Real::Sub(Box::new(left), number(1.0)));
         let choice = parse("max(x, 0) if x > 0 else levels[int(n)]").unwrap();
         let comparison = Comparison { left: operand("x"), right: number(0.0), or_equal: false };
+        let rest = Real::Mod(Box::new(Real::Abs(operand("x"))), number(2.0));
+        assert_eq!(parse("cos(abs(x) % 2)").unwrap(), Real::Cos(Box::new(rest)));
         let yes = Box::new(Real::Max(operand("x"), number(0.0)));
         let no = Box::new(Real::Word("levels".to_owned(), operand("n")));
         assert_eq!(choice, Real::If(comparison, yes, no));

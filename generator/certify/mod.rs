@@ -4,7 +4,8 @@
 //! ways with saturations, clamps and tables ([`cases`]). On each way the hardware is a real expression with
 //! roundings ([`hardware`]), and the contract's formula ([`formula`]) one without ([`exact`]). What Gappa has to
 //! prove of each way and each output: the two differ by the contract's bound at most. The ways together cover the
-//! domain, so that the statements together are the contract.
+//! domain, so that the statements together are the contract. Of a device that shows words of a table of cosines, along a line,
+//! there are statements about the words and about the product (`segments`).
 //!
 //! A formula that reads a table reads the words that the hardware has: that they are the right ones is not part of
 //! the statement.
@@ -19,6 +20,7 @@ mod premises;
 mod proof;
 pub mod quotient;
 mod script;
+mod segments;
 pub mod terms;
 
 use std::collections::{BTreeMap, HashMap};
@@ -27,7 +29,7 @@ use std::time::{Duration, Instant};
 use crate::base::fixed::exp2;
 use crate::golden::Contract;
 use crate::hdl::netlist::{Design, NetId, Op, RomId};
-use crate::hdl::pipeline::{Cell, Graph, Unrolled, unroll};
+use crate::hdl::pipeline::{Cell, Graph, Unrolled, unroll, unroll_line};
 use cases::{Case, Known, View};
 use exact::{Branch, Setting};
 pub use find::bound;
@@ -121,7 +123,12 @@ fn within(
 ) -> Result<Vec<Statement>, String> {
     let begin = Instant::now();
     let formulas = formulas(contract)?;
-    let unrolled = unroll(design).map_err(|error| error.to_string())?;
+    let (unrolled, walk) = if contract.length().is_some() {
+        let line = unroll_line(design).map_err(|error| error.to_string())?;
+        (line.unrolled, Some(line.walk))
+    } else {
+        (unroll(design).map_err(|error| error.to_string())?, None)
+    };
     let results: Vec<NetId> = unrolled.results.iter().map(|(_, node)| *node).collect();
     let words = |rom: RomId, address: u64| {
         let rom = design.rom(rom);
@@ -140,6 +147,9 @@ fn within(
         tables: &tables,
         formulas: &formulas,
     };
+    if let Some(walk) = walk {
+        return segments::statements(&task, &walk);
+    }
     let known = task.domain()?;
     let results: Vec<NetId> = task.outputs()?.into_iter().map(|(_, node)| node).collect();
     let mut statements = Statements::default();
@@ -159,9 +169,6 @@ fn within(
 }
 
 fn formulas(contract: &dyn Contract) -> Result<Vec<Real>, String> {
-    if contract.length().is_some() {
-        return Err("a computation of several results is not unrolled".to_owned());
-    }
     let (expressions, wanted) = match contract.highlight() {
         Some(highlight) => (highlight.expressions(), 1),
         None => (contract.expressions(), contract.outputs().len()),

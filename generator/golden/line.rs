@@ -137,6 +137,9 @@ pub fn magnitude(angle: i64, fraction: u32, kept: u32) -> Option<i64> {
     Some(positive >> (fraction - kept))
 }
 
+/// Values are computed in f64, and less off than this: a bound on errors has room for it.
+const SLACK: f64 = 1.0 / (1u64 << 40) as f64;
+
 /// ROM 12's table of `cosᵏ`: for each step the middle of the values at its ends; the last one 0.
 #[derive(Clone, Debug)]
 pub struct CosineTable {
@@ -171,6 +174,7 @@ impl CosineTable {
             table.total = table.total.max(off(word / one));
             table.words.push(word as i64);
         }
+        table.total += SLACK;
         table
     }
 

@@ -14,7 +14,7 @@ use glint::hdl::netlist::Stage;
 use glint::mutate::{GOAL_MEMORY, GOAL_TEXT};
 use glint::registry::Registry;
 use glint::synth::{self, Figures, Frequency, Rate, Record, Target};
-use glint::tune::Features;
+use glint::tune::{Cost, Features};
 use serde::Deserialize;
 use serde_json::Value;
 
@@ -234,7 +234,7 @@ fn registered_multipliers() {
 }
 
 /// A record stands for the netlist that it was made of: the sums of what that consists of are today's, within a
-/// twentieth. `glint synth CONFIG --out synthesis` makes it anew.
+/// twentieth, and so is the estimated clock, which `benches/tune/fit` reads. `glint synth CONFIG --out synthesis` makes it anew.
 #[test]
 fn records_of_synthesis_are_of_todays_netlists() {
     let records = input::records::<Record<Recorded>>(Path::new(synth::DIRECTORY)).expect("records");
@@ -243,22 +243,26 @@ fn records_of_synthesis_are_of_todays_netlists() {
         let path = path.display();
         let core = configuration(&record.config);
         assert_eq!(core.core_digest(), record.core, "{path}: another configuration");
-        for Recorded { target, netlist } in record.targets {
+        for Recorded { target, netlist, estimated_mhz } in record.targets {
             let Features { adder, mux, logic, rom, product } = Features::new(&core.design, target);
             let now = [adder, mux, logic, rom, product];
             let Features { adder, mux, logic, rom, product } = netlist;
             let then = [adder, mux, logic, rom, product];
             let (now, then): (f64, f64) = (now.iter().sum(), then.iter().sum());
             assert!((now - then).abs() <= 0.05 * then, "{path}, {target}: {now}, was {then}");
+            let mhz = Cost::new(&core.design, target).mhz;
+            let apart = (mhz - estimated_mhz).abs();
+            assert!(apart <= 0.05 * mhz, "{path}, {target}: {mhz} MHz, was {estimated_mhz}");
         }
     }
 }
 
-/// Of a record, what its netlist consisted of.
+/// Of a record, what its netlist consisted of, and the clock by the estimate.
 #[derive(Deserialize)]
 struct Recorded {
     target: Target,
     netlist: Features,
+    estimated_mhz: f64,
 }
 
 /// The record of a configuration.

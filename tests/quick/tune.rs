@@ -1,9 +1,14 @@
-//! `tune`: sound, as small as exhaustive search finds, the same every time.
+//! `tune`: sound, as small as exhaustive search finds, the same every time, and near to what synthesis gives.
 
+use std::path::Path;
+
+use glint::base::input;
 use glint::config::{Config, Value};
 use glint::registry::{Device, Registry};
-use glint::synth::Target;
-use glint::tune::{Candidate, ErrorUnit, Objective, Wish, exhaustive, tune};
+use glint::synth::{self, Record, Target};
+use glint::tune::{Candidate, Cost, ErrorUnit, Objective, Wish, exhaustive, tune};
+
+use crate::common::cores::configuration;
 
 fn device(name: &str) -> Device {
     *Registry::catalogue().device(name).expect("a device of the catalogue")
@@ -165,4 +170,42 @@ fn a_rate_asks_for_the_clock_that_the_clocks_of_a_point_need() {
     let kept = Wish { rate: Some(wanted), ..wish(0.9, Target::Ecp5) };
     let kept = tune(&device, &defaults(&device), &[], &kept, &|_| ()).expect("an answer").best;
     assert!(kept.cost.mhz >= 8.0 * wanted, "{} MHz", kept.cost.mhz);
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    if values.len() % 2 == 1 { values[middle] } else { (values[middle - 1] + values[middle]) / 2.0 }
+}
+
+/// The errors are those that stand beside the weights in `generator/tune/model.rs`: of the look-up tables in the median and
+/// at most. Where there is a frequency the estimates are as often above as below.
+#[test]
+fn estimates_are_as_near_to_synthesis_as_is_said() {
+    let records = input::records::<Record>(Path::new(synth::DIRECTORY)).expect("records");
+    let cores: Vec<_> =
+        records.iter().map(|(_, record)| (configuration(&record.config), record)).collect();
+    let stated =
+        [(Target::Ice40, 0.07, 0.35), (Target::Ecp5, 0.08, 0.26), (Target::Xilinx7, 0.07, 0.52)];
+    for (target, usual, most) in stated {
+        let (mut off, mut clocks) = (Vec::new(), Vec::new());
+        for (core, record) in &cores {
+            let Some(figures) = record.of(target) else { continue };
+            let cost = Cost::new(&core.design, target);
+            let luts = figures.area.usage().expect("an FPGA").luts as f64;
+            off.push((cost.luts / luts - 1.0).abs());
+            assert!(
+                off[off.len() - 1] <= most,
+                "{target}, {}: {} of {luts}",
+                record.name,
+                cost.luts
+            );
+            if let Some(frequency) = &figures.frequency {
+                clocks.push(cost.mhz / frequency.median);
+            }
+        }
+        assert!(off.len() >= 20 && median(off.clone()) <= usual, "{target}: {off:?}");
+        let middle = if clocks.is_empty() { 1.0 } else { median(clocks) };
+        assert!((middle - 1.0).abs() <= 0.02, "{target}: estimated clocks are off by {middle}");
+    }
 }

@@ -29,13 +29,17 @@ const LIMIT: Duration = Duration::from_secs(20);
 const LIMIT_COQ: Duration = Duration::from_secs(60);
 
 /// The configurations that are certified whole, and their devices.
-const CERTIFIED: [(&str, &str); 5] = [
+const CERTIFIED: [(&str, &str); 6] = [
     ("cosine_power", "cosine-power"),
     ("threshold", "threshold"),
     ("quadratic", "quadratic"),
     ("schlick", "schlick"),
     ("lyon", "lyon"),
+    ("cosine_squared", "cosine-squared"),
 ];
+
+/// Coq has gone through those of the first of them.
+const BY_COQ: usize = 5;
 
 fn device(name: &str, keys: &str) -> (Design, Box<dyn Contract>) {
     let registry = Registry::catalogue();
@@ -86,6 +90,9 @@ fn bounds_are_proved_and_smaller_ones_are_not() {
         ("schlick", "intensity.fraction = 6\nexponent.bits = 6\ndomain.exponent_max = 60"),
         ("lyon", "power = 2"),
         ("lyon", "scale = \"multiplier\""),
+        ("cosine-squared", "table.address = 5"),
+        ("cosine-squared", "table.address = 5\nline.stages = 5"),
+        ("cosine-squared", "table.address = 4\noutput.rounding = \"truncate\""),
     ] {
         let stated = stated(device, keys);
         assert!(all_accepted(&stated), "{device}: {keys}");
@@ -167,7 +174,7 @@ fn bounds_that_are_found_lie_between_errors_and_bounds_by_hand() {
     assert!(bound <= contract.bound().units, "{bound}");
 }
 
-/// What is changed in a net: a constant gets a sixteenth smaller, an inverter a wire, operands change places.
+/// What is changed in a net: a constant gets a sixteenth smaller, an inverter a wire, operands and inputs change places.
 fn plant(design: &mut Design, name: &str) {
     let net = design.nets.iter_mut().find(|net| net.name == name);
     let net = net.unwrap_or_else(|| panic!("there is a net `{name}`"));
@@ -180,6 +187,7 @@ fn plant(design: &mut Design, name: &str) {
         }
         Driver::Op(op @ Op::Not(_)) => *op = Op::Relabel(op.operands()[0]),
         Driver::Op(Op::Sub(a, b) | Op::Less(a, b)) => std::mem::swap(a, b),
+        Driver::Op(Op::Mux { inputs, .. }) => inputs.reverse(),
         other => panic!("no fault is known for {other:?}"),
     }
 }
@@ -200,6 +208,58 @@ fn faulty_hardware_has_no_proof() {
         plant(&mut design, net);
         let stated = statements(&design, contract.as_ref(), Duration::MAX);
         assert!(stated.map_or(true, |stated| !all_accepted(&stated)), "{name}: `{net}`");
+    }
+}
+
+const TABLE: &str = "table.address = 5";
+
+/// What is wrong with the angles of words, with a word, or with how the points of a line follow.
+#[test]
+fn faulty_lines_have_no_proof() {
+    let is_open = |design: &Design, contract: &dyn Contract| {
+        let stated = statements(design, contract, Duration::MAX);
+        stated.map_or(true, |stated| !all_accepted(&stated))
+    };
+    for net in ["angle_complement", "angle_magnitude", "table_address", "angle_source"] {
+        let (mut design, contract) = device("cosine-squared", TABLE);
+        plant(&mut design, net);
+        assert!(is_open(&design, contract.as_ref()), "`{net}`");
+    }
+    // A word that is off by more than twice the bound, and some places.
+    let (design, contract) = device("cosine-squared", TABLE);
+    let step = 1 + (contract.bound().f * 1024.0).ceil() as u64;
+    for word in (0..design.roms[0].words.len()).step_by(3) {
+        let (mut design, contract) = device("cosine-squared", TABLE);
+        let words = &mut design.roms[0].words;
+        words[word] =
+            if words[word] > 512 { words[word] - 2 * step } else { words[word] + 2 * step };
+        assert!(is_open(&design, contract.as_ref()), "word {word}");
+    }
+    // A second point that is not at the next angle: the register keeps what it holds.
+    let (mut design, contract) = device("cosine-squared", TABLE);
+    let angle = design.nets.iter().position(|net| net.name == "angle").expect("the register");
+    let sum = design.nets.iter_mut().find(|net| net.name == "next_angle").expect("the sum");
+    let Driver::Op(Op::Add { a, b, .. }) = &mut sum.driver else { panic!("no sum") };
+    let (kept, _) = if a.index() == angle { (*a, *b) } else { (*b, *a) };
+    (*a, *b) = (kept, kept);
+    let why = statements(&design, contract.as_ref(), Duration::MAX).expect_err("no walk");
+    assert_eq!(why, "its points walk on by more than a sum");
+}
+
+/// The polynomial alone is no cosine, and a number beside pi/2 is none.
+#[test]
+fn what_a_cosine_is_made_of_counts() {
+    let stated = stated("cosine-squared", "table.address = 4");
+    assert!(all_accepted(&stated));
+    for (what, other) in [
+        ("rest in [-1,1]", "rest in [-1e19,1e19]"),
+        ("right in [1.57079632679489661923", "right in [1.5707"),
+        ("right in [1.57079632679489661923,1.57079632679489661924]", "right in [1.5,1.5]"),
+    ] {
+        let changed: Vec<String> =
+            stated.iter().map(|it| it.scripts[0].replace(what, other)).collect();
+        assert!(changed[0] != stated[0].scripts[0], "{what}");
+        assert!(!changed.iter().all(|script| accepted(script)), "{other}");
     }
 }
 
@@ -230,8 +290,8 @@ fn what_cannot_be_stated_says_which_step() {
         let design = device.sequential(&config).expect("a design");
         statements(&design, (device.contract)(&config).as_ref(), Duration::MAX).map(|_| ())
     };
-    let step = step_of("quad-cosine").expect_err("a line");
-    assert_eq!(step, "a computation of several results is not unrolled");
+    let step = step_of("quad-cosine").expect_err("a power by a dictionary");
+    assert!(step.starts_with("`{1: 1, 2: 2,") && step.ends_with("is not understood"), "{step}");
     let step = step_of("rough").expect_err("a square root");
     assert_eq!(step, "the function `sqrt` has no translation");
 }
@@ -259,19 +319,22 @@ fn committed((name, device): (&str, &str)) -> Vec<(String, Statement)> {
 #[test]
 fn committed_certificates_are_those_of_today_and_proved() {
     for (name, device) in CERTIFIED {
-        for (certificate, Statement { output, number, scripts, .. }) in committed((name, device)) {
+        let all = committed((name, device));
+        all.into_par_iter().for_each(|(certificate, statement)| {
+            let Statement { output, number, scripts, .. } = statement;
             let (_, script) = certificate.split_once("\n\n").expect("a head and a script");
             let place = format!("{name}: {output}, statement {number}");
             assert!(scripts.iter().any(|it| it == script), "{place} is of another time");
             assert!(accepted(&certificate), "{place} is not proved");
-        }
+        });
     }
 }
 
 /// On request: what Gappa writes for Coq takes seconds to minutes a statement.
 #[test]
 fn coq_accepts_certificates() {
-    let wanted = sampled("configurations with certificates for Coq", CERTIFIED, 0);
+    let wanted =
+        sampled("configurations with certificates for Coq", CERTIFIED.into_iter().take(BY_COQ), 0);
     if wanted.is_empty() {
         return;
     }

@@ -25,7 +25,7 @@ use crate::hdl::netlist::{Design, NetId};
 
 pub use graph::{Cell, Graph, Interval, Node};
 pub use target::{TARGETS, Target};
-pub use unroll::{Unrolled, unroll};
+pub use unroll::{Line, Unrolled, Walked, unroll, unroll_line};
 
 /// What is asked of the schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]

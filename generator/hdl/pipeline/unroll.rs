@@ -10,7 +10,11 @@
 //! those before, and a jump ahead is executed with and without what it skips. Where the ways meet, each
 //! register is chosen by the condition.
 
+mod line;
+
 use std::collections::HashMap;
+
+pub use line::{Line, Walked, unroll_line};
 
 use super::graph::{Cell, Graph, Label};
 use super::possible;
@@ -98,24 +102,7 @@ enum Turns {
 }
 
 fn run(design: &Design, turns: Turns) -> Result<Unrolled, Diagnostic> {
-    let operands: Vec<NetId> = design
-        .ports
-        .iter()
-        .filter(|port| matches!(port.role, Role::Operand { .. }))
-        .map(|port| port.net)
-        .collect();
-    let mut executor = Executor {
-        design,
-        turns,
-        visits: vec![0; design.control.microprogram.len()],
-        unrolled: Unrolled {
-            graph: Graph::default(),
-            operands,
-            results: Vec::new(),
-            steps: Vec::new(),
-        },
-        shown: None,
-    };
+    let mut executor = Executor::new(design, turns);
     let state = executor.power_up();
     let state = executor.start(&state);
     executor.follow(At { state, address: 0 }, None)?;
@@ -133,7 +120,24 @@ fn run(design: &Design, turns: Turns) -> Result<Unrolled, Diagnostic> {
     Ok(executor.unrolled)
 }
 
-impl Executor<'_> {
+impl<'a> Executor<'a> {
+    fn new(design: &'a Design, turns: Turns) -> Self {
+        let ports = design.ports.iter();
+        let operands = ports.filter(|port| matches!(port.role, Role::Operand { .. }));
+        Self {
+            design,
+            turns,
+            visits: vec![0; design.control.microprogram.len()],
+            unrolled: Unrolled {
+                graph: Graph::default(),
+                operands: operands.map(|port| port.net).collect(),
+                results: Vec::new(),
+                steps: Vec::new(),
+            },
+            shown: None,
+        }
+    }
+
     fn power_up(&mut self) -> State {
         let design = self.design;
         let graph = &mut self.unrolled.graph;

@@ -1,0 +1,261 @@
+//! A computation of several results: what each point of a line is made of.
+//!
+//! A microinstruction that writes a point sets `valid` a fixed number of clocks later, D. Nothing is assumed of what the registers hold
+//! before it but that operands are in theirs: every way through the microprogram is gone for D clocks from any
+//! microinstruction. What is found is shown for all points of lines of any length, by induction on their number:
+//!
+//! - The results are the same function of the operands and of a few registers, the *walk*, whatever was executed
+//!   between: each point shows that function of the walk as it was after the point was written.
+//! - The first point writes values of operands alone into the walk; every other writes one function of walk and
+//!   operands; and nothing else writes it between them.
+
+use super::{Clock, Executor, State, Turns, Unrolled};
+use crate::base::diagnostic::{Diagnostic, Diagnostics};
+use crate::hdl::netlist::{Design, NetId, RegisterKind, Role, Sequence};
+use crate::hdl::pipeline::graph::Cell;
+
+/// The most clocks from a point to its results.
+const MOST_DELAY: usize = 12;
+
+/// A computation of several results.
+#[derive(Debug)]
+pub struct Line {
+    /// The first point. The others differ from it in the walk.
+    pub unrolled: Unrolled,
+    /// The registers of the walk.
+    pub walk: Vec<Walked>,
+}
+
+/// A register of the walk, by values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Walked {
+    /// What the first point writes.
+    pub first: NetId,
+    /// What it holds before another point is written.
+    pub before: NetId,
+    /// What that point writes, made of what the walk holds before.
+    pub next: NetId,
+}
+
+/// Executes the points of a line.
+///
+/// # Errors
+/// The points are not alike in the way that is described above.
+pub fn unroll_line(design: &Design) -> Result<Line, Diagnostics> {
+    let executor = Executor::new(design, Turns::OneByOne);
+    Points { executor }.line().map_err(|diagnostic| Diagnostics(vec![diagnostic]))
+}
+
+struct Points<'a> {
+    executor: Executor<'a>,
+}
+
+impl Points<'_> {
+    fn line(mut self) -> Result<Line, Diagnostic> {
+        let design = self.executor.design;
+        let unknown = self.executor.power_up();
+        let started = self.executor.start(&unknown);
+        let mut any = unknown;
+        for (number, register) in design.registers.iter().enumerate() {
+            if register.kind == RegisterKind::Operand {
+                any.registers[number] = started.registers[number];
+            }
+        }
+        let (delay, writes) = self.delay(&any)?;
+        let after: Vec<usize> = writes.iter().flat_map(|&at| successors(design, at)).collect();
+        let shown = self.shown(&any, &after, delay - 1)?;
+        let walk = self.walk_of(&any, &shown)?;
+        let (first, others): (Vec<usize>, Vec<usize>) = writes.iter().partition(|&&at| {
+            let state = self.edge(&any, at);
+            walk.iter().all(|&number| self.unknowns(state.registers[number]).is_empty())
+        });
+        let ([first], [other, more @ ..]) = (&first[..], &others[..]) else {
+            return Err(self.cannot(0, "has no first point and others behind it"));
+        };
+        self.in_order(*first, &writes)?;
+        let (begun, gone) = (self.edge(&any, *first), self.edge(&any, *other));
+        let held = |state: &State| -> Vec<NetId> {
+            walk.iter().map(|&number| state.registers[number]).collect()
+        };
+        for &at in more {
+            if held(&self.edge(&any, at)) != held(&gone) {
+                return Err(self.cannot(at, "walks on in another way than a point before"));
+            }
+        }
+        for at in 0..design.control.microprogram.len() {
+            if !writes.contains(&at) && held(&self.edge(&any, at)) != held(&any) {
+                return Err(self.cannot(at, "moves the walk between points"));
+            }
+        }
+        // The others are made of the walk and of operands alone.
+        let before = held(&any);
+        for &next in &held(&gone) {
+            if self.unknowns(next).iter().any(|id| !before.contains(id)) {
+                return Err(self.cannot(*other, "walks on by what is not of the walk"));
+            }
+        }
+        let mut from_first = any.clone();
+        for &number in &walk {
+            from_first.registers[number] = begun.registers[number];
+        }
+        let results = self.shown(&from_first, &successors(design, *first), delay - 1)?;
+        self.executor.determined(&results)?;
+        self.executor.unrolled.results = results;
+        let walk = held(&begun).into_iter().zip(before).zip(held(&gone));
+        let walk = walk.map(|((first, before), next)| Walked { first, before, next }).collect();
+        Ok(Line { unrolled: self.executor.unrolled, walk })
+    }
+
+    /// After how many clocks `valid` follows from the microinstruction alone, and the microinstructions that set it.
+    fn delay(&mut self, any: &State) -> Result<(usize, Vec<usize>), Diagnostic> {
+        let design = self.executor.design;
+        let Some(valid) = design.port(|role| role == Role::Valid).map(|port| port.net) else {
+            return Err(self.cannot(0, "is of a device without `valid`"));
+        };
+        let all: Vec<usize> = (0..design.control.microprogram.len()).collect();
+        for delay in 1..=MOST_DELAY {
+            let mut writes = Some(Vec::new());
+            for path in paths(design, &all, delay) {
+                let value = self.at_end(any, &path, |clock| clock.value(valid));
+                let bit = self.executor.unrolled.graph.constant_of(value);
+                writes = writes.filter(|_| bit.is_some());
+                if let (Some(writes), Some(1)) = (&mut writes, bit)
+                    && !writes.contains(&path[0])
+                {
+                    writes.push(path[0]);
+                }
+            }
+            if let Some(writes) = writes.filter(|writes| !writes.is_empty()) {
+                // Every way from there sets it.
+                for path in paths(design, &writes, delay) {
+                    let value = self.at_end(any, &path, |clock| clock.value(valid));
+                    if self.executor.unrolled.graph.constant_of(value) != Some(1) {
+                        return Err(self.cannot(path[0], "sets `valid` on some ways"));
+                    }
+                }
+                return Ok((delay, writes));
+            }
+        }
+        Err(self.cannot(0, "begins a computation whose `valid` follows no microinstruction"))
+    }
+
+    /// The results, `clocks` after any of these microinstructions is about to be executed.
+    fn shown(
+        &mut self,
+        state: &State,
+        from: &[usize],
+        clocks: usize,
+    ) -> Result<Vec<(NetId, NetId)>, Diagnostic> {
+        let design = self.executor.design;
+        let ports = design.ports.iter().filter(|port| port.role == Role::Result);
+        let ports: Vec<NetId> = ports.map(|port| port.net).collect();
+        let mut all: Option<Vec<(NetId, NetId)>> = None;
+        for path in paths(design, from, clocks) {
+            let results = self.at_end(state, &path, |clock| {
+                ports.iter().map(|&port| (port, clock.value(port))).collect::<Vec<_>>()
+            });
+            if all.as_ref().is_some_and(|all| *all != results) {
+                return Err(self.cannot(path[0], "shows another result on another way"));
+            }
+            all = Some(results);
+        }
+        all.ok_or_else(|| self.cannot(0, "ends before its results are shown"))
+    }
+
+    /// The registers on which the results depend.
+    fn walk_of(&self, any: &State, shown: &[(NetId, NetId)]) -> Result<Vec<usize>, Diagnostic> {
+        let mut walk = Vec::new();
+        for id in shown.iter().flat_map(|&(_, node)| self.unknowns(node)) {
+            let number = any.registers.iter().position(|&register| register == id);
+            let number = number.ok_or_else(|| self.cannot(0, "shows what a memory held before"))?;
+            if !walk.contains(&number) {
+                walk.push(number);
+            }
+        }
+        Ok(walk)
+    }
+
+    /// The first point comes before all others, and once.
+    fn in_order(&self, first: usize, writes: &[usize]) -> Result<(), Diagnostic> {
+        let design = self.executor.design;
+        // What is reached from a microinstruction, and, of those that write points, no further.
+        let reached = |from: Vec<usize>, stops: &dyn Fn(usize) -> bool| {
+            let (mut seen, mut pending) = (Vec::new(), from);
+            while let Some(at) = pending.pop() {
+                if !seen.contains(&at) {
+                    seen.push(at);
+                    if !stops(at) {
+                        pending.extend(successors(design, at));
+                    }
+                }
+            }
+            seen
+        };
+        let is_write = |at: usize| writes.contains(&at);
+        if reached(vec![0], &is_write).into_iter().any(|at| is_write(at) && at != first) {
+            return Err(self.cannot(first, "is not the first point on every way"));
+        }
+        if reached(successors(design, first), &|_| false).contains(&first) {
+            return Err(self.cannot(first, "begins a line anew"));
+        }
+        Ok(())
+    }
+
+    fn edge(&mut self, state: &State, address: usize) -> State {
+        Clock::new(&mut self.executor, state, address, false).edge()
+    }
+
+    /// What is asked in the clock of the last microinstruction, after those before it.
+    fn at_end<T>(
+        &mut self,
+        state: &State,
+        path: &[usize],
+        ask: impl Fn(&mut Clock<'_, '_>) -> T,
+    ) -> T {
+        let (last, before) = path.split_last().expect("a way has a microinstruction");
+        let mut state = state.clone();
+        for &address in before {
+            state = self.edge(&state, address);
+        }
+        ask(&mut Clock::new(&mut self.executor, &state, *last, false))
+    }
+
+    /// The values on which one depends and that nothing has determined.
+    fn unknowns(&self, id: NetId) -> Vec<NetId> {
+        let graph = &self.executor.unrolled.graph;
+        let is_unknown = |id: &NetId| matches!(graph.node(*id).cell, Cell::Unknown(_));
+        graph.cone([id]).into_iter().filter(is_unknown).collect()
+    }
+
+    fn cannot(&self, address: usize, why: &str) -> Diagnostic {
+        let microinstruction = &self.executor.design.control.microprogram[address];
+        Diagnostic::new(
+            format!(
+                "the points of `{}` are not alike: the microinstruction `{}` {why}",
+                self.executor.design.name, microinstruction.name
+            ),
+            microinstruction.location,
+        )
+    }
+}
+
+/// The microinstructions that follow one within a computation.
+fn successors(design: &Design, at: usize) -> Vec<usize> {
+    match design.control.microprogram[at].sequence {
+        Sequence::End => Vec::new(),
+        _ => design.control.successors(at).into_iter().filter(|&to| to != 0).collect(),
+    }
+}
+
+/// Every way of this number of clocks from one of these microinstructions: it and those that follow.
+fn paths(design: &Design, from: &[usize], clocks: usize) -> Vec<Vec<usize>> {
+    let begin: Vec<Vec<usize>> = from.iter().map(|&at| vec![at]).collect();
+    (0..clocks).fold(begin, |paths, _| {
+        let longer = |path: &Vec<usize>| {
+            let path = path.clone();
+            let last = path.last().copied().unwrap_or_default();
+            successors(design, last).into_iter().map(move |to| [&path[..], &[to]].concat())
+        };
+        paths.iter().flat_map(longer).collect()
+    })
+}
