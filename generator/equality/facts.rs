@@ -1,8 +1,8 @@
 //! What holds of products and of words of memories, whatever their operands are.
 //!
 //! To the solver a product is a function of its factors that it knows nothing of. What is said of it here are instances of
-//! laws of integers, of products modulo 2^64: that bits of a factor can be multiplied on their own, and that of factors within
-//! bounds the product is within bounds. No instance depends on where it is taken from: a useless one does not help, and none is wrong.
+//! laws of integers, of products modulo 2^64: that bits of a factor can be multiplied on their own, what a product by 0, 1 and -1
+//! is, and that of factors within bounds the product is within bounds. No instance depends on where it is taken from: a useless one does not help, and none is wrong.
 
 use std::collections::{HashMap, HashSet};
 
@@ -35,6 +35,9 @@ pub fn about(terms: &mut Terms, roots: &[Id], products: &[Product], parts: bool)
                         let equal = |it: &Parts| terms.equal(it.product, it.sum);
                         facts.extend(parts.iter().flatten().map(equal));
                     }
+                    for (factor, other) in [(a, b), (b, a)] {
+                        facts.extend(by_one_or_none(terms, id, factor, other));
+                    }
                     for product in products {
                         if product.factors == [a, b] || product.factors == [b, a] {
                             facts.extend(within(terms, product));
@@ -50,6 +53,18 @@ pub fn about(terms: &mut Terms, roots: &[Id], products: &[Product], parts: bool)
     }
     facts.retain(|&fact| terms.constant_of(fact).is_none());
     facts
+}
+
+/// A product by 0, 1 and -1.
+fn by_one_or_none(terms: &mut Terms, product: Id, factor: Id, other: Id) -> [Id; 3] {
+    let zero = terms.constant(0, MAX_WIDTH);
+    let negative = terms.make(Term::Sub(zero, other), MAX_WIDTH);
+    [(0, zero), (1, other), (u64::MAX, negative)].map(|(value, result)| {
+        let value = terms.constant(value, MAX_WIDTH);
+        let (is, equal) = (terms.equal(factor, value), terms.equal(product, result));
+        let not = terms.not(is);
+        terms.make(Term::Or(not, equal), 1)
+    })
 }
 
 /// Products that a cone has in parts, each with the sum that it is.
@@ -71,6 +86,15 @@ pub fn divided(terms: &mut Terms, roots: impl IntoIterator<Item = Id>) -> HashMa
     divided
 }
 
+/// The bits of an extended number, and whether the extension has its sign.
+pub fn extended(terms: &Terms, factor: Id) -> Option<(Id, bool)> {
+    match *terms.term(factor) {
+        Term::SignExtend(bits) => Some((bits, true)),
+        Term::Join(top, bits) if terms.constant_of(top) == Some(0) => Some((bits, false)),
+        _ => None,
+    }
+}
+
 /// A product and the sum that it is.
 struct Parts {
     product: Id,
@@ -82,13 +106,14 @@ struct Parts {
 /// When a factor is the upper bits of something: the whole times the other is this product, shifted, and that of the
 /// lower bits.
 fn in_parts(terms: &mut Terms, factor: Id, other: Id) -> Option<Parts> {
-    let (bits, signed) = match *terms.term(factor) {
-        Term::SignExtend(bits) => (bits, true),
-        Term::Join(top, bits) if terms.constant_of(top) == Some(0) => (bits, false),
-        _ => return None,
-    };
+    let (bits, signed) = extended(terms, factor)?;
     let (whole, low) = whole(terms, bits)?;
     let rest = terms.slice(whole, 0, low);
+    if factor == other
+        && let Some(parts) = square_in_parts(terms, factor, whole, rest)
+    {
+        return Some(parts);
+    }
     let whole = if signed {
         terms.sign_extended(whole, MAX_WIDTH)
     } else {
@@ -108,6 +133,32 @@ fn in_parts(terms: &mut Terms, factor: Id, other: Id) -> Option<Parts> {
     };
     let sum = terms.make(Term::Add(upper, lower), MAX_WIDTH);
     Some(Parts { product, sum, there })
+}
+
+/// The square of `u·2^r + l`, when `l` is multiplied by `u·2^(r+1) + l` somewhere: that product, and the square of u, shifted.
+fn square_in_parts(terms: &mut Terms, factor: Id, whole: Id, rest: Id) -> Option<Parts> {
+    let (bits, signed) = extended(terms, factor)?;
+    let low = terms.width(rest);
+    let zero = terms.constant(0, 1);
+    let below = terms.make(Term::Join(zero, rest), low + 1);
+    let between = terms.make(Term::Join(bits, below), terms.width(bits) + low + 1);
+    let [whole, between] = [whole, between].map(|it| {
+        if signed { terms.sign_extended(it, MAX_WIDTH) } else { terms.resized(it, MAX_WIDTH) }
+    });
+    let lower = terms.resized(rest, MAX_WIDTH);
+    let lower = Term::Product(lower, between);
+    let lower = if terms.has(&lower, MAX_WIDTH) {
+        terms.make(lower, MAX_WIDTH)
+    } else if has_row(terms, rest, between) {
+        rows(terms, rest, between)
+    } else {
+        return None;
+    };
+    let product = terms.make(Term::Product(whole, whole), MAX_WIDTH);
+    let upper = terms.make(Term::Product(factor, factor), MAX_WIDTH);
+    let upper = shifted(terms, upper, 2 * low);
+    let sum = terms.make(Term::Add(upper, lower), MAX_WIDTH);
+    Some(Parts { product, sum, there: true })
 }
 
 /// Bits with those of the same term below their lowest, and how many these are.
@@ -133,8 +184,8 @@ fn has_row(terms: &mut Terms, bits: Id, other: Id) -> bool {
         _ => other,
     };
     let (bit, width) = (terms.slice(bits, 0, 1), terms.width(narrow));
-    let zero = terms.constant(0, width);
-    terms.has(&Term::Choice(bit, narrow, zero), width)
+    let (zero, all) = (terms.constant(0, width), terms.sign_extended(bit, width));
+    terms.has(&Term::Choice(bit, narrow, zero), width) || terms.has(&Term::And(narrow, all), width)
 }
 
 /// The product of a few bits with 64.
@@ -148,7 +199,8 @@ fn rows(terms: &mut Terms, bits: Id, other: Id) -> Id {
     })
 }
 
-fn shifted(terms: &mut Terms, id: Id, by: u32) -> Id {
+/// With zeros below, of 64 bits.
+pub fn shifted(terms: &mut Terms, id: Id, by: u32) -> Id {
     if by == 0 {
         return id;
     }

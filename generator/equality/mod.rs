@@ -9,6 +9,7 @@
 
 mod carry_out;
 mod facts;
+mod lowest;
 mod solver;
 mod term;
 #[cfg(test)]
@@ -170,6 +171,8 @@ struct Comparison<'p> {
     products: Vec<Product>,
     /// The sums that products are which the pipeline has in parts.
     divided: HashMap<Id, Id>,
+    /// Products that the pipeline has, at once or in parts.
+    parts: Vec<Id>,
     /// The operands of the point.
     operands: Vec<Id>,
     proof: Proof,
@@ -196,6 +199,7 @@ impl<'p> Comparison<'p> {
             solver: Solver::new(solver, limit)?,
             products: Vec::new(),
             divided: HashMap::new(),
+            parts: Vec::new(),
             operands,
             proof: Proof::default(),
         })
@@ -434,6 +438,10 @@ impl<'p> Comparison<'p> {
         let results = self.results_of(stages);
         let nets = self.terms.cone(checkpoints.chain(results));
         let divided = facts::divided(&mut self.terms, nets.iter().copied());
+        self.parts = nets.iter().chain(divided.keys()).copied().collect();
+        self.parts.retain(|&it| matches!(self.terms.term(it), Term::Product(..)));
+        self.parts.sort();
+        self.parts.dedup();
         let wholes = Wholes::new(&self.terms, &nets, divided.values());
         let mut pending: Vec<Id> = divided.keys().copied().collect();
         pending.sort();
@@ -471,6 +479,7 @@ impl<'p> Comparison<'p> {
 
     /// Whether terms can all be 1: with the products divided as the pipeline has them, and else with all that is known of parts.
     fn ask(&mut self, wanted: Vec<Id>) -> Result<Said> {
+        self.divide_by_lowest(&wanted)?;
         let mut divided = wanted.clone();
         self.terms.replace(&self.divided, &mut divided);
         match self.solver.ask(&mut self.terms, &divided, &self.products, false)? {

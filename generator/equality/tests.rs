@@ -86,19 +86,27 @@ fn facts_hold_whatever_the_operands_are() {
     for round in 0..200 {
         let mut terms = Terms::default();
         let mut products = Vec::new();
+        let mut roots: Vec<Id> = Vec::new();
         let factors: Vec<Id> = (0..3)
             .map(|_| {
                 let width = 4 + random.next_u32() % 28;
                 let low = random.next_u32() % 12 % width;
                 let whole = terms.unknown(width);
                 let bits = terms.slice(whole, low, width - low);
+                if low > 0 && width < 31 {
+                    // The first row of the rest of a square.
+                    let (rest, zero) = (terms.slice(whole, 0, low), terms.constant(0, 1));
+                    let below = terms.make(Term::Join(zero, rest), low + 1);
+                    let between = terms.make(Term::Join(bits, below), width + 1);
+                    let (bit, none) = (terms.slice(rest, 0, 1), terms.constant(0, width + 1));
+                    roots.push(terms.choice(bit, between, none));
+                }
                 match random.next_u32() % 2 {
                     0 => terms.resized(bits, 64),
                     _ => terms.sign_extended(bits, 64),
                 }
             })
             .collect();
-        let mut roots: Vec<Id> = Vec::new();
         for pair in [[0, 1], [1, 2], [2, 2]] {
             let factors = pair.map(|at| factors[at]);
             let ranges = [random.next_u32() % 5000, random.next_u32() % 5000];

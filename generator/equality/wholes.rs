@@ -21,16 +21,7 @@ pub struct Wholes {
 impl Wholes {
     pub fn new<'i>(terms: &Terms, nets: &'i [Id], others: impl Iterator<Item = &'i Id>) -> Self {
         let cone = terms.cone(nets.iter().chain(others).copied());
-        let mut random = ChaCha8Rng::seed_from_u64(2);
-        let values: Vec<HashMap<Id, u64>> = (0..SAMPLES)
-            .map(|_| {
-                let key = random.next_u64();
-                terms.values(&cone, |number| {
-                    let mut one = ChaCha8Rng::seed_from_u64(key ^ u64::from(number));
-                    one.next_u64()
-                })
-            })
-            .collect();
+        let values: Vec<HashMap<Id, u64>> = samples(terms, &cone).collect();
         let mut known = HashMap::new();
         for signed in [false, true] {
             for &net in nets {
@@ -49,4 +40,23 @@ impl Wholes {
         let key: Vec<u64> = self.values.iter().map(|values| values[&id]).collect();
         self.nets.get(&key).copied()
     }
+}
+
+/// Whether two terms of one width have the same values for numbers at random.
+pub fn agree(terms: &Terms, one: Id, other: Id) -> bool {
+    let cone = terms.cone([one, other]);
+    terms.width(one) == terms.width(other)
+        && samples(terms, &cone).all(|values| values[&one] == values[&other])
+}
+
+/// Values of a cone's terms for numbers at random in place of the unknowns.
+fn samples(terms: &Terms, cone: &[Id]) -> impl Iterator<Item = HashMap<Id, u64>> {
+    let mut random = ChaCha8Rng::seed_from_u64(2);
+    (0..SAMPLES).map(move |_| {
+        let key = random.next_u64();
+        terms.values(cone, |number| {
+            let mut one = ChaCha8Rng::seed_from_u64(key ^ u64::from(number));
+            one.next_u64()
+        })
+    })
 }
