@@ -189,16 +189,17 @@ impl Streams {
     fn replay(&self, design: &glint::hdl::netlist::Design, passes: usize) -> Result<(f64, u64)> {
         let clocks = self.inputs[0].len();
         let inputs = self.inputs[0][0].len();
-        let lanes: Vec<[u64; LANES]> = (0..clocks * inputs)
-            .map(|at| std::array::from_fn(|lane| self.inputs[lane][at / inputs][at % inputs]))
-            .collect();
+        let port = |clock: usize, at: usize| {
+            std::array::from_fn(|lane: usize| self.inputs[lane][clock][at])
+        };
+        let row = |clock| (0..inputs).map(|at| port(clock, at)).collect();
+        let mut rows: Vec<Vec<[u64; LANES]>> = (0..clocks).map(row).collect();
         let mut simulator = Simulator::<LANES>::new(design)?;
         timed(|| {
             let mut sum = 0u64;
             for _ in 0..passes {
-                for now in lanes.chunks_exact(inputs) {
-                    simulator.inputs_mut().copy_from_slice(now);
-                    simulator.clock()?;
+                for row in &mut rows {
+                    simulator.clock_with(row)?;
                     let valid = simulator.lanes(self.valid);
                     let result = simulator.lanes(self.result);
                     for lane in 0..LANES {

@@ -188,13 +188,29 @@ pub const fn mask(width: u32) -> u64 {
 }
 
 /// `2^exponent`, exact.
+#[inline]
 pub fn exp2(exponent: i32) -> f64 {
-    libm::ldexp(1.0, exponent)
+    match exponent {
+        // A normal number, of which only the exponent is not 0.
+        -1022..=1023 => f64::from_bits(((exponent + 1023) as u64) << 52),
+        _ => libm::ldexp(1.0, exponent),
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn powers_of_two_are_exact_to_the_smallest() {
+        // 2^-1074 is the smallest positive number, 2^1023 the largest power.
+        let mut power = f64::from_bits(1);
+        for exponent in -1074..=1023 {
+            assert_eq!(exp2(exponent), power, "2^{exponent}");
+            power *= 2.0;
+        }
+        assert_eq!([exp2(-1075), exp2(1024)], [0.0, f64::INFINITY]);
+    }
 
     #[test]
     fn formats_read_and_print() {

@@ -52,7 +52,8 @@ impl<'a> Alone<'a> {
     /// A simulation that does not settle, or a VCD that cannot be written.
     pub(super) fn clock(&mut self) -> Result<Vec<u64>> {
         let address = self.simulator.value(self.binding.address);
-        let inputs = self.stream.clock(self.binding).to_vec();
+        self.stream.clock(self.binding);
+        let inputs = self.stream.inputs().to_vec();
         for (at, &bits) in inputs.iter().enumerate() {
             self.simulator.set(at, bits);
         }

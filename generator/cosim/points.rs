@@ -8,6 +8,8 @@
 //!
 //! Of a device that is no highlight, half of the points are those that its contract hints at.
 
+use std::sync::LazyLock;
+
 use crate::base::fixed::exp2;
 use crate::golden::{Contract, Highlight, Operand};
 
@@ -27,6 +29,12 @@ const LONG: u64 = 64;
 
 /// Halvings of the way from the peak by which a value is met: within some hundredths.
 const HALVINGS: u32 = 10;
+const _: () = assert!(HALVINGS.is_multiple_of(2), "they come in pairs");
+
+/// Parts of an octave, as many as the halvings can tell apart, and the powers of two that they make.
+const PARTS: usize = 1 << HALVINGS;
+static POWERS: LazyLock<[f64; PARTS]> =
+    LazyLock::new(|| std::array::from_fn(|part| libm::exp2(-(part as f64) / PARTS as f64)));
 
 /// A value of the formula that shows, and neither of its ends.
 const MIDDLE: f64 = 0.6;
@@ -83,9 +91,12 @@ impl<'a> Points<'a> {
     }
 
     /// Values, or what is nearest to them of what is drawn.
-    pub fn clamped(&self, values: Vec<i64>) -> Vec<i64> {
-        let pairs = values.into_iter().zip(&self.operands);
-        pairs.map(|(raw, operand)| raw.clamp(operand.domain.0, operand.domain.1)).collect()
+    pub fn clamped(&self, mut values: Vec<i64>) -> Vec<i64> {
+        values.truncate(self.operands.len());
+        for (raw, operand) in values.iter_mut().zip(&self.operands) {
+            *raw = (*raw).clamp(operand.domain.0, operand.domain.1);
+        }
+        values
     }
 
     /// The operands, in the order in which values are passed.
@@ -207,9 +218,9 @@ impl<'a> Points<'a> {
                 least * libm::pow(top / least, random.unit())
             }
         };
-        let [inner, outer] = way.crossing(highlight, target, exact);
+        let [inner, outer] = way.crossing(highlight, target, exact, far);
         let scale = if exact && random.once_in(2) { outer } else { inner };
-        far.copy_from_slice(&way.at(scale));
+        way.go(scale, far);
     }
 
     /// The last control operands on the way from the peak to these for which the formula is above what it is at its
@@ -217,14 +228,18 @@ impl<'a> Points<'a> {
     pub fn edge(&self, control: &[i64]) -> Option<[Vec<i64>; 2]> {
         let (way, highlight) = self.way(control).zip(self.highlight)?;
         let target = way.bottom + f64::MIN_POSITIVE;
-        Some(way.crossing(highlight, target, true).map(|scale| way.at(scale)))
+        let mut at = control.to_vec();
+        Some(way.crossing(highlight, target, true, &mut at).map(|scale| {
+            way.go(scale, &mut at);
+            at.clone()
+        }))
     }
 
     /// Moves control operands toward the peak, to about a value of the formula.
     pub fn to_value(&self, control: &mut [i64], value: f64) {
         if let Some((way, highlight)) = self.way(control).zip(self.highlight) {
-            let [inner, _] = way.crossing(highlight, value, false);
-            control.copy_from_slice(&way.at(inner));
+            let [inner, _] = way.crossing(highlight, value, false, control);
+            way.go(inner, control);
         }
     }
 
@@ -239,7 +254,7 @@ impl<'a> Points<'a> {
             let dim = |raw: &i64| {
                 let mut there = control.to_vec();
                 there[at] = *raw;
-                (highlight.reference(&highlight.point(&there, 0)) - MIDDLE).abs()
+                (value(highlight, &there) - MIDDLE).abs()
             };
             let choices = [control[at], low, high];
             let best = choices.into_iter().min_by(|a, b| dim(a).total_cmp(&dim(b)));
@@ -251,11 +266,10 @@ impl<'a> Points<'a> {
     fn way(&self, far: &[i64]) -> Option<Way> {
         let highlight = self.highlight?;
         let peak = self.peak(highlight, far);
-        let value = |control: &[i64]| highlight.reference(&highlight.point(control, 0));
-        let top = value(&peak);
+        let top = value(highlight, &peak);
         let mut far = far.to_vec();
         for _ in 0..OCTAVES {
-            let bottom = value(&far);
+            let bottom = value(highlight, &far);
             if bottom < top {
                 return Some(Way { peak, far, top, bottom });
             }
@@ -329,35 +343,65 @@ struct Way {
 }
 
 impl Way {
-    fn at(&self, scale: f64) -> Vec<i64> {
+    /// Takes operands there.
+    #[inline]
+    fn go(&self, scale: f64, operands: &mut [i64]) {
         let ends = self.peak.iter().zip(&self.far);
-        ends.map(|(&peak, &far)| between(peak, far, scale)).collect()
+        for (operand, (&peak, &far)) in operands.iter_mut().zip(ends) {
+            *operand = between(peak, far, scale);
+        }
     }
 
-    /// Where the formula crosses a value: just above it, and below; to the very step if that is wanted.
-    fn crossing(&self, highlight: &Highlight, target: f64, exact: bool) -> [f64; 2] {
-        let mut at = self.far.clone();
+    /// Where the formula crosses a value: just above it, and below; to the very step if that is wanted. `at` takes the
+    /// control operands that are tried.
+    fn crossing(
+        &self,
+        highlight: &Highlight,
+        target: f64,
+        exact: bool,
+        at: &mut [i64],
+    ) -> [f64; 2] {
         let mut reaches = |scale: f64| {
-            for ((at, &peak), &far) in at.iter_mut().zip(&self.peak).zip(&self.far) {
-                *at = between(peak, far, scale);
-            }
-            highlight.reference(&highlight.point(&at, 0)) >= target
+            self.go(scale, at);
+            value(highlight, at) >= target
         };
         // The formula falls within a narrow part of the way: by octaves.
         let spans = self.peak.iter().zip(&self.far).map(|(peak, far)| peak.abs_diff(*far));
         let span = spans.max().unwrap_or(1);
-        let (mut inner, mut outer) = (f64::from(64 - span.leading_zeros()) + 1.0, 0.0);
-        for _ in 0..HALVINGS {
-            let middle = f64::midpoint(inner, outer);
-            if reaches(libm::exp2(-middle)) { inner = middle } else { outer = middle }
+        let octaves = (64 - span.leading_zeros()) as usize + 1;
+        let (mut inner, mut outer) = (PARTS, 0);
+        // Two halvings at once: of three places none waits for what another says.
+        while inner - outer > 1 {
+            let middle = usize::midpoint(inner, outer);
+            let [near, far] = [inner, outer].map(|end| usize::midpoint(end, middle));
+            let [at_near, at_middle, at_far] =
+                [near, middle, far].map(|parts| reaches(power(octaves * parts)));
+            (inner, outer) = match (at_middle, at_near, at_far) {
+                (true, _, true) => (far, outer),
+                (true, _, false) => (middle, far),
+                (false, true, _) => (near, middle),
+                (false, false, _) => (inner, near),
+            };
         }
-        let (mut inner, mut outer) = (libm::exp2(-inner), libm::exp2(-outer));
+        let [mut inner, mut outer] = [inner, outer].map(|parts| power(octaves * parts));
         while exact && (outer - inner) * span as f64 > 0.5 {
             let middle = f64::midpoint(inner, outer);
             if reaches(middle) { inner = middle } else { outer = middle }
         }
         [inner, outer]
     }
+}
+
+/// 2 to the power of so many parts of an octave, downwards: exactly what [`libm::exp2`] says of it.
+#[inline]
+fn power(parts: usize) -> f64 {
+    POWERS[parts % PARTS] * exp2(-((parts / PARTS) as i32))
+}
+
+/// The formula at control operands.
+#[inline]
+fn value(highlight: &Highlight, control: &[i64]) -> f64 {
+    highlight.reference(&highlight.point(control, 0))
 }
 
 /// So far on the way from `peak` to `far`.
@@ -435,6 +479,35 @@ pub(super) mod tests {
             0.0 < f && f < 1.0
         });
         inside.count() as f64 / 4000.0
+    }
+
+    #[test]
+    fn powers_are_those_of_the_library_bit_for_bit() {
+        for octaves in 1..=65 {
+            for parts in 0..=PARTS {
+                let exponent = octaves as f64 * parts as f64 / PARTS as f64;
+                assert_eq!(power(octaves * parts), libm::exp2(-exponent), "2^-{exponent}");
+            }
+        }
+    }
+
+    /// Halved once a step, each by what the formula says in the middle.
+    #[test]
+    fn a_crossing_is_where_single_halvings_lead() {
+        let pulse = Pulse::pair(true);
+        let way = Way { peak: vec![700, 700], far: vec![1 << 20, 700], top: 1.0, bottom: 0.0 };
+        let octaves = 21.0;
+        for step in 1..100 {
+            let target = f64::from(step) / 100.0;
+            let (mut inner, mut outer) = (octaves, 0.0);
+            for _ in 0..HALVINGS {
+                let middle = f64::midpoint(inner, outer);
+                let x = between(700, 1 << 20, libm::exp2(-middle));
+                if pulse.reference(&[x, 700]) >= target { inner = middle } else { outer = middle }
+            }
+            let crossing = way.crossing(&pulse, target, false, &mut [0; 2]);
+            assert_eq!(crossing, [inner, outer].map(|it| libm::exp2(-it)), "{target}");
+        }
     }
 
     #[test]

@@ -52,6 +52,8 @@ pub struct Stimulus {
     start: usize,
     phase: Phase,
     inputs: Vec<u64>,
+    /// Nothing is driven but `rst_n`, high.
+    idle: bool,
     /// The raw operands of the next point, in the order of the points.
     next: Vec<i64>,
     /// The raw values that the registers were last given while the device could take them.
@@ -103,6 +105,7 @@ impl Stimulus {
             start,
             phase: Phase::Reset(2),
             inputs: vec![0; names.len()],
+            idle: false,
             next: vec![0; points.operands().len()],
             accepted: vec![0; points.operands().len()],
             disturbed: false,
@@ -129,10 +132,14 @@ impl Stimulus {
 
     /// The inputs of the next clock, given `busy` as it stands before the edge.
     pub fn next(&mut self, busy: bool, points: &Points) -> &[u64] {
-        self.inputs.fill(0);
-        self.inputs[self.reset] = 1;
+        if !self.idle {
+            self.inputs.fill(0);
+            self.inputs[self.reset] = 1;
+            self.idle = true;
+        }
         match self.phase {
             Phase::Reset(left) => {
+                self.idle = false;
                 self.inputs[self.reset] = 0;
                 self.disturbed = true;
                 if !self.first {
@@ -155,6 +162,12 @@ impl Stimulus {
         &self.inputs
     }
 
+    /// Whether the latest inputs are those of any clock in which nothing is driven.
+    #[inline]
+    pub fn is_idle(&self) -> bool {
+        self.idle
+    }
+
     /// The latest inputs.
     #[inline]
     pub fn inputs(&self) -> &[u64] {
@@ -162,6 +175,7 @@ impl Stimulus {
     }
 
     fn begin(&mut self) {
+        self.idle = false;
         self.inputs[self.start] = 1;
         self.disturbed = false;
         self.first = false;
@@ -181,6 +195,7 @@ impl Stimulus {
             }
             self.phase = Phase::Running(reset.map(|clocks| clocks.saturating_sub(1)));
             if reset == Some(0) {
+                self.idle = false;
                 self.inputs[self.reset] = 0;
                 self.disturbed = true;
                 self.phase = Phase::Reset(self.random.below(3) as u32);
@@ -225,6 +240,7 @@ impl Stimulus {
 
     /// Writes of the operands in `left`: one, or all at once, perhaps together with `start`.
     fn write(&mut self, left: u64) {
+        self.idle = false;
         let now = match self.random.below(4) {
             0 if left != 0 => 1 << left.trailing_zeros(),
             1 => left & self.random.bits(),
@@ -257,6 +273,7 @@ impl Stimulus {
 
     /// Strobes, data and `start` at random: ignored while busy.
     fn noise(&mut self, busy: bool, points: &Points) {
+        self.idle = false;
         let random = &mut self.random;
         for driven in &self.operands {
             let bits = match driven.at {
@@ -274,7 +291,7 @@ impl Stimulus {
 
     /// Notes what the registers take at this edge.
     fn accept(&mut self, busy: bool) {
-        if busy {
+        if busy || self.idle {
             return;
         }
         for driven in &self.operands {

@@ -90,9 +90,9 @@ impl Stream {
         }
     }
 
-    /// Clocks the model, and returns the inputs with which that was done.
+    /// Clocks the model.
     #[inline]
-    pub(super) fn clock(&mut self, binding: &Binding) -> &[u64] {
+    pub(super) fn clock(&mut self, binding: &Binding) {
         let inputs = match &mut self.source {
             Source::Random { stimulus, .. } => stimulus.next(self.busy, &binding.points),
             Source::Combinations(combinations) => combinations.next(self.busy),
@@ -106,9 +106,23 @@ impl Stream {
             }
         }
         self.seen.clocks += 1;
+    }
+
+    /// The inputs of the latest clock.
+    #[inline]
+    pub(super) fn inputs(&self) -> &[u64] {
         match &self.source {
             Source::Random { stimulus, .. } => stimulus.inputs(),
             Source::Combinations(combinations) => combinations.inputs(),
+        }
+    }
+
+    /// Whether the latest inputs are those of any clock in which the stream drives nothing.
+    #[inline]
+    pub(super) fn is_idle(&self) -> bool {
+        match &self.source {
+            Source::Random { stimulus, .. } => stimulus.is_idle(),
+            Source::Combinations(_) => false,
         }
     }
 

@@ -1,5 +1,7 @@
 //! Streams side by side in the lanes of one simulator.
 
+use std::mem;
+
 use anyhow::Result;
 
 use super::alone::Alone;
@@ -11,7 +13,7 @@ use crate::hdl::sim::Simulator;
 /// Clocks for which each stream in turn is ahead of the simulator. Its model and stimulus then stay in
 /// the processor's cache and their branches are foreseen, and what they leave for the simulator still
 /// fits in.
-const AHEAD: usize = 8;
+const AHEAD: usize = 4;
 
 /// As many streams as there are lanes, or fewer.
 ///
@@ -31,6 +33,8 @@ pub(super) struct Together<'a, const LANES: usize> {
 /// The inputs of a clock and what is predicted after it, for each lane.
 struct Clock<const LANES: usize> {
     inputs: Vec<[u64; LANES]>,
+    /// Lanes whose inputs are those of a clock in which nothing is driven.
+    idle: [bool; LANES],
     predicted: Vec<[u64; LANES]>,
     /// Streams that have ended before are not compared: all ones where one has not.
     compared: [u64; LANES],
@@ -50,6 +54,7 @@ impl<'a, const LANES: usize> Together<'a, LANES> {
         let stream = |course| Stream::new(binding, course, busy);
         let clock = || Clock {
             inputs: vec![[0; LANES]; simulator.inputs().len()],
+            idle: [false; LANES],
             predicted: vec![[0; LANES]; binding.compared.len()],
             compared: [0; LANES],
         };
@@ -88,9 +93,13 @@ impl<'a, const LANES: usize> Together<'a, LANES> {
                     continue;
                 }
                 clock.compared[lane] = u64::MAX;
-                let inputs = stream.clock(self.binding);
-                for (input, &bits) in clock.inputs.iter_mut().zip(inputs) {
-                    input[lane] = bits;
+                stream.clock(self.binding);
+                let was_idle = mem::replace(&mut clock.idle[lane], stream.is_idle());
+                // Most of the time nothing is driven, and stands there already.
+                if !(was_idle && clock.idle[lane]) {
+                    for (input, &bits) in clock.inputs.iter_mut().zip(stream.inputs()) {
+                        input[lane] = bits;
+                    }
                 }
                 for (column, &bits) in clock.predicted.iter_mut().zip(stream.predicted()) {
                     column[lane] = bits;
@@ -99,9 +108,8 @@ impl<'a, const LANES: usize> Together<'a, LANES> {
             }
             points += stream.seen.points - before;
         }
-        for clock in &self.ahead {
-            self.simulator.inputs_mut().copy_from_slice(&clock.inputs);
-            self.simulator.clock()?;
+        for clock in &mut self.ahead {
+            self.simulator.clock_with(&mut clock.inputs)?;
             let nets = &self.binding.compared;
             let differences = self.simulator.differences(nets, &clock.predicted, None);
             let lanes = differences.iter().zip(&clock.compared);

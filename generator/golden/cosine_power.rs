@@ -79,6 +79,9 @@ struct Device {
 }
 
 impl Datapath for Device {
+    const LOADS_ALONE: bool = true;
+
+    #[inline]
     fn outputs(&self, s: &mut State) {
         self.products.show(self.reflectance(s), s);
     }
@@ -90,6 +93,7 @@ impl Shading for Device {
         s[self.accumulator]
     }
 
+    #[inline]
     fn products(&self) -> &ProductSlots {
         &self.products
     }

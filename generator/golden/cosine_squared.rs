@@ -107,6 +107,7 @@ impl AsRef<Walker> for Device {
 }
 
 impl Datapath for Device {
+    #[inline]
     fn edge(&self, s: &mut State) {
         let Some((address, cosine)) = self.stages else {
             s[self.cosine] = self.it.cosine_of(s[self.walker.angle]);
@@ -119,6 +120,7 @@ impl Datapath for Device {
         s[address] = self.it.step_of(s[self.walker.angle]);
     }
 
+    #[inline]
     fn outputs(&self, s: &mut State) {
         // Of a staged line an edge makes them.
         if self.stages.is_none() {

@@ -252,6 +252,9 @@ struct Device {
 }
 
 impl Datapath for Device {
+    const LOADS_ALONE: bool = true;
+
+    #[inline]
     fn outputs(&self, s: &mut State) {
         self.products.show(s[self.reflectance], s);
     }
@@ -263,6 +266,7 @@ impl Shading for Device {
         s[self.reflectance]
     }
 
+    #[inline]
     fn products(&self) -> &ProductSlots {
         &self.products
     }

@@ -220,6 +220,7 @@ impl AsRef<Walker> for Device {
 }
 
 impl Datapath for Device {
+    #[inline]
     fn edge(&self, s: &mut State) {
         let n = s[self.exponent];
         if let Some(stages) = &self.stages {
@@ -231,6 +232,7 @@ impl Datapath for Device {
         s[self.root] = self.it.root(n);
     }
 
+    #[inline]
     fn outputs(&self, s: &mut State) {
         // Of a staged line an edge makes them.
         if self.stages.is_none() {

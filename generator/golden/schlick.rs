@@ -54,6 +54,9 @@ struct Device {
 }
 
 impl Datapath for Device {
+    const LOADS_ALONE: bool = true;
+
+    #[inline]
     fn outputs(&self, s: &mut State) {
         self.products.show(self.reflectance(s), s);
     }
@@ -65,6 +68,7 @@ impl Shading for Device {
         s[self.quotient]
     }
 
+    #[inline]
     fn products(&self) -> &ProductSlots {
         &self.products
     }

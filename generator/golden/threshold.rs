@@ -110,6 +110,9 @@ struct Device {
 }
 
 impl Datapath for Device {
+    const LOADS_ALONE: bool = true;
+
+    #[inline]
     fn outputs(&self, s: &mut State) {
         self.products.show(self.reflectance(s), s);
     }
@@ -121,6 +124,7 @@ impl Shading for Device {
         s[self.intensity]
     }
 
+    #[inline]
     fn products(&self) -> &ProductSlots {
         &self.products
     }

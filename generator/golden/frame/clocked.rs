@@ -34,6 +34,7 @@ impl Frame {
         };
         let is_register =
             |slot: Slot| self.shown.iter().any(|shown| !shown.output && shown.slot == slot);
+        let shows_flags = self.shown.iter().any(|shown| self.flags.contains(&shown.slot));
         let logic = (self.shown.iter().enumerate())
             .filter(|(_, it)| it.output && !self.flags.contains(&it.slot) && !is_register(it.slot))
             .map(|(at, _)| at)
@@ -53,14 +54,16 @@ impl Frame {
                     .into_iter()
                     .map(|shown| (shown.slot, mask(shown.format.width())))
                     .collect(),
+                levels: levels(&program, &self.flags),
                 flags: self.flags,
+                shows_flags,
                 valid_delay: self.valid_delay,
                 program,
                 logic,
                 taken: Vec::new(),
             }),
         };
-        model.settle();
+        model.settle(false);
         model
     }
 }
@@ -75,9 +78,19 @@ pub(super) struct Fixed<D> {
     /// Results with the registers that take them.
     pub(super) taken: Vec<(Slot, Slot)>,
     pub(super) flags: Vec<Slot>,
+    /// What each microinstruction makes of them.
+    pub(super) levels: Vec<Vec<i64>>,
+    /// Some of them are outputs.
+    pub(super) shows_flags: bool,
     pub(super) valid_delay: u32,
     pub(super) inputs: Vec<String>,
     pub(super) signals: Vec<String>,
+}
+
+/// The levels of flags in each microinstruction.
+pub(super) fn levels<D>(program: &[Microinstruction<D>], flags: &[Slot]) -> Vec<Vec<i64>> {
+    let level = |it: &Microinstruction<D>, flag| i64::from(it.asserts.contains(flag));
+    program.iter().map(|it| flags.iter().map(|flag| level(it, flag)).collect()).collect()
 }
 
 /// A device, clock by clock.
@@ -110,19 +123,16 @@ impl<D: Datapath> Clocked<D> {
         self.values[0] == 1
     }
 
-    /// What the outputs show of the state.
+    /// What is shown of the state, of which nothing that is shown has changed if it is `still`.
     #[inline]
-    pub(super) fn settle(&mut self) {
+    pub(super) fn settle(&mut self, still: bool) {
         let it = &*self.fixed;
         let Handshake { run, address } = self.handshake;
         let here = &it.program[address as usize];
-        for &flag in &it.flags {
-            self.state[flag] = 0;
+        let state = &mut *self.state.0;
+        for (flag, &level) in it.flags.iter().zip(&it.levels[address as usize]) {
+            state[flag.0] = level;
         }
-        for &flag in &here.asserts {
-            self.state[flag] = 1;
-        }
-        self.datapath.outputs(&mut self.state);
         let valid = match it.valid_delay {
             0 => here.valid,
             clocks => self.pulses >> (clocks - 1) & 1 == 1,
@@ -131,8 +141,13 @@ impl<D: Datapath> Clocked<D> {
         let handshake = [valid.into(), run.into(), done.into(), run.into(), address.into()];
         let (first, then) = self.values.split_at_mut(HANDSHAKE.len());
         first.copy_from_slice(&handshake);
-        for (value, &(slot, mask)) in then.iter_mut().zip(&it.shown) {
-            *value = self.state[slot] as u64 & mask;
+        if still {
+            return;
+        }
+        self.datapath.outputs(&mut self.state);
+        let state = &*self.state.0;
+        for (value, (slot, mask)) in then.iter_mut().zip(&it.shown) {
+            *value = state[slot.0] as u64 & mask;
         }
     }
 }
@@ -167,9 +182,11 @@ impl<D: Datapath> Model for Clocked<D> {
             Next::End => After::End,
         };
         (here.does)(datapath, &mut self.state);
+        let mut still = here.idle && !here.takes_results && D::LOADS_ALONE && !it.shows_flags;
         if !self.handshake.run {
             for (operand, ports) in it.operands.iter().zip(inputs[2..].chunks_exact(2)) {
                 if ports[1] & 1 == 1 {
+                    still = false;
                     let raw = operand.format.raw(ports[0]) as i64;
                     self.state[operand.slot] = raw.clamp(operand.min, operand.max);
                 }
@@ -177,7 +194,7 @@ impl<D: Datapath> Model for Clocked<D> {
         }
         self.pulses = if rst_n { self.pulses << 1 | u64::from(here.valid) } else { 0 };
         self.handshake.clock(rst_n, start, after);
-        self.settle();
+        self.settle(still);
     }
 
     fn values(&self) -> &[u64] {

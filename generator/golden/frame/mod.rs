@@ -78,6 +78,10 @@ impl IndexMut<Slot> for State {
 
 /// What a device computes beside its microinstructions.
 pub trait Datapath: Send + Sync + 'static {
+    /// Registers and outputs change by loads alone: [`Datapath::edge`] changes none, and outputs show nothing but operands
+    /// and registers. After a clock in which nothing is loaded they are then not looked at.
+    const LOADS_ALONE: bool = false;
+
     /// What every rising edge does, whatever microinstruction is in force: a synchronous ROM reads. It comes
     /// before the microinstruction, and sees the values before the edge.
     #[inline]
@@ -114,6 +118,8 @@ impl<D> Copy for Next<D> {}
 /// One microinstruction.
 pub struct Microinstruction<D> {
     does: Does<D>,
+    /// It does nothing.
+    idle: bool,
     next: Next<D>,
     valid: bool,
     asserts: Vec<Slot>,
@@ -129,13 +135,14 @@ impl<D> Clone for Microinstruction<D> {
 
 /// A microinstruction that changes no register.
 pub fn idle<D>() -> Microinstruction<D> {
-    step(|_, _| ())
+    Microinstruction { idle: true, ..step(|_, _| ()) }
 }
 
 /// A microinstruction by what its rising edge does to the registers.
 pub fn step<D>(does: fn(&D, &mut State)) -> Microinstruction<D> {
     Microinstruction {
         does,
+        idle: false,
         next: Next::Following,
         valid: false,
         asserts: Vec::new(),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use super::clocked::{Fixed, HANDSHAKE};
+use super::clocked::{Fixed, HANDSHAKE, levels};
 use super::{Clocked, Datapath, Microinstruction, Next, Slot, State, idle};
 
 impl<D: Datapath> Clocked<D> {
@@ -33,6 +33,7 @@ impl<D: Datapath> Clocked<D> {
             signals.push(format!("{}_reg", signals[HANDSHAKE.len() + at]));
         }
         let fixed = Fixed {
+            levels: levels(&program, &it.flags),
             program,
             shown,
             taken,
@@ -41,6 +42,7 @@ impl<D: Datapath> Clocked<D> {
             logic: Vec::new(),
             operands: it.operands.clone(),
             flags: it.flags.clone(),
+            shows_flags: it.shows_flags,
             inputs: it.inputs.clone(),
         };
         let mut model = Self {
@@ -51,7 +53,7 @@ impl<D: Datapath> Clocked<D> {
             values: vec![0; fixed.signals.len()].into(),
             fixed: Arc::new(fixed),
         };
-        model.settle();
+        model.settle(false);
         Some(model)
     }
 }

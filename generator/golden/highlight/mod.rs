@@ -115,6 +115,8 @@ pub trait Reflectance: Send + Sync {
 /// The accuracy contract of a device that multiplies by a reflectance.
 pub struct Highlight {
     reflectance: Box<dyn Reflectance>,
+    /// A computation has one result, at the point of its operands.
+    single: bool,
     products: Products,
     operands: Vec<Operand>,
 }
@@ -128,7 +130,8 @@ impl Highlight {
     ) -> Self {
         let mut operands = control;
         operands.extend(products.operands.iter().cloned());
-        Self { reflectance: Box::new(reflectance), products, operands }
+        let single = reflectance.length().is_none();
+        Self { reflectance: Box::new(reflectance), single, products, operands }
     }
 
     /// The contract of a reflectance with the control operands cos γ and n.
@@ -178,9 +181,10 @@ impl Highlight {
     /// As [`Reflectance::point`]: the operands themselves where a computation has one result.
     #[inline]
     pub fn point<'c>(&self, control: &'c [i64], index: u64) -> Cow<'c, [i64]> {
-        match self.reflectance.length() {
-            None => Cow::Borrowed(control),
-            Some(_) => Cow::Owned(self.reflectance.point(control, index)),
+        if self.single {
+            Cow::Borrowed(control)
+        } else {
+            Cow::Owned(self.reflectance.point(control, index))
         }
     }
 

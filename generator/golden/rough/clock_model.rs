@@ -33,12 +33,16 @@ pub(super) struct Device {
 }
 
 impl Datapath for Device {
+    const LOADS_ALONE: bool = true;
+
+    #[inline]
     fn edge(&self, s: &mut State) {
         let earlier = s[self.addressed];
         s[self.addressed] = s[if s[self.turned] == 1 { self.cos_dgamma } else { self.cos_gamma }];
         s[self.shown] = if self.it.params.sine_synchronous { earlier } else { s[self.addressed] };
     }
 
+    #[inline]
     fn outputs(&self, s: &mut State) {
         self.products.show(self.reflectance(s), s);
     }
@@ -50,6 +54,7 @@ impl Shading for Device {
         self.it.f_of(s[self.result])
     }
 
+    #[inline]
     fn products(&self) -> &ProductSlots {
         &self.products
     }
@@ -57,6 +62,7 @@ impl Shading for Device {
 
 impl Device {
     /// The output of ROM 18.
+    #[inline]
     fn sine(&self, s: &State) -> i64 {
         self.it.sine.at(s[self.shown])
     }

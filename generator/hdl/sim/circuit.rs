@@ -1,5 +1,6 @@
 //! A design as one block of a rust_hdl circuit.
 
+use std::mem;
 use std::sync::Arc;
 
 use anyhow::{Result, anyhow};
@@ -121,6 +122,16 @@ impl<const LANES: usize> Circuit<LANES> {
     pub fn inputs_mut(&mut self) -> &mut [[u64; LANES]] {
         self.input_set = true;
         &mut self.inputs
+    }
+
+    /// Exchanges the input ports, in order of declaration, for others.
+    ///
+    /// # Panics
+    /// When their number is another.
+    pub fn swap_inputs(&mut self, inputs: &mut Vec<[u64; LANES]>) {
+        assert_eq!(inputs.len(), self.inputs.len(), "one for each input port");
+        mem::swap(&mut self.inputs, inputs);
+        self.input_set = true;
     }
 
     /// The bit pattern of a net in each lane.

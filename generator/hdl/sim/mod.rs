@@ -144,6 +144,22 @@ impl<const LANES: usize> Simulator<LANES> {
         self.half(true)
     }
 
+    /// One clock in which the input ports, in order of position, carry these bits: read where they stand, not copied.
+    /// From the next on, what was set before holds again.
+    ///
+    /// # Errors
+    /// Those of [`Simulator::clock`].
+    ///
+    /// # Panics
+    /// When there are more or fewer than ports.
+    #[inline]
+    pub fn clock_with(&mut self, inputs: &mut Vec<[u64; LANES]>) -> Result<()> {
+        self.circuit.swap_inputs(inputs);
+        let clocked = self.clock();
+        self.circuit.swap_inputs(inputs);
+        clocked
+    }
+
     /// Brings all nets up to date with inputs that were set since the last clock, without an edge.
     /// The next clock does not depend on whether this was called.
     ///

@@ -174,3 +174,18 @@ fn settling_shows_inputs_without_a_clock() {
     s.clock().unwrap();
     assert_eq!(s.value(q), 0xfe);
 }
+
+#[test]
+fn a_clock_with_inputs_of_its_own_leaves_those_that_were_set() {
+    let mut b = Build::new();
+    let data = b.input("data", BYTE);
+    let q = b.register("q", BYTE);
+    b.of(q).data = Some(data);
+    let mut s: Simulator<2> = Simulator::new(&b.design).unwrap();
+    s.set_lanes(1, [1, 2]);
+    let mut inputs = vec![[1; 2], [3, 4]];
+    s.clock_with(&mut inputs).unwrap();
+    assert_eq!((s.lanes(q), &inputs[..]), ([3, 4], [[1; 2], [3, 4]].as_slice()));
+    s.clock().unwrap();
+    assert_eq!(s.lanes(q), [1, 2]);
+}
