@@ -229,14 +229,10 @@ module schlick_pipelined (
     end
 
     // Stage 5, part of: next bit of the quotient
-    reg         [29:0] quotient_divisor_s6;                     // u10.20: the divisor
-    // the divisor fits: the next bit of the quotient
-    reg                quotient_bit_s6;
-    reg         [30:0] quotient_remainder_shifted_scaled_2_s6;  // u11.20
-    // s11.20: negative where the divisor does not fit
-    reg  signed [31:0] quotient_trial_2_s6;
-    // the divisor fits: the next bit of the quotient
-    reg                quotient_bit_2_s6;
+    reg  [29:0] quotient_divisor_s6;      // u10.20: the divisor
+    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
+    reg  [29:0] quotient_remainder_2_s6;
+    reg  [1:0]  quotient_s6;              // the quotient, which bits enter at the bottom
 
     // the divisor fits: the next bit of the quotient
     wire quotient_bit_s5 = ~quotient_trial_s5[31];
@@ -255,13 +251,18 @@ module schlick_pipelined (
     // the divisor fits: the next bit of the quotient
     wire quotient_bit_2_s5 = ~quotient_trial_2_s5[31];
 
+    // s11.20
+    wire signed [31:0] quotient_left_2_s5 = quotient_bit_2_s5 ? quotient_trial_2_s5 : {1'b0,
+            quotient_remainder_s5, 1'b0};
+
+    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
+    wire [29:0] quotient_remainder_2_s5 = quotient_left_2_s5[29:0];
+
     always @(posedge clk) begin
         if (advance) begin
             quotient_divisor_s6 <= quotient_divisor_s5;
-            quotient_bit_s6 <= quotient_bit_s5;
-            quotient_remainder_shifted_scaled_2_s6 <= {quotient_remainder_s5, 1'b0};
-            quotient_trial_2_s6 <= quotient_trial_2_s5;
-            quotient_bit_2_s6 <= quotient_bit_2_s5;
+            quotient_remainder_2_s6 <= quotient_remainder_2_s5;
+            quotient_s6 <= {quotient_bit_s5, quotient_bit_2_s5};
         end
     end
 
@@ -270,13 +271,6 @@ module schlick_pipelined (
     // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
     reg  [29:0] quotient_remainder_3_s7;
     reg  [2:0]  quotient_2_s7;            // the quotient, which bits enter at the bottom
-
-    // s11.20
-    wire signed [31:0] quotient_left_2_s6 = quotient_bit_2_s6 ? quotient_trial_2_s6 : {1'b0,
-            quotient_remainder_shifted_scaled_2_s6};
-
-    // u10.20: the dividend, then what the bits so far leave of it, at most the divisor
-    wire [29:0] quotient_remainder_2_s6 = quotient_left_2_s6[29:0];
 
     // s11.20: negative where the divisor does not fit
     wire signed [31:0] quotient_trial_3_s6 = {1'b0, quotient_remainder_2_s6, 1'b0} - {2'd0,
@@ -296,7 +290,7 @@ module schlick_pipelined (
         if (advance) begin
             quotient_divisor_s7 <= quotient_divisor_s6;
             quotient_remainder_3_s7 <= quotient_remainder_3_s6;
-            quotient_2_s7 <= {quotient_bit_s6, quotient_bit_2_s6, quotient_bit_3_s6};
+            quotient_2_s7 <= {quotient_s6, quotient_bit_3_s6};
         end
     end
 
@@ -560,7 +554,7 @@ module schlick_pipelined (
     assign blue_out = blue_intensity_s16;  // intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, denominator_s4[30], quotient_left_s5[31:30], quotient_left_2_s6[31:30],
+    wire unused = &{1'b0, denominator_s4[30], quotient_left_s5[31:30], quotient_left_2_s5[31:30],
             quotient_left_3_s6[31:30], quotient_left_4_s7[31:30], quotient_left_5_s8[31:30],
             quotient_left_6_s9[31:30], quotient_left_7_s10[31:30], quotient_left_8_s11[31:30],
             quotient_left_9_s12[31:30], quotient_trial_10_s13[30:0], red_product_s14[8:0],

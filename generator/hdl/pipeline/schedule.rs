@@ -132,9 +132,16 @@ impl<'a> Problems<'a> {
             None => target.delay(graph, id),
         });
         let mut delay: Vec<f64> = delay.collect();
-        // Look-up tables and sums take an inverter with them, a multiplier does not.
+        // Look-up tables and sums take an inverter with them, a multiplier does not. Where its clock is short one that others
+        // take too counts as well: it is not worth a second one.
         for id in inverted_factors(graph, &live) {
-            delay[id.index()] = target.logic;
+            let alone = |user: &NetId| {
+                let cell = &graph.node(*user).cell;
+                cell.is_wiring() || matches!(cell, Cell::Op(Op::Mul(..)))
+            };
+            if registered.is_some() || users[id.index()].iter().all(alone) {
+                delay[id.index()] = target.logic;
+            }
         }
         let setup = nodes().map(|id| target.setup(graph, id)).collect();
         let clocked = nodes().map(|id| match product(id) {
