@@ -139,6 +139,9 @@ fn in_parts(terms: &mut Terms, factor: Id, other: Id) -> Option<Parts> {
 fn square_in_parts(terms: &mut Terms, factor: Id, whole: Id, rest: Id) -> Option<Parts> {
     let (bits, signed) = extended(terms, factor)?;
     let low = terms.width(rest);
+    if terms.width(whole) >= MAX_WIDTH || 2 * low >= MAX_WIDTH {
+        return None;
+    }
     let zero = terms.constant(0, 1);
     let below = terms.make(Term::Join(zero, rest), low + 1);
     let between = terms.make(Term::Join(bits, below), terms.width(bits) + low + 1);
