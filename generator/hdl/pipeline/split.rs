@@ -45,10 +45,7 @@ fn product(
         graph.op(Op::Mul(a, b), format, label)
     } else if !format.signed && reaches_a_power_of_two(graph, wide) {
         below_the_highest(graph, target, [wide, narrow], format, label)
-    } else if let Some(&positive) =
-        [a, b].iter().find(|&&it| format.signed && graph.node(it).range.0 >= 0)
-    {
-        let other = if positive == a { b } else { a };
+    } else if let Some([positive, other]) = with_a_sign(graph, [a, b]) {
         below_the_sign(graph, target, positive, other, format, label)
     } else {
         cut(graph, target, [wide, narrow], limit, format, label)
@@ -90,6 +87,13 @@ fn below_the_highest(
     let bits = if wide == narrow { 2 * places + 1 } else { places + width };
     let whole = graph.op(whole, unsigned(bits), &unnamed(label));
     graph.op(Op::Extend(whole), format, label)
+}
+
+/// Of two signed factors the one that is never negative, and the other, which has bits below its sign.
+fn with_a_sign(graph: &Graph, [a, b]: [NetId; 2]) -> Option<[NetId; 2]> {
+    let positive = |id: NetId| graph.node(id).format.signed && graph.node(id).range.0 >= 0;
+    let factors = if positive(a) { [a, b] } else { [b, a] };
+    (positive(factors[0]) && graph.width(factors[1]) > 1).then_some(factors)
 }
 
 /// A product of a factor that is never negative and one that may be: that of the bits below the sign, less the former where
@@ -331,7 +335,7 @@ mod tests {
 
     #[test]
     fn a_signed_factor_meets_one_that_is_never_negative() {
-        for (unsigned, signed) in [(4, 5), (4, 6), (6, 5), (7, 7)] {
+        for (unsigned, signed) in [(4, 5), (4, 6), (6, 5), (7, 7), (7, 1)] {
             let made = product(|d| {
                 let a = d.operand("a", Format::unsigned(unsigned, 0)).q();
                 [a, d.operand("b", Format::signed(signed - 1, 0)).q()]
