@@ -171,14 +171,14 @@ fn found(
 }
 
 /// The scripts, each in a file: the accepted one, or of what is open the first. Those of an earlier run with more
-/// statements go.
+/// statements go, under the names that they have in their first line: a copy under another name is the user's.
 fn write(
     directory: &Path,
     config: &str,
     statements: &[Statement],
     outcomes: &[Outcome],
 ) -> Result<()> {
-    let mut names = Vec::new();
+    let (mut names, mut files) = (Vec::new(), Vec::new());
     for (statement, outcome) in statements.iter().zip(outcomes) {
         let Statement { output, number, also, scripts } = statement;
         let (chosen, state) = match outcome {
@@ -189,16 +189,23 @@ fn write(
         let outputs = [std::slice::from_ref(output), also.as_slice()].concat().join(" and ");
         let head = format!("{MARKER}{config}, {outputs}, statement {number}: {state}.");
         let text = format!("{head} To check: gappa {name}\n\n{}", scripts[chosen]);
-        OwnFile::new(directory, &name, MARKER)?.write(&text)?;
+        // All are opened before the first is written: what is not of Glint's making is refused with nothing changed.
+        files.push((OwnFile::new(directory, &name, MARKER)?, text));
         names.push(name);
+    }
+    for (file, text) in files {
+        file.write(&text)?;
     }
     let entries = std::fs::read_dir(directory);
     for entry in entries.with_context(|| format!("cannot read `{}`", directory.display()))? {
         let path = entry.context("cannot read a directory")?.path();
-        let own = path.file_name().and_then(|name| name.to_str()).is_some_and(|name| {
-            name.ends_with(".g") && !names.iter().any(|written| written == name)
-        });
-        if own && std::fs::read_to_string(&path).is_ok_and(|text| text.starts_with(MARKER)) {
+        let Some(name) = path.file_name().and_then(|name| name.to_str()) else { continue };
+        let is_old = name.ends_with(".g") && !names.iter().any(|written| written == name);
+        let is_own = |text: String| {
+            let first = text.lines().next().unwrap_or_default();
+            first.starts_with(MARKER) && first.ends_with(&format!(" gappa {name}"))
+        };
+        if is_old && std::fs::read_to_string(&path).is_ok_and(is_own) {
             std::fs::remove_file(&path)
                 .with_context(|| format!("cannot remove `{}`", path.display()))?;
         }
