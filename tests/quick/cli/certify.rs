@@ -31,11 +31,13 @@ fn only_certificates_are_overwritten_and_old_ones_go() {
     assert_eq!(run.code, 0, "{run:?}");
     assert!(run.out.contains("certified: |output - formula| <= "), "{run:?}");
     let first = place.read("out/core/red_out_1.g");
-    place.write("out/core/red_out_99.g", &first);
+    place.write("out/core/red_out_99.g", &first.replace("gappa red_out_1.g", "gappa red_out_99.g"));
+    place.write("out/core/copy.g", &first);
     place.write("out/core/notes.g", "mine");
     assert_eq!(certify(&place, &["--out", "out"]).code, 0);
     assert_eq!(place.read("out/core/red_out_1.g"), first);
     assert_eq!(place.read("out/core/notes.g"), "mine");
+    assert_eq!(place.read("out/core/copy.g"), first);
     assert!(!place.at("out/core/red_out_99.g").exists());
     place.write("out/core/red_out_1.g", "mine");
     certify(&place, &["--out", "out"]).refused(1, &["red_out_1.g", "not of Glint's making"]);
