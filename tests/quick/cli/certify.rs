@@ -31,7 +31,7 @@ fn only_certificates_are_overwritten_and_old_ones_go() {
     assert_eq!(run.code, 0, "{run:?}");
     assert!(run.out.contains("certified: |output - formula| <= "), "{run:?}");
     let first = place.read("out/core/red_out_1.g");
-    place.write("out/core/red_out_99.g", &first.replace("gappa red_out_1.g", "gappa red_out_99.g"));
+    place.write("out/core/red_out_99.g", first.replace("gappa red_out_1.g", "gappa red_out_99.g"));
     place.write("out/core/copy.g", &first);
     place.write("out/core/notes.g", "mine");
     assert_eq!(certify(&place, &["--out", "out"]).code, 0);
