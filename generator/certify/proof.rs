@@ -40,6 +40,9 @@ pub fn prove(
             }
             Err(error) => return Err(error),
         };
+        if run.status.code().is_none() {
+            bail!("`{gappa}` failed ({}): {}", run.status, run.output.trim());
+        }
         // Of a rewriting that it cannot prove Gappa says so, and goes on.
         let assumed = run.output.contains("trivially equal");
         if !run.status.success() || assumed {

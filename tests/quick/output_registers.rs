@@ -70,6 +70,20 @@ fn registers_are_left_alone() {
     assert_eq!(one.design.registers.len(), other.design.registers.len());
 }
 
+/// Behind the registers of `line.stages` they are one more.
+#[test]
+fn lines_with_stages_have_them_too() {
+    for (name, stages) in [("quad-cosine", 7), ("cosine-squared", 5)] {
+        let device = *Registry::catalogue().device(name).expect("a device");
+        let core =
+            core(device, &format!("[line]\nstages = {stages}\n{REGISTERED}")).expect("a design");
+        let mut results = core.design.ports.iter().filter(|port| port.role == Role::Result);
+        assert!(results.all(|port| shows_register(&core.design, port.net)), "{name}");
+        let outcome = core.lockstep(1).and_then(|it| it.run(POINTS, &|_| ())).expect("a run");
+        assert!(outcome.mismatch.is_none(), "{name}: {:?}", outcome.mismatch);
+    }
+}
+
 #[test]
 fn a_pipeline_has_none_to_ask_for() {
     let text = format!("device = \"lyon\"\narchitecture = \"pipelined\"\n{REGISTERED}");

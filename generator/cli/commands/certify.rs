@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::Args;
 use rayon::prelude::*;
 use serde_json::json;
@@ -51,6 +51,9 @@ const MARKER: &str = "# Certificate by Glint: ";
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load_sequential(registry, &arguments.configs.paths, "certify")?;
     let limit = Duration::from_secs(arguments.time_limit);
+    if let Some(out) = arguments.out.as_deref().filter(|out| out.exists() && !out.is_dir()) {
+        bail!("`{}` is no directory: give another place with --out", out.display());
+    }
     let gappa = Tool::find("gappa")?;
     let coq = arguments.coq.then(|| Tool::find("coqc")).transpose()?;
     let mut list = Vec::new();
@@ -59,6 +62,10 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         let contract = one.core.contract.as_ref();
         let design = &one.core.design;
         let is_stated = contract.bound().is_stated();
+        if is_stated {
+            one.contract()?;
+        }
+        let out = arguments.out.as_ref().map(|out| out.join(&one.core.config.name));
         let stated = if is_stated {
             statements(design, contract, limit).map(|stated| (stated, contract.bound().units))
         } else {
@@ -68,6 +75,10 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             Ok(stated) => stated,
             Err(step) => {
                 whole = false;
+                // Scripts of an earlier run with other keys would still say that they are accepted.
+                if let Some(directory) = out.filter(|directory| directory.exists()) {
+                    write(&directory, &one.path, &[], &[])?;
+                }
                 if !output.json {
                     tables::print_line(&format!("{}: not certified: {step}", one.path));
                 }
@@ -86,8 +97,8 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             .collect();
         bar.finish_and_clear();
         let checked = checked.into_iter().collect::<Result<Vec<_>>>()?;
-        if let Some(out) = &arguments.out {
-            write(&out.join(&one.core.config.name), &one.path, &stated, &checked)?;
+        if let Some(directory) = out {
+            write(&directory, &one.path, &stated, &checked)?;
         }
         let open: Vec<(&Statement, &str)> = stated
             .iter()

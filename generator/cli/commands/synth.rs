@@ -5,7 +5,7 @@ mod show;
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -141,22 +141,19 @@ fn flows(arguments: &Arguments) -> Result<(Vec<Flow>, Vec<String>)> {
         let flows = wanted.into_iter().map(find).collect::<Result<_>>()?;
         return Ok((flows, Vec::new()));
     }
-    let (mut flows, mut notes, mut missing) = (Vec::new(), Vec::new(), None);
+    let (mut flows, mut notes) = (Vec::new(), Vec::new());
     for target in TARGETS {
         match find(target) {
             Ok(flow) => flows.push(flow),
             // A record is of all targets.
             Err(error) if arguments.out.is_some() => return Err(error),
-            Err(error) => {
-                notes.push(format!("{error:#}"));
-                missing = Some(error);
-            }
+            Err(error) => notes.push(format!("{error:#}")),
         }
     }
-    match missing {
-        Some(error) if flows.is_empty() => Err(error),
-        _ => Ok((flows, notes)),
+    if flows.is_empty() {
+        bail!("{}", notes.join("\n"));
     }
+    Ok((flows, notes))
 }
 
 /// Measures a configuration for all targets; `done` is called after each step.

@@ -120,6 +120,11 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             arguments.target
         )));
     }
+    if let (Some(out), Some(plot)) = (&arguments.out, &arguments.plot)
+        && std::path::absolute(out).ok() == std::path::absolute(plot).ok()
+    {
+        bail!(WrongUsage(format!("--out and --plot both name `{}`", out.display())));
+    }
     let (device, base, fixed) = base(registry, arguments)?;
     let file = arguments.out.as_deref().map(fresh).transpose()?;
     let drawing = arguments.plot.as_deref().map(fresh).transpose()?;

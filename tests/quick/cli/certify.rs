@@ -42,6 +42,41 @@ fn only_certificates_are_overwritten_and_old_ones_go() {
     place.write("out/core/red_out_1.g", "mine");
     certify(&place, &["--out", "out"]).refused(1, &["red_out_1.g", "not of Glint's making"]);
     assert_eq!(place.read("out/core/red_out_1.g"), "mine");
+    certify(&place, &["--out", "core.toml"]).refused(1, &["`core.toml` is no directory"]);
+}
+
+/// The scripts that another configuration of this name left would still say that they are accepted.
+#[cfg(unix)]
+#[test]
+fn what_has_no_statements_has_no_scripts() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    std::fs::create_dir(place.at("tools")).unwrap();
+    place.script("tools/gappa", "exit 0");
+    assert_eq!(certify(&place, &["--out", "out"]).code, 0);
+    place.write("core.toml", "device = \"rough\"\nname = \"core\"\n");
+    let run = certify(&place, &["--out", "out"]);
+    assert_eq!(run.code, 1, "{run:?}");
+    assert!(run.out.contains("not certified: the function `sqrt`"), "{run:?}");
+    assert_eq!(std::fs::read_dir(place.at("out/core")).unwrap().count(), 0);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_gappa_that_is_killed_is_no_open_statement() {
+    let place = Place::with("core.toml", COSINE_POWER);
+    std::fs::create_dir(place.at("tools")).unwrap();
+    place.script("tools/gappa", "kill -9 $$");
+    certify(&place, &[]).refused(1, &["`gappa` failed (signal: 9"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn a_bound_beyond_the_contract_is_told() {
+    let place =
+        Place::with("core.toml", format!("{COSINE_POWER}intensity.fraction = 6\nstrict = true\n"));
+    std::fs::create_dir(place.at("tools")).unwrap();
+    place.script("tools/gappa", "exit 0");
+    certify(&place, &[]).refused(1, &["outside the accuracy contract", "`strict = true` refuses"]);
 }
 
 #[cfg(unix)]

@@ -11,7 +11,8 @@ fn a_missing_tool_is_named_with_the_way_to_get_it() {
         command.env("PATH", place.at("empty")).args(["synth", "core.toml"]).args(arguments);
         Run::of(command.output())
     };
-    run(&[]).refused(1, &["`yosys` is not on PATH", "apt install yosys"]);
+    run(&[])
+        .refused(1, &["iCE40", "ECP5", "Xilinx 7", "`yosys` is not on PATH", "apt install yosys"]);
     run(&["--target", "ecp5"]).refused(1, &["ECP5", "`yosys` is not on PATH"]);
     run(&["--target", "virtex"])
         .refused(2, &["invalid value 'virtex'", "ice40, ecp5, xilinx7, osu018"]);

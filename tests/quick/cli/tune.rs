@@ -47,4 +47,6 @@ fn bad_wishes_are_refused() {
         .refused(2, &["a key and a value are wanted"]);
     tune(&["cosine-power", "--error", "1", "--target", "osu018"]).refused(2, &["no estimate"]);
     tune(&["cosine-power", "--error", "1", "--csv", "--json"]).refused(2, &[]);
+    tune(&["cosine-power", "--error", "1", "--out", "a", "--plot", "./a"])
+        .refused(2, &["--out and --plot both name `a`"]);
 }
