@@ -17,6 +17,22 @@ pub enum Outcome {
     Open(String),
 }
 
+/// A statement that does not hold: a program that accepts it is no Gappa, or none that works.
+const FALSE: &str = "# False for x = 1.\n{ x in [0, 1] -> x in [0, 0.5] }\n";
+
+/// Asks Gappa for a proof of what does not hold, since its exit code is all that a proof rests on.
+///
+/// # Errors
+/// It accepts it; it does not run.
+pub fn refuses_what_is_false(gappa: &Tool, limit: Duration) -> Result<()> {
+    let place = Directory::new().context("cannot make a temporary directory")?;
+    fs::write(place.path().join("false.g"), FALSE).context("cannot write a script for Gappa")?;
+    if gappa.run(["false.g"], place.path(), limit)?.status.success() {
+        bail!("`{gappa}` accepts a statement that does not hold: it is no Gappa that works");
+    }
+    Ok(())
+}
+
 /// Has one of the statement's scripts accepted by Gappa, and with `coq` its proof by Coq's kernel.
 ///
 /// # Errors

@@ -9,11 +9,14 @@ use rayon::prelude::*;
 use serde_json::json;
 
 use super::load_sequential;
-use crate::certify::{self, Outcome, Statement, prove, questions, statements};
+use crate::certify::{
+    self, Outcome, Statement, prove, questions, refuses_what_is_false, statements,
+};
 use crate::cli::own_file::OwnFile;
 use crate::cli::{Configs, Output, progress, tables};
 use crate::golden::Contract;
 use crate::hdl::netlist::Design;
+use crate::package::digest;
 use crate::registry::Registry;
 use crate::tools::Tool;
 
@@ -47,6 +50,9 @@ pub struct Arguments {
 /// What a script that Glint wrote begins with: nothing else is overwritten.
 const MARKER: &str = "# Certificate by Glint: ";
 
+/// What precedes the digest of a script, in the line after that of the marker.
+const DIGEST: &str = "# SHA-256 of the script below: ";
+
 /// `glint certify`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load_sequential(registry, &arguments.configs.paths, "certify")?;
@@ -55,6 +61,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         bail!("`{}` is no directory: give another place with --out", out.display());
     }
     let gappa = Tool::find("gappa")?;
+    refuses_what_is_false(&gappa, limit)?;
     let coq = arguments.coq.then(|| Tool::find("coqc")).transpose()?;
     let mut list = Vec::new();
     let mut whole = true;
@@ -182,7 +189,8 @@ fn found(
 }
 
 /// The scripts, each in a file: the accepted one, or of what is open the first. Those of an earlier run with more
-/// statements go, under the names that they have in their first line: a copy under another name is the user's.
+/// statements go, under the names that they have in their first line: a copy under another name, or an edited one, is
+/// the user's.
 fn write(
     directory: &Path,
     config: &str,
@@ -199,9 +207,20 @@ fn write(
         let name = format!("{output}_{number}.g");
         let outputs = [std::slice::from_ref(output), also.as_slice()].concat().join(" and ");
         let head = format!("{MARKER}{config}, {outputs}, statement {number}: {state}.");
-        let text = format!("{head} To check: gappa {name}\n\n{}", scripts[chosen]);
+        let script = &scripts[chosen];
+        let digest = digest(script.as_bytes());
+        let text = format!("{head} To check: gappa {name}\n{DIGEST}{digest}\n\n{script}");
         // All are opened before the first is written: what is not of Glint's making is refused with nothing changed.
-        files.push((OwnFile::new(directory, &name, MARKER)?, text));
+        let file = OwnFile::new(directory, &name, MARKER)?;
+        let path = directory.join(&name);
+        if std::fs::read_to_string(&path).is_ok_and(|text| !is_unedited(&text)) {
+            bail!(
+                "`{}` was edited since Glint wrote it; nothing was changed: move it away, or give another \
+                 directory with --out",
+                path.display()
+            );
+        }
+        files.push((file, text));
         names.push(name);
     }
     for (file, text) in files {
@@ -214,7 +233,8 @@ fn write(
         let is_old = name.ends_with(".g") && !names.iter().any(|written| written == name);
         let is_own = |text: String| {
             let first = text.lines().next().unwrap_or_default();
-            first.starts_with(MARKER) && first.ends_with(&format!(" gappa {name}"))
+            let is_named = first.ends_with(&format!(" gappa {name}"));
+            first.starts_with(MARKER) && is_named && is_unedited(&text)
         };
         if is_old && std::fs::read_to_string(&path).is_ok_and(is_own) {
             std::fs::remove_file(&path)
@@ -222,4 +242,11 @@ fn write(
         }
     }
     Ok(())
+}
+
+/// Whether a file that Glint wrote has the script that it was written with.
+fn is_unedited(text: &str) -> bool {
+    let Some((head, script)) = text.split_once("\n\n") else { return false };
+    head.lines().nth(1).and_then(|line| line.strip_prefix(DIGEST))
+        == Some(&digest(script.as_bytes()))
 }

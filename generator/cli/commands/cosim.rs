@@ -16,7 +16,7 @@ use super::{Loaded, load, verdict};
 use crate::base::text;
 use crate::cli::failure::WrongUsage;
 use crate::cli::{Configs, Output, TimeLimit, count, progress, tables};
-use crate::core::{Core, TEST_POINTS, TEST_SEED};
+use crate::core::{TEST_POINTS, TEST_SEED};
 use crate::cosim::exhaustive::{AxisValues, Shard, axis};
 use crate::cosim::{Outcome, Worst};
 use crate::golden::{Bound, Sweep};
@@ -76,9 +76,10 @@ pub struct SweepValues {
 }
 
 impl SweepValues {
-    /// The sweep of a core.
-    pub fn of(&self, core: &Core) -> Result<Sweep> {
-        axis::sweep(core.contract.as_ref(), &self.others)
+    /// The sweep of a configuration's core.
+    pub fn of(&self, one: &Loaded) -> Result<Sweep> {
+        let sweep = axis::sweep(one.core.contract.as_ref(), &self.others);
+        sweep.map_err(|error| WrongUsage(format!("--values for `{}`: {error}", one.path)).into())
     }
 }
 

@@ -35,7 +35,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let Arguments { config, files, .. } = arguments;
     let loaded = load(registry, std::slice::from_ref(config))?;
     let one = &loaded[0];
-    let sweep = arguments.sweep.of(&one.core)?;
+    let sweep = arguments.sweep.of(one)?;
     let fingerprint = one.core.fingerprint(&sweep);
     let job = one.core.job_of(sweep)?;
     let names: Vec<String> = files.iter().map(|path| path.display().to_string()).collect();

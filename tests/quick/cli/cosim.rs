@@ -256,11 +256,18 @@ fn exhaustive_with_other_values() {
     assert_eq!(place.glint(merge).json(), value);
     place.glint(&merge[..3]).refused(1, &["of another sweep (--values)"]);
     let refused = |values: &str, text: &str| {
-        place.glint(["cosim", "core.toml", "--exhaustive", "--values", values]).refused(1, &[text]);
+        place.glint(["cosim", "core.toml", "--exhaustive", "--values", values]).refused(2, &[text]);
     };
     refused("n=1", "no operand `n`; its operands are cos_gamma, exponent");
     refused("exponent=0..9", "`exponent` is 1 to 1000 in this check, not 0");
     place.glint(["cosim", "core.toml", "--values", "exponent=1"]).refused(2, &["--exhaustive"]);
+    // All are looked at before the first is checked.
+    place.write("rough.toml", "device = \"rough\"\n");
+    let both =
+        ["cosim", "rough.toml", "core.toml", "--exhaustive", "--values", "cos_dgamma=1000000"];
+    let run = place.glint(both);
+    assert_eq!(run.out, "", "{run:?}");
+    run.refused(2, &["--values for `core.toml`: the check goes through no operand `cos_dgamma`"]);
 }
 
 #[test]

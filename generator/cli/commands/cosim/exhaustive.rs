@@ -34,10 +34,10 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     if arguments.resume.is_some() && loaded.len() != 1 {
         bail!(WrongUsage(format!("--resume is for one configuration; here are {}", loaded.len())));
     }
+    let sweeps = loaded.iter().map(|one| arguments.sweep.of(one)).collect::<Result<Vec<_>>>()?;
     let mut list = Vec::new();
     let mut holds = true;
-    for one in &loaded {
-        let sweep = arguments.sweep.of(&one.core).with_context(|| format!("`{}`", one.path))?;
+    for (one, sweep) in loaded.iter().zip(sweeps) {
         let fingerprint = one.core.fingerprint(&sweep);
         let job = one.core.job_of(sweep)?;
         let mut state = State::new(&fingerprint, arguments.shard.unwrap_or(Shard::WHOLE));
