@@ -13,6 +13,9 @@ use crate::hdl::pipeline;
 /// The key that asks for registers behind the results.
 const OUTPUT_REGISTERED: &str = "output.registered";
 
+/// The key that asks for buffers in front of the operand registers.
+const OPERANDS_BUFFERED: &str = "operands.buffered";
+
 /// A device that Glint can generate, simulate and check.
 ///
 /// All functions are called with configurations that the schema accepts. The file
@@ -52,6 +55,9 @@ impl Device {
     /// The mistakes of the description.
     pub fn sequential(&self, config: &Config) -> Result<Design, Diagnostics> {
         let designer = Designer::new(&config.name);
+        if config.flag(OPERANDS_BUFFERED) {
+            designer.buffer_operands();
+        }
         (self.describe)(&designer, config);
         if config.flag(OUTPUT_REGISTERED) {
             designer.register_outputs();
@@ -61,12 +67,15 @@ impl Device {
 
     /// The golden model of the design with the microprogram.
     pub fn golden(&self, config: &Config) -> Box<dyn Model> {
-        let model = (self.model)(config);
-        if !config.flag(OUTPUT_REGISTERED) {
-            return model;
-        }
+        let mut model = (self.model)(config);
         // What does not know how differs from the design, and that is reported.
-        model.with_output_registers().unwrap_or(model)
+        if config.flag(OUTPUT_REGISTERED) {
+            model = model.with_output_registers().unwrap_or(model);
+        }
+        if config.flag(OPERANDS_BUFFERED) {
+            model = model.with_operand_buffers().unwrap_or(model);
+        }
+        model
     }
 
     /// Whether the golden model can do what the configuration asks for.
@@ -74,11 +83,17 @@ impl Device {
     /// # Errors
     /// It cannot.
     pub fn check_golden(&self, config: &Config) -> Result<()> {
-        let wanted = config.flag(OUTPUT_REGISTERED);
+        let model = (self.model)(config);
         ensure!(
-            !wanted || (self.model)(config).with_output_registers().is_some(),
+            !config.flag(OUTPUT_REGISTERED) || model.with_output_registers().is_some(),
             "the golden model of `{}` does not say what registers behind the results do \
              (`Model::with_output_registers`): leave {OUTPUT_REGISTERED} out",
+            self.name
+        );
+        ensure!(
+            !config.flag(OPERANDS_BUFFERED) || model.with_operand_buffers().is_some(),
+            "the golden model of `{}` does not say what buffers of operands do (`Model::with_operand_buffers`): \
+             leave {OPERANDS_BUFFERED} out",
             self.name
         );
         Ok(())

@@ -62,6 +62,9 @@ module ${ name }$_axis #(
 <%- endif %>
 
     wire busy;
+<%- if overlaps %>
+    wire done;
+<%- endif %>
     wire valid;
 <%- for line in result_wires %>
     ${ line }$
@@ -73,7 +76,7 @@ module ${ name }$_axis #(
     };
 
     wire room;
-    wire start = waiting & ~busy & room;
+    wire start = waiting & <% if overlaps %>(~busy | done)<% else %>~busy<% endif %> & room;
     wire accept = s_axis_tvalid & s_axis_tready;
     wire still_waiting = accept | (waiting & ~start);
 
@@ -153,14 +156,22 @@ module ${ name }$_axis #(
     end
 <%- else %>
 
+
+<%- if overlaps %>
+
+    // A result behind the one that is offered. The core is not started while it is there or comes:
+    // what is being computed has a place.
+<%- else %>
+
     // A result behind the one that is offered. The core is not started while it is there: what is
     // being computed has a place.
+<%- endif %>
     reg  held;
     reg  [${ out_high }$:0] held_results;
     reg  [USER_WIDTH-1:0] held_user;
     reg  held_last;
     wire offer = m_axis_tready | ~m_axis_tvalid;
-    assign room = ~held;
+    assign room = ~held<% if overlaps %> & (offer | ~valid)<% endif %>;
 
     always @(posedge aclk) begin
         if (!aresetn) begin

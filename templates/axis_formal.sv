@@ -27,28 +27,36 @@ module ${ name }$ (
     ${ line }$
 <%- endfor %>
     reg run;
+<%- if overlaps %>
+    // start is heard in the clock of done too.
+    wire idle = !run | done;
+<%- endif %>
 <%- if let Some(line) = line %>
     reg [${ line.width }$:0] to_come;
     always @(posedge clk) begin
         if (!rst_n) to_come <= ${ line.zero() }$;
-        else if (!run) to_come <= start ? {1'b0, ${ line.length }$} + ${ line.one() }$ : ${ line.zero() }$;
+        else if (<% if overlaps %>idle<% else %>!run<% endif %>) to_come <= start ? {1'b0, ${ line.length }$} + ${ line.one() }$ : ${ line.zero() }$;
         else if (valid) to_come <= to_come - ${ line.one() }$;
     end
     wire computing = to_come != ${ line.zero() }$;
     wire ended = valid ? to_come == ${ line.one() }$ : !computing;
 <%- else %>
     reg computing;
-    always @(posedge clk) computing <= rst_n & (run ? computing & ~valid : start);
+    always @(posedge clk) computing <= rst_n & (<% if overlaps %>idle ? start : computing & ~valid<% else %>run ? computing & ~valid : start<% endif %>);
     wire ended = ~computing | valid;
 <%- endif %>
     assign busy = run;
     assign valid = run & computing & shows;
     assign done = run & ends & ended;
+<%- if overlaps %>
+    always @(posedge clk) run <= rst_n & (idle ? start : run);
+<%- else %>
     always @(posedge clk) run <= rst_n & (run ? ~done : start);
+<%- endif %>
 
     // A computation begins with all of its operands, and when the one before is over.
     always @(posedge clk) if (!$initstate && start) begin
-        assert (!run);
+        assert (<% if overlaps %>idle<% else %>!run<% endif %>);
 <%- for strobe in strobes %>
         assert (${ strobe }$);
 <%- endfor %>

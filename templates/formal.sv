@@ -33,7 +33,7 @@ ${ line }$
 
     // Clocks since start.
     reg ${ age.range }$ ${ age.name }$;
-    always @(posedge clk) ${ age.name }$ <= busy ? ${ age.name }$ + ${ age.one }$ : ${ age.one }$;
+    always @(posedge clk) ${ age.name }$ <= <% if overlaps %>busy && !done<% else %>busy<% endif %> ? ${ age.name }$ + ${ age.one }$ : ${ age.one }$;
 <%- endif %>
 <%- if let Some(bounded) = bounded %>
 
@@ -48,8 +48,13 @@ ${ line }$
             // Idle after reset, whatever the state was before.
             assert (!busy && !done);
 <%- if straight %>
+<%- if overlaps %>
+        end else if (!$past(busy && !done)) begin
+            // Idle until start, which is heard in the clock of done too; busy from the clock after it.
+<%- else %>
         end else if (!$past(busy)) begin
             // Idle until start, busy from the clock after it.
+<%- endif %>
             assert (busy == $past(start));
         end else begin
             // Busy up to the clock of done.

@@ -60,6 +60,8 @@ class Manifest:
         self.sources = [self.directory / file for file in facts["files"]["rtl"]]
         self.memories = [self.directory / file for file in facts["files"]["memories"]]
         self.timing: dict[str, int | None] = facts["timing"]
+        self.overlaps: bool = facts.get("control", {}).get("operands_buffered", False)
+        """Whether `start` is heard in the clock of `done` too."""
         self.latency: int | None = facts.get("pipeline", {}).get("latency")
         accuracy = facts["accuracy"]
         self.domain: dict[str, dict[str, int]] = accuracy["domain"]
@@ -237,6 +239,8 @@ class Core:
             self._busy, self._age = False, 0
         elif not self._busy:
             self._busy, self._age = (start, 1) if self._busy is not None else (None, 0)
+        elif seen["done"] and self.manifest.overlaps:
+            self._busy, self._age = start, 1
         else:
             self._busy, self._age = not seen["done"], self._age + 1
 
@@ -434,16 +438,41 @@ async def writes_and_starts_while_busy_are_ignored(dut: Any) -> None:
 
 
 @cocotb.test()
+async def writes_while_busy_are_for_the_next_computation(dut: Any) -> None:
+    """Operands come one by one while a point is computed; the next one begins as it is done."""
+    core = await Core.after_reset(dut)
+    computations = core.manifest.computations
+    await core.clock(start=1, writes=computations[0][0])
+    for number, (operands, wanted) in enumerate(computations, 1):
+        last = number == len(computations)
+        left = [] if last else list(computations[number][0].items())
+        valid, results = [], []
+        for clock in range(1, wanted.done + 1):
+            is_done = clock == wanted.done
+            now = left if is_done else left[:1]
+            del left[: len(now)]
+            # Before the last clock a start is not heard.
+            start = not last if is_done else core.random.getrandbits(1)
+            seen = await core.clock(start=int(start), writes=dict(now))
+            if seen["valid"]:
+                valid.append(clock)
+                results.append(core.outputs())
+        assert Computation(valid, results, clock) == wanted, f"{operands}: not {wanted}"
+
+
+@cocotb.test()
 async def held_start_repeats(dut: Any) -> None:
-    """A `start` that is held is taken whenever the core is idle: one clock after `done`."""
+    """A `start` that is held is taken whenever it is heard: after `done`, or with it."""
     core = await Core.after_reset(dut)
     for operands, wanted in core.manifest.computations:
-        period = core.manifest.timing["start_to_start"]
-        assert period in (None, wanted.done + 1)
+        period = wanted.done if core.manifest.overlaps else wanted.done + 1
+        assert core.manifest.timing["start_to_start"] in (None, period)
         await core.clock(writes=operands)
-        for clock in range(3 * (wanted.done + 1)):
+        for clock in range(3 * period):
             seen = await core.clock(start=1)
-            age = clock % (wanted.done + 1)
+            age = clock % period
+            if core.manifest.overlaps and clock and age == 0:
+                age = period
             expected = {
                 "valid": int(age in wanted.valid),
                 "busy": int(age > 0),

@@ -79,6 +79,12 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
         )
         .only_when("architecture", "sequential"),
         Key::flag(
+            "operands.buffered",
+            false,
+            "Buffers that take operands while a point is computed. The next one then begins in the clock after the last of this one.",
+        )
+        .only_when("architecture", "sequential"),
+        Key::flag(
             "interface.stream",
             false,
             "Write an AXI4-Stream wrapper of the core, <name>_axis.v.",

@@ -26,6 +26,8 @@ pub(super) struct Binding<'a> {
     /// Of the outputs `busy` and `valid`, the positions among these.
     pub(super) busy: usize,
     pub(super) valid: usize,
+    /// That of `done`, where `start` is heard while it is high.
+    overlaps: Option<usize>,
     /// The address of the microprogram.
     pub(super) address: NetId,
     pub(super) ports: Arc<Ports>,
@@ -98,6 +100,7 @@ impl<'a> Binding<'a> {
             })
         };
         let (busy, valid) = (predicted(handshake.busy)?, predicted(handshake.valid)?);
+        let done = predicted(handshake.done)?;
         let results = contract
             .outputs()
             .iter()
@@ -123,6 +126,7 @@ impl<'a> Binding<'a> {
             compared,
             busy,
             valid,
+            overlaps: design.control.overlaps.then_some(done),
             ports: Arc::new(Ports::new(design)),
             address: design.register(design.control.address).q,
             points,
@@ -170,6 +174,11 @@ impl<'a> Binding<'a> {
         let operand = operands.filter(|operand| Some(operand.name.as_str()) == length);
         // A length of 0 is a result too.
         operand.map(|it| it.domain.1.unsigned_abs() + 1).max().unwrap_or(1)
+    }
+
+    /// Whether `start` is not heard in the clock that shows these values.
+    pub(super) fn is_deaf(&self, values: &[u64]) -> bool {
+        values[self.busy] == 1 && self.overlaps.is_none_or(|done| values[done] == 0)
     }
 
     /// How many registers a golden model must predict.

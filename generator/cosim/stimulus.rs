@@ -56,8 +56,10 @@ pub struct Stimulus {
     idle: bool,
     /// The raw operands of the next point, in the order of the points.
     next: Vec<i64>,
-    /// The raw values that the registers were last given while the device could take them.
-    accepted: Vec<i64>,
+    /// The raw values that were last written where the device could take them.
+    written: Vec<i64>,
+    /// Of operands with buffers, those that the latest `start` took of them.
+    taken: Option<Vec<i64>>,
     /// Whether a reset has come between the start of the current computation and now.
     disturbed: bool,
     first: bool,
@@ -107,7 +109,8 @@ impl Stimulus {
             inputs: vec![0; names.len()],
             idle: false,
             next: vec![0; points.operands().len()],
-            accepted: vec![0; points.operands().len()],
+            written: vec![0; points.operands().len()],
+            taken: design.control.overlaps.then(|| vec![0; points.operands().len()]),
             disturbed: false,
             first: true,
         })
@@ -120,9 +123,9 @@ impl Stimulus {
         self
     }
 
-    /// The raw values that were last written while the device could take them, in the order of the points.
+    /// The raw values of the latest computation, in the order of the points.
     pub fn accepted(&self) -> &[i64] {
-        &self.accepted
+        self.taken.as_ref().unwrap_or(&self.written)
     }
 
     /// Whether the computation that runs was started by this stimulus and not reset since.
@@ -130,7 +133,7 @@ impl Stimulus {
         !self.disturbed
     }
 
-    /// The inputs of the next clock, given `busy` as it stands before the edge.
+    /// The inputs of the next clock; `busy`: a `start` that stands before the edge is not heard.
     pub fn next(&mut self, busy: bool, points: &Points) -> &[u64] {
         if !self.idle {
             self.inputs.fill(0);
@@ -229,11 +232,10 @@ impl Stimulus {
         let places = self.operands.iter().enumerate();
         let drawn = places.filter(|(at, _)| written >> at & 1 == 1);
         let free = drawn.filter_map(|(_, driven)| driven.at).fold(0, |free, at| free | 1 << at);
-        self.next.copy_from_slice(&self.accepted);
+        self.next.copy_from_slice(&self.written);
         points.draw(&mut self.random, &mut self.next, free);
         // What leads to the peak is written too.
-        let moved =
-            |driven: &Driven| driven.at.is_some_and(|at| self.next[at] != self.accepted[at]);
+        let moved = |driven: &Driven| driven.at.is_some_and(|at| self.next[at] != self.written[at]);
         let moved = self.operands.iter().enumerate().filter(|(_, driven)| moved(driven));
         Phase::Writing(moved.fold(written, |written, (at, _)| written | 1 << at))
     }
@@ -289,17 +291,23 @@ impl Stimulus {
         }
     }
 
-    /// Notes what the registers take at this edge.
+    /// Notes what registers or buffers take at this edge.
     fn accept(&mut self, busy: bool) {
-        if busy || self.idle {
+        if self.idle || busy && self.taken.is_none() {
             return;
         }
         for driven in &self.operands {
             if let Some(at) = driven.at
                 && self.inputs[driven.strobe] == 1
             {
-                self.accepted[at] = driven.format.raw(self.inputs[driven.data]) as i64;
+                self.written[at] = driven.format.raw(self.inputs[driven.data]) as i64;
             }
+        }
+        if let Some(taken) = &mut self.taken
+            && !busy
+            && self.inputs[self.start] == 1
+        {
+            taken.copy_from_slice(&self.written);
         }
     }
 }

@@ -20,7 +20,8 @@ pub(super) struct Stream {
     pub(super) seen: Seen,
     source: Source,
     model: Box<dyn Model>,
-    busy: bool,
+    /// Whether it does not hear `start`.
+    deaf: bool,
     /// Results since the latest start.
     index: u64,
     /// The model's inputs, where it has an order of its own.
@@ -45,7 +46,7 @@ impl Stream {
             seen: Seen::default(),
             source,
             model: binding.model.boxed_clone(),
-            busy,
+            deaf: busy,
             index: 0,
             reordered: Vec::new(),
             operands: Vec::new(),
@@ -57,7 +58,7 @@ impl Stream {
         self.seen.mismatch.is_some()
             || match &self.source {
                 Source::Random { points, .. } => self.seen.points >= *points,
-                Source::Combinations(combinations) => !self.busy && combinations.all_started(),
+                Source::Combinations(combinations) => !self.deaf && combinations.all_started(),
             }
     }
 
@@ -94,8 +95,8 @@ impl Stream {
     #[inline]
     pub(super) fn clock(&mut self, binding: &Binding) {
         let inputs = match &mut self.source {
-            Source::Random { stimulus, .. } => stimulus.next(self.busy, &binding.points),
-            Source::Combinations(combinations) => combinations.next(self.busy),
+            Source::Random { stimulus, .. } => stimulus.next(self.deaf, &binding.points),
+            Source::Combinations(combinations) => combinations.next(self.deaf),
         };
         match &binding.order {
             None => self.model.clock(inputs),
@@ -160,8 +161,8 @@ impl Stream {
     #[inline]
     pub(super) fn note(&mut self, binding: &Binding) {
         let values = self.model.values();
-        let was_busy = mem::replace(&mut self.busy, values[binding.busy] == 1);
-        if self.busy && !was_busy {
+        let was_deaf = mem::replace(&mut self.deaf, binding.is_deaf(values));
+        if self.deaf && !was_deaf {
             self.index = 0;
         }
         if values[binding.valid] != 1 {

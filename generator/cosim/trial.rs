@@ -416,9 +416,10 @@ fn run(
         }
         if simulator.value(done) == 1 {
             trial.timing.start_to_done = Some(clock);
+            trial.timing.start_to_start = design.control.overlaps.then_some(clock);
         }
         if simulator.value(busy) == 0 {
-            trial.timing.start_to_start = Some(clock);
+            trial.timing.start_to_start.get_or_insert(clock);
             ensure!(trial.timing.start_to_valid.is_some(), "`{}` never raises valid", design.name);
             return Ok(trial);
         }

@@ -11,6 +11,8 @@ pub enum After {
     To(u32),
     /// The program ends: back to microinstruction 0, idle.
     End,
+    /// The program ends, and the next point runs: back to microinstruction 0.
+    Restart,
 }
 
 /// The trigger `run` and the counter of microinstructions (`word_address`).
@@ -39,6 +41,7 @@ impl Handshake {
                 After::Again => {}
                 After::To(address) => self.address = address,
                 After::End => *self = Self::default(),
+                After::Restart => self.address = 0,
             }
         }
     }
@@ -71,7 +74,11 @@ mod tests {
         it.clock(true, true, After::Next);
         assert_eq!(it, state(true, 0));
         it.clock(true, false, After::Next);
-        it.clock(false, true, After::Next);
+        // Unless operands have buffers.
+        it.clock(true, true, After::Restart);
+        assert_eq!(it, state(true, 0));
+        it.clock(true, false, After::Next);
+        it.clock(false, true, After::Restart);
         assert_eq!(it, state(false, 0));
     }
 }

@@ -64,6 +64,15 @@ pub trait Model: CloneModel + Send + Sync {
         None
     }
 
+    /// The same device at power-up with a register `<operand>_buffer` in front of each operand register. Writes go there
+    /// at any time. `start` loads the operand registers, with what is written in the same clock where something is,
+    /// and is heard in the last clock of a computation too: the next one follows at once.
+    ///
+    /// A device of a [`frame::Frame`] has it; for any other its author writes it, or there is none.
+    fn with_operand_buffers(&self) -> Option<Box<dyn Model>> {
+        None
+    }
+
     /// The values after the latest edge, in the order of [`Model::signals`].
     fn values(&self) -> &[u64];
 

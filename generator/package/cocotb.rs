@@ -29,6 +29,9 @@ const SEQUENTIAL: [&str; 5] = [
     "writes_and_starts_while_busy_are_ignored",
 ];
 
+/// In place of the last, where operands have buffers.
+const BUFFERED: &str = "writes_while_busy_are_for_the_next_computation";
+
 /// The same for a pipeline.
 const PIPELINE: [&str; 4] = [
     "random_points_follow_the_formula",
@@ -49,6 +52,10 @@ pub fn bench(
     let pipeline = design.pipeline.is_some();
     let all = if pipeline { &PIPELINE[..] } else { &SEQUENTIAL[..] };
     let mut tests = all[usize::from(accuracy.f.is_empty())..].to_vec();
+    if design.control.overlaps {
+        tests.pop();
+        tests.push(BUFFERED);
+    }
     tests.sort_unstable();
     let bench = Bench {
         name: &design.name,

@@ -33,6 +33,8 @@ struct Wrapper {
     connections: Vec<String>,
     /// The program never waits for a second `start`: busy from start to done.
     straight: bool,
+    /// `start` is heard in the clock of `done` too.
+    overlaps: bool,
     exact: Option<Exact>,
     bounded: Option<Bounded>,
 }
@@ -198,6 +200,7 @@ pub fn files(
         outputs: Row::declarations(&outputs),
         connections: separated(connections),
         straight: !waits,
+        overlaps: design.control.overlaps,
         exact: exact.zip(age.as_ref()).map(|((clocks, start), age)| Exact {
             valid: age.literal(clocks[0]),
             done: age.literal(clocks[1]),
@@ -297,5 +300,6 @@ fn bounded_view(
 /// there in one clock.
 fn exact(timing: &Timing) -> Option<([u32; 2], u32)> {
     let (valid, done) = (timing.start_to_valid?, timing.start_to_done?);
-    Some(([valid, done], timing.start_to_start?))
+    // The clocks of a computation are counted to the last, whether the next one follows at once or not.
+    Some(([valid, done], timing.start_to_start?.max(done + 1)))
 }

@@ -236,13 +236,17 @@ fn line(computation: &Computation, operands: &[usize], results: &[usize]) -> Res
 fn control(design: &Design) -> Value {
     let control = &design.control;
     let name = |register: RegId| &design.net(design.register(register).q).name;
-    json!({
+    let mut entry = json!({
         "run": name(control.run),
         "address": name(control.address),
         "rom": design.rom(control.rom).name,
         "fields": facts::fields(design),
         "words": facts::microprogram(design),
-    })
+    });
+    if control.overlaps {
+        entry["operands_buffered"] = json!(true);
+    }
+    entry
 }
 
 /// Latency and interval are in clocks; a register bit counts in each stage that it ends, and a bit of a delay line in each that it passes.

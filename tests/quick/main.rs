@@ -21,6 +21,7 @@ mod diagnostics;
 mod divider;
 mod lines;
 mod multipliers;
+mod operand_buffers;
 mod output_registers;
 mod pages;
 mod pipelines;

@@ -15,6 +15,7 @@ use rayon::prelude::*;
 
 const EXACT: &str = "computations_are_exact";
 const IGNORED: &str = "writes_and_starts_while_busy_are_ignored";
+const AHEAD: &str = "writes_while_busy_are_for_the_next_computation";
 const HELD: &str = "held_start_repeats";
 const RESET: &str = "reset_ends_a_computation";
 const FORMULA: &str = "formula_holds_at_random_points";
@@ -26,11 +27,16 @@ const DROPS: &str = "reset_drops_every_point";
 const FOLLOWS: &str = "random_points_follow_the_formula";
 
 const OF_SEQUENTIAL: [&str; 6] = [EXACT, IGNORED, HELD, RESET, FORMULA, "worked_example"];
+const OF_BUFFERED: [&str; 6] = [EXACT, AHEAD, HELD, RESET, FORMULA, "worked_example"];
 const OF_PIPELINE: [&str; 5] = [POINTS, STALLS, DROPS, FOLLOWS, "worked_example"];
 
 /// Its tests.
 fn tests(core: &Core) -> &'static [&'static str] {
-    if core.design.pipeline.is_some() { &OF_PIPELINE } else { &OF_SEQUENTIAL }
+    match &core.design {
+        design if design.pipeline.is_some() => &OF_PIPELINE,
+        design if design.control.overlaps => &OF_BUFFERED,
+        _ => &OF_SEQUENTIAL,
+    }
 }
 
 #[test]

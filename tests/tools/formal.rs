@@ -110,6 +110,29 @@ fn pipelines_with_and_without_stalls_and_a_side_channel_are_proved() {
     }
 }
 
+/// What the sequencer of a device whose operands have buffers must not do.
+const OF_BUFFERED: [Fault; 3] = [
+    // A start that is heard in the middle, one that is not heard at the end, and one that never ends.
+    ("_control.v", "wire goes_on = run & go_on;", "wire goes_on = run & go_on & ~start;"),
+    ("_control.v", "wire next_run = goes_on | start;", "wire next_run = run ? goes_on : start;"),
+    ("_control.v", "wire next_run = goes_on | start;", "wire next_run = run | start;"),
+];
+
+#[test]
+fn starts_in_the_last_clock_are_proved() {
+    ["lyon", "quad-cosine"].par_iter().for_each(|device| {
+        let (place, name) = emitted(&buffered(device));
+        prove(place.path(), &name, LIMIT).unwrap_or_else(|error| panic!("{device}: {error:#}"));
+    });
+    let core = buffered("quad-cosine");
+    OF_BUFFERED.par_iter().for_each(|fault| assert_breaks(&core, fault));
+}
+
+/// A device whose operands have buffers.
+fn buffered(device: &str) -> glint::core::Core {
+    with_text(device, &format!("device = \"{device}\"\n[operands]\nbuffered = true\n"))
+}
+
 #[test]
 fn faults_of_a_pipeline_break_the_proof() {
     OF_PIPELINE.par_iter().for_each(|fault| {

@@ -61,6 +61,7 @@ impl Frame {
                 program,
                 logic,
                 taken: Vec::new(),
+                buffers: Vec::new(),
             }),
         };
         model.settle(false);
@@ -77,6 +78,8 @@ pub(super) struct Fixed<D> {
     pub(super) logic: Vec<usize>,
     /// Results with the registers that take them.
     pub(super) taken: Vec<(Slot, Slot)>,
+    /// What takes the writes of each operand; empty where the operand registers do.
+    pub(super) buffers: Vec<Slot>,
     pub(super) flags: Vec<Slot>,
     /// What each microinstruction makes of them.
     pub(super) levels: Vec<Vec<i64>>,
@@ -179,16 +182,20 @@ impl<D: Datapath> Model for Clocked<D> {
                 After::To(self.handshake.address + 1 + count)
             }
             Next::RepeatWhile(_) | Next::SkipIf(..) => After::Next,
+            Next::End if start && !it.buffers.is_empty() => After::Restart,
             Next::End => After::End,
         };
         (here.does)(datapath, &mut self.state);
         let mut still = here.idle && !here.takes_results && D::LOADS_ALONE && !it.shows_flags;
-        if !self.handshake.run {
+        if !it.buffers.is_empty() {
+            let ends = matches!(here.next, Next::End);
+            let starts = start && (ends || !self.handshake.run);
+            still &= !it.write_buffers(&mut self.state, &inputs[2..], starts);
+        } else if !self.handshake.run {
             for (operand, ports) in it.operands.iter().zip(inputs[2..].chunks_exact(2)) {
                 if ports[1] & 1 == 1 {
                     still = false;
-                    let raw = operand.format.raw(ports[0]) as i64;
-                    self.state[operand.slot] = raw.clamp(operand.min, operand.max);
+                    self.state[operand.slot] = operand.held(ports[0]);
                 }
             }
         }
@@ -204,5 +211,9 @@ impl<D: Datapath> Model for Clocked<D> {
     fn with_output_registers(&self) -> Option<Box<dyn Model>> {
         let model: Self = Self::with_output_registers(self)?;
         Some(Box::new(model))
+    }
+
+    fn with_operand_buffers(&self) -> Option<Box<dyn Model>> {
+        Some(Box::new(Self::with_operand_buffers(self)))
     }
 }

@@ -40,6 +40,7 @@
 //! assert_eq!(["valid", "x_out"].map(|name| model.value(name)), [Some(1), Some(10)]);
 //! ```
 
+mod buffered;
 mod clocked;
 mod registered;
 
@@ -187,6 +188,13 @@ struct Operand {
     format: Format,
     min: i64,
     max: i64,
+}
+
+impl Operand {
+    /// What the register takes of the bits on the port.
+    fn held(&self, bits: u64) -> i64 {
+        (self.format.raw(bits) as i64).clamp(self.min, self.max)
+    }
 }
 
 /// What is predicted, with the bits that its net has.

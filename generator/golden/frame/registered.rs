@@ -1,9 +1,7 @@
 //! The same device with registers behind results that are logic (`output.registered`).
 
-use std::sync::Arc;
-
 use super::clocked::{Fixed, HANDSHAKE, levels};
-use super::{Clocked, Datapath, Microinstruction, Next, Slot, State, idle};
+use super::{Clocked, Datapath, Microinstruction, Next, Slot, idle};
 
 impl<D: Datapath> Clocked<D> {
     /// It at power-up. Results are taken in the microinstruction that was to set `valid`, and one more sets it. Where
@@ -41,20 +39,12 @@ impl<D: Datapath> Clocked<D> {
             signals,
             logic: Vec::new(),
             operands: it.operands.clone(),
+            buffers: it.buffers.clone(),
             flags: it.flags.clone(),
             shows_flags: it.shows_flags,
             inputs: it.inputs.clone(),
         };
-        let mut model = Self {
-            datapath: self.datapath.clone(),
-            handshake: self.handshake,
-            pulses: 0,
-            state: State(vec![0; slots].into()),
-            values: vec![0; fixed.signals.len()].into(),
-            fixed: Arc::new(fixed),
-        };
-        model.settle(false);
-        Some(model)
+        Some(self.at_power_up(fixed, slots))
     }
 }
 

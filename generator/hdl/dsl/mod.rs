@@ -66,6 +66,11 @@ use crate::hdl::netlist::{
     RomId,
 };
 
+/// What a device with buffers says of writes and results.
+const BUFFERED_NOTE: &str = "Operands have buffers: a write at any time is for the next computation, and start takes what \
+                             was written, also in the clock of done. The outputs hold from valid at least until the next \
+                             computation begins.";
+
 /// Builds a [`Design`]; see the [module documentation](self).
 pub struct Designer {
     inner: RefCell<Inner>,
@@ -95,6 +100,8 @@ pub(crate) struct Inner {
     valid: Option<(NetId, u32)>,
     /// Whether results that are logic get registers.
     registers_outputs: bool,
+    /// Of operands with buffers, what loads the operand registers from them.
+    taken: Option<NetId>,
     /// The numbers of the lines of `valid_word` and of `go_on` in the source's figure.
     sequencer_lines: Option<[u16; 2]>,
     diagnostics: Vec<Diagnostic>,
@@ -124,6 +131,7 @@ impl Designer {
             program: None,
             valid: None,
             registers_outputs: false,
+            taken: None,
             sequencer_lines: None,
             diagnostics: Vec::new(),
             names: HashMap::new(),
@@ -320,6 +328,32 @@ impl Designer {
         self.inner.borrow_mut().registers_outputs = true;
     }
 
+    /// Puts a buffer in front of every operand register. Writes go into the buffers, at any time; `start` takes them into
+    /// the registers, and is heard in the last clock of a computation too, so that no clock is lost between two.
+    /// To be called before the first operand is declared. The key `operands.buffered` asks for it.
+    #[track_caller]
+    pub fn buffer_operands(&self) {
+        if self.with(|inner| inner.design.ports.iter().any(|it| it.role == Role::Strobe)) {
+            self.error("an operand is declared before its buffer is asked for".to_owned());
+            return;
+        }
+        let taken = Driver::Op(Op::And(self.start, self.idle));
+        let taken = self.add_named("operands_load", Format::BIT, taken);
+        self.set_doc(taken, "start is heard");
+        self.set_doc(self.start, "begins a computation when not busy, or in the last clock of one");
+        self.set_doc(self.idle, "start is heard");
+        self.inner.borrow_mut().taken = Some(taken);
+    }
+
+    /// Puts a note in the place of what the device says of writes while it is busy.
+    fn replace_note(&self, note: &str) {
+        self.with(|inner| {
+            let notes = &mut inner.design.about.notes;
+            notes.retain(|note| !note.starts_with("Writes while busy"));
+            notes.push(note.to_owned());
+        });
+    }
+
     /// The finished design, assembled and checked.
     ///
     /// # Errors
@@ -331,6 +365,9 @@ impl Designer {
             self.placed(place, || {
                 if self.with(|inner| inner.registers_outputs) {
                     output_registers::insert(&self, &mut program);
+                }
+                if self.with(|inner| inner.taken.is_some()) {
+                    self.replace_note(BUFFERED_NOTE);
                 }
                 program::assemble(&self, &program);
             });

@@ -38,11 +38,7 @@ pub(super) fn insert(d: &Designer, program: &mut Program) {
             "Writes while busy are ignored. The outputs are registers, a clock behind the datapath."
         }
     };
-    d.with(|inner| {
-        let notes = &mut inner.design.about.notes;
-        notes.retain(|note| !note.starts_with("Writes while busy"));
-        notes.push(note.to_owned());
-    });
+    d.replace_note(note);
 }
 
 /// The ports of results that are no registers.

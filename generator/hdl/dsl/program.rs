@@ -278,7 +278,17 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
             Kind::Next => Sequence::Next,
             // Microinstruction 0 waits anyhow.
             Kind::WaitForStart if std::ptr::eq(step, &steps[0]) => Sequence::Next,
-            Kind::WaitForStart => Sequence::WaitStart,
+            Kind::WaitForStart => {
+                if d.with(|inner| inner.taken.is_some()) {
+                    let message = format!(
+                        "microinstruction `{}` waits for start, and the operands have buffers, which the start of a \
+                         computation alone empties: leave operands.buffered out",
+                        step.name
+                    );
+                    d.report(Diagnostic::new(message, setting.location));
+                }
+                Sequence::WaitStart
+            }
             Kind::End => Sequence::End,
             Kind::LoopWhile { condition, to } => {
                 if d.net(*condition).format.width() != 1 {

@@ -96,11 +96,18 @@ impl Sequencer {
         };
         d.set_doc(busy.id(), "high from the clock after start to the end");
         d.connect(address, next.id(), Some(advance));
-        let next_run = bit("next_run", Op::Mux { select: run, inputs: vec![start, go_on] });
+        let overlaps = d.with(|inner| inner.taken.is_some());
+        let (next_run, idle) = if overlaps {
+            // In its last clock a computation gives way to the next one.
+            let goes_on = bit("goes_on", Op::And(run, go_on));
+            (bit("next_run", Op::Or(goes_on.id(), start)), Op::Not(goes_on.id()))
+        } else {
+            let next_run = bit("next_run", Op::Mux { select: run, inputs: vec![start, go_on] });
+            (next_run, Op::Relabel(bit("not_busy", Op::Not(busy.id())).id()))
+        };
         d.connect(run, next_run.id(), None);
-        let not_busy = bit("not_busy", Op::Not(busy.id()));
         d.with(|inner| {
-            inner.design.nets[d.idle.index()].driver = Driver::Op(Op::Relabel(not_busy.id()));
+            inner.design.nets[d.idle.index()].driver = Driver::Op(idle);
             for register in &mut inner.design.registers {
                 if register.q == run || register.q == address {
                     register.reset = Some(0);
@@ -206,7 +213,8 @@ fn control_rom(
             _ => unreachable!("the sequencer's registers drive their nets"),
         };
         let (address, run) = (register(address), register(d.run));
+        let overlaps = inner.taken.is_some();
         inner.design.control =
-            Control { fields, microprogram: microinstructions, rom, address, run };
+            Control { fields, microprogram: microinstructions, rom, address, run, overlaps };
     });
 }

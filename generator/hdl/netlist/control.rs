@@ -19,6 +19,8 @@ pub struct Control {
     pub address: RegId,
     /// 1 while a program runs.
     pub run: RegId,
+    /// Whether `start` is taken in the last clock of a computation too: operands are written into buffers.
+    pub overlaps: bool,
 }
 
 /// A field of the control word.
@@ -87,6 +89,7 @@ impl Control {
             rom: RomId(u32::MAX),
             address: RegId(u32::MAX),
             run: RegId(u32::MAX),
+            overlaps: false,
         }
     }
 

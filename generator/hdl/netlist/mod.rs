@@ -141,8 +141,10 @@ pub struct Register {
 /// What a register is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RegisterKind {
-    /// Loaded from an input port by its write strobe.
+    /// Loaded from an input port by its write strobe, or from its buffer by `start`; stable while the device is busy.
     Operand,
+    /// In front of such a register: takes writes at any time, for the next computation.
+    Buffer,
     /// Of the source's datapath; a golden model predicts it on every clock.
     Architectural,
     /// Of the sequencer; a golden model predicts it too.

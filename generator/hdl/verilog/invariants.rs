@@ -20,12 +20,19 @@ fn control(design: &Design) -> Vec<String> {
     let (address, run) = (name(design.control.address), name(design.control.run));
     let width = design.width(design.register(design.control.address).q);
     let last = literal(design.control.microprogram.len() as u64 - 1, width);
-    vec![
+    let mut lines = vec![
         "always @* if (!$initstate) begin".to_owned(),
         format!("    assert ({address} <= {last});  // no other address is reached"),
         format!("    if (!{run}) assert ({address} == {});", literal(0, width)),
-        "end".to_owned(),
-    ]
+    ];
+    if design.control.overlaps {
+        lines.push(
+            "    assert (idle == (!busy || done));  // operands are taken by no other start"
+                .to_owned(),
+        );
+    }
+    lines.push("end".to_owned());
+    lines
 }
 
 /// Operands are stable while the device is busy.

@@ -61,6 +61,8 @@ struct Wrapper<'a> {
     connections: Vec<String>,
     line: Option<Line>,
     unused: Vec<String>,
+    /// The core hears `start` in the clock of `done` too.
+    overlaps: bool,
     /// What drives the outputs: `reg `, or `wire` of the buffer.
     output: &'static str,
 }
@@ -92,6 +94,8 @@ struct Formal<'a> {
     /// Declarations of what the proof sees of the inside.
     inside: Vec<String>,
     line: Option<Line>,
+    /// The core hears `start` in the clock of `done` too.
+    overlaps: bool,
 }
 
 /// The wrapper, of a core that walks lines its buffer too, and what is proved of them.
@@ -106,6 +110,8 @@ pub fn wrapper(design: &Design, inputs: &EmitInputs) -> Result<Wrappers> {
 fn modules(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>> {
     let name = design.name.as_str();
     let (operands, results) = (operands(design), results(design));
+    let overlaps = design.control.overlaps;
+    let is_unused = |role: Role| role == Role::Status || role == Role::Done && !overlaps;
     let connections = design.ports.iter().map(|port| {
         let name = design.net(port.net).name.as_str();
         let to = match port.role {
@@ -113,6 +119,7 @@ fn modules(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>
             Role::Start => "start".to_owned(),
             Role::Valid => "valid".to_owned(),
             Role::Busy => "busy".to_owned(),
+            Role::Done if overlaps => "done".to_owned(),
             Role::Operand { .. } => {
                 let field = operands.iter().find(|field| field.name == name);
                 format!("operands{}", field.map(Field::bits).unwrap_or_default())
@@ -128,11 +135,11 @@ fn modules(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>
     let mut result_wires = Vec::new();
     for port in design.outputs() {
         let net = design.net(port.net);
-        if matches!(port.role, Role::Done | Role::Result | Role::Status) {
+        if port.role == Role::Result || is_unused(port.role) {
             let range = range(net.format.width());
             result_wires.push(format!("wire {range} core_{};", net.name).replace("  ", " "));
         }
-        if matches!(port.role, Role::Done | Role::Status) {
+        if is_unused(port.role) {
             unused.push(format!("core_{}", net.name));
         }
     }
@@ -153,6 +160,7 @@ fn modules(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>
         output: if buffered.is_some() { "wire" } else { "reg " },
         line: line(inputs, &operands)?,
         unused: sink(&unused),
+        overlaps,
         operands,
         results,
     };
@@ -204,6 +212,7 @@ fn formal(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>>
         inside,
         strobes: operands.iter().map(|field| field.strobe.clone()).collect(),
         line,
+        overlaps: design.control.overlaps,
     };
     Ok(vec![
         (format!("{name}_axis_formal.sv"), render(&formal)?),

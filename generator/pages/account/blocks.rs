@@ -218,7 +218,7 @@ impl<'a> Blocks<'a> {
         };
         match &self.design.net(id).driver {
             Driver::Register(register) => match self.design.register(*register).kind {
-                RegisterKind::Operand => BlockKind::Operand,
+                RegisterKind::Operand | RegisterKind::Buffer => BlockKind::Operand,
                 _ => BlockKind::Register,
             },
             Driver::Constant(_) => BlockKind::Constant,

@@ -38,8 +38,17 @@ struct Page<'a> {
 
 /// What brings the computation about, as tables.
 enum Program {
-    Microprogram { blocks: String, fields: String, microprogram: String },
-    Pipeline { stages: String, handshake: &'static str },
+    /// With what happens to writes while it is busy.
+    Microprogram {
+        blocks: String,
+        fields: String,
+        microprogram: String,
+        writes: &'static str,
+    },
+    Pipeline {
+        stages: String,
+        handshake: &'static str,
+    },
 }
 
 impl Program {
@@ -49,6 +58,7 @@ impl Program {
                 blocks: table(&account::blocks::table(design)),
                 fields: table(&account::fields(design)),
                 microprogram: table(&account::microprogram(design)),
+                writes: if design.control.overlaps { "for the next one" } else { "ignored" },
             },
             Some(pipeline) => Self::Pipeline {
                 stages: table(&stages::table(design, pipeline)),

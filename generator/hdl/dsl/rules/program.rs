@@ -166,7 +166,7 @@ fn changes(design: &Design, body: &[usize], id: NetId) -> bool {
         // Operands are written while the device is not busy.
         Driver::Register(id) => match design.register(id).kind {
             RegisterKind::Operand => false,
-            RegisterKind::Sequencer | RegisterKind::Internal => true,
+            RegisterKind::Buffer | RegisterKind::Sequencer | RegisterKind::Internal => true,
             RegisterKind::Architectural => body.iter().any(|&at| loads(design, at, id) != Some(0)),
         },
         _ => false,

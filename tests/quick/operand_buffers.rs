@@ -1,0 +1,210 @@
+//! `operands.buffered`: writes at any time, and no clock between two computations.
+
+use glint::config;
+use glint::core::Core;
+use glint::cosim::trial;
+use glint::dsl::{Designer, end, step, valid, wait_for_start};
+use glint::fixed::Format;
+use glint::golden::Model;
+use glint::hdl::sim::Simulator;
+use glint::package::Computation;
+use glint::registry::{Device, Registry};
+
+/// Results that golden model and simulation are compared on.
+const POINTS: u64 = 4000;
+
+const BUFFERED: &str = "[operands]\nbuffered = true\n";
+
+/// A device by its defaults and more keys, as TOML.
+fn core(device: Device, more: &str) -> anyhow::Result<Core> {
+    let text = format!("device = \"{}\"\n{more}", device.name);
+    let config = config::parse("buffered.toml", &text, &[(device.schema)()])
+        .unwrap_or_else(|problems| panic!("{problems}"));
+    Core::new(device, config)
+}
+
+fn computations(core: &Core) -> Vec<Computation> {
+    let listed = trial::computations(&core.design, core.contract.as_ref());
+    listed.expect("computations that agree with the golden model")
+}
+
+fn assert_agrees(core: &Core, what: &str) {
+    let outcome = core.lockstep(1).and_then(|it| it.run(POINTS, &|_| ())).expect("a run");
+    assert!(outcome.mismatch.is_none(), "{what}: {:?}", outcome.mismatch);
+    let faults = outcome.faults(&core.contract.bound());
+    assert!(faults.is_empty(), "{what}: {faults:?}");
+}
+
+#[test]
+fn every_device_computes_the_same_in_a_clock_less() {
+    for device in Registry::catalogue().devices() {
+        let [plain, buffered] = ["", BUFFERED].map(|more| core(*device, more).expect("a design"));
+        let timing =
+            |core: &Core| trial::timing(&core.design, core.contract.as_ref()).expect("the clocks");
+        let (before, after) = (timing(&plain), timing(&buffered));
+        assert_eq!(after.start_to_valid, before.start_to_valid, "{}", device.name);
+        assert_eq!(after.start_to_done, before.start_to_done, "{}", device.name);
+        let less = before.start_to_start.map(|clocks| clocks - 1);
+        assert_eq!(after.start_to_start, less, "{}", device.name);
+        assert_eq!(computations(&buffered), computations(&plain), "{}", device.name);
+        assert_agrees(&buffered, device.name);
+    }
+}
+
+#[test]
+fn other_keys_go_with_it() {
+    for (name, more) in [
+        ("cosine-power", "[output]\nregistered = true\n"),
+        ("lyon", "[colour]\nmultipliers = 1\n"),
+        ("quad-cosine", "[line]\nstages = 7\n"),
+        ("cosine-squared", "[line]\nstages = 5\n[output]\nregistered = true\n"),
+    ] {
+        let device = *Registry::catalogue().device(name).expect("a device");
+        assert_agrees(&core(device, &format!("{more}{BUFFERED}")).expect("a design"), name);
+    }
+}
+
+/// A host that writes an operand a clock while a point is computed, and raises `start` with `done`: the results are
+/// those of the core without buffers, one after another without a pause.
+#[test]
+fn a_host_that_writes_ahead_loses_no_clock() {
+    for name in ["cosine-power", "schlick", "rough"] {
+        let device = *Registry::catalogue().device(name).expect("a device");
+        let wanted = computations(&core(device, "").expect("a design"));
+        let buffered = core(device, BUFFERED).expect("a design");
+        let (design, contract) = (&buffered.design, buffered.contract.as_ref());
+        let input = |name: &str| {
+            let at = design.inputs().position(|port| design.net(port.net).name == name);
+            at.expect("an input")
+        };
+        let mut simulator: Simulator = Simulator::new(design).expect("a simulator");
+        simulator.clock().expect("a reset");
+        simulator.set(input("rst_n"), 1);
+        let write = |simulator: &mut Simulator, of: &Computation, at: usize| {
+            let operand = &contract.operands()[at];
+            let bits = operand.format.bits(i128::from(of.operands[at]));
+            simulator.set(input(&operand.name), bits);
+            simulator.set(input(&format!("{}_write", operand.name)), 1);
+        };
+        let lower = |simulator: &mut Simulator| {
+            for operand in contract.operands() {
+                simulator.set(input(&format!("{}_write", operand.name)), 0);
+            }
+        };
+        let count = contract.operands().len();
+        (0..count).for_each(|at| write(&mut simulator, &wanted[0], at));
+        simulator.set(input("start"), 1);
+        simulator.clock().expect("a clock");
+        let handshake = design.handshake().expect("a handshake");
+        for (number, this) in wanted.iter().enumerate() {
+            let next = wanted.get(number + 1);
+            let mut shown = Vec::new();
+            for clock in 1..=this.done {
+                lower(&mut simulator);
+                let at = clock as usize - 1;
+                let is_last = clock == this.done;
+                assert_eq!(simulator.value(handshake.busy), 1);
+                assert_eq!(simulator.value(handshake.done), u64::from(is_last), "{name}");
+                if simulator.value(handshake.valid) == 1 {
+                    let outputs = contract.outputs().iter();
+                    shown.extend(outputs.map(|output| {
+                        let bits = simulator.value(design.find(&output.name).expect("an output"));
+                        output.format.raw(bits) as i64
+                    }));
+                }
+                if let Some(next) = next {
+                    let now = if is_last {
+                        at.min(count)..count
+                    } else {
+                        at.min(count)..(at + 1).min(count)
+                    };
+                    now.for_each(|at| write(&mut simulator, next, at));
+                }
+                // Before the last clock it is not heard.
+                let ignored = clock % 2 == 0;
+                let start = if is_last { next.is_some() } else { ignored };
+                simulator.set(input("start"), u64::from(start));
+                simulator.clock().expect("a clock");
+            }
+            let results: Vec<i64> = this.results.iter().flat_map(|it| it.outputs.clone()).collect();
+            assert_eq!(shown, results, "{name}, {:?}", this.operands);
+        }
+        assert_eq!(simulator.value(handshake.busy), 0);
+    }
+}
+
+#[test]
+fn a_pipeline_has_none_to_ask_for() {
+    let text = format!("device = \"lyon\"\narchitecture = \"pipelined\"\n{BUFFERED}");
+    let problems = config::parse("both.toml", &text, &Registry::catalogue().schemas())
+        .expect_err("a key of sequential cores")
+        .to_string();
+    assert!(problems.contains("operands.buffered"), "{problems}");
+    assert!(problems.contains("architecture = \"sequential\""), "{problems}");
+}
+
+/// A golden model that was written by hand, and does not say what buffers do.
+#[test]
+fn a_model_that_does_not_know_them_is_refused() {
+    #[derive(Clone)]
+    struct ByHand;
+
+    impl Model for ByHand {
+        fn inputs(&self) -> &[String] {
+            &[]
+        }
+
+        fn signals(&self) -> &[String] {
+            &[]
+        }
+
+        fn clock(&mut self, _: &[u64]) {}
+
+        fn values(&self) -> &[u64] {
+            &[]
+        }
+    }
+
+    let threshold = *Registry::catalogue().device("threshold").expect("threshold");
+    let device = Device { model: |_| Box::new(ByHand), ..threshold };
+    let error = core(device, BUFFERED).err().expect("no model").to_string();
+    assert!(
+        error.contains("`threshold`") && error.contains("leave operands.buffered out"),
+        "{error}"
+    );
+}
+
+/// Why a register's description with this second microinstruction is refused.
+fn refused(buffer_first: bool, wait: bool) -> String {
+    let d = Designer::new("copy");
+    if buffer_first {
+        d.buffer_operands();
+    }
+    let x = d.operand("x", Format::unsigned(0, 8));
+    if !buffer_first {
+        d.buffer_operands();
+    }
+    let y = d.register("y", Format::unsigned(0, 8));
+    y.takes(x.q());
+    d.output("y_out", y.q());
+    let second = if wait { step("wait", [wait_for_start()]) } else { step("pause", []) };
+    d.microprogram([
+        step("idle", []),
+        second,
+        step("copy", [y.load()]),
+        step("show", [valid(), end()]),
+    ]);
+    d.finish().err().map_or_else(String::new, |diagnostics| diagnostics.to_string())
+}
+
+#[test]
+fn what_cannot_have_them_is_refused_with_its_place() {
+    assert_eq!(refused(true, false), "");
+    let late = refused(false, false);
+    assert!(late.contains("declared before its buffer"), "{late}");
+    let waits = refused(true, true);
+    assert!(
+        waits.contains("`wait` waits for start") && waits.contains("operand_buffers.rs"),
+        "{waits}"
+    );
+}
