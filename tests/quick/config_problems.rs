@@ -49,7 +49,7 @@ fn unknown_names_are_answered_with_the_nearest() {
     assert_eq!(
         of_lamp("zzz = 20\n"),
         ["2:1 zzz | device `lamp` has no key `zzz` | keys outside tables: device, name, strict, \
-          arithmetic, power, architecture; tables: [cosine], [sine], [domain], [pipeline], [output], [interface], [package]"]
+          arithmetic, power, architecture; tables: [cosine], [sine], [domain], [pipeline], [output], [operands], [interface], [package]"]
     );
     assert_eq!(
         of_lamp("[cosine]\nzzz = 20\n"),
@@ -583,7 +583,7 @@ fn values_from_a_program_obey_the_same_rules() {
              | give an integer from 4 to 30 (default 20)",
             "0:0 cosine.colour | device `lamp` has no key \"cosine.colour\" | keys outside tables: \
              device, name, strict, arithmetic, power, architecture; tables: [cosine], [sine], [domain], \
-             [pipeline], [output], [interface], [package]",
+             [pipeline], [output], [operands], [interface], [package]",
             "0:0 arithmetic | `arithmetic` must be a string, not the integer 1 \
              | give \"exact\" or \"patent\" (default \"exact\")",
             "0:0 sine.segments | `sine.segments` has no effect with sine.scheme = \"direct\" \

@@ -101,6 +101,12 @@ deviation = 30.0
 # True or false, default false; only with architecture = \"sequential\".
 registered = false
 
+[operands]
+# Buffers that take operands while a point is computed. The next one then begins in the
+# clock after the last of this one.
+# True or false, default false; only with architecture = \"sequential\".
+buffered = false
+
 [interface]
 # Write an AXI4-Stream wrapper of the core, <name>_axis.v.
 # True or false, default false.
