@@ -254,7 +254,7 @@ impl Core {
 
     fn verilog_of(&self, design: &Design, target: &str) -> Result<Vec<(String, String)>> {
         let around = Surroundings {
-            inline_memories: Surroundings::new(&self.config, None).inline_memories,
+            style: Surroundings::new(&self.config, None).style,
             ..Surroundings::default()
         };
         let files = package::emit(design, &EmitInputs { around, ..EmitInputs::default() })?;

@@ -28,7 +28,7 @@ ${ line }$
 ${ line }$
 <%- endfor %>
 <%- if !rom.second %>
-    reg ${ rom.range }$ ${ rom.memory }$ [0:${ rom.last }$];
+    ${ rom.attribute }$reg ${ rom.range }$ ${ rom.memory }$ [0:${ rom.last }$];
 <%- match rom.contents %>
 <%- when Contents::File with { radix, parameter } %>
     initial $readmem${ radix }$(${ parameter }$, ${ rom.memory }$);

@@ -18,6 +18,14 @@ ${ line }$
 ${ line }$
 <%- endfor %>
 <%- endfor %>
+<%- if !initial.is_empty() %>
+
+    initial begin
+<%- for line in initial %>
+        ${ line }$
+<%- endfor %>
+    end
+<%- endif %>
 <%- include "items.v" %>
 <%- include "groups.v" %>
 <%- if !unused.is_empty() %>

@@ -114,6 +114,19 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
             &["files", "inline"],
             "Whether ROM contents are .mem files, or stand in the Verilog, for flows that do not find files.",
         ),
+        Key::choice(
+            "package.rom_style",
+            "auto",
+            &["auto", "block", "distributed"],
+            "Where ROMs that are read on the clock are to be, as their attribute rom_style says: block memory, look-up tables, or \
+             as the synthesiser finds.",
+        ),
+        Key::flag(
+            "package.initial_values",
+            false,
+            "Registers are 0 before the first clock. Without it a simulation has unknown values until the first reset and the first writes.",
+        )
+        .only_when("architecture", "sequential"),
         Key::flag(
             "package.litex",
             false,

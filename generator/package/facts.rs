@@ -253,7 +253,7 @@ pub fn microprogram(design: &Design) -> Vec<Microinstruction<'_>> {
 
 /// The ROMs, that of the microprogram among them.
 pub fn roms<'a>(design: &'a Design, naming: &'a Naming) -> Vec<Rom<'a>> {
-    let in_file = !naming.inline;
+    let in_file = !naming.style.inline;
     let entry = |(at, rom): (usize, &'a netlist::Rom)| {
         let width = design.width(rom.data);
         let binary = is_control_rom(design, RomId(at as u32));
@@ -267,7 +267,7 @@ pub fn roms<'a>(design: &'a Design, naming: &'a Naming) -> Vec<Rom<'a>> {
             format: design.net(rom.data).format.to_string(),
             synchronous: rom.synchronous,
             radix: in_file.then_some(if binary { 2 } else { 16 }),
-            words: naming.inline.then_some(&rom.words[..]),
+            words: naming.style.inline.then_some(&rom.words[..]),
             doc: &rom.doc,
             block: rom.block,
         }

@@ -144,7 +144,7 @@ impl EmitInputs {
 pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     ensure!(design.find("clk").is_none(), "`clk` is the clock; no other net can have that name");
     let plan = Plan::new(design)?;
-    let naming = Naming::new(design).inlined(inputs.around.inline_memories);
+    let naming = Naming::new(design).styled(inputs.around.style);
     let name = &design.name;
     let mut rtl = match &design.pipeline {
         Some(pipeline) => {
@@ -161,7 +161,7 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     let mut memories = Vec::new();
     for (at, file) in naming.files.iter().enumerate() {
         let id = RomId(at as u32);
-        if !naming.inline && !naming.second.contains(&id) {
+        if !naming.style.inline && !naming.second.contains(&id) {
             memories.push((file.clone(), memory::contents(design, id)?));
         }
     }

@@ -3,6 +3,7 @@
 use super::Unfit;
 use crate::config::{Config, Schema};
 use crate::hdl::netlist::Pipeline;
+use crate::hdl::verilog::naming::Style;
 
 /// The clock of constraints for a sequential core, unless a key says another.
 const CLOCK_MHZ: f64 = 100.0;
@@ -55,8 +56,8 @@ pub struct Surroundings {
     pub registers: Option<Bus>,
     /// A model in C, in `software/<name>/`.
     pub software: bool,
-    /// ROM contents stand in the Verilog.
-    pub inline_memories: bool,
+    /// How memories and registers are written.
+    pub style: Style,
     /// A module for LiteX.
     pub litex: bool,
     /// The clock of constraints, if there are any.
@@ -95,7 +96,16 @@ impl Surroundings {
                 _ => None,
             },
             software: config.flag("package.software"),
-            inline_memories: config.choice("package.memories") == "inline",
+            style: Style {
+                inline: config.choice("package.memories") == "inline",
+                rom_style: match config.choice("package.rom_style") {
+                    "block" => Some("rom_style = \"block\""),
+                    // To Yosys, which reads the first, memory in look-up tables is one that can be written.
+                    "distributed" => Some("ram_style = \"logic\", rom_style = \"distributed\""),
+                    _ => None,
+                },
+                initial: config.flag("package.initial_values"),
+            },
             litex: config.flag("package.litex"),
             clock_mhz: config.flag("package.constraints").then(|| {
                 let made_for = pipeline.map_or(CLOCK_MHZ, |pipeline| pipeline.clock_mhz);

@@ -130,6 +130,16 @@ software = false
 # \"files\" or \"inline\", default \"files\".
 memories = \"files\"
 
+# Where ROMs that are read on the clock are to be, as their attribute rom_style says:
+# block memory, look-up tables, or as the synthesiser finds.
+# \"auto\", \"block\" or \"distributed\", default \"auto\".
+rom_style = \"auto\"
+
+# Registers are 0 before the first clock. Without it a simulation has unknown values until
+# the first reset and the first writes.
+# True or false, default false; only with architecture = \"sequential\".
+initial_values = false
+
 # Write software/<name>/<name>_litex.py: the core as a module of LiteX.
 # True or false, default false; only with package.memories = \"inline\".
 # litex = false

@@ -8,7 +8,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use crate::common::cores::{Emitted, configuration, configurations};
+use crate::common::cores::{Emitted, configuration, configuration_with, configurations};
 use crate::common::netlist::{self, POINTS, synthesise};
 use crate::common::sample::sampled;
 use crate::common::tools::{LIMIT, tool};
@@ -82,6 +82,22 @@ fn usage_is_that_of_the_netlist() {
         assert_eq!(told, wanted, "{}", family.title);
         assert!(told.luts > 50 && told.dsps > 3, "{told:?}");
     });
+}
+
+/// `gauss` has a curve and four tables, of which Yosys puts the curve alone into block memory of ECP5.
+#[test]
+fn memories_are_where_the_key_wants_them() {
+    let [auto, block, distributed] = ["auto", "block", "distributed"].map(|style| {
+        let more = format!("\n[package]\nrom_style = \"{style}\"\n");
+        let emitted = Emitted::new(&configuration_with("configs/gauss.toml", &more), POINTS, 1);
+        let ecp5 = FAMILIES.iter().find(|family| family.name == "ecp5").expect("ECP5");
+        let used =
+            synthesis::synthesise(&tool("yosys"), &emitted.rtl(), &emitted.name, ecp5, LIMIT);
+        used.unwrap_or_else(|error| panic!("{style}: {error:#}"))
+    });
+    assert_eq!(distributed.block_rams, 0);
+    assert!(auto.block_rams > 0 && auto.block_rams < block.block_rams, "{auto:?}, {block:?}");
+    assert!(block.luts < auto.luts && auto.luts < distributed.luts, "{auto:?}, {distributed:?}");
 }
 
 /// The cells of a flat netlist.

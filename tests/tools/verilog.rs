@@ -7,7 +7,7 @@
 use crate::common::bench::{Bench, with_flipped_bit};
 use crate::common::cores::{Emitted, Files, all_configurations, configuration, write};
 use crate::common::sample::sampled;
-use crate::common::tools::assert_lint_clean;
+use crate::common::tools::{LIMIT, assert_lint_clean, tool};
 use glint::core::Core;
 use glint::hdl::netlist::{Design, Driver, RomId};
 use glint::hdl::sim::Simulator;
@@ -81,6 +81,61 @@ fn configurations_pass_in_verilator() {
         let (_, bench) = build(core, External::Verilator);
         bench.assert_passes();
     });
+}
+
+/// A computation without a reset before it: with initial values the handshake and the results are known from the first
+/// clock on, without them never.
+#[test]
+fn initial_values_are_known_without_a_reset() {
+    let bench = "
+module bench;
+    reg clk = 1'b0;
+    reg start = 1'b0;
+    wire valid, busy, done;
+    wire [7:0] red_out;
+    core dut (
+        .clk(clk), .rst_n(1'b1), .start(start), .cos_gamma(21'd1048576), .cos_gamma_write(start),
+        .exponent(10'd20), .exponent_write(start), .red(8'd200), .red_write(start),
+        .green(8'd0), .green_write(start), .blue(8'd0), .blue_write(start),
+        .valid(valid), .busy(busy), .done(done), .red_out(red_out), .green_out(), .blue_out()
+    );
+    always #5 clk = ~clk;
+    initial begin
+        #1 $display(\"before %b %b\", busy, red_out);
+        @(negedge clk) start = 1'b1;
+        @(negedge clk) start = 1'b0;
+        repeat (20) @(negedge clk) if (valid) $display(\"valid %0d\", red_out);
+        $finish;
+    end
+endmodule
+";
+    let shown = |values: bool| {
+        let more = format!("\nname = \"core\"\n[package]\ninitial_values = {values}\n");
+        let text = format!("device = \"cosine-power\"{more}");
+        let emitted = Emitted::new(&core(&text), 4, SEED);
+        let place = tempfile::tempdir().expect("a directory");
+        let mut files = emitted.rtl();
+        files.push(("bench.v".to_owned(), bench.to_owned()));
+        write(place.path(), &files);
+        let sources = ["core_control.v", "core_datapath.v", "core.v", "bench.v"];
+        let build =
+            tool("iverilog").run(["-o", "bench"].iter().chain(&sources), place.path(), LIMIT);
+        let build = build.unwrap_or_else(|error| panic!("{error:#}"));
+        assert!(build.status.success(), "{}", build.output);
+        let run = tool("vvp").run(["bench"], place.path(), LIMIT);
+        run.unwrap_or_else(|error| panic!("{error:#}")).output
+    };
+    assert!(shown(true).contains("before 0 00000000\nvalid 200\n"), "{}", shown(true));
+    assert!(shown(false).contains("before x xxxxxxxx\n"), "{}", shown(false));
+    assert!(!shown(false).contains("valid"), "{}", shown(false));
+}
+
+/// The core of a configuration as text.
+fn core(text: &str) -> Core {
+    let registry = glint::registry::Registry::catalogue();
+    let config = glint::config::parse("core.toml", text, &registry.schemas());
+    let config = config.unwrap_or_else(|problems| panic!("{problems}"));
+    Core::new(*registry.device(&config.device).expect("a device"), config).expect("a design")
 }
 
 #[test]

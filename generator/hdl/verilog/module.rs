@@ -63,6 +63,7 @@ impl<'a> Builder<'a> {
                 .filter(|(_, lines)| !lines.is_empty())
                 .map(|(title, lines)| Section { title, lines })
                 .collect(),
+            initial: if self.naming.style.initial { self.initial() } else { Vec::new() },
             items,
             groups,
             unused: self.unused(),
@@ -96,23 +97,35 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// The declarations of what the clock changes and is wanted, except ports.
-    pub(super) fn state(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<String> {
+    /// The registers here that are written as such.
+    fn registers(&self) -> impl Iterator<Item = NetId> {
         let design = self.plan.design;
         let registers = (0..).map(RegId).zip(&design.registers).filter(|(id, _)| {
             design.multiplier(*id).is_none() && self.plan.delayed(*id) != Some(false)
         });
         let registers = registers.map(|(_, register)| register.q);
-        let roms = design.roms.iter().filter(|rom| rom.synchronous).map(|rom| rom.data);
-        let rows: Vec<_> = registers
+        registers.filter(|net| self.plan.partition(*net) == self.partition)
+    }
+
+    /// The declarations of what the clock changes and is wanted, except ports.
+    pub(super) fn state(&self, wanted: &dyn Fn(NetId) -> bool) -> Vec<String> {
+        let roms = self.plan.design.roms.iter().filter(|rom| rom.synchronous).map(|rom| rom.data);
+        let roms = roms.filter(|net| self.plan.partition(*net) == self.partition);
+        let rows: Vec<_> = self
+            .registers()
             .chain(roms)
-            .filter(|net| {
-                let here = self.plan.partition(*net) == self.partition && wanted(*net);
-                here && !self.interface.outputs.contains(net)
-            })
+            .filter(|net| wanted(*net) && !self.interface.outputs.contains(net))
             .map(|net| Row::net(self.plan, "", "reg", net))
             .collect();
         Row::declarations(&rows)
+    }
+
+    /// Registers are 0 before the first clock. What a ROM is read into is known after it, and block memories have no
+    /// values there on some targets.
+    fn initial(&self) -> Vec<String> {
+        let design = self.plan.design;
+        let zero = |net| format!("{} = {};", design.net(net).name, literal(0, design.width(net)));
+        self.registers().map(zero).collect()
     }
 
     pub(super) fn constants(&self) -> Vec<String> {
@@ -257,10 +270,14 @@ impl<'a> Builder<'a> {
         };
         Item::Rom(RomItem {
             comment: comment(4, &format!("{}{what}", rom_label(rom))),
+            attribute: match self.naming.style.rom_style {
+                Some(style) if rom.synchronous => format!("(* {style} *) "),
+                _ => String::new(),
+            },
             range: range(width),
             memory: self.naming.memories[id.index()].clone(),
             last: rom.words.len().saturating_sub(1),
-            contents: if self.naming.inline {
+            contents: if self.naming.style.inline {
                 Contents::Inline(words(self.plan.design, id, &self.naming.memories[id.index()]))
             } else {
                 Contents::File {
@@ -402,7 +419,7 @@ fn words(design: &Design, id: RomId, memory: &str) -> Vec<String> {
 
 /// The file parameters of ROMs, with their commas; none where the words stand in the Verilog.
 pub fn parameters(naming: &Naming, roms: &[RomId]) -> Vec<String> {
-    let roms = roms.iter().filter(|_| !naming.inline);
+    let roms = roms.iter().filter(|_| !naming.style.inline);
     let texts = roms.filter(|rom| !naming.second.contains(rom)).map(|rom| {
         format!("parameter {} = \"{}\"", naming.parameters[rom.index()], naming.files[rom.index()])
     });

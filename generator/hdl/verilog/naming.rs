@@ -17,8 +17,8 @@ pub struct Naming {
     pub parameters: Vec<String>,
     /// The file of each ROM.
     pub files: Vec<String>,
-    /// ROM contents stand in the Verilog: there are neither files nor parameters with their names.
-    pub inline: bool,
+    /// How memories and registers are written.
+    pub style: Style,
     /// The ROMs that are the second read port of another, and have its memory.
     pub second: Vec<RomId>,
     /// The localparams of each field's choices, by value.
@@ -28,6 +28,17 @@ pub struct Naming {
     /// All names so far: a module may add its own.
     pub names: Names,
     design: String,
+}
+
+/// How memories and registers are written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Style {
+    /// ROM contents stand in the Verilog: there are neither files nor parameters with their names.
+    pub inline: bool,
+    /// The attributes of ROMs that are read on the clock.
+    pub rom_style: Option<&'static str>,
+    /// Registers are 0 before the first clock.
+    pub initial: bool,
 }
 
 impl Naming {
@@ -49,7 +60,7 @@ impl Naming {
             control_instance,
             datapath_instance,
             memories,
-            inline: false,
+            style: Style::default(),
             second: numbers.filter(|&rom| design.rom(rom).shares.is_some()).collect(),
             parameters: design
                 .roms
@@ -68,9 +79,9 @@ impl Naming {
         }
     }
 
-    /// The same, with ROM contents in the Verilog or not.
-    pub fn inlined(self, inline: bool) -> Self {
-        Self { inline, ..self }
+    /// The same, with memories and registers written like this.
+    pub fn styled(self, style: Style) -> Self {
+        Self { style, ..self }
     }
 
     /// The module of a partition.

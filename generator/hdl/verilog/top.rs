@@ -62,7 +62,7 @@ fn instance(plan: &Plan, naming: &Naming, partition: Partition, interface: &Inte
             interface
                 .roms
                 .iter()
-                .filter(|_| !naming.inline)
+                .filter(|_| !naming.style.inline)
                 .map(|rom| connect(&naming.parameters[rom.index()]))
                 .collect(),
         ),

@@ -24,6 +24,8 @@ pub struct Module {
     pub ports: Vec<String>,
     /// Localparams, registers.
     pub declarations: Vec<Section>,
+    /// What registers are before the first clock: statements.
+    pub initial: Vec<String>,
     /// Combinational cells and ROMs, operands first.
     pub items: Vec<Spaced>,
     /// The bodies of the clocked blocks.
@@ -76,6 +78,8 @@ pub struct RomItem {
     pub comment: Vec<String>,
     /// It is the second read port of a memory that is there.
     pub second: bool,
+    /// Before the declaration, with a space behind it.
+    pub attribute: String,
     /// `[7:0]`.
     pub range: String,
     /// The memory's name.

@@ -165,8 +165,7 @@ pub fn ports(design: &Design) -> Table {
 
 /// The ROMs, that of the microprogram among them.
 pub fn roms(design: &Design, config: &Config) -> Table {
-    let inline = Surroundings::new(config, None).inline_memories;
-    let naming = Naming::new(design).inlined(inline);
+    let naming = Naming::new(design).styled(Surroundings::new(config, None).style);
     let mut table = Table::new(&[
         ("ROM", Align::Left),
         (NUMBER, Align::Right),
