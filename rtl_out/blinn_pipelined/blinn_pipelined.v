@@ -4,7 +4,7 @@
 //
 // Source: Seeds 000 to 002, the function that all devices approximate
 //
-// Pipeline: a point every clock, its results 21 clocks later; stages for 138 MHz on ecp5. While
+// Pipeline: a point every clock, its results 20 clocks later; stages for 138 MHz on ecp5. While
 // out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
@@ -96,11 +96,10 @@ module blinn_pipelined #(
     reg  valid_s17;  // stage 17 has a point
     reg  valid_s18;  // stage 18 has a point
     reg  valid_s19;  // stage 19 has a point
-    reg  valid_s20;  // stage 20 has a point
-    reg  valid_s21;  // the results are on the outputs
+    reg  valid_s20;  // the results are on the outputs
 
-    assign out_valid = valid_s21;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s21;  // every point moves on by a stage
+    assign out_valid = valid_s20;  // the results are on the outputs
+    wire advance = out_ready | ~valid_s20;  // every point moves on by a stage
     assign in_ready = advance;  // a point that is offered is taken in this clock
 
     always @(posedge clk) begin
@@ -125,7 +124,6 @@ module blinn_pipelined #(
             valid_s18 <= 1'b0;
             valid_s19 <= 1'b0;
             valid_s20 <= 1'b0;
-            valid_s21 <= 1'b0;
         end else if (advance) begin
             valid_s1 <= in_valid;
             valid_s2 <= valid_s1;
@@ -147,7 +145,6 @@ module blinn_pipelined #(
             valid_s18 <= valid_s17;
             valid_s19 <= valid_s18;
             valid_s20 <= valid_s19;
-            valid_s21 <= valid_s20;
         end
     end
 
@@ -294,48 +291,54 @@ module blinn_pipelined #(
     end
 
     // Stage 5, part of: segment of the decay addressed by cos gamma
-    reg  [12:0] curve_rest2_s6;  // u0.13
-    reg  [44:0] curve_word_s6;
-    reg         aligned_s6;      // cos gamma is 1.0
+    reg  [12:0] curve_rest2_s6;         // u0.13
+    reg  [25:0] curve_base_s6;          // u0.26
+    reg  [17:0] product_upper_bits_s6;
+    reg         product_row_s6;
+    reg         aligned_s6;             // cos gamma is 1.0
+
+    wire [25:0] curve_base_s5 = curve_word_s5[44:19];  // u0.26
 
     always @(posedge clk) begin
         if (advance) begin
             curve_rest2_s6 <= curve_rest2_s5;
-            curve_word_s6 <= curve_word_s5;
+            curve_base_s6 <= curve_base_s5;
+            product_upper_bits_s6 <= curve_word_s5[18:1];
+            product_row_s6 <= curve_word_s5[0];
             aligned_s6 <= aligned_s5;
         end
     end
 
     // Stage 6: values on their way
-    reg  [12:0] curve_rest2_s7;  // u0.13
-    reg  [44:0] curve_word_s7;
-    reg         aligned_s7;      // cos gamma is 1.0
+    reg  [12:0] curve_rest2_s7;         // u0.13
+    reg  [25:0] curve_base_s7;          // u0.26
+    reg  [17:0] product_upper_bits_s7;
+    reg         product_row_s7;
+    reg         aligned_s7;             // cos gamma is 1.0
 
     always @(posedge clk) begin
         if (advance) begin
             curve_rest2_s7 <= curve_rest2_s6;
-            curve_word_s7 <= curve_word_s6;
+            curve_base_s7 <= curve_base_s6;
+            product_upper_bits_s7 <= product_upper_bits_s6;
+            product_row_s7 <= product_row_s6;
             aligned_s7 <= aligned_s6;
         end
     end
 
     // Stage 7, part of: decay <- base + slope * rest
-    reg  [25:0] curve_base_s8;        // u0.26
+    reg  [25:0] curve_base_s8;     // u0.26
     reg  [30:0] product_upper_s8;
-    reg         product_low_bits_s8;
-    reg  [11:0] product_carried_s8;
-    reg         aligned_s8;           // cos gamma is 1.0
+    reg  [12:0] product_row_2_s8;
+    reg         aligned_s8;        // cos gamma is 1.0
 
-    wire [25:0] curve_base_s7 = curve_word_s7[44:19];  // u0.26
-    wire [30:0] product_upper_s7 = curve_word_s7[18:1] * curve_rest2_s7;
-    wire [12:0] product_row_2_s7 = curve_word_s7[0] ? curve_rest2_s7 : 13'd0;
+    wire [30:0] product_upper_s7 = product_upper_bits_s7 * curve_rest2_s7;
 
     always @(posedge clk) begin
         if (advance) begin
             curve_base_s8 <= curve_base_s7;
             product_upper_s8 <= product_upper_s7;
-            product_low_bits_s8 <= product_row_2_s7[0];
-            product_carried_s8 <= product_row_2_s7[12:1];
+            product_row_2_s8 <= product_row_s7 ? curve_rest2_s7 : 13'd0;
             aligned_s8 <= aligned_s7;
         end
     end
@@ -346,12 +349,9 @@ module blinn_pipelined #(
     reg  [25:0] curve_sum_inside_s9;  // u0.26
     reg         aligned_s9;           // cos gamma is 1.0
 
-    wire [30:0] product_sum_s8 = product_upper_s8 + {19'd0, product_carried_s8};
-
-    // its point depends on the operands
-    wire [31:0] product_s8 = {product_sum_s8, product_low_bits_s8};
-
-    wire [26:0] curve_sum_s8 = {1'b0, curve_base_s8} + {6'd0, product_s8[31:11]};  // u1.26
+    wire [30:0] product_sum_upper_2_s8 = {19'd0, product_row_2_s8[12:1]} + product_upper_s8;
+    wire [31:0] product_sum_s8 = {product_sum_upper_2_s8, product_row_2_s8[0]};
+    wire [26:0] curve_sum_s8 = {1'b0, curve_base_s8} + {6'd0, product_sum_s8[31:11]};  // u1.26
 
     always @(posedge clk) begin
         if (advance) begin
@@ -363,11 +363,10 @@ module blinn_pipelined #(
 
     // Stage 9, part of: segment of the decay addressed by cos gamma; decay <- base + slope * rest;
     // halvings <- n * decay
-    reg  [9:0]  exponent_s10;              // specular exponent n
-    reg         decay_small_s10;           // the decay is below 1/4, and all its bits count
-    reg  [17:0] product_upper_bits_2_s10;
-    reg  [5:0]  product_lower_bits_s10;
-    reg         aligned_s10;               // cos gamma is 1.0
+    reg  [9:0]  exponent_s10;     // specular exponent n
+    reg         decay_small_s10;  // the decay is below 1/4, and all its bits count
+    reg  [23:0] factor_s10;       // the decay, its point by decay_small
+    reg         aligned_s10;      // cos gamma is 1.0
 
     wire octave_any_s9 = |octave_s9;  // cos gamma is below one half
 
@@ -384,46 +383,40 @@ module blinn_pipelined #(
     always @(posedge clk) begin
         if (advance) begin
             decay_small_s10 <= decay_small_s9;
-            product_upper_bits_2_s10 <= factor_s9[23:6];
-            product_lower_bits_s10 <= factor_s9[5:0];
+            factor_s10 <= factor_s9;
             aligned_s10 <= aligned_s9;
         end
     end
 
     // Stage 10, part of: halvings <- n * decay
-    reg         decay_small_s11;         // the decay is below 1/4, and all its bits count
+    reg         decay_small_s11;      // the decay is below 1/4, and all its bits count
     reg  [27:0] product_upper_2_s11;
-    reg  [5:0]  product_low_bits_2_s11;
-    reg  [9:0]  product_carried_2_s11;
-    reg         aligned_s11;             // cos gamma is 1.0
+    reg  [15:0] product_lower_s11;
+    reg         aligned_s11;          // cos gamma is 1.0
 
-    wire [27:0] product_upper_2_s10 = product_upper_bits_2_s10 * exponent_s10;
-    wire [15:0] product_lower_s10 = product_lower_bits_s10 * exponent_s10;
+    wire [27:0] product_upper_2_s10 = factor_s10[23:6] * exponent_s10;
+    wire [15:0] product_lower_s10 = factor_s10[5:0] * exponent_s10;
 
     always @(posedge clk) begin
         if (advance) begin
             decay_small_s11 <= decay_small_s10;
             product_upper_2_s11 <= product_upper_2_s10;
-            product_low_bits_2_s11 <= product_lower_s10[5:0];
-            product_carried_2_s11 <= product_lower_s10[15:6];
+            product_lower_s11 <= product_lower_s10;
             aligned_s11 <= aligned_s10;
         end
     end
 
     // Stage 11, part of: halvings <- n * decay
-    reg         decay_small_s12;  // the decay is below 1/4, and all its bits count
-    reg  [33:0] product_2_s12;    // its point depends on the operands
-    reg         aligned_s12;      // cos gamma is 1.0
-
-    wire [27:0] product_sum_2_s11 = product_upper_2_s11 + {18'd0, product_carried_2_s11};
-
-    // its point depends on the operands
-    wire [33:0] product_2_s11 = {product_sum_2_s11, product_low_bits_2_s11};
+    reg         decay_small_s12;          // the decay is below 1/4, and all its bits count
+    reg  [27:0] product_sum_upper_5_s12;
+    reg  [5:0]  product_sum_upper_6_s12;
+    reg         aligned_s12;              // cos gamma is 1.0
 
     always @(posedge clk) begin
         if (advance) begin
             decay_small_s12 <= decay_small_s11;
-            product_2_s12 <= product_2_s11;
+            product_sum_upper_5_s12 <= {18'd0, product_lower_s11[15:6]} + product_upper_2_s11;
+            product_sum_upper_6_s12 <= product_lower_s11[5:0];
             aligned_s12 <= aligned_s11;
         end
     end
@@ -432,11 +425,15 @@ module blinn_pipelined #(
     reg  [20:0] halvings_s13;  // u5.16: n*decay: how often f is half of 1.0
     reg         aligned_s13;   // cos gamma is 1.0
 
-    // u5.16
-    wire [20:0] halvings_coarse_s12 = (|product_2_s12[33:24]) ? 21'h1fffff : product_2_s12[23:3];
+    wire [33:0] product_sum_2_s12 = {product_sum_upper_5_s12, product_sum_upper_6_s12};
 
     // u5.16
-    wire [20:0] halvings_fine_s12 = (|product_2_s12[33:31]) ? 21'h1fffff : product_2_s12[30:10];
+    wire [20:0] halvings_coarse_s12 = (|product_sum_2_s12[33:24]) ? 21'h1fffff :
+            product_sum_2_s12[23:3];
+
+    // u5.16
+    wire [20:0] halvings_fine_s12 = (|product_sum_2_s12[33:31]) ? 21'h1fffff :
+            product_sum_2_s12[30:10];
 
     // u5.16: n*decay: how often f is half of 1.0
     wire [20:0] halvings_s12 = decay_small_s12 ? halvings_fine_s12 : halvings_coarse_s12;
@@ -524,13 +521,13 @@ module blinn_pipelined #(
     end
 
     // Stage 14, part of: tables of 2^-x addressed by the fraction; reflectance <- 2^-halvings
-    reg         [15:0] exp2_x_s15;                  // u0.16
     reg                peak_s15;                    // f is 1.0, less an ulp
     reg                halvings_bits_2_bits_5_s15;
     reg                halvings_bits_2_bits_4_s15;
     reg                halvings_bits_2_bits_3_s15;
     reg                halvings_bits_2_bits_2_s15;
     reg                halvings_bits_2_bits_s15;
+    reg         [15:0] exp2_inverse_s15;            // u0.16
     reg  signed [15:0] exp2_bend_offset2_sum_s15;   // s-4.19
     // s-15.19: what the field adds, less half an ulp
     reg  signed [4:0]  exp2_bend_offset3_term_s15;
@@ -553,6 +550,8 @@ module blinn_pipelined #(
     wire signed [4:0] exp2_bend_offset3_word_s14 =
             exp2_bend_offset3_rom[exp2_bend_offset3_address_s14];
 
+    wire [15:0] exp2_inverse_s14 = ~exp2_x_s14;  // u0.16
+
     // s-4.19
     wire signed [15:0] exp2_bend_offset1_sum_s14 = {1'b0, exp2_bend_value_word_s14} +
             {{6{exp2_bend_offset1_term_s14[9]}}, exp2_bend_offset1_term_s14};
@@ -569,13 +568,13 @@ module blinn_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            exp2_x_s15 <= exp2_x_s14;
             peak_s15 <= peak_s14;
             halvings_bits_2_bits_5_s15 <= halvings_s14[16];
             halvings_bits_2_bits_4_s15 <= halvings_s14[17];
             halvings_bits_2_bits_3_s15 <= halvings_s14[18];
             halvings_bits_2_bits_2_s15 <= halvings_s14[19];
             halvings_bits_2_bits_s15 <= halvings_s14[20];
+            exp2_inverse_s15 <= exp2_inverse_s14;
             exp2_bend_offset2_sum_s15 <= exp2_bend_offset2_sum_s14;
             exp2_bend_offset3_term_s15 <= exp2_bend_offset3_term_s14;
         end
@@ -590,8 +589,6 @@ module blinn_pipelined #(
     reg         halvings_bits_2_bits_s16;
     reg         exp2_mantissa_kept_bits_s16;
     reg  [16:0] exp2_mantissa_kept_inside_s16;  // u0.17
-
-    wire [15:0] exp2_inverse_s15 = ~exp2_x_s15;  // u0.16
 
     // s-4.19
     wire signed [15:0] exp2_bend_offset3_sum_s15 = exp2_bend_offset2_sum_s15 +
@@ -615,6 +612,7 @@ module blinn_pipelined #(
     end
 
     // Stage 16, part of: reflectance <- 2^-halvings
+    reg         facing_s17;                  // the surface faces the half vector
     reg         peak_s17;                    // f is 1.0, less an ulp
     reg         halvings_bits_2_bits_5_s17;
     reg  [16:0] exp2_shift_by2_s17;          // u0.17
@@ -648,9 +646,10 @@ module blinn_pipelined #(
     end
 
     // Stage 17, part of: reflectance <- 2^-halvings
-    reg         facing_s18;        // the surface faces the half vector
-    reg         peak_s18;          // f is 1.0, less an ulp
-    reg  [15:0] exp2_rounded_s18;  // u0.16
+    reg  [7:0]  red_s18;          // intensity of the light times k_s
+    reg  [7:0]  green_s18;        // intensity of the light times k_s
+    reg  [7:0]  blue_s18;         // intensity of the light times k_s
+    reg  [15:0] reflectance_s18;  // u0.16: f
 
     // u0.17
     wire [16:0] exp2_shift_by1_s17 = halvings_bits_2_bits_5_s17 ? {1'b0, exp2_shift_by2_s17[16:1]} :
@@ -664,74 +663,61 @@ module blinn_pipelined #(
     wire [15:0] exp2_rounded_s17 = exp2_rounded_nearest_s17[16] ? 16'hffff :
             exp2_rounded_nearest_s17[15:0];
 
+    wire [15:0] lit_s17 = peak_s17 ? 16'hffff : exp2_rounded_s17;  // u0.16
+    wire [15:0] reflectance_s17 = facing_s17 ? lit_s17 : 16'd0;  // u0.16: f
+
     always @(posedge clk) begin
         if (advance) begin
-            peak_s18 <= peak_s17;
-            exp2_rounded_s18 <= exp2_rounded_s17;
+            reflectance_s18 <= reflectance_s17;
         end
     end
 
-    // Stage 18, part of: reflectance <- 2^-halvings
-    reg  [7:0]  red_s19;          // intensity of the light times k_s
-    reg  [7:0]  green_s19;        // intensity of the light times k_s
-    reg  [7:0]  blue_s19;         // intensity of the light times k_s
-    reg  [15:0] reflectance_s19;  // u0.16: f
+    // Stage 18, part of: result
+    reg  [15:0] reflectance_s19;         // u0.16: f
+    reg  [7:0]  red_product_kept_s19;
+    reg         red_product_bits_s19;
+    reg  [7:0]  green_product_kept_s19;
+    reg         green_product_bits_s19;
+    reg  [7:0]  blue_product_kept_s19;
+    reg         blue_product_bits_s19;
 
-    wire [15:0] lit_s18 = peak_s18 ? 16'hffff : exp2_rounded_s18;  // u0.16
-    wire [15:0] reflectance_s18 = facing_s18 ? lit_s18 : 16'd0;  // u0.16: f
+    // u8.16: an output before it is rounded
+    wire [23:0] red_product_s18 = reflectance_s18 * red_s18;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] green_product_s18 = reflectance_s18 * green_s18;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] blue_product_s18 = reflectance_s18 * blue_s18;
 
     always @(posedge clk) begin
         if (advance) begin
             reflectance_s19 <= reflectance_s18;
+            red_product_kept_s19 <= red_product_s18[23:16];
+            red_product_bits_s19 <= red_product_s18[15];
+            green_product_kept_s19 <= green_product_s18[23:16];
+            green_product_bits_s19 <= green_product_s18[15];
+            blue_product_kept_s19 <= blue_product_s18[23:16];
+            blue_product_bits_s19 <= blue_product_s18[15];
         end
     end
 
     // Stage 19, part of: result
-    reg  [15:0] reflectance_s20;         // u0.16: f
-    reg  [7:0]  red_product_kept_s20;
-    reg         red_product_bits_s20;
-    reg  [7:0]  green_product_kept_s20;
-    reg         green_product_bits_s20;
-    reg  [7:0]  blue_product_kept_s20;
-    reg         blue_product_bits_s20;
+    reg  [15:0] reflectance_s20;      // u0.16: f
+    reg  [7:0]  red_intensity_s20;
+    reg  [7:0]  green_intensity_s20;
+    reg  [7:0]  blue_intensity_s20;
 
-    // u8.16: an output before it is rounded
-    wire [23:0] red_product_s19 = reflectance_s19 * red_s19;
-
-    // u8.16: an output before it is rounded
-    wire [23:0] green_product_s19 = reflectance_s19 * green_s19;
-
-    // u8.16: an output before it is rounded
-    wire [23:0] blue_product_s19 = reflectance_s19 * blue_s19;
+    wire [7:0] red_intensity_s19 = red_product_kept_s19 + {7'd0, red_product_bits_s19};
+    wire [7:0] green_intensity_s19 = green_product_kept_s19 + {7'd0, green_product_bits_s19};
+    wire [7:0] blue_intensity_s19 = blue_product_kept_s19 + {7'd0, blue_product_bits_s19};
 
     always @(posedge clk) begin
         if (advance) begin
             reflectance_s20 <= reflectance_s19;
-            red_product_kept_s20 <= red_product_s19[23:16];
-            red_product_bits_s20 <= red_product_s19[15];
-            green_product_kept_s20 <= green_product_s19[23:16];
-            green_product_bits_s20 <= green_product_s19[15];
-            blue_product_kept_s20 <= blue_product_s19[23:16];
-            blue_product_bits_s20 <= blue_product_s19[15];
-        end
-    end
-
-    // Stage 20, part of: result
-    reg  [15:0] reflectance_s21;      // u0.16: f
-    reg  [7:0]  red_intensity_s21;
-    reg  [7:0]  green_intensity_s21;
-    reg  [7:0]  blue_intensity_s21;
-
-    wire [7:0] red_intensity_s20 = red_product_kept_s20 + {7'd0, red_product_bits_s20};
-    wire [7:0] green_intensity_s20 = green_product_kept_s20 + {7'd0, green_product_bits_s20};
-    wire [7:0] blue_intensity_s20 = blue_product_kept_s20 + {7'd0, blue_product_bits_s20};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            reflectance_s21 <= reflectance_s20;
-            red_intensity_s21 <= red_intensity_s20;
-            green_intensity_s21 <= green_intensity_s20;
-            blue_intensity_s21 <= blue_intensity_s20;
+            red_intensity_s20 <= red_intensity_s19;
+            green_intensity_s20 <= green_intensity_s19;
+            blue_intensity_s20 <= blue_intensity_s19;
         end
     end
 
@@ -746,14 +732,14 @@ module blinn_pipelined #(
     initial slot_of_9 = 4'd0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
     reg [9:0] delay_s0_s10 [0:8];
-    reg [3:0] slot_of_16;
-    initial slot_of_16 = 4'd0;
+    reg [3:0] slot_of_15;
+    initial slot_of_15 = 4'd0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg  delay_s1_s18 [0:15];
-    reg [4:0] slot_of_18;
-    initial slot_of_18 = 5'd0;
+    reg  delay_s1_s17 [0:14];
+    reg [4:0] slot_of_17;
+    initial slot_of_17 = 5'd0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [23:0] delay_s0_s19 [0:17];
+    reg [23:0] delay_s0_s18 [0:16];
 
     always @(posedge clk) begin
         if (advance) begin
@@ -773,31 +759,31 @@ module blinn_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            slot_of_16 <= slot_of_16 == 4'd15 ? 4'd0 : slot_of_16 + 4'd1;
-            facing_s18 <= delay_s1_s18[slot_of_16];
-            delay_s1_s18[slot_of_16] <= facing_s1;
+            slot_of_15 <= slot_of_15 == 4'd14 ? 4'd0 : slot_of_15 + 4'd1;
+            facing_s17 <= delay_s1_s17[slot_of_15];
+            delay_s1_s17[slot_of_15] <= facing_s1;
         end
     end
 
     always @(posedge clk) begin
         if (advance) begin
-            slot_of_18 <= slot_of_18 == 5'd17 ? 5'd0 : slot_of_18 + 5'd1;
-            {red_s19, green_s19, blue_s19} <= delay_s0_s19[slot_of_18];
-            delay_s0_s19[slot_of_18] <= {red, green, blue};
+            slot_of_17 <= slot_of_17 == 5'd16 ? 5'd0 : slot_of_17 + 5'd1;
+            {red_s18, green_s18, blue_s18} <= delay_s0_s18[slot_of_17];
+            delay_s0_s18[slot_of_17] <= {red, green, blue};
         end
     end
 
     // Results
 
-    assign f_out = reflectance_s21;  // u0.16: the reflectance, for a user's own multipliers
-    assign red_out = red_intensity_s21;  // intensity on the output
-    assign green_out = green_intensity_s21;  // intensity on the output
-    assign blue_out = blue_intensity_s21;  // intensity on the output
+    assign f_out = reflectance_s20;  // u0.16: the reflectance, for a user's own multipliers
+    assign red_out = red_intensity_s20;  // intensity on the output
+    assign green_out = green_intensity_s20;  // intensity on the output
+    assign blue_out = blue_intensity_s20;  // intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, octave_by1_s3[19], product_s8[10:0], product_2_s12[2:0],
-            exp2_mantissa_s15[1:0], red_product_s19[14:0], green_product_s19[14:0],
-            blue_product_s19[14:0]};
+    wire unused = &{1'b0, octave_by1_s3[19], product_sum_s8[10:0], product_sum_2_s12[2:0],
+            exp2_mantissa_s15[1:0], red_product_s18[14:0], green_product_s18[14:0],
+            blue_product_s18[14:0]};
 endmodule
 
 `default_nettype wire

@@ -4,7 +4,7 @@
 //
 // Source: Seed 002, the paper's W(n, gamma) with zeta = n/m
 //
-// Pipeline: a point every clock, its results 11 clocks later; stages for 130 MHz on ecp5. While
+// Pipeline: a point every clock, its results 10 clocks later; stages for 130 MHz on ecp5. While
 // out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
@@ -69,11 +69,10 @@ module cosine_power_pipelined (
     reg  valid_s7;   // stage 7 has a point
     reg  valid_s8;   // stage 8 has a point
     reg  valid_s9;   // stage 9 has a point
-    reg  valid_s10;  // stage 10 has a point
-    reg  valid_s11;  // the results are on the outputs
+    reg  valid_s10;  // the results are on the outputs
 
-    assign out_valid = valid_s11;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s11;  // every point moves on by a stage
+    assign out_valid = valid_s10;  // the results are on the outputs
+    wire advance = out_ready | ~valid_s10;  // every point moves on by a stage
     assign in_ready = advance;  // a point that is offered is taken in this clock
 
     always @(posedge clk) begin
@@ -88,7 +87,6 @@ module cosine_power_pipelined (
             valid_s8 <= 1'b0;
             valid_s9 <= 1'b0;
             valid_s10 <= 1'b0;
-            valid_s11 <= 1'b0;
         end else if (advance) begin
             valid_s1 <= in_valid;
             valid_s2 <= valid_s1;
@@ -100,238 +98,226 @@ module cosine_power_pipelined (
             valid_s8 <= valid_s7;
             valid_s9 <= valid_s8;
             valid_s10 <= valid_s9;
-            valid_s11 <= valid_s10;
         end
     end
 
-    // Stage 0: values on their way
-    reg  [20:0] cos_gamma_s1;  // u1.20: cosine of the angle between normal and half vector
-    reg  [9:0]  exponent_s1;   // specular exponent n
+    // Stage 0, part of: operands 1 - cos gamma, n/m
+    reg  [9:0]  exponent_s1;    // specular exponent n
+    reg  [20:0] complement_s1;  // u1.20: 1.0 - cos gamma
+    reg         facing_s1;      // the surface faces the half vector
 
-    always @(posedge clk) begin
-        if (advance) begin
-            cos_gamma_s1 <= cos_gamma;
-            exponent_s1 <= exponent;
-        end
-    end
-
-    // Stage 1, part of: operands 1 - cos gamma, n/m
-    reg  [9:0]  exponent_s2;    // specular exponent n
-    reg  [20:0] complement_s2;  // u1.20: 1.0 - cos gamma
-    reg         facing_s2;      // the surface faces the half vector
-
-    wire cos_gamma_over_s1 = cos_gamma_s1[20];
+    wire cos_gamma_over_s0 = cos_gamma[20];
 
     // u1.20: cosine of the angle between normal and half vector
-    wire [20:0] cos_gamma_reg_s1 = cos_gamma_over_s1 ? COS_GAMMA_MOST : cos_gamma_s1;
+    wire [20:0] cos_gamma_reg_s0 = cos_gamma_over_s0 ? COS_GAMMA_MOST : cos_gamma;
 
     // u1.20: 1.0 - cos gamma
-    wire [20:0] complement_s1 = cos_gamma_over_s1 ? 21'd0 : (COS_GAMMA_MOST - cos_gamma_s1);
+    wire [20:0] complement_s0 = cos_gamma_over_s0 ? 21'd0 : (COS_GAMMA_MOST - cos_gamma);
 
-    wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
+    wire facing_s0 = |cos_gamma_reg_s0;  // the surface faces the half vector
 
     always @(posedge clk) begin
         if (advance) begin
-            exponent_s2 <= exponent_s1;
-            complement_s2 <= complement_s1;
+            exponent_s1 <= exponent;
+            complement_s1 <= complement_s0;
+            facing_s1 <= facing_s0;
+        end
+    end
+
+    // Stage 1, part of: accumulator <- n/m * (1 - cos gamma)
+    reg         facing_s2;                // the surface faces the half vector
+    reg  [27:0] product_inside_upper_s2;
+    reg  [9:0]  product_inside_row_2_s2;
+    reg  [9:0]  product_inside_row_4_s2;
+    reg  [9:0]  product_at_highest_s2;
+
+    wire [27:0] product_inside_upper_s1 = complement_s1[19:2] * exponent_s1;
+    wire [9:0] product_at_highest_s1 = complement_s1[20] ? exponent_s1 : 10'd0;
+
+    always @(posedge clk) begin
+        if (advance) begin
             facing_s2 <= facing_s1;
+            product_inside_upper_s2 <= product_inside_upper_s1;
+            product_inside_row_2_s2 <= complement_s1[0] ? exponent_s1 : 10'd0;
+            product_inside_row_4_s2 <= complement_s1[1] ? exponent_s1 : 10'd0;
+            product_at_highest_s2 <= product_at_highest_s1;
         end
     end
 
     // Stage 2, part of: accumulator <- n/m * (1 - cos gamma)
-    reg         facing_s3;                  // the surface faces the half vector
-    reg  [27:0] product_inside_upper_s3;
-    reg  [1:0]  product_inside_rows_2_s3;
-    reg  [9:0]  product_inside_carried_s3;
-    reg  [9:0]  product_at_highest_s3;
-
-    wire [27:0] product_inside_upper_s2 = complement_s2[19:2] * exponent_s2;
-    wire [9:0] product_inside_row_2_s2 = complement_s2[0] ? exponent_s2 : 10'd0;
-    wire [9:0] product_inside_row_4_s2 = complement_s2[1] ? exponent_s2 : 10'd0;
+    reg         facing_s3;                    // the surface faces the half vector
+    reg  [5:0]  product_view_kept_bits_s3;
+    reg  [15:0] product_view_kept_inside_s3;  // u0.16
 
     wire [10:0] product_inside_rows_upper_3_s2 = {2'd0, product_inside_row_2_s2[9:1]} + {1'b0,
             product_inside_row_4_s2};
 
-    wire [9:0] product_at_highest_s2 = complement_s2[20] ? exponent_s2 : 10'd0;
+    wire [11:0] product_inside_rows_s2 = {product_inside_rows_upper_3_s2,
+            product_inside_row_2_s2[0]};
+
+    wire [27:0] product_inside_sum_upper_2_s2 = {18'd0, product_inside_rows_s2[11:2]} +
+            product_inside_upper_s2;
+
+    wire [9:0] product_2_s2 = product_inside_sum_upper_2_s2[27:18] | product_at_highest_s2;
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s3 <= facing_s2;
-            product_inside_upper_s3 <= product_inside_upper_s2;
-            product_inside_rows_2_s3 <= {product_inside_rows_upper_3_s2[0],
-                    product_inside_row_2_s2[0]};
-            product_inside_carried_s3 <= product_inside_rows_upper_3_s2[10:1];
-            product_at_highest_s3 <= product_at_highest_s2;
+            product_view_kept_bits_s3 <= product_2_s2[9:4];
+            product_view_kept_inside_s3 <= {product_2_s2[3:0], product_inside_sum_upper_2_s2[17:6]};
         end
     end
 
-    // Stage 3, part of: accumulator <- n/m * (1 - cos gamma)
-    reg         facing_s4;                    // the surface faces the half vector
-    reg         distance_over_s4;
-    reg  [15:0] product_view_kept_inside_s4;  // u0.16
-
-    wire [27:0] product_inside_sum_s3 = product_inside_upper_s3 + {18'd0,
-            product_inside_carried_s3};
-
-    wire [9:0] product_2_s3 = product_inside_sum_s3[27:18] | product_at_highest_s3;
-
-    always @(posedge clk) begin
-        if (advance) begin
-            facing_s4 <= facing_s3;
-            distance_over_s4 <= |product_2_s3[9:4];
-            product_view_kept_inside_s4 <= {product_2_s3[3:0], product_inside_sum_s3[17:6]};
-        end
-    end
-
-    // Stage 4, part of: accumulator <- n/m * (1 - cos gamma); accumulator <- base^2
-    reg  [15:0] base_s5;  // u0.16: base of the power
+    // Stage 3, part of: accumulator <- n/m * (1 - cos gamma); accumulator <- base^2
+    reg  [15:0] base_s4;  // u0.16: base of the power
 
     // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_s4 = distance_over_s4 ? 16'hffff : product_view_kept_inside_s4;
+    wire [15:0] accumulator_s3 = (|product_view_kept_bits_s3) ? 16'hffff :
+            product_view_kept_inside_s3;
 
-    wire [15:0] inverse_s4 = ~accumulator_s4;  // u0.16: 1.0 - accumulator, less an ulp
-    wire [15:0] base_s4 = facing_s4 ? inverse_s4 : 16'd0;  // u0.16: base of the power
+    wire [15:0] inverse_s3 = ~accumulator_s3;  // u0.16: 1.0 - accumulator, less an ulp
+    wire [15:0] base_s3 = facing_s3 ? inverse_s3 : 16'd0;  // u0.16: base of the power
 
     always @(posedge clk) begin
         if (advance) begin
-            base_s5 <= base_s4;
+            base_s4 <= base_s3;
         end
     end
 
-    // Stage 5, part of: accumulator <- base^2
-    reg  [15:0] accumulator_2_s6;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+    // Stage 4, part of: accumulator <- base^2
+    reg  [15:0] accumulator_2_s5;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
 
     // the shared product; its point depends on the operands
-    wire [31:0] product_4_s5 = base_s5 * base_s5;
+    wire [31:0] product_4_s4 = base_s4 * base_s4;
 
     // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_2_s5 = product_4_s5[31:16];
+    wire [15:0] accumulator_2_s4 = product_4_s4[31:16];
 
     always @(posedge clk) begin
         if (advance) begin
-            accumulator_2_s6 <= accumulator_2_s5;
+            accumulator_2_s5 <= accumulator_2_s4;
+        end
+    end
+
+    // Stage 5, part of: accumulator <- accumulator^2
+    reg  [15:0] accumulator_3_s6;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+
+    // the shared product; its point depends on the operands
+    wire [31:0] product_5_s5 = accumulator_2_s5 * accumulator_2_s5;
+
+    // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+    wire [15:0] accumulator_3_s5 = product_5_s5[31:16];
+
+    always @(posedge clk) begin
+        if (advance) begin
+            accumulator_3_s6 <= accumulator_3_s5;
         end
     end
 
     // Stage 6, part of: accumulator <- accumulator^2
-    reg  [15:0] accumulator_3_s7;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+    reg  [15:0] accumulator_4_s7;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
 
     // the shared product; its point depends on the operands
-    wire [31:0] product_5_s6 = accumulator_2_s6 * accumulator_2_s6;
+    wire [31:0] product_6_s6 = accumulator_3_s6 * accumulator_3_s6;
 
     // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_3_s6 = product_5_s6[31:16];
+    wire [15:0] accumulator_4_s6 = product_6_s6[31:16];
 
     always @(posedge clk) begin
         if (advance) begin
-            accumulator_3_s7 <= accumulator_3_s6;
+            accumulator_4_s7 <= accumulator_4_s6;
         end
     end
 
     // Stage 7, part of: accumulator <- accumulator^2
-    reg  [15:0] accumulator_4_s8;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+    reg  [7:0]  red_s8;            // intensity of the light times k_s
+    reg  [7:0]  green_s8;          // intensity of the light times k_s
+    reg  [7:0]  blue_s8;           // intensity of the light times k_s
+    reg  [15:0] accumulator_5_s8;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
 
     // the shared product; its point depends on the operands
-    wire [31:0] product_6_s7 = accumulator_3_s7 * accumulator_3_s7;
+    wire [31:0] product_7_s7 = accumulator_4_s7 * accumulator_4_s7;
 
     // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_4_s7 = product_6_s7[31:16];
+    wire [15:0] accumulator_5_s7 = product_7_s7[31:16];
 
     always @(posedge clk) begin
         if (advance) begin
-            accumulator_4_s8 <= accumulator_4_s7;
+            accumulator_5_s8 <= accumulator_5_s7;
         end
     end
 
-    // Stage 8, part of: accumulator <- accumulator^2
-    reg  [7:0]  red_s9;            // intensity of the light times k_s
-    reg  [7:0]  green_s9;          // intensity of the light times k_s
-    reg  [7:0]  blue_s9;           // intensity of the light times k_s
-    reg  [15:0] accumulator_5_s9;  // u0.16: n/m*(1 - cos gamma), then the powers of W's base
+    // Stage 8, part of: result
+    reg  [7:0] red_product_kept_s9;
+    reg        red_product_bits_s9;
+    reg  [7:0] green_product_kept_s9;
+    reg        green_product_bits_s9;
+    reg  [7:0] blue_product_kept_s9;
+    reg        blue_product_bits_s9;
 
-    // the shared product; its point depends on the operands
-    wire [31:0] product_7_s8 = accumulator_4_s8 * accumulator_4_s8;
+    // u8.16: an output before it is rounded
+    wire [23:0] red_product_s8 = accumulator_5_s8 * red_s8;
 
-    // u0.16: n/m*(1 - cos gamma), then the powers of W's base
-    wire [15:0] accumulator_5_s8 = product_7_s8[31:16];
+    // u8.16: an output before it is rounded
+    wire [23:0] green_product_s8 = accumulator_5_s8 * green_s8;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] blue_product_s8 = accumulator_5_s8 * blue_s8;
 
     always @(posedge clk) begin
         if (advance) begin
-            accumulator_5_s9 <= accumulator_5_s8;
+            red_product_kept_s9 <= red_product_s8[23:16];
+            red_product_bits_s9 <= red_product_s8[15];
+            green_product_kept_s9 <= green_product_s8[23:16];
+            green_product_bits_s9 <= green_product_s8[15];
+            blue_product_kept_s9 <= blue_product_s8[23:16];
+            blue_product_bits_s9 <= blue_product_s8[15];
         end
     end
 
     // Stage 9, part of: result
-    reg  [7:0] red_product_kept_s10;
-    reg        red_product_bits_s10;
-    reg  [7:0] green_product_kept_s10;
-    reg        green_product_bits_s10;
-    reg  [7:0] blue_product_kept_s10;
-    reg        blue_product_bits_s10;
+    reg  [7:0] red_intensity_s10;
+    reg  [7:0] green_intensity_s10;
+    reg  [7:0] blue_intensity_s10;
 
-    // u8.16: an output before it is rounded
-    wire [23:0] red_product_s9 = accumulator_5_s9 * red_s9;
-
-    // u8.16: an output before it is rounded
-    wire [23:0] green_product_s9 = accumulator_5_s9 * green_s9;
-
-    // u8.16: an output before it is rounded
-    wire [23:0] blue_product_s9 = accumulator_5_s9 * blue_s9;
+    wire [7:0] red_intensity_s9 = red_product_kept_s9 + {7'd0, red_product_bits_s9};
+    wire [7:0] green_intensity_s9 = green_product_kept_s9 + {7'd0, green_product_bits_s9};
+    wire [7:0] blue_intensity_s9 = blue_product_kept_s9 + {7'd0, blue_product_bits_s9};
 
     always @(posedge clk) begin
         if (advance) begin
-            red_product_kept_s10 <= red_product_s9[23:16];
-            red_product_bits_s10 <= red_product_s9[15];
-            green_product_kept_s10 <= green_product_s9[23:16];
-            green_product_bits_s10 <= green_product_s9[15];
-            blue_product_kept_s10 <= blue_product_s9[23:16];
-            blue_product_bits_s10 <= blue_product_s9[15];
-        end
-    end
-
-    // Stage 10, part of: result
-    reg  [7:0] red_intensity_s11;
-    reg  [7:0] green_intensity_s11;
-    reg  [7:0] blue_intensity_s11;
-
-    wire [7:0] red_intensity_s10 = red_product_kept_s10 + {7'd0, red_product_bits_s10};
-    wire [7:0] green_intensity_s10 = green_product_kept_s10 + {7'd0, green_product_bits_s10};
-    wire [7:0] blue_intensity_s10 = blue_product_kept_s10 + {7'd0, blue_product_bits_s10};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            red_intensity_s11 <= red_intensity_s10;
-            green_intensity_s11 <= green_intensity_s10;
-            blue_intensity_s11 <= blue_intensity_s10;
+            red_intensity_s10 <= red_intensity_s9;
+            green_intensity_s10 <= green_intensity_s9;
+            blue_intensity_s10 <= blue_intensity_s9;
         end
     end
 
     // Delay lines: values that nothing reads for several stages lie in small memories. Whenever
     // points move on, a slot gives the value that it holds and takes a new one; its turn comes
     // again when all others have had theirs.
-    reg [2:0] slot_of_8;
-    initial slot_of_8 = 3'd0;
+    reg [2:0] slot_of_7;
+    initial slot_of_7 = 3'd0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [23:0] delay_s0_s9 [0:7];
+    reg [23:0] delay_s0_s8 [0:6];
 
     always @(posedge clk) begin
         if (advance) begin
-            slot_of_8 <= slot_of_8 == 3'd7 ? 3'd0 : slot_of_8 + 3'd1;
-            {red_s9, green_s9, blue_s9} <= delay_s0_s9[slot_of_8];
-            delay_s0_s9[slot_of_8] <= {red, green, blue};
+            slot_of_7 <= slot_of_7 == 3'd6 ? 3'd0 : slot_of_7 + 3'd1;
+            {red_s8, green_s8, blue_s8} <= delay_s0_s8[slot_of_7];
+            delay_s0_s8[slot_of_7] <= {red, green, blue};
         end
     end
 
     // Results
 
-    assign red_out = red_intensity_s11;  // intensity on the output
-    assign green_out = green_intensity_s11;  // intensity on the output
-    assign blue_out = blue_intensity_s11;  // intensity on the output
+    assign red_out = red_intensity_s10;  // intensity on the output
+    assign green_out = green_intensity_s10;  // intensity on the output
+    assign blue_out = blue_intensity_s10;  // intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, product_inside_rows_2_s3, product_inside_sum_s3[5:0], product_4_s5[15:0],
-            product_5_s6[15:0], product_6_s7[15:0], product_7_s8[15:0], red_product_s9[14:0],
-            green_product_s9[14:0], blue_product_s9[14:0]};
+    wire unused = &{1'b0, product_inside_rows_s2[1:0], product_inside_sum_upper_2_s2[5:0],
+            product_4_s4[15:0], product_5_s5[15:0], product_6_s6[15:0], product_7_s7[15:0],
+            red_product_s8[14:0], green_product_s8[14:0], blue_product_s8[14:0]};
 endmodule
 
 `default_nettype wire

@@ -74,15 +74,15 @@ module cosine_power_pipelined_axis #(
         .blue_out(core_blue_out)
     );
 
-    // tlast and tuser of the points in the 11 stages of the core, with which they move.
+    // tlast and tuser of the points in the 10 stages of the core, with which they move.
     localparam SIDE = USER_WIDTH + 1;
-    reg  [11*SIDE-1:0] side;
+    reg  [10*SIDE-1:0] side;
     always @(posedge aclk) begin
         if (s_axis_tready) begin
-            side <= {side[10*SIDE-1:0], s_axis_tlast, s_axis_tuser};
+            side <= {side[9*SIDE-1:0], s_axis_tlast, s_axis_tuser};
         end
     end
-    wire [USER_WIDTH:0] results_side = side[11*SIDE-1:10*SIDE];
+    wire [USER_WIDTH:0] results_side = side[10*SIDE-1:9*SIDE];
 
     wire offer = m_axis_tready | ~m_axis_tvalid;
     always @(posedge aclk) begin

@@ -4,7 +4,7 @@
 //
 // Source: Seed 002, the fourth function that it weighs
 //
-// Pipeline: a point every clock, its results 18 clocks later; stages for 130 MHz on ecp5. While
+// Pipeline: a point every clock, its results 17 clocks later; stages for 138 MHz on ecp5. While
 // out_valid is high and out_ready low, all points stay where they are, and in_ready is low.
 //
 // Formats: uI.F is unsigned, sI.F two's complement, with I integer bits (a sign bit apart) and F
@@ -91,11 +91,10 @@ module gauss_pipelined #(
     reg  valid_s14;  // stage 14 has a point
     reg  valid_s15;  // stage 15 has a point
     reg  valid_s16;  // stage 16 has a point
-    reg  valid_s17;  // stage 17 has a point
-    reg  valid_s18;  // the results are on the outputs
+    reg  valid_s17;  // the results are on the outputs
 
-    assign out_valid = valid_s18;  // the results are on the outputs
-    wire advance = out_ready | ~valid_s18;  // every point moves on by a stage
+    assign out_valid = valid_s17;  // the results are on the outputs
+    wire advance = out_ready | ~valid_s17;  // every point moves on by a stage
     assign in_ready = advance;  // a point that is offered is taken in this clock
 
     always @(posedge clk) begin
@@ -117,7 +116,6 @@ module gauss_pipelined #(
             valid_s15 <= 1'b0;
             valid_s16 <= 1'b0;
             valid_s17 <= 1'b0;
-            valid_s18 <= 1'b0;
         end else if (advance) begin
             valid_s1 <= in_valid;
             valid_s2 <= valid_s1;
@@ -136,17 +134,15 @@ module gauss_pipelined #(
             valid_s15 <= valid_s14;
             valid_s16 <= valid_s15;
             valid_s17 <= valid_s16;
-            valid_s18 <= valid_s17;
         end
     end
 
     // Stage 0, part of: segment of the decay addressed by cos gamma
+    reg  [20:0] cos_gamma_reg_s1;    // u1.20: cosine of the angle between normal and half vector
     reg  [19:0] distance_s1;         // 1.0 - cos gamma, less an ulp
     reg         curve_in_range3_s1;  // u is in range 3 or in one above
     reg         curve_in_range4_s1;  // u is in range 4 or in one above
     reg         curve_in_range1_s1;  // u is in range 1 or in one above
-    reg         facing_s1;           // the surface faces the half vector
-    reg         aligned_s1;          // cos gamma is 1.0
 
     wire cos_gamma_over_s0 = cos_gamma[20];
 
@@ -157,17 +153,14 @@ module gauss_pipelined #(
     wire curve_in_range3_s0 = |distance_s0[19:12];  // u is in range 3 or in one above
     wire curve_in_range4_s0 = |distance_s0[19:10];  // u is in range 4 or in one above
     wire curve_in_range1_s0 = |distance_s0[19:16];  // u is in range 1 or in one above
-    wire facing_s0 = |cos_gamma_reg_s0;  // the surface faces the half vector
-    wire aligned_s0 = cos_gamma_reg_s0[20];  // cos gamma is 1.0
 
     always @(posedge clk) begin
         if (advance) begin
+            cos_gamma_reg_s1 <= cos_gamma_reg_s0;
             distance_s1 <= distance_s0;
             curve_in_range3_s1 <= curve_in_range3_s0;
             curve_in_range4_s1 <= curve_in_range4_s0;
             curve_in_range1_s1 <= curve_in_range1_s0;
-            facing_s1 <= facing_s0;
-            aligned_s1 <= aligned_s0;
         end
     end
 
@@ -193,6 +186,7 @@ module gauss_pipelined #(
 
     wire [13:0] curve_rest0_s1 = curve_in_range0_s1 ? distance_s1[13:0] : curve_rest1_s1;  // u0.14
     wire [13:0] curve_rest2_s1 = curve_in_range2_s1 ? curve_rest0_s1 : curve_rest3_s1;  // u0.14
+    wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
 
     wire [6:0] curve_word4_s1 = curve_in_range4_s1 ? {5'd0, distance_s1[11:10]} : {6'd32,
             distance_s1[9]};
@@ -204,6 +198,7 @@ module gauss_pipelined #(
 
     wire [6:0] curve_word0_s1 = curve_in_range0_s1 ? {1'b0, distance_s1[19:14]} : curve_word1_s1;
     wire [6:0] curve_word2_s1 = curve_in_range2_s1 ? curve_word0_s1 : curve_word3_s1;
+    wire aligned_s1 = cos_gamma_reg_s1[20];  // cos gamma is 1.0
 
     // ROM curve: value at the start of a segment (u0.26), then its rise over the segment in units
     // of 2^-24 (19 bits)
@@ -219,51 +214,57 @@ module gauss_pipelined #(
     end
 
     // Stage 2, part of: segment of the decay addressed by cos gamma
-    reg         facing_s3;      // the surface faces the half vector
-    reg  [44:0] curve_word_s3;
-    reg         aligned_s3;     // cos gamma is 1.0
+    reg         facing_s3;              // the surface faces the half vector
+    reg  [25:0] curve_base_s3;          // u0.26
+    reg  [17:0] product_upper_bits_s3;
+    reg         product_row_s3;
+    reg         aligned_s3;             // cos gamma is 1.0
+
+    wire [25:0] curve_base_s2 = curve_word_s2[44:19];  // u0.26
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s3 <= facing_s2;
-            curve_word_s3 <= curve_word_s2;
+            curve_base_s3 <= curve_base_s2;
+            product_upper_bits_s3 <= curve_word_s2[18:1];
+            product_row_s3 <= curve_word_s2[0];
             aligned_s3 <= aligned_s2;
         end
     end
 
     // Stage 3: values on their way
-    reg  [13:0] curve_rest2_s4;  // u0.14
-    reg         facing_s4;       // the surface faces the half vector
-    reg  [44:0] curve_word_s4;
-    reg         aligned_s4;      // cos gamma is 1.0
+    reg  [13:0] curve_rest2_s4;         // u0.14
+    reg         facing_s4;              // the surface faces the half vector
+    reg  [25:0] curve_base_s4;          // u0.26
+    reg  [17:0] product_upper_bits_s4;
+    reg         product_row_s4;
+    reg         aligned_s4;             // cos gamma is 1.0
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s4 <= facing_s3;
-            curve_word_s4 <= curve_word_s3;
+            curve_base_s4 <= curve_base_s3;
+            product_upper_bits_s4 <= product_upper_bits_s3;
+            product_row_s4 <= product_row_s3;
             aligned_s4 <= aligned_s3;
         end
     end
 
     // Stage 4, part of: decay <- base + slope * rest
-    reg         facing_s5;            // the surface faces the half vector
-    reg  [25:0] curve_base_s5;        // u0.26
+    reg         facing_s5;         // the surface faces the half vector
+    reg  [25:0] curve_base_s5;     // u0.26
     reg  [31:0] product_upper_s5;
-    reg         product_low_bits_s5;
-    reg  [12:0] product_carried_s5;
-    reg         aligned_s5;           // cos gamma is 1.0
+    reg  [13:0] product_row_2_s5;
+    reg         aligned_s5;        // cos gamma is 1.0
 
-    wire [25:0] curve_base_s4 = curve_word_s4[44:19];  // u0.26
-    wire [31:0] product_upper_s4 = curve_word_s4[18:1] * curve_rest2_s4;
-    wire [13:0] product_row_2_s4 = curve_word_s4[0] ? curve_rest2_s4 : 14'd0;
+    wire [31:0] product_upper_s4 = product_upper_bits_s4 * curve_rest2_s4;
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s5 <= facing_s4;
             curve_base_s5 <= curve_base_s4;
             product_upper_s5 <= product_upper_s4;
-            product_low_bits_s5 <= product_row_2_s4[0];
-            product_carried_s5 <= product_row_2_s4[13:1];
+            product_row_2_s5 <= product_row_s4 ? curve_rest2_s4 : 14'd0;
             aligned_s5 <= aligned_s4;
         end
     end
@@ -273,13 +274,11 @@ module gauss_pipelined #(
     reg  [25:0] decay_s6;    // u0.26: gamma^2/(4 ln 2), half the decay
     reg         aligned_s6;  // cos gamma is 1.0
 
-    wire [31:0] product_sum_s5 = product_upper_s5 + {19'd0, product_carried_s5};
-
-    // its point depends on the operands
-    wire [32:0] product_s5 = {product_sum_s5, product_low_bits_s5};
+    wire [31:0] product_sum_upper_2_s5 = {19'd0, product_row_2_s5[13:1]} + product_upper_s5;
+    wire [32:0] product_sum_s5 = {product_sum_upper_2_s5, product_row_2_s5[0]};
 
     // u0.26: gamma^2/(4 ln 2), half the decay
-    wire [25:0] decay_s5 = curve_base_s5 + {5'd0, product_s5[32:12]};
+    wire [25:0] decay_s5 = curve_base_s5 + {5'd0, product_sum_s5[32:12]};
 
     always @(posedge clk) begin
         if (advance) begin
@@ -332,21 +331,19 @@ module gauss_pipelined #(
     end
 
     // Stage 8, part of: halvings <- n * decay
-    reg         facing_s9;       // the surface faces the half vector
-    reg         decay_small_s9;  // the decay is below 1/4, and all its bits count
-    reg  [33:0] product_2_s9;    // its point depends on the operands
-    reg         aligned_s9;      // cos gamma is 1.0
+    reg         facing_s9;         // the surface faces the half vector
+    reg         decay_small_s9;    // the decay is below 1/4, and all its bits count
+    reg  [33:0] product_sum_2_s9;
+    reg         aligned_s9;        // cos gamma is 1.0
 
-    wire [27:0] product_sum_2_s8 = product_upper_2_s8 + {18'd0, product_lower_s8[15:6]};
-
-    // its point depends on the operands
-    wire [33:0] product_2_s8 = {product_sum_2_s8, product_lower_s8[5:0]};
+    wire [27:0] product_sum_upper_5_s8 = {18'd0, product_lower_s8[15:6]} + product_upper_2_s8;
+    wire [33:0] product_sum_2_s8 = {product_sum_upper_5_s8, product_lower_s8[5:0]};
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s9 <= facing_s8;
             decay_small_s9 <= decay_small_s8;
-            product_2_s9 <= product_2_s8;
+            product_sum_2_s9 <= product_sum_2_s8;
             aligned_s9 <= aligned_s8;
         end
     end
@@ -357,10 +354,11 @@ module gauss_pipelined #(
     reg         aligned_s10;   // cos gamma is 1.0
 
     // u5.16
-    wire [20:0] halvings_coarse_s9 = (|product_2_s9[33:28]) ? 21'h1fffff : product_2_s9[27:7];
+    wire [20:0] halvings_coarse_s9 = (|product_sum_2_s9[33:28]) ? 21'h1fffff :
+            product_sum_2_s9[27:7];
 
     // u5.16
-    wire [20:0] halvings_fine_s9 = (|product_2_s9[33:30]) ? 21'h1fffff : product_2_s9[29:9];
+    wire [20:0] halvings_fine_s9 = (|product_sum_2_s9[33:30]) ? 21'h1fffff : product_sum_2_s9[29:9];
 
     // u5.16: n*decay: how often f is half of 1.0
     wire [20:0] halvings_s9 = decay_small_s9 ? halvings_fine_s9 : halvings_coarse_s9;
@@ -546,10 +544,10 @@ module gauss_pipelined #(
     end
 
     // Stage 13, part of: reflectance <- 2^-halvings
-    reg         facing_s14;               // the surface faces the half vector
-    reg         peak_s14;                 // f is 1.0, less an ulp
-    reg  [15:0] exp2_shift_by1_kept_s14;  // u0.16
-    reg         exp2_shift_by1_bits_s14;
+    reg         facing_s14;                  // the surface faces the half vector
+    reg         peak_s14;                    // f is 1.0, less an ulp
+    reg         halvings_bits_2_bits_5_s14;
+    reg  [16:0] exp2_shift_by2_s14;          // u0.17
 
     // u0.17
     wire [16:0] exp2_kept_s13 = exp2_mantissa_kept_bits_s13 ? 17'h1ffff :
@@ -571,100 +569,88 @@ module gauss_pipelined #(
     wire [16:0] exp2_shift_by2_s13 = halvings_bits_2_bits_4_s13 ? {2'd0, exp2_shift_by4_s13[16:2]} :
             exp2_shift_by4_s13;
 
-    // u0.17
-    wire [16:0] exp2_shift_by1_s13 = halvings_bits_2_bits_5_s13 ? {1'b0, exp2_shift_by2_s13[16:1]} :
-            exp2_shift_by2_s13;
-
     always @(posedge clk) begin
         if (advance) begin
             facing_s14 <= facing_s13;
             peak_s14 <= peak_s13;
-            exp2_shift_by1_kept_s14 <= exp2_shift_by1_s13[16:1];
-            exp2_shift_by1_bits_s14 <= exp2_shift_by1_s13[0];
+            halvings_bits_2_bits_5_s14 <= halvings_bits_2_bits_5_s13;
+            exp2_shift_by2_s14 <= exp2_shift_by2_s13;
         end
     end
 
     // Stage 14, part of: reflectance <- 2^-halvings
-    reg         facing_s15;  // the surface faces the half vector
-    reg  [15:0] lit_s15;     // u0.16
+    reg  [7:0]  red_s15;          // intensity of the light times k_s
+    reg  [7:0]  green_s15;        // intensity of the light times k_s
+    reg  [7:0]  blue_s15;         // intensity of the light times k_s
+    reg  [15:0] reflectance_s15;  // u0.16: f
+
+    // u0.17
+    wire [16:0] exp2_shift_by1_s14 = halvings_bits_2_bits_5_s14 ? {1'b0, exp2_shift_by2_s14[16:1]} :
+            exp2_shift_by2_s14;
 
     // u1.16
-    wire [16:0] exp2_rounded_nearest_s14 = {1'b0, exp2_shift_by1_kept_s14} + {16'd0,
-            exp2_shift_by1_bits_s14};
+    wire [16:0] exp2_rounded_nearest_s14 = {1'b0, exp2_shift_by1_s14[16:1]} + {16'd0,
+            exp2_shift_by1_s14[0]};
 
     // u0.16
     wire [15:0] exp2_rounded_s14 = exp2_rounded_nearest_s14[16] ? 16'hffff :
             exp2_rounded_nearest_s14[15:0];
 
     wire [15:0] lit_s14 = peak_s14 ? 16'hffff : exp2_rounded_s14;  // u0.16
+    wire [15:0] reflectance_s14 = facing_s14 ? lit_s14 : 16'd0;  // u0.16: f
 
     always @(posedge clk) begin
         if (advance) begin
-            facing_s15 <= facing_s14;
-            lit_s15 <= lit_s14;
+            reflectance_s15 <= reflectance_s14;
         end
     end
 
-    // Stage 15, part of: reflectance <- 2^-halvings
-    reg  [7:0]  red_s16;          // intensity of the light times k_s
-    reg  [7:0]  green_s16;        // intensity of the light times k_s
-    reg  [7:0]  blue_s16;         // intensity of the light times k_s
-    reg  [15:0] reflectance_s16;  // u0.16: f
+    // Stage 15, part of: result
+    reg  [15:0] reflectance_s16;         // u0.16: f
+    reg  [7:0]  red_product_kept_s16;
+    reg         red_product_bits_s16;
+    reg  [7:0]  green_product_kept_s16;
+    reg         green_product_bits_s16;
+    reg  [7:0]  blue_product_kept_s16;
+    reg         blue_product_bits_s16;
 
-    wire [15:0] reflectance_s15 = facing_s15 ? lit_s15 : 16'd0;  // u0.16: f
+    // u8.16: an output before it is rounded
+    wire [23:0] red_product_s15 = reflectance_s15 * red_s15;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] green_product_s15 = reflectance_s15 * green_s15;
+
+    // u8.16: an output before it is rounded
+    wire [23:0] blue_product_s15 = reflectance_s15 * blue_s15;
 
     always @(posedge clk) begin
         if (advance) begin
             reflectance_s16 <= reflectance_s15;
+            red_product_kept_s16 <= red_product_s15[23:16];
+            red_product_bits_s16 <= red_product_s15[15];
+            green_product_kept_s16 <= green_product_s15[23:16];
+            green_product_bits_s16 <= green_product_s15[15];
+            blue_product_kept_s16 <= blue_product_s15[23:16];
+            blue_product_bits_s16 <= blue_product_s15[15];
         end
     end
 
     // Stage 16, part of: result
-    reg  [15:0] reflectance_s17;         // u0.16: f
-    reg  [7:0]  red_product_kept_s17;
-    reg         red_product_bits_s17;
-    reg  [7:0]  green_product_kept_s17;
-    reg         green_product_bits_s17;
-    reg  [7:0]  blue_product_kept_s17;
-    reg         blue_product_bits_s17;
+    reg  [15:0] reflectance_s17;      // u0.16: f
+    reg  [7:0]  red_intensity_s17;
+    reg  [7:0]  green_intensity_s17;
+    reg  [7:0]  blue_intensity_s17;
 
-    // u8.16: an output before it is rounded
-    wire [23:0] red_product_s16 = reflectance_s16 * red_s16;
-
-    // u8.16: an output before it is rounded
-    wire [23:0] green_product_s16 = reflectance_s16 * green_s16;
-
-    // u8.16: an output before it is rounded
-    wire [23:0] blue_product_s16 = reflectance_s16 * blue_s16;
+    wire [7:0] red_intensity_s16 = red_product_kept_s16 + {7'd0, red_product_bits_s16};
+    wire [7:0] green_intensity_s16 = green_product_kept_s16 + {7'd0, green_product_bits_s16};
+    wire [7:0] blue_intensity_s16 = blue_product_kept_s16 + {7'd0, blue_product_bits_s16};
 
     always @(posedge clk) begin
         if (advance) begin
             reflectance_s17 <= reflectance_s16;
-            red_product_kept_s17 <= red_product_s16[23:16];
-            red_product_bits_s17 <= red_product_s16[15];
-            green_product_kept_s17 <= green_product_s16[23:16];
-            green_product_bits_s17 <= green_product_s16[15];
-            blue_product_kept_s17 <= blue_product_s16[23:16];
-            blue_product_bits_s17 <= blue_product_s16[15];
-        end
-    end
-
-    // Stage 17, part of: result
-    reg  [15:0] reflectance_s18;      // u0.16: f
-    reg  [7:0]  red_intensity_s18;
-    reg  [7:0]  green_intensity_s18;
-    reg  [7:0]  blue_intensity_s18;
-
-    wire [7:0] red_intensity_s17 = red_product_kept_s17 + {7'd0, red_product_bits_s17};
-    wire [7:0] green_intensity_s17 = green_product_kept_s17 + {7'd0, green_product_bits_s17};
-    wire [7:0] blue_intensity_s17 = blue_product_kept_s17 + {7'd0, blue_product_bits_s17};
-
-    always @(posedge clk) begin
-        if (advance) begin
-            reflectance_s18 <= reflectance_s17;
-            red_intensity_s18 <= red_intensity_s17;
-            green_intensity_s18 <= green_intensity_s17;
-            blue_intensity_s18 <= blue_intensity_s17;
+            red_intensity_s17 <= red_intensity_s16;
+            green_intensity_s17 <= green_intensity_s16;
+            blue_intensity_s17 <= blue_intensity_s16;
         end
     end
 
@@ -679,14 +665,14 @@ module gauss_pipelined #(
     initial slot_of_6 = 3'd0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
     reg [9:0] delay_s0_s7 [0:5];
-    reg [3:0] slot_of_15;
-    initial slot_of_15 = 4'd0;
+    reg [3:0] slot_of_14;
+    initial slot_of_14 = 4'd0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [23:0] delay_s0_s16 [0:14];
+    reg [23:0] delay_s0_s15 [0:13];
 
     always @(posedge clk) begin
         if (advance) begin
-            slot_of_2 <= slot_of_2 == 1'b1 ? 1'b0 : slot_of_2 + 1'b1;
+            slot_of_2 <= slot_of_2 + 1'b1;
             curve_rest2_s4 <= delay_s1_s4[slot_of_2];
             delay_s1_s4[slot_of_2] <= curve_rest2_s1;
         end
@@ -702,22 +688,22 @@ module gauss_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            slot_of_15 <= slot_of_15 == 4'd14 ? 4'd0 : slot_of_15 + 4'd1;
-            {red_s16, green_s16, blue_s16} <= delay_s0_s16[slot_of_15];
-            delay_s0_s16[slot_of_15] <= {red, green, blue};
+            slot_of_14 <= slot_of_14 == 4'd13 ? 4'd0 : slot_of_14 + 4'd1;
+            {red_s15, green_s15, blue_s15} <= delay_s0_s15[slot_of_14];
+            delay_s0_s15[slot_of_14] <= {red, green, blue};
         end
     end
 
     // Results
 
-    assign f_out = reflectance_s18;  // u0.16: the reflectance, for a user's own multipliers
-    assign red_out = red_intensity_s18;  // intensity on the output
-    assign green_out = green_intensity_s18;  // intensity on the output
-    assign blue_out = blue_intensity_s18;  // intensity on the output
+    assign f_out = reflectance_s17;  // u0.16: the reflectance, for a user's own multipliers
+    assign red_out = red_intensity_s17;  // intensity on the output
+    assign green_out = green_intensity_s17;  // intensity on the output
+    assign blue_out = blue_intensity_s17;  // intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, product_s5[11:0], product_2_s9[6:0], exp2_mantissa_s12[1:0],
-            red_product_s16[14:0], green_product_s16[14:0], blue_product_s16[14:0]};
+    wire unused = &{1'b0, product_sum_s5[11:0], product_sum_2_s9[6:0], exp2_mantissa_s12[1:0],
+            red_product_s15[14:0], green_product_s15[14:0], blue_product_s15[14:0]};
 endmodule
 
 `default_nettype wire

@@ -124,10 +124,10 @@ module quadratic_pipelined #(
     // Stage 1, part of: operands; ROM(n) addressed
     // register 2, u1.20: c, the cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s2;
-    reg  [35:0] multiplier5_inside_upper_s2;    // register 5
-    reg  [3:0]  multiplier5_inside_rows_2_s2;   // register 5
-    reg  [18:0] multiplier5_inside_carried_s2;  // register 5
-    reg  [17:0] coefficient_word_s2;            // u10.8
+    reg  [35:0] multiplier5_inside_upper_s2;         // register 5
+    reg  [21:0] multiplier5_inside_rows_upper_3_s2;  // register 5
+    reg         multiplier5_inside_rows_upper_4_s2;  // register 5
+    reg  [17:0] coefficient_word_s2;                 // u10.8
 
     // multiplier 5
     wire [35:0] multiplier5_inside_upper_s1 = cos_gamma_reg_s1[19:2] * cos_gamma_reg_s1[19:2];
@@ -140,17 +140,13 @@ module quadratic_pipelined #(
     wire [20:0] multiplier5_inside_row_4_s1 = cos_gamma_reg_s1[1] ? {cos_gamma_reg_s1[19:2], 1'b0,
             cos_gamma_reg_s1[1:0]} : 21'd0;
 
-    // adder 5
-    wire [21:0] multiplier5_inside_rows_upper_3_s1 = {2'd0, multiplier5_inside_row_2_s1[20:1]} +
-            {1'b0, multiplier5_inside_row_4_s1};
-
     always @(posedge clk) begin
         if (advance) begin
             cos_gamma_reg_s2 <= cos_gamma_reg_s1;
             multiplier5_inside_upper_s2 <= multiplier5_inside_upper_s1;
-            multiplier5_inside_rows_2_s2 <= {multiplier5_inside_rows_upper_3_s1[2:0],
-                    multiplier5_inside_row_2_s1[0]};
-            multiplier5_inside_carried_s2 <= multiplier5_inside_rows_upper_3_s1[21:3];
+            multiplier5_inside_rows_upper_3_s2 <= {2'd0, multiplier5_inside_row_2_s1[20:1]} + {1'b0,
+                    multiplier5_inside_row_4_s1};
+            multiplier5_inside_rows_upper_4_s2 <= multiplier5_inside_row_2_s1[0];
             coefficient_word_s2 <= coefficient_word_s1;
         end
     end
@@ -162,15 +158,20 @@ module quadratic_pipelined #(
     reg         multiplier1_sign_s3;   // register 1
     reg  [16:0] multiplier1_below_s3;  // register 1
 
+    // block 5
+    wire [22:0] multiplier5_inside_rows_s2 = {multiplier5_inside_rows_upper_3_s2,
+            multiplier5_inside_rows_upper_4_s2};
+
     // adder 5
-    wire [35:0] multiplier5_inside_sum_s2 = multiplier5_inside_upper_s2 + {17'd0,
-            multiplier5_inside_carried_s2};
+    wire [35:0] multiplier5_inside_sum_upper_2_s2 = {17'd0, multiplier5_inside_rows_s2[22:4]} +
+            multiplier5_inside_upper_s2;
 
     // block 5
-    wire [39:0] multiplier5_inside_2_s2 = {multiplier5_inside_sum_s2, multiplier5_inside_rows_2_s2};
+    wire [39:0] multiplier5_inside_sum_s2 = {multiplier5_inside_sum_upper_2_s2,
+            multiplier5_inside_rows_upper_3_s2[2:0], multiplier5_inside_rows_upper_4_s2};
 
     // adder 1: c^2 - c
-    wire [21:0] adder1_upper_3_s2 = {1'b0, cos_gamma_reg_s2[20], multiplier5_inside_2_s2[39:20]} -
+    wire [21:0] adder1_upper_3_s2 = {1'b0, cos_gamma_reg_s2[20], multiplier5_inside_sum_s2[39:20]} -
             {1'b0, cos_gamma_reg_s2};
 
     always @(posedge clk) begin
@@ -315,9 +316,9 @@ module quadratic_pipelined #(
     assign blue_out = blue_intensity_s8;  // output 3: intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, multiplier5_inside_2_s2[19:0], adder1_upper_3_s2[0],
-            adder1_upper_3_s2[21:19], adder2_s4[10:0], red_product_s6[14:0], green_product_s6[14:0],
-            blue_product_s6[14:0]};
+    wire unused = &{1'b0, multiplier5_inside_rows_s2[3:0], multiplier5_inside_sum_s2[19:0],
+            adder1_upper_3_s2[0], adder1_upper_3_s2[21:19], adder2_s4[10:0], red_product_s6[14:0],
+            green_product_s6[14:0], blue_product_s6[14:0]};
 endmodule
 
 `default_nettype wire

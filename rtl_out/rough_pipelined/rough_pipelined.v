@@ -141,16 +141,14 @@ module rough_pipelined #(
 
     // Stage 0, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
     // 11 <- cos gamma * cos dgamma
-    reg         cos_gamma_over_s1;
     // register 1, u1.20: cosine of the angle between normal and half vector
     reg  [20:0] cos_gamma_reg_s1;
-    reg         cos_dgamma_over_s1;
     // register 2, u1.20: cosine of the angle by which the normal is perturbed
     reg  [20:0] cos_dgamma_reg_s1;
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s1;
-    reg  [20:0] complement_before_s1;    // u1.20: 1.0 - cos
-    reg  [20:0] complement_before_2_s1;  // u1.20: 1.0 - cos
+    reg  [20:0] complement_s1;       // u1.20: 1.0 - cos
+    reg  [20:0] complement_2_s1;     // u1.20: 1.0 - cos
 
     wire cos_gamma_over_s0 = cos_gamma[20];
 
@@ -162,56 +160,60 @@ module rough_pipelined #(
     // mux 2, u1.20: cosine of the angle by which the normal is perturbed
     wire [20:0] cos_dgamma_reg_s0 = cos_dgamma_over_s0 ? COS_GAMMA_MOST : cos_dgamma;
 
+    // u1.20: 1.0 - cos
+    wire [20:0] complement_s0 = cos_gamma_over_s0 ? 21'd0 : (COS_GAMMA_MOST - cos_gamma);
+
+    // u1.20: 1.0 - cos
+    wire [20:0] complement_2_s0 = cos_dgamma_over_s0 ? 21'd0 : (COS_GAMMA_MOST - cos_dgamma);
+
     always @(posedge clk) begin
         if (advance) begin
-            cos_gamma_over_s1 <= cos_gamma_over_s0;
             cos_gamma_reg_s1 <= cos_gamma_reg_s0;
-            cos_dgamma_over_s1 <= cos_dgamma_over_s0;
             cos_dgamma_reg_s1 <= cos_dgamma_reg_s0;
             dgamma_negative_s1 <= dgamma_negative;
-            complement_before_s1 <= COS_GAMMA_MOST - cos_gamma;
-            complement_before_2_s1 <= COS_GAMMA_MOST - cos_dgamma;
+            complement_s1 <= complement_s0;
+            complement_2_s1 <= complement_2_s0;
         end
     end
 
     // Stage 1, part of: operands cos gamma, cos dgamma; sine of gamma addressed; 19 <- sin gamma;
     // 11 <- cos gamma * cos dgamma
-    // register 1, u1.20: cosine of the angle between normal and half vector
-    reg  [20:0] cos_gamma_reg_s2;
-    // register 2, u1.20: cosine of the angle by which the normal is perturbed
-    reg  [20:0] cos_dgamma_reg_s2;
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s2;
-    reg  [20:0] complement_s2;                                // u1.20: 1.0 - cos
-    reg         sine_in_range6_s2;                            // u is in range 6 or in one above
-    reg         sine_in_range7_s2;                            // u is in range 7 or in one above
-    reg         sine_in_range8_s2;                            // u is in range 8 or in one above
-    reg  [1:0]  complement_shifted_bits_18_s2;                // u0.2
-    reg         sine_in_range5_s2;                            // u is in range 5 or in one above
-    reg         sine_in_range1_s2;                            // u is in range 1 or in one above
-    reg         sine_in_range2_s2;                            // u is in range 2 or in one above
-    reg         sine_in_range3_s2;                            // u is in range 3 or in one above
-    reg         sine_in_range0_s2;                            // u is in range 0 or in one above
+    reg  [20:0] complement_s2;                                   // u1.20: 1.0 - cos
+    reg         sine_in_range6_s2;                               // u is in range 6 or in one above
+    reg         sine_in_range7_s2;                               // u is in range 7 or in one above
+    reg         sine_in_range8_s2;                               // u is in range 8 or in one above
+    reg  [1:0]  complement_shifted_bits_18_s2;                   // u0.2
+    reg         sine_in_range5_s2;                               // u is in range 5 or in one above
+    reg         sine_in_range1_s2;                               // u is in range 1 or in one above
+    reg         sine_in_range2_s2;                               // u is in range 2 or in one above
+    reg         sine_in_range3_s2;                               // u is in range 3 or in one above
+    reg         sine_in_range0_s2;                               // u is in range 0 or in one above
+    // the surface faces the half vector
+    reg         facing_s2;
     reg  [9:0]  sine_word8_s2;
-    reg  [9:0]  sine_word3_s2;
-    reg  [35:0] multiplier10_inside_inside_upper_upper_s2;    // register 10
-    reg  [1:0]  multiplier10_inside_inside_upper_rows_2_s2;   // register 10
-    reg  [17:0] multiplier10_inside_inside_upper_carried_s2;  // register 10
-    reg  [20:0] complement_2_s2;                              // u1.20: 1.0 - cos
-    reg         sine_in_range6_2_s2;                          // u is in range 6 or in one above
-    reg         sine_in_range7_2_s2;                          // u is in range 7 or in one above
-    reg         sine_in_range8_2_s2;                          // u is in range 8 or in one above
-    reg  [1:0]  complement_shifted_bits_18_2_s2;              // u0.2
-    reg         sine_in_range5_2_s2;                          // u is in range 5 or in one above
-    reg         sine_in_range1_2_s2;                          // u is in range 1 or in one above
-    reg         sine_in_range2_2_s2;                          // u is in range 2 or in one above
-    reg         sine_in_range3_2_s2;                          // u is in range 3 or in one above
-    reg         sine_in_range0_2_s2;                          // u is in range 0 or in one above
+    reg  [9:0]  sine_word1_s2;
+    reg  [17:0] multiplier10_inside_inside_upper_bits_s2;        // register 10
+    reg  [17:0] multiplier10_inside_inside_upper_upper_bits_s2;  // register 10
+    reg  [17:0] multiplier10_inside_inside_upper_row_2_s2;       // register 10
+    reg  [17:0] multiplier10_inside_inside_upper_row_4_s2;       // register 10
+    reg  [19:0] multiplier10_inside_inside_row_2_s2;             // register 10
+    reg  [19:0] multiplier10_inside_inside_row_4_s2;             // register 10
+    reg  [19:0] multiplier10_inside_at_highest_s2;               // register 10
+    reg  [20:0] multiplier10_at_highest_s2;                      // register 10
+    reg  [20:0] complement_2_s2;                                 // u1.20: 1.0 - cos
+    reg         sine_in_range6_2_s2;                             // u is in range 6 or in one above
+    reg         sine_in_range7_2_s2;                             // u is in range 7 or in one above
+    reg         sine_in_range8_2_s2;                             // u is in range 8 or in one above
+    reg  [1:0]  complement_shifted_bits_18_2_s2;                 // u0.2
+    reg         sine_in_range5_2_s2;                             // u is in range 5 or in one above
+    reg         sine_in_range1_2_s2;                             // u is in range 1 or in one above
+    reg         sine_in_range2_2_s2;                             // u is in range 2 or in one above
+    reg         sine_in_range3_2_s2;                             // u is in range 3 or in one above
+    reg         sine_in_range0_2_s2;                             // u is in range 0 or in one above
     reg  [9:0]  sine_word8_2_s2;
-    reg  [9:0]  sine_word2_2_s2;
-
-    // u1.20: 1.0 - cos
-    wire [20:0] complement_s1 = cos_gamma_over_s1 ? 21'd0 : complement_before_s1;
+    reg  [9:0]  sine_word1_2_s2;
 
     wire sine_in_range6_s1 = |complement_s1[20:6];  // u is in range 6 or in one above
     wire sine_in_range7_s1 = |complement_s1[20:4];  // u is in range 7 or in one above
@@ -221,6 +223,7 @@ module rough_pipelined #(
     wire sine_in_range2_s1 = |complement_s1[20:14];  // u is in range 2 or in one above
     wire sine_in_range3_s1 = |complement_s1[20:12];  // u is in range 3 or in one above
     wire sine_in_range0_s1 = |complement_s1[20:18];  // u is in range 0 or in one above
+    wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
 
     wire [9:0] sine_word8_s1 = sine_in_range8_s1 ? {8'd144, complement_s1[3:2]} : {8'd145,
             complement_s1[1:0]};
@@ -228,25 +231,19 @@ module rough_pipelined #(
     wire [9:0] sine_word3_s1 = sine_in_range3_s1 ? {4'd7, complement_s1[13:8]} : {5'd16,
             complement_s1[11:7]};
 
-    // multiplier 10
-    wire [35:0] multiplier10_inside_inside_upper_upper_s1 = cos_gamma_reg_s1[19:2] *
-            cos_dgamma_reg_s1[19:2];
+    wire [9:0] sine_word2_s1 = sine_in_range2_s1 ? {3'd2, complement_s1[15:9]} : sine_word3_s1;
+
+    wire [8:0] sine_word0_s1 = sine_in_range0_s1 ? {3'd6, complement_s1[19:14]} : {1'b0,
+            complement_s1[17:10]};
+
+    wire [9:0] sine_word1_s1 = sine_in_range1_s1 ? {1'b0, sine_word0_s1} : sine_word2_s1;
 
     // mux 10
-    wire [17:0] multiplier10_inside_inside_upper_row_2_s1 = cos_gamma_reg_s1[0] ?
-            cos_dgamma_reg_s1[19:2] : 18'd0;
+    wire [19:0] multiplier10_inside_at_highest_s1 = cos_dgamma_reg_s1[20] ? cos_gamma_reg_s1[19:0] :
+            20'd0;
 
     // mux 10
-    wire [17:0] multiplier10_inside_inside_upper_row_4_s1 = cos_gamma_reg_s1[1] ?
-            cos_dgamma_reg_s1[19:2] : 18'd0;
-
-    // adder 10
-    wire [18:0] multiplier10_inside_inside_upper_rows_upper_3_s1 = {2'd0,
-            multiplier10_inside_inside_upper_row_2_s1[17:1]} + {1'b0,
-            multiplier10_inside_inside_upper_row_4_s1};
-
-    // u1.20: 1.0 - cos
-    wire [20:0] complement_2_s1 = cos_dgamma_over_s1 ? 21'd0 : complement_before_2_s1;
+    wire [20:0] multiplier10_at_highest_s1 = cos_gamma_reg_s1[20] ? cos_dgamma_reg_s1 : 21'd0;
 
     wire sine_in_range6_2_s1 = |complement_2_s1[20:6];  // u is in range 6 or in one above
     wire sine_in_range7_2_s1 = |complement_2_s1[20:4];  // u is in range 7 or in one above
@@ -266,10 +263,13 @@ module rough_pipelined #(
     wire [9:0] sine_word2_2_s1 = sine_in_range2_2_s1 ? {3'd2, complement_2_s1[15:9]} :
             sine_word3_2_s1;
 
+    wire [8:0] sine_word0_2_s1 = sine_in_range0_2_s1 ? {3'd6, complement_2_s1[19:14]} : {1'b0,
+            complement_2_s1[17:10]};
+
+    wire [9:0] sine_word1_2_s1 = sine_in_range1_2_s1 ? {1'b0, sine_word0_2_s1} : sine_word2_2_s1;
+
     always @(posedge clk) begin
         if (advance) begin
-            cos_gamma_reg_s2 <= cos_gamma_reg_s1;
-            cos_dgamma_reg_s2 <= cos_dgamma_reg_s1;
             dgamma_negative_s2 <= dgamma_negative_s1;
             complement_s2 <= complement_s1;
             sine_in_range6_s2 <= sine_in_range6_s1;
@@ -281,14 +281,21 @@ module rough_pipelined #(
             sine_in_range2_s2 <= sine_in_range2_s1;
             sine_in_range3_s2 <= sine_in_range3_s1;
             sine_in_range0_s2 <= sine_in_range0_s1;
+            facing_s2 <= facing_s1;
             sine_word8_s2 <= sine_word8_s1;
-            sine_word3_s2 <= sine_word3_s1;
-            multiplier10_inside_inside_upper_upper_s2 <= multiplier10_inside_inside_upper_upper_s1;
-            multiplier10_inside_inside_upper_rows_2_s2 <=
-                    {multiplier10_inside_inside_upper_rows_upper_3_s1[0],
-                    multiplier10_inside_inside_upper_row_2_s1[0]};
-            multiplier10_inside_inside_upper_carried_s2 <=
-                    multiplier10_inside_inside_upper_rows_upper_3_s1[18:1];
+            sine_word1_s2 <= sine_word1_s1;
+            multiplier10_inside_inside_upper_bits_s2 <= cos_dgamma_reg_s1[19:2];
+            multiplier10_inside_inside_upper_upper_bits_s2 <= cos_gamma_reg_s1[19:2];
+            multiplier10_inside_inside_upper_row_2_s2 <= cos_gamma_reg_s1[0] ?
+                    cos_dgamma_reg_s1[19:2] : 18'd0;
+            multiplier10_inside_inside_upper_row_4_s2 <= cos_gamma_reg_s1[1] ?
+                    cos_dgamma_reg_s1[19:2] : 18'd0;
+            multiplier10_inside_inside_row_2_s2 <= cos_dgamma_reg_s1[0] ? cos_gamma_reg_s1[19:0] :
+                    20'd0;
+            multiplier10_inside_inside_row_4_s2 <= cos_dgamma_reg_s1[1] ? cos_gamma_reg_s1[19:0] :
+                    20'd0;
+            multiplier10_inside_at_highest_s2 <= multiplier10_inside_at_highest_s1;
+            multiplier10_at_highest_s2 <= multiplier10_at_highest_s1;
             complement_2_s2 <= complement_2_s1;
             sine_in_range6_2_s2 <= sine_in_range6_2_s1;
             sine_in_range7_2_s2 <= sine_in_range7_2_s1;
@@ -300,7 +307,7 @@ module rough_pipelined #(
             sine_in_range3_2_s2 <= sine_in_range3_2_s1;
             sine_in_range0_2_s2 <= sine_in_range0_2_s1;
             sine_word8_2_s2 <= sine_word8_2_s1;
-            sine_word2_2_s2 <= sine_word2_2_s1;
+            sine_word1_2_s2 <= sine_word1_2_s1;
         end
     end
 
@@ -308,13 +315,12 @@ module rough_pipelined #(
     // 11 <- cos gamma * cos dgamma
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s3;
-    reg         facing_s3;                                   // the surface faces the half vector
-    reg  [1:0]  multiplier10_inside_inside_upper_rows_2_s3;  // register 10
-    reg  [35:0] multiplier10_inside_inside_upper_sum_s3;     // register 10
-    reg  [1:0]  multiplier10_inside_inside_rows_2_s3;        // register 10
-    reg  [19:0] multiplier10_inside_inside_carried_s3;       // register 10
-    reg  [19:0] multiplier10_inside_at_highest_s3;           // register 10
-    reg  [20:0] multiplier10_at_highest_s3;                  // register 10
+    reg         facing_s3;                                  // the surface faces the half vector
+    reg  [35:0] multiplier10_inside_inside_upper_upper_s3;  // register 10
+    reg  [20:0] multiplier10_inside_inside_sum_upper_3_s3;  // register 10
+    reg  [1:0]  multiplier10_inside_inside_rows_3_s3;       // register 10
+    reg  [19:0] multiplier10_inside_at_highest_s3;          // register 10
+    reg  [20:0] multiplier10_at_highest_s3;                 // register 10
     reg  [34:0] sine_word_s3;
     reg  [34:0] sine_word_2_s3;
 
@@ -345,44 +351,37 @@ module rough_pipelined #(
 
     wire [13:0] sine_rest1_s2 = sine_in_range1_s2 ? sine_rest0_s2 : sine_rest2_s2;  // u0.14
     wire [13:0] sine_rest4_s2 = sine_in_range4_s2 ? sine_rest1_s2 : sine_rest6_s2;  // u0.14
-    wire facing_s2 = |cos_gamma_reg_s2;  // the surface faces the half vector
     wire [9:0] sine_word7_s2 = sine_in_range7_s2 ? {7'd71, complement_s2[5:3]} : sine_word8_s2;
 
     wire [9:0] sine_word5_s2 = sine_in_range5_s2 ? {6'd34, complement_s2[9:6]} : {7'd70,
             complement_s2[7:5]};
 
     wire [9:0] sine_word6_s2 = sine_in_range6_s2 ? sine_word5_s2 : sine_word7_s2;
-    wire [9:0] sine_word2_s2 = sine_in_range2_s2 ? {3'd2, complement_s2[15:9]} : sine_word3_s2;
-
-    wire [8:0] sine_word0_s2 = sine_in_range0_s2 ? {3'd6, complement_s2[19:14]} : {1'b0,
-            complement_s2[17:10]};
-
-    wire [9:0] sine_word1_s2 = sine_in_range1_s2 ? {1'b0, sine_word0_s2} : sine_word2_s2;
     wire [9:0] sine_word4_s2 = sine_in_range4_s2 ? sine_word1_s2 : sine_word6_s2;
 
+    // multiplier 10
+    wire [35:0] multiplier10_inside_inside_upper_upper_s2 =
+            multiplier10_inside_inside_upper_upper_bits_s2 *
+            multiplier10_inside_inside_upper_bits_s2;
+
     // adder 10
-    wire [35:0] multiplier10_inside_inside_upper_sum_s2 = multiplier10_inside_inside_upper_upper_s2
-            + {18'd0, multiplier10_inside_inside_upper_carried_s2};
+    wire [18:0] multiplier10_inside_inside_upper_rows_upper_3_s2 = {2'd0,
+            multiplier10_inside_inside_upper_row_2_s2[17:1]} + {1'b0,
+            multiplier10_inside_inside_upper_row_4_s2};
 
-    // mux 10
-    wire [19:0] multiplier10_inside_inside_row_2_s2 = cos_dgamma_reg_s2[0] ? cos_gamma_reg_s2[19:0]
-            : 20'd0;
-
-    // mux 10
-    wire [19:0] multiplier10_inside_inside_row_4_s2 = cos_dgamma_reg_s2[1] ? cos_gamma_reg_s2[19:0]
-            : 20'd0;
+    // block 10
+    wire [19:0] multiplier10_inside_inside_upper_rows_s2 =
+            {multiplier10_inside_inside_upper_rows_upper_3_s2,
+            multiplier10_inside_inside_upper_row_2_s2[0]};
 
     // adder 10
     wire [20:0] multiplier10_inside_inside_rows_upper_3_s2 = {2'd0,
             multiplier10_inside_inside_row_2_s2[19:1]} + {1'b0,
             multiplier10_inside_inside_row_4_s2};
 
-    // mux 10
-    wire [19:0] multiplier10_inside_at_highest_s2 = cos_dgamma_reg_s2[20] ? cos_gamma_reg_s2[19:0] :
-            20'd0;
-
-    // mux 10
-    wire [20:0] multiplier10_at_highest_s2 = cos_gamma_reg_s2[20] ? cos_dgamma_reg_s2 : 21'd0;
+    // block 10
+    wire [21:0] multiplier10_inside_inside_rows_s2 = {multiplier10_inside_inside_rows_upper_3_s2,
+            multiplier10_inside_inside_row_2_s2[0]};
 
     wire sine_in_range4_2_s2 = |complement_2_s2[20:10];  // u is in range 4 or in one above
 
@@ -422,11 +421,6 @@ module rough_pipelined #(
             complement_2_s2[7:5]};
 
     wire [9:0] sine_word6_2_s2 = sine_in_range6_2_s2 ? sine_word5_2_s2 : sine_word7_2_s2;
-
-    wire [8:0] sine_word0_2_s2 = sine_in_range0_2_s2 ? {3'd6, complement_2_s2[19:14]} : {1'b0,
-            complement_2_s2[17:10]};
-
-    wire [9:0] sine_word1_2_s2 = sine_in_range1_2_s2 ? {1'b0, sine_word0_2_s2} : sine_word2_2_s2;
     wire [9:0] sine_word4_2_s2 = sine_in_range4_2_s2 ? sine_word1_2_s2 : sine_word6_2_s2;
 
     // ROM 18: value at the start of a segment (u0.22), then its rise over the segment in units of
@@ -443,13 +437,12 @@ module rough_pipelined #(
         if (advance) begin
             dgamma_negative_s3 <= dgamma_negative_s2;
             facing_s3 <= facing_s2;
-            multiplier10_inside_inside_upper_rows_2_s3 <=
-                    multiplier10_inside_inside_upper_rows_2_s2;
-            multiplier10_inside_inside_upper_sum_s3 <= multiplier10_inside_inside_upper_sum_s2;
-            multiplier10_inside_inside_rows_2_s3 <= {multiplier10_inside_inside_rows_upper_3_s2[0],
+            multiplier10_inside_inside_upper_upper_s3 <= multiplier10_inside_inside_upper_upper_s2;
+            multiplier10_inside_inside_sum_upper_3_s3 <= {1'b0,
+                    multiplier10_inside_inside_rows_s2[21:2]} + {1'b0,
+                    multiplier10_inside_inside_upper_rows_s2};
+            multiplier10_inside_inside_rows_3_s3 <= {multiplier10_inside_inside_rows_upper_3_s2[0],
                     multiplier10_inside_inside_row_2_s2[0]};
-            multiplier10_inside_inside_carried_s3 <=
-                    multiplier10_inside_inside_rows_upper_3_s2[20:1];
             multiplier10_inside_at_highest_s3 <= multiplier10_inside_at_highest_s2;
             multiplier10_at_highest_s3 <= multiplier10_at_highest_s2;
         end
@@ -460,29 +453,32 @@ module rough_pipelined #(
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s4;
     reg         facing_s4;           // the surface faces the half vector
+    reg  [21:0] sine_base_s4;        // u0.22
     reg  [12:0] sine_slope_s4;       // u-5.18
+    reg  [21:0] sine_base_2_s4;      // u0.22
     reg  [12:0] sine_slope_2_s4;     // u-5.18
 
     wire [21:0] sine_base_s3 = sine_word_s3[34:13];  // u0.22
     wire [12:0] sine_slope_s3 = sine_word_s3[12:0];  // u-5.18
 
     // block 10
-    wire [37:0] multiplier10_inside_inside_upper_s3 = {multiplier10_inside_inside_upper_sum_s3,
-            multiplier10_inside_inside_upper_rows_2_s3};
+    wire [22:0] multiplier10_inside_inside_sum_s3 = {multiplier10_inside_inside_sum_upper_3_s3,
+            multiplier10_inside_inside_rows_3_s3};
 
     // adder 10
-    wire [37:0] multiplier10_inside_inside_sum_s3 = multiplier10_inside_inside_upper_s3 + {18'd0,
-            multiplier10_inside_inside_carried_s3};
+    wire [35:0] multiplier10_inside_inside_sum_upper_5_s3 = {17'd0,
+            multiplier10_inside_inside_sum_s3[22:4]} + multiplier10_inside_inside_upper_upper_s3;
 
     // block 10
-    wire [19:0] multiplier10_inside_2_s3 = multiplier10_inside_inside_sum_s3[37:18] |
+    wire [19:0] multiplier10_inside_2_s3 = multiplier10_inside_inside_sum_upper_5_s3[35:16] |
             multiplier10_inside_at_highest_s3;
 
     // block 10
     wire [20:0] multiplier10_2_s3 = {1'b0, multiplier10_inside_2_s3} | multiplier10_at_highest_s3;
 
     // block 11, u1.22: cos gamma * cos dgamma
-    wire [22:0] reg11_cos_cos_s3 = {multiplier10_2_s3, multiplier10_inside_inside_sum_s3[17:16]};
+    wire [22:0] reg11_cos_cos_s3 = {multiplier10_2_s3,
+            multiplier10_inside_inside_sum_upper_5_s3[15:14]};
 
     wire [21:0] sine_base_2_s3 = sine_word_2_s3[34:13];  // u0.22
     wire [12:0] sine_slope_2_s3 = sine_word_2_s3[12:0];  // u-5.18
@@ -491,7 +487,9 @@ module rough_pipelined #(
         if (advance) begin
             dgamma_negative_s4 <= dgamma_negative_s3;
             facing_s4 <= facing_s3;
+            sine_base_s4 <= sine_base_s3;
             sine_slope_s4 <= sine_slope_s3;
+            sine_base_2_s4 <= sine_base_2_s3;
             sine_slope_2_s4 <= sine_slope_2_s3;
         end
     end
@@ -501,15 +499,19 @@ module rough_pipelined #(
     reg         dgamma_negative_s5;
     reg  [13:0] sine_rest4_s5;       // u0.14
     reg         facing_s5;           // the surface faces the half vector
+    reg  [21:0] sine_base_s5;        // u0.22
     reg  [12:0] sine_slope_s5;       // u-5.18
     reg  [13:0] sine_rest4_2_s5;     // u0.14
+    reg  [21:0] sine_base_2_s5;      // u0.22
     reg  [12:0] sine_slope_2_s5;     // u-5.18
 
     always @(posedge clk) begin
         if (advance) begin
             dgamma_negative_s5 <= dgamma_negative_s4;
             facing_s5 <= facing_s4;
+            sine_base_s5 <= sine_base_s4;
             sine_slope_s5 <= sine_slope_s4;
+            sine_base_2_s5 <= sine_base_2_s4;
             sine_slope_2_s5 <= sine_slope_2_s4;
         end
     end
@@ -531,7 +533,9 @@ module rough_pipelined #(
         if (advance) begin
             dgamma_negative_s6 <= dgamma_negative_s5;
             facing_s6 <= facing_s5;
+            sine_base_s6 <= sine_base_s5;
             sine_rise_kept_s6 <= sine_rise_s5[26:10];
+            sine_base_2_s6 <= sine_base_2_s5;
             sine_rise_kept_2_s6 <= sine_rise_2_s5[26:10];
         end
     end
@@ -540,10 +544,9 @@ module rough_pipelined #(
     // gamma
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s7;
-    reg         facing_s7;                   // the surface faces the half vector
-    reg  [21:0] reg19_sin_gamma_s7;          // register 19, u0.22: sin gamma
-    reg  [17:0] multiplier10_upper_bits_s7;  // register 10
-    reg  [3:0]  multiplier10_lower_bits_s7;  // register 10
+    reg         facing_s7;           // the surface faces the half vector
+    reg  [21:0] reg19_sin_gamma_s7;  // register 19, u0.22: sin gamma
+    reg  [21:0] sine_value_s7;       // u0.22: sine of the addressed cosine
 
     wire [22:0] sine_sum_s6 = {1'b0, sine_base_s6} + {6'd0, sine_rise_kept_s6};  // u1.22
 
@@ -560,104 +563,84 @@ module rough_pipelined #(
             dgamma_negative_s7 <= dgamma_negative_s6;
             facing_s7 <= facing_s6;
             reg19_sin_gamma_s7 <= reg19_sin_gamma_s6;
-            multiplier10_upper_bits_s7 <= sine_value_s6[21:4];
-            multiplier10_lower_bits_s7 <= sine_value_s6[3:0];
+            sine_value_s7 <= sine_value_s6;
         end
     end
 
     // Stage 7, part of: 12 <- sin gamma * sin dgamma
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s8;
-    reg         facing_s8;                           // the surface faces the half vector
-    reg  [35:0] multiplier10_upper_upper_s8;         // register 10
-    reg  [3:0]  multiplier10_upper_low_bits_s8;      // register 10
-    reg  [17:0] multiplier10_upper_carried_s8;       // register 10
-    reg  [21:0] multiplier10_lower_upper_s8;         // register 10
-    reg  [4:0]  multiplier10_lower_rows_upper_7_s8;  // register 10
-    reg  [1:0]  multiplier10_lower_rows_3_s8;        // register 10
-    reg  [3:0]  multiplier10_lower_row_10_s8;        // register 10
+    reg         facing_s8;                         // the surface faces the half vector
+    reg  [17:0] multiplier10_upper_bits_s8;        // register 10
+    reg  [17:0] multiplier10_upper_upper_bits_s8;  // register 10
+    reg  [21:0] multiplier10_upper_lower_s8;       // register 10
+    reg  [21:0] multiplier10_lower_upper_s8;       // register 10
+    reg  [3:0]  multiplier10_lower_row_2_s8;       // register 10
+    reg  [3:0]  multiplier10_lower_row_4_s8;       // register 10
+    reg  [3:0]  multiplier10_lower_row_7_s8;       // register 10
+    reg  [3:0]  multiplier10_lower_row_10_s8;      // register 10
 
     // multiplier 10
-    wire [35:0] multiplier10_upper_upper_s7 = reg19_sin_gamma_s7[21:4] * multiplier10_upper_bits_s7;
+    wire [21:0] multiplier10_upper_lower_s7 = reg19_sin_gamma_s7[3:0] * sine_value_s7[21:4];
 
     // multiplier 10
-    wire [21:0] multiplier10_upper_lower_s7 = reg19_sin_gamma_s7[3:0] * multiplier10_upper_bits_s7;
-
-    // multiplier 10
-    wire [21:0] multiplier10_lower_upper_s7 = reg19_sin_gamma_s7[21:4] * multiplier10_lower_bits_s7;
-
-    // mux 10
-    wire [3:0] multiplier10_lower_row_2_s7 = reg19_sin_gamma_s7[0] ? multiplier10_lower_bits_s7 :
-            4'd0;
-
-    // mux 10
-    wire [3:0] multiplier10_lower_row_4_s7 = reg19_sin_gamma_s7[1] ? multiplier10_lower_bits_s7 :
-            4'd0;
-
-    // adder 10
-    wire [4:0] multiplier10_lower_rows_upper_3_s7 = {2'd0, multiplier10_lower_row_2_s7[3:1]} +
-            {1'b0, multiplier10_lower_row_4_s7};
-
-    // block 10
-    wire [5:0] multiplier10_lower_rows_s7 = {multiplier10_lower_rows_upper_3_s7,
-            multiplier10_lower_row_2_s7[0]};
-
-    // mux 10
-    wire [3:0] multiplier10_lower_row_7_s7 = reg19_sin_gamma_s7[2] ? multiplier10_lower_bits_s7 :
-            4'd0;
+    wire [21:0] multiplier10_lower_upper_s7 = reg19_sin_gamma_s7[21:4] * sine_value_s7[3:0];
 
     always @(posedge clk) begin
         if (advance) begin
             dgamma_negative_s8 <= dgamma_negative_s7;
             facing_s8 <= facing_s7;
-            multiplier10_upper_upper_s8 <= multiplier10_upper_upper_s7;
-            multiplier10_upper_low_bits_s8 <= multiplier10_upper_lower_s7[3:0];
-            multiplier10_upper_carried_s8 <= multiplier10_upper_lower_s7[21:4];
+            multiplier10_upper_bits_s8 <= sine_value_s7[21:4];
+            multiplier10_upper_upper_bits_s8 <= reg19_sin_gamma_s7[21:4];
+            multiplier10_upper_lower_s8 <= multiplier10_upper_lower_s7;
             multiplier10_lower_upper_s8 <= multiplier10_lower_upper_s7;
-            multiplier10_lower_rows_upper_7_s8 <= {1'b0, multiplier10_lower_rows_s7[5:2]} + {1'b0,
-                    multiplier10_lower_row_7_s7};
-            multiplier10_lower_rows_3_s8 <= {multiplier10_lower_rows_upper_3_s7[0],
-                    multiplier10_lower_row_2_s7[0]};
-            multiplier10_lower_row_10_s8 <= reg19_sin_gamma_s7[3] ? multiplier10_lower_bits_s7 :
-                    4'd0;
+            multiplier10_lower_row_2_s8 <= reg19_sin_gamma_s7[0] ? sine_value_s7[3:0] : 4'd0;
+            multiplier10_lower_row_4_s8 <= reg19_sin_gamma_s7[1] ? sine_value_s7[3:0] : 4'd0;
+            multiplier10_lower_row_7_s8 <= reg19_sin_gamma_s7[2] ? sine_value_s7[3:0] : 4'd0;
+            multiplier10_lower_row_10_s8 <= reg19_sin_gamma_s7[3] ? sine_value_s7[3:0] : 4'd0;
         end
     end
 
     // Stage 8, part of: 12 <- sin gamma * sin dgamma
     // register 4: sign of dgamma: 0 for cos(gamma + dgamma), 1 for cos(gamma - dgamma)
     reg         dgamma_negative_s9;
-    reg         facing_s9;                     // the surface faces the half vector
-    reg  [39:0] multiplier10_upper_s9;         // register 10
-    reg  [3:0]  multiplier10_lower_rows_8_s9;  // register 10
-    reg  [21:0] multiplier10_lower_sum_s9;     // register 10
+    reg         facing_s9;                            // the surface faces the half vector
+    reg  [35:0] multiplier10_upper_upper_s9;          // register 10
+    reg  [4:0]  multiplier10_lower_rows_upper_10_s9;  // register 10
+    reg  [2:0]  multiplier10_lower_rows_6_s9;         // register 10
+    reg  [22:0] multiplier10_sum_upper_3_s9;          // register 10
+
+    // multiplier 10
+    wire [35:0] multiplier10_upper_upper_s8 = multiplier10_upper_upper_bits_s8 *
+            multiplier10_upper_bits_s8;
 
     // adder 10
-    wire [35:0] multiplier10_upper_sum_s8 = multiplier10_upper_upper_s8 + {18'd0,
-            multiplier10_upper_carried_s8};
+    wire [4:0] multiplier10_lower_rows_upper_3_s8 = {2'd0, multiplier10_lower_row_2_s8[3:1]} +
+            {1'b0, multiplier10_lower_row_4_s8};
 
     // block 10
-    wire [39:0] multiplier10_upper_s8 = {multiplier10_upper_sum_s8, multiplier10_upper_low_bits_s8};
+    wire [5:0] multiplier10_lower_rows_s8 = {multiplier10_lower_rows_upper_3_s8,
+            multiplier10_lower_row_2_s8[0]};
+
+    // adder 10
+    wire [4:0] multiplier10_lower_rows_upper_7_s8 = {1'b0, multiplier10_lower_rows_s8[5:2]} + {1'b0,
+            multiplier10_lower_row_7_s8};
 
     // block 10
     wire [6:0] multiplier10_lower_rows_4_s8 = {multiplier10_lower_rows_upper_7_s8,
-            multiplier10_lower_rows_3_s8};
-
-    // adder 10
-    wire [4:0] multiplier10_lower_rows_upper_10_s8 = {1'b0, multiplier10_lower_rows_4_s8[6:3]} +
-            {1'b0, multiplier10_lower_row_10_s8};
-
-    // adder 10
-    wire [21:0] multiplier10_lower_sum_s8 = multiplier10_lower_upper_s8 + {18'd0,
-            multiplier10_lower_rows_upper_10_s8[4:1]};
+            multiplier10_lower_rows_upper_3_s8[0], multiplier10_lower_row_2_s8[0]};
 
     always @(posedge clk) begin
         if (advance) begin
             dgamma_negative_s9 <= dgamma_negative_s8;
             facing_s9 <= facing_s8;
-            multiplier10_upper_s9 <= multiplier10_upper_s8;
-            multiplier10_lower_rows_8_s9 <= {multiplier10_lower_rows_upper_10_s8[0],
-                    multiplier10_lower_rows_upper_7_s8[0], multiplier10_lower_rows_3_s8};
-            multiplier10_lower_sum_s9 <= multiplier10_lower_sum_s8;
+            multiplier10_upper_upper_s9 <= multiplier10_upper_upper_s8;
+            multiplier10_lower_rows_upper_10_s9 <= {1'b0, multiplier10_lower_rows_4_s8[6:3]} +
+                    {1'b0, multiplier10_lower_row_10_s8};
+            multiplier10_lower_rows_6_s9 <= {multiplier10_lower_rows_upper_7_s8[0],
+                    multiplier10_lower_rows_upper_3_s8[0], multiplier10_lower_row_2_s8[0]};
+            multiplier10_sum_upper_3_s9 <= {1'b0, multiplier10_upper_lower_s8} + {1'b0,
+                    multiplier10_lower_upper_s8};
         end
     end
 
@@ -668,14 +651,31 @@ module rough_pipelined #(
     reg  [22:0] reg11_cos_cos_s10;    // register 11, u1.22: cos gamma * cos dgamma
     reg  [21:0] reg12_sin_sin_s10;    // register 12, u0.22: sin gamma * sin dgamma
 
-    // adder 10
-    wire [39:0] multiplier10_sum_s9 = multiplier10_upper_s9 + {18'd0, multiplier10_lower_sum_s9};
+    // block 10
+    wire [7:0] multiplier10_lower_rows_7_s9 = {multiplier10_lower_rows_upper_10_s9,
+            multiplier10_lower_rows_6_s9};
 
-    // block 10: the shared product; its point depends on the operands
-    wire [43:0] multiplier10_4_s9 = {multiplier10_sum_s9, multiplier10_lower_rows_8_s9};
+    wire [26:0] multiplier10_sum_s9 = {multiplier10_sum_upper_3_s9, 4'd0};  // block 10
+
+    // adder 10
+    wire [23:0] multiplier10_sum_upper_6_s9 = {20'd0, multiplier10_lower_rows_7_s9[7:4]} + {1'b0,
+            multiplier10_sum_s9[26:4]};
+
+    // block 10
+    wire [27:0] multiplier10_sum_2_s9 = {multiplier10_sum_upper_6_s9,
+            multiplier10_lower_rows_upper_10_s9[0], multiplier10_lower_rows_6_s9};
+
+    // adder 10
+    wire [35:0] multiplier10_sum_upper_8_s9 = {16'd0, multiplier10_sum_2_s9[27:8]} +
+            multiplier10_upper_upper_s9;
+
+    // block 10
+    wire [43:0] multiplier10_sum_5_s9 = {multiplier10_sum_upper_8_s9,
+            multiplier10_sum_upper_6_s9[3:0], multiplier10_lower_rows_upper_10_s9[0],
+            multiplier10_lower_rows_6_s9};
 
     // block 12, u0.22: sin gamma * sin dgamma
-    wire [21:0] reg12_sin_sin_s9 = multiplier10_4_s9[43:22];
+    wire [21:0] reg12_sin_sin_s9 = multiplier10_sum_5_s9[43:22];
 
     always @(posedge clk) begin
         if (advance) begin
@@ -686,11 +686,9 @@ module rough_pipelined #(
     end
 
     // Stage 10, part of: operands adder 15, n/2
-    reg  [9:0]  exponent_s11;                   // register 3: specular exponent n
-    reg         facing_s11;                     // the surface faces the half vector
-    reg  [17:0] multiplier10_upper_bits_2_s11;  // register 10
-    reg  [4:0]  multiplier10_lower_bits_2_s11;  // register 10
-    reg         mux8_held_bits_2_s11;
+    reg         [9:0]  exponent_s11;  // register 3: specular exponent n
+    reg                facing_s11;    // the surface faces the half vector
+    reg  signed [23:0] adder15_s11;   // register 15, s1.22: cos(gamma +- dgamma) - 1.0
 
     wire [22:0] raised12_s10 = {1'b1, reg12_sin_sin_s10};  // u1.22: register 12 + 1.0, by wiring
 
@@ -712,32 +710,27 @@ module rough_pipelined #(
     always @(posedge clk) begin
         if (advance) begin
             facing_s11 <= facing_s10;
-            multiplier10_upper_bits_2_s11 <= adder15_s10[22:5];
-            multiplier10_lower_bits_2_s11 <= adder15_s10[4:0];
-            mux8_held_bits_2_s11 <= adder15_s10[23];
+            adder15_s11 <= adder15_s10;
         end
     end
 
     // Stage 11, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
-    reg         facing_s12;                // the surface faces the half vector
-    reg  [27:0] multiplier10_upper_2_s12;  // register 10
-    reg  [14:0] multiplier10_lower_s12;    // register 10
+    reg         facing_s12;               // the surface faces the half vector
+    reg  [27:0] multiplier10_upper_s12;   // register 10
+    reg  [14:0] multiplier10_lower_s12;   // register 10
     // what the product of a negative operand is too large by, above its sign
     reg  [9:0]  multiplier10_excess_s12;
 
-    // multiplier 10
-    wire [27:0] multiplier10_upper_2_s11 = multiplier10_upper_bits_2_s11 * exponent_s11;
-
-    // multiplier 10
-    wire [14:0] multiplier10_lower_s11 = multiplier10_lower_bits_2_s11 * exponent_s11;
+    wire [27:0] multiplier10_upper_s11 = adder15_s11[22:5] * exponent_s11;  // multiplier 10
+    wire [14:0] multiplier10_lower_s11 = adder15_s11[4:0] * exponent_s11;  // multiplier 10
 
     // what the product of a negative operand is too large by, above its sign
-    wire [9:0] multiplier10_excess_s11 = mux8_held_bits_2_s11 ? exponent_s11 : 10'd0;
+    wire [9:0] multiplier10_excess_s11 = adder15_s11[23] ? exponent_s11 : 10'd0;
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s12 <= facing_s11;
-            multiplier10_upper_2_s12 <= multiplier10_upper_2_s11;
+            multiplier10_upper_s12 <= multiplier10_upper_s11;
             multiplier10_lower_s12 <= multiplier10_lower_s11;
             multiplier10_excess_s12 <= multiplier10_excess_s11;
         end
@@ -745,61 +738,60 @@ module rough_pipelined #(
 
     // Stage 12, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
     reg         facing_s13;                // the surface faces the half vector
-    reg  [10:0] multiplier10_upper_3_s13;
+    reg  [10:0] multiplier10_upper_2_s13;
     reg  [15:0] multiplier10_view_3_s13;
 
     // adder 10
-    wire [27:0] multiplier10_sum_2_s12 = multiplier10_upper_2_s12 + {18'd0,
-            multiplier10_lower_s12[14:5]};
+    wire [27:0] multiplier10_sum_upper_10_s12 = {18'd0, multiplier10_lower_s12[14:5]} +
+            multiplier10_upper_s12;
 
-    // block 10: the shared product; its point depends on the operands
-    wire [32:0] multiplier10_5_s12 = {multiplier10_sum_2_s12, multiplier10_lower_s12[4:0]};
+    // block 10
+    wire [32:0] multiplier10_sum_6_s12 = {multiplier10_sum_upper_10_s12,
+            multiplier10_lower_s12[4:0]};
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s13 <= facing_s12;
-            multiplier10_upper_3_s13 <= {1'b0, multiplier10_5_s12[32:23]} - {1'b0,
+            multiplier10_upper_2_s13 <= {1'b0, multiplier10_sum_6_s12[32:23]} - {1'b0,
                     multiplier10_excess_s12};
-            multiplier10_view_3_s13 <= multiplier10_5_s12[22:7];
+            multiplier10_view_3_s13 <= multiplier10_sum_6_s12[22:7];
         end
     end
 
     // Stage 13, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1)
-    reg                facing_s14;          // the surface faces the half vector
-    reg                result_under_s14;
-    reg  signed [16:0] result_limited_s14;  // s0.16
+    reg                facing_s14;        // the surface faces the half vector
+    // register 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
+    reg  signed [16:0] reg13_result_s14;
 
     // s0.16
-    wire signed [16:0] result_limited_s13 = (~multiplier10_upper_3_s13[10] &
-            (|multiplier10_upper_3_s13[9:0])) ? RESULT_MOST : {multiplier10_upper_3_s13[0],
+    wire signed [16:0] result_limited_s13 = (~multiplier10_upper_2_s13[10] &
+            (|multiplier10_upper_2_s13[9:0])) ? RESULT_MOST : {multiplier10_upper_2_s13[0],
             multiplier10_view_3_s13};
+
+    // s0.16
+    wire signed [16:0] result_s13 = (multiplier10_upper_2_s13[10] &
+            ~(&multiplier10_upper_2_s13[9:0])) ? MINUS_ONE : result_limited_s13;
+
+    // mux 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
+    wire signed [16:0] reg13_result_s13 = facing_s13 ? result_s13 : MINUS_ONE;
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s14 <= facing_s13;
-            result_under_s14 <= multiplier10_upper_3_s13[10] & ~(&multiplier10_upper_3_s13[9:0]);
-            result_limited_s14 <= result_limited_s13;
+            reg13_result_s14 <= reg13_result_s13;
         end
     end
 
-    // Stage 14, part of: 13 <- n/2 * (cos(gamma +- dgamma) - 1); operands adder 16, adder 16
-    reg         facing_s15;   // the surface faces the half vector
-    reg  [16:0] adder16_s15;  // register 16, u1.16: register 13 + 1.0
-
-    wire signed [16:0] result_s14 = result_under_s14 ? MINUS_ONE : result_limited_s14;  // s0.16
-
-    // mux 13, s0.16: n/2*(cos(gamma +- dgamma) - 1), then f
-    wire signed [16:0] reg13_result_s14 = facing_s14 ? result_s14 : MINUS_ONE;
-
-    wire adder16_upper_2_s14 = ~reg13_result_s14[16];  // block 16: register 13 + 1.0
-
-    // block 16, u1.16: register 13 + 1.0
-    wire [16:0] adder16_s14 = {adder16_upper_2_s14, reg13_result_s14[15:0]};
+    // Stage 14, part of: operands adder 16, adder 16
+    reg         facing_s15;           // the surface faces the half vector
+    reg         adder16_upper_2_s15;  // register 16: register 13 + 1.0
+    reg  [15:0] adder16_upper_3_s15;  // register 16: register 13 + 1.0
 
     always @(posedge clk) begin
         if (advance) begin
             facing_s15 <= facing_s14;
-            adder16_s15 <= adder16_s14;
+            adder16_upper_2_s15 <= ~reg13_result_s14[16];
+            adder16_upper_3_s15 <= reg13_result_s14[15:0];
         end
     end
 
@@ -807,6 +799,9 @@ module rough_pipelined #(
     reg                facing_s16;                        // the surface faces the half vector
     reg         [9:0]  line_or_square_kept_bits_2_2_s16;
     reg  signed [16:0] line_or_square_kept_inside_s16;    // s0.16
+
+    // block 16, u1.16: register 13 + 1.0
+    wire [16:0] adder16_s15 = {adder16_upper_2_s15, adder16_upper_3_s15};
 
     // multiplier 10: the shared product; its point depends on the operands
     wire [33:0] multiplier10_6_s15 = adder16_s15 * adder16_s15;
@@ -893,8 +888,6 @@ module rough_pipelined #(
     initial slot_of_2 = 1'b0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
     reg [27:0] delay_s2_s5 [0:1];
-    (* ram_style = "distributed", syn_ramstyle = "distributed" *)
-    reg [43:0] delay_s3_s6 [0:1];
     reg [2:0] slot_of_6;
     initial slot_of_6 = 3'd0;
     (* ram_style = "distributed", syn_ramstyle = "distributed" *)
@@ -910,11 +903,9 @@ module rough_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            slot_of_2 <= slot_of_2 == 1'b1 ? 1'b0 : slot_of_2 + 1'b1;
+            slot_of_2 <= slot_of_2 + 1'b1;
             {sine_rest4_s5, sine_rest4_2_s5} <= delay_s2_s5[slot_of_2];
             delay_s2_s5[slot_of_2] <= {sine_rest4_s2, sine_rest4_2_s2};
-            {sine_base_s6, sine_base_2_s6} <= delay_s3_s6[slot_of_2];
-            delay_s3_s6[slot_of_2] <= {sine_base_s3, sine_base_2_s3};
         end
     end
 
@@ -936,7 +927,7 @@ module rough_pipelined #(
 
     always @(posedge clk) begin
         if (advance) begin
-            slot_of_16 <= slot_of_16 == 4'd15 ? 4'd0 : slot_of_16 + 4'd1;
+            slot_of_16 <= slot_of_16 + 4'd1;
             {red_s17, green_s17, blue_s17} <= delay_s0_s17[slot_of_16];
             delay_s0_s17[slot_of_16] <= {red, green, blue};
         end
@@ -949,10 +940,11 @@ module rough_pipelined #(
     assign blue_out = blue_intensity_s19;  // output 42: intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, sine_rise_s5[9:0], multiplier10_inside_inside_rows_2_s3,
-            multiplier10_inside_inside_sum_s3[15:0], sine_rise_2_s5[9:0],
-            multiplier10_lower_rows_s7[1:0], multiplier10_lower_rows_4_s8[2:0],
-            multiplier10_4_s9[21:0], multiplier10_5_s12[6:0], multiplier10_6_s15[15:0],
+    wire unused = &{1'b0, sine_rise_s5[9:0], multiplier10_inside_inside_rows_s2[1:0],
+            multiplier10_inside_inside_sum_s3[3:0], multiplier10_inside_inside_sum_upper_5_s3[13:0],
+            sine_rise_2_s5[9:0], multiplier10_lower_rows_s8[1:0], multiplier10_lower_rows_4_s8[2:0],
+            multiplier10_lower_rows_7_s9[3:0], multiplier10_sum_s9[3:0], multiplier10_sum_2_s9[7:0],
+            multiplier10_sum_5_s9[21:0], multiplier10_sum_6_s12[6:0], multiplier10_6_s15[15:0],
             reg13_result_2_s16[16], red_product_s17[14:0], green_product_s17[14:0],
             blue_product_s17[14:0]};
 endmodule

@@ -125,31 +125,27 @@ module threshold_pipelined #(
 
     // Stage 1, part of: scaled <- n/2 * (cos gamma - 1); intensity <- (scaled + 1)^2, or 0 below
     // ROM(n)
-    reg  [9:0]  exponent_s2;                    // register 2: specular exponent n
-    reg         adder1_upper_2_s2;              // register 1: cos gamma - 1.0
-    reg  [27:0] multiplier1_inside_upper_s2;    // register 1
-    reg  [1:0]  multiplier1_inside_rows_2_s2;   // register 1
-    reg  [9:0]  multiplier1_inside_carried_s2;  // register 1
-    reg         facing_s2;                      // the surface faces the half vector
+    reg  [9:0]  exponent_s2;                         // register 2: specular exponent n
+    reg  [27:0] multiplier1_inside_upper_s2;         // register 1
+    reg  [10:0] multiplier1_inside_rows_upper_3_s2;  // register 1
+    reg         multiplier1_inside_rows_upper_4_s2;  // register 1
+    reg  [9:0]  multiplier1_at_sign_s2;              // register 1
+    reg         facing_s2;                           // the surface faces the half vector
 
     wire [27:0] multiplier1_inside_upper_s1 = cos_gamma_reg_s1[19:2] * exponent_s1;  // multiplier 1
     wire [9:0] multiplier1_inside_row_2_s1 = cos_gamma_reg_s1[0] ? exponent_s1 : 10'd0;  // mux 1
     wire [9:0] multiplier1_inside_row_4_s1 = cos_gamma_reg_s1[1] ? exponent_s1 : 10'd0;  // mux 1
-
-    // adder 1
-    wire [10:0] multiplier1_inside_rows_upper_3_s1 = {2'd0, multiplier1_inside_row_2_s1[9:1]} +
-            {1'b0, multiplier1_inside_row_4_s1};
-
+    wire [9:0] multiplier1_at_sign_s1 = ~cos_gamma_reg_s1[20] ? exponent_s1 : 10'd0;  // mux 1
     wire facing_s1 = |cos_gamma_reg_s1;  // the surface faces the half vector
 
     always @(posedge clk) begin
         if (advance) begin
             exponent_s2 <= exponent_s1;
-            adder1_upper_2_s2 <= ~cos_gamma_reg_s1[20];
             multiplier1_inside_upper_s2 <= multiplier1_inside_upper_s1;
-            multiplier1_inside_rows_2_s2 <= {multiplier1_inside_rows_upper_3_s1[0],
-                    multiplier1_inside_row_2_s1[0]};
-            multiplier1_inside_carried_s2 <= multiplier1_inside_rows_upper_3_s1[10:1];
+            multiplier1_inside_rows_upper_3_s2 <= {2'd0, multiplier1_inside_row_2_s1[9:1]} + {1'b0,
+                    multiplier1_inside_row_4_s1};
+            multiplier1_inside_rows_upper_4_s2 <= multiplier1_inside_row_2_s1[0];
+            multiplier1_at_sign_s2 <= multiplier1_at_sign_s1;
             facing_s2 <= facing_s1;
         end
     end
@@ -161,15 +157,17 @@ module threshold_pipelined #(
     reg  signed [16:0] multiplier1_kept_inside_s3;  // s0.16
     reg                facing_s3;                   // the surface faces the half vector
 
-    // adder 1
-    wire [27:0] multiplier1_inside_sum_s2 = multiplier1_inside_upper_s2 + {18'd0,
-            multiplier1_inside_carried_s2};
+    // block 1
+    wire [11:0] multiplier1_inside_rows_s2 = {multiplier1_inside_rows_upper_3_s2,
+            multiplier1_inside_rows_upper_4_s2};
 
-    wire [9:0] multiplier1_at_sign_s2 = adder1_upper_2_s2 ? exponent_s2 : 10'd0;  // mux 1
+    // adder 1
+    wire [27:0] multiplier1_inside_sum_upper_2_s2 = {18'd0, multiplier1_inside_rows_s2[11:2]} +
+            multiplier1_inside_upper_s2;
 
     // adder 1, s10.0
-    wire signed [10:0] multiplier1_upper_s2 = {1'b0, multiplier1_inside_sum_s2[27:18]} - {1'b0,
-            multiplier1_at_sign_s2};
+    wire signed [10:0] multiplier1_upper_s2 = {1'b0, multiplier1_inside_sum_upper_2_s2[27:18]} -
+            {1'b0, multiplier1_at_sign_s2};
 
     always @(posedge clk) begin
         if (advance) begin
@@ -177,70 +175,68 @@ module threshold_pipelined #(
             multiplier1_kept_bits_s3 <= multiplier1_upper_s2[10];
             multiplier1_kept_bits_2_s3 <= multiplier1_upper_s2[10:1];
             multiplier1_kept_inside_s3 <= {multiplier1_upper_s2[1:0],
-                    multiplier1_inside_sum_s2[17:3]};
+                    multiplier1_inside_sum_upper_2_s2[17:3]};
             facing_s3 <= facing_s2;
         end
     end
 
     // Stage 3, part of: scaled <- n/2 * (cos gamma - 1); intensity <- (scaled + 1)^2, or 0 below
     // ROM(n)
+    reg  [9:0]  exponent_s4;        // register 2: specular exponent n
     reg         facing_s4;          // the surface faces the half vector
     reg         adder2_upper_2_s4;  // register 2: base of the square, 0 ... 1.0
     reg  [15:0] adder2_upper_3_s4;  // register 2: base of the square, 0 ... 1.0
-    reg  [15:0] levels_word_s4;     // u0.16
 
     // s0.16: n/2*(cos gamma - 1), not below -1.0
     wire signed [16:0] scaled_s3 = (multiplier1_kept_bits_s3 & ~(&multiplier1_kept_bits_2_s3)) ?
             MULTIPLIER1_ROUNDED_LEAST : multiplier1_kept_inside_s3;
 
-    // ROM levels: the smallest f that is shown for an exponent n (the address)
-    reg [15:0] levels_rom [0:1023];
-    initial $readmemh(LEVELS_FILE, levels_rom);
-    always @(posedge clk) if (advance) levels_word_s4 <= levels_rom[exponent_s3];
-
     always @(posedge clk) begin
         if (advance) begin
+            exponent_s4 <= exponent_s3;
             facing_s4 <= facing_s3;
             adder2_upper_2_s4 <= ~scaled_s3[16];
             adder2_upper_3_s4 <= scaled_s3[15:0];
         end
     end
 
-    // Stage 4, part of: operands; ROM(n) addressed; intensity <- (scaled + 1)^2, or 0 below ROM(n)
-    reg  [15:0] levels_word_s5;              // u0.16
+    // Stage 4, part of: intensity <- (scaled + 1)^2, or 0 below ROM(n)
     reg         facing_s5;                   // the surface faces the half vector
     reg  [1:0]  multiplier2_kept_bits_s5;
     reg  [15:0] multiplier2_kept_inside_s5;  // u0.16
+    reg  [15:0] levels_word_s5;              // u0.16
 
     // block 2, u1.16: base of the square, 0 ... 1.0
     wire [16:0] adder2_s4 = {adder2_upper_2_s4, adder2_upper_3_s4};
 
     wire [33:0] multiplier2_s4 = adder2_s4 * adder2_s4;  // multiplier 2, u2.32
 
+    // ROM levels: the smallest f that is shown for an exponent n (the address)
+    reg [15:0] levels_rom [0:1023];
+    initial $readmemh(LEVELS_FILE, levels_rom);
+    always @(posedge clk) if (advance) levels_word_s5 <= levels_rom[exponent_s4];
+
     always @(posedge clk) begin
         if (advance) begin
-            levels_word_s5 <= levels_word_s4;
             facing_s5 <= facing_s4;
             multiplier2_kept_bits_s5 <= multiplier2_s4[33:32];
             multiplier2_kept_inside_s5 <= multiplier2_s4[31:16];
         end
     end
 
-    // Stage 5, part of: intensity <- (scaled + 1)^2, or 0 below ROM(n)
-    reg  [15:0] square_s6;  // u0.16
-    reg         pass_s6;    // opens the gates
+    // Stage 5, part of: operands; ROM(n) addressed; intensity <- (scaled + 1)^2, or 0 below ROM(n)
+    reg  [15:0] levels_word_s6;  // u0.16
+    reg         facing_s6;       // the surface faces the half vector
+    reg  [15:0] square_s6;       // u0.16
 
     // u0.16
     wire [15:0] square_s5 = (|multiplier2_kept_bits_s5) ? 16'hffff : multiplier2_kept_inside_s5;
 
-    wire comparator_s5 = square_s5 < levels_word_s5;  // the square is below the level of visibility
-    wire visible_s5 = ~comparator_s5;
-    wire pass_s5 = facing_s5 & visible_s5;  // opens the gates
-
     always @(posedge clk) begin
         if (advance) begin
+            levels_word_s6 <= levels_word_s5;
+            facing_s6 <= facing_s5;
             square_s6 <= square_s5;
-            pass_s6 <= pass_s5;
         end
     end
 
@@ -249,6 +245,10 @@ module threshold_pipelined #(
     reg  [7:0]  green_s7;      // register 4: intensity of the light times k_s
     reg  [7:0]  blue_s7;       // register 5: intensity of the light times k_s
     reg  [15:0] intensity_s7;  // u0.16: the reflectance f: what the gates passed
+
+    wire comparator_s6 = square_s6 < levels_word_s6;  // the square is below the level of visibility
+    wire visible_s6 = ~comparator_s6;
+    wire pass_s6 = facing_s6 & visible_s6;  // opens the gates
 
     // u0.16: the reflectance f: what the gates passed
     wire [15:0] intensity_s6 = pass_s6 ? square_s6 : 16'd0;
@@ -327,7 +327,7 @@ module threshold_pipelined #(
     assign blue_out = blue_intensity_s9;  // output 3: intensity on the output
 
     // Unused bits, among them those that narrowing drops.
-    wire unused = &{1'b0, multiplier1_inside_rows_2_s2, multiplier1_inside_sum_s2[2:0],
+    wire unused = &{1'b0, multiplier1_inside_rows_s2[1:0], multiplier1_inside_sum_upper_2_s2[2:0],
             multiplier2_s4[15:0], red_product_s7[14:0], green_product_s7[14:0],
             blue_product_s7[14:0]};
 endmodule

@@ -16,8 +16,8 @@ module cosine_power_pipelined_tb #(
     parameter STIMULUS_FILE = "cosine_power_pipelined_stimulus.mem",
     parameter EXPECTED_FILE = "cosine_power_pipelined_expected.mem"
 );
-    localparam CLOCKS     = 4490;
-    localparam KNOWN_FROM = 14;  // results are compared from this clock on
+    localparam CLOCKS     = 3797;
+    localparam KNOWN_FROM = 13;  // results are compared from this clock on
     localparam REPORTED   = 20;  // differences that are printed
 
     reg [57:0] stimulus [0:CLOCKS-1];

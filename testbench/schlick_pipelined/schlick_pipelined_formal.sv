@@ -65,9 +65,7 @@ module schlick_pipelined_formal (
     (* hierconn *) wire \dut.valid_s13 ;
     (* hierconn *) wire \dut.valid_s14 ;
     (* hierconn *) wire \dut.valid_s15 ;
-    (* hierconn *) wire \dut.valid_s16 ;
-    wire [16:1] present = {
-        \dut.valid_s16 ,
+    wire [15:1] present = {
         \dut.valid_s15 ,
         \dut.valid_s14 ,
         \dut.valid_s13 ,
@@ -87,17 +85,17 @@ module schlick_pipelined_formal (
 
     // The same for a queue beside it: all points in it move together, unless a result waits.
     wire moves = out_ready | ~out_valid;
-    reg  [16:1] queue;
+    reg  [15:1] queue;
     always @(posedge clk) begin
-        if (!rst_n) queue <= 16'd0;
-        else if (moves) queue <= {queue[15:1], in_valid};
+        if (!rst_n) queue <= 15'd0;
+        else if (moves) queue <= {queue[14:1], in_valid};
     end
 
     always @(posedge clk) if (!$initstate) begin
         // No point is lost, none is doubled, and none comes sooner or later than the stages let it:
         // out_valid follows from the points that were taken, whatever out_ready is.
         assert (present == queue);
-        assert (out_valid == queue[16]);
+        assert (out_valid == queue[15]);
         // A point is taken whenever no result waits.
         assert (in_ready == moves);
         // A result that waits stays as it is.

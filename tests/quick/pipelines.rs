@@ -155,3 +155,28 @@ fn memories_of_delay_lines_have_a_word_less_than_there_are_stages() {
     }
     assert!(seen >= 8, "{seen} memories");
 }
+
+/// Such a word comes late in its clock, and the way into a memory in look-up tables is longer than to a register.
+#[test]
+fn no_delay_line_in_memory_begins_with_a_word_of_a_block_memory() {
+    let mut words = 0;
+    for (path, unit) in all_configurations() {
+        let design = &unit.design;
+        words += design.roms.iter().filter(|rom| rom.synchronous).count();
+        for value in design.delay_lines().iter().flat_map(|line| &line.values) {
+            let mut from = value.data;
+            while let Driver::Op(Op::Slice { of, .. } | Op::Relabel(of) | Op::Extend(of)) =
+                design.net(from).driver
+            {
+                from = of;
+            }
+            let driver = &design.net(from).driver;
+            assert!(
+                !matches!(driver, Driver::Rom(rom) if design.roms[rom.index()].synchronous),
+                "{path}: `{}`",
+                design.net(value.data).name
+            );
+        }
+    }
+    assert!(words > 0, "no block memories");
+}

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-use super::{Design, Driver, NetId, RegId};
+use super::{Design, Driver, NetId, Op, RegId};
 
 /// A memory in look-up tables, as a target has it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +95,11 @@ impl Design {
             if next.contains(&Some(at)) {
                 continue;
             }
-            let chain = std::iter::successors(Some(at), |&at| next[at]);
+            // A word of a block memory comes too late in its clock to be written to another on the way.
+            let word = self.is_of_block_memory(data);
+            let Some(first) = (if word { next[at] } else { Some(at) }) else { continue };
+            let data = if word { register.q } else { data };
+            let chain = std::iter::successors(Some(first), |&at| next[at]);
             let registers: Vec<RegId> = chain.map(|at| RegId(at as u32)).collect();
             let last = self.register(registers[registers.len() - 1]).q;
             let to = pipeline.stage_of[last.index()];
@@ -112,6 +116,17 @@ impl Design {
         }
         let bits = |line: &DelayLine| line.values.iter().map(|it| self.width(it.data)).sum();
         lines.into_values().filter(|line| memory.pays(line.words(), bits(line))).collect()
+    }
+
+    /// Whether a net is, through wires, a word of a ROM that is read on the clock.
+    fn is_of_block_memory(&self, id: NetId) -> bool {
+        match &self.net(id).driver {
+            Driver::Rom(rom) => self.roms[rom.index()].synchronous,
+            Driver::Op(
+                op @ (Op::Slice { .. } | Op::Relabel(_) | Op::Extend(_) | Op::Concat(_)),
+            ) => op.operands().into_iter().any(|it| self.is_of_block_memory(it)),
+            _ => false,
+        }
     }
 
     /// The design as it is written for a target, by name: delay lines are memories for that of the pipeline alone.

@@ -49,6 +49,8 @@ pub struct Problems<'a> {
     delay: Vec<f64>,
     /// What a register behind the node takes beyond any other.
     setup: Vec<f64>,
+    /// What chooses between a value and a constant, where a register behind it does so by its reset.
+    reset_by: Vec<Option<NetId>>,
     /// Of what the clock makes, a word of a block memory or a product in the register of a multiplier: what it takes
     /// from its operands to the clock, beyond the way to a register.
     clocked: Vec<Option<f64>>,
@@ -57,6 +59,11 @@ pub struct Problems<'a> {
 /// The clock of a period in nanoseconds, in MHz to a decimal. Rounded down, so that what is stated can be reached.
 pub fn megahertz(period: f64) -> f64 {
     (10_000.0 / period).floor() / 10.0
+}
+
+/// Whether an operation is made of other things than look-up tables that could take logic before it with them.
+fn takes_no_logic(cell: &Cell) -> bool {
+    matches!(cell, Cell::Op(Op::Add { .. } | Op::Sub(..) | Op::Less(..) | Op::Mul(..)))
 }
 
 /// A node stands at least this number of stages after another.
@@ -144,12 +151,14 @@ impl<'a> Problems<'a> {
             }
         }
         let setup = nodes().map(|id| target.setup(graph, id)).collect();
+        let reset_by = nodes().map(|id| target.reset_by(graph, id));
+        let reset_by = reset_by.map(|it| it.map(|select| held(graph, results, select))).collect();
         let clocked = nodes().map(|id| match product(id) {
             Some(registered) => Some(registered.product),
             None => target.is_block(graph, id).then_some(target.address),
         });
         let clocked = clocked.collect();
-        Self { graph, target, live, results, users, delay, setup, clocked }
+        Self { graph, target, live, results, users, delay, setup, reset_by, clocked }
     }
 
     /// The shortest period that one operation alone allows, and the operation. What the environment takes for an operand
@@ -228,6 +237,15 @@ impl<'a> Problems<'a> {
         1 + usize::from(far && self.delay[user.index()] + self.target.logic > most)
     }
 
+    /// Nanoseconds until a register behind `user` has the value, of which the operand `from` is there after so many. What is
+    /// not the select of a reset goes past it.
+    fn until_register(&self, from: NetId, user: NetId, after: f64) -> f64 {
+        match self.reset_by[user.index()] {
+            Some(select) if select != from => after,
+            _ => after + self.delay[user.index()] + self.setup[user.index()],
+        }
+    }
+
     fn differences(&self, period: f64) -> Vec<Difference> {
         let most = period - self.target.register + 1e-9;
         let mut differences = Vec::new();
@@ -252,7 +270,7 @@ impl<'a> Problems<'a> {
                         continue;
                     }
                     let through = longest[at.index()] + self.delay[user.index()];
-                    if through + self.setup[user.index()] > most {
+                    if self.until_register(at, user, longest[at.index()]) > most {
                         differences.push((from, user, self.registers_between(from, user, most)));
                     } else if reached[user.index()] != from || longest[user.index()] < through {
                         reached[user.index()] = from;
@@ -317,6 +335,22 @@ impl<'a> Problems<'a> {
                 problem.add_constraint(terms, ComparisonOp::Ge, last);
             }
         }
+        // A reset is a look-up table a bit where anything takes it in its own stage.
+        for &id in self.live.iter().filter(|id| self.reset_by[id.index()].is_some()) {
+            let bits = f64::from(self.graph.width(id));
+            let in_tables = problem.add_var(bits, (0.0, 1.0));
+            let users = self.beyond_wiring(id);
+            if let [user] = users[..]
+                && !takes_no_logic(&self.graph.node(user).cell)
+            {
+                continue;
+            }
+            for user in users {
+                let terms =
+                    [(in_tables, 1.0), (stage[user.index()], 1.0), (stage[id.index()], -1.0)];
+                problem.add_constraint(terms, ComparisonOp::Ge, 1.0 + self.apart(user) as f64);
+            }
+        }
         let earliest = self.earliest(differences);
         let stage: Vec<usize> = match problem.solve() {
             Ok(SolveOutcome::Solution(solution)) => {
@@ -327,6 +361,21 @@ impl<'a> Problems<'a> {
         };
         let logic = self.logic(&stage, latency);
         Schedule { stage, latency, period, logic }
+    }
+
+    /// What takes a node, through wires.
+    fn beyond_wiring(&self, id: NetId) -> Vec<NetId> {
+        let (mut open, mut users) = (self.users[id.index()].clone(), Vec::new());
+        while let Some(user) = open.pop() {
+            if self.graph.node(user).cell.is_wiring() && !self.results.contains(&user) {
+                open.extend(&self.users[user.index()]);
+            } else {
+                users.push(user);
+            }
+        }
+        users.sort_unstable();
+        users.dedup();
+        users
     }
 
     /// The longest way through the logic of each stage.
@@ -340,16 +389,22 @@ impl<'a> Problems<'a> {
                 .into_iter()
                 .map(|operand| held(self.graph, self.results, operand))
                 .filter(|operand| !self.is_clocked(id) && stage[operand.index()] == at)
-                .filter(|operand| self.graph.constant_of(*operand).is_none())
-                .map(|operand| arrival[operand.index()])
-                .fold(0.0, f64::max);
-            arrival[id.index()] = before + self.delay[id.index()];
+                .filter(|operand| self.graph.constant_of(*operand).is_none());
+            let before: Vec<NetId> = before.collect();
+            let arrivals = before.iter().map(|operand| arrival[operand.index()]);
+            arrival[id.index()] = arrivals.fold(0.0, f64::max) + self.delay[id.index()];
             let later = |user: &NetId| stage[user.index()] - self.apart(*user) > at;
             let is_held = self.users[id.index()].iter().any(later) || self.results.contains(&id);
-            let setup = if is_held { self.setup[id.index()] } else { 0.0 };
+            if is_held {
+                let first = self.delay[id.index()] + self.setup[id.index()];
+                let ends =
+                    before.iter().map(|&it| self.until_register(it, id, arrival[it.index()]));
+                longest[at] = ends.fold(longest[at].max(first), f64::max);
+            }
             let users = self.users[id.index()].iter().filter(|user| !later(user));
-            let operand = users.filter_map(|user| self.clocked[user.index()]).fold(setup, f64::max);
-            longest[at] = longest[at].max(arrival[id.index()] + operand);
+            let operand = users.filter_map(|user| self.clocked[user.index()]);
+            let operand = operand.map(|operand| arrival[id.index()] + operand);
+            longest[at] = operand.fold(longest[at], f64::max);
         }
         longest
     }

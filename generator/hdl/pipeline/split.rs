@@ -37,19 +37,35 @@ fn product(
     format: Format,
     label: &Label,
 ) -> NetId {
+    let parts = parts(graph, target, [a, b], format, label);
+    match parts[..] {
+        [Term { value, places: 0 }] => value,
+        _ => summed(graph, parts, format, label),
+    }
+}
+
+/// What `a·b` is the sum of.
+fn parts(
+    graph: &mut Graph,
+    target: &Target,
+    [a, b]: [NetId; 2],
+    format: Format,
+    label: &Label,
+) -> Vec<Term> {
     let (wide, narrow) = if graph.width(a) >= graph.width(b) { (a, b) } else { (b, a) };
     // The sizes of the target are of unsigned operands; most multipliers take a sign bit with them.
     let (most, other) = target.multiplier;
     let limit = if graph.width(narrow) <= other { most } else { other };
-    if graph.width(wide) <= limit {
+    let value = if graph.width(wide) <= limit {
         graph.op(Op::Mul(a, b), format, label)
     } else if !format.signed && reaches_a_power_of_two(graph, wide) {
         below_the_highest(graph, target, [wide, narrow], format, label)
     } else if let Some([positive, other]) = with_a_sign(graph, [a, b]) {
         below_the_sign(graph, target, positive, other, format, label)
     } else {
-        cut(graph, target, [wide, narrow], limit, format, label)
-    }
+        return cut(graph, target, [wide, narrow], limit, format.signed, label);
+    };
+    vec![Term { value, places: 0 }]
 }
 
 /// Whether the greatest value of an unsigned factor is a power of two, with a bit that no other value has.
@@ -124,16 +140,56 @@ fn below_the_sign(
     graph.op(Op::Extend(whole), format, label)
 }
 
-/// A product of which the wider factor is cut into its `limit` upper bits and the rest.
+/// A number in units of two to the power of `places`.
+#[derive(Clone, Copy)]
+struct Term {
+    value: NetId,
+    places: u32,
+}
+
+/// The sum of the parts of a product.
+fn summed(graph: &mut Graph, mut parts: Vec<Term>, format: Format, label: &Label) -> NetId {
+    let top = |graph: &Graph, term: &Term| term.places + graph.width(term.value);
+    parts.sort_by_key(|term| std::cmp::Reverse(top(graph, term)));
+    // The widest last: no other sum is as wide.
+    parts.rotate_left(1);
+    let sum = parts.into_iter().reduce(|sum, term| {
+        let width = top(graph, &sum).max(top(graph, &term)) + 1;
+        let width = width.min(format.width());
+        let signed = [sum, term].iter().any(|it| graph.node(it.value).format.signed);
+        let [a, b] = [sum, term].map(|it| in_ones(graph, it, width, signed, label));
+        let (op, format) = (Op::Add { a, b, carry: None }, integer(signed, width));
+        let value = shortened(graph, op, format, format.range(), &part(label, "sum"));
+        Term { value, places: 0 }
+    });
+    let sum =
+        in_ones(graph, sum.expect("a product has parts"), format.width(), format.signed, label);
+    graph.op(Op::Relabel(sum), format, label)
+}
+
+/// A term as a number of this width and sign.
+fn in_ones(graph: &mut Graph, term: Term, width: u32, signed: bool, label: &Label) -> NetId {
+    let Term { value, places } = term;
+    let format = graph.node(value).format;
+    let shifted = if places == 0 {
+        value
+    } else {
+        let zeros = graph.constant(0, unsigned(places), &unnamed(label));
+        let format = integer(format.signed, format.width() + places);
+        graph.op(Op::Concat(vec![value, zeros]), format, &unnamed(label))
+    };
+    graph.resize(shifted, width, signed)
+}
+
+/// What a product is the sum of whose wider factor is cut into its `limit` upper bits and the rest.
 fn cut(
     graph: &mut Graph,
     target: &Target,
     [wide, narrow]: [NetId; 2],
     limit: u32,
-    format: Format,
+    signed: bool,
     label: &Label,
-) -> NetId {
-    let signed = format.signed;
+) -> Vec<Term> {
     let rest = graph.width(wide) - limit;
     let upper_bits = slice(graph, wide, rest, integer(signed, limit), &part(label, "upper_bits"));
     // What the upper bits are multiplied by, and the rest, and the places that the product of the upper bits is up.
@@ -148,33 +204,20 @@ fn cut(
     };
     let upper_format = integer(signed, limit + graph.width(upper_factor));
     let upper_label = part(label, "upper");
-    let upper = product(graph, target, upper_bits, upper_factor, upper_format, &upper_label);
+    let upper = parts(graph, target, [upper_bits, upper_factor], upper_format, &upper_label);
+    let upper = upper.into_iter().map(|term| Term { places: term.places + places, ..term });
     // The lower bits have no sign; the product with them has that of the other operand.
     let width = graph.width(rest_factor);
     let lower = if rest <= MOST_ROWS && rest * width <= target.row_bits {
-        rows(graph, wide, rest, rest_factor, label)
+        vec![Term { value: rows(graph, wide, rest, rest_factor, label), places: 0 }]
     } else {
         let lower_bits = slice(graph, wide, 0, unsigned(rest), &part(label, "lower_bits"));
         let bits = rest + u32::from(signed);
         let lower_bits = graph.resize(lower_bits, bits, signed);
         let format = integer(signed, bits + width);
-        product(graph, target, lower_bits, rest_factor, format, &part(label, "lower"))
+        parts(graph, target, [lower_bits, rest_factor], format, &part(label, "lower"))
     };
-    // upper·2^places + lower: the lowest bits are those of the lower part.
-    let total = format.width() - places;
-    let (low_width, low_signed) = (graph.width(lower), graph.node(lower).format.signed);
-    let low_bits = slice(graph, lower, 0, unsigned(places), &part(label, "low_bits"));
-    let upper = graph.resize(upper, total, signed);
-    let sum = if low_width > places {
-        let format = integer(low_signed, low_width - places);
-        let carried = slice(graph, lower, places, format, &part(label, "carried"));
-        let carried = graph.resize(carried, total, signed);
-        let sum = Op::Add { a: upper, b: carried, carry: None };
-        graph.op(sum, integer(signed, total), &part(label, "sum"))
-    } else {
-        upper
-    };
-    graph.op(Op::Concat(vec![sum, low_bits]), format, label)
+    upper.chain(lower).collect()
 }
 
 /// The product of the lowest `rest` bits of `wide` with `narrow`, a row for each.
@@ -351,6 +394,23 @@ mod tests {
                 assert_eq!(out.raw(result(&made, &[a, b])), expected, "{a} by {b}");
             }
         }
+    }
+
+    #[test]
+    fn the_widest_part_of_a_product_is_added_once() {
+        let made = product(|d| ["a", "b"].map(|name| d.operand(name, Format::unsigned(8, 0)).q()));
+        assert_eq!(multipliers(&made), 1);
+        for (a, b) in (0..256).flat_map(|a| (0..256).map(move |b| (a, b))) {
+            assert_eq!(result(&made, &[a, b]), a * b, "{a} by {b}");
+        }
+        let sums = made.iter().filter_map(|(id, net)| match net.driver {
+            Driver::Op(Op::Add { .. }) => Some(made.width(id)),
+            _ => None,
+        });
+        let mut sums: Vec<u32> = sums.collect();
+        sums.sort_unstable();
+        // Of rows of 4 and of 8 bits three each; of the lower parts, from the fifth place to the carry, 9 bits, and of the upper 8.
+        assert_eq!(sums, [5, 5, 5, 8, 9, 9, 9, 9]);
     }
 
     fn design_format(design: &Design) -> Format {

@@ -195,3 +195,87 @@ fn a_delay_line_begins_behind_a_registered_multiplier() {
     assert!(values.iter().any(|it| it.data == product && it.registers.len() == 5), "{lines:?}");
     assert!(values.iter().all(|it| it.registers.iter().all(|at| !registered.contains(at))));
 }
+
+/// `(taken ? x : 0) + y` beside a fourth power, which leaves it time.
+fn row_beside_a_power() -> Design {
+    let d = Designer::new("rows");
+    let x = d.operand("x", Format::unsigned(9, 0));
+    let y = d.operand("y", Format::unsigned(9, 0));
+    let taken = d.operand("taken", Format::BIT);
+    let square = d.register("square", Format::unsigned(18, 0));
+    let fourth = d.register("fourth", Format::unsigned(36, 0));
+    let total = d.register("total", Format::unsigned(10, 0));
+    square.takes(d.mul("x_square", x.q(), x.q()));
+    fourth.takes(d.mul("x_fourth", square.q(), square.q()));
+    let zero = d.constant("zero", 0.0, Format::unsigned(9, 0));
+    let row = d.choose("row", taken.q(), [zero, x.q()]);
+    total.takes(d.add("row_sum", row, y.q()));
+    d.output("fourth_out", fourth.q());
+    d.output("total_out", total.q());
+    d.microprogram([
+        step("operands", []),
+        step("square", [square.load(), total.load()]),
+        step("fourth", [fourth.load()]),
+        step("result", [valid(), end()]),
+    ]);
+    d.finish().unwrap()
+}
+
+#[test]
+fn a_choice_that_a_reset_makes_is_held_before_a_sum() {
+    let made = pipeline(&row_beside_a_power(), &options(Goal::ClockMhz(130.0))).unwrap();
+    let stages = &made.pipeline.as_ref().expect("a pipeline").stage_of;
+    let stage = |id: NetId| stages[id.index()];
+    let mut wanted = made.iter().filter_map(|(id, net)| match &net.driver {
+        Driver::Op(Op::Mux { inputs, .. }) if inputs.len() == 2 => Some(id),
+        _ => None,
+    });
+    let row = wanted.next().expect("the row");
+    assert_eq!(wanted.next(), None);
+    let is_sum = |net: &Net| matches!(net.driver, Driver::Op(Op::Add { .. }));
+    let (sum, _) = made.iter().find(|(_, net)| is_sum(net)).expect("the sum");
+    assert!(stage(row) < stage(sum), "{} {}", stage(row), stage(sum));
+}
+
+/// What chooses between a sum and 0.
+#[derive(Clone, Copy)]
+enum By {
+    Nothing,
+    Operand,
+    /// A bit of the sum.
+    Sum,
+}
+
+/// The clock in MHz of a stage in which a sum goes to a register.
+fn clock_of_a_sum(by: By) -> f64 {
+    let d = Designer::new("sum");
+    let wide = Format::unsigned(40, 0);
+    let (a, b) = (d.operand("a", wide), d.operand("b", wide));
+    let taken = d.operand("taken", Format::BIT);
+    let sum = d.add_modulo("a_and_b", a.q(), b.q(), None);
+    let zero = d.constant("zero", 0.0, wide);
+    let total = d.register("total", wide);
+    let held = d.register("held", Format::BIT);
+    held.takes(taken.q());
+    total.takes(match by {
+        By::Nothing => sum,
+        By::Operand => d.choose("chosen", taken.q(), [zero, sum]),
+        By::Sum => d.choose("chosen", sum.bit(39), [zero, sum]),
+    });
+    d.output("total_out", total.q());
+    d.output("held_out", held.q());
+    d.microprogram([
+        step("operands", []),
+        step("sum", [total.load(), held.load()]),
+        step("result", [valid(), end()]),
+    ]);
+    let made = pipeline(&d.finish().unwrap(), &options(Goal::Stages(1))).unwrap();
+    made.pipeline.expect("a pipeline").clock_mhz
+}
+
+#[test]
+fn what_a_reset_chooses_costs_the_select_time_and_the_value_none() {
+    let sum = clock_of_a_sum(By::Nothing);
+    assert_eq!(clock_of_a_sum(By::Operand), sum);
+    assert!(clock_of_a_sum(By::Sum) < sum);
+}

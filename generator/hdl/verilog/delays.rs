@@ -34,7 +34,12 @@ pub fn section(builder: &mut Builder<'_>) -> Option<StageSection> {
         let space = if width > 1 { " " } else { "" };
         registers.push(format!("    reg {}{space}{slot};", range(width)));
         registers.push(format!("    initial {slot} = {zero};"));
-        let mut takes = vec![format!("{slot} <= {slot} == {last} ? {zero} : {slot} + {one};")];
+        // Of a power of two the number after the last is 0.
+        let mut takes = vec![if words.is_power_of_two() {
+            format!("{slot} <= {slot} + {one};")
+        } else {
+            format!("{slot} <= {slot} == {last} ? {zero} : {slot} + {one};")
+        }];
         for line in lines {
             let wish = format!("delay_s{}_s{}", line.from, line.to);
             let memory = builder.expressions.fresh(&wish);
