@@ -77,7 +77,7 @@ const CHIPS: [Chip; 3] = [
         target: Target::Ecp5,
         weights: ECP5,
         delays: "ecp5",
-        scale: 0.97,
+        scale: 0.95,
         multiplier: (18, 18),
         block: (18_432, 36),
         least_block: 2048,
