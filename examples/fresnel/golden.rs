@@ -4,8 +4,8 @@
 use glint::config::Config;
 use glint::fixed::{Format, Rounding, exp2};
 use glint::golden::contract::{ErrorShare, control};
-use glint::golden::frame::{Datapath, Frame, Slot, State, idle, step};
-use glint::golden::highlight::{Highlight, ProductSlots, Products, Reflectance};
+use glint::golden::frame::{Frame, Slot, idle, step};
+use glint::golden::highlight::{Highlight, ProductSlots, Products, Reflectance, Shading, shading};
 use glint::golden::narrow::{Narrow, rounding_error};
 use glint::golden::{Contract, Model, keys};
 
@@ -80,9 +80,9 @@ struct Device {
     products: ProductSlots,
 }
 
-impl Datapath for Device {
-    fn outputs(&self, s: &mut State) {
-        self.products.show(s[self.f], s);
+impl Shading for Device {
+    fn products(&self) -> &ProductSlots {
+        &self.products
     }
 }
 
@@ -91,23 +91,19 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     let it = Fresnel::new(config);
     let [cosine, reflectance, power] = it.formats();
     let mut frame = Frame::default();
-    let device = Device {
-        c: frame.clamped("cos_half", cosine, 0, 1 << it.cosine),
-        f0: frame.operand("f0", reflectance),
-        power: frame.register("power", power),
-        f: frame.register("f", power),
-        products: products(&it, config).slots(&mut frame),
-        it,
-    };
-    let program = [
+    let c = frame.clamped("cos_half", cosine, 0, 1 << it.cosine);
+    let f0 = frame.operand("f0", reflectance);
+    let (held, f) = (frame.register("power", power), frame.register("f", power));
+    let products = products(&it, config).slots(&mut frame, f);
+    let device = Device { it, c, f0, power: held, f, products };
+    let program = vec![
         idle(),
         step(|d: &Device, s| s[d.power] = d.it.square(s[d.c])),
         step(|d: &Device, s| s[d.power] = d.it.fourth(s[d.power])),
         step(|d: &Device, s| s[d.power] = d.it.fifth(s[d.power], s[d.c])),
         step(|d: &Device, s| s[d.f] = d.it.blend(s[d.power], s[d.f0])),
-        idle().valid().end(),
     ];
-    Box::new(frame.model(device, program))
+    Box::new(shading(frame, device, program))
 }
 
 /// Which function the device computes, and how far off it may be.

@@ -1,8 +1,8 @@
 //! `cosine-power`: the paper's W(n, γ) = (n/m·(cos γ − 1) + 1)^m (seed 002), by formula.
 
 use super::contract::{self, ErrorShare};
-use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
-use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading};
+use super::frame::{Clocked, Frame, Slot, idle, step};
+use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading, shading};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
@@ -78,21 +78,7 @@ struct Device {
     products: ProductSlots,
 }
 
-impl Datapath for Device {
-    const LOADS_ALONE: bool = true;
-
-    #[inline]
-    fn outputs(&self, s: &mut State) {
-        self.products.show(self.reflectance(s), s);
-    }
-}
-
 impl Shading for Device {
-    #[inline]
-    fn reflectance(&self, s: &State) -> i64 {
-        s[self.accumulator]
-    }
-
     #[inline]
     fn products(&self) -> &ProductSlots {
         &self.products
@@ -104,17 +90,18 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
     let [cosine, exponent] = it.keys.slots(&mut frame);
     // A single squaring needs no count of the squarings that remain.
     let counted = it.squarings > 1;
+    let accumulator = frame.register("accumulator", it.keys.f_format());
     let device = Device {
         it: it.clone(),
         cosine,
         exponent,
-        accumulator: frame.register("accumulator", it.keys.f_format()),
+        accumulator,
         remaining: if counted {
             frame.register("remaining", Format::unsigned(2, 0))
         } else {
             frame.hidden()
         },
-        products: it.keys.products().slots(&mut frame),
+        products: it.keys.products().slots(&mut frame, accumulator),
     };
     // The accumulator takes n/m·(1 − cos γ).
     let scale = step(|d: &Device, s| {
@@ -133,9 +120,7 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
     .repeat_while(|d, s| s[d.remaining] > 1);
     let mut program = vec![idle(), scale, base];
     program.extend(counted.then_some(square));
-    program.extend(device.products.program());
-    program.push(idle().valid().end());
-    frame.model(device, program)
+    shading(frame, device, program)
 }
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
@@ -236,20 +221,11 @@ fn formula_error(n: i64, power: u32) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::golden::watch;
 
     /// C = 4, F = 4, small enough to follow by hand.
     fn small(power: u32) -> Arithmetic {
-        let keys = Keys {
-            cosine_fraction: 4,
-            cosine_signed: false,
-            exponent_bits: 4,
-            colour_bits: 4,
-            colours_in_turn: false,
-            intensity_fraction: 4,
-            output_rounding: Rounding::Nearest,
-            exponents: (1, 15),
-        };
-        Arithmetic::new(keys, power, Rounding::Truncate)
+        Arithmetic::new(Keys::small(), power, Rounding::Truncate)
     }
 
     #[test]
@@ -274,7 +250,9 @@ mod tests {
     fn a_point_clock_by_clock() {
         let mut model = clocked(&small(8));
         // c = 14/16, n = 12, red 15, written together with start: t = 2/16·12/8 = 3/16; base 12.
-        model.clock(&[1, 1, 14, 1, 12, 1, 15, 1, 0, 0, 0, 0]);
+        let first = [1, 1, 14, 1, 12, 1, 15, 1, 0, 0, 0, 0];
+        // Writes while busy change nothing.
+        let then = [1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0];
         let names = ["run", "word_address", "accumulator", "remaining", "valid", "done"];
         let expected = [
             [1, 0, 0, 0, 0, 0],
@@ -285,11 +263,7 @@ mod tests {
             [1, 3, 5, 1, 0, 0],
             [1, 4, 1, 0, 1, 1],
         ];
-        for row in expected {
-            assert_eq!(names.map(|name| model.value(name).unwrap()), row);
-            // Writes while busy change nothing.
-            model.clock(&[1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0]);
-        }
+        assert_eq!(watch(&mut model, names, &first, &then), expected);
         // Idle. red: 15/16 → 1, to the nearest.
         let names =
             ["run", "word_address", "valid", "done", "accumulator", "red_out", "cos_gamma_reg"];

@@ -114,7 +114,7 @@ impl Datapath for Device {
             return;
         };
         // From the output back to the angle: each takes what the one before it held.
-        self.products.show(s[cosine], s);
+        self.products.show(s);
         s[cosine] = s[self.cosine];
         s[self.cosine] = self.it.table.words[s[address] as usize];
         s[address] = self.it.step_of(s[self.walker.angle]);
@@ -124,7 +124,7 @@ impl Datapath for Device {
     fn outputs(&self, s: &mut State) {
         // Of a staged line an edge makes them.
         if self.stages.is_none() {
-            self.products.show(s[self.cosine], s);
+            self.products.show(s);
         }
     }
 }
@@ -133,13 +133,10 @@ fn clocked(params: Params) -> Clocked<Device> {
     let mut frame = Frame::default();
     let walker = Walker::new(&mut frame, params.angle_format(), params.length_bits, params.stages);
     let program = walker.program();
-    let device = Device {
-        walker,
-        cosine: frame.hidden(),
-        stages: (params.stages > 2).then(|| (frame.hidden(), frame.hidden())),
-        products: params.products().slots(&mut frame),
-        it: Arithmetic::new(params),
-    };
+    let cosine = frame.hidden();
+    let stages = (params.stages > 2).then(|| (frame.hidden(), frame.hidden()));
+    let products = params.products().slots(&mut frame, stages.map_or(cosine, |(_, last)| last));
+    let device = Device { it: Arithmetic::new(params), walker, cosine, stages, products };
     frame.model(device, program)
 }
 

@@ -7,9 +7,9 @@ use std::f64::consts::LN_2;
 
 use super::contract::{self, ErrorShare};
 use super::curve::{self, Curve, Piece};
-use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
+use super::frame::{Clocked, Frame, Slot, idle, step};
 use super::halving::{self, Halving};
-use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading};
+use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading, shading};
 use super::narrow::Narrow;
 use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
@@ -251,21 +251,7 @@ struct Device {
     products: ProductSlots,
 }
 
-impl Datapath for Device {
-    const LOADS_ALONE: bool = true;
-
-    #[inline]
-    fn outputs(&self, s: &mut State) {
-        self.products.show(s[self.reflectance], s);
-    }
-}
-
 impl Shading for Device {
-    #[inline]
-    fn reflectance(&self, s: &State) -> i64 {
-        s[self.reflectance]
-    }
-
     #[inline]
     fn products(&self) -> &ProductSlots {
         &self.products
@@ -275,15 +261,12 @@ impl Shading for Device {
 fn clocked(it: &Arithmetic) -> Clocked<Device> {
     let mut frame = Frame::default();
     let [cosine, exponent] = it.keys.slots(&mut frame);
-    let device = Device {
-        it: it.clone(),
-        cosine,
-        exponent,
-        decay: frame.register("decay", Format::unsigned(0, it.params.decay_fraction as i32)),
-        halvings: frame.register("halvings", it.halvings),
-        reflectance: frame.register("reflectance", it.keys.f_format()),
-        products: it.keys.products().slots(&mut frame),
-    };
+    let decay = frame.register("decay", Format::unsigned(0, it.params.decay_fraction as i32));
+    let halvings = frame.register("halvings", it.halvings);
+    let reflectance = frame.register("reflectance", it.keys.f_format());
+    let products = it.keys.products().slots(&mut frame, reflectance);
+    let device =
+        Device { it: it.clone(), cosine, exponent, decay, halvings, reflectance, products };
     frame.shows("f_out", device.reflectance);
     let decay = step(|d: &Device, s| s[d.decay] = d.it.decay(s[d.cosine]));
     let multiply = step(|d: &Device, s| {
@@ -292,10 +275,7 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
     let halve = step(|d: &Device, s| {
         s[d.reflectance] = d.it.reflectance(s[d.cosine], s[d.halvings]);
     });
-    let mut program = vec![idle(), decay, multiply, idle(), halve];
-    program.extend(device.products.program());
-    program.push(idle().valid().end());
-    frame.model(device, program)
+    shading(frame, device, vec![idle(), decay, multiply, idle(), halve])
 }
 
 /// The accuracy contract of one of the devices. Control operands: `cos_gamma`, `exponent`.

@@ -6,8 +6,8 @@ mod tests;
 
 pub use contract::contract;
 
-use super::frame::{Clocked, Datapath, Frame, Microinstruction, Slot, State, idle, step};
-use super::highlight::{ProductSlots, Products, Shading};
+use super::frame::{Clocked, Frame, Microinstruction, Slot, idle, step};
+use super::highlight::{ProductSlots, Products, Shading, shading};
 use super::narrow::Narrow;
 use super::{Model, keys};
 use crate::base::fixed::{Format, Rounding};
@@ -252,21 +252,7 @@ struct Device {
     products: ProductSlots,
 }
 
-impl Datapath for Device {
-    const LOADS_ALONE: bool = true;
-
-    #[inline]
-    fn outputs(&self, s: &mut State) {
-        self.products.show(self.reflectance(s), s);
-    }
-}
-
 impl Shading for Device {
-    #[inline]
-    fn reflectance(&self, s: &State) -> i64 {
-        s[self.accumulator]
-    }
-
     #[inline]
     fn products(&self) -> &ProductSlots {
         &self.products
@@ -286,33 +272,27 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
     let point = params.distance_fraction as i32;
     let shifted = Format::unsigned(1, point + squarings as i32 + 2);
     let mut frame = Frame::default();
-    let device = Device {
-        it: it.clone(),
-        vector: ["dx", "dy", "dz"].map(|name| frame.operand(name, vector)),
-        scale: frame.operand(params.scale_name(), scale),
-        products: params.products().slots(&mut frame),
-        sum: if params.squares_in_turn {
-            frame.register("distance_sum", Format::unsigned(4, 2 * params.vector_fraction as i32))
-        } else {
-            frame.hidden()
-        },
-        distance: if shift {
-            frame.register("shift_register", shifted)
-        } else {
-            frame.register("distance", Format::unsigned(4, point))
-        },
-        scaled: if shift {
-            frame.hidden()
-        } else {
-            frame.register("scaled", Format::unsigned(1, params.intensity_fraction as i32))
-        },
-        accumulator: frame.register("accumulator", params.f_format()),
-        remaining: if shift || squarings > 1 {
-            frame.register("remaining", Format::unsigned(remaining as i32, 0))
-        } else {
-            frame.hidden()
-        },
+    let vector = ["dx", "dy", "dz"].map(|name| frame.operand(name, vector));
+    let scale = frame.operand(params.scale_name(), scale);
+    let mut register_if = |there: bool, name, format| {
+        if there { frame.register(name, format) } else { frame.hidden() }
     };
+    let sum = Format::unsigned(4, 2 * params.vector_fraction as i32);
+    let sum = register_if(params.squares_in_turn, "distance_sum", sum);
+    let distance = if shift {
+        register_if(true, "shift_register", shifted)
+    } else {
+        register_if(true, "distance", Format::unsigned(4, point))
+    };
+    let scaled = Format::unsigned(1, params.intensity_fraction as i32);
+    let scaled = register_if(!shift, "scaled", scaled);
+    let accumulator = register_if(true, "accumulator", params.f_format());
+    let remaining = Format::unsigned(remaining as i32, 0);
+    let remaining = register_if(shift || squarings > 1, "remaining", remaining);
+    let products = params.products().slots(&mut frame, accumulator);
+    let it = it.clone();
+    let device =
+        Device { it, vector, scale, sum, distance, scaled, accumulator, remaining, products };
     let distance = step(|d: &Device, s| {
         let vector = d.vector.map(|component| s[component]);
         s[d.distance] = if d.it.params.squares_in_turn {
@@ -348,9 +328,7 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
     }
     program.extend([distance, scale_step(params.scale), base]);
     program.extend((squarings > 1).then_some(square));
-    program.extend(device.products.program());
-    program.push(idle().valid().end());
-    frame.model(device, program)
+    shading(frame, device, program)
 }
 
 /// β·D²: the product, or one place of the shift register.

@@ -198,7 +198,7 @@ impl Stages {
     #[inline]
     fn edge(&self, device: &Device, s: &mut State) {
         let Device { it, walker, exponent, root, cosine, products, .. } = device;
-        products.show(s[self.cosine], s);
+        products.show(s);
         s[self.cosine] = s[*cosine];
         s[*cosine] = it.tables[s[self.range] as usize].words[s[self.step] as usize];
         let scaled = if s[self.scaled_within] == 1 { s[self.scaled] } else { i64::MAX };
@@ -236,7 +236,7 @@ impl Datapath for Device {
     fn outputs(&self, s: &mut State) {
         // Of a staged line an edge makes them.
         if self.stages.is_none() {
-            self.products.show(s[self.cosine], s);
+            self.products.show(s);
         }
     }
 }
@@ -245,14 +245,12 @@ fn clocked(params: Params) -> Clocked<Device> {
     let mut frame = Frame::default();
     let walker = Walker::new(&mut frame, params.angle_format(), params.length_bits, params.stages);
     let program = walker.program();
-    let device = Device {
-        walker,
-        exponent: frame.operand("exponent", params.exponent_format()),
-        root: frame.hidden(),
-        cosine: frame.hidden(),
-        stages: (params.stages > 2).then(|| Stages::new(&mut frame)),
-        products: params.products().slots(&mut frame),
-        it: Arithmetic::new(params),
-    };
+    let exponent = frame.operand("exponent", params.exponent_format());
+    let (root, cosine) = (frame.hidden(), frame.hidden());
+    let stages = (params.stages > 2).then(|| Stages::new(&mut frame));
+    let shown = stages.as_ref().map_or(cosine, |stages| stages.cosine);
+    let products = params.products().slots(&mut frame, shown);
+    let it = Arithmetic::new(params);
+    let device = Device { it, walker, exponent, root, cosine, stages, products };
     frame.model(device, program)
 }

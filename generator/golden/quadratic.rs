@@ -5,8 +5,8 @@ pub mod coefficient;
 mod tests;
 
 use super::contract::{self, ErrorShare};
-use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
-use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading};
+use super::frame::{Clocked, Frame, Slot, idle, step};
+use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading, shading};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
@@ -124,21 +124,7 @@ struct Device {
     products: ProductSlots,
 }
 
-impl Datapath for Device {
-    const LOADS_ALONE: bool = true;
-
-    #[inline]
-    fn outputs(&self, s: &mut State) {
-        self.products.show(self.reflectance(s), s);
-    }
-}
-
 impl Shading for Device {
-    #[inline]
-    fn reflectance(&self, s: &State) -> i64 {
-        s[self.intensity]
-    }
-
     #[inline]
     fn products(&self) -> &ProductSlots {
         &self.products
@@ -148,22 +134,15 @@ impl Shading for Device {
 fn clocked(it: &Arithmetic) -> Clocked<Device> {
     let mut frame = Frame::default();
     let [cosine, exponent] = it.keys.slots(&mut frame);
-    let device = Device {
-        it: it.clone(),
-        cosine,
-        exponent,
-        difference: frame.register("difference", difference_format(it.difference_fraction)),
-        intensity: frame.register("intensity", it.keys.f_format()),
-        products: it.keys.products().slots(&mut frame),
-    };
+    let difference = frame.register("difference", difference_format(it.difference_fraction));
+    let intensity = frame.register("intensity", it.keys.f_format());
+    let products = it.keys.products().slots(&mut frame, intensity);
+    let device = Device { it: it.clone(), cosine, exponent, difference, intensity, products };
     let subtract = step(|d: &Device, s| s[d.difference] = d.it.difference(s[d.cosine]));
     let blend = step(|d: &Device, s| {
         s[d.intensity] = d.it.intensity(s[d.cosine], s[d.exponent], s[d.difference]);
     });
-    let mut program = vec![idle(), subtract, blend];
-    program.extend(device.products.program());
-    program.push(idle().valid().end());
-    frame.model(device, program)
+    shading(frame, device, vec![idle(), subtract, blend])
 }
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.

@@ -1,8 +1,8 @@
 //! `schlick`: c / (n − n·c + c), c = cos γ (seed 002), by formula.
 
 use super::contract::{self, ErrorShare};
-use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
-use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading};
+use super::frame::{Clocked, Frame, Slot, idle, step};
+use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading, shading};
 use super::{Contract, Model};
 use crate::base::fixed::{Format, exp2, mask};
 use crate::config::Config;
@@ -53,21 +53,7 @@ struct Device {
     products: ProductSlots,
 }
 
-impl Datapath for Device {
-    const LOADS_ALONE: bool = true;
-
-    #[inline]
-    fn outputs(&self, s: &mut State) {
-        self.products.show(self.reflectance(s), s);
-    }
-}
-
 impl Shading for Device {
-    #[inline]
-    fn reflectance(&self, s: &State) -> i64 {
-        s[self.quotient]
-    }
-
     #[inline]
     fn products(&self) -> &ProductSlots {
         &self.products
@@ -80,18 +66,19 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
     let [cosine, exponent] = it.0.slots(&mut frame);
     // Up to 1.0 + n.
     let divisor = Format::unsigned(exponent_bits as i32 + 1, cosine_fraction as i32);
+    let quotient = frame.register("quotient", it.0.f_format());
     let device = Device {
         it: it.clone(),
         cosine,
         exponent,
-        quotient: frame.register("quotient", it.0.f_format()),
+        quotient,
         divisor: frame.register("quotient_divisor", divisor),
         remainder: frame.register("quotient_remainder", divisor),
         remaining: frame
             .register("quotient_remaining", Format::unsigned((bits - 1).ilog2() as i32 + 1, 0)),
         found: frame.hidden(),
         before: frame.hidden(),
-        products: it.0.products().slots(&mut frame),
+        products: it.0.products().slots(&mut frame, quotient),
     };
     // The divider takes cos γ and n − n·cos γ + cos γ.
     let begin = step(|d: &Device, s| {
@@ -112,10 +99,7 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
         s[d.remainder] = remainder;
         s[d.remaining] -= 1;
     });
-    let mut program = vec![idle(), begin, bit.repeat_while(|d, s| s[d.remaining] != 0)];
-    program.extend(device.products.program());
-    program.push(idle().valid().end());
-    frame.model(device, program)
+    shading(frame, device, vec![idle(), begin, bit.repeat_while(|d, s| s[d.remaining] != 0)])
 }
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.
@@ -151,20 +135,11 @@ impl Reflectance for Arithmetic {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::fixed::Rounding;
+    use crate::golden::watch;
 
     /// C = 4, Q = 4: small enough to follow by hand.
     fn small() -> Arithmetic {
-        Arithmetic(Keys {
-            cosine_fraction: 4,
-            cosine_signed: false,
-            exponent_bits: 4,
-            colour_bits: 4,
-            colours_in_turn: false,
-            intensity_fraction: 4,
-            output_rounding: Rounding::Nearest,
-            exponents: (1, 15),
-        })
+        Arithmetic(Keys::small())
     }
 
     #[test]
@@ -188,7 +163,9 @@ mod tests {
     fn a_point_clock_by_clock() {
         let mut model = clocked(&small());
         // c = 14/16, n = 6, red 15, written together with start.
-        model.clock(&[1, 1, 14, 1, 6, 1, 15, 1, 0, 0, 0, 0]);
+        let first = [1, 1, 14, 1, 6, 1, 15, 1, 0, 0, 0, 0];
+        // Writes while busy change nothing.
+        let then = [1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0];
         let names = [
             "run",
             "word_address",
@@ -211,11 +188,7 @@ mod tests {
             // The counter has gone round.
             [1, 3, 26, 16, 8, 3, 1, 1],
         ];
-        for row in expected {
-            assert_eq!(names.map(|name| model.value(name).unwrap()), row);
-            // Writes while busy change nothing.
-            model.clock(&[1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0]);
-        }
+        assert_eq!(watch(&mut model, names, &first, &then), expected);
         // Idle. red: 15·8/16 = 7.5, to the nearest, upward.
         let names =
             ["run", "word_address", "valid", "done", "quotient", "red_out", "cos_gamma_reg"];

@@ -4,8 +4,8 @@
 mod tests;
 
 use super::contract::{self, ErrorShare};
-use super::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
-use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading};
+use super::frame::{Clocked, Frame, Slot, idle, step};
+use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading, shading};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
@@ -109,21 +109,7 @@ struct Device {
     products: ProductSlots,
 }
 
-impl Datapath for Device {
-    const LOADS_ALONE: bool = true;
-
-    #[inline]
-    fn outputs(&self, s: &mut State) {
-        self.products.show(self.reflectance(s), s);
-    }
-}
-
 impl Shading for Device {
-    #[inline]
-    fn reflectance(&self, s: &State) -> i64 {
-        s[self.intensity]
-    }
-
     #[inline]
     fn products(&self) -> &ProductSlots {
         &self.products
@@ -134,22 +120,15 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
     let mut frame = Frame::default();
     let [cosine, exponent] = it.keys.slots(&mut frame);
     let fraction = it.keys.intensity_fraction as i32;
-    let device = Device {
-        it: it.clone(),
-        cosine,
-        exponent,
-        scaled: frame.register("scaled", Format::signed(0, fraction)),
-        intensity: frame.register("intensity", it.keys.f_format()),
-        products: it.keys.products().slots(&mut frame),
-    };
+    let scaled = frame.register("scaled", Format::signed(0, fraction));
+    let intensity = frame.register("intensity", it.keys.f_format());
+    let products = it.keys.products().slots(&mut frame, intensity);
+    let device = Device { it: it.clone(), cosine, exponent, scaled, intensity, products };
     let scale = step(|d: &Device, s| s[d.scaled] = d.it.scaled(s[d.cosine], s[d.exponent]));
     let gate = step(|d: &Device, s| {
         s[d.intensity] = d.it.gated(s[d.cosine], s[d.exponent], s[d.scaled]);
     });
-    let mut program = vec![idle(), scale, gate];
-    program.extend(device.products.program());
-    program.push(idle().valid().end());
-    frame.model(device, program)
+    shading(frame, device, vec![idle(), scale, gate])
 }
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.

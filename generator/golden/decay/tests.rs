@@ -6,16 +6,7 @@ use super::*;
 fn small(function: Function) -> Arithmetic {
     Arithmetic::new(Params {
         function,
-        keys: Keys {
-            cosine_fraction: 4,
-            cosine_signed: false,
-            exponent_bits: 4,
-            colour_bits: 4,
-            colours_in_turn: false,
-            intensity_fraction: 6,
-            output_rounding: Rounding::Nearest,
-            exponents: (1, 15),
-        },
+        keys: Keys { intensity_fraction: 6, ..Keys::small() },
         decay_fraction: 6,
         decay_segments: vec![2],
         decay_tail: 0,

@@ -42,6 +42,21 @@ impl Keys {
         }
     }
 
+    /// Words of four bits, small enough to follow by hand.
+    #[cfg(test)]
+    pub fn small() -> Self {
+        Self {
+            cosine_fraction: 4,
+            cosine_signed: false,
+            exponent_bits: 4,
+            colour_bits: 4,
+            colours_in_turn: false,
+            intensity_fraction: 4,
+            output_rounding: Rounding::Nearest,
+            exponents: (1, 15),
+        }
+    }
+
     /// 1.0 as a raw cosine.
     pub fn one(&self) -> i64 {
         1 << self.cosine_fraction

@@ -4,7 +4,7 @@ mod keys;
 mod products;
 
 pub use keys::Keys;
-pub use products::{ProductSlots, Products, Shading};
+pub use products::{ProductSlots, Products, Shading, shading};
 
 use std::borrow::Cow;
 

@@ -1,7 +1,7 @@
 //! What a reflectance multiplies.
 
 use crate::base::fixed::{Format, Rounding};
-use crate::golden::frame::{Datapath, Frame, Microinstruction, Slot, State, step};
+use crate::golden::frame::{Clocked, Datapath, Frame, Microinstruction, Slot, State, idle, step};
 use crate::golden::narrow::Narrow;
 use crate::golden::{Operand, Output};
 
@@ -72,8 +72,8 @@ impl Products {
         Self { in_turn, ..self }
     }
 
-    /// Their operands and outputs in a clock model.
-    pub fn slots(&self, frame: &mut Frame) -> ProductSlots {
+    /// Their operands and outputs in a clock model that has the raw f in a slot.
+    pub fn slots(&self, frame: &mut Frame, f: Slot) -> ProductSlots {
         let pairs = self.operands.iter().zip(&self.outputs).map(|(operand, output)| {
             let slot = if self.in_turn {
                 let held = frame.register(&format!("{}_intensity", operand.name), output.format);
@@ -84,25 +84,54 @@ impl Products {
             };
             (frame.operand(&operand.name, operand.format), slot)
         });
-        ProductSlots { pairs: pairs.collect(), narrow: self.narrow, in_turn: self.in_turn }
+        ProductSlots { f, pairs: pairs.collect(), narrow: self.narrow, in_turn: self.in_turn }
     }
 }
 
 /// Products in a clock model.
 pub struct ProductSlots {
+    f: Slot,
     /// Operand and output, or the register that holds it.
     pairs: Vec<(Slot, Slot)>,
     narrow: Narrow,
     in_turn: bool,
 }
 
-/// A device with three colours, which it multiplies by f.
-pub trait Shading: Datapath {
-    /// The raw f.
-    fn reflectance(&self, state: &State) -> i64;
-
+/// A device that multiplies colours by f. Registers and outputs change by loads alone.
+pub trait Shading: Send + Sync + 'static {
     /// The products.
     fn products(&self) -> &ProductSlots;
+
+    /// As [`Datapath::edge`].
+    #[inline]
+    fn edge(&self, state: &mut State) {
+        let _ = state;
+    }
+}
+
+impl<D: Shading> Datapath for D {
+    const LOADS_ALONE: bool = true;
+
+    #[inline]
+    fn edge(&self, state: &mut State) {
+        Shading::edge(self, state);
+    }
+
+    #[inline]
+    fn outputs(&self, state: &mut State) {
+        self.products().show(state);
+    }
+}
+
+/// The device at power-up: the products of what `program` leaves in f are made, and shown in its last microinstruction.
+pub fn shading<D: Shading>(
+    frame: Frame,
+    device: D,
+    mut program: Vec<Microinstruction<D>>,
+) -> Clocked<D> {
+    program.extend(device.products().program());
+    program.push(idle().valid().end());
+    frame.model(device, program)
 }
 
 impl ProductSlots {
@@ -111,7 +140,7 @@ impl ProductSlots {
         fn make<D: Shading, const COLOUR: usize>(device: &D, state: &mut State) {
             let it = device.products();
             let (operand, held) = it.pairs[COLOUR];
-            state[held] = it.narrow.apply(device.reflectance(state) * state[operand]);
+            state[held] = it.narrow.apply(state[it.f] * state[operand]);
         }
         if self.in_turn {
             vec![step(make::<D, 0>), step(make::<D, 1>), step(make::<D, 2>)]
@@ -120,14 +149,14 @@ impl ProductSlots {
         }
     }
 
-    /// The outputs for a raw f, where they are made at once.
+    /// Sets the outputs, where they are made at once.
     #[inline]
-    pub fn show(&self, f: i64, state: &mut State) {
+    pub fn show(&self, state: &mut State) {
         if self.in_turn {
             return;
         }
         for &(operand, output) in &self.pairs {
-            state[output] = self.narrow.apply(f * state[operand]);
+            state[output] = self.narrow.apply(state[self.f] * state[operand]);
         }
     }
 }

@@ -1,20 +1,11 @@
 //! Values worked out by hand.
 
 use super::*;
+use crate::golden::watch;
 
 /// C = 4, D = 6, F = 4, K = 4, small enough to follow by hand.
 fn small(scheme: CoefficientScheme) -> Arithmetic {
-    let keys = Keys {
-        cosine_fraction: 4,
-        cosine_signed: false,
-        exponent_bits: 4,
-        colour_bits: 4,
-        colours_in_turn: false,
-        intensity_fraction: 4,
-        output_rounding: Rounding::Nearest,
-        exponents: (1, 15),
-    };
-    Arithmetic::new(keys, scheme, (6, Rounding::Truncate), Rounding::Truncate)
+    Arithmetic::new(Keys::small(), scheme, (6, Rounding::Truncate), Rounding::Truncate)
 }
 
 #[test]
@@ -68,14 +59,10 @@ fn the_table_is_minimax() {
 fn a_point_clock_by_clock() {
     let mut model = clocked(&small(CoefficientScheme::Taylor));
     // c = 14/16, n = 5, red 15, written together with start.
-    model.clock(&[1, 1, 14, 1, 5, 1, 15, 1, 0, 0, 0, 0]);
+    let first = [1, 1, 14, 1, 5, 1, 15, 1, 0, 0, 0, 0];
+    // Writes while busy change nothing.
+    let then = [1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0];
     let names = ["run", "word_address", "difference", "intensity", "valid", "done"];
-    let mut seen = Vec::new();
-    for _ in 0..4 {
-        seen.push(names.map(|name| model.value(name).unwrap()));
-        // Writes while busy change nothing.
-        model.clock(&[1, 0, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0]);
-    }
     let expected = [
         [1, 0, 0, 0, 0, 0],
         [1, 1, 0, 0, 0, 0],
@@ -83,7 +70,7 @@ fn a_point_clock_by_clock() {
         [1, 2, 25, 0, 0, 0],
         [1, 3, 25, 7, 1, 1],
     ];
-    assert_eq!(seen, expected);
+    assert_eq!(watch(&mut model, names, &first, &then), expected);
     // 7/16 of 15 units.
     assert_eq!(model.value("red_out").unwrap(), 7);
 }
@@ -95,15 +82,10 @@ fn colours_in_turn_clock_by_clock() {
     let keys = Keys { colours_in_turn: true, ..it.keys.clone() };
     let mut model = clocked(&Arithmetic { keys, ..it });
     // As above, with green 9 and blue 4.
-    model.clock(&[1, 1, 14, 1, 5, 1, 15, 1, 9, 1, 4, 1]);
+    let first = [1, 1, 14, 1, 5, 1, 15, 1, 9, 1, 4, 1];
+    // The last of these writes come when it is idle again, and change no output.
+    let then = [1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1];
     let names = ["run", "word_address", "intensity", "red_out", "green_out", "blue_out", "valid"];
-    let mut seen = Vec::new();
-    for _ in 0..8 {
-        seen.push(names.map(|name| model.value(name).unwrap()));
-        // The last of these writes come when it is idle again, and change no output.
-        model.clock(&[1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1]);
-    }
-    seen.push(names.map(|name| model.value(name).unwrap()));
     let expected = [
         [1, 0, 0, 0, 0, 0, 0],
         [1, 1, 0, 0, 0, 0, 0],
@@ -116,6 +98,6 @@ fn colours_in_turn_clock_by_clock() {
         [0, 0, 7, 7, 4, 2, 0],
         [0, 0, 7, 7, 4, 2, 0],
     ];
-    assert_eq!(seen, expected);
+    assert_eq!(watch(&mut model, names, &first, &then), expected);
     assert_eq!(model.value("red_reg").unwrap(), 1);
 }

@@ -4,7 +4,7 @@ use super::{Arithmetic, Params};
 use crate::base::fixed::Format;
 use crate::config::Config;
 use crate::golden::Model;
-use crate::golden::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
+use crate::golden::frame::{Clocked, Frame, Slot, State, idle, step};
 use crate::golden::highlight::{ProductSlots, Shading};
 
 /// The golden model.
@@ -23,6 +23,8 @@ pub(super) struct Device {
     cos_cos: Slot,
     sin_sin: Slot,
     result: Slot,
+    /// f, as it is read from register 13.
+    reflectance: Slot,
     /// Mux 17 addresses ROM 18 with register 2, and else with register 1.
     turned: Slot,
     /// The operand whose sine ROM 18 shows: an asynchronous one that of mux 17, a synchronous one that of the
@@ -32,31 +34,17 @@ pub(super) struct Device {
     products: ProductSlots,
 }
 
-impl Datapath for Device {
-    const LOADS_ALONE: bool = true;
+impl Shading for Device {
+    #[inline]
+    fn products(&self) -> &ProductSlots {
+        &self.products
+    }
 
     #[inline]
     fn edge(&self, s: &mut State) {
         let earlier = s[self.addressed];
         s[self.addressed] = s[if s[self.turned] == 1 { self.cos_dgamma } else { self.cos_gamma }];
         s[self.shown] = if self.it.params.sine_synchronous { earlier } else { s[self.addressed] };
-    }
-
-    #[inline]
-    fn outputs(&self, s: &mut State) {
-        self.products.show(self.reflectance(s), s);
-    }
-}
-
-impl Shading for Device {
-    #[inline]
-    fn reflectance(&self, s: &State) -> i64 {
-        self.it.f_of(s[self.result])
-    }
-
-    #[inline]
-    fn products(&self) -> &ProductSlots {
-        &self.products
     }
 }
 
@@ -65,6 +53,13 @@ impl Device {
     #[inline]
     fn sine(&self, s: &State) -> i64 {
         self.it.sine.at(s[self.shown])
+    }
+
+    /// Loads register 13.
+    #[inline]
+    fn load_result(&self, s: &mut State, value: i64) {
+        s[self.result] = value;
+        s[self.reflectance] = self.it.f_of(value);
     }
 }
 
@@ -78,6 +73,7 @@ pub(super) fn clocked(params: Params) -> Clocked<Device> {
         [product(1), product(0), Format::unsigned(0, params.sine_fraction as i32)]
     };
     let turned = frame.hidden_flag();
+    let reflectance = frame.hidden();
     let device = Device {
         cos_gamma: frame.clamped("cos_gamma", params.cos_gamma_format(), 0, largest),
         cos_dgamma: frame.clamped("cos_dgamma", params.cos_dgamma_format(), 0, largest),
@@ -87,10 +83,11 @@ pub(super) fn clocked(params: Params) -> Clocked<Device> {
         cos_cos: frame.register("reg11_cos_cos", cos_cos),
         sin_sin: frame.register("reg12_sin_sin", sin_sin),
         result: frame.register("reg13_result", params.result_format()),
+        reflectance,
         turned,
         shown: frame.hidden(),
         addressed: frame.hidden(),
-        products: params.products().slots(&mut frame),
+        products: params.products().slots(&mut frame, reflectance),
         it: Arithmetic::new(params),
     };
     // Each odd microinstruction captures what the one before it let settle.
@@ -105,10 +102,12 @@ pub(super) fn clocked(params: Params) -> Clocked<Device> {
     // Register 13 takes n/2·(cos(γ ± dγ) − 1).
     let third = step(|d: &Device, s| {
         let adder_15 = d.it.adder_15(s[d.cos_cos], s[d.sin_sin], s[d.dgamma_negative]);
-        s[d.result] = d.it.scaled(adder_15, s[d.exponent], s[d.cos_gamma]);
+        d.load_result(s, d.it.scaled(adder_15, s[d.exponent], s[d.cos_gamma]));
     });
     // Register 13 takes the square of itself plus 1.0.
-    let fourth = step(|d: &Device, s| s[d.result] = d.it.squared(s[d.result], s[d.cos_gamma]));
+    let fourth = step(|d: &Device, s| {
+        d.load_result(s, d.it.squared(s[d.result], s[d.cos_gamma]));
+    });
     let mut program = vec![
         idle(),
         first,
