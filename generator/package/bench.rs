@@ -7,7 +7,7 @@ use super::Vectors;
 use crate::base::fixed::mask;
 use crate::hdl::netlist::{Design, Port, Role};
 use crate::hdl::verilog::naming::Naming;
-use crate::hdl::verilog::rows::{Row, separated};
+use crate::hdl::verilog::rows::{connections, variables};
 use crate::hdl::verilog::text::{Names, ascii, literal, statement};
 
 #[derive(Template)]
@@ -36,17 +36,16 @@ struct Bench {
     microprogram: Vec<Microinstruction>,
 }
 
-/// The bench's own names, none of which a port has.
-struct Variables {
-    stimulus: String,
-    expected: String,
-    want: String,
-    clock: String,
-    errors: String,
-    was_reset: String,
-    dut: String,
-    write_microinstruction: String,
-}
+fresh_names!(Variables {
+    stimulus,
+    expected,
+    want,
+    clock,
+    errors,
+    was_reset,
+    dut,
+    write_microinstruction
+});
 
 /// An output and its place in the expected word.
 struct Output {
@@ -103,18 +102,8 @@ pub fn files(design: &Design, naming: &Naming, vectors: &Vectors) -> Result<Vec<
 
 fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
     let port_name = |port: &Port| design.net(port.net).name.clone();
-    let mut names = Names::new(design.ports.iter().map(|port| design.net(port.net).name.as_str()));
-    names.fresh("clk");
-    let variables = Variables {
-        stimulus: names.fresh("stimulus"),
-        expected: names.fresh("expected"),
-        want: names.fresh("want"),
-        clock: names.fresh("clock"),
-        errors: names.fresh("errors"),
-        was_reset: names.fresh("was_reset"),
-        dut: names.fresh("dut"),
-        write_microinstruction: names.fresh("write_microinstruction"),
-    };
+    let mut names = Names::of_ports(design);
+    let own = Variables::new(&mut names);
     let total = |ports: &[&Port]| ports.iter().map(|port| design.width(port.net)).sum::<u32>();
     let inputs: Vec<_> = design.inputs().collect();
     let outputs: Vec<_> = design.outputs().collect();
@@ -124,8 +113,8 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
         let width = design.width(port.net);
         low -= width;
         let select = match width {
-            1 => format!("{}[{low}]", variables.want),
-            _ => format!("{}[{}:{low}]", variables.want, low + width - 1),
+            1 => format!("{}[{low}]", own.want),
+            _ => format!("{}[{}:{low}]", own.want, low + width - 1),
         };
         let output = Output { name: port_name(port), select };
         match port.role {
@@ -147,17 +136,7 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
             name: ascii(&it.name).replace('\\', "/").replace('"', "'").replace('%', "%%"),
         })
         .collect();
-    let declarations: Vec<_> = design
-        .ports
-        .iter()
-        .map(|port| {
-            let format = design.net(port.net).format;
-            let kind = if port.role.is_input() { "reg" } else { "wire" };
-            Row::port("", kind, format.width(), format.signed, &port_name(port), "")
-        })
-        .collect();
     let reset = design.port(|role| role == Role::Reset).map(port_name);
-    let connected = design.ports.iter().map(port_name);
     let stimulus: Vec<_> = inputs.iter().map(|port| port_name(port)).collect();
     Bench {
         name: format!("{}_tb", design.name),
@@ -168,17 +147,12 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
         expected_last: total(&outputs) - 1,
         clocks: vectors.inputs.len(),
         known_from: vectors.known_from,
-        declarations: Row::declarations(&declarations),
+        declarations: variables(design, true),
         stimulus: statement(
             12,
-            &format!("{{{}}} = {}[{}];", stimulus.join(", "), variables.stimulus, variables.clock),
+            &format!("{{{}}} = {}[{}];", stimulus.join(", "), own.stimulus, own.clock),
         ),
-        connections: separated(
-            std::iter::once("clk".to_owned())
-                .chain(connected)
-                .map(|name| format!(".{name}({name})"))
-                .collect(),
-        ),
+        connections: connections(design),
         // Without a reset there is nothing to wait for.
         reset_seen: if reset.is_some() { "1'b0" } else { "1'b1" },
         reset,
@@ -186,10 +160,10 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
         results,
         address: address.map(|address| {
             let address = &design.net(address).name;
-            format!("{}.{}.{address}", variables.dut, naming.control_instance)
+            format!("{}.{}.{address}", own.dut, naming.control_instance)
         }),
         microprogram,
-        names: variables,
+        names: own,
     }
 }
 

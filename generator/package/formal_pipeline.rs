@@ -9,7 +9,7 @@ use askama::Template;
 
 use super::formal::{Script, Sources, Task};
 use crate::hdl::netlist::{Design, NetId, Pipeline, Role};
-use crate::hdl::verilog::rows::{Row, separated};
+use crate::hdl::verilog::rows::{Row, connections, separated};
 use crate::hdl::verilog::text::{Names, literal, range};
 
 /// Steps of the induction: every property follows from the clock before.
@@ -73,8 +73,7 @@ pub fn files(
     let module = &design.name;
     let name = format!("{module}_formal");
     let port_name = |net: NetId| design.net(net).name.clone();
-    let mut names = Names::new(design.ports.iter().map(|port| design.net(port.net).name.as_str()));
-    names.fresh("clk");
+    let mut names = Names::of_ports(design);
     let instance = names.fresh("dut");
     let chosen = names.fresh("chosen");
     let mut ports = vec!["input  wire clk".to_owned()];
@@ -89,10 +88,6 @@ pub fn files(
     let outputs: Vec<_> = design
         .outputs()
         .map(|port| Row::port("", "wire", design.width(port.net), false, &port_name(port.net), ""))
-        .collect();
-    let connections = std::iter::once("clk".to_owned())
-        .chain(design.ports.iter().map(|port| port_name(port.net)))
-        .map(|name| format!(".{name}({name})"))
         .collect();
     // A net of the inside under its path; Yosys joins the two when it flattens.
     let mut inside = Vec::new();
@@ -128,7 +123,7 @@ pub fn files(
         instance: instance.clone(),
         ports: separated(ports),
         outputs: Row::declarations(&outputs),
-        connections: separated(connections),
+        connections: connections(design),
         stages: latency,
         // An escaped name ends with a blank, or with the line.
         valids: separated(valid.into_iter().rev().collect())

@@ -22,7 +22,8 @@ struct DeviceCore<'a> {
     licence: &'a str,
 }
 
-/// The files of a device beside its core.
+/// The files of a device beside its core; all but Verilog may be none.
+#[derive(Clone, Copy)]
 pub struct Sources<'a> {
     /// Verilog, the top module first.
     pub rtl: &'a [String],

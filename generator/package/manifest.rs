@@ -6,6 +6,7 @@ use serde_json::value::{RawValue, to_raw_value};
 use serde_json::{Value, json};
 
 use super::facts::{self, Port, Rom};
+use super::fusesoc::Sources;
 use super::{Computation, ContractFacts, EmitInputs, OutputFile, Quantity, Timing, digest};
 use crate::hdl::netlist::{Design, Pipeline, RegId};
 use crate::hdl::verilog::naming::Naming;
@@ -57,14 +58,8 @@ struct Computations<'a> {
 
 /// The files that the manifest lists.
 pub struct Files<'a> {
-    /// Verilog, the top module first.
-    pub rtl: &'a [String],
-    /// Verilog of a target, `<target>/<file>`, in place of the file of that name in `rtl`, or nothing.
-    pub primitives: &'a [String],
-    /// Verilog around the core, or nothing.
-    pub wrappers: &'a [String],
-    /// ROM contents.
-    pub memories: &'a [String],
+    /// What the core is made of.
+    pub sources: Sources<'a>,
     /// FuseSoC cores.
     pub cores: &'a [String],
     /// The bench and its vectors, or nothing.
@@ -128,14 +123,14 @@ pub fn contents(
 
 fn listed(files: &Files) -> Value {
     let mut listed = json!({
-        "rtl": files.rtl,
-        "memories": files.memories,
+        "rtl": files.sources.rtl,
+        "memories": files.sources.memories,
         "cores": files.cores,
         "testbench": files.testbench,
     });
     for (kind, names) in [
-        ("primitives", files.primitives),
-        ("wrappers", files.wrappers),
+        ("primitives", files.sources.primitives),
+        ("wrappers", files.sources.wrappers),
         ("software", files.software),
         ("constraints", files.constraints),
         ("scripts", files.scripts),

@@ -157,7 +157,7 @@ impl Map {
         let mut registers =
             fixed(inputs, (operands.len(), results.len()), (last_operand, place - 1));
         for operand in &operands {
-            registers.extend(of_operand(operand, design));
+            registers.extend(own(operand, Access::Write, &doc(design, &operand.name)));
         }
         registers.extend(of_results(&results, design));
         let map = Self { registers, operands, results };
@@ -333,10 +333,6 @@ fn fixed(
 
 fn bits(name: &str, (low, width): (u32, u32), access: Access, reset: u64, doc: &str) -> Bits {
     Bits { name: name.to_owned(), low, width, access, reset, doc: doc.to_owned() }
-}
-
-fn of_operand(operand: &Placed, design: &Design) -> Vec<Register> {
-    own(operand, Access::Write, &doc(design, &operand.name))
 }
 
 fn of_results(results: &[Placed], design: &Design) -> Vec<Register> {

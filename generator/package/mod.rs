@@ -5,6 +5,21 @@
 //! `templates/` print views and decide nothing. Emission is pure: it returns files
 //! and writes none, and the same design gives the same bytes.
 
+/// A structure of a bench's own names, none of which a port has.
+macro_rules! fresh_names {
+    ($all:ident { $($name:ident),* }) => {
+        struct $all {
+            $($name: String,)*
+        }
+
+        impl $all {
+            fn new(names: &mut Names) -> Self {
+                Self { $($name: names.fresh(stringify!($name)),)* }
+            }
+        }
+    };
+}
+
 mod bench;
 mod cocotb;
 pub(crate) mod facts;
@@ -216,25 +231,21 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
     let mut bench_names = names_of(&testbench);
     cores.extend(bench_names.pop());
     let primitive_names = names_of(&primitives);
-    let files = manifest::Files {
-        rtl: &rtl_names,
-        primitives: &primitive_names,
-        wrappers: &wrapper_names,
-        memories: &memory_names,
-        cores: &cores,
-        testbench: &bench_names,
-        software: &names_of(&software),
-        constraints: &names_of(&constraints),
-        scripts: &names_of(&scripts),
-    };
-    let has_bench = !testbench.is_empty();
     let sources = fusesoc::Sources {
         rtl: &rtl_names,
         primitives: &primitive_names,
         wrappers: &wrapper_names,
         memories: &memory_names,
     };
-    let core = fusesoc::device(design, inputs, sources, has_bench)?;
+    let files = manifest::Files {
+        sources,
+        cores: &cores,
+        testbench: &bench_names,
+        software: &names_of(&software),
+        constraints: &names_of(&constraints),
+        scripts: &names_of(&scripts),
+    };
+    let core = fusesoc::device(design, inputs, sources, !testbench.is_empty())?;
     let mut all: Vec<OutputFile> = rtl
         .into_iter()
         .chain(primitives)

@@ -4,7 +4,7 @@ use anyhow::Result;
 use askama::Template;
 
 use crate::hdl::netlist::{Design, NetId, Port, Role};
-use crate::hdl::verilog::rows::{Row, separated};
+use crate::hdl::verilog::rows::{connections, variables};
 use crate::hdl::verilog::text::Names;
 
 /// The file from which the bench reads, by default: a line for each computation, its operands in
@@ -50,16 +50,7 @@ struct View {
     print: String,
 }
 
-/// The bench's own names, none of which a port has.
-struct Variables {
-    points: String,
-    results: String,
-    read: String,
-    clocks: String,
-    total: String,
-    tick: String,
-    dut: String,
-}
+fresh_names!(Variables { points, results, read, clocks, total, tick, dut });
 
 /// The bench of a design with a microprogram, whose computations take less than `limit` clocks each.
 ///
@@ -69,27 +60,7 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     let port_name = |port: &Port| design.net(port.net).name.clone();
     let handshake = design.handshake()?;
     let name_of = |net: NetId| design.net(net).name.clone();
-    let mut names = Names::new(design.ports.iter().map(|port| design.net(port.net).name.as_str()));
-    names.fresh("clk");
-    let variables = Variables {
-        points: names.fresh("points"),
-        results: names.fresh("results"),
-        read: names.fresh("read"),
-        clocks: names.fresh("clocks"),
-        total: names.fresh("total"),
-        tick: names.fresh("tick"),
-        dut: names.fresh("dut"),
-    };
-    let declarations: Vec<_> = design
-        .ports
-        .iter()
-        .map(|port| {
-            let format = design.net(port.net).format;
-            let kind = if port.role.is_input() { "reg" } else { "wire" };
-            // Bit patterns, whatever they denote: signed variables would be printed with a sign.
-            Row::port("", kind, format.width(), false, &port_name(port), "")
-        })
-        .collect();
+    let mut names = Names::of_ports(design);
     let mut operands = Vec::new();
     let mut strobes = Vec::new();
     for port in design.inputs() {
@@ -108,14 +79,10 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
         points_file: POINTS_FILE,
         results_file: RESULTS_FILE,
         limit,
-        names: variables,
-        declarations: Row::declarations(&declarations),
-        connections: separated(
-            std::iter::once("clk".to_owned())
-                .chain(design.ports.iter().map(port_name))
-                .map(|name| format!(".{name}({name})"))
-                .collect(),
-        ),
+        names: Variables::new(&mut names),
+        // Bit patterns, whatever they denote: signed variables would be printed with a sign.
+        declarations: variables(design, false),
+        connections: connections(design),
         reset: name_of(handshake.reset),
         start: name_of(handshake.start),
         busy: name_of(handshake.busy),

@@ -5,7 +5,7 @@ use askama::Template;
 
 use super::points::{POINTS_FILE, PointsBench, RESULTS_FILE};
 use crate::hdl::netlist::{Design, Port, Role};
-use crate::hdl::verilog::rows::{Row, separated};
+use crate::hdl::verilog::rows::{connections, variables};
 use crate::hdl::verilog::text::{Names, literal};
 
 #[derive(Template)]
@@ -31,17 +31,7 @@ struct View {
     print: String,
 }
 
-/// The bench's own names, none of which a port has.
-struct Variables {
-    points: String,
-    results: String,
-    read: String,
-    clocks: String,
-    offered: String,
-    total: String,
-    tick: String,
-    dut: String,
-}
+fresh_names!(Variables { points, results, read, clocks, offered, total, tick, dut });
 
 /// The bench of a pipeline, whose last results come in less than `limit` clocks.
 ///
@@ -53,17 +43,7 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
         let port = design.port(|it| it == role);
         port.map(port_name).with_context(|| format!("`{}` is no pipeline", design.name))
     };
-    let mut names = Names::new(design.ports.iter().map(|port| design.net(port.net).name.as_str()));
-    names.fresh("clk");
-    let declarations: Vec<_> = design
-        .ports
-        .iter()
-        .map(|port| {
-            let kind = if port.role.is_input() { "reg" } else { "wire" };
-            // Bit patterns, whatever they denote: signed variables would be printed with a sign.
-            Row::port("", kind, design.width(port.net), false, &port_name(port), "")
-        })
-        .collect();
+    let mut names = Names::of_ports(design);
     let held = design.inputs().filter_map(|port| match port.role {
         Role::OutReady => Some((port_name(port), "1'b1".to_owned())),
         Role::SideIn => Some((port_name(port), literal(0, design.width(port.net)))),
@@ -81,23 +61,10 @@ pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
         points_file: POINTS_FILE,
         results_file: RESULTS_FILE,
         limit,
-        names: Variables {
-            points: names.fresh("points"),
-            results: names.fresh("results"),
-            read: names.fresh("read"),
-            clocks: names.fresh("clocks"),
-            offered: names.fresh("offered"),
-            total: names.fresh("total"),
-            tick: names.fresh("tick"),
-            dut: names.fresh("dut"),
-        },
-        declarations: Row::declarations(&declarations),
-        connections: separated(
-            std::iter::once("clk".to_owned())
-                .chain(design.ports.iter().map(port_name))
-                .map(|name| format!(".{name}({name})"))
-                .collect(),
-        ),
+        names: Variables::new(&mut names),
+        // Bit patterns, whatever they denote: signed variables would be printed with a sign.
+        declarations: variables(design, false),
+        connections: connections(design),
         reset: of_role(Role::Reset)?,
         in_valid: of_role(Role::InValid)?,
         valid: of_role(Role::Valid)?,

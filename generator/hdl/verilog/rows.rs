@@ -3,7 +3,7 @@
 use super::naming::remark;
 use super::plan::Plan;
 use super::text::{annotated, range};
-use crate::hdl::netlist::NetId;
+use crate::hdl::netlist::{Design, NetId, Port};
 
 /// A comma behind each text but the last.
 pub fn separated(mut texts: Vec<String>) -> Vec<String> {
@@ -12,6 +12,22 @@ pub fn separated(mut texts: Vec<String>) -> Vec<String> {
         text.push(',');
     }
     texts
+}
+
+/// What connects an instance of a design to nets named as its ports, the clock first.
+pub fn connections(design: &Design) -> Vec<String> {
+    let ports = design.ports.iter().map(|port| design.net(port.net).name.as_str());
+    separated(std::iter::once("clk").chain(ports).map(|name| format!(".{name}({name})")).collect())
+}
+
+/// Declarations of a variable for each input of a design and of a wire for each output, with their signs or as bit patterns.
+pub fn variables(design: &Design, with_signs: bool) -> Vec<String> {
+    let row = |port: &Port| {
+        let net = design.net(port.net);
+        let kind = if port.role.is_input() { "reg" } else { "wire" };
+        Row::port("", kind, net.format.width(), with_signs && net.format.signed, &net.name, "")
+    };
+    Row::declarations(&design.ports.iter().map(row).collect::<Vec<_>>())
 }
 
 /// A declaration that is set in columns with its neighbours.

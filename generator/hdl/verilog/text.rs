@@ -2,6 +2,8 @@
 
 use std::collections::HashSet;
 
+use crate::hdl::netlist::Design;
+
 /// The longest line that Glint writes into Verilog.
 pub const COLUMNS: usize = 100;
 
@@ -157,6 +159,12 @@ impl Names {
     /// The names that are taken already.
     pub fn new<'a>(taken: impl IntoIterator<Item = &'a str>) -> Self {
         Self(taken.into_iter().map(str::to_owned).collect())
+    }
+
+    /// Those of the ports of a design and of its clock.
+    pub fn of_ports(design: &Design) -> Self {
+        let ports = design.ports.iter().map(|port| design.net(port.net).name.as_str());
+        Self::new(ports.chain(["clk"]))
     }
 
     /// `wish`, or `wish_2`, `wish_3` … when that is taken.

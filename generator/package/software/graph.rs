@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use anyhow::{Result, ensure};
 
 use crate::base::fixed::{Format, mask};
-use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId, RomId};
+use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId, RomId, eval};
 
 /// What makes a value. The operands of an [`Op`] are numbers of values here.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -224,39 +224,10 @@ impl Graph {
 
     /// The bit pattern of an operation on constants.
     fn folded(&self, op: &Op, bits: &[u64], format: Format) -> u64 {
-        let of = |at: usize| self.value(op.operands()[at]).format;
-        let signed = |at: usize| of(at).raw(bits[at]);
-        let result = match op {
-            Op::Relabel(_) => bits[0],
-            Op::Extend(_) => signed(0) as u64,
-            Op::Slice { low, .. } => bits[0] >> low,
-            Op::Concat(parts) => {
-                let parts = parts.iter().zip(bits);
-                parts.fold(0_u64, |high, (part, bits)| {
-                    high.checked_shl(self.width(*part)).unwrap_or(0) | bits
-                })
-            }
-            Op::Not(_) => !bits[0],
-            Op::And(..) => bits[0] & bits[1],
-            Op::Or(..) => bits[0] | bits[1],
-            Op::Xor(..) => bits[0] ^ bits[1],
-            Op::Add { .. } => bits.iter().fold(0, |sum: u64, bits| sum.wrapping_add(*bits)),
-            Op::Sub(..) => bits[0].wrapping_sub(bits[1]),
-            Op::Mul(..) => signed(0).wrapping_mul(signed(1)) as u64,
-            Op::Equal(..) => u64::from(bits[0] == bits[1]),
-            Op::Less(..) => u64::from(signed(0) < signed(1)),
-            Op::Any(_) => u64::from(bits[0] != 0),
-            Op::All(_) => u64::from(bits[0] == mask(of(0).width())),
-            Op::Mux { inputs, .. } => bits[1 + (bits[0] as usize).min(inputs.len() - 1)],
-        };
-        result & mask(format.width())
+        let (operands, bits) = (op.operands(), bits.as_chunks::<1>().0);
+        let of = |id: NetId| &bits[operands.iter().position(|it| *it == id).unwrap_or_default()];
+        eval::cell(op, format.width(), &|id| self.value(id).format, &of)[0]
     }
-}
-
-/// The values of all nets in one clock.
-pub struct Clock {
-    /// By net.
-    pub nets: Vec<NetId>,
 }
 
 /// What stands in registers and behind synchronous ROMs before a clock.
@@ -269,7 +240,7 @@ pub struct State {
 }
 
 impl Graph {
-    /// The values of all nets of a design in a clock.
+    /// The values of all nets of a design in a clock, by net.
     ///
     /// # Errors
     /// A loop; a net without a driver.
@@ -279,7 +250,7 @@ impl Graph {
         order: &[NetId],
         state: &State,
         input: impl Fn(&mut Self, NetId) -> NetId,
-    ) -> Result<Clock> {
+    ) -> Result<Vec<NetId>> {
         let positions = design.field_positions();
         let mut nets = vec![NetId(0); design.nets.len()];
         for &id in order {
@@ -311,25 +282,25 @@ impl Graph {
             }
             nets[id.index()] = value;
         }
-        Ok(Clock { nets })
+        Ok(nets)
     }
 
     /// What stands in registers and behind synchronous ROMs after the clock.
     ///
     /// # Errors
     /// A register that takes nothing.
-    pub fn after(&mut self, design: &Design, state: &State, clock: &Clock) -> Result<State> {
+    pub fn after(&mut self, design: &Design, state: &State, nets: &[NetId]) -> Result<State> {
         let mut after = state.clone();
         for (at, register) in design.registers.iter().enumerate() {
             let Some(data) = register.data else {
                 anyhow::bail!("`{}` takes nothing", design.net(register.q).name);
             };
-            let (data, old) = (clock.nets[data.index()], state.registers[at]);
+            let (data, old) = (nets[data.index()], state.registers[at]);
             let net = design.net(register.q);
             let new = match register.enable {
                 None => data,
                 Some(enable) => {
-                    let select = clock.nets[enable.index()];
+                    let select = nets[enable.index()];
                     self.op(Op::Mux { select, inputs: vec![old, data] }, net.format)?
                 }
             };
@@ -340,7 +311,7 @@ impl Graph {
         }
         for (at, rom) in design.roms.iter().enumerate() {
             if rom.synchronous {
-                let read = self.read(design, RomId(at as u32), clock.nets[rom.address.index()]);
+                let read = self.read(design, RomId(at as u32), nets[rom.address.index()]);
                 self.name(read, &design.net(rom.data).name, true);
                 after.reads[at] = read;
             }

@@ -246,12 +246,12 @@ fn of_point(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomI
 fn of_line(design: &Design, tables: &[String]) -> Result<(Vec<String>, Vec<RomId>)> {
     let Stepped { first, initial, each, clock, next } = stepped(design)?;
     let port = |role: Role| {
-        let port = design.port(|of| of == role).map(|port| clock.nets[port.net.index()]);
+        let port = design.port(|of| of == role).map(|port| clock[port.net.index()]);
         port.with_context(|| format!("it has no output {role:?}"))
     };
     let (valid, done) = (port(Role::Valid)?, port(Role::Done)?);
     let results: Vec<(&Port, NetId)> =
-        result_ports(design).map(|port| (port, clock.nets[port.net.index()])).collect();
+        result_ports(design).map(|port| (port, clock[port.net.index()])).collect();
 
     // Registers and reads that the results of some clock depend on.
     let mut wanted: Vec<NetId> = results.iter().map(|(_, value)| *value).collect();

@@ -6,7 +6,7 @@
 
 use anyhow::{Context, Result, bail, ensure};
 
-use super::graph::{Clock, Graph, Node, State};
+use super::graph::{Graph, Node, State};
 use crate::base::fixed::{Format, mask};
 use crate::hdl::netlist::termination;
 use crate::hdl::netlist::{Design, NetId, Op, RegId, Role, RomId, Sequence};
@@ -33,7 +33,7 @@ pub struct Stepped {
     /// Values of the state before a clock.
     pub each: Graph,
     /// What is on the nets in that clock.
-    pub clock: Clock,
+    pub clock: Vec<NetId>,
     /// The state after it.
     pub next: State,
 }
@@ -127,7 +127,7 @@ impl<'d> Walk<'d> {
         self.graph.after(self.design, &state, &clock)
     }
 
-    fn clock(&mut self, state: &State, start: bool) -> Result<Clock> {
+    fn clock(&mut self, state: &State, start: bool) -> Result<Vec<NetId>> {
         let design = self.design;
         self.graph.clock(design, &self.order, state, |graph, net| {
             let format = design.net(net).format;
@@ -148,11 +148,11 @@ impl<'d> Walk<'d> {
             let address = self.address(&state)?;
             self.enter(address, "");
             let clock = self.clock(&state, false)?;
-            match self.graph.constant_of(clock.nets[valid.index()]) {
+            match self.graph.constant_of(clock[valid.index()]) {
                 Some(0) => {}
                 Some(_) => {
                     let results = design.outputs().filter(|port| port.role == Role::Result);
-                    return Ok(results.map(|port| clock.nets[port.net.index()]).collect());
+                    return Ok(results.map(|port| clock[port.net.index()]).collect());
                 }
                 None => bail!(
                     "whether it is valid in microinstruction {address} depends on its operands"
@@ -178,7 +178,7 @@ impl<'d> Walk<'d> {
                     to > address,
                     "the loop from microinstruction {address} back to {to} has no bound"
                 );
-                let select = clock.nets[condition.index()];
+                let select = clock[condition.index()];
                 let on = self.at(&next, address + 1);
                 let on = self.results(on)?;
                 let over = self.at(&next, to);
@@ -194,7 +194,7 @@ impl<'d> Walk<'d> {
         &mut self,
         address: usize,
         condition: NetId,
-        mut clock: Clock,
+        mut clock: Vec<NetId>,
         mut next: State,
     ) -> Result<State> {
         let design = self.design;
@@ -204,7 +204,7 @@ impl<'d> Walk<'d> {
         let most = mask(design.width(design.register(counter).q));
         let mut turns = Vec::new();
         loop {
-            let more = clock.nets[condition.index()];
+            let more = clock[condition.index()];
             let ended = self.at(&next, address + 1);
             turns.push((more, ended));
             if turns.len() as u64 > most || self.graph.constant_of(more) == Some(0) {
