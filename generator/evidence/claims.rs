@@ -173,6 +173,21 @@ fn exceeding(function: Function, exponents: impl IntoIterator<Item = u32>, limit
         .collect()
 }
 
+/// The largest error in a region over exponents.
+fn largest(
+    function: Function,
+    exponents: std::ops::RangeInclusive<u32>,
+    region: Region,
+    key: &str,
+    what: &str,
+) -> Option<Measured> {
+    let range = runs(&exponents.clone().collect::<Vec<u32>>());
+    let alone = exponents.start() == exponents.end();
+    let worst = measure::over(function, exponents, region)?;
+    let found = error(worst, key.to_owned(), format!("{what}, {}, n = {range}", region.name()));
+    Some(Measured { n: found.n.filter(|_| !alone), ..found })
+}
+
 /// The largest error to the inflection point over exponents.
 fn to_inflection(
     function: Function,
@@ -180,12 +195,12 @@ fn to_inflection(
     key: &str,
     what: &str,
 ) -> Option<Measured> {
-    let range = runs(&exponents.clone().collect::<Vec<u32>>());
-    let alone = exponents.start() == exponents.end();
-    let worst = measure::over(function, exponents, Region::Inflection)?;
-    let definition = format!("{what}, to the inflection point, n = {range}");
-    let found = error(worst, key.to_owned(), definition);
-    Some(Measured { n: found.n.filter(|_| !alone), ..found })
+    largest(function, exponents, Region::Inflection, key, what)
+}
+
+/// Those of some figures that there are.
+fn found(figures: impl IntoIterator<Item = Option<Measured>>) -> Vec<Measured> {
+    figures.into_iter().flatten().collect()
 }
 
 #[cfg(test)]

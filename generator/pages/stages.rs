@@ -3,7 +3,7 @@
 use anyhow::Result;
 use askama::Template;
 
-use super::account::{Align, Table, code, format_text};
+use super::account::{Table, code, format_text};
 use super::drawing::{Drawing, Item, text_width};
 use crate::hdl::netlist::{Design, Net, Pipeline, value_name};
 
@@ -39,15 +39,9 @@ const REGISTERS: i32 = 18;
 
 /// The stages with their microinstructions, values, time and registers.
 pub fn table(design: &Design, pipeline: &Pipeline) -> Table {
-    let mut table = Table::new(&[
-        ("stage", Align::Right),
-        ("microinstructions", Align::Left),
-        ("logic, ns", Align::Right),
-        ("slack, ns", Align::Right),
-        ("register bits", Align::Right),
-        ("in delay lines", Align::Right),
-        ("computes", Align::Left),
-    ]);
+    let mut table = Table::of(
+        "stage: | microinstructions | logic, ns: | slack, ns: | register bits: | in delay lines: | computes",
+    );
     for (number, stage) in pipeline.stages.iter().enumerate() {
         let values = pipeline.computed(design, number).map(|net| match net.block {
             None => code(value_name(&net.name)),

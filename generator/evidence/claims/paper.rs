@@ -1,8 +1,8 @@
 //! What seed 002, the paper on W, says.
 
 use super::{
-    Claim, EPICENTRE, Measured, Verdict, error, exceeding, key, runs, schlick, to_inflection,
-    upper, w,
+    Claim, EPICENTRE, Measured, Verdict, error, exceeding, found, key, runs, schlick,
+    to_inflection, upper, w,
 };
 use crate::evidence::measure::{self, Function, Region};
 
@@ -66,10 +66,7 @@ fn plain(key: &str, definition: &str, value: f64, text: String) -> Measured {
 /// W and the paper's error before the inflection point.
 fn before_inflection(id: &'static str, m: u32, limit: f64, seed: &str) -> Claim {
     let function = w(m);
-    let mut ours: Vec<Measured> = [Region::Inflection, EPICENTRE]
-        .into_iter()
-        .filter_map(|region| papers(&function, region))
-        .collect();
+    let mut ours = found([Region::Inflection, EPICENTRE].map(|region| papers(&function, region)));
     // The paper says n = 1…250; its figures come out where n is well above m.
     if let Some(worst) = measure::over(&function, FROM_TWO, Region::Inflection) {
         let definition = "to the inflection point, n = 2…250".to_owned();
@@ -107,10 +104,7 @@ fn before_inflection(id: &'static str, m: u32, limit: f64, seed: &str) -> Claim 
 }
 
 fn schlick_epicentre() -> Claim {
-    let ours: Vec<Measured> = [Region::Inflection, EPICENTRE]
-        .into_iter()
-        .filter_map(|region| papers(&schlick, region))
-        .collect();
+    let ours = found([Region::Inflection, EPICENTRE].map(|region| papers(&schlick, region)));
     let level = measure::level_of(&schlick, PAPER, 0.224).unwrap_or(f64::NAN);
     Claim {
         id: "schlick-epicentre",
@@ -162,10 +156,7 @@ fn blooming(id: &'static str, m: u32, limit: f64, seed: &str) -> Claim {
 }
 
 fn schlick_blooming() -> Claim {
-    let ours: Vec<Measured> = [BLOOMING, SCHLICK_BLOOMING]
-        .into_iter()
-        .filter_map(|region| papers(&schlick, region))
-        .collect();
+    let ours = found([BLOOMING, SCHLICK_BLOOMING].map(|region| papers(&schlick, region)));
     let level = measure::level_of(&schlick, PAPER, 0.982).unwrap_or(f64::NAN);
     Claim {
         id: "schlick-blooming",
@@ -194,7 +185,7 @@ fn ratio(id: &'static str, claim: &str, seed: &str, least: f64, regions: [Region
             format!("{value:.1} times"),
         ))
     };
-    let ours: Vec<Measured> = regions.into_iter().filter_map(over).collect();
+    let ours = found(regions.map(over));
     let reached = ours.iter().filter(|one| one.value >= least).count();
     let figures: Vec<&str> = ours.iter().map(|one| one.text.as_str()).collect();
     let verdict = match reached {
@@ -223,13 +214,10 @@ fn one_per_cent() -> Claim {
     let function = w(16);
     let failing = exceeding(&function, FROM_TWO, 0.01);
     let after = failing.last().map_or(2, |last| last + 1);
-    let ours: Vec<Measured> = [
+    let ours = found([
         to_inflection(&function, FROM_TWO, "from-2", "m = 16"),
         to_inflection(&function, after..=250, "holding", "m = 16"),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
+    ]);
     Claim {
         id: "w16-one-per-cent",
         source: SOURCE,

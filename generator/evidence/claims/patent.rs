@@ -1,8 +1,7 @@
 //! What seed 000, the patent of `quad-cosine`, says.
 
 use super::{
-    Claim, EPICENTRE, Measured, Verdict, error, exceeding, key, quad, runs, stretched,
-    to_inflection,
+    Claim, EPICENTRE, Verdict, exceeding, found, key, largest, quad, runs, stretched, to_inflection,
 };
 use crate::evidence::measure;
 
@@ -16,17 +15,11 @@ pub fn claims() -> Vec<Claim> {
 fn quad_large() -> Claim {
     let failing = exceeding(&quad, 7..=1000, 0.006);
     let after = failing.last().map_or(7, |last| last + 1);
-    let ours: Vec<Measured> = [
+    let ours = found([
         to_inflection(&quad, 7..=7, "n-7", "k = 16"),
         to_inflection(&quad, after..=1000, "holding", "k = 16"),
-        measure::over(&quad, 7..=1000, EPICENTRE).map(|worst| {
-            let definition = format!("k = 16, {}, n = 7…1000", EPICENTRE.name());
-            error(worst, key(EPICENTRE), definition)
-        }),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
+        largest(&quad, 7..=1000, EPICENTRE, &key(EPICENTRE), "k = 16"),
+    ]);
     Claim {
         id: "quad-large",
         source: SOURCE,
@@ -44,14 +37,11 @@ fn quad_large() -> Claim {
 
 fn quad_small() -> Claim {
     let failing = exceeding(&quad, 2..=5, 0.01);
-    let ours: Vec<Measured> = [
+    let ours = found([
         to_inflection(&quad, 3..=3, "n-3", "k = 4"),
         to_inflection(&quad, 4..=5, "n-4-5", "k = 4"),
         to_inflection(&quad, 6..=6, "n-6", "k = 4"),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
+    ]);
     Claim {
         id: "quad-small",
         source: SOURCE,
@@ -69,14 +59,11 @@ fn quad_small() -> Claim {
 
 fn four_powers() -> Claim {
     let (three, nine) = (stretched(3), stretched(9));
-    let ours: Vec<Measured> = [
+    let ours = found([
         to_inflection(&nine, 4..=4, "k-9-n-4", "k = 9"),
         to_inflection(&three, 3..=4, "k-3-n-3-4", "k = 3"),
         to_inflection(&nine, 5..=1000, "k-9-from-5", "k = 9"),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
+    ]);
     let served = ours[1..].iter().all(|one| one.value <= 0.01);
     Claim {
         id: "four-powers",
@@ -96,16 +83,10 @@ fn prototype() -> Claim {
     let wide: Vec<u32> = (1..=1000)
         .filter(|&n| measure::at(&function, n, EPICENTRE).is_some_and(|worst| worst.error > 0.10))
         .collect();
-    let ours: Vec<Measured> = [
+    let ours = found([
         to_inflection(&function, 2..=1000, "inflection", "at most"),
-        measure::over(&function, 2..=1000, EPICENTRE).map(|worst| {
-            let definition = format!("at most, {}, n = 2…1000", EPICENTRE.name());
-            error(worst, key(EPICENTRE), definition)
-        }),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
+        largest(&function, 2..=1000, EPICENTRE, &key(EPICENTRE), "at most"),
+    ]);
     Claim {
         id: "prototype",
         source: SOURCE,

@@ -2,20 +2,13 @@
 
 use std::fmt;
 
-use super::{Align, NUMBER, Table, code, format_text};
+use super::{NUMBER, Table, code, format_text};
 use crate::hdl::netlist::{Design, Driver, FieldId, NetId, Op, Partition, RegisterKind, Rom};
 
 /// The blocks in order of their number; those that the source does not number follow.
 pub fn table(design: &Design) -> Table {
     let blocks = Blocks::new(design);
-    let mut table = Table::new(&[
-        (NUMBER, Align::Right),
-        ("block", Align::Left),
-        ("kind", Align::Left),
-        ("format", Align::Left),
-        ("takes", Align::Left),
-        ("what it is", Align::Left),
-    ]);
+    let mut table = Table::of("no.: | block | kind | format | takes | what it is");
     for block in blocks.all() {
         let list = |nets: &[NetId]| {
             let names: Vec<String> = nets.iter().map(|&net| code(blocks.name(net))).collect();

@@ -124,15 +124,7 @@ fn number(number: Option<u16>) -> String {
 
 /// The ports; a strobe stands with its operand.
 pub fn ports(design: &Design) -> Table {
-    let mut table = Table::new(&[
-        ("port", Align::Left),
-        (NUMBER, Align::Right),
-        ("direction", Align::Left),
-        ("role", Align::Left),
-        ("format", Align::Left),
-        ("written by", Align::Left),
-        ("what it is", Align::Left),
-    ]);
+    let mut table = Table::of("port | no.: | direction | role | format | written by | what it is");
     let ports = facts::ports(design);
     // A strobe stands with its operand.
     for port in ports.iter().filter(|port| port.role != "strobe") {
@@ -166,15 +158,7 @@ pub fn ports(design: &Design) -> Table {
 /// The ROMs, that of the microprogram among them.
 pub fn roms(design: &Design, config: &Config) -> Table {
     let naming = Naming::new(design).styled(Surroundings::new(config, None).style);
-    let mut table = Table::new(&[
-        ("ROM", Align::Left),
-        (NUMBER, Align::Right),
-        ("words × bits", Align::Right),
-        ("bits", Align::Right),
-        ("reads", Align::Left),
-        ("file", Align::Left),
-        ("an entry", Align::Left),
-    ]);
+    let mut table = Table::of("ROM | no.: | words × bits: | bits: | reads | file | an entry");
     for rom in facts::roms(design, &naming) {
         let reads = if rom.synchronous { "on the clock" } else { "at once" };
         table.row([
@@ -198,12 +182,7 @@ fn lines(lines: &[u16]) -> String {
 
 /// The fields of the control word.
 pub fn fields(design: &Design) -> Table {
-    let mut table = Table::new(&[
-        ("field", Align::Left),
-        ("lines", Align::Left),
-        ("bits", Align::Left),
-        ("turns", Align::Left),
-    ]);
+    let mut table = Table::of("field | lines | bits | turns");
     for field in facts::fields(design) {
         let width = field.width as usize;
         let turns = match field.kind {
@@ -266,7 +245,7 @@ pub fn microprogram(design: &Design) -> Table {
 
 /// When what happens after `start`.
 pub fn clocks(timing: &Timing, line: Option<&LineClocks>) -> Table {
-    let mut table = Table::new(&[("event", Align::Left), ("clock", Align::Right)]);
+    let mut table = Table::of("event | clock:");
     let mut row = |event: &str, clock: Option<u32>, of_line: Option<Linear>| {
         let formula = || line.zip(of_line).map(|(line, clocks)| clocks.text(&code(&line.length)));
         let clock = clock.map(|clock| clock.to_string()).or_else(formula);
@@ -296,7 +275,7 @@ pub fn handshake(pipeline: &Pipeline) -> &'static str {
 
 /// When what happens after a pipeline takes a point.
 pub fn pipeline_clocks(pipeline: &Pipeline) -> Table {
-    let mut table = Table::new(&[("event", Align::Left), ("clock", Align::Right)]);
+    let mut table = Table::of("event | clock:");
     table.row(["the next point is taken".to_owned(), "1".to_owned()]);
     let latency = pipeline.stages.len().to_string();
     table.row(["the results are on the outputs".to_owned(), latency]);
@@ -305,11 +284,7 @@ pub fn pipeline_clocks(pipeline: &Pipeline) -> Table {
 
 /// What the bound is made of.
 pub fn terms(bound: &Bound) -> Table {
-    let mut table = Table::new(&[
-        ("key", Align::Left),
-        ("units", Align::Right),
-        ("what rounds or approximates", Align::Left),
-    ]);
+    let mut table = Table::of("key | units: | what rounds or approximates");
     for term in &bound.terms {
         table.row([code(term.key), format!("{:.3}", term.units), term.what.to_owned()]);
     }
@@ -318,13 +293,7 @@ pub fn terms(bound: &Bound) -> Table {
 
 /// The operands, and for which values of them the contract is stated.
 pub fn domain(design: &Design, contract: &dyn Contract) -> Table {
-    let mut table = Table::new(&[
-        ("operand", Align::Left),
-        ("format", Align::Left),
-        ("from", Align::Right),
-        ("to", Align::Right),
-        ("what it is", Align::Left),
-    ]);
+    let mut table = Table::of("operand | format | from: | to: | what it is");
     for operand in contract.operands() {
         let value = |raw: i64| short(operand.format.to_f64(i128::from(raw)));
         table.row([
@@ -344,12 +313,7 @@ pub fn domain(design: &Design, contract: &dyn Contract) -> Table {
 
 /// The worked example beside the formula.
 pub fn example(contract: &dyn Contract, example: &WorkedExample) -> Table {
-    let mut table = Table::new(&[
-        ("port", Align::Left),
-        ("integer", Align::Right),
-        ("value", Align::Right),
-        ("formula in f64", Align::Right),
-    ]);
+    let mut table = Table::of("port | integer: | value: | formula in f64:");
     let mut row = |quantity: &Quantity, formula: String, of: String| {
         let name = code(&quantity.name) + &of;
         table.row([name, quantity.raw.to_string(), short(quantity.value), formula]);
@@ -375,12 +339,7 @@ pub fn example(contract: &dyn Contract, example: &WorkedExample) -> Table {
 
 /// The keys of the device, and those that every device shares where they are not at their defaults.
 pub fn keys(schema: &Schema, config: &Config) -> Table {
-    let mut table = Table::new(&[
-        ("key", Align::Left),
-        ("value", Align::Left),
-        ("accepts", Align::Left),
-        ("what it governs", Align::Left),
-    ]);
+    let mut table = Table::of("key | value | accepts | what it governs");
     let changed = |key: &&Key| *config.value(key.name) != key.default;
     for key in schema.keys.iter().chain(shared_keys().iter().filter(changed)) {
         let (now, default) = (config.value(key.name).toml(), key.default.toml());

@@ -39,6 +39,15 @@ impl Table {
         }
     }
 
+    /// A table with these headings, which bars part; the cells below a heading with a colon behind it are numbers.
+    pub fn of(headings: &str) -> Self {
+        let column = |heading: &'_ str| match heading.strip_suffix(':') {
+            Some(heading) => Column { heading: heading.to_owned(), align: Align::Right },
+            None => Column { heading: heading.to_owned(), align: Align::Left },
+        };
+        Self { columns: headings.split(" | ").map(column).collect(), rows: Vec::new() }
+    }
+
     /// One row more, with a cell for each column.
     pub fn row(&mut self, cells: impl IntoIterator<Item = String>) {
         self.rows.push(cells.into_iter().collect());
@@ -74,7 +83,7 @@ mod tests {
 
     #[test]
     fn an_empty_column_goes() {
-        let mut table = Table::new(&[("no.", Align::Right), ("name", Align::Left)]);
+        let mut table = Table::of("no.: | name");
         table.row([String::new(), code("a")]);
         let table = table.without_empty("no.");
         assert_eq!(table.columns.len(), 1);

@@ -1,7 +1,7 @@
 //! The record of `glint synth`: area, frequency and rate on each target, and the longest paths.
 
 use super::table::TableView;
-use crate::pages::account::{Align, Table};
+use crate::pages::account::Table;
 use crate::synth::{Figures, Frequency, Rate, Record, Step};
 
 /// What stands where a target has no such thing, or nothing was measured.
@@ -19,18 +19,9 @@ pub struct RecordView {
 
 impl RecordView {
     pub fn new(record: &Record) -> Self {
-        let mut table = Table::new(&[
-            ("target", Align::Left),
-            ("LUT", Align::Right),
-            ("DSP", Align::Right),
-            ("RAM", Align::Right),
-            ("FF", Align::Right),
-            ("gates", Align::Right),
-            ("MHz", Align::Right),
-            ("M points/s", Align::Right),
-            ("k/s per LUT", Align::Right),
-            ("M/s per DSP", Align::Right),
-        ]);
+        let mut table = Table::of(
+            "target | LUT: | DSP: | RAM: | FF: | gates: | MHz: | M points/s: | k/s per LUT: | M/s per DSP:",
+        );
         table.rows = record.targets.iter().map(|it| row(it, record.clocks_per_point)).collect();
         let of = |figures: &Figures, text: String| (figures.device.clone(), text);
         let timed = record.targets.iter().filter(|it| !it.critical_path.is_empty());

@@ -70,7 +70,7 @@ mod tests {
 
     #[test]
     fn what_is_wider_than_a_phone_stacks() {
-        let mut table = Table::new(&[("`key`", Align::Left), ("units", Align::Right)]);
+        let mut table = Table::of("`key` | units:");
         table.row(["`a`", "1.5"].map(str::to_owned));
         assert!(!TableView::new("narrow", &table).stacks);
         table.row(["`b`", "a sentence of more than thirty signs"].map(str::to_owned));

@@ -71,8 +71,7 @@ mod tests {
 
     #[test]
     fn a_table_is_padded_and_aligned() {
-        let mut table =
-            Table::new(&[("name", Align::Left), ("bits", Align::Right), ("what", Align::Left)]);
+        let mut table = Table::of("name | bits: | what");
         table.row(["`a`", "10", "short"].map(str::to_owned));
         table.row(["`bcdef`", "7", "this is longer"].map(str::to_owned));
         let expected = "\
