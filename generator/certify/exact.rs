@@ -95,32 +95,16 @@ pub fn divisors(real: &Real, found: &mut HashMap<String, Option<i32>>) {
         }
     };
     match real {
-        Real::Div(a, b) => {
+        Real::Div(a, b)
             if let (Real::Operand(name), Real::Number(by)) = (&**a, &**b)
-                && let Some(power) = power_of_two(*by)
-            {
-                note(name, power);
-                return;
-            }
-            divisors(a, found);
-            divisors(b, found);
+                && let Some(power) = power_of_two(*by) =>
+        {
+            note(name, power);
         }
         Real::Operand(name) => note(name, 0),
-        Real::Number(_) | Real::Word(..) => {}
-        Real::Add(a, b)
-        | Real::Sub(a, b)
-        | Real::Mul(a, b)
-        | Real::Mod(a, b)
-        | Real::Max(a, b)
-        | Real::Power(a, b) => {
-            divisors(a, found);
-            divisors(b, found);
-        }
-        Real::Abs(a) | Real::Cos(a) => divisors(a, found),
-        Real::If(comparison, a, b) => {
-            let sides = [&comparison.left, &comparison.right, a, b];
-            sides.into_iter().for_each(|side| divisors(side, found));
-        }
+        // The number of a word is no number of the formula.
+        Real::Word(..) => {}
+        _ => real.parts().into_iter().for_each(|part| divisors(part, found)),
     }
 }
 

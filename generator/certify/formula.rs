@@ -45,41 +45,32 @@ pub struct Comparison {
 }
 
 impl Real {
-    /// Whether words of the table are read.
-    pub fn reads(&self, rom: &str) -> bool {
+    /// The numbers that it is made of.
+    pub fn parts(&self) -> Vec<&Self> {
         match self {
-            Self::Word(name, _) => name == rom,
-            Self::Number(_) | Self::Operand(_) => false,
-            Self::Abs(a) | Self::Cos(a) => a.reads(rom),
+            Self::Number(_) | Self::Operand(_) => Vec::new(),
+            Self::Word(_, a) | Self::Abs(a) | Self::Cos(a) => vec![a],
             Self::Add(a, b)
             | Self::Sub(a, b)
             | Self::Mul(a, b)
             | Self::Div(a, b)
             | Self::Mod(a, b)
             | Self::Max(a, b)
-            | Self::Power(a, b) => a.reads(rom) || b.reads(rom),
-            Self::If(Comparison { left, right, .. }, a, b) => {
-                [left, right, a, b].into_iter().any(|side| side.reads(rom))
-            }
+            | Self::Power(a, b) => vec![a, b],
+            Self::If(Comparison { left, right, .. }, a, b) => vec![left, right, a, b],
         }
+    }
+
+    /// Whether words of the table are read.
+    pub fn reads(&self, rom: &str) -> bool {
+        matches!(self, Self::Word(name, _) if name == rom)
+            || self.parts().into_iter().any(|part| part.reads(rom))
     }
 
     /// Whether the operand is an exponent.
     pub fn has_exponent(&self, name: &str) -> bool {
-        match self {
-            Self::Power(a, b) => **b == Self::Operand(name.to_owned()) || a.has_exponent(name),
-            Self::Number(_) | Self::Operand(_) | Self::Word(..) => false,
-            Self::Abs(a) | Self::Cos(a) => a.has_exponent(name),
-            Self::Add(a, b)
-            | Self::Sub(a, b)
-            | Self::Mul(a, b)
-            | Self::Div(a, b)
-            | Self::Mod(a, b)
-            | Self::Max(a, b) => a.has_exponent(name) || b.has_exponent(name),
-            Self::If(Comparison { left, right, .. }, a, b) => {
-                [left, right, a, b].into_iter().any(|side| side.has_exponent(name))
-            }
-        }
+        matches!(self, Self::Power(_, exponent) if **exponent == Self::Operand(name.to_owned()))
+            || self.parts().into_iter().any(|part| part.has_exponent(name))
     }
 }
 

@@ -73,8 +73,8 @@ pub struct Terms {
 
 impl Term {
     /// Its operands, in order of writing.
-    pub fn operands(&self) -> Vec<Id> {
-        match *self {
+    fn operands_mut(&mut self) -> Vec<&mut Id> {
+        match self {
             Self::Unknown(_) | Self::Constant(_) => Vec::new(),
             Self::Not(a) | Self::Slice { of: a, .. } | Self::SignExtend(a) => vec![a],
             Self::Word { address, .. } => vec![address],
@@ -90,6 +90,11 @@ impl Term {
             | Self::Join(a, b) => vec![a, b],
             Self::Choice(a, b, c) => vec![a, b, c],
         }
+    }
+
+    /// Its operands, in order of writing.
+    pub fn operands(&self) -> Vec<Id> {
+        self.clone().operands_mut().into_iter().map(|id| *id).collect()
     }
 }
 
@@ -489,36 +494,23 @@ impl Terms {
 }
 
 /// Operands of what does not depend on their order in one order.
-fn ordered(term: Term) -> Term {
-    match term {
-        Term::And(a, b) if a > b => Term::And(b, a),
-        Term::Or(a, b) if a > b => Term::Or(b, a),
-        Term::Xor(a, b) if a > b => Term::Xor(b, a),
-        Term::Add(a, b) if a > b => Term::Add(b, a),
-        Term::Product(a, b) if a > b => Term::Product(b, a),
-        Term::Equal(a, b) if a > b => Term::Equal(b, a),
-        other => other,
+fn ordered(mut term: Term) -> Term {
+    if let Term::And(a, b)
+    | Term::Or(a, b)
+    | Term::Xor(a, b)
+    | Term::Add(a, b)
+    | Term::Product(a, b)
+    | Term::Equal(a, b) = &mut term
+        && a > b
+    {
+        std::mem::swap(a, b);
     }
+    term
 }
 
 /// The same term with other operands.
 fn renamed(term: &Term, of: impl Fn(Id) -> Id) -> Term {
-    match *term {
-        Term::Unknown(_) | Term::Constant(_) => term.clone(),
-        Term::Not(a) => Term::Not(of(a)),
-        Term::And(a, b) => Term::And(of(a), of(b)),
-        Term::Or(a, b) => Term::Or(of(a), of(b)),
-        Term::Xor(a, b) => Term::Xor(of(a), of(b)),
-        Term::Add(a, b) => Term::Add(of(a), of(b)),
-        Term::Sub(a, b) => Term::Sub(of(a), of(b)),
-        Term::Product(a, b) => Term::Product(of(a), of(b)),
-        Term::Equal(a, b) => Term::Equal(of(a), of(b)),
-        Term::Less(a, b) => Term::Less(of(a), of(b)),
-        Term::SignedLess(a, b) => Term::SignedLess(of(a), of(b)),
-        Term::Choice(a, b, c) => Term::Choice(of(a), of(b), of(c)),
-        Term::Slice { of: a, low } => Term::Slice { of: of(a), low },
-        Term::Join(a, b) => Term::Join(of(a), of(b)),
-        Term::SignExtend(a) => Term::SignExtend(of(a)),
-        Term::Word { memory, address } => Term::Word { memory, address: of(address) },
-    }
+    let mut term = term.clone();
+    term.operands_mut().into_iter().for_each(|id| *id = of(*id));
+    term
 }
