@@ -21,6 +21,12 @@ impl fmt::Display for WrongUsage {
 
 impl std::error::Error for WrongUsage {}
 
+/// Returns from a function with [`WrongUsage`], whose words it formats.
+macro_rules! wrong_usage {
+    ($($text:tt)*) => { anyhow::bail!($crate::cli::failure::WrongUsage(format!($($text)*))) };
+}
+pub(in crate::cli) use wrong_usage;
+
 /// Several errors, none the cause of another: those of several configurations.
 #[derive(Debug)]
 pub struct Several(pub Vec<anyhow::Error>);

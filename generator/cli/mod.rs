@@ -18,6 +18,8 @@ use std::time::Duration;
 use clap::{Args, Parser, Subcommand};
 
 use crate::registry::Registry;
+use failure::wrong_usage;
+use tables::say;
 
 /// Specular-shading hardware from Rust descriptions: Verilog, co-simulation, accuracy.
 ///

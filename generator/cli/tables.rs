@@ -195,6 +195,12 @@ pub fn print_line(line: &str) {
     }
 }
 
+/// Formats a line and prints it, as [`print_line`] does.
+macro_rules! say {
+    ($($text:tt)*) => { $crate::cli::tables::print_line(&format!($($text)*)) };
+}
+pub(in crate::cli) use say;
+
 /// Whether everything that was printed was written.
 ///
 /// # Errors

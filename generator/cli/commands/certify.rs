@@ -13,7 +13,7 @@ use crate::certify::{
     self, Outcome, Statement, prove, questions, refuses_what_is_false, statements,
 };
 use crate::cli::own_file::OwnFile;
-use crate::cli::{Configs, Output, progress, tables};
+use crate::cli::{Configs, Output, progress, say, tables};
 use crate::golden::Contract;
 use crate::hdl::netlist::Design;
 use crate::package::digest;
@@ -87,7 +87,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
                     write(&directory, &one.path, &[], &[])?;
                 }
                 if !output.json {
-                    tables::print_line(&format!("{}: not certified: {step}", one.path));
+                    say!("{}: not certified: {step}", one.path);
                 }
                 list.push(json!({ "config": one.path, "certified": false, "step": step }));
                 continue;
@@ -142,10 +142,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
                 )
             });
             for (statement, why) in open.iter().take(3) {
-                tables::print_line(&format!(
-                    "  {} of {}: {why}",
-                    statement.number, statement.output
-                ));
+                say!("  {} of {}: {why}", statement.number, statement.output);
             }
         }
         let open = open.iter().map(|(statement, why)| {

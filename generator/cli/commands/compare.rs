@@ -5,13 +5,12 @@ mod show;
 use std::path::PathBuf;
 use std::time::Duration;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use clap::Args;
 use rayon::prelude::*;
 
 use super::{load, yosys};
-use crate::cli::failure::WrongUsage;
-use crate::cli::{Output, TimeLimit, progress};
+use crate::cli::{Output, TimeLimit, progress, wrong_usage};
 use crate::config::{Config, Schema, Value};
 use crate::core::Core;
 use crate::evidence::comparison::{self, Accuracy, Multiplier};
@@ -88,7 +87,7 @@ struct Figures {
 /// `glint compare`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     if arguments.csv && output.json {
-        bail!(WrongUsage("--csv and --json are two ways to print the same: give one".to_owned()));
+        wrong_usage!("--csv and --json are two ways to print the same: give one");
     }
     let mut notes = Vec::new();
     let mut cores = Vec::new();

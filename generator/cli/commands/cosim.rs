@@ -6,7 +6,7 @@ mod spread;
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -15,7 +15,7 @@ use super::mismatch::{self, Reproducer};
 use super::{Loaded, load, verdict};
 use crate::base::text;
 use crate::cli::failure::WrongUsage;
-use crate::cli::{Configs, Output, TimeLimit, count, progress, tables};
+use crate::cli::{Configs, Output, TimeLimit, count, progress, say, tables, wrong_usage};
 use crate::core::{TEST_POINTS, TEST_SEED};
 use crate::cosim::exhaustive::{AxisValues, Shard, axis};
 use crate::cosim::{Outcome, Worst};
@@ -99,11 +99,11 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         return exhaustive::run(registry, output, arguments);
     }
     if !arguments.sweep.others.is_empty() {
-        bail!(WrongUsage("--values is for --exhaustive".to_owned()));
+        wrong_usage!("--values is for --exhaustive");
     }
     let loaded = load(registry, &arguments.configs.paths)?;
     if arguments.vcd.is_some() && loaded.len() != 1 {
-        bail!(WrongUsage(format!("--vcd is for one configuration; here are {}", loaded.len())));
+        wrong_usage!("--vcd is for one configuration; here are {}", loaded.len());
     }
     let which = match arguments.simulator {
         Simulator::RustHdl => return built_in(output, &loaded, arguments),
@@ -134,7 +134,7 @@ fn built_in(output: Output, loaded: &[Loaded], arguments: &Arguments) -> Result<
             list.push(as_json(one, outcome, &bound, &faults)?);
             continue;
         }
-        tables::print_line(&format!(
+        say!(
             "{}: {} points, {} clocks; {} registers and {} outputs equal the golden model on each: {}",
             one.path,
             text::grouped(outcome.points),
@@ -142,24 +142,24 @@ fn built_in(output: Output, loaded: &[Loaded], arguments: &Arguments) -> Result<
             outcome.registers,
             outcome.outputs,
             verdict(&bound, &faults),
-        ));
+        );
         if let Some(worst) = &outcome.worst {
-            tables::print_line(&format!(
+            say!(
                 "  largest error {:.3} units (bound {}) at {}",
                 worst.units,
                 bound.words(),
                 place(one, worst)
-            ));
+            );
         }
         if one.core.contract.highlight().is_some() {
             spread::print(&outcome.histogram);
         }
         for fault in faults {
-            tables::print_line(&format!("  FAILS: {fault}"));
+            say!("  FAILS: {fault}");
         }
         if let Some(mismatch) = &outcome.mismatch {
             let reproducer = Reproducer::of_run(one, mismatch)?;
-            tables::print_line(&format!("  {}", reproducer.text(mismatch)));
+            say!("  {}", reproducer.text(mismatch));
         }
     }
     if output.json {

@@ -2,14 +2,13 @@
 
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use clap::Args;
 use serde_json::json;
 
 use super::{Loaded, load, yosys};
-use crate::cli::failure::WrongUsage;
 use crate::cli::store::{self, Written};
-use crate::cli::{Configs, Output, TimeLimit, progress, tables};
+use crate::cli::{Configs, Output, TimeLimit, progress, say, tables, wrong_usage};
 use crate::cosim::exhaustive::Record;
 use crate::package::Seal;
 use crate::pages::datasheet::{self, Subject};
@@ -61,11 +60,11 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let loaded = load(registry, &arguments.configs.paths)?;
     let single = arguments.out.extension().is_some_and(|it| it.eq_ignore_ascii_case("html"));
     if single && loaded.len() != 1 {
-        bail!(WrongUsage(format!(
+        wrong_usage!(
             "--out {}: a file takes one configuration, and there are {}; give a directory",
             arguments.out.display(),
             loaded.len()
-        )));
+        );
     }
     // Before the work: whether everything can be written, and which records there are.
     let mut records = Vec::new();
@@ -135,9 +134,9 @@ fn tell(output: Output, report: &[(&Loaded, String, Written)], notes: &[String])
         return;
     }
     for (one, path, written) in report {
-        tables::print_line(&format!("{}: {path} {written}", one.path));
+        say!("{}: {path} {written}", one.path);
     }
     for note in notes {
-        tables::print_line(&format!("Note: {note}"));
+        say!("Note: {note}");
     }
 }

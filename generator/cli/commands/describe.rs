@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::load;
 use crate::cli::store::{self, Written};
-use crate::cli::{Configs, Output, tables};
+use crate::cli::{Configs, Output, say, tables};
 use crate::package::Seal;
 use crate::registry::Registry;
 
@@ -60,13 +60,13 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
                 "written": written == Written::Replaced,
                 "file": format!("{name}.md"),
             })),
-            Some(written) => tables::print_line(&format!("{}: {name}.md {written}", one.path)),
+            Some(written) => say!("{}: {name}.md {written}", one.path),
             None if output.json => {
                 report.push(json!({ "config": one.path, "name": name, "page": page }));
             }
             None => {
                 let gap = if at > 0 { "\n" } else { "" };
-                tables::print_line(&format!("{gap}{}", page.trim_end()));
+                say!("{gap}{}", page.trim_end());
             }
         }
     }

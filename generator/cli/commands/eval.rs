@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 use super::{Loaded, load_one};
 use crate::cli::failure::WrongUsage;
 use crate::cli::tables::Column;
-use crate::cli::{Output, tables};
+use crate::cli::{Output, say, tables, wrong_usage};
 use crate::golden::{Contract, Model, Operand};
 use crate::registry::Registry;
 
@@ -47,7 +47,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         operands::given(one.core.contract.operands(), &arguments.operands).map_err(WrongUsage)?;
     match &arguments.batch {
         Some(path) if *path == arguments.config => {
-            bail!(WrongUsage("configuration and --batch are one file".to_owned()))
+            wrong_usage!("configuration and --batch are one file")
         }
         Some(path) => batch::batch(output, &one, &given, path),
         None => point(output, &one, &given),
@@ -125,10 +125,7 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
         return Ok(true);
     }
     if !outside.is_empty() {
-        tables::print_line(&format!(
-            "Outside the domain for which the contract is stated: {}.",
-            outside.join("; ")
-        ));
+        say!("Outside the domain for which the contract is stated: {}.", outside.join("; "));
     }
     let rows = operands.iter().zip(&raw).map(|(operand, &raw)| {
         vec![
@@ -145,9 +142,9 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
     });
     print_values("golden, when valid", rows);
     let f = f.map_or_else(String::new, |f| format!(" f = {f}"));
-    tables::print_line(&format!("formula in f64:{f}"));
+    say!("formula in f64:{f}");
     for (output, exact) in contract.outputs().iter().zip(exact) {
-        tables::print_line(&format!("  {} = {exact:.6}", output.name));
+        say!("  {} = {exact:.6}", output.name);
     }
     Ok(true)
 }

@@ -9,7 +9,7 @@ use serde_json::json;
 
 use super::{Loaded, load};
 use crate::cli::store::{self, Written};
-use crate::cli::{Configs, Output, progress, tables};
+use crate::cli::{Configs, Output, progress, say, tables};
 use crate::package::{self, OutputFile, Seal};
 use crate::registry::Registry;
 
@@ -60,7 +60,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
                 "files": paths,
             }));
         } else {
-            tables::print_line(&format!("{}: {} files {written}", one.path, files.len()));
+            say!("{}: {} files {written}", one.path, files.len());
         }
     }
     if output.json {
@@ -124,7 +124,7 @@ fn compare(
         tables::print_json(&json!({ "ok": all.is_empty(), "different": all }));
     } else {
         for path in &all {
-            tables::print_line(&format!("differs: {path}"));
+            say!("differs: {path}");
         }
         if all.is_empty() {
             tables::print_line("everything is as it would be generated");

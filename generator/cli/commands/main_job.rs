@@ -10,7 +10,7 @@ use super::mismatch::Reproducer;
 use super::{CONFIGS, FAILS, HOLDS, Loaded, OUTSIDE, cosim, generate, load, verdict};
 use crate::base::text;
 use crate::cli::tables::Column;
-use crate::cli::{Output, progress, tables};
+use crate::cli::{Output, progress, say, tables};
 use crate::core::{TEST_POINTS, TEST_SEED};
 use crate::cosim::Outcome;
 use crate::golden::Bound;
@@ -78,21 +78,21 @@ const COLUMNS: [Column<'_>; 10] = [
 fn print(loaded: &[Loaded], findings: &[Finding], details: bool) -> Result<()> {
     for (one, finding) in loaded.iter().zip(findings) {
         if let Some(worst) = finding.outcome.worst.as_ref().filter(|_| details) {
-            tables::print_line(&format!(
+            say!(
                 "{}: {} registers and {} outputs equal the golden model on each of {} clocks; the largest error is at {}",
                 one.path,
                 finding.outcome.registers,
                 finding.outcome.outputs,
                 text::grouped(finding.outcome.clocks),
                 cosim::place(one, worst)
-            ));
+            );
         }
         for fault in &finding.faults {
-            tables::print_line(&format!("{}: FAILS: {fault}", one.path));
+            say!("{}: FAILS: {fault}", one.path);
         }
         if let Some(mismatch) = &finding.outcome.mismatch {
             let where_to_look = Reproducer::of_run(one, mismatch)?.text(mismatch);
-            tables::print_line(&format!("{}: {where_to_look}", one.path));
+            say!("{}: {where_to_look}", one.path);
         }
     }
     let rows = loaded.iter().zip(findings).map(|(one, finding)| {

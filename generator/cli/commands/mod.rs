@@ -27,9 +27,10 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result, anyhow, bail};
 
-use super::failure::{self, Several, WrongUsage};
+use super::failure::{self, Several};
 use crate::base::diagnostic::Diagnostics;
 use crate::base::input;
+use crate::cli::wrong_usage;
 use crate::config::{self, Problems};
 use crate::core::Core;
 use crate::golden::Bound;
@@ -76,7 +77,7 @@ fn paths(named: &[PathBuf]) -> Result<Vec<PathBuf>> {
 /// The problems of all files are reported, not only those of the first.
 fn load(registry: &Registry, named: &[PathBuf]) -> Result<Vec<Loaded>> {
     if named.iter().filter(|path| path.as_path() == Path::new(input::STDIN)).count() > 1 {
-        bail!(WrongUsage("standard input, `-`, is read once: name it once".to_owned()));
+        wrong_usage!("standard input, `-`, is read once: name it once");
     }
     let schemas = registry.schemas();
     let mut loaded: Vec<Loaded> = Vec::new();

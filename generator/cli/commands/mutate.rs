@@ -3,17 +3,16 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use clap::Args;
 use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::mismatch::{self, first_clock, traced};
 use super::{Loaded, load};
-use crate::cli::failure::WrongUsage;
 use crate::cli::own_file::OwnFile;
 use crate::cli::tables::Column;
-use crate::cli::{Configs, Output, TimeLimit, progress, tables};
+use crate::cli::{Configs, Output, TimeLimit, progress, say, tables, wrong_usage};
 use crate::cosim::Lockstep;
 use crate::mutate::{
     self, Detector, Difference, Fault, Faults, Found, GOAL_MEMORY, GOAL_TEXT, Score, Share,
@@ -90,10 +89,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         return match &loaded[..] {
             [one] => only(output, one, id),
             _ => {
-                bail!(WrongUsage(format!(
-                    "--only is for one configuration; here are {}",
-                    loaded.len()
-                )))
+                wrong_usage!("--only is for one configuration; here are {}", loaded.len())
             }
         };
     }
@@ -163,9 +159,9 @@ fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) {
             list.push(json!({ "config": one.path, "faults": faults }));
             continue;
         }
-        tables::print_line(&format!("{}: {} faults", one.path, faults.len()));
+        say!("{}: {} faults", one.path, faults.len());
         for fault in faults.iter() {
-            tables::print_line(&format!("  {}  {}", fault.id, fault.kind));
+            say!("  {}  {}", fault.id, fault.kind);
         }
     }
     if output.json {
@@ -177,10 +173,11 @@ fn list(output: Output, loaded: &[Loaded], faults: &[Faults]) {
 fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
     let faults = Faults::of(&one.core.design);
     let Some(fault) = faults.find(id) else {
-        bail!(WrongUsage(format!(
+        wrong_usage!(
             "`{}` has no fault `{id}`; `glint mutate {} --list` names them",
-            one.path, one.path
-        )));
+            one.path,
+            one.path
+        );
     };
     let found = mutate::run(&one.core, [fault], &|| ())?;
     let found = found.into_iter().next().context("a fault without a verdict")?;
@@ -205,13 +202,13 @@ fn only(output: Output, one: &Loaded, id: &str) -> Result<bool> {
         Verdict::Equivalent(how) => format!("equivalent, {how}"),
         Verdict::Undecided => "UNDECIDED: not caught, and not proved equivalent".to_owned(),
     };
-    tables::print_line(&format!("{}: {} ({}): {said}", one.path, fault.id, fault.kind));
+    say!("{}: {} ({}): {said}", one.path, fault.id, fault.kind);
     if let Some((path, from, to)) = waveform {
-        tables::print_line(&format!("  `{}` shows clocks {from} to {to}", path.display()));
+        say!("  `{}` shows clocks {from} to {to}", path.display());
     }
     if !matches!(verdict, Verdict::Equivalent(_)) {
         let notices = if found.shipped { "notices it" } else { "does not notice it" };
-        tables::print_line(&format!("  the shipped bench {notices}"));
+        say!("  the shipped bench {notices}");
     }
     Ok(*verdict != Verdict::Undecided)
 }
@@ -253,7 +250,7 @@ fn found_as_json(one: &Loaded, found: &Found) -> Value {
 
 fn print(scored: &Scored) {
     let score = &scored.netlist;
-    tables::print_line(&format!("{}:", scored.config));
+    say!("{}:", scored.config);
     let row = |name: String, tally: &Tally| {
         let caught = |check| tally.caught.get(&check).copied().unwrap_or(0).to_string();
         vec![
@@ -284,14 +281,14 @@ fn print(scored: &Scored) {
         print_shipped("upper bits of words in ROMs", memory, Some(GOAL_MEMORY));
     }
     if let Some(verilog) = &scored.verilog {
-        tables::print_line(&format!(
+        say!(
             "  Verilog: {} faults, {} noticed by lint, {} by a bench, {} equivalent, {} undecided",
             verilog.planted,
             verilog.lint,
             verilog.bench,
             verilog.equivalent.len(),
             verilog.undecided.len(),
-        ));
+        );
         print_undecided(&verilog.undecided);
         print_shipped(
             "faults in the Verilog that show at the outputs",
@@ -299,16 +296,16 @@ fn print(scored: &Scored) {
             Some(GOAL_TEXT),
         );
     }
-    tables::print_line(&format!(
+    say!(
         "  {:.2} % undecided: {}",
         100.0 * scored.share_undecided(),
         if scored.holds() { "holds" } else { "FAILS, at most 1 % may be" }
-    ));
+    );
 }
 
 fn print_undecided(ids: &[String]) {
     for id in ids {
-        tables::print_line(&format!("  undecided: {id}"));
+        say!("  undecided: {id}");
     }
 }
 
@@ -320,7 +317,5 @@ fn print_shipped(faults: &str, share: Share, goal: Option<f64>) {
     });
     let Share { noticed, of } = share;
     let percent = 100.0 * share.value();
-    tables::print_line(&format!(
-        "  shipped bench: {noticed} of {of} {faults} ({percent:.1} %{goal})"
-    ));
+    say!("  shipped bench: {noticed} of {of} {faults} ({percent:.1} %{goal})");
 }

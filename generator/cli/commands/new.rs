@@ -5,7 +5,7 @@ use clap::Args;
 use serde_json::json;
 
 use crate::cli::failure::WrongUsage;
-use crate::cli::{Output, tables};
+use crate::cli::{Output, tables, wrong_usage};
 use crate::config;
 use crate::registry::Registry;
 
@@ -29,10 +29,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         let names: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
         let near = config::nearest(device, names.iter().copied())
             .map_or_else(|| ".".to_owned(), |near| format!("; did you mean `{near}`?"));
-        bail!(WrongUsage(format!(
-            "there is no device `{device}`{near} The devices are: {}",
-            names.join(", ")
-        )));
+        wrong_usage!("there is no device `{device}`{near} The devices are: {}", names.join(", "));
     };
     let schema = (found.schema)();
     let name = name.clone().unwrap_or_else(|| device.replace('-', "_"));

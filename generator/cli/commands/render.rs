@@ -11,7 +11,7 @@ use super::load_one;
 use crate::base::{input, text};
 use crate::cli::destination::Destination;
 use crate::cli::failure::{self, WrongUsage};
-use crate::cli::{Output, TimeLimit, progress, tables};
+use crate::cli::{Output, TimeLimit, progress, say, tables, wrong_usage};
 use crate::config::Config;
 use crate::core::{self, Core};
 use crate::registry::Registry;
@@ -144,10 +144,10 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     if let Some(extension) = arguments.out.extension()
         && !extension.eq_ignore_ascii_case("png")
     {
-        bail!(WrongUsage(format!(
+        wrong_usage!(
             "--out {}: the picture is a PNG file, and its name should end so",
             arguments.out.display()
-        )));
+        );
     }
     let scene = scene(arguments, render::walks_lines(core.contract.as_ref()))?;
     render::check(&settings, &scene).map_err(|error| WrongUsage(error.to_string()))?;
@@ -194,10 +194,7 @@ fn settings(core: &Core, arguments: &Arguments) -> Result<Settings> {
     let exponent =
         arguments.exponent.unwrap_or_else(|| render::usual_exponent(core.contract.as_ref()));
     if !(least..=most).contains(&i64::from(exponent)) {
-        bail!(WrongUsage(format!(
-            "--exponent {exponent}: `{}` takes {least} to {most}",
-            core.config.name
-        )));
+        wrong_usage!("--exponent {exponent}: `{}` takes {least} to {most}", core.config.name);
     }
     Ok(Settings {
         size: arguments.size,
@@ -255,7 +252,7 @@ fn scene(arguments: &Arguments, coarse: bool) -> Result<Scene> {
         ] {
             // Far beyond what can be seen, and far from what overflows.
             if !(-1e6..=1e6).contains(&value) {
-                bail!(WrongUsage(format!("{option} {value}: not beyond a million")));
+                wrong_usage!("{option} {value}: not beyond a million");
             }
         }
         let cannot = || format!("the height map `{}` cannot be used", path.display());
@@ -331,11 +328,11 @@ fn tell(
         }));
         return;
     }
-    tables::print_line(&format!(
+    say!(
         "{path}: {width}x{height} pixels, n = {}, {} points of {name} through {through}",
         settings.material.exponent,
         text::grouped(rendered.points)
-    ));
+    );
     if degenerate > 0 {
         failure::warn(&format!("{degenerate} triangles are without area and were left out"));
     }
@@ -351,18 +348,18 @@ fn tell(
             Some(psnr) => format!("PSNR {psnr:.2} dB"),
             None => "the same picture".to_owned(),
         };
-        tables::print_line(&format!(
+        say!(
             "  from left to right: the device, Blinn in f64, their difference times {}",
             difference.gain
-        ));
-        tables::print_line(&format!(
+        );
+        say!(
             "  against Blinn: largest difference {} of 255, {psnr} over what is lit",
             difference.largest
-        ));
-        tables::print_line(&format!(
+        );
+        say!(
             "  against its own formula: largest error {:.3} units (bound {bound:.3})",
             comparison.units
-        ));
+        );
     }
 }
 

@@ -9,7 +9,7 @@ use serde_json::json;
 use super::yosys;
 use crate::cli::own_file::OwnFile;
 use crate::cli::tables::Column;
-use crate::cli::{Output, TimeLimit, progress, tables};
+use crate::cli::{Output, TimeLimit, progress, say, tables};
 use crate::evidence;
 use crate::evidence::benchmark;
 use crate::evidence::claims::Verdict;
@@ -92,20 +92,20 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         let claims = evidence.claims.iter();
         claims.filter(|claim| claim.verdict == verdict).count()
     };
-    tables::print_line(&format!(
+    say!(
         "{} claims: {} hold, {} depend on the definition, {} nearly hold, {} do not hold.",
         evidence.claims.len(),
         count(Verdict::Holds),
         count(Verdict::Depends),
         count(Verdict::Nearly),
         count(Verdict::Fails),
-    ));
+    );
     if let Some(timed) = &timed {
         tables::print_line(&timed.words);
     }
     for note in notes {
-        tables::print_line(&format!("Note: {note}"));
+        say!("Note: {note}");
     }
-    tables::print_line(&format!("Written: {}", written.join(", ")));
+    say!("Written: {}", written.join(", "));
     Ok(true)
 }

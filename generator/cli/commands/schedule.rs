@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::{Loaded, load, paths};
 use crate::base::text::counted;
 use crate::cli::tables::Column;
-use crate::cli::{Configs, Output, store, tables};
+use crate::cli::{Configs, Output, say, store, tables};
 use crate::hdl::netlist::{Design, Pipeline, value_name};
 use crate::package::{Seal, sealed};
 use crate::pages::stages;
@@ -83,13 +83,13 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
         0 => String::new(),
         some => format!(" beside those in {}", counted(some, "multiplier")),
     };
-    tables::print_line(&format!(
+    say!(
         "{}: {} stages for {:.1} MHz ({period:.2} ns) on {}, {bits} register bits{multipliers}{delayed}",
         one.path,
         pipeline.stages.len(),
         pipeline.clock_mhz,
         pipeline.target,
-    ));
+    );
     let rows = pipeline.stages.iter().enumerate().map(|(number, stage)| {
         vec![
             number.to_string(),

@@ -12,7 +12,7 @@ use serde::Serialize;
 
 use super::{Loaded, load};
 use crate::cli::own_file::OwnFile;
-use crate::cli::{Configs, Output, TimeLimit, progress, tables};
+use crate::cli::{Configs, Output, TimeLimit, progress, say};
 use crate::evidence::comparison;
 use crate::registry::Registry;
 use crate::synth::{Figures, Flow, Rate, Record, Subject, TARGETS, Target};
@@ -122,7 +122,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     }
     show::print(&measured, &notes);
     for file in written {
-        tables::print_line(&format!("{file} written"));
+        say!("{file} written");
     }
     Ok(true)
 }

@@ -11,9 +11,8 @@ use indicatif::ProgressBar;
 use serde_json::{Value as Json, json};
 
 use crate::cli::destination::Destination;
-use crate::cli::failure::WrongUsage;
 use crate::cli::tables::{self, Column};
-use crate::cli::{Output, progress};
+use crate::cli::{Output, progress, say, wrong_usage};
 use crate::config::{self, Config, Value};
 use crate::registry::{Device, Registry};
 use crate::synth::Target;
@@ -104,26 +103,26 @@ impl ValueEnum for Objective {
 /// `glint tune`.
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     if output.json && arguments.csv {
-        bail!(WrongUsage("--json and --csv are two forms of the same: give one".to_owned()));
+        wrong_usage!("--json and --csv are two forms of the same: give one");
     }
     if !(arguments.error > 0.0 && arguments.error.is_finite()) {
-        bail!(WrongUsage(format!("--error {}: an error is a number above 0", arguments.error)));
+        wrong_usage!("--error {}: an error is a number above 0", arguments.error);
     }
     for (option, wanted) in [("--clock", arguments.clock), ("--rate", arguments.rate)] {
         if let Some(wanted) = wanted.filter(|wanted| !(*wanted > 0.0 && wanted.is_finite())) {
-            bail!(WrongUsage(format!("{option} {wanted}: a number above 0 is wanted")));
+            wrong_usage!("{option} {wanted}: a number above 0 is wanted");
         }
     }
     if !tune::model::knows(arguments.target) {
-        bail!(WrongUsage(format!(
+        wrong_usage!(
             "--target {}: there is no estimate of what a configuration costs there; tune for an FPGA and see `glint synth`",
             arguments.target
-        )));
+        );
     }
     if let (Some(out), Some(plot)) = (&arguments.out, &arguments.plot)
         && std::path::absolute(out).ok() == std::path::absolute(plot).ok()
     {
-        bail!(WrongUsage(format!("--out and --plot both name `{}`", out.display())));
+        wrong_usage!("--out and --plot both name `{}`", out.display());
     }
     let (device, base, fixed) = base(registry, arguments)?;
     let file = arguments.out.as_deref().map(fresh).transpose()?;
@@ -186,9 +185,7 @@ fn base(registry: &Registry, arguments: &Arguments) -> Result<(Device, Config, V
     let mut fixed = Vec::new();
     for given in &arguments.set {
         let Some((key, value)) = given.split_once('=') else {
-            bail!(WrongUsage(format!(
-                "--set {given}: a key and a value are wanted, as cosine.fraction=16"
-            )));
+            wrong_usage!("--set {given}: a key and a value are wanted, as cosine.fraction=16");
         };
         let (key, value) = (key.trim(), value.trim());
         let is_bare = value.parse::<f64>().is_ok()
@@ -260,14 +257,14 @@ fn print(answer: &Answer, arguments: &Arguments, text: &str) {
         ]
     });
     tables::print(&columns, rows);
-    tables::print_line(&format!(
+    say!(
         "Proved bounds; LUTs and MHz are estimates for {}. {} configurations were looked at.",
         arguments.target.title(),
         answer.looked_at
-    ));
+    );
     match &arguments.out {
-        Some(path) => tables::print_line(&format!("{} written", path.display())),
-        None => tables::print_line(&format!("\n{}", text.trim_end())),
+        Some(path) => say!("{} written", path.display()),
+        None => say!("\n{}", text.trim_end()),
     }
 }
 

@@ -8,7 +8,7 @@ use serde_json::json;
 
 use super::{Loaded, load};
 use crate::cli::own_file::OwnFile;
-use crate::cli::{Configs, Output, TimeLimit, progress, tables};
+use crate::cli::{Configs, Output, TimeLimit, progress, say, tables};
 use crate::registry::Registry;
 use crate::verify::{
     Answer, CHECKS, CheckTime, Conclusion, Effort, Record, Subject, Verdict, page,
@@ -93,7 +93,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             continue;
         }
         print_conclusion(one, &record);
-        tables::print_line(&format!("  written: {}", written.join(", ")));
+        say!("  written: {}", written.join(", "));
     }
     if output.json {
         tables::print_json(&json!({ "ok": verified, "configurations": list }));
@@ -149,12 +149,12 @@ fn print_conclusion(one: &Loaded, record: &Record) {
         _ => format!("{}: {words}", one.path),
     });
     for command in with(Verdict::NotRun).filter_map(|it| it.finding.complete_with.as_ref()) {
-        tables::print_line(&format!("  complete it with: {command}"));
+        say!("  complete it with: {command}");
     }
     match with(Verdict::NotCovered).count() {
         0 => (),
         1 => tables::print_line("  1 check above says nothing of it"),
-        count => tables::print_line(&format!("  {count} checks above say nothing of it")),
+        count => say!("  {count} checks above say nothing of it"),
     }
 }
 
@@ -163,20 +163,20 @@ fn print(one: &Loaded, answer: &Answer) {
     let finding = &answer.finding;
     let domain =
         if finding.domain.is_empty() { String::new() } else { format!(" [{}]", finding.domain) };
-    tables::print_line(&format!(
+    say!(
         "{}: {}: {} ({:.1} s){domain}",
         one.path,
         answer.title,
         finding.verdict.words(),
         answer.timing.seconds
-    ));
+    );
     if !finding.words.is_empty() && finding.verdict != Verdict::Failed {
-        tables::print_line(&format!("  {}", finding.words));
+        say!("  {}", finding.words);
     }
     for fault in &finding.faults {
-        tables::print_line(&format!("  FAILS: {fault}"));
+        say!("  FAILS: {fault}");
     }
     if !finding.open.is_empty() {
-        tables::print_line(&format!("  not covered: {}", finding.open));
+        say!("  not covered: {}", finding.open);
     }
 }

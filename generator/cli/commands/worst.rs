@@ -12,7 +12,7 @@ use serde_json::json;
 use super::{Loaded, load};
 use crate::base::text;
 use crate::cli::own_file::OwnFile;
-use crate::cli::{Configs, Output, count, progress, tables};
+use crate::cli::{Configs, Output, count, progress, say, tables};
 use crate::cosim::search::{self, Reached};
 use crate::registry::Registry;
 
@@ -128,30 +128,24 @@ fn known(one: &Loaded, arguments: &Arguments, found: &Reached) -> Known {
 fn print(one: &Loaded, report: &Report) {
     let Report { found, bound, holds, recorded } = report;
     let verdict = if *holds { "within" } else { "BEYOND" };
-    tables::print_line(&format!(
+    say!(
         "{}: {:.4} units, {verdict} the bound of {bound:.4}, by {} from seed {}",
         found.config,
         found.units,
         climbs(found.starts),
         found.seed
-    ));
+    );
     let operands = one.core.contract.operands().iter();
     let operands: Vec<String> =
         operands.map(|it| format!("{}=#{}", it.name, found.operands[&it.name])).collect();
-    tables::print_line(&format!(
-        "  {} is {} for {:.4} at {}",
-        found.output,
-        found.raw,
-        found.exact,
-        operands.join(" ")
-    ));
+    say!("  {} is {} for {:.4} at {}", found.output, found.raw, found.exact, operands.join(" "));
     if let Some(recorded) = recorded {
-        tables::print_line(&format!(
+        say!(
             "  the record stays: {:.4} units, by {} from seed {}",
             recorded.units,
             climbs(recorded.starts),
             recorded.seed
-        ));
+        );
     }
 }
 

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::{Arguments, Entry};
 use crate::base::text;
 use crate::cli::tables::Column;
-use crate::cli::{Output, failure, tables};
+use crate::cli::{Output, failure, say, tables};
 use crate::evidence::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, Multiplier, Spread};
 use crate::golden::contract;
 use crate::synth::{Frequency, Rate, Record, TARGETS, Target};
@@ -38,10 +38,10 @@ pub fn show(
     print_hardware(entries);
     print_speed(entries);
     for note in entries.iter().filter_map(at_rest).chain(notes.iter().cloned()) {
-        tables::print_line(&format!("Note: {note}."));
+        say!("Note: {note}.");
     }
     for fault in faults {
-        tables::print_line(&format!("FAILS: {fault}"));
+        say!("FAILS: {fault}");
     }
 }
 
@@ -83,11 +83,11 @@ fn spreads(accuracy: &Accuracy) -> [(&'static str, Spread); 4] {
 }
 
 fn print_errors(arguments: &Arguments, entries: &[Entry]) {
-    tables::print_line(&format!(
+    say!(
         "Errors of f against cos^n gamma for n = {}, over gamma = 0 to 90 degrees in steps of {}:",
         arguments.exponent,
         1.0 / f64::from(ANGLES_PER_DEGREE)
-    ));
+    );
     let columns = [
         Column::words("device"),
         Column::numbers("largest"),
@@ -221,10 +221,10 @@ fn print_speed(entries: &[Entry]) {
         entries.iter().filter_map(|entry| entry.record.as_ref()).flat_map(Record::tools).collect();
     tools.sort_unstable();
     tools.dedup();
-    tables::print_line(&format!(
+    say!(
         "Measured by `glint synth` with registers around the core, the median of several runs of place and route: {}.",
         tools.join(", ")
-    ));
+    );
 }
 
 /// Whole clocks as an integer.

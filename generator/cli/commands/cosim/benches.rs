@@ -1,14 +1,14 @@
 //! `cosim --simulator`: the emitted bench in an external simulator.
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
 use super::Arguments;
 use crate::cli::commands::Loaded;
 use crate::cli::commands::mismatch::{first_clock, waveform_of};
-use crate::cli::failure::{self, WrongUsage};
-use crate::cli::{Output, progress, staged, tables};
+use crate::cli::failure::{self};
+use crate::cli::{Output, progress, say, staged, tables, wrong_usage};
 use crate::package;
 use crate::tools::{BenchDifference, BenchOutcome, Simulator, bench_waveform, run_bench};
 
@@ -46,13 +46,11 @@ pub fn benches(
     which: Simulator,
 ) -> Result<bool> {
     if arguments.vcd.is_some() {
-        bail!(WrongUsage("--vcd is for the built-in simulator".to_owned()));
+        wrong_usage!("--vcd is for the built-in simulator");
     }
     let points = arguments.points.unwrap_or(POINTS);
     if points > MOST_POINTS {
-        bail!(WrongUsage(format!(
-            "--points {points}: an external simulator takes at most {MOST_POINTS}"
-        )));
+        wrong_usage!("--points {points}: an external simulator takes at most {MOST_POINTS}");
     }
     let bar = progress::bar(output, loaded.len() as u64, "benches run");
     let runs: Vec<Run> = loaded
@@ -121,7 +119,7 @@ fn name(arguments: &Arguments) -> String {
 fn print(one: &Loaded, run: &Run, points: u64, seed: u64, which: Simulator) {
     let passed = run.outcome.passed;
     let verdict = if passed { "holds" } else { "FAILS" };
-    tables::print_line(&format!("{}: {points} points, {} clocks: {verdict}", one.path, run.clocks));
+    say!("{}: {points} points, {} clocks: {verdict}", one.path, run.clocks);
     if !passed {
         tables::print_line(&run.outcome.transcript);
     }
@@ -130,13 +128,13 @@ fn print(one: &Loaded, run: &Run, points: u64, seed: u64, which: Simulator) {
     };
     let BenchDifference { clock, during, signal, simulated, expected } = &mismatch.difference;
     let during = if during.is_empty() { String::new() } else { format!(", {during}") };
-    tables::print_line(&format!(
+    say!(
         "  FAILS: seed {seed}, clock {clock}{during}: `{signal}` is {simulated} in {which} and {expected} in the golden model"
-    ));
+    );
     let window = mismatch.vcd.as_ref().map_or_else(String::new, |vcd| {
         format!("`{vcd}` shows clocks {} to {clock}; ", mismatch.from)
     });
-    tables::print_line(&format!("  {window}again: {}", mismatch.command));
+    say!("  {window}again: {}", mismatch.command);
 }
 
 fn as_json(one: &Loaded, run: &Run, points: u64, arguments: &Arguments) -> Value {

@@ -7,16 +7,15 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, ensure};
 use indicatif::HumanDuration;
 use serde_json::json;
 
 use super::Arguments;
 use crate::base::{input, text};
 use crate::cli::commands::load;
-use crate::cli::failure::WrongUsage;
 use crate::cli::interrupt::Deferred;
-use crate::cli::{Output, progress, staged, tables};
+use crate::cli::{Output, progress, say, staged, tables, wrong_usage};
 use crate::cosim::exhaustive::{Job, Shard, State, kept};
 use crate::registry::Registry;
 use show::{announce, report};
@@ -32,7 +31,7 @@ const CORES: [u32; 3] = [1, 16, 1000];
 pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result<bool> {
     let loaded = load(registry, &arguments.configs.paths)?;
     if arguments.resume.is_some() && loaded.len() != 1 {
-        bail!(WrongUsage(format!("--resume is for one configuration; here are {}", loaded.len())));
+        wrong_usage!("--resume is for one configuration; here are {}", loaded.len());
     }
     let sweeps = loaded.iter().map(|one| arguments.sweep.of(one)).collect::<Result<Vec<_>>>()?;
     let mut list = Vec::new();
@@ -145,7 +144,7 @@ fn announce_duration(job: &Job<'_>, state: &State) -> Result<()> {
         let duration = duration.mul_f64(threads as f64 / f64::from(cores));
         format!("{} on {}", roughly(duration), text::counted(cores as usize, "core"))
     });
-    tables::print_line(&format!("  {here} ({})", elsewhere.join(", ")));
+    say!("  {here} ({})", elsewhere.join(", "));
     Ok(())
 }
 

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::cli::tables;
+use crate::cli::say;
 use crate::cosim::{CLASSES, Histogram};
 
 /// Prints the share of the points in each class.
@@ -12,8 +12,8 @@ pub fn print(histogram: &Histogram) {
     let cell = |text: String| format!("{text:>8}");
     let classes: String = CLASSES.map(|class| cell(class.to_owned())).concat();
     let shares = counts.map(|count| cell(format!("{:.1} %", 100.0 * count as f64 / all)));
-    tables::print_line(&format!("  f     {classes}"));
-    tables::print_line(&format!("  points{}", shares.concat()));
+    say!("  f     {classes}");
+    say!("  points{}", shares.concat());
 }
 
 /// The same as counts.

@@ -4,6 +4,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::{Measured, Recorded};
+use crate::cli::say;
 use crate::cli::tables::{self, Column};
 use crate::synth::{Figures, Rate, Step};
 
@@ -34,10 +35,10 @@ pub fn print(measured: &[Measured], notes: &[String]) {
         for figures in &one.figures {
             let about = format!("{}, {}", one.one.core.config.name, figures.device);
             if !figures.critical_path.is_empty() {
-                tables::print_line(&format!("{about}: {}", path(&figures.critical_path)));
+                say!("{about}: {}", path(&figures.critical_path));
             }
             if let Some(reason) = &figures.untimed {
-                tables::print_line(&format!("{about}: {reason}"));
+                say!("{about}: {reason}");
             }
         }
     }
@@ -49,9 +50,9 @@ pub fn print(measured: &[Measured], notes: &[String]) {
         .collect();
     tools.sort_unstable();
     tools.dedup();
-    tables::print_line(&format!("Measured with {}.", tools.join(", ")));
+    say!("Measured with {}.", tools.join(", "));
     for note in notes {
-        tables::print_line(&format!("Note: {note}"));
+        say!("Note: {note}");
     }
 }
 

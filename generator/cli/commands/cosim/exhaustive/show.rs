@@ -8,35 +8,31 @@ use serde_json::{Value, json};
 use crate::base::text;
 use crate::cli::commands::Loaded;
 use crate::cli::commands::mismatch::Reproducer;
-use crate::cli::{Output, tables};
+use crate::cli::{Output, say};
 use crate::cosim::exhaustive::{Difference, Job, Proof, Shard, State};
 use crate::golden::Values;
 
 /// What is about to be done, and what is not.
 pub fn announce(one: &Loaded, job: &Job<'_>, state: &State) {
-    tables::print_line(&format!("{}: {} ({})", one.path, job.words(), job.f.sweep().words(),));
+    say!("{}: {} ({})", one.path, job.words(), job.f.sweep().words(),);
     if !job.f.sweep().omits.is_empty() {
-        tables::print_line(&format!("  not covered: {}", job.f.sweep().omits));
+        say!("  not covered: {}", job.f.sweep().omits);
     }
     if let Some(clocks) = &job.clocks {
         match clocks.count() {
             0 => (),
-            count => tables::print_line(&format!(
+            count => say!(
                 "  every register and output at every clock for {} combinations of {} operand bits",
                 text::grouped(count),
                 clocks.bits()
-            )),
+            ),
         }
-        tables::print_line(&format!("  not covered: {}", clocks.omits()));
+        say!("  not covered: {}", clocks.omits());
     }
     let left = job.remaining(state);
     let all = job.remaining(&State::new("", Shard::WHOLE));
     if left != all {
-        tables::print_line(&format!(
-            "  shard {}: {} evaluations to do here",
-            state.shard,
-            text::grouped(left)
-        ));
+        say!("  shard {}: {} evaluations to do here", state.shard, text::grouped(left));
     }
 }
 
@@ -63,7 +59,7 @@ pub fn report(
         print(one, job, &proof, state);
         if let Some((difference, reproducer)) = &found {
             let text = reproducer.text(&difference.mismatch);
-            tables::print_line(&format!("  {text}"));
+            say!("  {text}");
         }
     }
     Ok(proof.faults.is_empty())
@@ -95,16 +91,16 @@ fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &State) {
         }
         false => "FAILS".to_owned(),
     };
-    tables::print_line(&format!(
+    say!(
         "  {} (bound {}): {verdict}",
         proof.words(&format!(", at raw {}", at.join(" "))),
         one.core.contract.bound().words(),
-    ));
+    );
     for fault in &proof.faults {
-        tables::print_line(&format!("  FAILS: {fault}"));
+        say!("  FAILS: {fault}");
     }
     if !job.f.sweep().omits.is_empty() {
-        tables::print_line(&format!("  undecided: {}", job.f.sweep().omits));
+        say!("  undecided: {}", job.f.sweep().omits);
     }
 }
 
