@@ -6,7 +6,7 @@
 use std::fs;
 use std::path::Path;
 
-use glint::config;
+use glint::config::{self, Config, Problems};
 use glint::core::Core;
 use glint::package::{OutputFile, sources, sources_for};
 use glint::registry::{Device, Registry};
@@ -55,10 +55,12 @@ fn configurations_in(directory: &str) -> Vec<String> {
 /// # Panics
 /// It is wrong.
 pub fn configuration(path: &str) -> Core {
-    let registry = Registry::catalogue();
-    let config = config::read(Path::new(path), &registry.schemas())
-        .unwrap_or_else(|problems| panic!("{problems}"));
-    let device = *registry.device(&config.device).expect("a device");
+    of_config(path, config::read(Path::new(path), &Registry::catalogue().schemas()))
+}
+
+fn of_config(path: &str, config: Result<Config, Problems>) -> Core {
+    let config = config.unwrap_or_else(|problems| panic!("{problems}"));
+    let device = *Registry::catalogue().device(&config.device).expect("a device");
     Core::new(device, config).unwrap_or_else(|error| panic!("{path}: {error:?}"))
 }
 
@@ -89,12 +91,12 @@ pub fn configuration_between(path: &str, interface: &str) -> Core {
     parsed(path, &format!("{own}\n[interface]\n{interface}"))
 }
 
-fn parsed(path: &str, text: &str) -> Core {
-    let registry = Registry::catalogue();
-    let config = config::parse(path, text, &registry.schemas())
-        .unwrap_or_else(|problems| panic!("{problems}"));
-    let device = *registry.device(&config.device).expect("a device");
-    Core::new(device, config).unwrap_or_else(|error| panic!("{path}: {error:?}"))
+/// The configuration that a text states, by the name of its file.
+///
+/// # Panics
+/// It is wrong.
+pub fn parsed(path: &str, text: &str) -> Core {
+    of_config(path, config::parse(path, text, &Registry::catalogue().schemas()))
 }
 
 /// A valid configuration drawn at random, as TOML for messages, and its unit.

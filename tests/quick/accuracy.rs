@@ -11,6 +11,8 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use rayon::prelude::*;
 
+use crate::common::cores::parsed;
+
 /// Random configurations of each device.
 const CONFIGURATIONS: u64 = 300;
 
@@ -22,11 +24,7 @@ const F64: f64 = 1e-6;
 
 /// The contract of a device with these settings, lines of TOML, and defaults elsewhere.
 fn of(device: &str, settings: &str) -> Box<dyn Contract> {
-    let registry = Registry::catalogue();
-    let text = format!("device = \"{device}\"\n{settings}\n");
-    let config = config::parse("settings.toml", &text, &registry.schemas())
-        .unwrap_or_else(|problems| panic!("{problems}"));
-    (registry.device(device).expect("a device of the catalogue").contract)(&config)
+    parsed("settings.toml", &format!("device = \"{device}\"\n{settings}\n")).contract
 }
 
 /// A point of the domain, more often than not within the highlight: cosines anywhere, small, or such

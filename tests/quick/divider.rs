@@ -1,13 +1,13 @@
 //! The divider, through the built-in simulator: the block in a device of its own, every quotient,
 //! remainder and clock of small operands against integer division; and the edges of `schlick`.
 
-use glint::config;
 use glint::dsl::{Designer, end, loop_while, step, valid};
 use glint::fixed::Format;
 use glint::hdl::blocks::divider::Divider;
 use glint::hdl::netlist::{Design, NetId};
 use glint::hdl::sim::Simulator;
-use glint::registry::Registry;
+
+use crate::common::cores::parsed;
 
 /// A device that divides two operands.
 fn ratio(dividend: Format, divisor: Format, bits: i32) -> Design {
@@ -148,12 +148,7 @@ fn negative_operands_are_refused() {
 /// Ends of both operands, and one step within them; cos γ is signed here.
 #[test]
 fn edges_of_schlick() {
-    let registry = Registry::catalogue();
-    let text = "device = \"schlick\"\ncosine.signed = true\n";
-    let config = config::parse("edges.toml", text, &registry.schemas());
-    let config = config.unwrap_or_else(|problems| panic!("{problems}"));
-    let device = registry.device("schlick").expect("the device");
-    let design = device.design(&config).unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    let design = parsed("edges.toml", "device = \"schlick\"\ncosine.signed = true\n").design;
     let mut bench = Bench::new(&design);
     let one = 1 << 20;
     let negative = |raw: u64| (1 << 22) - raw;

@@ -4,24 +4,22 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use glint::config::{self, Config};
 use glint::core::Core;
 use glint::cosim::trial;
 use glint::golden::formulas;
 use glint::hdl::sim::Simulator;
 use glint::package::Computation;
-use glint::registry::Registry;
 use glint::render::setup::{Arc, Line, Operands};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
+
+use crate::common::cores::parsed;
 
 /// A right angle of the default of `quad-cosine`, s1.26.
 const RIGHT: i64 = 1 << 26;
 
 fn core(name: &str) -> Core {
-    let registry = Registry::catalogue();
-    let device = *registry.device(name).expect("a device");
-    Core::new(device, Config::defaults(&(device.schema)(), "line")).expect("a design")
+    parsed("line.toml", &format!("device = \"{name}\"\n"))
 }
 
 /// The default of a device in the simulator.
@@ -355,13 +353,9 @@ fn the_worst_rounding_of_the_longest_line_stays_within_two_units() {
 /// A register behind every memory and multiplier changes no result, only when it comes.
 #[test]
 fn a_staged_line_shows_the_same_results_later() {
-    let registry = Registry::catalogue();
     for (name, stages, later) in [("quad-cosine", 7, 5), ("cosine-squared", 5, 3)] {
-        let device = *registry.device(name).expect("a device");
         let text = format!("device = \"{name}\"\n[line]\nstages = {stages}\n");
-        let config = config::parse("staged.toml", &text, &[(device.schema)()]);
-        let staged = Core::new(device, config.unwrap_or_else(|problems| panic!("{problems}")));
-        let (staged, short) = (staged.expect("a design"), core(name));
+        let (staged, short) = (parsed("staged.toml", &text), core(name));
         let computations = |core: &Core| {
             let listed = trial::computations(&core.design, core.contract.as_ref());
             listed.expect("computations that agree with the golden model")

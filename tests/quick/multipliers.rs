@@ -1,9 +1,10 @@
 //! One multiplier in place of three: the same results, fewer multipliers, more clocks.
 
-use glint::config;
 use glint::core::Core;
 use glint::evidence::comparison::multipliers;
 use glint::registry::{Device, Registry};
+
+use crate::common::cores::parsed;
 
 /// Results that golden model and simulation are compared on.
 const POINTS: u64 = 2000;
@@ -11,9 +12,7 @@ const POINTS: u64 = 2000;
 /// A device by its defaults and more keys, as TOML.
 fn core(device: &Device, more: &str) -> Core {
     let text = format!("device = \"{}\"\n{more}", device.name);
-    let config = config::parse("multipliers.toml", &text, &[(device.schema)()])
-        .unwrap_or_else(|problems| panic!("{problems}"));
-    Core::new(*device, config).unwrap_or_else(|error| panic!("{error:?}"))
+    parsed("multipliers.toml", &text)
 }
 
 /// The device with one multiplier for what has three: two multipliers fewer, so many clocks more, and the same results.

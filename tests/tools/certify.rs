@@ -12,13 +12,15 @@ use std::process::Command;
 use std::time::Duration;
 
 use glint::certify::{self, Outcome, Statement, prove, questions, statements};
-use glint::config::{Config, parse};
+use glint::config::Config;
+use glint::core::Core;
 use glint::golden::Contract;
 use glint::hdl::netlist::{Design, Driver, Op};
-use glint::registry::{Device, Registry};
+use glint::registry::Device;
 use glint::tools::Tool;
 use rayon::prelude::*;
 
+use crate::common::cores::{configuration, parsed};
 use crate::common::sample::sampled;
 use crate::example::fresnel;
 
@@ -28,25 +30,17 @@ const LIMIT: Duration = Duration::from_secs(20);
 /// Coq takes a hundred times as long.
 const LIMIT_COQ: Duration = Duration::from_secs(60);
 
-/// The configurations that are certified whole, and their devices.
-const CERTIFIED: [(&str, &str); 6] = [
-    ("cosine_power", "cosine-power"),
-    ("threshold", "threshold"),
-    ("quadratic", "quadratic"),
-    ("schlick", "schlick"),
-    ("lyon", "lyon"),
-    ("cosine_squared", "cosine-squared"),
-];
+/// The configurations that are certified whole.
+const CERTIFIED: [&str; 6] =
+    ["cosine_power", "threshold", "quadratic", "schlick", "lyon", "cosine_squared"];
 
 /// Coq has gone through those of the first of them.
 const BY_COQ: usize = 5;
 
 fn device(name: &str, keys: &str) -> (Design, Box<dyn Contract>) {
-    let registry = Registry::catalogue();
     let text = format!("device = \"{name}\"\nname = \"core\"\n{keys}");
-    let config = parse("core.toml", &text, &registry.schemas()).expect("a configuration");
-    let device = registry.device(name).expect("in the catalogue");
-    (device.sequential(&config).expect("a design"), (device.contract)(&config))
+    let Core { design, contract, .. } = parsed("core.toml", &text);
+    (design, contract)
 }
 
 fn stated(name: &str, keys: &str) -> Vec<Statement> {
@@ -283,12 +277,9 @@ fn what_statements_rest_on_is_stated_and_wrong_premises_are_refused() {
 
 #[test]
 fn what_cannot_be_stated_says_which_step() {
-    let registry = Registry::catalogue();
-    let step_of = |device: &str| {
-        let device = registry.device(device).expect("in the catalogue");
-        let config = Config::defaults(&(device.schema)(), "core");
-        let design = device.sequential(&config).expect("a design");
-        statements(&design, (device.contract)(&config).as_ref(), Duration::MAX).map(|_| ())
+    let step_of = |name: &str| {
+        let (design, contract) = device(name, "");
+        statements(&design, contract.as_ref(), Duration::MAX).map(|_| ())
     };
     let step = step_of("quad-cosine").expect_err("a power by a dictionary");
     assert!(step.starts_with("`{1: 1, 2: 2,") && step.ends_with("is not understood"), "{step}");
@@ -297,15 +288,9 @@ fn what_cannot_be_stated_says_which_step() {
 }
 
 /// The certificates of a configuration, with the statements of today.
-fn committed((name, device): (&str, &str)) -> Vec<(String, Statement)> {
+fn committed(name: &str) -> Vec<(String, Statement)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let text = std::fs::read_to_string(root.join(format!("configs/{name}.toml")));
-    let registry = Registry::catalogue();
-    let config = parse("core.toml", &text.expect("a file"), &registry.schemas());
-    let config = config.expect("a configuration");
-    let device = registry.device(device).expect("in the catalogue");
-    let design = device.sequential(&config).expect("a design");
-    let contract = (device.contract)(&config);
+    let Core { design, contract, .. } = configuration(&format!("configs/{name}.toml"));
     let stated = statements(&design, contract.as_ref(), Duration::MAX).expect("statements");
     let directory = root.join("proofs/certificates").join(name);
     assert_eq!(std::fs::read_dir(&directory).expect("certificates").count(), stated.len());
@@ -318,8 +303,8 @@ fn committed((name, device): (&str, &str)) -> Vec<(String, Statement)> {
 
 #[test]
 fn committed_certificates_are_those_of_today_and_proved() {
-    for (name, device) in CERTIFIED {
-        let all = committed((name, device));
+    for name in CERTIFIED {
+        let all = committed(name);
         all.into_par_iter().for_each(|(certificate, statement)| {
             let Statement { output, number, scripts, .. } = statement;
             let (_, script) = certificate.split_once("\n\n").expect("a head and a script");
@@ -340,7 +325,7 @@ fn coq_accepts_certificates() {
     }
     let [gappa, coq] =
         ["gappa", "coqc"].map(|tool| Tool::find(tool).unwrap_or_else(|error| panic!("{error}")));
-    let all = wanted.into_iter().flat_map(|it| committed(it).into_iter().map(move |of| (it.0, of)));
+    let all = wanted.into_iter().flat_map(|it| committed(it).into_iter().map(move |of| (it, of)));
     let all: Vec<_> = all.collect();
     all.par_iter().for_each(|(name, (_, statement))| {
         let outcome = prove(&gappa, Some(&coq), statement, LIMIT_COQ).expect("tools that work");

@@ -4,10 +4,9 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-use crate::common::cores::{Emitted, random, write};
+use crate::common::cores::{Emitted, parsed, random, write};
 use crate::common::sample::sampled;
 use crate::common::tools::{assert_bench_passes, assert_lint_clean};
-use glint::config;
 use glint::core::Core;
 use glint::registry::Registry;
 use glint::tools::Simulator;
@@ -59,12 +58,8 @@ const ONCE_WRONG: [&str; 1] = [
 
 #[test]
 fn what_was_wrong_once_is_right() {
-    let registry = Registry::catalogue();
     for (at, text) in ONCE_WRONG.into_iter().enumerate() {
-        let config = config::parse(&format!("once_wrong_{at}.toml"), text, &registry.schemas())
-            .unwrap_or_else(|problems| panic!("{problems}"));
-        let device = *registry.device(&config.device).expect("a device");
-        let core = Core::new(device, config).unwrap_or_else(|error| panic!("{error:?}\n{text}"));
+        let core = parsed(&format!("once_wrong_{at}.toml"), text);
         let toml = text.to_owned();
         agrees_within_its_bound(&toml, &core);
         passes_outside(&toml, &core, 1);
