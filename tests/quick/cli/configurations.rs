@@ -56,8 +56,7 @@ fn a_configuration_may_come_from_standard_input() {
         let input = fs::File::open(place.at(file)).expect("a file");
         Run::of(place.command().args(arguments).stdin(input).output())
     };
-    let run = with("core.toml", &["generate", "-"]);
-    assert_eq!(run.code, 0, "{run:?}");
+    with("core.toml", &["generate", "-"]).good();
     assert!(place.at("rtl_out/piped/piped.v").exists());
     place.write("nameless.toml", COSINE_POWER);
     let run = with("nameless.toml", &["generate", "-"]);
@@ -214,8 +213,7 @@ fn outside_the_accuracy_contract() {
     // Six fraction bits of f move an output of 255 by about 4.
     let coarse = "[intensity]\nfraction = 6\n";
     let place = Place::with("core.toml", format!("{COSINE_POWER}{coarse}"));
-    let run = place.glint(["generate", "core.toml"]);
-    assert_eq!(run.code, 0, "{run:?}");
+    let run = place.glint(["generate", "core.toml"]).good();
     // Most is the base's, times 16; a bit more halves it.
     let parts = [
         "warning: core.toml: outside the accuracy contract",

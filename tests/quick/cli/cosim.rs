@@ -64,7 +64,7 @@ fn variables(items: &[ScopeItem], path: &str, found: &mut Vec<(String, Var)>) {
 fn waveform() {
     let place = Place::with("core.toml", ROUGH);
     place.done(["generate", "core.toml"]);
-    let manifest: Value = serde_json::from_str(&place.read("rtl_out/core/core.json")).unwrap();
+    let manifest = place.json("rtl_out/core/core.json");
     place.done(["cosim", "core.toml", "--points", "20", "--vcd", "wave.vcd"]);
     let file = BufReader::new(fs::File::open(place.at("wave.vcd")).unwrap());
     let mut parser = Parser::new(file);
@@ -115,7 +115,6 @@ fn waveforms_that_are_wrong_usage() {
 #[cfg(unix)]
 fn with_tools(simulator: &str, programs: &[(&str, &str)], more: &[&str]) -> crate::place::Run {
     let place = Place::with("core.toml", COSINE_POWER);
-    fs::create_dir(place.at("tools")).unwrap();
     for (name, script) in programs {
         place.script(&format!("tools/{name}"), script);
     }
@@ -157,7 +156,6 @@ fn a_simulator_that_fails() {
 #[test]
 fn what_differs_in_verilog_is_told_with_its_place() {
     let place = Place::with("core.toml", COSINE_POWER);
-    fs::create_dir(place.at("tools")).unwrap();
     let spoil = "/bin/sed -i 's/accumulator . red_reg;/accumulator * green_reg;/' core_datapath.v";
     place.script(
         "tools/iverilog",
@@ -368,7 +366,6 @@ fn one_thread_is_a_thread() {
     let mut command = place.command();
     let command =
         command.args(["cosim", "core.toml", "--exhaustive"]).env("RAYON_NUM_THREADS", "1");
-    let run = Run::of(command.output());
-    assert_eq!(run.code, 0, "{run:?}");
+    let run = Run::of(command.output()).good();
     assert!(run.out.contains(" on 1 thread ("), "{}", run.out);
 }

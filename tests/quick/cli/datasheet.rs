@@ -20,8 +20,7 @@ fn names(place: &Place) -> Vec<String> {
 #[test]
 fn pages_go_where_they_are_told_to() {
     let place = place();
-    let run = datasheet(&place, &[]);
-    assert_eq!(run.code, 0, "{run:?}");
+    let run = datasheet(&place, &[]).good();
     assert_eq!(run.out, "core.toml: datasheets/core.html written\n");
     assert_eq!(names(&place), ["core.toml", "datasheets/core.html"]);
     let again = datasheet(&place, &[]);
@@ -44,7 +43,7 @@ fn pages_go_where_they_are_told_to() {
 fn waves_have_one_length() {
     let place = place();
     datasheet(&place, &["--out", "core.html", "--wavedrom"]);
-    let waves: Value = serde_json::from_str(&place.read("core.wavedrom.json")).expect("JSON");
+    let waves: Value = place.json("core.wavedrom.json");
     let signal = waves["signal"].as_array().expect("signals");
     let lengths = signal.iter().map(|lane| {
         let wave = lane["wave"].as_str().expect("a wave");
@@ -106,14 +105,12 @@ fn a_record_must_be_of_the_configuration() {
     let record = include_str!("../../../proofs/cosine_power.json");
     place.write("records/any_name.json", record);
     place.write("records/beside.json", "{}");
-    let run = datasheet(&place, &["--proofs", "records"]);
-    assert_eq!(run.code, 0, "{run:?}");
+    datasheet(&place, &["--proofs", "records"]).good();
     let page = place.read("datasheets/core.html");
     // 1 048 577 cosines and 1000 exponents.
     assert!(page.contains("1\u{202f}048\u{202f}577\u{202f}000 evaluations"));
     place.write("core.toml", "device = \"cosine-power\"\npower = 2\n");
-    let run = datasheet(&place, &["--proofs", "records", "--force"]);
-    assert_eq!(run.code, 0, "{run:?}");
+    datasheet(&place, &["--proofs", "records", "--force"]).good();
     assert!(place.read("datasheets/core.html").contains("There is no record of such a check"));
     // Of this configuration, but what it was made with had another bound.
     place.write("core.toml", "device = \"cosine-power\"\n");
@@ -126,8 +123,7 @@ fn a_record_must_be_of_the_configuration() {
 #[test]
 fn synthesis_has_its_section() {
     let place = place();
-    let run = Run::of(place.with_yosys().args(["datasheet", "core.toml"]).output());
-    assert_eq!(run.code, 0, "{run:?}");
+    Run::of(place.with_yosys().args(["datasheet", "core.toml"]).output()).good();
     let page = place.read("datasheets/core.html");
     assert!(page.contains("by Yosys 0."));
     // The families count other cells, of which the made-up netlist has 100 of each kind.

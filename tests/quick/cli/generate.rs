@@ -46,8 +46,7 @@ fn files_are_written_once_and_checked() {
 #[test]
 fn another_directory_and_json() {
     let place = Place::with("core.toml", COSINE_POWER);
-    let run = place.glint(["generate", "core.toml", "--out", "a/b", "--json"]);
-    assert_eq!(run.code, 0, "{run:?}");
+    let run = place.glint(["generate", "core.toml", "--out", "a/b", "--json"]).good();
     let value = run.json();
     assert_eq!(value["ok"], true);
     let one = &value["generated"][0];
@@ -118,8 +117,7 @@ fn the_main_job_generates_and_checks_everything() {
     assert!(details.contains("configs/one.toml: ") && details.contains("the largest error is at"));
     std::fs::remove_file(place.at("configs/wide.toml")).expect("removed");
     assert!(place.at("rtl_out/one/one.v").exists() && place.at("testbench/two/two_tb.v").exists());
-    let run = place.glint(["--json"]);
-    assert_eq!(run.code, 0, "{run:?}");
+    let run = place.glint(["--json"]).good();
     let value = run.json();
     assert_eq!(value["ok"], true);
     assert_eq!(value["configurations"][1]["config"], "configs/two.toml");
@@ -259,8 +257,7 @@ fn computations_name_their_columns_in_the_order_of_the_ports() {
     for device in ["quad-cosine", "rough", "lyon"] {
         let place = Place::with("core.toml", format!("device = \"{device}\"\n"));
         place.done(["generate", "core.toml"]);
-        let manifest: serde_json::Value =
-            serde_json::from_str(&place.read("rtl_out/core/core.json")).expect("JSON");
+        let manifest: serde_json::Value = place.json("rtl_out/core/core.json");
         let ports = |role: &str| -> Vec<&str> {
             let ports = manifest["ports"].as_array().expect("a list").iter();
             let ports = ports.filter(|port| port["role"] == role);

@@ -214,8 +214,7 @@ fn an_ignored_signal_stays_ignored() {
     let mut shell = std::process::Command::new("sh");
     shell.current_dir(place.path()).args(["-c", &script, "sh"]);
     shell.args(["cosim", "core.toml", "--points", "60000"]);
-    let run = Run::of(shell.output());
-    assert_eq!(run.code, 0, "{run:?}");
+    Run::of(shell.output()).good();
 }
 
 #[test]
@@ -229,7 +228,7 @@ fn a_proof_keeps_what_is_done() {
     let ended = run.interrupted_by(Signal::INT);
     ended.refused(130, &["evaluations are still to do", "state.json"]);
     place.assert_no_staging();
-    let state: serde_json::Value = serde_json::from_str(&place.read("state.json")).expect("JSON");
+    let state: serde_json::Value = place.json("state.json");
     let done = state["state"]["f"]["done"].as_u64().expect("a number");
     assert!(done > 0, "nothing was kept: {state}");
 

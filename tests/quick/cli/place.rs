@@ -53,15 +53,21 @@ impl Place {
         fs::write(path, text).expect("a file");
     }
 
-    /// Writes an executable shell script.
+    /// Writes an executable shell script, with the directories that it needs.
     #[cfg(unix)]
     pub fn script(&self, name: &str, text: &str) {
+        fs::create_dir_all(self.at(name).parent().expect("a parent")).expect("a directory");
         let text = format!("#!/bin/sh\n{text}\n");
         shell("printf %s \"$2\" >\"$1\" && chmod 755 \"$1\"", &self.at(name), text.as_ref());
     }
 
     pub fn read(&self, name: &str) -> String {
         fs::read_to_string(self.at(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
+    }
+
+    /// A file that is JSON.
+    pub fn json(&self, name: &str) -> Value {
+        serde_json::from_str(&self.read(name)).unwrap_or_else(|error| panic!("{name}: {error}"))
     }
 
     /// The program, with a Yosys that is a script and writes the statistics of a made-up netlist.
@@ -96,8 +102,7 @@ echo '{\"modules\":{\"\\\\\\\\'$top'\":{\"num_cells_by_type\":{\"SB_LUT4\":'$lut
     /// Runs the program, which is expected to succeed.
     #[track_caller]
     pub fn done<A: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = A>) -> String {
-        let run = self.glint(arguments);
-        assert_eq!(run.code, 0, "{run:?}");
+        let run = self.glint(arguments).good();
         run.out
     }
 
@@ -140,6 +145,20 @@ impl Run {
         };
         assert!(!run.err.contains("panicked"), "{run:?}");
         run
+    }
+
+    /// It succeeded.
+    #[track_caller]
+    pub fn good(self) -> Self {
+        assert_eq!(self.code, 0, "{self:?}");
+        self
+    }
+
+    /// It succeeded, and said nothing on standard error.
+    #[track_caller]
+    pub fn quiet(self) -> Self {
+        assert_eq!((self.code, self.err.as_str()), (0, ""), "{self:?}");
+        self
     }
 
     /// It failed with this exit code, and standard error has all of these.

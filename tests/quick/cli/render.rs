@@ -189,8 +189,7 @@ fn lines_along_triangles() {
     for (config, largest) in [("quad.toml", 4.0), ("squared.toml", 26.0)] {
         let arguments = [config, "--compare", "--json", "--exponent", "20"];
         let mesh = ["--mesh", "large.obj", "--light", "0,0.2,1"];
-        let run = place.glint(render(&[&arguments[..], &mesh].concat()));
-        assert_eq!(run.code, 0, "{run:?}");
+        let run = place.glint(render(&[&arguments[..], &mesh].concat())).good();
         let told = &run.json()["compare"];
         let number = |key: &str| told[key].as_f64().expect("a number");
         // Of 0.7·255: cos¹⁶(√(n/16)·δ) is within 0.6 % of cosⁿδ and cos² within 12 %. Angles that grow evenly
@@ -206,8 +205,7 @@ fn lines_along_triangles() {
 #[test]
 fn comparison_in_numbers() {
     let place = Place::with("power.toml", COSINE_POWER);
-    let run = place.glint(render(&["power.toml", "--compare", "--json"]));
-    assert_eq!(run.code, 0, "{run:?}");
+    let run = place.glint(render(&["power.toml", "--compare", "--json"])).good();
     let told = run.json();
     let (width, height, pixels) = pixels(&fs::read(place.at("out.png")).expect("a picture"));
     // Captions stand in 22 rows below the pictures.
@@ -243,8 +241,7 @@ fn a_mesh_is_seen_from_both_sides() {
     );
     place.done(render(&["--mesh", "front.obj"]));
     let front = fs::read(place.at("out.png")).expect("a picture");
-    let run = place.glint(render(&["--mesh", "back.obj"]));
-    assert_eq!(run.code, 0, "{run:?}");
+    let run = place.glint(render(&["--mesh", "back.obj"])).good();
     assert!(run.err.contains("2 triangles are without area and were left out"), "{run:?}");
     assert!(front == fs::read(place.at("out.png")).expect("a picture"));
     let run = place.glint(render(&["--mesh", "back.obj", "--json"]));
@@ -271,8 +268,7 @@ fn a_million_triangles() {
         }
     }
     let place = Place::with("sheet.obj", text);
-    let run = place.glint(render(&["--mesh", "sheet.obj", "--json"]));
-    assert_eq!(run.code, 0, "{run:?}");
+    let run = place.glint(render(&["--mesh", "sheet.obj", "--json"])).good();
     assert_eq!(run.json()["triangles"], 1_000_000);
 }
 
@@ -337,8 +333,9 @@ fn height_maps_that_cannot_be_used() {
     place.done(render(&["rough.toml", "--height", "deep.png"]));
     // Steeper than 30°, the domain's largest dγ.
     place.write("bumps.png", bumps());
-    let run = place.glint(render(&["rough.toml", "--height", "bumps.png", "--height-depth", "40"]));
-    assert_eq!(run.code, 0, "{run:?}");
+    let run = place
+        .glint(render(&["rough.toml", "--height", "bumps.png", "--height-depth", "40"]))
+        .good();
     assert!(run.err.contains("the deviation exceeds the device's domain"), "{run:?}");
 }
 

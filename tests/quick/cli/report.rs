@@ -12,21 +12,18 @@ fn report(place: &Place, arguments: &[&str]) -> Run {
 #[test]
 fn twice_the_same_and_self_contained() {
     let place = Place::new();
-    let run = report(&place, &["--out", "first", "--json"]);
-    assert_eq!((run.code, run.err.as_str()), (0, ""), "{run:?}");
+    let run = report(&place, &["--out", "first", "--json"]).quiet();
     let told = run.json();
     assert_eq!(told["ok"], true);
     assert_eq!(told["written"][0], "first/report.json");
-    let second = report(&place, &["--out", "second"]);
-    assert_eq!(second.code, 0, "{second:?}");
+    report(&place, &["--out", "second"]).good();
     let page = place.read("first/report.html");
     let figures = place.read("first/report.json");
     assert_eq!(page, place.read("second/report.html"));
     assert_eq!(figures, place.read("second/report.json"));
     assert_eq!(place.files().len(), 4);
     // Written over what is there, and nothing else comes to lie beside it.
-    let again = report(&place, &["--out", "first"]);
-    assert_eq!(again.code, 0, "{again:?}");
+    report(&place, &["--out", "first"]).good();
     assert_eq!(place.files().len(), 4);
 
     for reference in ["http", "src=", "url(", "@import", "<link", "<script", "file:"] {
@@ -93,7 +90,7 @@ fn timings_stand_apart() {
     let timed = report(&place, &["--out", "timed", "--benchmark", "--json"]);
     assert_eq!((plain.code, timed.code), (0, 0), "{timed:?}");
     assert_eq!(place.read("plain/report.json"), place.read("timed/report.json"));
-    let timings: Value = serde_json::from_str(&place.read("timed/benchmark.json")).expect("JSON");
+    let timings: Value = place.json("timed/benchmark.json");
     assert_eq!(timings["claimed"], 2.3);
     // m = 2, 4, 8, 16; two precisions; one by one and many at once.
     let pairs = timings["pairs"].as_array().expect("pairs");
@@ -135,8 +132,7 @@ fn a_directory_that_cannot_be() {
 fn synthesis_joins_the_ledger() {
     let place = Place::new();
     let mut command = place.with_yosys();
-    let run = Run::of(command.args(["report", "--json"]).output());
-    assert_eq!(run.code, 0, "{run:?}");
+    let run = Run::of(command.args(["report", "--json"]).output()).good();
     let told = run.json();
     let claims = told["claims"].as_array().expect("claims");
     let simpler = claims.iter().find(|claim| claim["id"] == "simpler");

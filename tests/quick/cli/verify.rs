@@ -13,10 +13,6 @@ fn place() -> Place {
     Place::with("core.toml", narrow.replace("schlick_reduced", "core"))
 }
 
-fn record(place: &Place, name: &str) -> Value {
-    serde_json::from_str(&place.read(name)).expect("JSON")
-}
-
 /// The verdicts of a record, by check.
 fn verdicts(record: &Value) -> Vec<(&str, &str)> {
     let checks = record["checks"].as_array().expect("checks");
@@ -32,11 +28,9 @@ fn verdicts(record: &Value) -> Vec<(&str, &str)> {
 #[test]
 fn page_and_record_are_the_same_every_time_but_for_the_timings() {
     let place = place();
-    let run = place.glint(WITHOUT_TOOLS.iter().chain(&["--out", "first"]));
-    assert_eq!((run.code, run.err.as_str()), (0, ""), "{run:?}");
+    let run = place.glint(WITHOUT_TOOLS.iter().chain(&["--out", "first"])).quiet();
     assert!(run.out.contains("core.toml: verified"), "{}", run.out);
-    let again = place.glint(WITHOUT_TOOLS.iter().chain(&["--out", "second", "--json"]));
-    assert_eq!((again.code, again.err.as_str()), (0, ""), "{again:?}");
+    let again = place.glint(WITHOUT_TOOLS.iter().chain(&["--out", "second", "--json"])).quiet();
     assert_eq!(place.read("first/core.json"), place.read("second/core.json"));
     let lasting = |name: &str| {
         let page = place.read(name);
@@ -52,7 +46,7 @@ fn page_and_record_are_the_same_every_time_but_for_the_timings() {
     let here = place.path().display().to_string();
     assert!(!page.contains(&here) && !place.read("first/core.json").contains(&here));
 
-    let found = record(&place, "first/core.json");
+    let found = place.json("first/core.json");
     assert_eq!(found["conclusion"], "verified");
     assert_eq!(found["full"], false);
     let verdicts = verdicts(&found);
@@ -68,7 +62,7 @@ fn page_and_record_are_the_same_every_time_but_for_the_timings() {
     assert!(verdicts.contains(&("icarus", "not-covered")), "{verdicts:?}");
     assert!(page.contains("--without-tools leaves it out."));
     assert_eq!(again.json()["configurations"][0]["record"], found);
-    let timings = record(&place, "second/core.timings.json");
+    let timings = place.json("second/core.timings.json");
     assert_eq!(timings["seconds"].as_array().map(Vec::len), Some(verdicts.len()));
     // Written over what is there.
     place.done(WITHOUT_TOOLS.iter().chain(&["--out", "first"]));
@@ -89,7 +83,7 @@ fn a_missing_tool_leaves_it_incomplete() {
         "{}",
         run.out
     );
-    let found = record(&place, "verification/core.json");
+    let found = place.json("verification/core.json");
     assert_eq!(found["conclusion"], "incomplete");
     let verdicts = verdicts(&found);
     assert!(verdicts.contains(&("lockstep", "passed")), "{verdicts:?}");
@@ -113,7 +107,7 @@ fn a_contract_that_was_not_swept_is_not_verified() {
     ] {
         assert!(run.out.contains(part), "{}", run.out);
     }
-    let found = record(&place, "verification/core.json");
+    let found = place.json("verification/core.json");
     assert_eq!(found["conclusion"], "incomplete");
     assert!(verdicts(&found).contains(&("contract", "not-run")), "{found}");
 }
@@ -123,10 +117,9 @@ fn a_record_stands_for_the_sweep_of_a_contract() {
     let place = wide();
     let proof = include_str!("../../../proofs/cosine_power.json");
     place.write("proofs/under_any_name.json", proof);
-    let run = place.glint(WITHOUT_TOOLS);
-    assert_eq!(run.code, 0, "{run:?}");
+    let run = place.glint(WITHOUT_TOOLS).good();
     assert!(run.out.contains("by the record `proofs/under_any_name.json`"), "{}", run.out);
-    let found = record(&place, "verification/core.json");
+    let found = place.json("verification/core.json");
     let checks = found["checks"].as_array().expect("checks");
     let contract = checks.iter().find(|check| check["check"] == "contract").expect("a check");
     assert_eq!(contract["verdict"], "proved");
@@ -148,7 +141,7 @@ fn a_sweep_that_samples_is_passed_and_not_proved() {
     let run = place.glint(WITHOUT_TOOLS);
     assert!(run.out.contains("Golden model against the formula: passed"), "{}", run.out);
     assert!(run.out.contains("not covered: values of cos_dgamma between the settings"), "{run:?}");
-    let found = record(&place, "verification/rough_reduced.json");
+    let found = place.json("verification/rough_reduced.json");
     assert!(verdicts(&found).contains(&("contract", "passed")), "{found}");
     let run = place.glint(["cosim", "core.toml", "--exhaustive"]);
     assert!(run.out.contains(": within its bound, outside the contract"), "{}", run.out);
@@ -160,7 +153,6 @@ fn a_sweep_that_samples_is_passed_and_not_proved() {
 #[test]
 fn a_tool_that_does_not_do_its_work_is_a_failure() {
     let place = place();
-    std::fs::create_dir(place.at("bin")).expect("a directory");
     for tool in ["iverilog", "vvp", "verilator", "yosys", "yosys-smtbmc", "z3", "python3"] {
         place.script(&format!("bin/{tool}"), "echo no such licence; exit 3");
     }
