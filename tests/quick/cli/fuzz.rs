@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 
 use proptest::collection::vec;
 use proptest::prelude::*;
+use proptest::sample::select;
 
 use crate::place::{Place, Run};
 
@@ -17,108 +18,28 @@ const INNER: &str = "inner";
 /// Few enough points, and a file for each purpose.
 const NARROW: &str = include_str!("../../../configs/reduced/cosine_squared.toml");
 
-/// What a command line is made of, and some that it is not.
-const PIECES: [&str; 92] = [
-    "generate",
-    "cosim",
-    "merge",
-    "eval",
-    "list",
-    "new",
-    "describe",
-    "compare",
-    "render",
-    "check",
-    "help",
-    "--help",
-    "-h",
-    "--version",
-    "--json",
-    "-q",
-    "--quiet",
-    "--out",
-    "--check",
-    "--force",
-    "--points",
-    "--seed",
-    "--simulator",
-    "--exhaustive",
-    "--resume",
-    "--shard",
-    "--vcd",
-    "--time-limit",
-    "--through",
-    "--size",
-    "--compare",
-    "--mesh",
-    "--exponent",
-    "--gamma",
-    "core.toml",
-    "core.toml",
-    "core.toml",
-    "bad.toml",
-    "gone.toml",
-    "evil.toml",
-    "state.json",
-    "part.json",
-    "wave.vcd",
-    "out",
-    "out/deep",
-    "picture.png",
-    "empty",
-    "core.toml/x",
-    ".",
-    "",
-    " ",
-    "-",
-    "--",
-    "---",
-    "-é",
-    "é",
-    "🔆",
-    "a=b",
-    "=",
-    "length=3",
-    "length=#3",
-    "length=nan",
-    "length=-1",
-    "length=1e400",
-    "amplitude=#99999999999999999999",
-    "zeta_start=0.5",
-    "0",
-    "1",
-    "5",
-    "-1",
-    "+1",
-    "0x10",
-    "1e3",
-    "nan",
-    "inf",
-    "18446744073709551616",
-    "1/1",
-    "1/2",
-    "3/2",
-    "0/0",
-    "1/18446744073709551615",
-    "rust-hdl",
-    "icarus",
-    "verilator",
-    "golden",
-    "lyon",
-    "rough",
-    "quad-cosine",
-    "quad_cosine",
-    "--points=3",
-    "--seed=7",
-    "--json=1",
-];
+/// The commands, some of them.
+const COMMANDS: &str = "generate cosim merge eval list new describe compare render check";
+
+/// What else a command line is made of, and some that it is not.
+const PIECES: &str = "
+    help --help -h --version --json -q --quiet --out --check --force --points --seed --simulator
+    --exhaustive --resume --shard --vcd --time-limit --through --size --compare --mesh --exponent
+    --gamma core.toml core.toml core.toml bad.toml gone.toml evil.toml state.json part.json
+    wave.vcd out out/deep picture.png empty core.toml/x . - -- --- -é é 🔆 a=b = length=3
+    length=#3 length=nan length=-1 length=1e400 amplitude=#99999999999999999999 zeta_start=0.5
+    0 1 5 -1 +1 0x10 1e3 nan inf 18446744073709551616 1/1 1/2 3/2 0/0 1/18446744073709551615
+    rust-hdl icarus verilator golden lyon rough quad-cosine quad_cosine
+    --points=3 --seed=7 --json=1";
 
 fn arguments() -> impl Strategy<Value = Vec<String>> {
+    let commands = || COMMANDS.split_whitespace();
+    let pieces = commands().chain(PIECES.split_whitespace()).chain(["", " "]);
     let piece = prop_oneof![
-        20 => prop::sample::select(PIECES.to_vec()).prop_map(str::to_owned),
+        20 => select(pieces.collect::<Vec<_>>()).prop_map(str::to_owned),
         1 => "[^\\x00./\\\\]{0,8}",
     ];
-    let command = prop::sample::select(PIECES[..10].to_vec()).prop_map(str::to_owned);
+    let command = select(commands().collect::<Vec<_>>()).prop_map(str::to_owned);
     (prop::option::weighted(0.8, command), vec(piece, 0..7))
         .prop_map(|(command, pieces)| command.into_iter().chain(pieces).collect())
 }
