@@ -43,25 +43,14 @@ impl Bench {
         write(place.path(), files);
         let sources =
             files.iter().map(|(name, _)| name.as_str()).filter(|name| name.ends_with(".v"));
-        let (compiler, arguments): (_, &[&str]) = match simulator {
-            Simulator::Icarus => ("iverilog", &["-g2012", "-Wall", "-o", "bench.vvp", "-s"]),
+        let (compiler, arguments) = match simulator {
+            Simulator::Icarus => ("iverilog", "-g2012 -Wall -o bench.vvp -s"),
             // It takes a warning for an error. The bench runs for an instant: optimising it takes longer.
-            Simulator::Verilator => (
-                "verilator",
-                &[
-                    "--binary",
-                    "--timing",
-                    "-j",
-                    "1",
-                    "-CFLAGS",
-                    "-O0",
-                    "-o",
-                    "bench",
-                    "--top-module",
-                ],
-            ),
+            Simulator::Verilator => {
+                ("verilator", "--binary --timing -j 1 -CFLAGS -O0 -o bench --top-module")
+            }
         };
-        let arguments = arguments.iter().copied().chain([top]).chain(sources);
+        let arguments = arguments.split(' ').chain([top]).chain(sources);
         let output = tool(compiler)
             .run_to_success(arguments, place.path(), LIMIT)
             .unwrap_or_else(|error| panic!("{top}: {error:#}"));

@@ -38,43 +38,11 @@ fn answer(text: &str, schemas: &[Schema]) -> Result<Option<Config>, TestCaseErro
 
 /// A value as it stands in a file: right, too large, of another type, or nested.
 fn value() -> impl Strategy<Value = String> {
-    let leaves = [
-        "0",
-        "1",
-        "-1",
-        "8",
-        "16",
-        "22",
-        "25",
-        "1000",
-        "4096",
-        "9223372036854775807",
-        "-9223372036854775808",
-        "99999999999999999999999",
-        "0xffff_ffff",
-        "1.5",
-        "-0.0",
-        "nan",
-        "-inf",
-        "1e400",
-        "5e-324",
-        "true",
-        "false",
-        "\"\"",
-        "\"truncate\"",
-        "\"nearest\"",
-        "\"direct\"",
-        "\"patent\"",
-        "'é🔆\\'",
-        "\"\\u0000\"",
-        "\"\"\"\n\"\"\"",
-        "1979-05-27",
-        "[6, 5, 4, 3]",
-        "[2]",
-        "[]",
-        "{}",
-    ];
-    let leaf = prop::sample::select(leaves.map(str::to_owned).to_vec());
+    let leaves = r#"0 1 -1 8 16 22 25 1000 4096 9223372036854775807 -9223372036854775808
+        99999999999999999999999 0xffff_ffff 1.5 -0.0 nan -inf 1e400 5e-324 true false
+        "" "truncate" "nearest" "direct" "patent" 'é🔆\' "\u0000" 1979-05-27 [2] [] {}"#;
+    let leaves = leaves.split_whitespace().chain(["\"\"\"\n\"\"\"", "[6, 5, 4, 3]"]);
+    let leaf = prop::sample::select(leaves.map(str::to_owned).collect::<Vec<_>>());
     leaf.prop_recursive(4, 24, 6, |inner| {
         prop_oneof![
             vec(inner.clone(), 0..6).prop_map(|items| format!("[{}]", items.join(", "))),
@@ -108,60 +76,14 @@ fn settings() -> impl Strategy<Value = String> {
 
 /// Pieces that a configuration is made of, and some that it is not.
 fn piece() -> impl Strategy<Value = String> {
-    let pieces = [
-        "\n",
-        "\r\n",
-        "\r",
-        " ",
-        "\t",
-        "=",
-        " = ",
-        ".",
-        ",",
-        "#",
-        "[",
-        "]",
-        "[[",
-        "]]",
-        "{",
-        "}",
-        "\"",
-        "'",
-        "\"\"\"",
-        "'''",
-        "\\",
-        "\u{feff}",
-        "\0",
-        "\u{1b}",
-        "é",
-        "🔆",
-        "device",
-        "name",
-        "strict",
-        "\"lamp\"",
-        "\"module\"",
-        "power",
-        "cosine",
-        "fraction",
-        "cosine.fraction",
-        "sine",
-        "segments",
-        "[6, 5]",
-        "scheme",
-        "\"segmented\"",
-        "true",
-        "nan",
-        "inf",
-        "-0",
-        "1_000",
-        "0x1f",
-        "1e400",
-        "99999999999999999999",
-        "1979-05-27T07:32:00Z",
-        "device = \"lamp\"\n",
-        "[sine]\n",
-    ];
-    prop::sample::select(pieces.map(str::to_owned).to_vec())
+    let spaces =
+        ["\n", "\r\n", "\r", " ", "\t", " = ", "[6, 5]", "device = \"lamp\"\n", "[sine]\n"];
+    let controls = ["\u{feff}", "\0", "\u{1b}"];
+    let words = r#"= . , # [ ] [[ ]] { } " ' """ ''' \ é 🔆 device name strict "lamp" "module"
+        power cosine fraction cosine.fraction sine segments scheme "segmented"
+        true nan inf -0 1_000 0x1f 1e400 99999999999999999999 1979-05-27T07:32:00Z"#;
+    let pieces = spaces.into_iter().chain(controls).chain(words.split_whitespace());
+    prop::sample::select(pieces.map(str::to_owned).collect::<Vec<_>>())
 }
 
 proptest! {

@@ -57,14 +57,8 @@ fn wrong_usage() {
         assert_eq!(value["ok"], false);
         assert!(value["problems"][0]["message"].as_str().unwrap().contains(message), "{value}");
     }
-    let run = place.glint([
-        "cosim",
-        "core.toml",
-        "--simulator",
-        "icarus",
-        "--points",
-        "18446744073709551615",
-    ]);
+    let most = "cosim core.toml --simulator icarus --points 18446744073709551615";
+    let run = place.glint(most.split(' '));
     run.refused(2, &["an external simulator takes at most 1000000"]);
 }
 
@@ -74,22 +68,8 @@ fn nothing_panics() {
     place.write("null.toml", [0; 64]);
     place.write("deep.toml", format!("a = {}", "[".repeat(100_000)));
     place.write("long.toml", format!("{COSINE_POWER}{} = 1\n", "k".repeat(100_000)));
-    let mut odd: Vec<OsString> = [
-        "",
-        "-",
-        "--",
-        "=",
-        "#",
-        "core.toml",
-        "null.toml",
-        "deep.toml",
-        "long.toml",
-        "/",
-        "ü=1",
-        "🙂",
-    ]
-    .map(OsString::from)
-    .to_vec();
+    let odd = "- -- = # core.toml null.toml deep.toml long.toml / ü=1 🙂".split(' ');
+    let mut odd: Vec<OsString> = odd.chain([""]).map(OsString::from).collect();
     #[cfg(unix)]
     odd.push(std::os::unix::ffi::OsStringExt::from_vec(vec![0xff, 0xfe, b'=', 0x80]));
     for command in ["generate", "cosim", "eval", "render", "new", "list", ""] {
