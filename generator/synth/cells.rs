@@ -14,7 +14,7 @@ use anyhow::{Context, Result, bail};
 use super::figures::{Area, Figures, Step, rounded};
 use super::harness::TOP;
 use super::netlist::{self, Netlist};
-use super::place::Place;
+use super::place::{self, HARNESS, Place};
 use super::{Subject, Target};
 use crate::tools::Tool;
 
@@ -72,11 +72,11 @@ pub fn measure(
         map(name),
         format!("tee -q -o {STATISTICS} stat -liberty {library}"),
         "design -load source".to_owned(),
-        format!("read_verilog {}", Place::harness_name()),
+        format!("read_verilog {HARNESS}"),
         map(TOP),
         // Names that netlist and OpenSTA share.
         "splitnets; opt_clean -purge; rename -enumerate -pattern glint_%".to_owned(),
-        format!("write_json {}", Place::netlist_name()),
+        format!("write_json {}", place::NETLIST),
         format!("write_verilog -noattr -noexpr -simple-lhs {NETLIST}"),
     ];
     place.yosys(yosys, &commands.join("; "))?;

@@ -1,7 +1,6 @@
 //! ECP5: Yosys and nextpnr-ecp5, which times multipliers without registers and block RAMs.
 
 use anyhow::{Context, Result, bail};
-use rayon::prelude::*;
 use serde_json::Value;
 
 use super::figures::{Figures, Step};
@@ -54,21 +53,11 @@ pub fn measure(
     let (usage, netlist) = place.synthesise(yosys, &FAMILIES[1])?;
     no_registers_in_blocks(&netlist)?;
     done();
-    let Some(chip) = CHIPS.iter().find(|chip| chip.holds(usage)) else {
-        let mut figures = Figures::new(Target::Ecp5, CHIPS[1].name, usage.into());
-        figures.untimed = Some("does not fit".to_owned());
-        (0..subject.seeds).for_each(|_| done());
-        return Ok(figures);
-    };
-    let runs: Vec<(f64, Vec<Step>)> = (1..=subject.seeds)
-        .into_par_iter()
-        .map(|seed| {
-            let run = route(nextpnr, subject, &place, &netlist, chip, seed);
-            done();
-            run.with_context(|| format!("seed {seed}"))
-        })
-        .collect::<Result<_>>()?;
-    Ok(Figures::new(Target::Ecp5, chip.name, usage.into()).with_runs(runs))
+    let fitting = CHIPS.iter().find(|chip| chip.holds(usage));
+    let chip = fitting.unwrap_or(&CHIPS[1]);
+    let mut figures = Figures::new(Target::Ecp5, chip.name, usage.into());
+    figures.untimed = fitting.is_none().then(|| "does not fit".to_owned());
+    figures.routed(subject, done, |seed| route(nextpnr, &place, &netlist, chip, seed))
 }
 
 impl Chip {
@@ -97,30 +86,17 @@ fn no_registers_in_blocks(netlist: &Netlist) -> Result<()> {
 
 fn route(
     nextpnr: &Tool,
-    subject: &Subject,
     place: &Place,
     netlist: &Netlist,
     chip: &Chip,
     seed: u32,
 ) -> Result<(f64, Vec<Step>)> {
     let report = format!("seed{seed}.json");
-    let seed = seed.to_string();
-    // File names without a directory: the WebAssembly of nextpnr sees no other.
-    let arguments =
-        ["--lpf-allow-unconstrained", "--timing-allow-fail", "-q", chip.flag, "--speed", "6"];
-    let arguments = arguments.iter().copied().chain([
-        "--package",
-        chip.package,
-        "--freq",
-        GOAL,
-        "--seed",
-        &seed,
-        "--json",
-        Place::netlist_name(),
-        "--report",
-        &report,
-    ]);
-    nextpnr.run_to_success(arguments, place.path(), subject.limit)?;
+    let (flag, package) = (chip.flag, chip.package);
+    let options = format!(
+        "--lpf-allow-unconstrained {flag} --speed 6 --package {package} --freq {GOAL} --report {report}"
+    );
+    place.nextpnr(nextpnr, seed, &options)?;
     let report = place.json(&report)?;
     // Clock pins of DSP blocks that are tied to ground are listed as a clock too.
     let clocks = report["fmax"].as_object().into_iter().flatten();

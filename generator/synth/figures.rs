@@ -1,8 +1,10 @@
 //! What was measured.
 
+use anyhow::{Context, Result};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::Target;
+use super::{Subject, Target};
 use crate::tools::synthesis::Usage;
 
 /// What a core takes of a target, and how fast it is there.
@@ -84,6 +86,24 @@ impl Figures {
             untimed: None,
             tools: Vec::new(),
         }
+    }
+
+    /// Puts in what `route` finds with each seed, a frequency in MHz and the longest path, unless there is a reason why
+    /// it cannot.
+    pub(super) fn routed(
+        self,
+        subject: &Subject,
+        done: &(dyn Fn() + Sync),
+        route: impl Fn(u32) -> Result<(f64, Vec<Step>)> + Sync,
+    ) -> Result<Self> {
+        let possible = self.untimed.is_none();
+        let runs = (1..=subject.seeds).into_par_iter().filter_map(|seed| {
+            let run = possible.then(|| route(seed).with_context(|| format!("seed {seed}")));
+            done();
+            run
+        });
+        let runs = runs.collect::<Result<_>>()?;
+        Ok(self.with_runs(runs))
     }
 
     /// Puts the runs in, each a frequency in MHz and its longest path.

@@ -6,7 +6,6 @@
 use std::collections::BTreeMap;
 
 use anyhow::{Context, Result, bail};
-use rayon::prelude::*;
 use serde_json::Value;
 
 use super::figures::{Figures, Step};
@@ -36,20 +35,8 @@ pub fn measure(
     only_multipliers(&netlist)?;
     done();
     let mut figures = Figures::new(Target::Ice40, DEVICE, usage.into());
-    if let Some(lack) = lack(usage) {
-        figures.untimed = Some(lack);
-        (0..subject.seeds).for_each(|_| done());
-        return Ok(figures);
-    }
-    let runs: Vec<(f64, Vec<Step>)> = (1..=subject.seeds)
-        .into_par_iter()
-        .map(|seed| {
-            let run = route(nextpnr, icetime, subject, &place, &netlist, seed);
-            done();
-            run.with_context(|| format!("seed {seed}"))
-        })
-        .collect::<Result<_>>()?;
-    Ok(figures.with_runs(runs))
+    figures.untimed = lack(usage);
+    figures.routed(subject, done, |seed| route(nextpnr, icetime, subject, &place, &netlist, seed))
 }
 
 /// What the chip has too little of.
@@ -93,22 +80,10 @@ fn route(
 ) -> Result<(f64, Vec<Step>)> {
     let (bits, timing) = (format!("seed{seed}.asc"), format!("seed{seed}.json"));
     let placed = format!("placed{seed}.json");
-    let seed = seed.to_string();
-    let arguments =
-        ["--up5k", "--package", "sg48", "--pcf-allow-unconstrained", "--timing-allow-fail", "-q"];
-    let arguments = arguments.iter().copied().chain([
-        "--freq",
-        GOAL,
-        "--seed",
-        &seed,
-        "--json",
-        Place::netlist_name(),
-        "--asc",
-        &bits,
-        "--write",
-        &placed,
-    ]);
-    nextpnr.run_to_success(arguments, place.path(), subject.limit)?;
+    let options = format!(
+        "--up5k --package sg48 --pcf-allow-unconstrained --freq {GOAL} --asc {bits} --write {placed}"
+    );
+    place.nextpnr(nextpnr, seed, &options)?;
     let arguments = ["-d", "up5k", "-P", "sg48", "-i", "-t", "-j", &timing, &bits];
     let said = icetime.run_to_success(arguments, place.path(), subject.limit)?;
     let nanoseconds = said.lines().find_map(|line| {

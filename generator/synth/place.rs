@@ -19,8 +19,10 @@ pub struct Place<'a> {
     subject: &'a Subject<'a>,
 }
 
-const HARNESS: &str = "glint_harness.v";
-const NETLIST: &str = "harness.json";
+/// The file with the harness.
+pub const HARNESS: &str = "glint_harness.v";
+/// The file with the netlist.
+pub const NETLIST: &str = "harness.json";
 const STATISTICS: &str = "area.json";
 
 impl<'a> Place<'a> {
@@ -58,6 +60,17 @@ impl<'a> Place<'a> {
         Ok(())
     }
 
+    /// Runs nextpnr on the netlist with a seed, with the `options` of its family, which a space divides.
+    ///
+    /// # Errors
+    /// It fails, or takes too long.
+    pub fn nextpnr(&self, nextpnr: &Tool, seed: u32, options: &str) -> Result<()> {
+        // File names without a directory: the WebAssembly of nextpnr sees no other.
+        let arguments = format!("{options} --timing-allow-fail -q --seed {seed} --json {NETLIST}");
+        nextpnr.run_to_success(arguments.split(' '), self.path(), self.subject.limit)?;
+        Ok(())
+    }
+
     /// What the core alone takes.
     ///
     /// # Errors
@@ -70,7 +83,7 @@ impl<'a> Place<'a> {
     }
 
     /// What the core alone takes, and the netlist of the core with the registers around it, which is left in the
-    /// file [`Place::netlist_name`].
+    /// file [`NETLIST`].
     ///
     /// # Errors
     /// Those of [`Place::yosys`].
@@ -89,16 +102,6 @@ impl<'a> Place<'a> {
         self.yosys(yosys, &commands.join("; "))?;
         let usage = synthesis::usage(&self.path().join(STATISTICS), top, family)?;
         Ok((usage, self.netlist()?))
-    }
-
-    /// The file with the netlist.
-    pub fn netlist_name() -> &'static str {
-        NETLIST
-    }
-
-    /// The file with the harness.
-    pub fn harness_name() -> &'static str {
-        HARNESS
     }
 
     /// Reads the netlist that Yosys has left.

@@ -132,21 +132,11 @@ impl BuiltBench {
 
         let mut arguments: Vec<&str> = match simulator {
             Simulator::Icarus => vec!["-g2012", "-Wall", "-s", top, "-o", "bench.vvp"],
-            Simulator::Verilator => vec![
-                "--binary",
-                "--timing",
-                // For sources without `timescale, which may stand beside some that have it.
-                "--timescale",
-                "1ns/1ps",
-                "-j",
-                "1",
-                "--top-module",
-                top,
-                "--Mdir",
-                "build",
-                "-o",
-                "bench",
-            ],
+            Simulator::Verilator => {
+                // The time scale is for sources without one, which may stand beside some that have it.
+                let options = "--binary --timing --timescale 1ns/1ps -j 1 --Mdir build -o bench";
+                options.split(' ').chain(["--top-module", top]).collect()
+            }
         };
         if (simulator, waveform) == (Simulator::Verilator, Waveform::Written) {
             arguments.push("--trace");
