@@ -60,27 +60,29 @@ Examples:
 
 Exit codes: 0 everything holds; 1 something does not hold or could not be done; 2 wrong usage.";
 
-#[derive(Subcommand)]
-enum Command {
-    Generate(commands::generate::Arguments),
-    Cosim(commands::cosim::Arguments),
-    Merge(commands::merge::Arguments),
-    Worst(commands::worst::Arguments),
-    Mutate(commands::mutate::Arguments),
-    Eval(commands::eval::Arguments),
-    Describe(commands::describe::Arguments),
-    Schedule(commands::schedule::Arguments),
-    Synth(Box<commands::synth::Arguments>),
-    Tune(commands::tune::Arguments),
-    Certify(commands::certify::Arguments),
-    Datasheet(commands::datasheet::Arguments),
-    Compare(commands::compare::Arguments),
-    Render(commands::render::Arguments),
-    Report(commands::report::Arguments),
-    Verify(commands::verify::Arguments),
-    List(commands::list::Arguments),
-    New(commands::new::Arguments),
-    Schema(commands::schema::Arguments),
+/// The subcommands, each a module of [`commands`] with its `Arguments` and its `run`.
+macro_rules! commands {
+    ($($command:ident $module:ident;)*) => {
+        #[derive(Subcommand)]
+        enum Command {
+            $($command(Box<commands::$module::Arguments>),)*
+        }
+
+        impl Command {
+            fn run(&self, registry: &Registry, output: Output) -> anyhow::Result<bool> {
+                match self {
+                    $(Self::$command(arguments) => commands::$module::run(registry, output, arguments),)*
+                }
+            }
+        }
+    };
+}
+
+commands! {
+    Generate generate; Cosim cosim; Merge merge; Worst worst; Mutate mutate; Eval eval;
+    Describe describe; Schedule schedule; Synth synth; Tune tune; Certify certify;
+    Datasheet datasheet; Compare compare; Render render; Report report; Verify verify;
+    List list; New new; Schema schema;
 }
 
 #[derive(Args)]
@@ -174,27 +176,7 @@ pub fn run_from(registry: &Registry, arguments: impl IntoIterator<Item = OsStrin
     }
     let done = match cli.command {
         None => commands::main_job::run(registry, output, cli.details),
-        Some(Command::Generate(arguments)) => commands::generate::run(registry, output, &arguments),
-        Some(Command::Cosim(arguments)) => commands::cosim::run(registry, output, &arguments),
-        Some(Command::Merge(arguments)) => commands::merge::run(registry, output, &arguments),
-        Some(Command::Worst(arguments)) => commands::worst::run(registry, output, &arguments),
-        Some(Command::Mutate(arguments)) => commands::mutate::run(registry, output, &arguments),
-        Some(Command::Eval(arguments)) => commands::eval::run(registry, output, &arguments),
-        Some(Command::Describe(arguments)) => commands::describe::run(registry, output, &arguments),
-        Some(Command::Schedule(arguments)) => commands::schedule::run(registry, output, &arguments),
-        Some(Command::Synth(arguments)) => commands::synth::run(registry, output, &arguments),
-        Some(Command::Tune(arguments)) => commands::tune::run(registry, output, &arguments),
-        Some(Command::Certify(arguments)) => commands::certify::run(registry, output, &arguments),
-        Some(Command::Datasheet(arguments)) => {
-            commands::datasheet::run(registry, output, &arguments)
-        }
-        Some(Command::Compare(arguments)) => commands::compare::run(registry, output, &arguments),
-        Some(Command::Render(arguments)) => commands::render::run(registry, output, &arguments),
-        Some(Command::Report(arguments)) => commands::report::run(registry, output, &arguments),
-        Some(Command::Verify(arguments)) => commands::verify::run(registry, output, &arguments),
-        Some(Command::List(arguments)) => commands::list::run(registry, output, &arguments),
-        Some(Command::New(arguments)) => commands::new::run(registry, output, &arguments),
-        Some(Command::Schema(arguments)) => commands::schema::run(registry, output, &arguments),
+        Some(command) => command.run(registry, output),
     };
     let code = match done {
         Ok(true) => ExitCode::SUCCESS,
