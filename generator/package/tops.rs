@@ -149,7 +149,7 @@ fn core_ports(design: &Design) -> Vec<TopPort> {
             doc: ascii(&net.doc),
         }
     };
-    std::iter::once(scalar("clk", true)).chain(design.ports.iter().map(port)).collect()
+    listed("in clk").into_iter().chain(design.ports.iter().map(port)).collect()
 }
 
 fn stream_ports(design: &Design, inputs: &EmitInputs) -> Result<Vec<TopPort>> {
@@ -157,75 +157,40 @@ fn stream_ports(design: &Design, inputs: &EmitInputs) -> Result<Vec<TopPort>> {
     let user = inputs.around.user_bits;
     // A line has its end in its length.
     let is_line = inputs.accuracy.as_ref().is_some_and(|accuracy| accuracy.length.is_some());
-    let mut ports = vec![
-        scalar("aclk", true),
-        scalar("aresetn", true),
-        vector("s_axis_tdata", true, input),
-        vector("s_axis_tuser", true, user),
-    ];
-    if !is_line {
-        ports.push(scalar("s_axis_tlast", true));
-    }
-    ports.extend([
-        scalar("s_axis_tvalid", true),
-        scalar("s_axis_tready", false),
-        vector("m_axis_tdata", false, output),
-        vector("m_axis_tuser", false, user),
-        scalar("m_axis_tlast", false),
-        scalar("m_axis_tvalid", false),
-        scalar("m_axis_tready", true),
-    ]);
-    Ok(ports)
+    let last = if is_line { "" } else { "in s_axis_tlast, " };
+    Ok(listed(&format!(
+        "in aclk, in aresetn, in s_axis_tdata {input}, in s_axis_tuser {user}, {last}\
+         in s_axis_tvalid, out s_axis_tready, out m_axis_tdata {output}, out m_axis_tuser {user}, \
+         out m_axis_tlast, out m_axis_tvalid, in m_axis_tready"
+    )))
 }
 
 fn axi_lite_ports(address: u32) -> Vec<TopPort> {
-    vec![
-        scalar("aclk", true),
-        scalar("aresetn", true),
-        vector("s_axil_awaddr", true, address),
-        vector("s_axil_awprot", true, 3),
-        scalar("s_axil_awvalid", true),
-        scalar("s_axil_awready", false),
-        vector("s_axil_wdata", true, 32),
-        vector("s_axil_wstrb", true, 4),
-        scalar("s_axil_wvalid", true),
-        scalar("s_axil_wready", false),
-        vector("s_axil_bresp", false, 2),
-        scalar("s_axil_bvalid", false),
-        scalar("s_axil_bready", true),
-        vector("s_axil_araddr", true, address),
-        vector("s_axil_arprot", true, 3),
-        scalar("s_axil_arvalid", true),
-        scalar("s_axil_arready", false),
-        vector("s_axil_rdata", false, 32),
-        vector("s_axil_rresp", false, 2),
-        scalar("s_axil_rvalid", false),
-        scalar("s_axil_rready", true),
-        scalar("irq", false),
-    ]
+    listed(&format!(
+        "in aclk, in aresetn, in s_axil_awaddr {address}, in s_axil_awprot 3, in s_axil_awvalid, \
+         out s_axil_awready, in s_axil_wdata 32, in s_axil_wstrb 4, in s_axil_wvalid, \
+         out s_axil_wready, out s_axil_bresp 2, out s_axil_bvalid, in s_axil_bready, \
+         in s_axil_araddr {address}, in s_axil_arprot 3, in s_axil_arvalid, out s_axil_arready, \
+         out s_axil_rdata 32, out s_axil_rresp 2, out s_axil_rvalid, in s_axil_rready, out irq"
+    ))
 }
 
 fn wishbone_ports(address: u32) -> Vec<TopPort> {
-    vec![
-        scalar("wb_clk_i", true),
-        scalar("wb_rst_i", true),
-        scalar("wb_cyc_i", true),
-        scalar("wb_stb_i", true),
-        scalar("wb_we_i", true),
-        vector("wb_adr_i", true, address),
-        vector("wb_dat_i", true, 32),
-        vector("wb_sel_i", true, 4),
-        vector("wb_dat_o", false, 32),
-        scalar("wb_ack_o", false),
-        scalar("wb_err_o", false),
-        scalar("irq", false),
-    ]
+    listed(&format!(
+        "in wb_clk_i, in wb_rst_i, in wb_cyc_i, in wb_stb_i, in wb_we_i, in wb_adr_i {address}, \
+         in wb_dat_i 32, in wb_sel_i 4, out wb_dat_o 32, out wb_ack_o, out wb_err_o, out irq"
+    ))
 }
 
-fn scalar(name: &str, input: bool) -> TopPort {
-    TopPort { name: name.to_owned(), input, width: 1, vector: false, doc: String::new() }
-}
-
-fn vector(name: &str, input: bool, width: u32) -> TopPort {
-    TopPort { name: name.to_owned(), input, width, vector: true, doc: String::new() }
+/// Ports as text: directions and names, and the widths of vectors.
+fn listed(ports: &str) -> Vec<TopPort> {
+    let port = |port: &str| {
+        let mut words = port.split(' ');
+        let input = words.next() == Some("in");
+        let name = words.next().unwrap_or_default();
+        let width = words.next().and_then(|width| width.parse().ok());
+        let (vector, width) = (width.is_some(), width.unwrap_or(1));
+        TopPort { name: name.to_owned(), input, width, vector, doc: String::new() }
+    };
+    ports.split(", ").map(port).collect()
 }
