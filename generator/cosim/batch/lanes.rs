@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Result, ensure};
 use rayon::prelude::*;
 
 use super::stream::Stream;
@@ -84,10 +84,7 @@ struct Task {
 impl Team {
     fn new(design: &Design, contract: &dyn Contract) -> Result<Self> {
         let mut simulator = Simulator::<LANES>::new(design)?;
-        let input = |name: &str| {
-            let place = simulator.input(name);
-            place.with_context(|| format!("`{}` has no input `{name}`", design.name))
-        };
+        let input = |name: &str| super::input(&simulator, design, name);
         let operands = contract
             .operands()
             .iter()
@@ -96,16 +93,7 @@ impl Team {
                 Ok((input(&operand.name)?, strobe, operand.format))
             })
             .collect::<Result<_>>()?;
-        let results = contract
-            .outputs()
-            .iter()
-            .map(|output| {
-                let name = &output.name;
-                let net = design.find(name);
-                let net = net.with_context(|| format!("`{}` has no `{name}`", design.name))?;
-                Ok((net, design.net(net).format))
-            })
-            .collect::<Result<_>>()?;
+        let results = super::results(design, contract)?;
         let (reset, start) = (input("rst_n")?, input("start")?);
         let Handshake { valid, busy, .. } = design.handshake()?;
         simulator.clock()?;

@@ -29,25 +29,13 @@ impl Stream {
         contract: &dyn Contract,
     ) -> Result<Self> {
         let mut simulator = Simulator::<LANES>::new(design)?;
-        let input = |name: &str| {
-            let place = simulator.input(name);
-            place.with_context(|| format!("`{}` has no input `{name}`", design.name))
-        };
+        let input = |name: &str| super::input(&simulator, design, name);
         let operands = contract
             .operands()
             .iter()
             .map(|operand| Ok((input(&operand.name)?, operand.format)))
             .collect::<Result<_>>()?;
-        let results = contract
-            .outputs()
-            .iter()
-            .map(|output| {
-                let name = &output.name;
-                let net = design.find(name);
-                let net = net.with_context(|| format!("`{}` has no `{name}`", design.name))?;
-                Ok((net, design.net(net).format))
-            })
-            .collect::<Result<_>>()?;
+        let results = super::results(design, contract)?;
         let (reset, in_valid) = (input("rst_n")?, input("in_valid")?);
         let ready = design.inputs().position(|port| port.role == Role::OutReady);
         let valid = design.port(|role| role == Role::Valid).context("no output `out_valid`")?.net;
