@@ -31,7 +31,7 @@ pub const DESIGN: Check = Check {
         let (design, bound) = (&subject.core.design, subject.core.contract.bound());
         let finding = Finding::new(
             Verdict::Proved,
-            "all nets, registers, ROMs and microinstructions".to_owned(),
+            "all nets, registers, ROMs and microinstructions",
             format!(
                 "{}, {}, {} and {} obey the rules. {}",
                 counted(design.nets.len(), "net"),
@@ -44,7 +44,6 @@ pub const DESIGN: Check = Check {
                     "No bound on an output is stated.".to_owned()
                 },
             ),
-            Vec::new(),
         );
         Ok(if bound.units < 1.0 {
             finding
@@ -91,8 +90,8 @@ fn lockstep(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
             counted(outcome.registers, "register"),
             counted(outcome.outputs, "output"),
         ),
-        outcome.faults(&bound),
     )
+    .faults(outcome.faults(&bound))
     .open("Operands that were not drawn."))
 }
 
@@ -132,7 +131,7 @@ fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
     let contract = subject.core.contract.as_ref();
     if !contract.bound().is_stated() {
         let why = "The contract states no bound: `glint certify` finds one where it can.";
-        return Ok(Finding::without(Verdict::NotCovered, why.to_owned()));
+        return Ok(Finding::without(Verdict::NotCovered, why));
     }
     let all = evaluations(subject);
     if !is_short(subject, all) {
@@ -150,8 +149,8 @@ fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
         of_sweep(job.f.sweep()),
         domain(&job),
         format!("The stated bound is {:.3} units; {}.", contract.bound().units, proof.words("")),
-        proof.faults,
     )
+    .faults(proof.faults)
     .open(job.f.sweep().omits.clone()))
 }
 
@@ -181,7 +180,7 @@ fn recorded(
         if job.colours.count() > 0 { ", and all colour products," } else { "" },
     );
     let verdict = of_sweep(job.f.sweep());
-    let finding = Finding::new(verdict, domain(&job), words, faults);
+    let finding = Finding::new(verdict, domain(&job), words).faults(faults);
     Finding { record: Some(path), ..finding }.open(job.f.sweep().omits.clone())
 }
 
@@ -219,9 +218,9 @@ pub const CLOCKS: Check = Check {
         Ok(Finding::new(
             Verdict::Proved,
             format!("{} combinations of {} operand bits", grouped(clocks.count()), clocks.bits()),
-            "Every register and output equals the golden model on every clock.".to_owned(),
-            faults,
+            "Every register and output equals the golden model on every clock.",
         )
+        .faults(faults)
         .open(clocks.omits()))
     },
 };
@@ -239,7 +238,7 @@ pub const MUTATION: Check = Check {
     run: |subject, _, progress| {
         if subject.core.design.pipeline.is_some() {
             let why = "Faults are planted in netlists with a microprogram; a pipeline has none.";
-            return Ok(Finding::without(Verdict::NotCovered, why.to_owned()));
+            return Ok(Finding::without(Verdict::NotCovered, why));
         }
         let faults = Faults::of(&subject.core.design);
         let found = mutate::run(subject.core, faults.iter(), &|| progress(1))?;
@@ -256,7 +255,7 @@ pub const MUTATION: Check = Check {
             100.0 * all.of_shipped().value()
         );
         if score.holds() {
-            let finding = Finding::new(Verdict::Passed, domain, words, Vec::new());
+            let finding = Finding::new(Verdict::Passed, domain, words);
             return Ok(finding.open(undecided));
         }
         // The fault-free design passes the same test: that too little is noticed speaks of the test.
@@ -272,7 +271,7 @@ pub const MUTATION: Check = Check {
                     format!("To {} of them its stimulus never comes: {}. ", ids.len(), named(&ids)),
             }
         );
-        Ok(Finding::new(Verdict::Undecided, domain, words, Vec::new()).open(undecided))
+        Ok(Finding::new(Verdict::Undecided, domain, words).open(undecided))
     },
 };
 

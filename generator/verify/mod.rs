@@ -101,20 +101,20 @@ pub struct Finding {
 }
 
 impl Finding {
-    /// A verdict on a domain, or a failure if there are faults.
-    fn new(verdict: Verdict, domain: String, words: String, faults: Vec<String>) -> Self {
-        Self {
-            verdict: if faults.is_empty() { verdict } else { Verdict::Failed },
-            domain,
-            words,
-            faults,
-            ..Self::default()
-        }
+    /// A verdict on a domain.
+    fn new(verdict: Verdict, domain: impl Into<String>, words: impl Into<String>) -> Self {
+        Self { domain: domain.into(), ..Self::without(verdict, words) }
     }
 
     /// Of a check that says nothing here.
-    fn without(verdict: Verdict, why: String) -> Self {
-        Self { verdict, words: why, ..Self::default() }
+    fn without(verdict: Verdict, why: impl Into<String>) -> Self {
+        Self { verdict, words: why.into(), ..Self::default() }
+    }
+
+    /// A failure if there are faults.
+    fn faults(self, faults: Vec<String>) -> Self {
+        let verdict = if faults.is_empty() { self.verdict } else { Verdict::Failed };
+        Self { verdict, faults, ..self }
     }
 
     fn open(self, open: impl Into<String>) -> Self {
@@ -178,7 +178,7 @@ impl Check {
 
     /// What is said of it where it is not run on purpose.
     pub fn left_out(&self, why: &str) -> Answer {
-        let finding = Finding::without(Verdict::NotCovered, why.to_owned());
+        let finding = Finding::without(Verdict::NotCovered, why);
         self.answer(Vec::new(), finding, Duration::ZERO)
     }
 
@@ -209,10 +209,8 @@ impl Check {
         // A tool that does not tell its version will say more about it when it is run.
         let versions = tools.iter().filter_map(|tool| tool.version().ok());
         let versions = versions.collect();
-        let finding = (self.run)(subject, &tools, progress).unwrap_or_else(|error| {
-            let faults = vec![format!("{error:#}")];
-            Finding::new(Verdict::Failed, String::new(), String::new(), faults)
-        });
+        let finding = (self.run)(subject, &tools, progress)
+            .unwrap_or_else(|error| Finding::default().faults(vec![format!("{error:#}")]));
         (versions, finding)
     }
 }

@@ -44,7 +44,7 @@ pub const CERTIFICATE: Check = Check {
         if design.pipeline.is_some() {
             let why =
                 "It is made of a microprogram: see the sequential core of the same description.";
-            return Ok(Finding::without(Verdict::NotCovered, why.to_owned()));
+            return Ok(Finding::without(Verdict::NotCovered, why));
         }
         let own = if subject.effort.full { subject.effort.time_limit } else { STATEMENT };
         let limit = own.min(subject.effort.time_limit);
@@ -71,13 +71,12 @@ pub const CERTIFICATE: Check = Check {
         }
         Ok(Finding::new(
             Verdict::Proved,
-            "all operands of the domain".to_owned(),
+            "all operands of the domain",
             format!(
                 "Gappa proves {} statements: an output differs from its formula by {:.3} units at most.",
                 statements.len(),
                 contract.bound().units
             ),
-            Vec::new(),
         )
         .open("The words of tables are taken as they are."))
     },
@@ -101,19 +100,17 @@ pub const EQUALITY: Check = Check {
         Ok(match equality::compare(&sequential, &core.design, &tools[0], limit)? {
             equality::Verdict::Equal(proof) => Finding::new(
                 Verdict::Proved,
-                "every point: all bits of all operands".to_owned(),
+                "every point: all bits of all operands",
                 format!(
                     "{} and {} of the core on its way to them are equal, whatever {} and the words of memories are.",
                     counted(proof.outputs, "output"),
                     counted(proof.registers, "register value"),
                     counted(proof.products, "product"),
                 ),
-                Vec::new(),
             )
             .open("Stalls and resets: a value of a stage is made of this stage alone, and the handshake is proved by induction."),
             equality::Verdict::Different(difference) => {
-                let faults = vec![difference.to_string()];
-                Finding::new(Verdict::Failed, String::new(), String::new(), faults)
+                Finding::default().faults(vec![difference.to_string()])
             }
             equality::Verdict::Open(why) => {
                 Finding::without(Verdict::NotCovered, format!("It is not decided: {why}."))
@@ -150,9 +147,9 @@ pub const LINT: Check = Check {
         Ok(Finding::new(
             Verdict::Passed,
             sources.join(", "),
-            "Neither Icarus Verilog nor Verilator has a remark.".to_owned(),
-            faults,
-        ))
+            "Neither Icarus Verilog nor Verilator has a remark.",
+        )
+        .faults(faults))
     },
 };
 
@@ -189,9 +186,9 @@ fn bench(subject: &Subject<'_>, simulator: Simulator) -> Result<Finding> {
     Ok(Finding::new(
         Verdict::Passed,
         format!("{} results in {} clocks (seed {BENCH_SEED})", grouped(points), grouped(clocks)),
-        "Every output is right on every clock.".to_owned(),
-        faults,
+        "Every output is right on every clock.",
     )
+    .faults(faults)
     .open("Operands that were not drawn."))
 }
 
@@ -218,9 +215,8 @@ pub const SYNTHESIS: Check = Check {
             .collect::<Result<_>>()?;
         Ok(Finding::new(
             Verdict::Passed,
-            "before placement".to_owned(),
+            "before placement",
             format!("It takes {}.", taken.join("; ")),
-            Vec::new(),
         ))
     },
 };
@@ -272,9 +268,8 @@ pub const FORMAL: Check = Check {
             proofs.iter().map(|module| format!("{module}_formal.sv")).collect();
         Ok(Finding::new(
             Verdict::Proved,
-            "all inputs, any state, any number of clocks".to_owned(),
+            "all inputs, any state, any number of clocks",
             format!("The properties of {} are proved by k-induction.", files.join(", ")),
-            Vec::new(),
         )
         .open("Values: products and ROMs of the datapath are cut away."))
     },
@@ -312,9 +307,9 @@ pub const COCOTB: Check = Check {
         Ok(Finding::new(
             Verdict::Passed,
             format!("{bench}, with cocotb {}", version.output.trim()),
-            verdict.unwrap_or_default().to_owned(),
-            faults,
+            verdict.unwrap_or_default(),
         )
+        .faults(faults)
         .open("Operands that were not drawn."))
     },
 };
@@ -369,9 +364,9 @@ pub const GATES: Check = Check {
                 grouped(clocks),
                 titles.join(" and ")
             ),
-            "Every output is right on every clock.".to_owned(),
-            faults.into_iter().flatten().collect(),
+            "Every output is right on every clock.",
         )
+        .faults(faults.into_iter().flatten().collect())
         .open("Timing: the models of the cells have none. Families without models of all cells."))
     },
 };
