@@ -183,6 +183,17 @@ pub fn print_json(value: &Value) {
     print_line(&format!("{value:#}"));
 }
 
+/// Prints rows as CSV, as RFC 4180 has it.
+///
+/// # Errors
+/// A row has not as many fields as the first.
+pub fn print_csv(rows: impl IntoIterator<Item = Vec<String>>) -> Result<()> {
+    let mut csv = csv::Writer::from_writer(Vec::new());
+    rows.into_iter().try_for_each(|row| csv.write_record(row))?;
+    print_line(String::from_utf8_lossy(&csv.into_inner()?).trim_end());
+    Ok(())
+}
+
 /// The first failure to write standard output.
 static FAILURE: OnceLock<io::Error> = OnceLock::new();
 

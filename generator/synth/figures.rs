@@ -88,6 +88,12 @@ impl Figures {
         }
     }
 
+    /// The longest path as `first 0.4 → second 3.1 → third 7.9 ns`.
+    pub fn path_in_words(&self) -> String {
+        let steps = self.critical_path.iter().map(|step| format!("{} {:.1}", step.name, step.ns));
+        format!("{} ns", Vec::from_iter(steps).join(" → "))
+    }
+
     /// Puts in what `route` finds with each seed, a frequency in MHz and the longest path, unless there is a reason why
     /// it cannot.
     pub(super) fn routed(

@@ -27,7 +27,7 @@ use crate::tools::Tool;
 use crate::tools::synthesis::FAMILIES;
 pub use figures::{Area, Figures, Frequency, Step};
 use place::Place;
-pub use record::{DIRECTORY, Rate, Record};
+pub use record::{DIRECTORY, Rate, Record, tools};
 
 /// What a core is measured for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]

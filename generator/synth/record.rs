@@ -1,5 +1,6 @@
 //! The record of a measurement: what `glint synth --out` writes, and what datasheets, `glint compare` and README show.
 
+use std::collections::BTreeSet;
 use std::path::Path;
 
 use anyhow::Result;
@@ -48,13 +49,14 @@ impl Record {
     }
 
     /// The tools that measured, each once.
-    pub fn tools(&self) -> Vec<&str> {
-        let mut tools: Vec<&str> =
-            self.targets.iter().flat_map(|it| &it.tools).map(String::as_str).collect();
-        tools.sort_unstable();
-        tools.dedup();
-        tools
+    pub fn tools(&self) -> BTreeSet<&str> {
+        tools(&self.targets)
     }
+}
+
+/// The tools of all figures, each once.
+pub fn tools<'a>(figures: impl IntoIterator<Item = &'a Figures>) -> BTreeSet<&'a str> {
+    figures.into_iter().flat_map(|it| &it.tools).map(String::as_str).collect()
 }
 
 /// How many points a core computes.

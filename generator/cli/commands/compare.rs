@@ -153,7 +153,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         .flat_map(|entry| &entry.usage)
         .filter_map(|usage| usage.as_ref().err().cloned())
         .collect();
-    show::show(output, arguments, &entries, &notes, &faults);
+    show::show(output, arguments, &entries, &notes, &faults)?;
     Ok(faults.is_empty())
 }
 

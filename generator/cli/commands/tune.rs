@@ -303,11 +303,10 @@ fn as_json(answer: &Answer, arguments: &Arguments, text: &str) -> Json {
 }
 
 fn print_csv(answer: &Answer) -> Result<()> {
-    let mut csv = csv::Writer::from_writer(Vec::new());
     let head =
         ["error_of_f", "output_units", "luts", "dsps", "block_rams", "rom_bits", "mhz", "mpoints"];
-    csv.write_record(head.iter().copied().chain(answer.free.iter().copied()))?;
-    for candidate in &answer.front {
+    let head = head.iter().copied().chain(answer.free.iter().copied()).map(str::to_owned);
+    let row = |candidate: &Candidate| {
         let cost = &candidate.cost;
         let figures = [
             candidate.bound.f.to_string(),
@@ -320,9 +319,7 @@ fn print_csv(answer: &Answer) -> Result<()> {
             candidate.rate().map_or_else(String::new, |rate| format!("{rate:.2}")),
         ];
         let keys = answer.free.iter().map(|key| candidate.config.value(key).bare());
-        csv.write_record(figures.into_iter().chain(keys))?;
-    }
-    let text = csv.into_inner().context("cannot write CSV")?;
-    tables::print_line(String::from_utf8_lossy(&text).trim_end());
-    Ok(())
+        figures.into_iter().chain(keys).collect()
+    };
+    tables::print_csv(std::iter::once(head.collect()).chain(answer.front.iter().map(row)))
 }

@@ -2,7 +2,7 @@
 
 use super::table::TableView;
 use crate::pages::account::Table;
-use crate::synth::{Figures, Frequency, Rate, Record, Step};
+use crate::synth::{Figures, Frequency, Rate, Record};
 
 /// What stands where a target has no such thing, or nothing was measured.
 const NONE: &str = "–";
@@ -28,9 +28,9 @@ impl RecordView {
         let untimed = record.targets.iter();
         Self {
             table: TableView::new("Area and speed", &table),
-            paths: timed.map(|it| of(it, path(&it.critical_path))).collect(),
+            paths: timed.map(|it| of(it, it.path_in_words())).collect(),
             untimed: untimed.filter_map(|it| Some(of(it, it.untimed.clone()?))).collect(),
-            tools: record.tools().join(", "),
+            tools: Vec::from_iter(record.tools()).join(", "),
         }
     }
 }
@@ -66,11 +66,4 @@ fn row(figures: &Figures, clocks_per_point: f64) -> Vec<String> {
         decimal(rate.and_then(|it| it.per_lut).map(|it| it * 1000.0)),
         decimal(rate.and_then(|it| it.per_dsp)),
     ]
-}
-
-/// `first → second 3.1 → third 7.9 ns`.
-fn path(steps: &[Step]) -> String {
-    let steps: Vec<String> =
-        steps.iter().map(|step| format!("{} {:.1}", step.name, step.ns)).collect();
-    format!("{} ns", steps.join(" → "))
 }

@@ -1,5 +1,6 @@
 //! A comparison as tables, as CSV and as JSON.
 
+use anyhow::Result;
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -9,7 +10,7 @@ use crate::cli::tables::Column;
 use crate::cli::{Output, failure, say, tables};
 use crate::evidence::comparison::{ANGLES, ANGLES_PER_DEGREE, Accuracy, Multiplier, Spread};
 use crate::golden::contract;
-use crate::synth::{Frequency, Rate, Record, TARGETS, Target};
+use crate::synth::{Frequency, Rate, TARGETS, Target, tools};
 use crate::tools::synthesis::{FAMILIES, Usage};
 
 /// Prints everything in the form that was asked for.
@@ -19,20 +20,17 @@ pub fn show(
     entries: &[Entry],
     notes: &[String],
     faults: &[String],
-) {
+) -> Result<()> {
     if output.json {
         tables::print_json(&as_json(arguments, entries, notes, faults));
-        return;
+        return Ok(());
     }
     if arguments.csv {
-        for row in as_csv(arguments, entries) {
-            let fields: Vec<String> = row.iter().map(|field| csv_field(field)).collect();
-            tables::print_line(&fields.join(","));
-        }
+        tables::print_csv(as_csv(arguments, entries))?;
         for note in notes.iter().chain(faults) {
             failure::warn(note);
         }
-        return;
+        return Ok(());
     }
     print_errors(arguments, entries);
     print_hardware(entries);
@@ -43,6 +41,7 @@ pub fn show(
     for fault in faults {
         say!("FAILS: {fault}");
     }
+    Ok(())
 }
 
 /// Over what the errors of a device are, that has more operands than the angle and n; none of others.
@@ -217,13 +216,11 @@ fn print_speed(entries: &[Entry]) {
     });
     tables::print_line("");
     tables::print(&columns, rows);
-    let mut tools: Vec<&str> =
-        entries.iter().filter_map(|entry| entry.record.as_ref()).flat_map(Record::tools).collect();
-    tools.sort_unstable();
-    tools.dedup();
+    let tools =
+        tools(entries.iter().filter_map(|it| it.record.as_ref()).flat_map(|it| &it.targets));
     say!(
         "Measured by `glint synth` with registers around the core, the median of several runs of place and route: {}.",
-        tools.join(", ")
+        Vec::from_iter(tools).join(", ")
     );
 }
 
@@ -306,15 +303,6 @@ fn as_csv(arguments: &Arguments, entries: &[Entry]) -> Vec<Vec<String>> {
         row
     };
     std::iter::once(heading).chain(entries.iter().map(row)).collect()
-}
-
-/// A field as RFC 4180 has it.
-fn csv_field(field: &str) -> String {
-    if field.contains([',', '"', '\n', '\r']) {
-        format!("\"{}\"", field.replace('"', "\"\""))
-    } else {
-        field.to_owned()
-    }
 }
 
 /// For scripts.

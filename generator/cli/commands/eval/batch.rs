@@ -1,10 +1,9 @@
 //! Many points: operands from CSV, results as CSV.
 
-use std::io;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
-use csv::{ReaderBuilder, Trim, Writer};
+use csv::{ReaderBuilder, Trim};
 use serde_json::{Map, Value, json};
 
 use super::{formula, operands, outside};
@@ -90,7 +89,6 @@ fn row(
 
 fn print_csv(one: &Loaded, rows: &[Row]) -> Result<()> {
     let contract = one.core.contract.as_ref();
-    let mut writer = Writer::from_writer(Vec::new());
     let mut headings: Vec<String> =
         contract.operands().iter().map(|operand| operand.name.clone()).collect();
     let highlight = contract.highlight();
@@ -100,8 +98,7 @@ fn print_csv(one: &Loaded, rows: &[Row]) -> Result<()> {
     headings.extend(highlight.map(|_| "formula_f".to_owned()));
     headings.extend(outputs().map(|name| format!("formula_{name}")));
     headings.push("inside_the_domain".to_owned());
-    writer.write_record(&headings)?;
-    for row in rows {
+    let cells = |row: &Row| {
         let operands = contract.operands().iter().zip(&row.operands);
         let mut cells: Vec<String> = operands
             .map(|(operand, &raw)| operand.format.to_f64(i128::from(raw)).to_string())
@@ -112,11 +109,9 @@ fn print_csv(one: &Loaded, rows: &[Row]) -> Result<()> {
         cells.extend(row.exact_f.map(|f| f.to_string()));
         cells.extend(row.exact.iter().map(f64::to_string));
         cells.push(row.inside.to_string());
-        writer.write_record(&cells)?;
-    }
-    let bytes = writer.into_inner().map_err(|error| io::Error::other(error.to_string()))?;
-    tables::print_line(String::from_utf8_lossy(&bytes).trim_end());
-    Ok(())
+        cells
+    };
+    tables::print_csv(std::iter::once(headings).chain(rows.iter().map(cells)))
 }
 
 fn print_json(one: &Loaded, rows: &[Row]) {

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::{Measured, Recorded};
 use crate::cli::say;
 use crate::cli::tables::{self, Column};
-use crate::synth::{Figures, Rate, Step};
+use crate::synth::{Figures, Rate, tools};
 
 /// What stands where there is nothing to tell.
 const NONE: &str = "–";
@@ -35,22 +35,15 @@ pub fn print(measured: &[Measured], notes: &[String]) {
         for figures in &one.figures {
             let about = format!("{}, {}", one.one.core.config.name, figures.device);
             if !figures.critical_path.is_empty() {
-                say!("{about}: {}", path(&figures.critical_path));
+                say!("{about}: {}", figures.path_in_words());
             }
             if let Some(reason) = &figures.untimed {
                 say!("{about}: {reason}");
             }
         }
     }
-    let mut tools: Vec<&str> = measured
-        .iter()
-        .flat_map(|one| &one.figures)
-        .flat_map(|it| &it.tools)
-        .map(String::as_str)
-        .collect();
-    tools.sort_unstable();
-    tools.dedup();
-    say!("Measured with {}.", tools.join(", "));
+    let tools = tools(measured.iter().flat_map(|one| &one.figures));
+    say!("Measured with {}.", Vec::from_iter(tools).join(", "));
     for note in notes {
         say!("Note: {note}");
     }
@@ -86,13 +79,6 @@ fn row(one: &Measured, figures: &Figures) -> Vec<String> {
         decimal(rate.and_then(|it| it.per_lut).map(|it| it * 1000.0)),
         decimal(rate.and_then(|it| it.per_dsp)),
     ]
-}
-
-/// A path as `first → second 3.1 → third 7.9 ns`.
-fn path(steps: &[Step]) -> String {
-    let steps: Vec<String> =
-        steps.iter().map(|step| format!("{} {:.1}", step.name, step.ns)).collect();
-    format!("{} ns", steps.join(" → "))
 }
 
 #[derive(Serialize)]
