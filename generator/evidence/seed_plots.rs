@@ -64,13 +64,14 @@ fn blinn(gamma: f64, n: f64) -> f64 {
 
 /// Functions of the angle at one exponent.
 fn over_angle(
+    figure: &'static str,
     id: &str,
     title: &str,
     caption: &str,
     n: f64,
     degrees: f64,
     functions: &[(&str, Function)],
-) -> Chart {
+) -> SeedPlot {
     let places = even(0.0, degrees, 120);
     let series = functions
         .iter()
@@ -79,7 +80,7 @@ fn over_angle(
             values: places.iter().map(|degrees| function(degrees.to_radians(), n)).collect(),
         })
         .collect();
-    Chart {
+    let chart = Chart {
         id: id.to_owned(),
         title: title.to_owned(),
         caption: caption.to_owned(),
@@ -88,7 +89,8 @@ fn over_angle(
         places,
         series,
         marks: Vec::new(),
-    }
+    };
+    SeedPlot { figure, chart }
 }
 
 /// The height of `cosⁿγ` at its inflection point.
@@ -102,12 +104,13 @@ fn inflection_mark(n: f64) -> Mark {
 
 /// Largest relative errors against n.
 fn over_exponents(
+    figure: &'static str,
     id: &str,
     title: &str,
     caption: &str,
     axes: (ChartAxis, ChartAxis),
     series: &[(&str, Function, Region)],
-) -> Chart {
+) -> SeedPlot {
     let low = libm::round(axes.0.range.0) as u32;
     let high = libm::round(axes.0.range.1) as u32;
     let places = exponents(low, high, 24);
@@ -123,7 +126,7 @@ fn over_exponents(
                 .collect(),
         })
         .collect();
-    Chart {
+    let chart = Chart {
         id: id.to_owned(),
         title: title.to_owned(),
         caption: format!("{caption} {}", largest(&series, &places)),
@@ -132,7 +135,8 @@ fn over_exponents(
         places: places.into_iter().map(f64::from).collect(),
         series,
         marks: Vec::new(),
-    }
+    };
+    SeedPlot { figure, chart }
 }
 
 /// "The largest are ...": of each series its largest value, per cent, and where that is.
@@ -156,6 +160,7 @@ pub fn plots() -> Vec<SeedPlot> {
 fn patent() -> Vec<SeedPlot> {
     let exponents = || ChartAxis::logarithmic(EXPONENT, 2.0, f64::from(LARGEST));
     let mut zones = over_angle(
+        "seed 000, Fig. 7",
         "zones",
         "The zones of a highlight",
         "cos\u{207f}\u{3b3} for n = 35. Above the inflection point is the epicentre, where errors are seen; below it the \
@@ -164,38 +169,34 @@ fn patent() -> Vec<SeedPlot> {
         30.0,
         &[("cos\u{207f}\u{3b3}", &blinn)],
     );
-    zones.marks.push(inflection_mark(35.0));
+    zones.chart.marks.push(inflection_mark(35.0));
     let (squared, sixteen) = (stretched(2), stretched(16));
     vec![
-        SeedPlot { figure: "seed 000, Fig. 7", chart: zones },
-        SeedPlot {
-            figure: "seed 000, Fig. 5",
-            chart: over_exponents(
-                "cosine-squared-error",
-                "cos\u{b2}(a\u{b7}\u{3b4}) for cos\u{207f}\u{3b4}",
-                "Largest relative error of the prototype's function against n.",
-                (exponents(), ChartAxis::linear(ERROR, 0.0, 15.0)),
-                &[
-                    ("to the inflection point", &squared, Region::Inflection),
-                    ("where cos\u{207f}\u{3b4} \u{2265} 0.46", &squared, Region::Level(0.46)),
-                ],
-            ),
-        },
-        SeedPlot {
-            figure: "seed 000, Fig. 9",
-            chart: over_exponents(
-                "stretched-error",
-                "cos\u{1d4f}(\u{221a}(n/k)\u{b7}\u{3b4}) for cos\u{207f}\u{3b4}",
-                "Largest relative error to the inflection point against n. With the patent's k the error has a peak \
+        zones,
+        over_exponents(
+            "seed 000, Fig. 5",
+            "cosine-squared-error",
+            "cos\u{b2}(a\u{b7}\u{3b4}) for cos\u{207f}\u{3b4}",
+            "Largest relative error of the prototype's function against n.",
+            (exponents(), ChartAxis::linear(ERROR, 0.0, 15.0)),
+            &[
+                ("to the inflection point", &squared, Region::Inflection),
+                ("where cos\u{207f}\u{3b4} \u{2265} 0.46", &squared, Region::Level(0.46)),
+            ],
+        ),
+        over_exponents(
+            "seed 000, Fig. 9",
+            "stretched-error",
+            "cos\u{1d4f}(\u{221a}(n/k)\u{b7}\u{3b4}) for cos\u{207f}\u{3b4}",
+            "Largest relative error to the inflection point against n. With the patent's k the error has a peak \
                  wherever k changes; k = 16 alone would not do for small n.",
-                (exponents(), ChartAxis::linear(ERROR, 0.0, 5.0)),
-                &[
-                    ("k = 2, 4, 16 by n", &quad, Region::Inflection),
-                    ("k = 16 throughout", &sixteen, Region::Inflection),
-                    ("k = 2 throughout (the prototype)", &squared, Region::Inflection),
-                ],
-            ),
-        },
+            (exponents(), ChartAxis::linear(ERROR, 0.0, 5.0)),
+            &[
+                ("k = 2, 4, 16 by n", &quad, Region::Inflection),
+                ("k = 16 throughout", &sixteen, Region::Inflection),
+                ("k = 2 throughout (the prototype)", &squared, Region::Inflection),
+            ],
+        ),
     ]
 }
 
@@ -203,31 +204,27 @@ fn paper() -> Vec<SeedPlot> {
     let (w2, w4, w8, w16) = (w(2), w(4), w(8), w(16));
     let exponents = || ChartAxis::logarithmic(EXPONENT, 2.0, 250.0);
     let mut plots = vec![
-        SeedPlot {
-            figure: "seed 002, Fig. 3",
-            chart: over_angle(
-                "w2-and-schlick",
-                "W with m = 2 and Schlick's function, n = 100",
-                &format!(
-                    "Both follow cos\u{207f}\u{3b3} near the peak. W falls to 0 at {:.1} degrees; Schlick's function \
+        over_angle(
+            "seed 002, Fig. 3",
+            "w2-and-schlick",
+            "W with m = 2 and Schlick's function, n = 100",
+            &format!(
+                "Both follow cos\u{207f}\u{3b3} near the peak. W falls to 0 at {:.1} degrees; Schlick's function \
                      fades so slowly that the highlight has a halo.",
-                    libm::acos((100.0 - 2.0) / 100.0).to_degrees()
-                ),
-                100.0,
-                30.0,
-                &[("cos\u{207f}\u{3b3}", &blinn), ("W, m = 2", &w2), ("Schlick", &schlick)],
+                libm::acos((100.0 - 2.0) / 100.0).to_degrees()
             ),
-        },
-        SeedPlot {
-            figure: "seed 002, Fig. 4",
-            chart: over_exponents(
-                "w2-epicentre",
-                "The epicentre: W with m = 2, and Schlick's function",
-                "Largest relative error to the inflection point against n.",
-                (exponents(), ChartAxis::linear(ERROR, 0.0, 12.0)),
-                &[("W, m = 2", &w2, Region::Inflection), ("Schlick", &schlick, Region::Inflection)],
-            ),
-        },
+            100.0,
+            30.0,
+            &[("cos\u{207f}\u{3b3}", &blinn), ("W, m = 2", &w2), ("Schlick", &schlick)],
+        ),
+        over_exponents(
+            "seed 002, Fig. 4",
+            "w2-epicentre",
+            "The epicentre: W with m = 2, and Schlick's function",
+            "Largest relative error to the inflection point against n.",
+            (exponents(), ChartAxis::linear(ERROR, 0.0, 12.0)),
+            &[("W, m = 2", &w2, Region::Inflection), ("Schlick", &schlick, Region::Inflection)],
+        ),
     ];
     let of_power: [(_, _, Function); 3] = [
         ("seed 002, Fig. 5", 4, &w4),
@@ -235,20 +232,19 @@ fn paper() -> Vec<SeedPlot> {
         ("seed 002, Fig. 7", 16, &w16),
     ];
     for (figure, m, function) in of_power {
-        plots.push(SeedPlot {
+        plots.push(over_angle(
             figure,
-            chart: over_angle(
-                &format!("w{m}-lobe"),
-                &format!("W with m = {m}, n = 35"),
-                "W stays below cos\u{207f}\u{3b3} and meets it at the peak; the greater m, the farther out they part.",
-                35.0,
-                45.0,
-                &[("cos\u{207f}\u{3b3}", &blinn), (&format!("W, m = {m}"), function)],
-            ),
-        });
+            &format!("w{m}-lobe"),
+            &format!("W with m = {m}, n = 35"),
+            "W stays below cos\u{207f}\u{3b3} and meets it at the peak; the greater m, the farther out they part.",
+            35.0,
+            45.0,
+            &[("cos\u{207f}\u{3b3}", &blinn), (&format!("W, m = {m}"), function)],
+        ));
     }
     let less = |function: Function<'_>, gamma: f64, n: f64| function(gamma, n) - blinn(gamma, n);
     let mut differences = over_angle(
+        "seed 002, Figs. 5 to 7",
         "w-differences",
         "W less cos\u{207f}\u{3b3}, n = 35",
         "What the three figures before can hardly show. With each doubling of m the difference falls to less than a half.",
@@ -260,8 +256,8 @@ fn paper() -> Vec<SeedPlot> {
             ("m = 16", &|gamma, n| less(&w16, gamma, n)),
         ],
     );
-    differences.y = ChartAxis::linear("difference", -0.08, 0.02);
-    plots.push(SeedPlot { figure: "seed 002, Figs. 5 to 7", chart: differences });
+    differences.chart.y = ChartAxis::linear("difference", -0.08, 0.02);
+    plots.push(differences);
     let families = |region| {
         [
             ("W, m = 4", &w4 as Function, region),
@@ -270,38 +266,32 @@ fn paper() -> Vec<SeedPlot> {
             ("Schlick", &schlick, region),
         ]
     };
-    plots.push(SeedPlot {
-        figure: "seed 002, Fig. 8",
-        chart: over_exponents(
-            "w-epicentre",
-            "The epicentre: W with m = 4, 8, 16",
-            "Largest relative error to the inflection point against n. Where n is less than m, W is on the other side of \
-             cos\u{207f}\u{3b3}, and worse than for large n.",
-            (exponents(), ChartAxis::linear(ERROR, 0.0, 12.0)),
-            &families(Region::Inflection),
-        ),
-    });
-    plots.push(SeedPlot {
-        figure: "seed 002, Fig. 8",
-        chart: over_exponents(
-            "w-epicentre-0.46",
-            "The same where cos\u{207f}\u{3b3} \u{2265} 0.46",
-            "Largest relative error down to this level against n. Three of the paper's four figures come out here: those of \
-             m = 4 and 8 and of Schlick's function.",
-            (exponents(), ChartAxis::linear(ERROR, 0.0, 25.0)),
-            &families(Region::Level(0.46)),
-        ),
-    });
-    plots.push(SeedPlot {
-        figure: "seed 002, Fig. 9",
-        chart: over_exponents(
-            "w-blooming",
-            "The blooming zone: W with m = 4, 8, 16",
-            "Largest relative error where cos\u{207f}\u{3b3} \u{2265} 0.20, against n.",
-            (exponents(), ChartAxis::linear(ERROR, 0.0, 100.0)),
-            &families(Region::Level(0.20)),
-        ),
-    });
+    plots.push(over_exponents(
+        "seed 002, Fig. 8",
+        "w-epicentre",
+        "The epicentre: W with m = 4, 8, 16",
+        "Largest relative error to the inflection point against n. Where n is less than m, W is on the other side of \
+         cos\u{207f}\u{3b3}, and worse than for large n.",
+        (exponents(), ChartAxis::linear(ERROR, 0.0, 12.0)),
+        &families(Region::Inflection),
+    ));
+    plots.push(over_exponents(
+        "seed 002, Fig. 8",
+        "w-epicentre-0.46",
+        "The same where cos\u{207f}\u{3b3} \u{2265} 0.46",
+        "Largest relative error down to this level against n. Three of the paper's four figures come out here: those of \
+         m = 4 and 8 and of Schlick's function.",
+        (exponents(), ChartAxis::linear(ERROR, 0.0, 25.0)),
+        &families(Region::Level(0.46)),
+    ));
+    plots.push(over_exponents(
+        "seed 002, Fig. 9",
+        "w-blooming",
+        "The blooming zone: W with m = 4, 8, 16",
+        "Largest relative error where cos\u{207f}\u{3b3} \u{2265} 0.20, against n.",
+        (exponents(), ChartAxis::linear(ERROR, 0.0, 100.0)),
+        &families(Region::Level(0.20)),
+    ));
     plots
 }
 
