@@ -1,9 +1,10 @@
 //! Keys that several devices share, so that one name means one thing everywhere.
 
+use crate::base::fixed::Format;
 use crate::config::{Config, Key, Problems};
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::line::{LineBlocks, OperandBlocks};
-use crate::hdl::dsl::{Signal, Step};
+use crate::hdl::dsl::{Designer, Operand, Signal, Step};
 
 use super::rounding;
 
@@ -20,6 +21,15 @@ pub fn cosine_fraction(default: i64) -> Key {
     )
 }
 
+/// The operand `cos_gamma`, limited to 0 … 1.0, in the format of the keys `cosine`.
+#[track_caller]
+pub fn cosine<'d>(d: &'d Designer, config: &Config) -> Operand<'d> {
+    let frac = config.integer("cosine.fraction") as i32;
+    let format = Format { signed: config.flag("cosine.signed"), int: 1, frac };
+    d.operand_clamped("cos_gamma", format, 0.0, 1.0)
+        .doc("cosine of the angle between normal and half vector")
+}
+
 /// `cosine.signed`.
 pub fn cosine_signed() -> Key {
     Key::flag("cosine.signed", false, "The cosine port has a sign bit; a negative cosine gives 0.")
@@ -28,6 +38,13 @@ pub fn cosine_signed() -> Key {
 /// `exponent.bits`.
 pub fn exponent_bits() -> Key {
     Key::integer("exponent.bits", 10, 1..=12, "Bits of the specular exponent n.")
+}
+
+/// The operand `exponent`, of `exponent.bits` bits.
+#[track_caller]
+pub fn exponent<'d>(d: &'d Designer, config: &Config) -> Operand<'d> {
+    let format = Format::unsigned(config.integer("exponent.bits") as i32, 0);
+    d.operand("exponent", format).doc("specular exponent n")
 }
 
 /// `power`.

@@ -195,26 +195,11 @@ fn check_decay(config: &Config, operand_bits: i64, problems: &mut Problems) {
     }
 }
 
-/// The operand `cos_gamma`, limited to 0 … 1.0.
-pub fn cosine<'d>(d: &'d Designer, config: &Config) -> Signal<'d> {
-    let format = Format {
-        signed: config.flag("cosine.signed"),
-        int: 1,
-        frac: config.integer("cosine.fraction") as i32,
-    };
-    d.operand_clamped("cos_gamma", format, 0.0, 1.0)
-        .doc("cosine of the angle between normal and half vector")
-        .q()
-}
-
 /// Everything behind the operand `cos_gamma`: operands, the two products, 2^−y, outputs, microprogram.
 pub fn describe<'d>(d: &'d Designer, config: &Config, cos_gamma: Signal<'d>, curve: &Curve<'d>) {
     let integer = |key: &str| config.integer(key) as i32;
     let synchronous = config.flag("tables.synchronous");
-    let exponent = d
-        .operand("exponent", Format::unsigned(integer("exponent.bits"), 0))
-        .doc("specular exponent n")
-        .q();
+    let exponent = common::exponent(d, config).q();
     let colours = Colours::new(d, integer("colour.bits"), None);
     let f = Format::unsigned(0, integer("intensity.fraction"));
     let exponential = ExponentialFormats {

@@ -10,6 +10,7 @@ use crate::config::{Config, Problems, Schema};
 use crate::hdl::dsl::Designer;
 use crate::hdl::netlist::About;
 
+use super::common;
 use super::decay::{self, Curve, Defaults};
 
 /// The keys of the device.
@@ -32,7 +33,7 @@ fn check(config: &Config, problems: &mut Problems) {
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
     d.about(about(config));
-    let cos_gamma = decay::cosine(d, config);
+    let cos_gamma = common::cosine(d, config).q();
     let bits = config.integer("cosine.fraction") as u32;
     let fraction = cos_gamma.bits(0, Format::unsigned(bits as i32, 0));
     let u = d.not("distance", fraction).doc("1.0 - cos gamma, less an ulp");

@@ -236,10 +236,7 @@ fn by_shift<'d>(d: &'d Designer, config: &Config, distance: Distance<'d>) -> Sca
 /// The exact β: a multiplier of ours, and n/2^(s+1) by wiring.
 fn by_multiplier<'d>(d: &'d Designer, config: &Config, distance: Distance<'d>) -> Scaled<'d> {
     let count = common::squarings(config);
-    let exponent = d
-        .operand("exponent", Format::unsigned(config.integer("exponent.bits") as i32, 0))
-        .doc("specular exponent n")
-        .q();
+    let exponent = common::exponent(d, config).q();
     let register = d.register("distance", distance.value.format()).doc("D^2");
     register.takes(distance.value);
     let squarings = Squarings::new(d, count);

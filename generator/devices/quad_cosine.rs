@@ -100,12 +100,7 @@ pub fn describe<'d>(d: &'d Designer, config: &Config) {
         integer("length.bits"),
         Some(common::LINE_BLOCKS),
     );
-    let exponent = d
-        .operand("exponent", Format::unsigned(integer("exponent.bits"), 0))
-        .block(4)
-        .inputs(21, 22)
-        .doc("specular exponent n")
-        .q();
+    let exponent = common::exponent(d, config).block(4).inputs(21, 22).q();
 
     let root = d
         .rom("root", exponent, root_format(config), &roots(config), true)

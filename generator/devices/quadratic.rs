@@ -82,18 +82,10 @@ const fn channel(output: u16) -> ChannelBlocks {
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
     let integer = |key: &str| config.integer(key) as i32;
-    let cosine =
-        Format { signed: config.flag("cosine.signed"), int: 1, frac: integer("cosine.fraction") };
     d.about(about(config));
 
-    let exponent = d
-        .operand("exponent", Format::unsigned(integer("exponent.bits"), 0))
-        .block(1)
-        .inputs(1, 1)
-        .doc("specular exponent n")
-        .q();
-    let cos_gamma = d
-        .operand_clamped("cos_gamma", cosine, 0.0, 1.0)
+    let exponent = common::exponent(d, config).block(1).inputs(1, 1).q();
+    let cos_gamma = common::cosine(d, config)
         .block(2)
         .inputs(2, 2)
         .doc("c, the cosine of the angle between normal and half vector")

@@ -79,11 +79,7 @@ pub fn describe(d: &Designer, config: &Config) {
     d.about(about(config));
 
     let (cos_gamma, cos_dgamma) = operands(d, &formats);
-    let r3 = d
-        .operand("exponent", Format::unsigned(config.integer("exponent.bits") as i32, 0))
-        .block(3)
-        .inputs(59, 60)
-        .doc("specular exponent n");
+    let r3 = common::exponent(d, config).block(3).inputs(59, 60);
     let r4 = d
         .operand("dgamma_negative", Format::BIT)
         .block(4)

@@ -43,18 +43,10 @@ fn check(config: &Config, problems: &mut Problems) {
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
     let integer = |key: &str| config.integer(key) as i32;
-    let cosine =
-        Format { signed: config.flag("cosine.signed"), int: 1, frac: integer("cosine.fraction") };
     d.about(about(config));
 
-    let cos_gamma = d
-        .operand_clamped("cos_gamma", cosine, 0.0, 1.0)
-        .doc("cosine of the angle between normal and half vector")
-        .q();
-    let exponent = d
-        .operand("exponent", Format::unsigned(integer("exponent.bits"), 0))
-        .doc("specular exponent n")
-        .q();
+    let cos_gamma = common::cosine(d, config).q();
+    let exponent = common::exponent(d, config).q();
     let colours = Colours::new(d, integer("colour.bits"), None);
 
     let divisor = divisor(d, cos_gamma, exponent);

@@ -69,24 +69,12 @@ const fn channel(number: u16) -> ChannelBlocks {
 /// The device.
 pub fn describe(d: &Designer, config: &Config) {
     let integer = |key: &str| config.integer(key) as i32;
-    let cosine =
-        Format { signed: config.flag("cosine.signed"), int: 1, frac: integer("cosine.fraction") };
     let f = Format::unsigned(0, integer("intensity.fraction"));
     let rounding_f = rounding(config, "intensity.rounding");
     d.about(about(config));
 
-    let cos_gamma = d
-        .operand_clamped("cos_gamma", cosine, 0.0, 1.0)
-        .block(1)
-        .inputs(1, 1)
-        .doc("cosine of the angle between normal and half vector")
-        .q();
-    let exponent = d
-        .operand("exponent", Format::unsigned(integer("exponent.bits"), 0))
-        .block(2)
-        .inputs(2, 2)
-        .doc("specular exponent n")
-        .q();
+    let cos_gamma = common::cosine(d, config).block(1).inputs(1, 1).q();
+    let exponent = common::exponent(d, config).block(2).inputs(2, 2).q();
     let colours = Colours::new(d, integer("colour.bits"), Some(CHANNELS));
 
     // From -1.0, where the parabola has its zero: the saturation of the product is the clamp.
@@ -94,7 +82,7 @@ pub fn describe(d: &Designer, config: &Config) {
         d.register("scaled", Format::signed(0, f.frac)).doc("n/2*(cos gamma - 1), not below -1.0");
     let intensity = d.register("intensity", f).doc("the reflectance f: what the gates passed");
 
-    let one = d.constant("one", 1.0, Format::unsigned(1, cosine.frac));
+    let one = d.constant("one", 1.0, Format::unsigned(1, integer("cosine.fraction")));
     let adder1 = d.sub("adder1", cos_gamma, one).block(1).doc("cos gamma - 1.0");
     let half_n = exponent.shift_right(1).named("half_exponent").doc("n/2, by wiring");
     let multiplier1 = d.mul("multiplier1", adder1, half_n).block(1);
