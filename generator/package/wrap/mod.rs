@@ -12,7 +12,9 @@ use askama::Template;
 use super::map::Map;
 use super::surroundings::Bus;
 use super::{EmitInputs, render};
-use crate::hdl::netlist::Design;
+use crate::hdl::netlist::{Design, Port};
+use crate::hdl::verilog::rows::separated;
+use crate::hdl::verilog::text::range;
 
 /// The wrappers that a configuration asks for: pairs of a plain name and its text.
 #[derive(Default)]
@@ -58,4 +60,22 @@ struct Script<'a> {
 
 fn script(name: &str) -> Result<String> {
     render(&Script { name })
+}
+
+/// The ports of a module that stands in for the core, in the order of the core's.
+fn stub_ports(design: &Design) -> Vec<String> {
+    let port = |port: &Port| {
+        let net = design.net(port.net);
+        let range = range(net.format.width());
+        let sign = if net.format.signed { "signed " } else { "" };
+        let direction = if port.role.is_input() { "input" } else { "output" };
+        format!("{direction} wire {sign}{range} {}", net.name).replace("  ", " ")
+    };
+    let clock = "input wire clk".to_owned();
+    separated(std::iter::once(clock).chain(design.ports.iter().map(port)).collect())
+}
+
+/// The declaration of a net inside the module that is proved, with its width.
+fn seen_inside((net, width): (String, u32)) -> String {
+    format!("(* hierconn *) wire {} \\dut.{net} ;", range(width)).replace("  ", " ")
 }

@@ -4,7 +4,7 @@ use anyhow::{Result, ensure};
 use askama::Template;
 
 use super::fields::{Field, bits, operands, packed, padding, results, sink};
-use super::{Wrappers, script};
+use super::{Wrappers, script, seen_inside, stub_ports};
 use crate::hdl::netlist::{Design, Pipeline, Role};
 use crate::hdl::verilog::rows::separated;
 use crate::hdl::verilog::text::{literal, range};
@@ -123,14 +123,6 @@ fn formal(
     (operands, results): (&[Field], &[Field]),
 ) -> Result<Vec<(String, String)>> {
     let name = design.name.as_str();
-    let mut stub_ports = vec!["input wire clk".to_owned()];
-    for port in &design.ports {
-        let net = design.net(port.net);
-        let range = range(net.format.width());
-        let sign = if net.format.signed { "signed " } else { "" };
-        let direction = if port.role.is_input() { "input" } else { "output" };
-        stub_ports.push(format!("{direction} wire {sign}{range} {}", net.name).replace("  ", " "));
-    }
     let stages = pipeline.stages.len();
     let user = inputs.around.user_bits;
     let side = user + 1;
@@ -158,9 +150,6 @@ fn formal(
         nets.push((format!("core.valid_{stage}"), 1));
         nets.push((format!("core.data_{stage}"), raw_bits));
     }
-    let declared = |(net, width): (String, u32)| {
-        format!("(* hierconn *) wire {} \\dut.{net} ;", range(width)).replace("  ", " ")
-    };
     let check = |field: &Field| format!("dut.core.{} == s_axis_tdata{}", field.name, field.bits());
     let view = Formal {
         name,
@@ -169,12 +158,12 @@ fn formal(
         user_bits: user,
         // Points can be in every stage, offered, and behind the one that is offered.
         count_bits: u32::BITS - (stages as u32 + 2).leading_zeros(),
-        stub_ports: separated(stub_ports),
+        stub_ports: stub_ports(design),
         raw,
         raw_high: raw_bits - 1,
         packed: separated(packed(results, "its_")),
         checks: operands.iter().map(check).collect(),
-        inside: nets.into_iter().map(declared).collect(),
+        inside: nets.into_iter().map(seen_inside).collect(),
         last: stages,
         stages: (1..=stages as u32)
             .rev()

@@ -6,7 +6,7 @@ use askama::Template;
 
 use super::fields::sink;
 use super::words::{Word, constants, select, within, words};
-use super::{Wrappers, script};
+use super::{Wrappers, script, seen_inside, stub_ports};
 use crate::hdl::netlist::{Design, Role};
 use crate::hdl::verilog::rows::separated;
 use crate::hdl::verilog::text::{comment, literal, range};
@@ -263,15 +263,11 @@ fn operands(map: &Map) -> Vec<Operand> {
 }
 
 fn proof<'a>(design: &'a Design, map: &Map) -> Formal<'a> {
-    let mut stub_ports = vec!["input wire clk".to_owned()];
     let mut stub_free = Vec::new();
     for port in &design.ports {
         let net = design.net(port.net);
-        let range = range(net.format.width());
-        let sign = if net.format.signed { "signed " } else { "" };
-        let direction = if port.role.is_input() { "input" } else { "output" };
-        stub_ports.push(format!("{direction} wire {sign}{range} {}", net.name).replace("  ", " "));
         if matches!(port.role, Role::Result | Role::Status) {
+            let range = range(net.format.width());
             stub_free
                 .push(format!("(* anyseq *) reg {range} any_{};", net.name).replace("  ", " "));
             stub_free.push(format!("assign {0} = any_{0};", net.name));
@@ -295,9 +291,6 @@ fn proof<'a>(design: &'a Design, map: &Map) -> Formal<'a> {
         inside.push((format!("operand_{}", operand.name), width));
         inside.push((format!("core.{}", operand.name), width));
     }
-    let declared = |(net, width): (String, u32)| {
-        format!("(* hierconn *) wire {} \\dut.{net} ;", range(width)).replace("  ", " ")
-    };
     let operand_words = map.operands.iter().flat_map(|operand| {
         operand.parts.iter().map(|part| OperandWord {
             number: part.place,
@@ -317,8 +310,8 @@ fn proof<'a>(design: &'a Design, map: &Map) -> Formal<'a> {
         last_result_number: map.last(),
         operands: operands(map),
         operand_words: operand_words.collect(),
-        stub_ports: separated(stub_ports),
+        stub_ports: stub_ports(design),
         stub_free,
-        inside: inside.into_iter().map(declared).collect(),
+        inside: inside.into_iter().map(seen_inside).collect(),
     }
 }
