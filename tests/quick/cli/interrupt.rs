@@ -85,6 +85,12 @@ impl<'a> Running<'a> {
         }
     }
 
+    fn until_tools_sleep(&mut self) {
+        self.until("two sleeping children", |run| {
+            run.processes().iter().filter(|name| *name == "sleep").count() >= 3
+        });
+    }
+
     fn interrupted_by(self, signal: Signal) -> Run {
         let number = Pid::from_raw(self.child.id() as i32).expect("a process");
         kill_process(number, signal).expect("a signal");
@@ -162,9 +168,7 @@ fn every_command_ends_with_its_tools() {
     for (arguments, tool, signal, code) in commands {
         let place = with_endless(&[tool]);
         let mut run = Running::start(&place, arguments);
-        run.until("two sleeping children", |run| {
-            run.processes().iter().filter(|name| *name == "sleep").count() >= 3
-        });
+        run.until_tools_sleep();
         run.end(signal, code);
     }
 }
@@ -186,9 +190,7 @@ fn what_faults_of_the_verilog_are_shown_to_ends() {
     fs::create_dir_all(place.at("records")).expect("a directory");
     let arguments = ["mutate", "core.toml", "--full", "--out", "records"];
     let mut run = Running::start(&place, &arguments);
-    run.until("two sleeping children", |run| {
-        run.processes().iter().filter(|name| *name == "sleep").count() >= 3
-    });
+    run.until_tools_sleep();
     run.end(Signal::INT, 130);
 }
 
