@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use super::Arguments;
 use crate::cli::commands::Loaded;
 use crate::cli::commands::mismatch::{first_clock, waveform_of};
-use crate::cli::failure::{self};
+use crate::cli::failure;
 use crate::cli::{Output, progress, say, staged, tables, wrong_usage};
 use crate::package;
 use crate::tools::{BenchDifference, BenchOutcome, Simulator, bench_waveform, run_bench};
