@@ -449,7 +449,7 @@ async def writes_while_busy_are_for_the_next_computation(dut: Any) -> None:
         valid, results = [], []
         for clock in range(1, wanted.done + 1):
             is_done = clock == wanted.done
-            now = left if is_done else left[:1]
+            now = list(left) if is_done else left[:1]
             del left[: len(now)]
             # Before the last clock a start is not heard.
             start = not last if is_done else core.random.getrandbits(1)

@@ -17,18 +17,30 @@ pub enum Outcome {
     Open(String),
 }
 
-/// A statement that does not hold: a program that accepts it is no Gappa, or none that works.
-const FALSE: &str = "# False for x = 1.\n{ x in [0, 1] -> x in [0, 0.5] }\n";
+/// Statements with what Gappa says of them.
+const TRIALS: [(&str, bool); 2] = [
+    ("# True: 1 is the greatest.\n{ x in [0, 1] -> x in [0, 1] }\n", true),
+    ("# False for x = 1.\n{ x in [0, 1] -> x in [0, 0.5] }\n", false),
+];
 
-/// Asks Gappa for a proof of what does not hold, since its exit code is all that a proof rests on.
+/// Asks Gappa for proofs of what holds and of what does not, since its exit code is all that a proof rests on.
 ///
 /// # Errors
-/// It accepts it; it does not run.
-pub fn refuses_what_is_false(gappa: &Tool, limit: Duration) -> Result<()> {
+/// It does not tell them apart; it does not run.
+pub fn ensure_works(gappa: &Tool, limit: Duration) -> Result<()> {
     let place = Directory::new().context("cannot make a temporary directory")?;
-    fs::write(place.path().join("false.g"), FALSE).context("cannot write a script for Gappa")?;
-    if gappa.run(["false.g"], place.path(), limit)?.status.success() {
-        bail!("`{gappa}` accepts a statement that does not hold: it is no Gappa that works");
+    for (script, holds) in TRIALS {
+        fs::write(place.path().join("trial.g"), script)
+            .context("cannot write a script for Gappa")?;
+        let run = gappa.run(["trial.g"], place.path(), limit)?;
+        if run.status.success() != holds {
+            let (does, what) =
+                if holds { ("refuses", "holds") } else { ("accepts", "does not hold") };
+            let said = run.output.lines().next().map_or_else(String::new, |it| format!(": {it}"));
+            bail!(
+                "`{gappa}` {does} a statement that {what}, so that it is no Gappa that works{said}"
+            );
+        }
     }
     Ok(())
 }

@@ -124,7 +124,8 @@ static KEYS: LazyLock<Vec<Key>> = LazyLock::new(|| {
         Key::flag(
             "package.initial_values",
             false,
-            "Registers are 0 before the first clock. Without it a simulation has unknown values until the first reset and the first writes.",
+            "Registers of the core are 0 before the first clock, but for those that ROMs are read into. Without it a simulation has unknown \
+             values until the first reset and the first writes; wrappers need their reset all the same.",
         )
         .only_when("architecture", "sequential"),
         Key::flag(

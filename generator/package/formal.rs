@@ -93,6 +93,8 @@ pub(super) struct Script<'a> {
     /// The cells whose memories are cut out, as Yosys selects them.
     pub(super) within: &'a str,
     pub(super) rtl: &'a [String],
+    /// Registers have initial values.
+    pub(super) initial: bool,
 }
 
 #[derive(Template)]
@@ -187,9 +189,9 @@ pub fn files(
         .map(|name| format!(".{name}({name})"))
         .collect();
     let waits = design.control.microprogram.iter().any(|it| it.sequence == Sequence::WaitStart);
-    // A few steps with much state between them z3 solves at once when they are unrolled; many it
-    // solves faster when they are not.
-    let unroll = exact.is_none();
+    // A few steps with much state between them z3 solves at once when they are unrolled, and those of a device that
+    // begins a computation as another ends; many it solves faster when they are not.
+    let unroll = exact.is_none() || design.control.overlaps;
     let wrapper = Wrapper {
         name: name.clone(),
         module: module.clone(),
@@ -223,7 +225,8 @@ pub fn files(
         }),
     };
     let within = format!("{instance}.{}.*", naming.instance(Partition::Datapath));
-    let script = Script { name: &name, within: &within, rtl: sources.rtl };
+    let initial = naming.style.initial;
+    let script = Script { name: &name, within: &within, rtl: sources.rtl, initial };
     let task = Task {
         name: &name,
         within: &within,

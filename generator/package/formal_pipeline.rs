@@ -146,7 +146,7 @@ pub fn files(
         inside,
     };
     let within = format!("{instance}.*");
-    let script = Script { name: &name, within: &within, rtl: sources.rtl };
+    let script = Script { name: &name, within: &within, rtl: sources.rtl, initial: false };
     let task = Task {
         name: &name,
         within: &within,

@@ -135,8 +135,9 @@ memories = \"files\"
 # \"auto\", \"block\" or \"distributed\", default \"auto\".
 rom_style = \"auto\"
 
-# Registers are 0 before the first clock. Without it a simulation has unknown values until
-# the first reset and the first writes.
+# Registers of the core are 0 before the first clock, but for those that ROMs are read
+# into. Without it a simulation has unknown values until the first reset and the first
+# writes; wrappers need their reset all the same.
 # True or false, default false; only with architecture = \"sequential\".
 initial_values = false
 

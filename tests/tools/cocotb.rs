@@ -52,6 +52,13 @@ fn benches_of_pipelines_with_and_without_stalls_and_a_side_channel_pass() {
     }
 }
 
+/// A line of one point, which has fewer clocks than operands, writes the rest in the clock of `done`.
+#[test]
+fn a_bench_of_a_line_with_buffers_passes() {
+    let core = configuration_with("configs/quad_cosine.toml", "\n[operands]\nbuffered = true\n");
+    assert_passes("a line", &core);
+}
+
 fn assert_passes(what: &str, core: &Core) {
     let place = place(core);
     let run = run(place.path(), &core.config.name);

@@ -9,9 +9,7 @@ use rayon::prelude::*;
 use serde_json::json;
 
 use super::load_sequential;
-use crate::certify::{
-    self, Outcome, Statement, prove, questions, refuses_what_is_false, statements,
-};
+use crate::certify::{self, Outcome, Statement, ensure_works, prove, questions, statements};
 use crate::cli::own_file::OwnFile;
 use crate::cli::{Configs, Output, progress, say, tables};
 use crate::golden::Contract;
@@ -61,7 +59,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         bail!("`{}` is no directory: give another place with --out", out.display());
     }
     let gappa = Tool::find("gappa")?;
-    refuses_what_is_false(&gappa, limit)?;
+    ensure_works(&gappa, limit)?;
     let coq = arguments.coq.then(|| Tool::find("coqc")).transpose()?;
     let mut list = Vec::new();
     let mut whole = true;

@@ -339,9 +339,9 @@ impl Designer {
         }
         let taken = Driver::Op(Op::And(self.start, self.idle));
         let taken = self.add_named("operands_load", Format::BIT, taken);
-        self.set_doc(taken, "start is heard");
+        self.set_doc(taken, "a start that is heard");
         self.set_doc(self.start, "begins a computation when not busy, or in the last clock of one");
-        self.set_doc(self.idle, "start is heard");
+        self.set_doc(self.idle, "a start is heard: not busy, or the last clock of a computation");
         self.inner.borrow_mut().taken = Some(taken);
     }
 

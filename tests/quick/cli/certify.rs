@@ -5,7 +5,8 @@ use super::place::{COSINE_POWER, Place, Run};
 /// A program called gappa that refuses what is false for x = 1, and does `script` with the rest.
 #[cfg(unix)]
 fn place_gappa(place: &Place, script: &str) {
-    let refuse = "read -r line < \"$1\"; case \"$line\" in '# False'*) exit 1;; esac";
+    let refuse =
+        "read -r line < \"$1\"; case \"$line\" in '# True'*) exit 0;; '# False'*) exit 1;; esac";
     place.script("tools/gappa", &format!("{refuse}\n{script}"));
 }
 
@@ -107,4 +108,7 @@ fn a_program_that_accepts_everything_is_no_gappa() {
     let place = Place::with("core.toml", COSINE_POWER);
     place.script("tools/gappa", "exit 0");
     certify(&place, &[]).refused(1, &["`gappa` accepts a statement that does not hold"]);
+    place.script("tools/gappa", "echo cannot open shared object file; exit 127");
+    let refused = ["`gappa` refuses a statement that holds", "cannot open shared object file"];
+    certify(&place, &[]).refused(1, &refused);
 }
