@@ -60,8 +60,6 @@ pub struct Stimulus {
     written: Vec<i64>,
     /// Of operands with buffers, those that the latest `start` took of them.
     taken: Option<Vec<i64>>,
-    /// Whether a reset has come between the start of the current computation and now.
-    disturbed: bool,
     first: bool,
 }
 
@@ -111,7 +109,6 @@ impl Stimulus {
             next: vec![0; points.operands().len()],
             written: vec![0; points.operands().len()],
             taken: design.control.overlaps.then(|| vec![0; points.operands().len()]),
-            disturbed: false,
             first: true,
         })
     }
@@ -128,11 +125,6 @@ impl Stimulus {
         self.taken.as_ref().unwrap_or(&self.written)
     }
 
-    /// Whether the computation that runs was started by this stimulus and not reset since.
-    pub fn undisturbed(&self) -> bool {
-        !self.disturbed
-    }
-
     /// The inputs of the next clock; `busy`: a `start` that stands before the edge is not heard.
     pub fn next(&mut self, busy: bool, points: &Points) -> &[u64] {
         if !self.idle {
@@ -144,7 +136,6 @@ impl Stimulus {
             Phase::Reset(left) => {
                 self.idle = false;
                 self.inputs[self.reset] = 0;
-                self.disturbed = true;
                 if !self.first {
                     self.noise(busy, points);
                 }
@@ -180,7 +171,6 @@ impl Stimulus {
     fn begin(&mut self) {
         self.idle = false;
         self.inputs[self.start] = 1;
-        self.disturbed = false;
         self.first = false;
         let reset = self.random.once_in(16).then(|| {
             let magnitude = self.random.below(RESET_MAGNITUDES);
@@ -200,7 +190,6 @@ impl Stimulus {
             if reset == Some(0) {
                 self.idle = false;
                 self.inputs[self.reset] = 0;
-                self.disturbed = true;
                 self.phase = Phase::Reset(self.random.below(3) as u32);
             }
             return;

@@ -82,16 +82,18 @@ impl Designer {
         self.port(port, Role::Operand { strobe });
         self.port(strobe, Role::Strobe);
         let data = limited(self.signal(port));
-        let register = |suffix: &str, kind: RegisterKind| {
-            self.add_register(&format!("{name}_{suffix}"), data.format(), data.range(), kind)
-        };
         let (data, load) = match self.with(|inner| inner.taken) {
             None => {
                 let strobed = [strobe, self.idle].map(|it| self.signal(it));
                 (data, self.and(&format!("{name}_load"), strobed[0], strobed[1]).id())
             }
             Some(taken) => {
-                let buffer = register("buffer", RegisterKind::Buffer);
+                let buffer = self.add_register(
+                    &format!("{name}_buffer"),
+                    data.format(),
+                    data.range(),
+                    RegisterKind::Buffer,
+                );
                 self.set_doc(buffer, "for the next computation");
                 self.connect(buffer, data.id(), Some(strobe));
                 // What is written in the clock of `start` is taken at once.
@@ -100,7 +102,12 @@ impl Designer {
                 (self.chosen_within(&name, self.signal(strobe), inputs, range), taken)
             }
         };
-        let q = register("reg", RegisterKind::Operand);
+        let q = self.add_register(
+            &format!("{name}_reg"),
+            data.format(),
+            data.range(),
+            RegisterKind::Operand,
+        );
         self.connect(q, data.id(), Some(load));
         Operand { port: self.signal(port), strobe: self.signal(strobe), q: self.signal(q) }
     }
