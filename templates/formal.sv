@@ -50,7 +50,8 @@ ${ line }$
 <%- if straight %>
 <%- if overlaps %>
         end else if (!$past(busy && !done)) begin
-            // Idle until start, which is heard in the clock of done too; busy from the clock after it.
+            // Idle until start, which is heard in the clock of done too, and busy from the clock
+            // after it.
 <%- else %>
         end else if (!$past(busy)) begin
             // Idle until start, busy from the clock after it.

@@ -126,8 +126,7 @@ fn ports(design: &Design) -> Vec<String> {
         let role = match port.role {
             Role::Reset => "reset, active low, synchronous".to_owned(),
             Role::Start if design.control.overlaps => {
-                "begins a computation when the device is not busy, or in the clock of done"
-                    .to_owned()
+                "begins a computation when not busy, or with done".to_owned()
             }
             Role::Start => "begins a computation when the device is not busy".to_owned(),
             Role::Operand { strobe } => format!("operand, written by {}", name(strobe)),
