@@ -5,10 +5,11 @@ use glint::core::Core;
 use glint::cosim::trial;
 use glint::dsl::{Designer, end, step, valid, wait_for_start};
 use glint::fixed::Format;
-use glint::golden::Model;
 use glint::hdl::sim::Simulator;
 use glint::package::Computation;
 use glint::registry::{Device, Registry};
+
+use crate::output_registers::ByHand;
 
 /// Results that golden model and simulation are compared on.
 const POINTS: u64 = 4000;
@@ -143,28 +144,8 @@ fn a_pipeline_has_none_to_ask_for() {
     assert!(problems.contains("architecture = \"sequential\""), "{problems}");
 }
 
-/// A golden model that was written by hand, and does not say what buffers do.
 #[test]
 fn a_model_that_does_not_know_them_is_refused() {
-    #[derive(Clone)]
-    struct ByHand;
-
-    impl Model for ByHand {
-        fn inputs(&self) -> &[String] {
-            &[]
-        }
-
-        fn signals(&self) -> &[String] {
-            &[]
-        }
-
-        fn clock(&mut self, _: &[u64]) {}
-
-        fn values(&self) -> &[u64] {
-            &[]
-        }
-    }
-
     let threshold = *Registry::catalogue().device("threshold").expect("threshold");
     let device = Device { model: |_| Box::new(ByHand), ..threshold };
     let error = core(device, BUFFERED).err().expect("no model").to_string();

@@ -94,28 +94,28 @@ fn a_pipeline_has_none_to_ask_for() {
     assert!(problems.contains("architecture = \"sequential\""), "{problems}");
 }
 
-/// A golden model that was written by hand, and does not say what such registers do.
-#[test]
-fn a_model_that_does_not_know_them_is_refused() {
-    #[derive(Clone)]
-    struct ByHand;
+/// A golden model that was written by hand, and does not say what registers do that a key asks for.
+#[derive(Clone)]
+pub struct ByHand;
 
-    impl Model for ByHand {
-        fn inputs(&self) -> &[String] {
-            &[]
-        }
-
-        fn signals(&self) -> &[String] {
-            &[]
-        }
-
-        fn clock(&mut self, _: &[u64]) {}
-
-        fn values(&self) -> &[u64] {
-            &[]
-        }
+impl Model for ByHand {
+    fn inputs(&self) -> &[String] {
+        &[]
     }
 
+    fn signals(&self) -> &[String] {
+        &[]
+    }
+
+    fn clock(&mut self, _: &[u64]) {}
+
+    fn values(&self) -> &[u64] {
+        &[]
+    }
+}
+
+#[test]
+fn a_model_that_does_not_know_them_is_refused() {
     let threshold = *Registry::catalogue().device("threshold").expect("threshold");
     let device = Device { model: |_| Box::new(ByHand), ..threshold };
     assert!(core(device, "").is_ok());
