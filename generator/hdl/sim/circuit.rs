@@ -1,6 +1,5 @@
 //! A design as one block of a rust_hdl circuit.
 
-use std::mem;
 use std::sync::Arc;
 
 use anyhow::{Result, anyhow};
@@ -22,8 +21,8 @@ use crate::hdl::sim::wire::{Direction, MicroinstructionName, Wire};
 pub struct Circuit<const LANES: usize = 1> {
     /// Everything happens on its rising edge.
     pub clock: Signal<In, Clock>,
-    machine: Machine<LANES>,
-    /// What [`Circuit::set_lanes`] was told last, for each input port.
+    pub(super) machine: Machine<LANES>,
+    /// What [`Circuit::inputs_mut`] was told last, for each input port.
     inputs: Vec<[u64; LANES]>,
     /// The machine has yet to be told.
     input_set: bool,
@@ -108,65 +107,11 @@ impl<const LANES: usize> Circuit<LANES> {
         Ok(circuit)
     }
 
-    /// Sets the input port of the given position among [`Design::inputs`] in every lane; bits
-    /// beyond its width are ignored. It takes effect with rust_hdl's next update.
-    ///
-    /// # Panics
-    /// When there is no such port.
-    pub fn set_lanes(&mut self, input: usize, lanes: [u64; LANES]) {
-        self.inputs[input] = lanes;
-        self.input_set = true;
-    }
-
-    /// The input ports in order of declaration, for [`Circuit::set_lanes`] of many at once.
-    pub fn inputs_mut(&mut self) -> &mut [[u64; LANES]] {
+    /// The input ports in order of declaration, each with its lanes; bits beyond a port's width are ignored. What is set takes
+    /// effect with rust_hdl's next update.
+    pub fn inputs_mut(&mut self) -> &mut Vec<[u64; LANES]> {
         self.input_set = true;
         &mut self.inputs
-    }
-
-    /// Exchanges the input ports, in order of declaration, for others.
-    ///
-    /// # Panics
-    /// When their number is another.
-    pub fn swap_inputs(&mut self, inputs: &mut Vec<[u64; LANES]>) {
-        assert_eq!(inputs.len(), self.inputs.len(), "one for each input port");
-        mem::swap(&mut self.inputs, inputs);
-        self.input_set = true;
-    }
-
-    /// The bit pattern of a net in each lane.
-    ///
-    /// # Panics
-    /// When the net is unnamed and was optimised away.
-    pub fn lanes(&self, net: NetId) -> [u64; LANES] {
-        self.machine.lanes(net)
-    }
-
-    /// The bit pattern of a net in one lane.
-    ///
-    /// # Panics
-    /// When the net is unnamed and was optimised away, or there is no such lane.
-    pub fn lane(&self, net: NetId, lane: usize) -> u64 {
-        self.machine.lane(net, lane)
-    }
-
-    /// For each lane, a pattern that is 0 exactly if each net carries what is expected of it, in the bits that are `known`
-    /// of it: all, when there is nothing.
-    ///
-    /// # Panics
-    /// When a net is unnamed and was optimised away.
-    pub fn differences(
-        &self,
-        nets: &[NetId],
-        expected: &[[u64; LANES]],
-        known: Option<&[[u64; LANES]]>,
-    ) -> [u64; LANES] {
-        self.machine.differences(nets, expected, known)
-    }
-
-    /// The number of input ports.
-    pub fn inputs(&self) -> usize {
-        self.inputs.len()
     }
 
     fn visit(&self, nets: &[Observed], probe: &mut dyn Probe) {
@@ -178,7 +123,7 @@ impl<const LANES: usize> Circuit<LANES> {
                 direction: net.direction,
                 connected: self.connected,
                 changed: self.changed,
-                bits: self.lane(net.net, 0),
+                bits: self.machine.lane(net.net, 0),
             };
             probe.visit_atom(&net.name, &wire);
         }
@@ -241,8 +186,8 @@ impl<const LANES: usize> Block for Circuit<LANES> {
                 names: &self.microprogram.names,
                 connected: self.connected,
                 changed: self.changed,
-                address: self.lane(address, 0),
-                run: self.lane(run, 0) == 1,
+                address: self.machine.lane(address, 0),
+                run: self.machine.lane(run, 0) == 1,
             };
             probe.visit_atom("microinstruction", &name);
         }

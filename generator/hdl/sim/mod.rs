@@ -24,6 +24,7 @@ mod vcd;
 mod wire;
 
 use std::io::Write;
+use std::mem;
 
 use anyhow::{Result, ensure};
 use rust_hdl::core::simulate::simulate;
@@ -95,7 +96,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// # Panics
     /// When there is no port of this position.
     pub fn set_lanes(&mut self, input: usize, lanes: [u64; LANES]) {
-        self.circuit.set_lanes(input, lanes);
+        self.circuit.inputs_mut()[input] = lanes;
     }
 
     /// The input ports in order of position, each with its lanes, for [`Simulator::set_lanes`] of many
@@ -109,7 +110,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// # Panics
     /// When the net is unnamed and was optimised away.
     pub fn lanes(&self, net: NetId) -> [u64; LANES] {
-        self.circuit.lanes(net)
+        self.circuit.machine.lanes(net)
     }
 
     /// The bit pattern of a net in one lane, after the latest clock.
@@ -117,7 +118,7 @@ impl<const LANES: usize> Simulator<LANES> {
     /// # Panics
     /// When the net is unnamed and was optimised away, or there is no such lane.
     pub fn lane(&self, net: NetId, lane: usize) -> u64 {
-        self.circuit.lane(net, lane)
+        self.circuit.machine.lane(net, lane)
     }
 
     /// For each lane, a pattern that is 0 exactly if each net carries what is expected of it, in the bits that are `known`
@@ -131,7 +132,7 @@ impl<const LANES: usize> Simulator<LANES> {
         expected: &[[u64; LANES]],
         known: Option<&[[u64; LANES]]>,
     ) -> [u64; LANES] {
-        self.circuit.differences(nets, expected, known)
+        self.circuit.machine.differences(nets, expected, known)
     }
 
     /// One clock: the falling edge, with which inputs change, and the rising edge.
@@ -154,9 +155,10 @@ impl<const LANES: usize> Simulator<LANES> {
     /// When there are more or fewer than ports.
     #[inline]
     pub fn clock_with(&mut self, inputs: &mut Vec<[u64; LANES]>) -> Result<()> {
-        self.circuit.swap_inputs(inputs);
+        assert_eq!(inputs.len(), self.inputs.len(), "one for each input port");
+        mem::swap(self.circuit.inputs_mut(), inputs);
         let clocked = self.clock();
-        self.circuit.swap_inputs(inputs);
+        mem::swap(self.circuit.inputs_mut(), inputs);
         clocked
     }
 
@@ -202,11 +204,6 @@ impl<const LANES: usize> Simulator<LANES> {
             trace.finish(self.time + HALF_CLOCK)?;
         }
         Ok(())
-    }
-
-    /// The circuit, for use with rust_hdl's own probes.
-    pub fn circuit(&self) -> &Circuit<LANES> {
-        &self.circuit
     }
 }
 

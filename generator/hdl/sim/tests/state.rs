@@ -143,21 +143,21 @@ fn rust_hdl_settles_it_in_two_updates_and_leaves_it_alone_when_nothing_changes()
     let mut circuit: Circuit = Circuit::new(&b.design).unwrap();
     assert!(simulate(&mut circuit, 1), "nothing has changed");
 
-    circuit.set_lanes(1, [0x0f]);
-    assert_eq!(circuit.lanes(not), [0xff], "not before the update");
+    circuit.inputs_mut()[1] = [0x0f];
+    assert_eq!(circuit.machine.lanes(not), [0xff], "not before the update");
     assert!(!simulate(&mut circuit, 1), "an input has");
-    assert_eq!((circuit.lanes(not), circuit.lanes(q)), ([0xf0], [0]));
+    assert_eq!((circuit.machine.lanes(not), circuit.machine.lanes(q)), ([0xf0], [0]));
     assert!(simulate(&mut circuit, 1));
 
     circuit.clock.next = true.into();
     // Too late for this edge.
-    circuit.set_lanes(1, [0x3c]);
+    circuit.inputs_mut()[1] = [0x3c];
     assert!(simulate(&mut circuit, 2));
-    assert_eq!((circuit.lanes(not), circuit.lanes(q)), ([0xc3], [0xf0]));
+    assert_eq!((circuit.machine.lanes(not), circuit.machine.lanes(q)), ([0xc3], [0xf0]));
     assert!(simulate(&mut circuit, 1));
     circuit.clock.next = false.into();
     assert!(simulate(&mut circuit, 2));
-    assert_eq!(circuit.lanes(q), [0xf0], "the falling edge does nothing");
+    assert_eq!(circuit.machine.lanes(q), [0xf0], "the falling edge does nothing");
 }
 
 #[test]
