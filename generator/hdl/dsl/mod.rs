@@ -32,6 +32,39 @@
 //! Mistakes are collected, not thrown: [`Designer::finish`] reports all of them, each with the names
 //! of the signals and the Rust source line.
 
+/// What a description says of a handle that is shown as a net, for those who compare it with the source's figure.
+macro_rules! described {
+    ($handle:ident, $net:ident) => {
+        impl $handle<'_> {
+            /// States the block number in the source's figure.
+            #[must_use]
+            pub fn block(self, number: u16) -> Self {
+                let _ = self.$net.block(number);
+                self
+            }
+
+            /// States a comment of one line for the reader of the Verilog.
+            #[must_use]
+            pub fn doc(self, line: &str) -> Self {
+                let _ = self.$net.doc(line);
+                self
+            }
+        }
+    };
+    ($handle:ident, $net:ident, $line:literal: $field:ident) => {
+        described!($handle, $net);
+
+        impl $handle<'_> {
+            #[doc = concat!("States the number of the ", $line, " line in the source's figure.")]
+            #[must_use]
+            pub fn line(self, number: u16) -> Self {
+                self.$net.designer().set_lines(self.$field, &[number]);
+                self
+            }
+        }
+    };
+}
+
 mod narrow;
 mod operand_mux;
 mod output_registers;

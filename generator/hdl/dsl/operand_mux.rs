@@ -25,6 +25,8 @@ pub struct OperandMux<'d> {
     delay: u32,
 }
 
+described!(OperandMux, out);
+
 impl Designer {
     /// A mux whose inputs may differ in format, under `select`.
     #[track_caller]
@@ -147,20 +149,6 @@ impl<'d> OperandMux<'d> {
         let out = self.designer.pipeline(&name, self.out).doc(doc);
         Self { out, delay: self.delay + 1, ..self }
     }
-
-    /// States the block number in the source's figure.
-    #[must_use]
-    pub fn block(self, number: u16) -> Self {
-        let _ = self.out.block(number);
-        self
-    }
-
-    /// States a comment of one line for the reader of the Verilog.
-    #[must_use]
-    pub fn doc(self, line: &str) -> Self {
-        let _ = self.out.doc(line);
-        self
-    }
 }
 
 /// What a product of unsigned numbers is too large by, where an operand is negative.
@@ -182,6 +170,8 @@ pub struct SharedProduct<'d> {
     field: FieldId,
     pairs: Vec<(Signal<'d>, Signal<'d>)>,
 }
+
+described!(SharedProduct, out);
 
 impl<'d> SharedProduct<'d> {
     /// The product of `first` and `second`, which must stand opposite each other on the two buses.
@@ -252,20 +242,6 @@ impl<'d> SharedProduct<'d> {
         let lower = raw.bits(0, Format::unsigned(excess.low as i32, 0));
         let op = Op::Concat(vec![upper, lower.id()]);
         self.out.wiring("view", format, range, op)
-    }
-
-    /// States the block number in the source's figure.
-    #[must_use]
-    pub fn block(self, number: u16) -> Self {
-        let _ = self.out.block(number);
-        self
-    }
-
-    /// States a comment of one line for the reader of the Verilog.
-    #[must_use]
-    pub fn doc(self, line: &str) -> Self {
-        let _ = self.out.doc(line);
-        self
     }
 }
 

@@ -258,6 +258,8 @@ pub struct Register<'d> {
     field: FieldId,
 }
 
+described!(Register, q, "load": field);
+
 impl<'d> Register<'d> {
     /// What the register holds.
     pub fn q(self) -> Signal<'d> {
@@ -299,29 +301,6 @@ impl<'d> Register<'d> {
     pub fn load(self) -> Setting {
         Setting::field(self.q.designer(), self.field, 1, format!("{}.load", self.q.name()))
     }
-
-    /// States the block number in the source's figure.
-    #[must_use]
-    pub fn block(self, number: u16) -> Self {
-        let _ = self.q.block(number);
-        self
-    }
-
-    /// States the number of the load line in the source's figure.
-    #[must_use]
-    pub fn line(self, number: u16) -> Self {
-        self.q
-            .designer()
-            .with(|inner| inner.design.control.fields[self.field.index()].lines = vec![number]);
-        self
-    }
-
-    /// States a comment of one line for the reader of the Verilog.
-    #[must_use]
-    pub fn doc(self, line: &str) -> Self {
-        let _ = self.q.doc(line);
-        self
-    }
 }
 
 /// Select lines.
@@ -344,8 +323,7 @@ impl<'d> Select<'d> {
     /// States the numbers of the lines in the source's figure, most significant first.
     #[must_use]
     pub fn lines(self, numbers: &[u16]) -> Self {
-        self.designer
-            .with(|inner| inner.design.control.fields[self.field.index()].lines = numbers.to_vec());
+        self.designer.set_lines(self.field, numbers);
         self
     }
 
@@ -393,6 +371,8 @@ pub struct Counter<'d> {
     count: FieldId,
 }
 
+described!(Counter, q, "count": count);
+
 impl<'d> Counter<'d> {
     /// The count.
     pub fn q(self) -> Signal<'d> {
@@ -402,15 +382,6 @@ impl<'d> Counter<'d> {
     /// The count line: 1 in the microinstructions that count.
     pub fn counting(self) -> Signal<'d> {
         self.q.designer().field_net(self.count)
-    }
-
-    /// States the number of the count line in the source's figure.
-    #[must_use]
-    pub fn line(self, number: u16) -> Self {
-        self.q
-            .designer()
-            .with(|inner| inner.design.control.fields[self.count.index()].lines = vec![number]);
-        self
     }
 
     /// The setting with which the counter takes its start value at the end of the microinstruction.
@@ -423,19 +394,5 @@ impl<'d> Counter<'d> {
     #[track_caller]
     pub fn count(self) -> Setting {
         Setting::field(self.q.designer(), self.count, 1, format!("{}.count", self.q.name()))
-    }
-
-    /// States the block number in the source's figure.
-    #[must_use]
-    pub fn block(self, number: u16) -> Self {
-        let _ = self.q.block(number);
-        self
-    }
-
-    /// States a comment of one line for the reader of the Verilog.
-    #[must_use]
-    pub fn doc(self, line: &str) -> Self {
-        let _ = self.q.doc(line);
-        self
     }
 }

@@ -171,6 +171,10 @@ impl Designer {
         self.with(|inner| doc.clone_into(&mut inner.design.nets[id.index()].doc));
     }
 
+    pub(crate) fn set_lines(&self, field: FieldId, numbers: &[u16]) {
+        self.with(|inner| inner.design.control.fields[field.index()].lines = numbers.to_vec());
+    }
+
     pub(crate) fn field_net(&self, field: FieldId) -> Signal<'_> {
         let net = self.with(|inner| inner.design.control.fields[field.index()].net);
         self.signal(net)

@@ -533,6 +533,8 @@ pub struct Mux<'d> {
     field: FieldId,
 }
 
+described!(Mux, out, "select": field);
+
 impl<'d> Mux<'d> {
     /// The output of the mux.
     pub fn out(self) -> Signal<'d> {
@@ -545,31 +547,8 @@ impl<'d> Mux<'d> {
         Setting::pick(self.out.designer(), self.field, &self.out.name(), input)
     }
 
-    /// States the block number in the source's figure.
-    #[must_use]
-    pub fn block(self, number: u16) -> Self {
-        let _ = self.out.block(number);
-        self
-    }
-
     /// The select line or lines.
     pub fn select(self) -> Signal<'d> {
         self.out.designer().field_net(self.field)
-    }
-
-    /// States the number of the select line in the source's figure.
-    #[must_use]
-    pub fn line(self, number: u16) -> Self {
-        self.out
-            .designer()
-            .with(|inner| inner.design.control.fields[self.field.index()].lines = vec![number]);
-        self
-    }
-
-    /// States a comment of one line for the reader of the Verilog.
-    #[must_use]
-    pub fn doc(self, line: &str) -> Self {
-        let _ = self.out.doc(line);
-        self
     }
 }
