@@ -1,9 +1,10 @@
-//! Fixed-point formats, diagnostics, names, text and input: what all other modules use.
+//! Fixed-point formats, intervals, diagnostics, names, text and input: what all other modules use.
 
 pub mod diagnostic;
 pub mod fixed;
 pub mod identifier;
 pub mod input;
+pub mod interval;
 pub mod keywords;
 pub mod text;
 pub mod transient;

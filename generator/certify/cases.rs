@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use super::polynomial::Polynomial;
 use super::quotient::Quotient;
-use crate::base::fixed::{Format, mask};
-use crate::hdl::netlist::{NetId, Op, RomId};
-use crate::hdl::pipeline::{Cell, Graph, Interval};
+use crate::base::interval::{self, Interval, common, turns};
+use crate::hdl::netlist::{NetId, Op, RomId, interval::of_cell};
+use crate::hdl::pipeline::{Cell, Graph};
 
 /// More ways than this are not looked at, those that turn out to be none too.
 const MOST: usize = 4096;
@@ -130,7 +130,7 @@ impl Case {
             let node = graph.node(id);
             let of = |id: &NetId| self.ranges[id.index()];
             let open = |id: &NetId| of(id).0 != of(id).1;
-            let mut range = match &node.cell {
+            let range = match &node.cell {
                 _ if view.quotients.contains_key(&id) => {
                     let Quotient { dividend, divisor, bits } = view.quotients[&id];
                     let (over, under) = (of(&dividend), of(&divisor));
@@ -150,32 +150,31 @@ impl Case {
                     let decider = decider(graph, *carry, &of);
                     return Way::Splits(decider, of(&decider));
                 }
-                Cell::Op(op) => computed(graph, id, op, &of),
+                Cell::Op(Op::All(a)) => {
+                    let format = graph.node(*a).format;
+                    let ones = if format.signed { -1 } else { format.max_raw() };
+                    let possible = common(of(a), (ones, ones)).is_some();
+                    (i128::from(of(a) == (ones, ones)), i128::from(possible))
+                }
+                Cell::Op(op) => {
+                    of_cell(op, node.format, &|id| graph.node(id).format, &|id| of(&id))
+                }
                 Cell::Read { rom, address } => {
                     let (low, high) = of(address);
                     let words = (low..=high).map(|at| (view.words)(*rom, at as u64));
-                    let ends = words.fold(None, |ends: Option<Interval>, word| {
-                        Some(ends.map_or((word, word), |it| (it.0.min(word), it.1.max(word))))
-                    });
-                    ends.unwrap_or(node.range)
+                    interval::of_values(words).unwrap_or(node.range)
                 }
                 _ => node.range,
             };
             let other = self.known.get(&id).copied().unwrap_or(node.range);
-            for (low, high) in [node.range, other] {
-                range = (range.0.max(low), range.1.min(high));
-            }
-            if range.0 > range.1 {
-                return Way::Never;
-            }
+            let possible = common(range, node.range).and_then(|range| common(range, other));
+            let Some(mut range) = possible else { return Way::Never };
             if let Some(polynomial) = polynomial(graph, id, &polynomials, &of) {
                 polynomials.insert(id, polynomial);
                 let values = polynomial.of.and_then(|x| polynomial.range(of(&x)));
-                if let Some((low, high)) = values.filter(|it| it.0 > range.0 || it.1 < range.1) {
-                    range = (range.0.max(low), range.1.min(high));
-                    if range.0 > range.1 {
-                        return Way::Never;
-                    }
+                if let Some(values) = values.filter(|it| it.0 > range.0 || it.1 < range.1) {
+                    let Some(both) = common(range, values) else { return Way::Never };
+                    range = both;
                     if polynomial.factors[2] != 0 {
                         self.parabolas.insert(id, polynomial);
                     }
@@ -249,66 +248,6 @@ fn decider(graph: &Graph, id: NetId, of: &dyn Fn(&NetId) -> Interval) -> NetId {
     open.map_or(id, |operand| decider(graph, operand, of))
 }
 
-/// The multiple of the modulus that brings numbers of this range into the format, as hardware that drops what is
-/// above its bits does; `None` if it is not one for all.
-pub fn turns((low, high): Interval, format: Format) -> Option<i128> {
-    let (least, most) = format.range();
-    let modulus = most - least + 1;
-    let turn =
-        (least - low).div_euclid(modulus) + i128::from((least - low).rem_euclid(modulus) != 0);
-    let turn = turn * modulus;
-    (low + turn >= least && high + turn <= most).then_some(turn)
-}
-
-/// The raw values of a cell whose operands have theirs; all that the format has where nothing closer is said.
-fn computed(graph: &Graph, id: NetId, op: &Op, of: &dyn Fn(&NetId) -> Interval) -> Interval {
-    let format = graph.node(id).format;
-    let all = format.range();
-    let fits = |range: Interval| match turns(range, format) {
-        Some(turn) => (range.0 + turn, range.1 + turn),
-        None => all,
-    };
-    let corners = |a: Interval, b: Interval| {
-        let products = [a.0 * b.0, a.0 * b.1, a.1 * b.0, a.1 * b.1];
-        let low = products.into_iter().fold(products[0], i128::min);
-        (low, products.into_iter().fold(products[0], i128::max))
-    };
-    let bit = |never: bool, always: bool| (i128::from(always), i128::from(!never));
-    match op {
-        Op::Relabel(a) | Op::Extend(a) => fits(of(a)),
-        Op::Slice { of: a, low } => fits((of(a).0 >> low, of(a).1 >> low)),
-        Op::Concat(parts) => fits(parts.iter().fold((0, 0), |(low, high), part| {
-            let width = graph.width(*part);
-            // Of a signed part the bits count, whose values are not in order; but on top of a signed number they are its sign.
-            let is_sign = format.signed && Some(part) == parts.first();
-            let own = if of(part).0 < 0 && !is_sign { (0, mask(width).into()) } else { of(part) };
-            ((low << width) + own.0, (high << width) + own.1)
-        })),
-        Op::Not(a) if format.signed => (!of(a).1, !of(a).0),
-        Op::Not(a) => (all.1 - of(a).1, all.1 - of(a).0),
-        Op::Add { a, b, carry } => {
-            let carry = carry.as_ref().map_or((0, 0), of);
-            fits((of(a).0 + of(b).0 + carry.0, of(a).1 + of(b).1 + carry.1))
-        }
-        Op::Sub(a, b) => fits((of(a).0 - of(b).1, of(a).1 - of(b).0)),
-        Op::Mul(a, b) => fits(corners(of(a), of(b))),
-        Op::Equal(a, b) => {
-            let (a, b) = (of(a), of(b));
-            bit(a.1 < b.0 || b.1 < a.0, a.0 == a.1 && a == b)
-        }
-        Op::Less(a, b) => bit(of(a).0 >= of(b).1, of(a).1 < of(b).0),
-        Op::Any(a) => bit(of(a) == (0, 0), of(a).0 > 0 || of(a).1 < 0),
-        Op::All(a) => {
-            let format = graph.node(*a).format;
-            let ones = if format.signed { -1 } else { format.range().1 };
-            bit(of(a).1 < ones || of(a).0 > ones, of(a) == (ones, ones))
-        }
-        Op::And(a, b) if format.width() == 1 => (of(a).0.min(of(b).0), of(a).1.min(of(b).1)),
-        Op::Or(a, b) if format.width() == 1 => (of(a).0.max(of(b).0), of(a).1.max(of(b).1)),
-        Op::And(..) | Op::Or(..) | Op::Xor(..) | Op::Mux { .. } => all,
-    }
-}
-
 /// Notes that a node has the values of `range` alone, and what follows for those that it comes from; false if
 /// that cannot be. `ranges` are the values that nodes have without it.
 pub fn learn(
@@ -324,10 +263,7 @@ pub fn learn(
         let ((low, high), own) = (ranges[id.index()], known.get(&id));
         own.map_or((low, high), |own| (low.max(own.0), high.min(own.1)))
     };
-    let range = (range.0.max(before.0), range.1.min(before.1));
-    if range.0 > range.1 {
-        return false;
-    }
+    let Some(range) = common(range, before) else { return false };
     known.insert(id, range);
     let unsigned = |id: NetId| !graph.node(id).format.signed;
     let all = |id: NetId| graph.node(id).format.range();

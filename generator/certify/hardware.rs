@@ -2,13 +2,14 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::cases::{Case, View, turns};
+use super::cases::{Case, View};
 use super::exact::word_variable;
 use super::quotient::{Quotient, widened};
 use super::terms::{Direction, Id, Term, Terms};
 use crate::base::fixed::exp2;
+use crate::base::interval::{Interval, turns};
 use crate::hdl::netlist::{NetId, Op, RomId};
-use crate::hdl::pipeline::{Cell, Graph, Interval};
+use crate::hdl::pipeline::{Cell, Graph};
 
 /// A node's raw value.
 #[derive(Clone, Copy, Debug, PartialEq)]

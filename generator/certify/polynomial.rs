@@ -1,7 +1,7 @@
 //! Polynomials of the second degree in one operand: the values that they take, which intervals overestimate.
 
+use crate::base::interval::Interval;
 use crate::hdl::netlist::NetId;
-use crate::hdl::pipeline::Interval;
 
 /// `factors[0] + factors[1]·x + factors[2]·x²`, in raw values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

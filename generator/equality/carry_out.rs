@@ -2,10 +2,8 @@
 
 use super::term::{ADDRESS, Id, Term, Terms};
 use crate::base::fixed::MAX_WIDTH;
+use crate::base::interval::Interval;
 use crate::hdl::netlist::{Design, Driver, NetId, Op, Role};
-
-/// The smallest and the largest number.
-pub type Interval = (i128, i128);
 
 /// A product of 64 bits, and what the design says of its factors: to be believed only where they are shown to keep to it.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -6,9 +6,10 @@
 
 use std::collections::{HashMap, HashSet};
 
-use super::carry_out::{Interval, Product};
+use super::carry_out::Product;
 use super::term::{Id, Term, Terms};
 use crate::base::fixed::{MAX_WIDTH, mask};
+use crate::base::interval::{self, Interval};
 
 /// A factor of so few bits is written out as rows of the product.
 const ROWS: u32 = 8;
@@ -215,9 +216,7 @@ pub fn shifted(terms: &mut Terms, id: Id, by: u32) -> Id {
 fn within(terms: &mut Terms, product: &Product) -> Option<Id> {
     let [a, b] = product.factors;
     let [x, y] = product.ranges;
-    let corners = [x.0 * y.0, x.0 * y.1, x.1 * y.0, x.1 * y.1];
-    let least = corners.into_iter().fold(corners[0], i128::min);
-    let most = corners.into_iter().fold(corners[0], i128::max);
+    let (least, most) = interval::product(x, y);
     let range = (if a == b { least.max(0) } else { least }, most);
     let premises = [between(terms, a, x)?, between(terms, b, y)?];
     let value = terms.make(Term::Product(a, b), MAX_WIDTH);

@@ -94,6 +94,7 @@ use crate::hdl::netlist::register_held;
 
 use crate::base::diagnostic::{Diagnostic, Diagnostics};
 use crate::base::fixed::Format;
+use crate::base::interval;
 use crate::hdl::netlist::{
     Control, Design, Driver, FieldId, NetId, Op, Partition, RegisterKind, Role, Rom as NetRom,
     RomId,
@@ -273,14 +274,9 @@ impl Designer {
         if let Some((at, raw)) = words.iter().enumerate().find(|(_, raw)| !format.holds(**raw)) {
             self.error(format!("ROM `{name}`: word {at} is {raw}, which does not fit {format}"));
         }
-        let range = words
-            .iter()
-            .fold(None, |range: Option<(i128, i128)>, &raw| {
-                Some(range.map_or((raw, raw), |(low, high)| (low.min(raw), high.max(raw))))
-            })
-            .unwrap_or((0, 0));
         // A synchronous read starts from the power-up value 0.
-        let range = if synchronous { (range.0.min(0), range.1.max(0)) } else { range };
+        let first = synchronous.then_some(0);
+        let range = interval::of_values(words.iter().copied().chain(first)).unwrap_or((0, 0));
         let id = RomId(self.inner.borrow().design.roms.len() as u32);
         let data = self.add_net(&format!("{name}_word"), format, range, Driver::Rom(id), true);
         self.inner.borrow_mut().design.roms.push(NetRom {

@@ -8,9 +8,9 @@
 
 use std::cmp::Ordering;
 
-use super::signal::product_range;
 use super::{Designer, Select, SelectedProduct, Setting, Signal};
 use crate::base::fixed::Format;
+use crate::base::interval::{self, Interval, hull};
 use crate::hdl::netlist::{Driver, FieldId, Op};
 
 /// A mux of operands of different formats.
@@ -39,8 +39,7 @@ impl Designer {
         let inputs = self.own_all(&inputs.into_iter().collect::<Vec<_>>());
         let select = self.own_select(select);
         select.check_inputs(name, inputs.len());
-        let low = inputs.iter().map(|input| input.range().0).min().unwrap_or(0);
-        let high = inputs.iter().map(|input| input.range().1).max().unwrap_or(0);
+        let (low, high) = hull(inputs.iter().map(|input| input.range())).unwrap_or((0, 0));
         let format = Format::holding(low, high, 0);
         let carried = inputs
             .iter()
@@ -187,7 +186,7 @@ impl<'d> SharedProduct<'d> {
         let d = self.out.designer();
         let mut values = Vec::new();
         let mut points = Vec::new();
-        let mut range: Option<(i128, i128)> = None;
+        let mut range: Option<Interval> = None;
         for (first, second) in pairs {
             let (first, second) = (d.own(*first), d.own(*second));
             let found =
@@ -203,8 +202,8 @@ impl<'d> SharedProduct<'d> {
             };
             values.push(at as u64);
             points.push(first.format().frac + second.format().frac);
-            let (low, high) = product_range(first.range(), second.range());
-            range = Some(range.map_or((low, high), |(from, to)| (from.min(low), to.max(high))));
+            let products = interval::product(first.range(), second.range());
+            range = hull(range.into_iter().chain([products]));
         }
         let (Some(range), Some(&frac)) = (range, points.first()) else {
             return self.out;
@@ -229,7 +228,7 @@ impl<'d> SharedProduct<'d> {
 
     /// The product in `format` less the excess.
     #[track_caller]
-    fn corrected(&self, format: Format, range: (i128, i128), excess: Excess<'d>) -> Signal<'d> {
+    fn corrected(&self, format: Format, range: Interval, excess: Excess<'d>) -> Signal<'d> {
         let d = self.out.designer();
         let upper = Format::unsigned((format.width() - excess.low) as i32, 0);
         let whole = Format::unsigned(format.width() as i32, 0);
@@ -247,12 +246,7 @@ impl<'d> SharedProduct<'d> {
 
 /// The low bits of `signal`, or all of them and zeros or signs above, as `format`.
 #[track_caller]
-fn resized<'d>(
-    signal: Signal<'d>,
-    suffix: &str,
-    format: Format,
-    range: (i128, i128),
-) -> Signal<'d> {
+fn resized<'d>(signal: Signal<'d>, suffix: &str, format: Format, range: Interval) -> Signal<'d> {
     let id = signal.id();
     let op = match format.width().cmp(&signal.format().width()) {
         Ordering::Equal => Op::Relabel(id),

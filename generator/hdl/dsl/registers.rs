@@ -2,6 +2,7 @@
 
 use super::{Designer, Setting, Signal};
 use crate::base::fixed::Format;
+use crate::base::interval::Interval;
 use crate::hdl::netlist::{Driver, FieldId, FieldKind, NetId, Op, RegisterKind, Role};
 
 impl Designer {
@@ -61,7 +62,7 @@ impl Designer {
         name: &str,
         select: Signal<'d>,
         inputs: [Signal<'d>; 2],
-        range: (i128, i128),
+        range: Interval,
     ) -> Signal<'d> {
         let format = Format::holding(range.0, range.1, inputs[0].format().frac);
         let inputs = inputs.map(|input| self.resized(input, format)).to_vec();

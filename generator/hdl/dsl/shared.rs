@@ -5,6 +5,7 @@ use std::panic::Location;
 use super::{Designer, Inner, Signal};
 use crate::base::diagnostic::{Diagnostic, SourceLocation};
 use crate::base::fixed::{Format, MAX_POINT, MAX_WIDTH};
+use crate::base::interval::Interval;
 use crate::hdl::netlist::{
     Driver, Field, FieldId, FieldKind, Net, NetId, Partition, Port, Register, RegisterKind, Role,
 };
@@ -36,7 +37,7 @@ impl Designer {
         &self,
         name: &str,
         format: Format,
-        range: (i128, i128),
+        range: Interval,
         driver: Driver,
     ) -> NetId {
         let name = self.with(|inner| {
@@ -97,7 +98,7 @@ impl Designer {
         &self,
         name: &str,
         format: Format,
-        range: (i128, i128),
+        range: Interval,
         driver: Driver,
         named: bool,
     ) -> NetId {
@@ -129,7 +130,7 @@ impl Designer {
         &self,
         name: &str,
         format: Format,
-        range: (i128, i128),
+        range: Interval,
         kind: RegisterKind,
     ) -> NetId {
         let id = self.with(|inner| crate::hdl::netlist::RegId(inner.design.registers.len() as u32));

@@ -2,6 +2,7 @@
 
 use super::{Designer, Setting};
 use crate::base::fixed::Format;
+use crate::base::interval::{self, Interval, hull};
 use crate::hdl::netlist::{Driver, FieldId, NetId, Op};
 
 /// A net of the design, as a handle.
@@ -35,7 +36,7 @@ impl<'d> Signal<'d> {
     }
 
     /// The smallest and the largest raw value that the signal can take.
-    pub fn range(self) -> (i128, i128) {
+    pub fn range(self) -> Interval {
         self.designer.with(|inner| inner.design.net(self.id).range)
     }
 
@@ -190,7 +191,7 @@ impl<'d> Signal<'d> {
 
     /// A wiring net named after this one.
     #[track_caller]
-    pub(crate) fn wiring(self, suffix: &str, format: Format, range: (i128, i128), op: Op) -> Self {
+    pub(crate) fn wiring(self, suffix: &str, format: Format, range: Interval, op: Op) -> Self {
         let name = format!("{}_{suffix}", self.name());
         let id = self.designer.add_wiring(&name, format, range, Driver::Op(op));
         self.designer.signal(id)
@@ -287,7 +288,7 @@ impl Designer {
         let frac = fa.frac + fb.frac;
         let width = (fa.width() + fb.width()) as i32;
         let format = Format { signed: fa.signed, int: width - frac - i32::from(fa.signed), frac };
-        let range = product_range(a.range(), b.range());
+        let range = interval::product(a.range(), b.range());
         self.signal(self.add_net(name, format, range, Driver::Op(Op::Mul(a.id(), b.id())), true))
     }
 
@@ -460,8 +461,7 @@ impl Designer {
             ));
             return *first;
         }
-        let low = inputs.iter().map(|input| input.range().0).min().unwrap_or(0);
-        let high = inputs.iter().map(|input| input.range().1).max().unwrap_or(0);
+        let (low, high) = hull(inputs.iter().map(|input| input.range())).unwrap_or((0, 0));
         let format = Format::holding(low, high, frac);
         let inputs = inputs.iter().map(|input| self.resized(*input, format)).collect();
         let op = Op::Mux { select, inputs };
@@ -480,8 +480,7 @@ impl Designer {
     #[track_caller]
     fn comparable(&self, a: Signal<'_>, b: Signal<'_>) -> (NetId, NetId) {
         let (a, b) = aligned(self.own(a), self.own(b));
-        let low = a.range().0.min(b.range().0);
-        let high = a.range().1.max(b.range().1);
+        let (low, high) = hull([a.range(), b.range()]).unwrap_or((0, 0));
         let format = Format::holding(low, high, a.format().frac);
         (self.resized(a, format), self.resized(b, format))
     }
@@ -502,9 +501,8 @@ impl Designer {
             std::cmp::Ordering::Equal => ("same", Op::Relabel(a.id())),
             std::cmp::Ordering::Less => ("low", Op::Slice { of: a.id(), low: 0 }),
         };
-        let (low, high) = a.range();
-        let fits = format.holds(low) && format.holds(high);
-        let range = if fits { (low, high) } else { format.range() };
+        let range = Some(a.range()).filter(|range| interval::fits(*range, format));
+        let range = range.unwrap_or(format.range());
         a.wiring(suffix, format, range, op).id()
     }
 }
@@ -514,16 +512,6 @@ impl Designer {
 fn aligned<'d>(a: Signal<'d>, b: Signal<'d>) -> (Signal<'d>, Signal<'d>) {
     let frac = a.format().frac.max(b.format().frac);
     (a.with_fraction(frac), b.with_fraction(frac))
-}
-
-/// The interval of the products of two intervals.
-pub(crate) fn product_range(a: (i128, i128), b: (i128, i128)) -> (i128, i128) {
-    // What is not exact here is a product of more than 64 bits, which no net can have.
-    let corners = [(a.0, b.0), (a.0, b.1), (a.1, b.0), (a.1, b.1)];
-    corners
-        .into_iter()
-        .map(|(a, b)| a.saturating_mul(b))
-        .fold((i128::MAX, i128::MIN), |(low, high), corner| (low.min(corner), high.max(corner)))
 }
 
 /// A mux whose select lines the microprogram drives.

@@ -20,6 +20,7 @@ mod dump;
 pub mod eval;
 mod handshake;
 mod held;
+pub mod interval;
 pub mod microcode;
 mod needed;
 mod pipeline;
@@ -28,6 +29,7 @@ mod verify;
 
 use crate::base::diagnostic::SourceLocation;
 use crate::base::fixed::Format;
+use crate::base::interval::Interval;
 pub use cell::Op;
 pub use control::{Control, Field, FieldKind, Microinstruction, Sequence};
 pub use decisions::{decided_by_data, delay_of_valid};
@@ -88,7 +90,7 @@ pub struct Net {
     /// Where the binary point lies and whether the top bit is a sign.
     pub format: Format,
     /// The smallest and the largest raw value that the net can carry.
-    pub range: (i128, i128),
+    pub range: Interval,
     /// What drives it.
     pub driver: Driver,
     /// The number of the block in the source's figure whose output this is.

@@ -8,10 +8,8 @@ use std::collections::HashMap;
 use std::panic::Location;
 
 use crate::base::fixed::{Format, mask};
-use crate::hdl::netlist::{NetId, Op, RomId, eval};
-
-/// The smallest and the largest raw value.
-pub type Interval = (i128, i128);
+use crate::base::interval::{self, Interval};
+use crate::hdl::netlist::{NetId, Op, RomId, eval, interval::of_cell};
 
 /// Where a value comes from.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -113,11 +111,8 @@ impl Graph {
     /// The node, which from now on has the values of `range` alone.
     pub fn refine(&mut self, id: NetId, range: Interval) -> NetId {
         let node = &mut self.nodes[id.index()];
-        let both = (node.range.0.max(range.0), node.range.1.min(range.1));
         // Of a path that is never taken, the intersection can be empty.
-        if both.0 <= both.1 {
-            node.range = both;
-        }
+        node.range = interval::common(node.range, range).unwrap_or(node.range);
         id
     }
 
@@ -154,10 +149,8 @@ impl Graph {
         let from = usize::try_from(low).unwrap_or(0).min(words.len().saturating_sub(1));
         let to = usize::try_from(high).map_or(words.len(), |high| words.len().min(high + 1));
         let raws = words[from..to.max(from + 1)].iter().map(|&word| format.raw(word));
-        let range = raws.fold(None, |range: Option<Interval>, raw| {
-            Some(range.map_or((raw, raw), |(low, high)| (low.min(raw), high.max(raw))))
-        });
-        self.insert(Cell::Read { rom, address }, format, range.unwrap_or((0, 0)), label)
+        let range = interval::of_values(raws).unwrap_or((0, 0));
+        self.insert(Cell::Read { rom, address }, format, range, label)
     }
 
     /// The leaf for an operand or an unknown.
@@ -210,7 +203,7 @@ impl Graph {
             }
             return id;
         }
-        let range = self.range_of(&op, format);
+        let range = of_cell(&op, format, &|id| self.node(id).format, &|id| self.node(id).range);
         if range.0 == range.1 {
             return self.constant(format.bits(range.0), format, label);
         }
@@ -380,66 +373,6 @@ impl Graph {
         let exact = Format { signed, int, frac: format.frac };
         let product = self.op(Op::Mul(a, b), exact, label);
         Some(self.resize(product, format.width(), format.signed))
-    }
-
-    /// What the cell can give when its operands have their ranges.
-    fn range_of(&self, op: &Op, format: Format) -> Interval {
-        let all = format.range();
-        let of = |id: NetId| self.node(id).range;
-        let hull = |a: Interval, b: Interval| (a.0.min(b.0), a.1.max(b.1));
-        let fits = |range: Interval| {
-            if format.holds(range.0) && format.holds(range.1) { range } else { all }
-        };
-        match op {
-            Op::Relabel(a) | Op::Extend(a) => fits(of(*a)),
-            Op::Slice { of: a, low } => match of(*a) {
-                (least, most) if least >= 0 => fits((least >> low, most >> low)),
-                (least, most) if *low == 0 => fits((least, most)),
-                _ => all,
-            },
-            Op::Concat(parts) => {
-                let joined = parts.iter().try_fold((0, 0), |sum: Interval, part| {
-                    let ((low, high), width) = (of(*part), self.width(*part));
-                    (low >= 0).then_some(((sum.0 << width) + low, (sum.1 << width) + high))
-                });
-                joined.map_or(all, fits)
-            }
-            Op::Add { a, b, carry } => {
-                let (a, b, carry) = (of(*a), of(*b), carry.map_or((0, 0), of));
-                fits((a.0 + b.0 + carry.0, a.1 + b.1 + carry.1))
-            }
-            Op::Sub(a, b) => {
-                let (a, b) = (of(*a), of(*b));
-                fits((a.0 - b.1, a.1 - b.0))
-            }
-            Op::Mul(a, b) => {
-                let (x, y) = (of(*a), of(*b));
-                let corners = [x.0 * y.0, x.0 * y.1, x.1 * y.0, x.1 * y.1];
-                let low = corners.into_iter().fold(corners[0], i128::min);
-                let high = corners.into_iter().fold(corners[0], i128::max);
-                fits(if a == b { (low.max(0), high) } else { (low, high) })
-            }
-            Op::Mux { select, inputs } => {
-                let (low, high) = of(*select);
-                let last = inputs.len() as i128 - 1;
-                let reached = low.clamp(0, last) as usize..=high.clamp(0, last) as usize;
-                let ranges = inputs[reached].iter().map(|&input| of(input));
-                ranges.reduce(hull).map_or(all, fits)
-            }
-            Op::Less(a, b) => {
-                let (a, b) = (of(*a), of(*b));
-                (i128::from(a.1 < b.0), i128::from(a.0 < b.1))
-            }
-            Op::Equal(a, b) => {
-                let (a, b) = (of(*a), of(*b));
-                (0, i128::from(a.0 <= b.1 && b.0 <= a.1))
-            }
-            Op::And(a, b) => match (of(*a), of(*b)) {
-                (a, b) if a.0 >= 0 && b.0 >= 0 => fits((0, a.1.min(b.1))),
-                _ => all,
-            },
-            Op::Not(_) | Op::Or(..) | Op::Xor(..) | Op::Any(_) | Op::All(_) => all,
-        }
     }
 }
 

@@ -23,7 +23,7 @@ use crate::base::diagnostic::{Diagnostic, Diagnostics};
 use crate::config::Config;
 use crate::hdl::netlist::{Design, NetId};
 
-pub use graph::{Cell, Graph, Interval, Node};
+pub use graph::{Cell, Graph, Node};
 pub use target::{TARGETS, Target};
 pub use unroll::{Line, Unrolled, Walked, unroll, unroll_line};
 

@@ -3,8 +3,9 @@
 //! Of a sum of which an operand has zeros in its lowest bits those of the other one pass it by. `a + ~b + 1` is `a - b`. What a
 //! constant less a limited value is, is chosen behind the difference, where the register takes it by its reset.
 
-use super::graph::{Cell, Graph, Interval, Label};
+use super::graph::{Cell, Graph, Label};
 use crate::base::fixed::Format;
+use crate::base::interval::Interval;
 use crate::hdl::netlist::{NetId, Op};
 
 /// A cell; of a sum or a difference the chain has no more bits than it needs.

@@ -4,10 +4,9 @@
 //! multiplier holds under some selections only.
 
 use super::known::{self, Known};
+use crate::base::interval::{Interval, fits, hull, of_values};
+use crate::hdl::netlist::interval::of_cell;
 use crate::hdl::netlist::{Design, Driver, NetId, Op, Register, RegisterKind};
-
-/// The smallest and the largest raw value.
-pub(super) type Interval = (i128, i128);
 
 /// Whether the stated interval of a register holds in every clock from power-up on.
 pub(super) fn trusted(design: &Design, register: &Register) -> bool {
@@ -24,67 +23,27 @@ pub(super) fn of(
 ) -> Interval {
     let net = design.net(id);
     let all = net.format.range();
-    let fits = |interval: Interval| match interval {
-        (low, high) if net.format.holds(low) && net.format.holds(high) => interval,
-        _ => all,
-    };
-    let hull = |a: Interval, b: Interval| (a.0.min(b.0), a.1.max(b.1));
+    let within = |interval| if fits(interval, net.format) { interval } else { all };
+    let cell = |op: &Op| of_cell(op, net.format, &|net| design.net(net).format, of);
     match &net.driver {
         Driver::Constant(bits) => (net.format.raw(*bits), net.format.raw(*bits)),
         Driver::Register(register) if trusted(design, design.register(*register)) => net.range,
         // The stage before comes before it in the order of evaluation; at power-up and after a reset it holds 0.
         Driver::Register(register) if design.pipeline.is_some() => {
-            design.register(*register).data.map_or(all, |data| fits(hull(of(data), (0, 0))))
+            let data = design.register(*register).data;
+            data.and_then(|data| hull([of(data), (0, 0)])).map_or(all, within)
         }
         Driver::Rom(rom) => {
-            let raw = design.rom(*rom).words.iter().map(|&word| net.format.raw(word));
-            let raw = raw.map(|raw| (raw, raw));
-            raw.fold((0, 0), hull)
+            let raws = design.rom(*rom).words.iter().map(|&word| net.format.raw(word));
+            of_values(raws.chain([0])).unwrap_or(all)
         }
-        Driver::Op(op) => match op {
-            Op::Relabel(a) | Op::Extend(a) => fits(of(*a)),
-            Op::Slice { of: a, low } => match of(*a) {
-                (least, most) if least >= 0 => fits((least >> low, most >> low)),
-                _ => all,
-            },
-            Op::Concat(parts) => {
-                let joined = parts.iter().try_fold((0, 0), |sum: Interval, part| {
-                    let (low, high) = of(*part);
-                    let width = design.width(*part);
-                    (low >= 0).then_some(((sum.0 << width) + low, (sum.1 << width) + high))
-                });
-                joined.map_or(all, fits)
-            }
-            Op::Add { a, b, carry } => {
-                let (a, b, carry) = (of(*a), of(*b), carry.map_or((0, 0), of));
-                fits((a.0 + b.0 + carry.0, a.1 + b.1 + carry.1))
-            }
-            Op::Sub(a, b) => {
-                let (a, b) = (of(*a), of(*b));
-                fits((a.0 - b.1, a.1 - b.0))
-            }
-            Op::Mul(a, b) => {
-                let is_square = known::square(design, *a, *b);
-                let (a, b) = (of(*a), of(*b));
-                let corners = [(a.0, b.0), (a.0, b.1), (a.1, b.0), (a.1, b.1)];
-                let products = corners.map(|(a, b)| a.checked_mul(b));
-                let products = products.into_iter().collect::<Option<Vec<_>>>();
-                let products = products.map(|products| {
-                    let products = products.into_iter().map(|product| (product, product));
-                    products.reduce(hull).unwrap_or(all)
-                });
-                let products = products
-                    .map(|(low, high)| if is_square { (low.max(0), high) } else { (low, high) });
-                products.map_or(all, fits)
-            }
-            Op::Mux { select, inputs } => {
-                known::choices(known(*select), design.width(*select), inputs)
-                    .map(of)
-                    .reduce(hull)
-                    .map_or(all, fits)
-            }
-            _ => all,
-        },
+        Driver::Op(Op::Mux { select, inputs }) => {
+            let reached = known::choices(known(*select), design.width(*select), inputs);
+            hull(reached.map(of)).map_or(all, within)
+        }
+        // The same net under another name too.
+        Driver::Op(Op::Mul(a, b)) if known::square(design, *a, *b) => cell(&Op::Mul(*a, *a)),
+        Driver::Op(op) => cell(op),
         _ => all,
     }
 }

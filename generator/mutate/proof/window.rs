@@ -8,8 +8,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
 use super::cut::smallest_cut;
-use super::interval::{self, Interval};
+use super::interval;
 use super::known::Known;
+use crate::base::interval::Interval;
 use crate::hdl::netlist::{Design, Driver, NetId, Op, RomId, eval};
 use crate::mutate::fault::Site;
 
