@@ -10,6 +10,7 @@ use glint::config::{self, Config, Problems};
 use glint::core::Core;
 use glint::package::{OutputFile, sources, sources_for};
 use glint::registry::{Device, Registry};
+use tempfile::TempDir;
 
 /// Pairs of a plain file name and contents.
 pub type Files = Vec<(String, String)>;
@@ -150,6 +151,28 @@ impl Emitted {
     /// Verilog and memories of the device and of its bench.
     pub fn simulated(&self) -> Files {
         self.below("")
+    }
+
+    /// All files in a directory, each where it would be written.
+    pub fn tree(&self) -> TempDir {
+        let place = tempfile::tempdir().expect("a directory");
+        for file in &self.files {
+            let path = place.path().join(&file.path);
+            fs::create_dir_all(path.parent().expect("a directory")).expect("a directory");
+            fs::write(path, &file.contents).expect("written");
+        }
+        place
+    }
+
+    /// The files of which the path begins so, beside each other in a directory. A form of a file for one target has the
+    /// name of the portable one, and is left out.
+    pub fn beside(&self, start: &str) -> TempDir {
+        let place = tempfile::tempdir().expect("a directory");
+        let files = self.files.iter().filter(|file| file.path.starts_with(start));
+        for file in files.filter(|file| !file.path.contains("/ecp5/")) {
+            fs::write(place.path().join(file.name()), &file.contents).expect("written");
+        }
+        place
     }
 
     fn below(&self, directory: &str) -> Files {

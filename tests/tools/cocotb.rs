@@ -8,35 +8,29 @@ use std::path::Path;
 use crate::common::bench::with_flipped_bit;
 use crate::common::cores::{Emitted, all_configurations, configuration, configuration_with};
 use crate::common::tools::{LIMIT, tool};
+use crate::faults::faults;
 use glint::core::Core;
 use glint::package;
 use glint::tools::Run;
 use rayon::prelude::*;
 
-const EXACT: &str = "computations_are_exact";
-const IGNORED: &str = "writes_and_starts_while_busy_are_ignored";
-const AHEAD: &str = "writes_while_busy_are_for_the_next_computation";
-const HELD: &str = "held_start_repeats";
-const RESET: &str = "reset_ends_a_computation";
-const FORMULA: &str = "formula_holds_at_random_points";
+const OF_SEQUENTIAL: &str = "computations_are_exact writes_and_starts_while_busy_are_ignored held_start_repeats \
+    reset_ends_a_computation formula_holds_at_random_points worked_example";
 
-/// The tests of a pipeline.
-const POINTS: &str = "points_are_exact";
-const STALLS: &str = "bubbles_and_stalls_change_nothing";
-const DROPS: &str = "reset_drops_every_point";
-const FOLLOWS: &str = "random_points_follow_the_formula";
+const OF_BUFFERED: &str = "computations_are_exact writes_while_busy_are_for_the_next_computation held_start_repeats \
+    reset_ends_a_computation formula_holds_at_random_points worked_example";
 
-const OF_SEQUENTIAL: [&str; 6] = [EXACT, IGNORED, HELD, RESET, FORMULA, "worked_example"];
-const OF_BUFFERED: [&str; 6] = [EXACT, AHEAD, HELD, RESET, FORMULA, "worked_example"];
-const OF_PIPELINE: [&str; 5] = [POINTS, STALLS, DROPS, FOLLOWS, "worked_example"];
+const OF_PIPELINE: &str = "points_are_exact bubbles_and_stalls_change_nothing reset_drops_every_point \
+    random_points_follow_the_formula worked_example";
 
 /// Its tests.
-fn tests(core: &Core) -> &'static [&'static str] {
-    match &core.design {
-        design if design.pipeline.is_some() => &OF_PIPELINE,
-        design if design.control.overlaps => &OF_BUFFERED,
-        _ => &OF_SEQUENTIAL,
-    }
+fn tests(core: &Core) -> Vec<&'static str> {
+    let tests = match &core.design {
+        design if design.pipeline.is_some() => OF_PIPELINE,
+        design if design.control.overlaps => OF_BUFFERED,
+        _ => OF_SEQUENTIAL,
+    };
+    tests.split(' ').collect()
 }
 
 #[test]
@@ -72,66 +66,15 @@ fn assert_passes(what: &str, core: &Core) {
     );
 }
 
-/// A fault: in which file of which configuration, what stands there, what stands there instead, and a test
-/// that notices.
-type Fault = (&'static str, &'static str, &'static str, &'static str, &'static str);
-
-const FAULTS: [Fault; 20] = [
-    // The handshake: late, early, forgotten.
-    (
-        "rough",
-        "_control.v",
-        "assign valid = valid_word;",
-        "reg late; always @(posedge clk) late <= valid_word; assign valid = late;",
-        EXACT,
-    ),
-    ("rough", "_control.v", "done = run &", "done = valid_word & run &", EXACT),
-    ("rough", "_control.v", "assign busy = run;", "assign busy = run & ~done;", HELD),
-    ("rough", "_control.v", "run ? go_on : start", "go_on | start", IGNORED),
-    ("rough", "_control.v", "run <= 1'b0;", "run <= run;", RESET),
-    ("schlick", "_control.v", "word_address <= 2'd0;", "word_address <= word_address;", RESET),
-    // Operands that are taken while busy.
-    ("rough", "_datapath.v", "exponent_write & idle", "exponent_write", IGNORED),
-    ("quad_cosine", "_datapath.v", "length_write & idle", "length_write", IGNORED),
-    // Loops that end a turn early or late.
-    ("lyon", "_datapath.v", "more_shifts = |remaining;", "more_shifts = remaining > 4'd1;", EXACT),
-    ("quad_cosine", "_datapath.v", "more = intervals > 12'd1;", "more = |intervals;", EXACT),
-    ("quad_cosine", "_control.v", "valid_in_1 <= angle_load;", "valid_in_1 <= run;", HELD),
-    // A manifest that says something else than the core does.
-    ("rough", ".json", "\"start_to_done\": 10", "\"start_to_done\": 11", EXACT),
-    ("rough", ".json", "max(exponent / 2", "max(exponent / 3", FORMULA),
-    ("threshold", ".json", "levels[int(exponent)]", "0.25 + levels[int(exponent)]", FORMULA),
-    // A pipeline: results that come late, or change while they wait; points that stay after a reset.
-    ("cosine_power_pipelined", ".json", "\"latency\": ", "\"latency\": 1", POINTS),
-    (
-        "cosine_power_pipelined",
-        ".v",
-        "advance = out_ready | ~",
-        "advance = out_ready | ~valid_s2 | ~",
-        STALLS,
-    ),
-    (
-        "cosine_power_pipelined",
-        ".v",
-        "assign red_out = ",
-        "assign red_out = {8{out_ready}} & ",
-        STALLS,
-    ),
-    ("cosine_power_pipelined", ".v", "valid_s4 <= 1'b0;", "valid_s4 <= valid_s3;", DROPS),
-    ("threshold_pipelined", ".v", "green_out = green_", "green_out = 8'd1 ^ green_", POINTS),
-    ("cosine_power_pipelined", ".json", "max(exponent / 16", "max(exponent / 15", FOLLOWS),
-];
-
 #[test]
 fn every_test_notices_a_fault() {
-    FAULTS.par_iter().for_each(|(name, file, right, wrong, test)| {
+    faults("benches in Python").par_iter().for_each(|fault| {
+        let parts: Vec<&str> = fault.of.split(' ').collect();
+        let [name, file, test] = parts[..] else { panic!("{}", fault.of) };
         let core = configuration(&format!("configs/{name}.toml"));
         let place = place(&core);
-        let path = place.path().join(format!("rtl_out/{name}/{name}{file}"));
-        let text = fs::read_to_string(&path).expect("a file");
-        assert!(text.contains(right), "`{right}` is not in {name}{file}");
-        fs::write(&path, text.replace(right, wrong)).expect("written");
-        assert_noticed(place.path(), &core, test, &format!("`{wrong}` in {file}"));
+        fault.plant(&place.path().join(format!("rtl_out/{name}/{name}{file}")));
+        assert_noticed(place.path(), &core, test, &format!("`{}` in {file}", fault.wrong));
     });
 }
 
@@ -169,19 +112,14 @@ fn memory_is_noticed(name: &str, rom: &str, wrong: impl Fn(&str) -> String) {
     let file = format!("rtl_out/{name}/{name}_{rom}.mem");
     let text = fs::read_to_string(place.path().join(&file)).expect("a memory");
     fs::write(place.path().join(&file), wrong(&text)).expect("written");
-    assert_noticed(place.path(), &core, EXACT, &file);
+    assert_noticed(place.path(), &core, "computations_are_exact", &file);
 }
 
 /// The files of a configuration where the bench expects them.
 fn place(core: &Core) -> tempfile::TempDir {
-    let place = tempfile::tempdir().expect("a directory");
-    let emitted = Emitted::new(core, 1, 1);
-    for file in emitted.files.iter().chain([&package::driver()]) {
-        let path = place.path().join(&file.path);
-        fs::create_dir_all(path.parent().expect("a directory")).expect("a directory");
-        fs::write(path, &file.contents).expect("written");
-    }
-    place
+    let mut emitted = Emitted::new(core, 1, 1);
+    emitted.files.push(package::driver());
+    emitted.tree()
 }
 
 /// Runs the command that the head of the bench gives.

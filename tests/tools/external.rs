@@ -6,43 +6,12 @@ use std::time::Duration;
 use crate::common::tools;
 use glint::tools::{Simulator, run_bench};
 
-const COUNTER: &str = "\
-`default_nettype none
-module counter (
-    input  wire       clk,
-    input  wire       rst_n,
-    output reg  [3:0] count
-);
-    always @(posedge clk)
-        if (!rst_n) count <= 4'd0;
-        else        count <= count + 4'd1;
-endmodule
-`default_nettype wire
-";
+const COUNTER: &str = include_str!("benches/counter.v");
 
 /// Counts five clocks and compares with `expected`; `wait` may be a wait without end.
 fn bench(expected: &str, wait: &str) -> Vec<(String, String)> {
-    let bench = format!(
-        "module tb;
-    reg clk = 0;
-    reg rst_n = 0;
-    wire [3:0] count;
-    counter dut (.clk(clk), .rst_n(rst_n), .count(count));
-    always #5 clk = ~clk;
-    initial begin
-        @(negedge clk) rst_n = 1;
-        repeat (5) @(negedge clk);
-        {wait}
-        if (count === {expected}) $display(\"PASS: 5 clocks\");
-        else begin
-            $display(\"FAIL: count is %0d\", count);
-            $fatal(1, \"mismatch\");
-        end
-        $finish;
-    end
-endmodule
-"
-    );
+    let bench = include_str!("benches/counts.v");
+    let bench = bench.replace("WAIT", wait).replace("EXPECTED", expected);
     vec![("counter.v".into(), COUNTER.into()), ("tb.v".into(), bench)]
 }
 

@@ -15,6 +15,7 @@ mod delay_lines;
 mod equality;
 mod example;
 mod external;
+mod faults;
 mod formal;
 mod gate_level;
 mod litex;

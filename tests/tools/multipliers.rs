@@ -6,73 +6,18 @@
 use std::fs;
 
 use crate::common::bench::Bench;
-use crate::common::cores::{Emitted, Files, configuration};
+use crate::common::cores::{Emitted, Files, configuration, configuration_with};
 use crate::common::netlist::{self, POINTS, synthesise};
 use crate::common::tools::{LIMIT, tool};
+use crate::faults::faults;
 use glint::tools::synthesis::{FAMILIES, Family};
 use glint::tools::{Simulator, gates};
 use rayon::prelude::*;
 
 const CONFIGURATION: &str = "configs/studies/threshold_dsp.toml";
 
-/// What can be wrong with the file for ECP5.
-const FAULTS: [(&str, &str); 8] = [
-    (".SIGNEDA(is_signed)", ".SIGNEDA(1'b0)"),
-    (".SIGNEDB(is_signed)", ".SIGNEDB(1'b1)"),
-    (".CE0(enable)", ".CE0(1'b1)"),
-    (".REG_OUTPUT_CLK(\"CLK0\")", ".REG_OUTPUT_CLK(\"NONE\")"),
-    (".A3(a_wide[3])", ".A3(a_wide[2])"),
-    (".B17(b_wide[17])", ".B17(1'b0)"),
-    (".P20(whole[20])", ".P20(whole[21])"),
-    ("is_signed & a[A_WIDTH-1]", "1'b0"),
-];
-
 /// The two forms side by side at all widths, with and without a sign, while factors and enable change.
-const TWINS: &str = r#"`timescale 1ns / 1ps
-module twin #(parameter A = 18, parameter B = 18, parameter SIGNED = 0) (
-    input wire clk, input wire enable, input wire [17:0] a, input wire [17:0] b
-);
-    wire [A+B-1:0] one, other;
-    MODULE #(.A_WIDTH(A), .B_WIDTH(B), .SIGNED(SIGNED)) portable (
-        .clk(clk), .enable(enable), .a(a[A-1:0]), .b(b[B-1:0]), .product(one));
-    MODULE_ecp5 #(.A_WIDTH(A), .B_WIDTH(B), .SIGNED(SIGNED)) own (
-        .clk(clk), .enable(enable), .a(a[A-1:0]), .b(b[B-1:0]), .product(other));
-    reg loaded = 0;
-    always @(posedge clk) begin
-        loaded <= loaded | enable;
-        if (loaded && one !== other) begin
-            $display("FAIL %0d by %0d bits, signed %0d: %h and %h", A, B, SIGNED, one, other);
-            $fatal;
-        end
-    end
-endmodule
-
-module twins;
-    reg clk = 0, enable = 1;
-    reg [17:0] a = 0, b = 0;
-    genvar i, j;
-    generate
-        for (i = 1; i <= 18; i = i + STEP) begin : wide
-            for (j = 1; j <= 18; j = j + STEP) begin : narrow
-                twin #(.A(i), .B(j), .SIGNED(0)) without_sign (.clk(clk), .enable(enable), .a(a), .b(b));
-                twin #(.A(i), .B(j), .SIGNED(1)) with_sign (.clk(clk), .enable(enable), .a(a), .b(b));
-            end
-        end
-    endgenerate
-    integer at;
-    initial begin
-        for (at = 0; at < 200; at = at + 1) begin
-            #5 clk = 1;
-            #1 enable = at < 3 || ($random & 1) == 1;
-            a = at % 7 == 0 ? 18'h3ffff : at % 11 == 0 ? 18'h20000 : $random;
-            b = at % 5 == 0 ? 18'h3ffff : at % 13 == 0 ? 18'h20000 : $random;
-            #4 clk = 0;
-        end
-        $display("PASS");
-        $finish;
-    end
-endmodule
-"#;
+const TWINS: &str = include_str!("benches/twins.v");
 
 fn ecp5() -> &'static Family {
     FAMILIES.iter().find(|family| family.name == "ecp5").expect("ECP5")
@@ -106,9 +51,8 @@ fn twins(emitted: &Emitted, own: &str, step: u32) -> Bench {
 fn both_forms_are_one_at_all_widths_and_a_difference_is_noticed() {
     let (emitted, own) = emitted();
     twins(&emitted, &own, 1).assert_passes();
-    FAULTS.into_par_iter().for_each(|(right, wrong)| {
-        assert!(own.contains(right), "{right}");
-        twins(&emitted, &own.replace(right, wrong), 17).assert_fails(wrong);
+    faults("multipliers of ECP5").par_iter().for_each(|fault| {
+        twins(&emitted, &fault.in_text(&own), 17).assert_fails(&fault.wrong);
     });
 }
 
@@ -131,11 +75,8 @@ fn a_netlist_has_a_register_in_every_multiplier_and_passes_its_bench() {
 #[test]
 fn another_family_takes_the_portable_form() {
     // It has no memories for delay lines either.
-    let text = fs::read_to_string(CONFIGURATION).expect("a configuration");
-    let place = tempfile::tempdir().expect("a directory");
-    let path = place.path().join("portable.toml");
-    fs::write(&path, text + "delays = \"registers\"\n").expect("written");
-    let emitted = Emitted::new(&configuration(path.to_str().expect("a path")), POINTS, 1);
+    let core = configuration_with(CONFIGURATION, "[pipeline]\ndelays = \"registers\"\n");
+    let emitted = Emitted::new(&core, POINTS, 1);
     let ice40 = FAMILIES.iter().find(|family| family.name == "ice40").expect("iCE40");
     let place = tempfile::tempdir().expect("a directory");
     synthesise(place.path(), &emitted, ice40);
@@ -147,12 +88,7 @@ fn another_family_takes_the_portable_form() {
 #[test]
 fn fusesoc_takes_the_file_of_the_target() {
     let (emitted, _) = emitted();
-    let place = tempfile::tempdir().expect("a directory");
-    for file in &emitted.files {
-        let path = place.path().join(&file.path);
-        fs::create_dir_all(path.parent().expect("a directory")).expect("a directory");
-        fs::write(path, &file.contents).expect("written");
-    }
+    let place = emitted.tree();
     let core = format!("glint:device:{}", emitted.name);
     for (target, own) in [("ecp5", true), ("sim", false)] {
         let arguments = ["--cores-root", ".", "run", "--setup", "--build-root", target];

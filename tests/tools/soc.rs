@@ -10,6 +10,7 @@ use glint::tools::prove;
 use rayon::prelude::*;
 
 use crate::common::tools::{LIMIT, tool};
+use crate::faults::faults;
 
 /// Verilator builds a processor, and simulates 132 million clocks of it: more than other tools need.
 const RUN_LIMIT: Duration = Duration::from_secs(900);
@@ -47,42 +48,11 @@ fn the_span_engine_is_proved() {
     }
 }
 
-/// What stands in the engine, and what stands there instead.
-const FAULTS: [(&str, &str); 16] = [
-    // A word over another, one left out, one twice.
-    ("& ~(arrives & complete);", ";"),
-    ("source + {13'd0, reads}", "source + {13'd0, wants}"),
-    ("(left != 10'd0) & room", "under_way & room"),
-    // Words of two pixels, and in the wrong order.
-    (
-        "second <= ~start & (second ^ (reads & (WORDS != 1)));",
-        "second <= second ^ (reads & (WORDS != 1));",
-    ),
-    ("{ram_read_data, operands[32*WORDS-1:32]}", "{operands[31:0], ram_read_data}"),
-    // A result where the RAM is not free, an end before the last, a start within a span.
-    ("assign result_ready = ram_free;", "assign result_ready = 1'b1;"),
-    ("if (writes & result_last)", "if (writes)"),
-    ("(at >= COUNT) & under_way", "1'b0"),
-    ("operands_valid & ~operands_ready);", "1'b0);"),
-    // A result that leaves the core for nowhere, a span that stops, addresses that wait.
-    ("assign ram_request = result_valid | wants;", "assign ram_request = wants;"),
-    ("wire wants = (left != 10'd0) & room;", "wire wants = 1'b0;"),
-    ("(at >= COUNT) & under_way", "(at >= SOURCE) & under_way"),
-    // Not what the processor wrote: a part of it, by a read, to another place.
-    ("next_destination <= data[15:2];", "next_destination <= {1'b0, data[14:2]};"),
-    ("exponent <= data[9:0];", "exponent[8:0] <= data[8:0];"),
-    ("if (taken & (at == SOURCE))", "if (request & (at == SOURCE))"),
-    ("(at == COLOUR)) colour <=", "(at == EXPONENT)) colour <="),
-];
-
 #[test]
 fn faults_of_the_span_engine_break_its_proof() {
-    FAULTS.par_iter().for_each(|(right, wrong)| {
-        let with_fault = |engine: String| {
-            assert!(engine.contains(right), "`{right}` is not in span.v");
-            engine.replace(right, wrong)
-        };
-        assert!(proof(2, with_fault).is_err(), "`{wrong}` in span.v is proved");
+    faults("span engine").par_iter().for_each(|fault| {
+        let proof = proof(2, |engine| fault.in_text(&engine));
+        assert!(proof.is_err(), "`{}` in span.v is proved", fault.wrong);
     });
 }
 

@@ -149,12 +149,7 @@ struct Model {
 impl Model {
     fn new(config: &str) -> Self {
         let core = configuration_with(config, SOFTWARE);
-        let place = tempfile::tempdir().expect("a directory");
-        let emitted = Emitted::new(&core, 1, 1);
-        let software = emitted.files.iter().filter(|file| file.path.starts_with("software/"));
-        for file in software {
-            fs::write(place.path().join(file.name()), &file.contents).expect("written");
-        }
+        let place = Emitted::new(&core, 1, 1).beside("software/");
         Self { core, place }
     }
 

@@ -5,7 +5,7 @@
 //! bit in what it expects, and in what the device's ROMs hold.
 
 use crate::common::bench::{Bench, with_flipped_bit};
-use crate::common::cores::{Emitted, Files, all_configurations, configuration, write};
+use crate::common::cores::{Emitted, Files, all_configurations, configuration, parsed, write};
 use crate::common::sample::sampled;
 use crate::common::tools::{LIMIT, assert_lint_clean, tool};
 use glint::core::Core;
@@ -30,8 +30,7 @@ const COLUMNS: usize = 100;
 fn every_configuration_is_clean_verilog() {
     all_configurations().par_iter().for_each(|(path, core)| {
         let emitted = Emitted::new(core, 4, SEED);
-        let place = tempfile::tempdir().expect("a directory");
-        write(place.path(), &emitted.rtl());
+        let place = emitted.beside("rtl_out/");
         assert_lint_clean(place.path(), &emitted.name);
         for file in &emitted.files {
             let place = format!("{path}: {}", file.path);
@@ -87,32 +86,11 @@ fn configurations_pass_in_verilator() {
 /// clock on, without them never.
 #[test]
 fn initial_values_are_known_without_a_reset() {
-    let bench = "
-module bench;
-    reg clk = 1'b0;
-    reg start = 1'b0;
-    wire valid, busy, done;
-    wire [7:0] red_out;
-    core dut (
-        .clk(clk), .rst_n(1'b1), .start(start), .cos_gamma(21'd1048576), .cos_gamma_write(start),
-        .exponent(10'd20), .exponent_write(start), .red(8'd200), .red_write(start),
-        .green(8'd0), .green_write(start), .blue(8'd0), .blue_write(start),
-        .valid(valid), .busy(busy), .done(done), .red_out(red_out), .green_out(), .blue_out()
-    );
-    always #5 clk = ~clk;
-    initial begin
-        #1 $display(\"before %b %b\", busy, red_out);
-        @(negedge clk) start = 1'b1;
-        @(negedge clk) start = 1'b0;
-        repeat (20) @(negedge clk) if (valid) $display(\"valid %0d\", red_out);
-        $finish;
-    end
-endmodule
-";
+    let bench = include_str!("benches/without_reset.v");
     let shown = |values: bool| {
         let more = format!("\nname = \"core\"\n[package]\ninitial_values = {values}\n");
         let text = format!("device = \"cosine-power\"{more}");
-        let emitted = Emitted::new(&core(&text), 4, SEED);
+        let emitted = Emitted::new(&parsed("core.toml", &text), 4, SEED);
         let place = tempfile::tempdir().expect("a directory");
         let mut files = emitted.rtl();
         files.push(("bench.v".to_owned(), bench.to_owned()));
@@ -128,14 +106,6 @@ endmodule
     assert!(shown(true).contains("before 0 00000000\nvalid 200\n"), "{}", shown(true));
     assert!(shown(false).contains("before x xxxxxxxx\n"), "{}", shown(false));
     assert!(!shown(false).contains("valid"), "{}", shown(false));
-}
-
-/// The core of a configuration as text.
-fn core(text: &str) -> Core {
-    let registry = glint::registry::Registry::catalogue();
-    let config = glint::config::parse("core.toml", text, &registry.schemas());
-    let config = config.unwrap_or_else(|problems| panic!("{problems}"));
-    Core::new(*registry.device(&config.device).expect("a device"), config).expect("a design")
 }
 
 #[test]

@@ -14,12 +14,7 @@ const PACKAGE: &str = "[package]\nmemories = \"inline\"\nlitex = true\n";
 fn system(name: &str, keys: &str, face: &str) -> Vec<(String, String)> {
     let keys = format!("{keys}{PACKAGE}");
     let core = configuration_between(&format!("configs/{name}.toml"), &keys);
-    let place = tempfile::tempdir().expect("a directory");
-    for file in &Emitted::new(&core, 1, 1).files {
-        let path = place.path().join(&file.path);
-        fs::create_dir_all(path.parent().expect("a parent")).expect("a directory");
-        fs::write(path, &file.contents).expect("written");
-    }
+    let place = Emitted::new(&core, 1, 1).tree();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tools/litex/system.py");
     let script = script.display().to_string();
     let run = tool("python").run_to_success([&script, ".", name, face], place.path(), LIMIT);

@@ -20,16 +20,11 @@ const ALL: &str = "stream = true\nregisters = \"wishbone\"\n[package]\nconstrain
 const INLINE: &str = "\n[package]\nmemories = \"inline\"\n";
 
 /// The files in `rtl_out` of a configuration, in a directory.
-fn emitted(core: &Core) -> (Emitted, tempfile::TempDir) {
-    let emitted = Emitted::new(core, 1, 1);
-    let place = tempfile::tempdir().expect("a directory");
-    for file in emitted.files.iter().filter(|file| file.path.starts_with("rtl_out/")) {
-        fs::write(place.path().join(file.name()), &file.contents).expect("written");
-    }
-    (emitted, place)
+fn emitted(core: &Core) -> tempfile::TempDir {
+    Emitted::new(core, 1, 1).beside("rtl_out/")
 }
 
-fn cosine_power() -> (Emitted, tempfile::TempDir) {
+fn cosine_power() -> tempfile::TempDir {
     emitted(&configuration_between("configs/cosine_power.toml", ALL))
 }
 
@@ -50,7 +45,7 @@ fn calls(place: &Path, script: &str, arguments: &[&str], slack: &str) -> (bool, 
 
 #[test]
 fn vivado_builds_a_module() {
-    let (_, place) = cosine_power();
+    let place = cosine_power();
     let arguments = ["cosine_power_axis", "xc7k70tfbg484-1"];
     let (ok, calls_made) = calls(place.path(), "cosine_power_vivado.tcl", &arguments, "0.25");
     assert!(ok, "{calls_made}");
@@ -78,7 +73,7 @@ cosine_power_axis on xc7k70tfbg484-1: slack 0.25 ns
 
 #[test]
 fn vivado_fails_where_it_should() {
-    let (_, place) = cosine_power();
+    let place = cosine_power();
     let script = "cosine_power_vivado.tcl";
     let (ok, told) = calls(place.path(), script, &["cosine"], "1");
     assert!(!ok && told.contains("there is no module cosine; there are: cosine_power, "), "{told}");
@@ -98,7 +93,7 @@ fn vivado_fails_where_it_should() {
 
 #[test]
 fn vivado_packages_ip() {
-    let (_, place) = cosine_power();
+    let place = cosine_power();
     let script = "cosine_power_vivado_ip.tcl";
     let (ok, told) = calls(place.path(), script, &["cosine_power_axis"], "");
     assert!(ok, "{told}");
@@ -128,7 +123,7 @@ fn vivado_packages_ip() {
 
 #[test]
 fn quartus_builds_a_module() {
-    let (_, place) = cosine_power();
+    let place = cosine_power();
     let script = "cosine_power_quartus.tcl";
     let arguments = ["cosine_power_wb", "Cyclone 10 LP", "10CL025YU256C8G"];
     let (ok, told) = calls(place.path(), script, &arguments, "");
@@ -161,7 +156,7 @@ project_close
 #[test]
 fn platform_designer_gets_interfaces() {
     let registers = ALL.replace("wishbone", "axi-lite");
-    let (_, place) = emitted(&configuration_between("configs/cosine_power.toml", &registers));
+    let place = emitted(&configuration_between("configs/cosine_power.toml", &registers));
     let of_top = |top: &str| {
         let (ok, told) = calls(place.path(), &format!("{top}_hw.tcl"), &[], "");
         assert!(ok, "{told}");
@@ -203,7 +198,7 @@ fn components_follow_their_schema_and_the_verilog() {
     ]
     .into_par_iter()
     .for_each(|(name, keys, suffixes)| {
-        let (_, place) = emitted(&configuration_between(&format!("configs/{name}.toml"), keys));
+        let place = emitted(&configuration_between(&format!("configs/{name}.toml"), keys));
         let suffixes = suffixes.split(' ').map(|suffix| format!("{name}_{suffix}"));
         let mut files = Vec::new();
         for top in suffixes.chain([name.to_owned()]) {
@@ -244,7 +239,7 @@ fn validate(place: &Path, files: &[String]) -> anyhow::Result<String> {
 
 #[test]
 fn constraints_are_read_by_opensta() {
-    let (_, place) = cosine_power();
+    let place = cosine_power();
     let cells = "/usr/share/qflow/tech/osu018/osu018_stdcells.lib";
     for (top, clock) in [("cosine_power", "clk"), ("cosine_power_wb", "wb_clk_i")] {
         let synthesis = format!(
@@ -326,7 +321,7 @@ fn wrong_word(rtl: &[(String, String)]) -> Vec<(String, String)> {
 #[test]
 fn synthesis_makes_block_ram_of_rom_contents_in_the_verilog() {
     let cells = |more: &str| {
-        let (_, place) = emitted(&configuration_with("configs/rough.toml", more));
+        let place = emitted(&configuration_with("configs/rough.toml", more));
         let script = "read_verilog rough*.v; synth_ice40 -dsp -top rough; tee -o stat.txt stat";
         yosys(place.path(), script);
         let figures = fs::read_to_string(place.path().join("stat.txt")).expect("figures");

@@ -1,0 +1,69 @@
+//! Faults that are planted in emitted files.
+
+use std::fs;
+use std::path::Path;
+
+use glint::tools::prove;
+
+use crate::common::tools::LIMIT;
+
+/// A fault of `faults.txt`.
+#[derive(Clone)]
+pub struct Fault {
+    /// Of what it is; the heading says how.
+    pub of: String,
+    /// What stands there.
+    pub right: String,
+    /// What takes its place.
+    pub wrong: String,
+}
+
+/// Those under a heading.
+///
+/// # Panics
+/// There are none.
+pub fn faults(heading: &str) -> Vec<Fault> {
+    let text = include_str!("faults.txt").split("\n## ");
+    let section = text.filter_map(|section| section.split_once('\n'));
+    let section = section.filter(|(title, _)| *title == heading).map(|(_, lines)| lines);
+    let lines = section.flat_map(str::lines).filter(|line| !line.starts_with('#'));
+    let fault = |line: &str| {
+        let (of, rest) = line.split_once(": ")?;
+        let (right, wrong) = rest.split_once(" =>")?;
+        let text = |part: &str| part.replace("\\n", "\n");
+        let wrong = wrong.strip_prefix(' ').unwrap_or(wrong);
+        Some(Fault { of: of.to_owned(), right: text(right), wrong: text(wrong) })
+    };
+    let all = lines.filter(|line| !line.is_empty());
+    let all: Vec<Fault> = all.map(|line| fault(line).expect("a fault")).collect();
+    assert!(!all.is_empty(), "no faults of {heading}");
+    all
+}
+
+impl Fault {
+    /// A text with the fault, wherever it can be.
+    ///
+    /// # Panics
+    /// It can be nowhere.
+    pub fn in_text(&self, text: &str) -> String {
+        assert!(text.contains(&self.right), "`{}` is not there, of {}", self.right, self.of);
+        text.replace(&self.right, &self.wrong)
+    }
+
+    /// Plants it in a file.
+    ///
+    /// # Panics
+    /// It can be nowhere in it.
+    pub fn plant(&self, path: &Path) {
+        let text = fs::read_to_string(path).expect("a file");
+        fs::write(path, self.in_text(&text)).expect("written");
+    }
+
+    /// # Panics
+    /// The proof of a module holds with the fault in a file beside it.
+    pub fn assert_breaks(&self, place: &Path, module: &str, file: &str) {
+        self.plant(&place.join(file));
+        let proof = prove(place, module, LIMIT);
+        assert!(proof.is_err(), "`{}` in {file} is proved", self.wrong);
+    }
+}
