@@ -3,6 +3,7 @@
 pub mod bench;
 pub mod cores;
 pub mod netlist;
+pub mod said;
 pub mod sample;
 pub mod tools;
 

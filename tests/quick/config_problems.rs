@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use crate::common::said::{Case, cases};
 use crate::config_device::{lamp, schemas};
 use glint::config::{Config, Problems, Value, parse, read};
 
@@ -30,24 +31,16 @@ fn of_lamp(text: &str) -> Vec<String> {
 /// As `config_problems.txt` says.
 #[test]
 fn each_mistake_has_its_message_its_place_and_its_remedy() {
-    let mut cases = 0;
-    for case in include_str!("config_problems.txt").split("\n\n") {
-        let lines = case.lines().filter(|line| !line.starts_with('#'));
-        let (said, file): (Vec<&str>, Vec<&str>) = lines.partition(|line| line.starts_with("-> "));
-        if file.is_empty() {
-            continue;
+    let cases = cases(include_str!("config_problems.txt"));
+    assert_eq!(cases.len(), 81);
+    for Case { file, said, .. } in cases {
+        let whole = file.starts_with("device");
+        let mut found = if whole { of_file("a.toml", &file) } else { of_lamp(&file) };
+        if found[0].starts_with("accepted: ") {
+            found[0].truncate("accepted".len());
         }
-        let text = format!("{}\n", file.join("\n"));
-        let found =
-            if text.starts_with("device") { of_file("a.toml", &text) } else { of_lamp(&text) };
-        let found = found.iter().map(|line| {
-            let line = if line.starts_with("accepted: ") { "accepted" } else { line };
-            format!("-> {line}")
-        });
-        assert_eq!(found.collect::<Vec<_>>(), said, "{text}");
-        cases += 1;
+        assert_eq!(found, said, "{file}");
     }
-    assert_eq!(cases, 81);
 }
 
 #[test]

@@ -6,20 +6,6 @@ use serde_json::json;
 
 use crate::place::{COSINE_POWER, Place, Run};
 
-/// What `generate` says of a file; nothing is generated.
-#[track_caller]
-fn refused(text: &str, parts: &[&str]) {
-    let place = Place::with("core.toml", text);
-    place.glint(["generate", "core.toml"]).refused(1, parts);
-    assert_eq!(place.files().len(), 1, "something was written");
-}
-
-/// The same of a file for `rough`, from line 2 on.
-#[track_caller]
-fn rough(text: &str, parts: &[&str]) {
-    refused(&format!("device = \"rough\"\n{text}\n"), parts);
-}
-
 #[test]
 fn files_that_cannot_be_read() {
     let place = Place::with("core.toml", COSINE_POWER);
@@ -75,74 +61,6 @@ fn a_file_without_permission() {
     run.refused(
         1,
         &["the file cannot be read: Permission denied", "check the path and its permissions"],
-    );
-}
-
-#[test]
-fn malformed_toml() {
-    rough("[sine\n", &["not valid TOML", "--> core.toml:2:"]);
-    rough("clamp = true\nclamp = false", &["`clamp` is given twice", "--> core.toml:3:1"]);
-}
-
-#[test]
-fn unknown_words_are_answered_with_the_nearest() {
-    refused(
-        "device = \"ruogh\"\n",
-        &["there is no device \"ruogh\"", "did you mean \"rough\"?", "core.toml:1:10"],
-    );
-    rough(
-        "[cosine]\nfracton = 20",
-        &["has no key `cosine.fracton`", "did you mean `cosine.fraction`?", "core.toml:3:1"],
-    );
-    rough("arithmetic = \"exakt\"", &["did you mean \"exact\"?", "core.toml:2:14"]);
-}
-
-#[test]
-fn wrong_types_and_values() {
-    rough("clamp = 1", &["`clamp` must be true or false, not the integer 1", "core.toml:2:9"]);
-    rough("[colour]\nbits = \"8\"", &["`colour.bits` must be an integer, not the string \"8\""]);
-    for width in ["0", "-8", "13", "9223372036854775807", "99999999999999999999"] {
-        rough(&format!("[colour]\nbits = {width}"), &["core.toml:3:8", width]);
-    }
-}
-
-#[test]
-fn a_format_too_narrow_for_its_values() {
-    rough(
-        "[exponent]\nbits = 4\n[domain]\nexponent_max = 1000",
-        &["1000 does not fit the 4 bits of the exponent", "at most 15, or a larger exponent.bits"],
-    );
-}
-
-#[test]
-fn names_that_are_no_module_names() {
-    for (name, complaint) in [
-        ("2fast", "starts with a digit"),
-        ("a-b", "has the character `-`"),
-        ("module", "is a keyword of Verilog or SystemVerilog"),
-        ("../core", "looks like a path"),
-        ("", "is empty"),
-    ] {
-        rough(
-            &format!("name = \"{name}\""),
-            &[complaint, "core.toml:2:8", "give a Verilog identifier"],
-        );
-    }
-}
-
-#[test]
-fn a_rom_beyond_a_sane_size_is_told_its_size() {
-    rough(
-        "[sine]\nscheme = \"direct\"\naddress = 16\nfraction = 22",
-        &[
-            "ROM 18 would have 2^16 entries of 22 bits, 1441792 bits in all",
-            "core.toml:4:11",
-            "at most 1048576 bits",
-        ],
-    );
-    rough(
-        "[sine]\nsegments = [6, 40, 2]",
-        &["`sine.segments[1]` = 40 is out of range", "core.toml:3:"],
     );
 }
 

@@ -2,6 +2,7 @@
 
 use std::ffi::OsString;
 
+use crate::common::said::{Case, cases};
 use crate::place::{COSINE_POWER, Place};
 
 /// Runs a copy of the program as a user who may not do everything, if this one may.
@@ -88,44 +89,14 @@ fn nothing_panics() {
 
 /// What a core cannot have is refused where the file asks for it, with a remedy, and nothing is written.
 #[test]
-fn keys_that_do_not_fit_the_core() {
-    let pipelined = "device = \"cosine-power\"\narchitecture = \"pipelined\"\n";
-    let line = "device = \"quad-cosine\"\n";
-    let litex = "[package]\nmemories = \"inline\"\nlitex = true\n";
-    for (head, keys, parts) in [
-        (
-            line,
-            litex,
-            [
-                "core.toml:4:9",
-                "walks lines, which registers of LiteX cannot drive",
-                "set interface.stream = true",
-            ],
-        ),
-        (
-            pipelined,
-            litex,
-            [
-                "core.toml:5:9",
-                "is a pipeline, which registers of LiteX cannot drive",
-                "set interface.stream = true",
-            ],
-        ),
-        (
-            line,
-            "[interface]\nregisters = \"axi-lite\"\n",
-            [
-                "core.toml:3:13",
-                "as many results as `length` says",
-                "remove it, or set interface.stream = true",
-            ],
-        ),
-    ] {
-        let place = Place::with("core.toml", format!("{head}{keys}"));
-        let run = place.glint(["generate", "core.toml", "--out", "out"]);
-        run.refused(1, &parts);
-        assert!(!place.at("out").exists(), "{keys}");
-        let value = place.glint(["generate", "core.toml", "--out", "out", "--json"]).json();
-        assert!(value["problems"][0]["line"].as_u64().is_some(), "{value}");
+fn files_that_are_refused() {
+    for Case { heading: commands, file, said } in cases(include_str!("refused.txt")) {
+        let place = Place::with("core.toml", &file);
+        for command in commands.split(' ') {
+            place.glint([command, "core.toml"]).refused(1, &said);
+            let value = place.glint([command, "core.toml", "--json"]).json();
+            assert!(value["problems"][0]["line"].as_u64().is_some(), "{value}");
+        }
+        assert_eq!(place.files().len(), 1, "something was written: {file}");
     }
 }
