@@ -1,20 +1,20 @@
-// ${ name }$: computes with ${ module }$ what a file lists
+// ${ list.name }$: computes with ${ list.module }$ what a file lists
 //
 // Every line of POINTS_FILE has the operands of one computation in hexadecimal, in port order. For each
-// result, ${ name }$ writes a line to RESULTS_FILE with the outputs in hexadecimal, in port order, and
+// result, ${ list.name }$ writes a line to RESULTS_FILE with the outputs in hexadecimal, in port order, and
 // after the last result of a computation a line with a single dot.
 // Inputs change on the falling edge of the clock; outputs are read just before the rising edge.
 
 `default_nettype none
 
-module ${ name }$ #(
-    parameter POINTS_FILE  = "${ points_file }$",
-    parameter RESULTS_FILE = "${ results_file }$"
+module ${ list.name }$ #(
+    parameter POINTS_FILE  = "${ list.points_file }$",
+    parameter RESULTS_FILE = "${ list.results_file }$"
 );
-    localparam LIMIT = ${ limit }$;  // clocks that one computation may take
+    localparam LIMIT = ${ list.limit }$;  // clocks that one computation may take
 
     reg clk = 1'b0;
-<%- for line in declarations %>
+<%- for line in list.declarations %>
 ${ line }$
 <%- endfor %>
 
@@ -24,8 +24,8 @@ ${ line }$
     integer ${ names.clocks }$;
     integer ${ names.total }$ = 0;
 
-    ${ module }$ ${ names.dut }$ (
-<%- for line in connections %>
+    ${ list.module }$ ${ names.dut }$ (
+<%- for line in list.connections %>
         ${ line }$
 <%- endfor %>
     );
@@ -40,20 +40,20 @@ ${ line }$
     initial begin
         ${ names.points }$ = $fopen(POINTS_FILE, "r");
         ${ names.results }$ = $fopen(RESULTS_FILE, "w");
-        ${ reset }$ = 1'b0;
+        ${ list.reset }$ = 1'b0;
         ${ start }$ = 1'b0;
 <%- for strobe in strobes %>
         ${ strobe }$ = 1'b0;
 <%- endfor %>
         ${ names.tick }$;
-        ${ reset }$ = 1'b1;
+        ${ list.reset }$ = 1'b1;
         ${ names.read }$ = $fscanf(
-            ${ names.points }$, "${ scan }$"
-<%- for operand in operands %>,
+            ${ names.points }$, "${ list.scan }$"
+<%- for operand in list.operands %>,
             ${ operand }$
 <%- endfor %>
         );
-        while (${ names.read }$ == ${ operands.len() }$) begin
+        while (${ names.read }$ == ${ list.operands.len() }$) begin
             // The registers take the operands in the clock that takes `start`.
             ${ start }$ = 1'b1;
 <%- for strobe in strobes %>
@@ -66,10 +66,10 @@ ${ line }$
 <%- endfor %>
             ${ names.clocks }$ = 0;
             while (${ busy }$ && ${ names.clocks }$ < LIMIT) begin
-                if (${ valid }$) begin
+                if (${ list.valid }$) begin
                     $fwrite(
-                        ${ names.results }$, "${ print }$\n"
-<%- for result in results %>,
+                        ${ names.results }$, "${ list.print }$\n"
+<%- for result in list.results %>,
                         ${ result }$
 <%- endfor %>
                     );
@@ -78,20 +78,20 @@ ${ line }$
                 ${ names.clocks }$ = ${ names.clocks }$ + 1;
             end
             if (${ busy }$) begin
-                $display("FAIL ${ module }$: computation %0d does not end", ${ names.total }$);
+                $display("FAIL ${ list.module }$: computation %0d does not end", ${ names.total }$);
                 $fatal;
             end
             $fwrite(${ names.results }$, ".\n");
             ${ names.total }$ = ${ names.total }$ + 1;
             ${ names.read }$ = $fscanf(
-                ${ names.points }$, "${ scan }$"
-<%- for operand in operands %>,
+                ${ names.points }$, "${ list.scan }$"
+<%- for operand in list.operands %>,
                 ${ operand }$
 <%- endfor %>
             );
         end
         $fclose(${ names.results }$);
-        $display("PASS ${ module }$: %0d computations", ${ names.total }$);
+        $display("PASS ${ list.module }$: %0d computations", ${ names.total }$);
         $finish;
     end
 endmodule

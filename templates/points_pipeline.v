@@ -1,20 +1,20 @@
-// ${ name }$: computes with ${ module }$ what a file lists
+// ${ list.name }$: computes with ${ list.module }$ what a file lists
 //
-// Every line of POINTS_FILE has the operands of one point in hexadecimal, in port order. ${ name }$
+// Every line of POINTS_FILE has the operands of one point in hexadecimal, in port order. ${ list.name }$
 // offers a point every clock, and writes a line for each to RESULTS_FILE, with the outputs in
 // hexadecimal, in port order, and a line with a single dot behind it.
 // Inputs change on the falling edge of the clock; outputs are read just before the rising edge.
 
 `default_nettype none
 
-module ${ name }$ #(
-    parameter POINTS_FILE  = "${ points_file }$",
-    parameter RESULTS_FILE = "${ results_file }$"
+module ${ list.name }$ #(
+    parameter POINTS_FILE  = "${ list.points_file }$",
+    parameter RESULTS_FILE = "${ list.results_file }$"
 );
-    localparam LIMIT = ${ limit }$;  // clocks from the last point to the last results
+    localparam LIMIT = ${ list.limit }$;  // clocks from the last point to the last results
 
     reg clk = 1'b0;
-<%- for line in declarations %>
+<%- for line in list.declarations %>
 ${ line }$
 <%- endfor %>
 
@@ -25,8 +25,8 @@ ${ line }$
     integer ${ names.offered }$ = 0;
     integer ${ names.total }$ = 0;
 
-    ${ module }$ ${ names.dut }$ (
-<%- for line in connections %>
+    ${ list.module }$ ${ names.dut }$ (
+<%- for line in list.connections %>
         ${ line }$
 <%- endfor %>
     );
@@ -41,29 +41,29 @@ ${ line }$
     initial begin
         ${ names.points }$ = $fopen(POINTS_FILE, "r");
         ${ names.results }$ = $fopen(RESULTS_FILE, "w");
-        ${ reset }$ = 1'b0;
+        ${ list.reset }$ = 1'b0;
         ${ in_valid }$ = 1'b0;
 <%- for (name, value) in held %>
         ${ name }$ = ${ value }$;
 <%- endfor %>
         ${ names.tick }$;
-        ${ reset }$ = 1'b1;
-        ${ names.read }$ = ${ operands.len() }$;
-        while (${ names.clocks }$ < LIMIT && (${ names.read }$ == ${ operands.len() }$ || ${ names.total }$ < ${ names.offered }$)) begin
-            if (${ names.read }$ == ${ operands.len() }$)
+        ${ list.reset }$ = 1'b1;
+        ${ names.read }$ = ${ list.operands.len() }$;
+        while (${ names.clocks }$ < LIMIT && (${ names.read }$ == ${ list.operands.len() }$ || ${ names.total }$ < ${ names.offered }$)) begin
+            if (${ names.read }$ == ${ list.operands.len() }$)
                 ${ names.read }$ = $fscanf(
-                    ${ names.points }$, "${ scan }$"
-<%- for operand in operands %>,
+                    ${ names.points }$, "${ list.scan }$"
+<%- for operand in list.operands %>,
                     ${ operand }$
 <%- endfor %>
                 );
-            ${ in_valid }$ = ${ names.read }$ == ${ operands.len() }$;
+            ${ in_valid }$ = ${ names.read }$ == ${ list.operands.len() }$;
             if (${ in_valid }$) ${ names.offered }$ = ${ names.offered }$ + 1;
             else ${ names.clocks }$ = ${ names.clocks }$ + 1;
-            if (${ valid }$) begin
+            if (${ list.valid }$) begin
                 $fwrite(
-                    ${ names.results }$, "${ print }$\n.\n"
-<%- for result in results %>,
+                    ${ names.results }$, "${ list.print }$\n.\n"
+<%- for result in list.results %>,
                     ${ result }$
 <%- endfor %>
                 );
@@ -72,11 +72,11 @@ ${ line }$
             ${ names.tick }$;
         end
         if (${ names.total }$ < ${ names.offered }$) begin
-            $display("FAIL ${ module }$: %0d points, %0d results", ${ names.offered }$, ${ names.total }$);
+            $display("FAIL ${ list.module }$: %0d points, %0d results", ${ names.offered }$, ${ names.total }$);
             $fatal;
         end
         $fclose(${ names.results }$);
-        $display("PASS ${ module }$: %0d computations", ${ names.total }$);
+        $display("PASS ${ list.module }$: %0d computations", ${ names.total }$);
         $finish;
     end
 endmodule

@@ -33,7 +33,6 @@ mod memory;
 pub mod module_names;
 mod multiplier;
 mod points;
-mod points_pipeline;
 pub(crate) mod seal;
 mod software;
 mod surroundings;
@@ -72,7 +71,7 @@ pub use window::{WINDOW_FILE, window};
 /// A design without its handshake, or without operands or results.
 pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
     match design.pipeline {
-        Some(_) => points_pipeline::points_bench(design, limit),
+        Some(_) => points::pipeline::points_bench(design, limit),
         None => points::points_bench(design, limit),
     }
 }

@@ -1,5 +1,7 @@
 //! The bench that computes a list of points: operands from a file, results to a file.
 
+pub(super) mod pipeline;
+
 use anyhow::Result;
 use askama::Template;
 
@@ -27,27 +29,71 @@ pub struct PointsBench {
     pub results: Vec<String>,
 }
 
-#[derive(Template)]
-#[template(path = "points.v")]
-struct View {
+/// What the templates print of a list of points, whatever the architecture.
+struct List {
     name: String,
     module: String,
     points_file: &'static str,
     results_file: &'static str,
     limit: u32,
-    names: Variables,
     declarations: Vec<String>,
     connections: Vec<String>,
     reset: String,
-    start: String,
-    busy: String,
     valid: String,
     operands: Vec<String>,
-    strobes: Vec<String>,
     results: Vec<String>,
     /// The format strings of a line.
     scan: String,
     print: String,
+}
+
+impl List {
+    /// Of the input ports that are operands; reset and `valid` are nets of the design.
+    fn new(
+        design: &Design,
+        limit: u32,
+        is_operand: impl Fn(Role) -> bool,
+        [reset, valid]: [NetId; 2],
+    ) -> Self {
+        let name_of = |net: NetId| design.net(net).name.clone();
+        let named = |is: &dyn Fn(Role) -> bool| -> Vec<String> {
+            let ports = design.ports.iter().filter(|port| is(port.role));
+            ports.map(|port| name_of(port.net)).collect()
+        };
+        let (operands, results) = (named(&is_operand), named(&|role| role == Role::Result));
+        let line = |count: usize| vec!["%h"; count].join(" ");
+        Self {
+            name: format!("{}_points", design.name),
+            module: design.name.clone(),
+            points_file: POINTS_FILE,
+            results_file: RESULTS_FILE,
+            limit,
+            // Bit patterns, whatever they denote: signed variables would be printed with a sign.
+            declarations: variables(design, false),
+            connections: connections(design),
+            reset: name_of(reset),
+            valid: name_of(valid),
+            scan: line(operands.len()),
+            print: line(results.len()),
+            operands,
+            results,
+        }
+    }
+
+    /// The bench of which this is the text.
+    fn bench(self, text: String) -> PointsBench {
+        PointsBench { name: self.name, text, operands: self.operands, results: self.results }
+    }
+}
+
+#[derive(Template)]
+#[template(path = "points.v")]
+struct View<'a> {
+    list: &'a List,
+    names: Variables,
+    start: String,
+    busy: String,
+    strobes: Vec<String>,
 }
 
 fresh_names!(Variables { points, results, read, clocks, total, tick, dut });
@@ -57,41 +103,20 @@ fresh_names!(Variables { points, results, read, clocks, total, tick, dut });
 /// # Errors
 /// A design without the common handshake, or without operands or results.
 pub fn points_bench(design: &Design, limit: u32) -> Result<PointsBench> {
-    let port_name = |port: &Port| design.net(port.net).name.clone();
     let handshake = design.handshake()?;
     let name_of = |net: NetId| design.net(net).name.clone();
-    let mut names = Names::of_ports(design);
-    let mut operands = Vec::new();
-    let mut strobes = Vec::new();
-    for port in design.inputs() {
-        if let Role::Operand { strobe } = port.role {
-            operands.push(port_name(port));
-            strobes.push(design.net(strobe).name.clone());
-        }
-    }
-    let results: Vec<String> =
-        design.outputs().filter(|port| port.role == Role::Result).map(port_name).collect();
-    let line = |count: usize| vec!["%h"; count].join(" ");
-    let name = format!("{}_points", design.name);
+    let is_operand = |role| matches!(role, Role::Operand { .. });
+    let list = List::new(design, limit, is_operand, [handshake.reset, handshake.valid]);
+    let strobe = |port: &Port| match port.role {
+        Role::Operand { strobe } => Some(name_of(strobe)),
+        _ => None,
+    };
     let text = super::render(&View {
-        name: name.clone(),
-        module: design.name.clone(),
-        points_file: POINTS_FILE,
-        results_file: RESULTS_FILE,
-        limit,
-        names: Variables::new(&mut names),
-        // Bit patterns, whatever they denote: signed variables would be printed with a sign.
-        declarations: variables(design, false),
-        connections: connections(design),
-        reset: name_of(handshake.reset),
+        list: &list,
+        names: Variables::new(&mut Names::of_ports(design)),
         start: name_of(handshake.start),
         busy: name_of(handshake.busy),
-        valid: name_of(handshake.valid),
-        scan: line(operands.len()),
-        print: line(results.len()),
-        operands: operands.clone(),
-        strobes,
-        results: results.clone(),
+        strobes: design.inputs().filter_map(strobe).collect(),
     })?;
-    Ok(PointsBench { name, text, operands, results })
+    Ok(list.bench(text))
 }

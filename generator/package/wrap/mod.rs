@@ -12,7 +12,7 @@ use askama::Template;
 use super::map::Map;
 use super::surroundings::Bus;
 use super::{EmitInputs, render};
-use crate::hdl::netlist::{Design, Port};
+use crate::hdl::netlist::{Design, Port, Role};
 use crate::hdl::verilog::rows::separated;
 use crate::hdl::verilog::text::range;
 
@@ -60,6 +60,41 @@ struct Script<'a> {
 
 fn script(name: &str) -> Result<String> {
     render(&Script { name })
+}
+
+/// What the core is connected to, the clock first: where `to` says nothing, inputs to 0, and outputs to the wire of
+/// [`core_wire`].
+fn connected(
+    design: &Design,
+    clock: &str,
+    to: impl Fn(Role, &str) -> Option<String>,
+) -> Vec<String> {
+    let ports = design.ports.iter().map(|port| {
+        let name = design.net(port.net).name.as_str();
+        let to = to(port.role, name).unwrap_or_else(|| match port.role.is_input() {
+            true => "1'b0".to_owned(),
+            false => format!("core_{name}"),
+        });
+        format!(".{name}({to})")
+    });
+    separated(std::iter::once(format!(".clk({clock})")).chain(ports).collect())
+}
+
+/// The declaration of the wire that an output of the core drives.
+fn core_wire(design: &Design, port: &Port) -> String {
+    let net = design.net(port.net);
+    format!("wire {} core_{};", range(net.format.width()), net.name).replace("  ", " ")
+}
+
+/// Results of the module that stands in for the core: anything.
+fn stub_free(design: &Design) -> Vec<String> {
+    let is_free = |port: &&Port| matches!(port.role, Role::Result | Role::Status);
+    let free = design.ports.iter().filter(is_free).flat_map(|port| {
+        let net = design.net(port.net);
+        let any = format!("(* anyseq *) reg {} any_{};", range(net.format.width()), net.name);
+        [any.replace("  ", " "), format!("assign {0} = any_{0};", net.name)]
+    });
+    free.collect()
 }
 
 /// The ports of a module that stands in for the core, in the order of the core's.

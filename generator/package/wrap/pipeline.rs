@@ -4,7 +4,7 @@ use anyhow::{Result, ensure};
 use askama::Template;
 
 use super::fields::{Field, bits, operands, packed, padding, results, sink};
-use super::{Wrappers, script, seen_inside, stub_ports};
+use super::{Wrappers, connected, script, seen_inside, stub_ports};
 use crate::hdl::netlist::{Design, Pipeline, Role};
 use crate::hdl::verilog::rows::separated;
 use crate::hdl::verilog::text::{literal, range};
@@ -75,24 +75,19 @@ pub fn wrapper(design: &Design, pipeline: &Pipeline, inputs: &EmitInputs) -> Res
         "`{name}` cannot be held back, which interface.stream needs; set pipeline.stall = \"ready\""
     );
     let (operands, results) = (operands(design), results(design));
-    let connections = design.ports.iter().map(|port| {
-        let name = design.net(port.net).name.as_str();
-        let to = match port.role {
-            Role::Reset => "aresetn".to_owned(),
-            Role::InValid => "s_axis_tvalid".to_owned(),
-            Role::InReady => "s_axis_tready".to_owned(),
-            Role::OutReady => "ready".to_owned(),
-            Role::Valid => "valid".to_owned(),
-            Role::Point => {
-                let field = operands.iter().find(|field| field.name == name);
-                format!("s_axis_tdata{}", field.map(Field::bits).unwrap_or_default())
-            }
-            Role::SideIn => literal(0, design.width(port.net)),
-            _ => format!("core_{name}"),
-        };
-        format!(".{name}({to})")
+    let connections = connected(design, "aclk", |role, name| match role {
+        Role::Reset => Some("aresetn".to_owned()),
+        Role::InValid => Some("s_axis_tvalid".to_owned()),
+        Role::InReady => Some("s_axis_tready".to_owned()),
+        Role::OutReady => Some("ready".to_owned()),
+        Role::Valid => Some("valid".to_owned()),
+        Role::Point => {
+            let field = operands.iter().find(|field| field.name == name);
+            Some(format!("s_axis_tdata{}", field.map(Field::bits).unwrap_or_default()))
+        }
+        Role::SideIn => Some(literal(0, pipeline.side)),
+        _ => None,
     });
-    let connections = std::iter::once(".clk(aclk)".to_owned()).chain(connections);
     let mut unused = padding(&operands, "s_axis_tdata");
     if pipeline.side > 0 {
         unused.push("core_side_out".to_owned());
@@ -107,7 +102,7 @@ pub fn wrapper(design: &Design, pipeline: &Pipeline, inputs: &EmitInputs) -> Res
         stages: pipeline.stages.len(),
         side: pipeline.side,
         packed: separated(packed(&results, "core_")),
-        connections: separated(connections.collect()),
+        connections,
         unused: sink(&unused),
         operands: &operands,
         results: &results,

@@ -6,9 +6,8 @@ use askama::Template;
 
 use super::fields::sink;
 use super::words::{Word, constants, select, within, words};
-use super::{Wrappers, script, seen_inside, stub_ports};
+use super::{Wrappers, connected, core_wire, script, seen_inside, stub_free, stub_ports};
 use crate::hdl::netlist::{Design, Role};
-use crate::hdl::verilog::rows::separated;
 use crate::hdl::verilog::text::{comment, literal, range};
 use crate::package::map::{self, Map, Placed};
 use crate::package::surroundings::Bus;
@@ -155,32 +154,22 @@ pub fn wrapper(design: &Design, inputs: &EmitInputs, bus: Bus, map: &Map) -> Res
 fn block<'a>(design: &'a Design, inputs: &'a EmitInputs, map: &Map) -> Registers<'a> {
     let word_bits = map.address_bits() - 2;
     let place = |place: u32| literal(place.into(), word_bits);
-    let connections = design.ports.iter().map(|port| {
-        let name = design.net(port.net).name.as_str();
-        let to = match port.role {
-            Role::Reset => "rst_n".to_owned(),
-            Role::Start => "start".to_owned(),
-            Role::Busy => "busy".to_owned(),
-            Role::Done => "done".to_owned(),
-            Role::Operand { .. } => format!("operand_{name}"),
-            Role::Strobe if map.operands.iter().any(|it| it.strobe == name) => "start".to_owned(),
-            role if role.is_input() => "1'b0".to_owned(),
-            _ => format!("core_{name}"),
-        };
-        format!(".{name}({to})")
+    let connections = connected(design, "clk", |role, name| match role {
+        Role::Reset => Some("rst_n".to_owned()),
+        Role::Start | Role::Busy | Role::Done => Some(name.to_owned()),
+        Role::Operand { .. } => Some(format!("operand_{name}")),
+        Role::Strobe if map.operands.iter().any(|it| it.strobe == name) => Some("start".to_owned()),
+        _ => None,
     });
-    let connections = std::iter::once(".clk(clk)".to_owned()).chain(connections);
     let mut unused = vec!["write_data".to_owned(), "write_bytes".to_owned()];
     let mut result_wires = Vec::new();
     for port in design.outputs() {
-        let net = design.net(port.net);
         if matches!(port.role, Role::Busy | Role::Done) {
             continue;
         }
-        let range = range(net.format.width());
-        result_wires.push(format!("wire {range} core_{};", net.name).replace("  ", " "));
+        result_wires.push(core_wire(design, port));
         if port.role != Role::Result {
-            unused.push(format!("core_{}", net.name));
+            unused.push(format!("core_{}", design.net(port.net).name));
         }
     }
     Registers {
@@ -195,7 +184,7 @@ fn block<'a>(design: &'a Design, inputs: &'a EmitInputs, map: &Map) -> Registers
         last_number: map.last(),
         no_constant: literal(0, word_bits - 2),
         result_wires,
-        connections: separated(connections.collect()),
+        connections,
         control: place(map::CONTROL),
         enable: place(map::INTERRUPT_ENABLE),
         pending: place(map::INTERRUPT_PENDING),
@@ -263,16 +252,6 @@ fn operands(map: &Map) -> Vec<Operand> {
 }
 
 fn proof<'a>(design: &'a Design, map: &Map) -> Formal<'a> {
-    let mut stub_free = Vec::new();
-    for port in &design.ports {
-        let net = design.net(port.net);
-        if matches!(port.role, Role::Result | Role::Status) {
-            let range = range(net.format.width());
-            stub_free
-                .push(format!("(* anyseq *) reg {range} any_{};", net.name).replace("  ", " "));
-            stub_free.push(format!("assign {0} = any_{0};", net.name));
-        }
-    }
     let word_bits = map.address_bits() - 2;
     let own = [
         ("start", 1),
@@ -311,7 +290,7 @@ fn proof<'a>(design: &'a Design, map: &Map) -> Formal<'a> {
         operands: operands(map),
         operand_words: operand_words.collect(),
         stub_ports: stub_ports(design),
-        stub_free,
+        stub_free: stub_free(design),
         inside: inside.into_iter().map(seen_inside).collect(),
     }
 }

@@ -4,7 +4,7 @@ use anyhow::{Context, Result};
 use askama::Template;
 
 use super::fields::{Field, bits, operands, packed, padding, results, sink};
-use super::{Wrappers, script};
+use super::{Wrappers, connected, core_wire, script, stub_free, stub_ports};
 use crate::hdl::netlist::{Design, Role};
 use crate::hdl::verilog::rows::separated;
 use crate::hdl::verilog::text::{literal, range};
@@ -112,35 +112,27 @@ fn modules(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>
     let (operands, results) = (operands(design), results(design));
     let overlaps = design.control.overlaps;
     let is_unused = |role: Role| role == Role::Status || role == Role::Done && !overlaps;
-    let connections = design.ports.iter().map(|port| {
-        let name = design.net(port.net).name.as_str();
-        let to = match port.role {
-            Role::Reset => "aresetn".to_owned(),
-            Role::Start => "start".to_owned(),
-            Role::Valid => "valid".to_owned(),
-            Role::Busy => "busy".to_owned(),
-            Role::Done if overlaps => "done".to_owned(),
-            Role::Operand { .. } => {
-                let field = operands.iter().find(|field| field.name == name);
-                format!("operands{}", field.map(Field::bits).unwrap_or_default())
-            }
-            Role::Strobe if operands.iter().any(|field| field.strobe == name) => "start".to_owned(),
-            role if role.is_input() => "1'b0".to_owned(),
-            _ => format!("core_{name}"),
-        };
-        format!(".{name}({to})")
+    let connections = connected(design, "aclk", |role, name| match role {
+        Role::Reset => Some("aresetn".to_owned()),
+        Role::Start | Role::Valid | Role::Busy => Some(name.to_owned()),
+        Role::Done if overlaps => Some("done".to_owned()),
+        Role::Operand { .. } => {
+            let field = operands.iter().find(|field| field.name == name);
+            Some(format!("operands{}", field.map(Field::bits).unwrap_or_default()))
+        }
+        Role::Strobe if operands.iter().any(|field| field.strobe == name) => {
+            Some("start".to_owned())
+        }
+        _ => None,
     });
-    let connections = std::iter::once(".clk(aclk)".to_owned()).chain(connections);
     let mut unused = Vec::new();
     let mut result_wires = Vec::new();
     for port in design.outputs() {
-        let net = design.net(port.net);
         if port.role == Role::Result || is_unused(port.role) {
-            let range = range(net.format.width());
-            result_wires.push(format!("wire {range} core_{};", net.name).replace("  ", " "));
+            result_wires.push(core_wire(design, port));
         }
         if is_unused(port.role) {
-            unused.push(format!("core_{}", net.name));
+            unused.push(format!("core_{}", design.net(port.net).name));
         }
     }
     unused.extend(padding(&operands, "operands"));
@@ -156,7 +148,7 @@ fn modules(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>
         signed,
         result_wires,
         packed: separated(packed),
-        connections: separated(connections.collect()),
+        connections,
         output: if buffered.is_some() { "wire" } else { "reg " },
         line: line(inputs, &operands)?,
         unused: sink(&unused),
@@ -178,20 +170,6 @@ fn modules(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>
 fn formal(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>> {
     let name = design.name.as_str();
     let (operands, results) = (operands(design), results(design));
-    let mut stub_ports = vec!["input wire clk".to_owned()];
-    let mut stub_free = Vec::new();
-    for port in &design.ports {
-        let net = design.net(port.net);
-        let range = range(net.format.width());
-        let sign = if net.format.signed { "signed " } else { "" };
-        let direction = if port.role.is_input() { "input" } else { "output" };
-        stub_ports.push(format!("{direction} wire {sign}{range} {}", net.name).replace("  ", " "));
-        if matches!(port.role, Role::Result | Role::Status) {
-            stub_free
-                .push(format!("(* anyseq *) reg {range} any_{};", net.name).replace("  ", " "));
-            stub_free.push(format!("assign {0} = any_{0};", net.name));
-        }
-    }
     let line = line(inputs, &operands)?;
     let user_high = inputs.around.user_bits - 1;
     let out_high = bits(&results)? - 1;
@@ -205,8 +183,8 @@ fn formal(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>>
         out_high,
         user_high,
         packed_high: out_high + 1 + user_high + 1,
-        stub_ports: separated(stub_ports),
-        stub_free,
+        stub_ports: stub_ports(design),
+        stub_free: stub_free(design),
         stub_packed: separated(packed(&results, "dut.core.")),
         stub_checks: stub_checks.collect(),
         inside,
