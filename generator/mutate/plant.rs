@@ -43,16 +43,9 @@ fn add(design: &mut Design, like: NetId, suffix: &str, driver: Driver) -> NetId 
     while design.find(&name).is_some() {
         name.to_mut().push('_');
     }
-    let id = NetId(design.nets.len() as u32);
-    design.nets.push(Net {
-        name: name.into_owned(),
-        driver,
-        block: None,
-        doc: String::new(),
-        named: false,
-        ..design.net(like).clone()
-    });
-    id
+    let (name, doc) = (name.into_owned(), String::new());
+    let like = design.net(like).clone();
+    design.add_net(Net { name, driver, block: None, doc, named: false, ..like })
 }
 
 /// A new net that carries `sound` with a bit at fault, as a driver.

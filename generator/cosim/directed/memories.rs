@@ -1,7 +1,7 @@
 //! A design whose tables are there once for each lane of a machine, so that every lane can have a fault of its own.
 
 use crate::base::fixed::Format;
-use crate::hdl::netlist::{Design, Driver, Net, NetId, Op, Partition, Port, Role};
+use crate::hdl::netlist::{Design, Driver, Net, NetId, Op, Port, Role};
 use crate::hdl::sim::Machine;
 
 /// Where the words of a design's tables are in the copies of every lane.
@@ -59,19 +59,9 @@ impl Memories {
 
 /// A net of unsigned numbers.
 fn add(design: &mut Design, name: &str, bits: u32, driver: Driver) -> NetId {
-    let id = NetId(design.nets.len() as u32);
     let like = design.net(design.roms[design.control.rom.index()].address);
-    let net = Net {
-        name: format!("{name}_{}", id.0),
-        format: Format::unsigned(bits as i32, 0),
-        range: (0, (1 << bits) - 1),
-        driver,
-        block: None,
-        doc: String::new(),
-        named: false,
-        partition: Partition::Datapath,
-        location: like.location,
-    };
-    design.nets.push(net);
-    id
+    let (name, format) =
+        (format!("{name}_{}", design.nets.len()), Format::unsigned(bits as i32, 0));
+    let net = Net::new(name, format, driver, like.location);
+    design.add_net(Net { named: false, ..net })
 }

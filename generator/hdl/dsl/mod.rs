@@ -96,8 +96,7 @@ use crate::base::diagnostic::{Diagnostic, Diagnostics};
 use crate::base::fixed::Format;
 use crate::base::interval;
 use crate::hdl::netlist::{
-    Control, Design, Driver, FieldId, NetId, Op, Partition, RegisterKind, Role, Rom as NetRom,
-    RomId,
+    Design, Driver, FieldId, NetId, Op, Partition, RegisterKind, Role, Rom as NetRom,
 };
 
 /// What a device with buffers says of writes and results.
@@ -151,16 +150,7 @@ impl Designer {
     #[track_caller]
     pub fn new(name: &str) -> Self {
         let inner = Inner {
-            design: Design {
-                name: name.to_owned(),
-                about: About::default(),
-                nets: Vec::new(),
-                registers: Vec::new(),
-                roms: Vec::new(),
-                ports: Vec::new(),
-                control: Control::none(),
-                pipeline: None,
-            },
+            design: Design::empty(name),
             views: HashMap::new(),
             program: None,
             valid: None,
@@ -277,21 +267,10 @@ impl Designer {
         // A synchronous read starts from the power-up value 0.
         let first = synchronous.then_some(0);
         let range = interval::of_values(words.iter().copied().chain(first)).unwrap_or((0, 0));
-        let id = RomId(self.inner.borrow().design.roms.len() as u32);
-        let data = self.add_net(&format!("{name}_word"), format, range, Driver::Rom(id), true);
-        self.inner.borrow_mut().design.roms.push(NetRom {
-            name: name.to_owned(),
-            address: address.id(),
-            data,
-            synchronous,
-            enable: None,
-            shares: None,
-            words: words.iter().map(|&raw| format.bits(raw)).collect(),
-            doc: Vec::new(),
-            comments: Vec::new(),
-            block: None,
-            location: Location::caller(),
-        });
+        let data = self.add_net(&format!("{name}_word"), format, range, Driver::Undriven, true);
+        let words = words.iter().map(|&raw| format.bits(raw)).collect();
+        let rom = NetRom::new(name, address.id(), data, words, Location::caller());
+        let id = self.with(|inner| inner.design.add_rom(NetRom { synchronous, ..rom }));
         Rom { designer: self, id }
     }
 

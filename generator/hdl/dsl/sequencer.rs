@@ -6,7 +6,7 @@ use crate::base::fixed::Format;
 use crate::hdl::netlist::microcode;
 use crate::hdl::netlist::{
     Control, Driver, FieldId, Microinstruction, NetId, Op, Partition, RegisterKind, Role,
-    Rom as NetRom, RomId,
+    Rom as NetRom,
 };
 
 /// The fields that the sequencer uses, as far as the program needs them.
@@ -187,27 +187,15 @@ fn control_rom(
         microinstructions.iter().map(|microinstruction| microinstruction.name.clone()).collect();
     let width: u32 = widths.iter().sum();
     let format = Format::unsigned(width as i32, 0);
-    let rom = d.with(|inner| RomId(inner.design.roms.len() as u32));
-    let data = d.add_named("control_word", format, Driver::Rom(rom));
+    let data = d.add_named("control_word", format, Driver::Undriven);
     let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
     let doc = vec![format!(
         "the microprogram, a line for each microinstruction; fields: {}",
         names.join(", ")
     )];
     d.with(|inner| {
-        inner.design.roms.push(NetRom {
-            name: "control".to_owned(),
-            address,
-            data,
-            synchronous: false,
-            enable: None,
-            shares: None,
-            words: packed,
-            doc,
-            comments,
-            block: None,
-            location,
-        });
+        let rom = NetRom::new("control", address, data, packed, location);
+        let rom = inner.design.add_rom(NetRom { doc, comments, ..rom });
         let register = |q: NetId| match inner.design.net(q).driver {
             Driver::Register(id) => id,
             _ => unreachable!("the sequencer's registers drive their nets"),

@@ -7,7 +7,7 @@ use crate::base::diagnostic::{Diagnostic, SourceLocation};
 use crate::base::fixed::{Format, MAX_POINT, MAX_WIDTH};
 use crate::base::interval::Interval;
 use crate::hdl::netlist::{
-    Driver, Field, FieldId, FieldKind, Net, NetId, Partition, Port, Register, RegisterKind, Role,
+    Driver, Field, FieldId, FieldKind, Net, NetId, Partition, Port, RegisterKind, Role,
 };
 
 /// What the parts of the DSL share.
@@ -108,19 +108,8 @@ impl Designer {
         // Inside the closure the caller would be this file.
         let location = Location::caller();
         self.with(|inner| {
-            let id = NetId(inner.design.nets.len() as u32);
-            inner.design.nets.push(Net {
-                name: name.to_owned(),
-                format,
-                range,
-                driver,
-                block: None,
-                doc: String::new(),
-                named,
-                partition: inner.partition,
-                location,
-            });
-            id
+            let net = Net::new(name.to_owned(), format, driver, location);
+            inner.design.add_net(Net { range, named, partition: inner.partition, ..net })
         })
     }
 
@@ -133,18 +122,8 @@ impl Designer {
         range: Interval,
         kind: RegisterKind,
     ) -> NetId {
-        let id = self.with(|inner| crate::hdl::netlist::RegId(inner.design.registers.len() as u32));
-        let q = self.add_net(name, format, range, Driver::Register(id), true);
-        self.with(|inner| {
-            inner.design.registers.push(Register {
-                q,
-                data: None,
-                enable: None,
-                reset: None,
-                kind,
-            });
-        });
-        q
+        let q = self.add_net(name, format, range, Driver::Undriven, true);
+        self.with(|inner| inner.design.add_register(q, kind).q)
     }
 
     #[track_caller]

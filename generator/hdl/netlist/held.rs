@@ -6,7 +6,7 @@
 //! Outputs, which follow the operand registers at once, and what the first microinstruction takes stay without.
 
 use super::needed::needed;
-use super::{Design, Driver, NetId, Op, RegId, Register, RegisterKind, Sequence};
+use super::{Design, Driver, NetId, Op, RegId, RegisterKind, Sequence};
 
 /// Inserts registers, named `<name>_held`, so that the longest path from an operand becomes shortest; of equally
 /// good places those with the fewest bits.
@@ -264,19 +264,11 @@ fn add_register(design: &mut Design, net: NetId) -> NetId {
     while taken(&name) {
         name.push('_');
     }
-    let (q, id) = (NetId(design.nets.len() as u32), RegId(design.registers.len() as u32));
     // It holds 0 from power-up to the first clock.
     let range = (of.range.0.min(0), of.range.1.max(0));
     let doc = format!("{}, delayed by a clock: the operands do not change", of.name);
-    let driver = Driver::Register(id);
-    design.nets.push(super::Net { name, range, driver, block: None, doc, named: true, ..of });
-    design.registers.push(Register {
-        q,
-        data: Some(net),
-        enable: None,
-        reset: None,
-        kind: RegisterKind::Internal,
-    });
+    let q = design.add_net(super::Net { name, range, block: None, doc, named: true, ..of });
+    design.add_register(q, RegisterKind::Internal).data = Some(net);
     q
 }
 

@@ -12,6 +12,7 @@
 //! * names are distinct, legal Verilog identifiers, and no net is wider than 64 bits;
 //! * a value never leaves the interval of its net, and the interval fits the format.
 
+mod builder;
 mod cell;
 mod control;
 mod decisions;

@@ -8,8 +8,8 @@ use super::unroll::Unrolled;
 use super::{Delays, Goal, Options};
 use crate::base::fixed::Format;
 use crate::hdl::netlist::{
-    Checkpoint, Control, Delayed, Design, Driver, Net, NetId, Op, Partition, Pipeline, Port, RegId,
-    Register, RegisterKind, Role, Rom, RomId, Stage,
+    Checkpoint, Delayed, Design, Driver, Net, NetId, Op, Pipeline, Port, RegId, RegisterKind, Role,
+    Rom, RomId, Stage,
 };
 
 /// The design of a schedule.
@@ -36,16 +36,7 @@ pub fn assemble(
         graph: &unrolled.graph,
         problems,
         schedule,
-        design: Design {
-            name: sequential.name.clone(),
-            about,
-            nets: Vec::new(),
-            registers: Vec::new(),
-            roms: Vec::new(),
-            ports: Vec::new(),
-            control: Control::none(),
-            pipeline: None,
-        },
+        design: Design { about, ..Design::empty(&sequential.name) },
         stage_of: Vec::new(),
         advance: None,
         taken: HashSet::from(["clk".to_owned()]),
@@ -142,21 +133,10 @@ struct Builder<'a> {
 
 impl Builder<'_> {
     fn net(&mut self, name: String, stage: usize, format: Format, driver: Driver) -> NetId {
-        let id = NetId(self.design.nets.len() as u32);
         self.taken.insert(name.clone());
-        self.design.nets.push(Net {
-            name,
-            format,
-            range: format.range(),
-            driver,
-            block: None,
-            doc: String::new(),
-            named: true,
-            partition: Partition::Datapath,
-            location: self.sequential.nets[0].location,
-        });
         self.stage_of.push(stage);
-        id
+        let location = self.sequential.nets[0].location;
+        self.design.add_net(Net::new(name, format, driver, location))
     }
 
     fn documented(&mut self, id: NetId, doc: &str) -> NetId {
@@ -175,15 +155,8 @@ impl Builder<'_> {
     }
 
     fn register(&mut self, q: NetId, data: NetId, enable: Option<NetId>, reset: Option<u64>) {
-        let id = RegId(self.design.registers.len() as u32);
-        self.design.nets[q.index()].driver = Driver::Register(id);
-        self.design.registers.push(Register {
-            q,
-            data: Some(data),
-            enable,
-            reset,
-            kind: RegisterKind::Internal,
-        });
+        let register = self.design.add_register(q, RegisterKind::Internal);
+        (register.data, register.enable, register.reset) = (Some(data), enable, reset);
     }
 
     fn port(&mut self, name: &str, width: u32, role: Role, doc: &str) -> NetId {

@@ -4,8 +4,8 @@ use std::panic::Location;
 
 use glint::fixed::{Format, mask};
 use glint::hdl::netlist::{
-    About, Control, Design, Driver, Field, FieldId, FieldKind, Microinstruction, Net, NetId, Op,
-    Partition, Port, RegId, Register, RegisterKind, Role, Rom, RomId, Sequence,
+    Design, Driver, Field, FieldId, FieldKind, Microinstruction, Net, NetId, Op, Partition, Port,
+    RegId, RegisterKind, Role, Rom, RomId, Sequence,
 };
 
 /// Splitmix64.
@@ -59,19 +59,9 @@ pub fn design(seed: u64) -> Design {
 }
 
 fn skeleton(seed: u64) -> Design {
-    Design {
-        name: format!("random_{seed}"),
-        about: About {
-            title: "Random cells − each «meets» every other".to_owned(),
-            ..About::default()
-        },
-        nets: Vec::new(),
-        registers: Vec::new(),
-        roms: Vec::new(),
-        ports: Vec::new(),
-        control: Control::none(),
-        pipeline: None,
-    }
+    let mut design = Design::empty(&format!("random_{seed}"));
+    design.about.title = "Random cells − each «meets» every other".to_owned();
+    design
 }
 
 struct Build {
@@ -82,23 +72,14 @@ struct Build {
 
 impl Build {
     fn net(&mut self, format: Format, driver: Driver, named: bool) -> NetId {
-        let id = NetId(self.design.nets.len() as u32);
-        self.design.nets.push(Net {
-            name: format!("n{}", id.0),
-            format,
-            range: (format.min_raw(), format.max_raw()),
-            driver,
-            block: id.0.is_multiple_of(5).then_some(id.0 as u16),
-            doc: if id.0.is_multiple_of(3) {
-                format!("net number {}", id.0)
-            } else {
-                String::new()
-            },
+        let at = self.design.nets.len();
+        self.design.add_net(Net {
+            block: at.is_multiple_of(5).then_some(at as u16),
+            doc: if at.is_multiple_of(3) { format!("net number {at}") } else { String::new() },
             named,
             partition: self.partition,
-            location: Location::caller(),
-        });
-        id
+            ..Net::new(format!("n{at}"), format, driver, Location::caller())
+        })
     }
 
     fn input(&mut self, format: Format, role: Role) -> NetId {
@@ -115,14 +96,8 @@ impl Build {
 
     fn register(&mut self, format: Format, reset: Option<u64>) -> (RegId, NetId) {
         let id = RegId(self.design.registers.len() as u32);
-        let q = self.net(format, Driver::Register(id), true);
-        self.design.registers.push(Register {
-            q,
-            data: None,
-            enable: None,
-            reset,
-            kind: RegisterKind::Architectural,
-        });
+        let q = self.net(format, Driver::Undriven, true);
+        self.design.add_register(q, RegisterKind::Architectural).reset = reset;
         (id, q)
     }
 
@@ -134,21 +109,10 @@ impl Build {
         words: Vec<u64>,
         synchronous: bool,
     ) -> NetId {
-        let id = RomId(self.design.roms.len() as u32);
-        let data = self.net(format, Driver::Rom(id), true);
-        self.design.roms.push(Rom {
-            name: name.to_owned(),
-            address,
-            data,
-            synchronous,
-            enable: None,
-            shares: None,
-            words,
-            doc: vec!["a random word".to_owned()],
-            comments: Vec::new(),
-            block: None,
-            location: Location::caller(),
-        });
+        let data = self.net(format, Driver::Undriven, true);
+        let doc = vec!["a random word".to_owned()];
+        let rom = Rom::new(name, address, data, words, Location::caller());
+        self.design.add_rom(Rom { synchronous, doc, ..rom });
         data
     }
 

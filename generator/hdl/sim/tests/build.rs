@@ -4,8 +4,8 @@ use std::panic::Location;
 
 use crate::base::fixed::{Format, mask};
 use crate::hdl::netlist::{
-    About, Control, Design, Driver, Field, FieldId, FieldKind, Microinstruction, Net, NetId, Op,
-    Partition, Port, RegId, Register, RegisterKind, Role, Rom, RomId, Sequence,
+    Control, Design, Driver, Field, FieldId, FieldKind, Microinstruction, Net, NetId, Op, Port,
+    Register, RegisterKind, Role, Rom, RomId, Sequence,
 };
 
 /// A design under construction. It has the input port `rst_n`, number 0.
@@ -18,19 +18,8 @@ impl Build {
     pub fn new() -> Self {
         // Fields are parts of the first ROM.
         let control = Control { rom: RomId(0), ..Control::none() };
-        let mut build = Self {
-            design: Design {
-                name: "probe".to_owned(),
-                about: About::default(),
-                nets: Vec::new(),
-                registers: Vec::new(),
-                roms: Vec::new(),
-                ports: Vec::new(),
-                pipeline: None,
-                control,
-            },
-            rst_n: NetId(0),
-        };
+        let mut build =
+            Self { design: Design { control, ..Design::empty("probe") }, rst_n: NetId(0) };
         build.rst_n = build.input("rst_n", Format::BIT);
         build.design.ports[0].role = Role::Reset;
         build
@@ -38,18 +27,7 @@ impl Build {
 
     #[track_caller]
     pub fn net(&mut self, name: &str, format: Format, driver: Driver) -> NetId {
-        self.design.nets.push(Net {
-            name: name.to_owned(),
-            format,
-            range: (format.min_raw(), format.max_raw()),
-            driver,
-            block: None,
-            doc: String::new(),
-            named: true,
-            partition: Partition::Datapath,
-            location: Location::caller(),
-        });
-        NetId(self.design.nets.len() as u32 - 1)
+        self.design.add_net(Net::new(name.to_owned(), format, driver, Location::caller()))
     }
 
     pub fn input(&mut self, name: &str, format: Format) -> NetId {
@@ -70,16 +48,8 @@ impl Build {
 
     /// A register that takes nothing yet.
     pub fn register(&mut self, name: &str, format: Format) -> NetId {
-        let id = RegId(self.design.registers.len() as u32);
-        let q = self.net(name, format, Driver::Register(id));
-        self.design.registers.push(Register {
-            q,
-            data: None,
-            enable: None,
-            reset: None,
-            kind: RegisterKind::Architectural,
-        });
-        q
+        let q = self.net(name, format, Driver::Undriven);
+        self.design.add_register(q, RegisterKind::Architectural).q
     }
 
     /// The register that drives `q`.
@@ -96,21 +66,10 @@ impl Build {
         synchronous: bool,
         words: &[u64],
     ) -> NetId {
-        let id = RomId(self.design.roms.len() as u32);
-        let data = self.net(name, format, Driver::Rom(id));
-        self.design.roms.push(Rom {
-            name: format!("{name}_rom"),
-            address,
-            data,
-            synchronous,
-            enable: None,
-            shares: None,
-            words: words.iter().map(|word| word & mask(format.width())).collect(),
-            doc: Vec::new(),
-            comments: Vec::new(),
-            block: None,
-            location: Location::caller(),
-        });
+        let data = self.net(name, format, Driver::Undriven);
+        let words = words.iter().map(|word| word & mask(format.width())).collect();
+        let rom = Rom::new(&format!("{name}_rom"), address, data, words, Location::caller());
+        self.design.add_rom(Rom { synchronous, ..rom });
         data
     }
 

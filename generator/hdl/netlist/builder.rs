@@ -1,0 +1,88 @@
+//! Designs made net by net.
+
+use super::{
+    About, Control, Design, Driver, Net, NetId, Partition, RegId, Register, RegisterKind, Rom,
+    RomId,
+};
+use crate::base::diagnostic::SourceLocation;
+use crate::base::fixed::Format;
+
+impl Design {
+    /// A design of which nothing but the name is there.
+    pub fn empty(name: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            about: About::default(),
+            nets: Vec::new(),
+            registers: Vec::new(),
+            roms: Vec::new(),
+            ports: Vec::new(),
+            control: Control::none(),
+            pipeline: None,
+        }
+    }
+
+    /// Adds a net.
+    pub fn add_net(&mut self, net: Net) -> NetId {
+        self.nets.push(net);
+        NetId(self.nets.len() as u32 - 1)
+    }
+
+    /// Has a net driven by a new register, which takes nothing yet.
+    pub fn add_register(&mut self, q: NetId, kind: RegisterKind) -> &mut Register {
+        let at = self.registers.len();
+        self.nets[q.index()].driver = Driver::Register(RegId(at as u32));
+        self.registers.push(Register { q, data: None, enable: None, reset: None, kind });
+        &mut self.registers[at]
+    }
+
+    /// Adds a ROM, which drives its net from now on.
+    pub fn add_rom(&mut self, rom: Rom) -> RomId {
+        let id = RomId(self.roms.len() as u32);
+        self.nets[rom.data.index()].driver = Driver::Rom(id);
+        self.roms.push(rom);
+        id
+    }
+}
+
+impl Net {
+    /// A named net of the datapath that can have every value of its format.
+    pub fn new(name: String, format: Format, driver: Driver, location: SourceLocation) -> Self {
+        Self {
+            name,
+            format,
+            range: format.range(),
+            driver,
+            block: None,
+            doc: String::new(),
+            named: true,
+            partition: Partition::Datapath,
+            location,
+        }
+    }
+}
+
+impl Rom {
+    /// A memory that is read at once.
+    pub fn new(
+        name: &str,
+        address: NetId,
+        data: NetId,
+        words: Vec<u64>,
+        location: SourceLocation,
+    ) -> Self {
+        Self {
+            name: name.to_owned(),
+            address,
+            data,
+            synchronous: false,
+            enable: None,
+            shares: None,
+            words,
+            doc: Vec::new(),
+            comments: Vec::new(),
+            block: None,
+            location,
+        }
+    }
+}
