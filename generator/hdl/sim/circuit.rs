@@ -10,7 +10,7 @@ use rust_hdl::core::signal::get_signal_id;
 use crate::hdl::netlist::{Design, NetId, Partition};
 use crate::hdl::sim::machine::Machine;
 use crate::hdl::sim::program::Program;
-use crate::hdl::sim::wire::{Direction, MicroinstructionName, Wire};
+use crate::hdl::sim::wire::{Direction, Seen, Wire};
 
 /// `LANES` independent instances of a design as a rust_hdl [`Block`]: rust_hdl clocks and settles
 /// it, checks it and, for lane 0, traces it.
@@ -114,17 +114,15 @@ impl<const LANES: usize> Circuit<LANES> {
         &mut self.inputs
     }
 
+    fn wire<'a>(&self, id: usize, bits: u64, seen: Seen<'a>) -> Wire<'a> {
+        Wire { id, connected: self.connected, changed: self.changed, bits, seen }
+    }
+
     fn visit(&self, nets: &[Observed], probe: &mut dyn Probe) {
         for net in nets {
-            let wire = Wire {
-                id: net.id,
-                width: net.width,
-                signed: net.signed,
-                direction: net.direction,
-                connected: self.connected,
-                changed: self.changed,
-                bits: self.machine.lane(net.net, 0),
-            };
+            let (width, signed, direction) = (net.width, net.signed, net.direction);
+            let bits = self.machine.lane(net.net, 0);
+            let wire = self.wire(net.id, bits, Seen::Net { width, signed, direction });
             probe.visit_atom(&net.name, &wire);
         }
     }
@@ -181,14 +179,10 @@ impl<const LANES: usize> Block for Circuit<LANES> {
         probe.visit_start_namespace("control", self);
         self.visit(&self.control, probe);
         if let Some((address, run)) = self.microprogram.state {
-            let name = MicroinstructionName {
-                id: self.microprogram.id,
-                names: &self.microprogram.names,
-                connected: self.connected,
-                changed: self.changed,
-                address: self.machine.lane(address, 0),
-                run: self.machine.lane(run, 0) == 1,
-            };
+            let [address, run] = [address, run].map(|net| self.machine.lane(net, 0));
+            let names = &self.microprogram.names;
+            let seen = Seen::Microinstruction { names, run: run == 1 };
+            let name = self.wire(self.microprogram.id, address, seen);
             probe.visit_atom("microinstruction", &name);
         }
         probe.visit_end_namespace("control", self);

@@ -17,22 +17,40 @@ pub(super) enum Direction {
     Local,
 }
 
-/// A net.
+/// What a probe sees.
 #[derive(Debug)]
-pub(super) struct Wire {
+pub(super) enum Seen<'a> {
+    /// A net.
+    Net { width: u32, signed: bool, direction: Direction },
+    /// The name of the microinstruction that is executed, `idle` when none is: of these, the one at the address that the bits are.
+    Microinstruction { names: &'a [String], run: bool },
+}
+
+/// An atom.
+#[derive(Debug)]
+pub(super) struct Wire<'a> {
     /// From rust_hdl's counter, so that it is distinct from the ids of signals.
     pub id: usize,
-    pub width: u32,
-    pub signed: bool,
-    pub direction: Direction,
     pub connected: bool,
     pub changed: bool,
     pub bits: u64,
+    pub seen: Seen<'a>,
 }
 
-impl Atom for Wire {
+/// A string as VCD can hold it: a space would end it.
+fn vcd_text(text: &str) -> String {
+    let graphic = |c: char| if c.is_ascii_graphic() { c } else { '_' };
+    text.chars().map(graphic).collect()
+}
+
+impl Atom for Wire<'_> {
     fn bits(&self) -> usize {
-        self.width as usize
+        match self.seen {
+            Seen::Net { width, .. } => width as usize,
+            Seen::Microinstruction { names, .. } => {
+                names.len().next_power_of_two().ilog2() as usize
+            }
+        }
     }
 
     fn connected(&self) -> bool {
@@ -44,26 +62,42 @@ impl Atom for Wire {
     }
 
     fn kind(&self) -> AtomKind {
-        match self.direction {
-            Direction::Input => AtomKind::InputParameter,
-            Direction::Output => AtomKind::OutputParameter,
-            Direction::Local => AtomKind::LocalSignal,
+        match self.seen {
+            Seen::Net { direction: Direction::Input, .. } => AtomKind::InputParameter,
+            Seen::Net { direction: Direction::Output, .. } => AtomKind::OutputParameter,
+            _ => AtomKind::LocalSignal,
         }
     }
 
     fn descriptor(&self) -> TypeDescriptor {
         let width = self.bits();
-        let (name, kind) = if self.signed {
-            (format!("Signed::<{width}>"), TypeKind::Signed(width))
-        } else {
-            (format!("Bits::<{width}>"), TypeKind::Bits(width))
+        let (name, kind) = match self.seen {
+            Seen::Net { signed: true, .. } => {
+                (format!("Signed::<{width}>"), TypeKind::Signed(width))
+            }
+            Seen::Net { .. } => (format!("Bits::<{width}>"), TypeKind::Bits(width)),
+            Seen::Microinstruction { names, .. } => {
+                let names = names.iter().map(|name| vcd_text(name));
+                let names = ["idle".to_owned()].into_iter().chain(names);
+                ("microinstruction".to_owned(), TypeKind::Enum(names.collect()))
+            }
         };
         TypeDescriptor { name, kind }
     }
 
     fn vcd(&self) -> VCDValue {
-        let bit = |at: u32| vcd::Value::from(self.bits >> at & 1 == 1);
-        VCDValue::Vector((0..self.width).rev().map(bit).collect())
+        match self.seen {
+            Seen::Net { width, .. } => {
+                let bit = |at: u32| vcd::Value::from(self.bits >> at & 1 == 1);
+                VCDValue::Vector((0..width).rev().map(bit).collect())
+            }
+            Seen::Microinstruction { run: false, .. } => VCDValue::String("idle".to_owned()),
+            Seen::Microinstruction { names, .. } => {
+                let name = usize::try_from(self.bits).ok().and_then(|at| names.get(at));
+                let nameless = || format!("microinstruction_{}", self.bits);
+                VCDValue::String(name.map_or_else(nameless, |name| vcd_text(name)))
+            }
+        }
     }
 
     fn id(&self) -> usize {
@@ -73,77 +107,6 @@ impl Atom for Wire {
     /// Only the value counts: rust_hdl emits no Verilog from a netlist.
     fn verilog(&self) -> VerilogLiteral {
         self.bits.into()
-    }
-
-    fn constraints(&self) -> Vec<PinConstraint> {
-        Vec::new()
-    }
-}
-
-/// The name of the microinstruction that is executed, `idle` when none is.
-#[derive(Debug)]
-pub(super) struct MicroinstructionName<'a> {
-    pub id: usize,
-    pub names: &'a [String],
-    pub connected: bool,
-    pub changed: bool,
-    pub address: u64,
-    pub run: bool,
-}
-
-impl MicroinstructionName<'_> {
-    fn text(&self) -> String {
-        let name = usize::try_from(self.address).ok().and_then(|address| self.names.get(address));
-        match (self.run, name) {
-            (false, _) => "idle".to_owned(),
-            (true, Some(name)) => vcd_text(name),
-            (true, None) => format!("microinstruction_{}", self.address),
-        }
-    }
-}
-
-/// A string as VCD can hold it: a space would end it.
-fn vcd_text(text: &str) -> String {
-    let graphic = |c: char| if c.is_ascii_graphic() { c } else { '_' };
-    text.chars().map(graphic).collect()
-}
-
-impl Atom for MicroinstructionName<'_> {
-    fn bits(&self) -> usize {
-        self.names.len().next_power_of_two().ilog2() as usize
-    }
-
-    fn connected(&self) -> bool {
-        self.connected
-    }
-
-    fn changed(&self) -> bool {
-        self.changed
-    }
-
-    fn kind(&self) -> AtomKind {
-        AtomKind::LocalSignal
-    }
-
-    fn descriptor(&self) -> TypeDescriptor {
-        let names = self.names.iter().map(|name| vcd_text(name));
-        TypeDescriptor {
-            name: "microinstruction".to_owned(),
-            kind: TypeKind::Enum(["idle".to_owned()].into_iter().chain(names).collect()),
-        }
-    }
-
-    fn vcd(&self) -> VCDValue {
-        VCDValue::String(self.text())
-    }
-
-    fn id(&self) -> usize {
-        self.id
-    }
-
-    /// Only the value counts: rust_hdl emits no Verilog from a netlist.
-    fn verilog(&self) -> VerilogLiteral {
-        self.address.into()
     }
 
     fn constraints(&self) -> Vec<PinConstraint> {
