@@ -502,7 +502,7 @@ impl Designer {
             std::cmp::Ordering::Less => ("low", Op::Slice { of: a.id(), low: 0 }),
         };
         let range = Some(a.range()).filter(|range| interval::fits(*range, format));
-        let range = range.unwrap_or(format.range());
+        let range = range.unwrap_or_else(|| format.range());
         a.wiring(suffix, format, range, op).id()
     }
 }
