@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use super::polynomial::Polynomial;
 use super::quotient::Quotient;
+use crate::base::cone;
 use crate::base::interval::{self, Interval, common, turns};
 use crate::hdl::netlist::{NetId, Op, RomId, interval::of_cell};
 use crate::hdl::pipeline::{Cell, Graph};
@@ -42,15 +43,9 @@ pub struct View<'a> {
 impl View<'_> {
     /// Every node that these need, themselves too, in order. Of a quotient that are its operands, and no bits.
     fn cone(&self, roots: &[NetId]) -> Vec<NetId> {
-        let mut live = vec![false; self.graph.nodes.len()];
-        roots.iter().for_each(|root| live[root.index()] = true);
-        for at in (0..live.len()).rev() {
-            if live[at] {
-                for operand in self.operands(NetId(at as u32)) {
-                    live[operand.index()] = true;
-                }
-            }
-        }
+        let operands = |at| self.operands(NetId(at as u32)).into_iter().map(NetId::index);
+        let roots = roots.iter().map(|root| root.index());
+        let live = cone::needed(self.graph.nodes.len(), roots, operands);
         (0..live.len()).filter(|&at| live[at]).map(|at| NetId(at as u32)).collect()
     }
 

@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 use std::fmt::Write as _;
 
+use crate::base::cone;
+
 /// A number of a [`Terms`].
 pub type Id = usize;
 
@@ -168,14 +170,7 @@ impl Terms {
 
     /// Which terms `roots` are made of, and they themselves.
     pub fn needed(&self, roots: &[Id]) -> Vec<bool> {
-        let mut needed = vec![false; self.terms.len()];
-        roots.iter().for_each(|&root| needed[root] = true);
-        for id in (0..self.terms.len()).rev() {
-            if needed[id] {
-                self.operands(id).into_iter().for_each(|operand| needed[operand] = true);
-            }
-        }
-        needed
+        cone::needed(self.terms.len(), roots.iter().copied(), |id| self.operands(id))
     }
 
     /// The term without its roundings. `known` are those that are known.

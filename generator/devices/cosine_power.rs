@@ -6,7 +6,7 @@
 //! first product.
 
 use crate::base::fixed::{Format, Overflow};
-use crate::config::{Config, Problems, Schema};
+use crate::config::{Config, Schema};
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::squaring::Squarings;
 use crate::hdl::dsl::{Designer, Signal, end, step, valid};
@@ -31,12 +31,8 @@ pub fn schema() -> Schema {
             common::exponent_min(),
             common::exponent_max(),
         ],
-        check,
+        check: common::check_exponents,
     }
-}
-
-fn check(config: &Config, problems: &mut Problems) {
-    common::check_exponents(config, problems);
 }
 
 /// The device.

@@ -5,7 +5,7 @@
 //! clock. The divisor is formed as n·(1 − c) + c, in which every term is positive.
 
 use crate::base::fixed::{Format, Overflow, Rounding};
-use crate::config::{Config, Key, Problems, Schema};
+use crate::config::{Config, Key, Schema};
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::divider::Divider;
 use crate::hdl::dsl::{Designer, Signal, end, loop_while, step, valid};
@@ -32,12 +32,8 @@ pub fn schema() -> Schema {
             common::exponent_min(),
             common::exponent_max(),
         ],
-        check,
+        check: common::check_exponents,
     }
-}
-
-fn check(config: &Config, problems: &mut Problems) {
-    common::check_exponents(config, problems);
 }
 
 /// The device.

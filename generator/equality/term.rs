@@ -5,6 +5,7 @@
 
 use std::collections::HashMap;
 
+use crate::base::cone;
 use crate::base::fixed::{MAX_WIDTH, mask};
 
 /// A term of some [`Terms`].
@@ -127,16 +128,10 @@ impl Terms {
 
     /// All terms that these need, themselves too, each after its operands.
     pub fn cone(&self, roots: impl IntoIterator<Item = Id>) -> Vec<Id> {
-        let mut live = vec![false; self.nodes.len()];
-        roots.into_iter().for_each(|root| live[root.0 as usize] = true);
-        for at in (0..self.nodes.len()).rev() {
-            if live[at] {
-                for operand in self.nodes[at].0.operands() {
-                    live[operand.0 as usize] = true;
-                }
-            }
-        }
-        (0..self.nodes.len()).filter(|&at| live[at]).map(|at| Id(at as u32)).collect()
+        let index = |id: Id| id.0 as usize;
+        let operands = |at: usize| self.nodes[at].0.operands().into_iter().map(index);
+        let live = cone::needed(self.nodes.len(), roots.into_iter().map(index), operands);
+        (0..live.len()).filter(|&at| live[at]).map(|at| Id(at as u32)).collect()
     }
 
     /// The value of each term of a cone, for values of the unknowns by their numbers.

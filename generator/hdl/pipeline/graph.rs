@@ -7,6 +7,7 @@
 use std::collections::HashMap;
 use std::panic::Location;
 
+use crate::base::cone;
 use crate::base::fixed::{Format, mask};
 use crate::base::interval::{self, Interval};
 use crate::hdl::netlist::{NetId, Op, RomId, eval, interval::of_cell};
@@ -94,18 +95,9 @@ impl Graph {
 
     /// Every node that these need, themselves too, in order.
     pub fn cone(&self, roots: impl IntoIterator<Item = NetId>) -> Vec<NetId> {
-        let mut live = vec![false; self.nodes.len()];
-        for root in roots {
-            live[root.index()] = true;
-        }
-        for at in (0..self.nodes.len()).rev() {
-            if live[at] {
-                for operand in self.nodes[at].cell.operands() {
-                    live[operand.index()] = true;
-                }
-            }
-        }
-        (0..self.nodes.len()).filter(|&at| live[at]).map(|at| NetId(at as u32)).collect()
+        let operands = |at: usize| self.nodes[at].cell.operands().into_iter().map(NetId::index);
+        let live = cone::needed(self.nodes.len(), roots.into_iter().map(NetId::index), operands);
+        (0..live.len()).filter(|&at| live[at]).map(|at| NetId(at as u32)).collect()
     }
 
     /// The node, which from now on has the values of `range` alone.

@@ -7,6 +7,7 @@ use std::collections::HashMap;
 
 use anyhow::{Result, ensure};
 
+use crate::base::cone;
 use crate::base::fixed::{Format, mask};
 use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId, RomId, eval};
 
@@ -329,18 +330,8 @@ impl Graph {
 
     /// Which values those in `wanted` need, themselves among them.
     pub fn needed(&self, wanted: &[NetId]) -> Vec<bool> {
-        let mut needed = vec![false; self.values.len()];
-        for id in wanted {
-            needed[id.index()] = true;
-        }
-        for at in (0..self.values.len()).rev() {
-            if needed[at] {
-                for operand in self.operands(NetId(at as u32)) {
-                    needed[operand.index()] = true;
-                }
-            }
-        }
-        needed
+        let operands = |at| self.operands(NetId(at as u32)).into_iter().map(NetId::index);
+        cone::needed(self.values.len(), wanted.iter().map(|id| id.index()), operands)
     }
 
     /// The values that a value is made of.

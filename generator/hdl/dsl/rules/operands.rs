@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use crate::base::cone::reached;
 use crate::base::diagnostic::Diagnostic;
 use crate::hdl::netlist::{Design, Driver, NetId, Role};
 
@@ -22,23 +23,15 @@ pub(super) fn check(design: &Design) -> Vec<Diagnostic> {
 /// All nets on which outputs depend, in any number of clocks.
 fn used(design: &Design) -> HashSet<NetId> {
     let outputs = design.ports.iter().filter(|port| !port.role.is_input());
-    let mut pending: Vec<NetId> = outputs.map(|port| port.net).collect();
-    let mut used = HashSet::new();
-    while let Some(id) = pending.pop() {
-        if !used.insert(id) {
-            continue;
+    reached(outputs.map(|port| port.net), |id| match design.net(id).driver {
+        Driver::Register(register) => {
+            let register = design.register(register);
+            register.data.into_iter().chain(register.enable).collect()
         }
-        match design.net(id).driver {
-            Driver::Register(register) => {
-                let register = design.register(register);
-                pending.extend(register.data.into_iter().chain(register.enable));
-            }
-            Driver::Rom(rom) => {
-                let rom = design.rom(rom);
-                pending.extend([rom.address].into_iter().chain(rom.enable));
-            }
-            _ => pending.extend(design.combinational_inputs(id)),
+        Driver::Rom(rom) => {
+            let rom = design.rom(rom);
+            [rom.address].into_iter().chain(rom.enable).collect()
         }
-    }
-    used
+        _ => design.combinational_inputs(id),
+    })
 }

@@ -2,6 +2,7 @@
 
 use std::collections::HashSet;
 
+use crate::base::cone::reached;
 use crate::base::diagnostic::Diagnostic;
 use crate::hdl::netlist::{
     Control, Design, Driver, NetId, Op, RegId, RegisterKind, Role, Sequence, turned,
@@ -69,43 +70,29 @@ fn loads(design: &Design, at: usize, register: RegId) -> Option<u64> {
 /// Whether control comes from the first microinstruction to microinstruction `at` through microinstructions that do not load the register.
 fn comes_without_load(design: &Design, at: usize, register: RegId) -> bool {
     let goes = |from: usize| loads(design, from, register) == Some(0);
-    at == 0 || goes(0) && reached(&design.control, 0, goes).contains(&at)
+    at == 0 || goes(0) && controlled(&design.control, 0, goes).contains(&at)
 }
 
 /// The microinstructions to which control comes from microinstruction `from`, which is one of them, going on from those that `goes` holds for.
-fn reached(control: &Control, from: usize, goes: impl Fn(usize) -> bool) -> HashSet<usize> {
-    let mut reached = HashSet::from([from]);
-    let mut pending = vec![from];
-    while let Some(now) = pending.pop() {
-        if goes(now) {
-            let next = control.successors(now).into_iter();
-            pending.extend(next.filter(|&next| reached.insert(next)));
-        }
-    }
-    reached
+fn controlled(control: &Control, from: usize, goes: impl Fn(usize) -> bool) -> HashSet<usize> {
+    reached([from], |now| if goes(now) { control.successors(now) } else { Vec::new() })
 }
 
 /// The nets on which a net depends within the clock of microinstruction `at`, and itself. Of a mux that the microinstruction turns, only the
 /// chosen input counts; fields are what the microinstruction says.
 fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
-    let mut seen = HashSet::new();
-    let mut pending = vec![net];
-    while let Some(id) = pending.pop() {
-        if !seen.insert(id) {
-            continue;
-        }
-        match &design.net(id).driver {
-            Driver::Field(_) => {}
-            Driver::Op(Op::Mux { select, inputs }) => {
-                match turned(design, &design.control.microprogram[at], *select) {
-                    Some(chosen) => pending.extend(inputs.get(chosen as usize).or(inputs.last())),
-                    None => pending.extend(design.combinational_inputs(id)),
+    reached([net], |id| match &design.net(id).driver {
+        Driver::Field(_) => Vec::new(),
+        Driver::Op(Op::Mux { select, inputs }) => {
+            match turned(design, &design.control.microprogram[at], *select) {
+                Some(chosen) => {
+                    inputs.get(chosen as usize).or(inputs.last()).copied().into_iter().collect()
                 }
+                None => design.combinational_inputs(id),
             }
-            _ => pending.extend(design.combinational_inputs(id)),
         }
-    }
-    seen
+        _ => design.combinational_inputs(id),
+    })
 }
 
 /// Loops whose condition depends only on what no microinstruction of the loop changes, and that have no other way out.
@@ -118,11 +105,11 @@ fn endless(design: &Design) -> Vec<Diagnostic> {
             continue;
         }
         // The microinstructions from which control comes back to this one.
-        let within = reached(control, to, |now| now != at);
+        let within = controlled(control, to, |now| now != at);
         let body: Vec<usize> = within
             .iter()
             .copied()
-            .filter(|&from| reached(control, from, |now| within.contains(&now)).contains(&at))
+            .filter(|&from| controlled(control, from, |now| within.contains(&now)).contains(&at))
             .collect();
         let waits =
             |now: &usize| *now == 0 || control.microprogram[*now].sequence == Sequence::WaitStart;

@@ -10,6 +10,7 @@
 //!   operands; and nothing else writes it between them.
 
 use super::{Clock, Executor, State, Turns, Unrolled};
+use crate::base::cone::reached;
 use crate::base::diagnostic::{Diagnostic, Diagnostics};
 use crate::hdl::netlist::{Design, NetId, RegisterKind, Role, Sequence};
 use crate::hdl::pipeline::graph::Cell;
@@ -178,24 +179,13 @@ impl Points<'_> {
     /// The first point comes before all others, and once.
     fn in_order(&self, first: usize, writes: &[usize]) -> Result<(), Diagnostic> {
         let design = self.executor.design;
-        // What is reached from a microinstruction, and, of those that write points, no further.
-        let reached = |from: Vec<usize>, stops: &dyn Fn(usize) -> bool| {
-            let (mut seen, mut pending) = (Vec::new(), from);
-            while let Some(at) = pending.pop() {
-                if !seen.contains(&at) {
-                    seen.push(at);
-                    if !stops(at) {
-                        pending.extend(successors(design, at));
-                    }
-                }
-            }
-            seen
-        };
         let is_write = |at: usize| writes.contains(&at);
-        if reached(vec![0], &is_write).into_iter().any(|at| is_write(at) && at != first) {
+        // Of those that write points, no further.
+        let until_a_write = |at| if is_write(at) { Vec::new() } else { successors(design, at) };
+        if reached([0], until_a_write).into_iter().any(|at| is_write(at) && at != first) {
             return Err(self.cannot(first, "is not the first point on every way"));
         }
-        if reached(successors(design, first), &|_| false).contains(&first) {
+        if reached(successors(design, first), |at| successors(design, at)).contains(&first) {
             return Err(self.cannot(first, "begins a line anew"));
         }
         Ok(())

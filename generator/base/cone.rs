@@ -1,0 +1,35 @@
+//! What is reached in a graph.
+
+use std::collections::HashSet;
+use std::hash::Hash;
+
+/// Of `count` things, each behind what it is made of, whether the roots need it, themselves too.
+pub fn needed<I: IntoIterator<Item = usize>>(
+    count: usize,
+    roots: impl IntoIterator<Item = usize>,
+    operands: impl Fn(usize) -> I,
+) -> Vec<bool> {
+    let mut needed = vec![false; count];
+    roots.into_iter().for_each(|root| needed[root] = true);
+    for at in (0..count).rev() {
+        if needed[at] {
+            operands(at).into_iter().for_each(|operand| needed[operand] = true);
+        }
+    }
+    needed
+}
+
+/// Where steps lead, from any of these on, themselves too.
+pub fn reached<T: Copy + Eq + Hash, I: IntoIterator<Item = T>>(
+    from: impl IntoIterator<Item = T>,
+    steps: impl Fn(T) -> I,
+) -> HashSet<T> {
+    let mut reached = HashSet::new();
+    let mut pending: Vec<T> = from.into_iter().collect();
+    while let Some(at) = pending.pop() {
+        if reached.insert(at) {
+            pending.extend(steps(at));
+        }
+    }
+    reached
+}
