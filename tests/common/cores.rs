@@ -8,7 +8,8 @@ use std::path::Path;
 
 use glint::config::{self, Config, Problems};
 use glint::core::Core;
-use glint::package::{OutputFile, sources, sources_for};
+use glint::cosim::trial;
+use glint::package::{Computation, OutputFile, sources, sources_for};
 use glint::registry::{Device, Registry};
 use tempfile::TempDir;
 
@@ -98,6 +99,37 @@ pub fn configuration_between(path: &str, interface: &str) -> Core {
 /// It is wrong.
 pub fn parsed(path: &str, text: &str) -> Core {
     of_config(path, config::parse(path, text, &Registry::catalogue().schemas()))
+}
+
+/// The core of a device, of the catalogue or changed, by its defaults and more keys, as TOML.
+///
+/// # Errors
+/// It has no such core.
+///
+/// # Panics
+/// The keys are wrong.
+pub fn with_keys(device: Device, more: &str) -> anyhow::Result<Core> {
+    let text = format!("device = \"{}\"\n{more}", device.name);
+    let config = config::parse("core.toml", &text, &[(device.schema)()]);
+    Core::new(device, config.unwrap_or_else(|problems| panic!("{problems}")))
+}
+
+/// The computations that are listed of a core.
+///
+/// # Panics
+/// Golden model and simulation differ.
+pub fn computations(core: &Core) -> Vec<Computation> {
+    let listed = trial::computations(&core.design, core.contract.as_ref());
+    listed.expect("computations that agree with the golden model")
+}
+
+/// # Panics
+/// Golden model and simulation differ, or an error is beyond the bound.
+pub fn assert_agrees(core: &Core, points: u64, what: &str) {
+    let outcome = core.lockstep(1).and_then(|it| it.run(points, &|_| ())).expect("a run");
+    assert!(outcome.mismatch.is_none(), "{what}: {:?}", outcome.mismatch);
+    let faults = outcome.faults(&core.contract.bound());
+    assert!(faults.is_empty(), "{what}: {faults:?}");
 }
 
 /// A valid configuration drawn at random, as TOML for messages, and its unit.

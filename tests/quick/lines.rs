@@ -5,7 +5,6 @@
 use std::f64::consts::FRAC_PI_2;
 
 use glint::core::Core;
-use glint::cosim::trial;
 use glint::golden::formulas;
 use glint::hdl::sim::Simulator;
 use glint::package::Computation;
@@ -13,7 +12,7 @@ use glint::render::setup::{Arc, Line, Operands};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
-use crate::common::cores::parsed;
+use crate::common::cores::{assert_agrees, computations, parsed};
 
 /// A right angle of the default of `quad-cosine`, s1.26.
 const RIGHT: i64 = 1 << 26;
@@ -356,10 +355,6 @@ fn a_staged_line_shows_the_same_results_later() {
     for (name, stages, later) in [("quad-cosine", 7, 5), ("cosine-squared", 5, 3)] {
         let text = format!("device = \"{name}\"\n[line]\nstages = {stages}\n");
         let (staged, short) = (parsed("staged.toml", &text), core(name));
-        let computations = |core: &Core| {
-            let listed = trial::computations(&core.design, core.contract.as_ref());
-            listed.expect("computations that agree with the golden model")
-        };
         let outputs = |it: &Computation| -> Vec<Vec<i64>> {
             it.results.iter().map(|result| result.outputs.clone()).collect()
         };
@@ -368,7 +363,6 @@ fn a_staged_line_shows_the_same_results_later() {
             assert_eq!(outputs(staged), outputs(&short), "{name}: {:?}", short.operands);
             assert_eq!(staged.done, short.done + later, "{name}");
         }
-        let outcome = staged.lockstep(1).and_then(|it| it.run(5000, &|_| ())).expect("a run");
-        assert!(outcome.mismatch.is_none(), "{name}: {:?}", outcome.mismatch);
+        assert_agrees(&staged, 5000, name);
     }
 }

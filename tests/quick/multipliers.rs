@@ -4,36 +4,25 @@ use glint::core::Core;
 use glint::evidence::comparison::multipliers;
 use glint::registry::{Device, Registry};
 
-use crate::common::cores::parsed;
+use crate::common::cores::{assert_agrees, computations, with_keys};
 
 /// Results that golden model and simulation are compared on.
 const POINTS: u64 = 2000;
 
-/// A device by its defaults and more keys, as TOML.
-fn core(device: &Device, more: &str) -> Core {
-    let text = format!("device = \"{}\"\n{more}", device.name);
-    parsed("multipliers.toml", &text)
-}
-
 /// The device with one multiplier for what has three: two multipliers fewer, so many clocks more, and the same results.
 #[track_caller]
 fn assert_one_for_three(device: &Device, table: &str, clocks: u32) {
-    let three = core(device, "");
-    let one = core(device, &format!("[{table}]\nmultipliers = 1\n"));
+    let one = format!("[{table}]\nmultipliers = 1\n");
+    let [three, one] = ["", &one].map(|more| with_keys(*device, more).expect("a design"));
     let count = |core: &Core| multipliers(&core.design).len();
     assert_eq!(count(&one), count(&three) - 2, "{}", device.name);
-    let computations = |core: &Core| {
-        let listed = glint::cosim::trial::computations(&core.design, core.contract.as_ref());
-        listed.expect("computations that agree with the golden model")
-    };
     for (one, three) in computations(&one).iter().zip(computations(&three)) {
         assert_eq!(one.operands, three.operands);
         let outputs = |it: &glint::package::Computation| it.results[0].outputs.clone();
         assert_eq!(outputs(one), outputs(&three), "{}: {:?}", device.name, one.operands);
         assert_eq!(one.done, three.done + clocks, "{}", device.name);
     }
-    let outcome = one.lockstep(1).and_then(|it| it.run(POINTS, &|_| ())).expect("a run");
-    assert!(outcome.mismatch.is_none(), "{}: {:?}", device.name, outcome.mismatch);
+    assert_agrees(&one, POINTS, device.name);
 }
 
 #[test]

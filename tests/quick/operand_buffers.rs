@@ -9,32 +9,13 @@ use glint::hdl::sim::Simulator;
 use glint::package::Computation;
 use glint::registry::{Device, Registry};
 
+use crate::common::cores::{assert_agrees, computations, with_keys as core};
 use crate::output_registers::ByHand;
 
 /// Results that golden model and simulation are compared on.
 const POINTS: u64 = 4000;
 
 const BUFFERED: &str = "[operands]\nbuffered = true\n";
-
-/// A device by its defaults and more keys, as TOML.
-fn core(device: Device, more: &str) -> anyhow::Result<Core> {
-    let text = format!("device = \"{}\"\n{more}", device.name);
-    let config = config::parse("buffered.toml", &text, &[(device.schema)()])
-        .unwrap_or_else(|problems| panic!("{problems}"));
-    Core::new(device, config)
-}
-
-fn computations(core: &Core) -> Vec<Computation> {
-    let listed = trial::computations(&core.design, core.contract.as_ref());
-    listed.expect("computations that agree with the golden model")
-}
-
-fn assert_agrees(core: &Core, what: &str) {
-    let outcome = core.lockstep(1).and_then(|it| it.run(POINTS, &|_| ())).expect("a run");
-    assert!(outcome.mismatch.is_none(), "{what}: {:?}", outcome.mismatch);
-    let faults = outcome.faults(&core.contract.bound());
-    assert!(faults.is_empty(), "{what}: {faults:?}");
-}
 
 #[test]
 fn every_device_computes_the_same_in_a_clock_less() {
@@ -48,7 +29,7 @@ fn every_device_computes_the_same_in_a_clock_less() {
         let less = before.start_to_start.map(|clocks| clocks - 1);
         assert_eq!(after.start_to_start, less, "{}", device.name);
         assert_eq!(computations(&buffered), computations(&plain), "{}", device.name);
-        assert_agrees(&buffered, device.name);
+        assert_agrees(&buffered, POINTS, device.name);
     }
 }
 
@@ -61,7 +42,8 @@ fn other_keys_go_with_it() {
         ("cosine-squared", "[line]\nstages = 5\n[output]\nregistered = true\n"),
     ] {
         let device = *Registry::catalogue().device(name).expect("a device");
-        assert_agrees(&core(device, &format!("{more}{BUFFERED}")).expect("a design"), name);
+        let core = core(device, &format!("{more}{BUFFERED}")).expect("a design");
+        assert_agrees(&core, POINTS, name);
     }
 }
 

@@ -2,25 +2,18 @@
 
 use glint::config;
 use glint::core::Core;
-use glint::cosim::trial;
 use glint::dsl::{Designer, Step, end, loop_while, step, valid};
 use glint::fixed::{Format, Overflow, Rounding};
 use glint::golden::Model;
 use glint::hdl::netlist::{Design, Driver, NetId, Op, Role};
 use glint::registry::{Device, Registry};
 
+use crate::common::cores::{assert_agrees, computations, with_keys as core};
+
 /// Results that golden model and simulation are compared on.
 const POINTS: u64 = 2000;
 
 const REGISTERED: &str = "[output]\nregistered = true\n";
-
-/// A device by its defaults and more keys, as TOML.
-fn core(device: Device, more: &str) -> anyhow::Result<Core> {
-    let text = format!("device = \"{}\"\n{more}", device.name);
-    let config = config::parse("registered.toml", &text, &[(device.schema)()])
-        .unwrap_or_else(|problems| panic!("{problems}"));
-    Core::new(device, config)
-}
 
 /// Whether a port shows a register, whatever it is called on the way.
 fn shows_register(design: &Design, mut net: NetId) -> bool {
@@ -40,10 +33,6 @@ fn every_device_has_its_results_in_registers_a_clock_later() {
         for port in results {
             assert!(shows_register(design, port.net), "{}", design.net(port.net).name);
         }
-        let computations = |core: &Core| {
-            let listed = trial::computations(&core.design, core.contract.as_ref());
-            listed.expect("computations that agree with the golden model")
-        };
         for (one, other) in computations(&registered).iter().zip(computations(&plain)) {
             assert_eq!(one.operands, other.operands);
             assert_eq!(one.done, other.done + 1, "{}", device.name);
@@ -53,8 +42,7 @@ fn every_device_has_its_results_in_registers_a_clock_later() {
             let outputs = one.results.iter().map(|it| &it.outputs);
             assert!(outputs.eq(other.results.iter().map(|it| &it.outputs)), "{}", device.name);
         }
-        let outcome = registered.lockstep(1).and_then(|it| it.run(POINTS, &|_| ())).expect("a run");
-        assert!(outcome.mismatch.is_none(), "{}: {:?}", device.name, outcome.mismatch);
+        assert_agrees(&registered, POINTS, device.name);
     }
 }
 
@@ -79,8 +67,7 @@ fn lines_with_stages_have_them_too() {
             core(device, &format!("[line]\nstages = {stages}\n{REGISTERED}")).expect("a design");
         let mut results = core.design.ports.iter().filter(|port| port.role == Role::Result);
         assert!(results.all(|port| shows_register(&core.design, port.net)), "{name}");
-        let outcome = core.lockstep(1).and_then(|it| it.run(POINTS, &|_| ())).expect("a run");
-        assert!(outcome.mismatch.is_none(), "{name}: {:?}", outcome.mismatch);
+        assert_agrees(&core, POINTS, name);
     }
 }
 
