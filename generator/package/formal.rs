@@ -9,9 +9,9 @@ use askama::Template;
 
 use super::{Computation, EmitInputs, Timing};
 use crate::hdl::netlist::termination::{self, Left};
-use crate::hdl::netlist::{Design, Driver, NetId, Op, Partition, RegId, Role, Sequence};
+use crate::hdl::netlist::{Design, Driver, NetId, Op, Partition, Port, RegId, Role, Sequence};
 use crate::hdl::verilog::naming::Naming;
-use crate::hdl::verilog::rows::{Row, separated};
+use crate::hdl::verilog::rows::{Row, connections, separated};
 use crate::hdl::verilog::text::{Names, literal, range};
 
 /// Steps of an induction where the clocks depend on the data: more than a result takes through a pipeline.
@@ -97,16 +97,35 @@ pub(super) struct Script<'a> {
     pub(super) initial: bool,
 }
 
+impl Script<'_> {
+    /// The wrapper, this script, and the task of SymbiYosys: names and texts.
+    pub(super) fn files(
+        &self,
+        wrapper: &impl Template,
+        depth: u32,
+        engine: &str,
+        memories: &[String],
+    ) -> Result<Vec<(String, String)>> {
+        let Self { name, within, rtl, .. } = *self;
+        let task = Task { name, within, depth, engine, rtl, memories };
+        Ok(vec![
+            (format!("{name}.sv"), super::render(wrapper)?),
+            (format!("{name}.ys"), super::render(self)?),
+            (format!("{name}.sby"), super::render(&task)?),
+        ])
+    }
+}
+
 #[derive(Template)]
 #[template(path = "formal.sby")]
-pub(super) struct Task<'a> {
-    pub(super) name: &'a str,
+struct Task<'a> {
+    name: &'a str,
     /// As in [`Script`].
-    pub(super) within: &'a str,
-    pub(super) depth: u32,
-    pub(super) engine: &'static str,
-    pub(super) rtl: &'a [String],
-    pub(super) memories: &'a [String],
+    within: &'a str,
+    depth: u32,
+    engine: &'a str,
+    rtl: &'a [String],
+    memories: &'a [String],
 }
 
 /// The files of the device that a proof reads.
@@ -149,8 +168,7 @@ pub fn files(
     let timing = &inputs.timing;
     let module = &design.name;
     let name = format!("{module}_formal");
-    let mut names = Names::new(design.ports.iter().map(|port| design.net(port.net).name.as_str()));
-    names.fresh("clk");
+    let mut names = Names::of_ports(design);
     let instance = names.fresh("dut");
     let exact = exact(timing);
     let bounded = match exact {
@@ -173,21 +191,6 @@ pub fn files(
         name: names.fresh("age"),
         width: u32::BITS - largest.leading_zeros(),
     });
-    let port_name = |net| design.net(net).name.clone();
-    let mut ports = vec!["input  wire clk".to_owned()];
-    for port in design.inputs() {
-        let range = range(design.width(port.net));
-        let space = if range.is_empty() { "" } else { " " };
-        ports.push(format!("input  wire {range}{space}{}", port_name(port.net)));
-    }
-    let outputs: Vec<_> = design
-        .outputs()
-        .map(|port| Row::port("", "wire", design.width(port.net), false, &port_name(port.net), ""))
-        .collect();
-    let connections = std::iter::once("clk".to_owned())
-        .chain(design.ports.iter().map(|port| port_name(port.net)))
-        .map(|name| format!(".{name}({name})"))
-        .collect();
     let waits = design.control.microprogram.iter().any(|it| it.sequence == Sequence::WaitStart);
     // A few steps with much state between them z3 solves at once when they are unrolled, and those of a device that
     // begins a computation as another ends; many it solves faster when they are not.
@@ -198,9 +201,9 @@ pub fn files(
         depth,
         solver: if unroll { "--unroll -s z3" } else { "-s z3" },
         instance: instance.clone(),
-        ports: separated(ports),
-        outputs: Row::declarations(&outputs),
-        connections: separated(connections),
+        ports: separated(inputs_of(design)),
+        outputs: outputs_of(design),
+        connections: connections(design),
         straight: !waits,
         overlaps: design.control.overlaps,
         exact: exact.zip(age.as_ref()).map(|((clocks, start), age)| Exact {
@@ -227,19 +230,28 @@ pub fn files(
     let within = format!("{instance}.{}.*", naming.instance(Partition::Datapath));
     let initial = naming.style.initial;
     let script = Script { name: &name, within: &within, rtl: sources.rtl, initial };
-    let task = Task {
-        name: &name,
-        within: &within,
-        depth,
-        engine: if unroll { "smtbmc --unroll z3" } else { "smtbmc z3" },
-        rtl: sources.rtl,
-        memories: sources.memories,
+    let engine = if unroll { "smtbmc --unroll z3" } else { "smtbmc z3" };
+    script.files(&wrapper, depth, engine, sources.memories)
+}
+
+/// The ports of a wrapper for the clock and the inputs of a design: what a solver chooses.
+pub(super) fn inputs_of(design: &Design) -> Vec<String> {
+    let input = |port: &Port| {
+        let net = design.net(port.net);
+        let range = range(net.format.width());
+        let space = if range.is_empty() { "" } else { " " };
+        format!("input  wire {range}{space}{}", net.name)
     };
-    Ok(vec![
-        (format!("{name}.sv"), super::render(&wrapper)?),
-        (format!("{name}.ys"), super::render(&script)?),
-        (format!("{name}.sby"), super::render(&task)?),
-    ])
+    std::iter::once("input  wire clk".to_owned()).chain(design.inputs().map(input)).collect()
+}
+
+/// The wires of a wrapper for the outputs of a design.
+pub(super) fn outputs_of(design: &Design) -> Vec<String> {
+    let output = |port: &Port| {
+        let net = design.net(port.net);
+        Row::port("", "wire", net.format.width(), false, &net.name, "")
+    };
+    Row::declarations(&design.outputs().map(output).collect::<Vec<_>>())
 }
 
 /// How the end of every computation is proved: in each microinstruction the age and what is left at most are no more

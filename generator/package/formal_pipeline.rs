@@ -7,9 +7,9 @@
 use anyhow::Result;
 use askama::Template;
 
-use super::formal::{Script, Sources, Task};
+use super::formal::{Script, Sources, inputs_of, outputs_of};
 use crate::hdl::netlist::{Design, NetId, Pipeline, Role};
-use crate::hdl::verilog::rows::{Row, connections, separated};
+use crate::hdl::verilog::rows::{connections, separated};
 use crate::hdl::verilog::text::{Names, literal, range};
 
 /// Steps of the induction: every property follows from the clock before.
@@ -76,19 +76,10 @@ pub fn files(
     let mut names = Names::of_ports(design);
     let instance = names.fresh("dut");
     let chosen = names.fresh("chosen");
-    let mut ports = vec!["input  wire clk".to_owned()];
-    for port in design.inputs() {
-        let range = range(design.width(port.net));
-        let space = if range.is_empty() { "" } else { " " };
-        ports.push(format!("input  wire {range}{space}{}", port_name(port.net)));
-    }
+    let mut ports = inputs_of(design);
     if pipeline.side > 0 {
         ports.push(format!("input  wire {chosen}"));
     }
-    let outputs: Vec<_> = design
-        .outputs()
-        .map(|port| Row::port("", "wire", design.width(port.net), false, &port_name(port.net), ""))
-        .collect();
     // A net of the inside under its path; Yosys joins the two when it flattens.
     let mut inside = Vec::new();
     let mut seen = |net: NetId| {
@@ -122,7 +113,7 @@ pub fn files(
         depth: DEPTH,
         instance: instance.clone(),
         ports: separated(ports),
-        outputs: Row::declarations(&outputs),
+        outputs: outputs_of(design),
         connections: connections(design),
         stages: latency,
         // An escaped name ends with a blank, or with the line.
@@ -147,17 +138,5 @@ pub fn files(
     };
     let within = format!("{instance}.*");
     let script = Script { name: &name, within: &within, rtl: sources.rtl, initial: false };
-    let task = Task {
-        name: &name,
-        within: &within,
-        depth: DEPTH,
-        engine: "smtbmc --unroll z3",
-        rtl: sources.rtl,
-        memories: sources.memories,
-    };
-    Ok(vec![
-        (format!("{name}.sv"), super::render(&wrapper)?),
-        (format!("{name}.ys"), super::render(&script)?),
-        (format!("{name}.sby"), super::render(&task)?),
-    ])
+    script.files(&wrapper, DEPTH, "smtbmc --unroll z3", sources.memories)
 }
