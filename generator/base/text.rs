@@ -18,3 +18,14 @@ pub fn counted(number: usize, thing: &str) -> String {
     let plural = if number == 1 { "" } else { "s" };
     format!("{} {thing}{plural}", grouped(number as u64))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn groups_have_three_digits() {
+        let found = [7, 84, 100, 1000, 20_530, 100_000, 1_048_577_000].map(grouped);
+        assert_eq!(found, ["7", "84", "100", "1 000", "20 530", "100 000", "1 048 577 000"]);
+    }
+}

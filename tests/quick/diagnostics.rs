@@ -5,34 +5,28 @@ use glint::fixed::{Format, Overflow, Rounding};
 
 const BYTE: Format = Format::unsigned(0, 8);
 
-/// A small device that is right but for what `wrong` adds.
-fn mistakes(wrong: impl FnOnce(&Designer)) -> Vec<String> {
-    let d = Designer::new("device");
-    let x = d.operand("x", BYTE);
-    let y = d.register("y", BYTE);
-    y.takes(x.q());
-    d.output("y_out", y.q());
-    wrong(&d);
-    d.microprogram([step("idle", []), step("load", [y.load()]), step("result", [valid(), end()])]);
-    finish(d)
-}
+/// The mistakes of a description.
+#[derive(Debug)]
+struct Found(Vec<String>);
 
-fn finish(d: Designer) -> Vec<String> {
-    match d.finish() {
-        Ok(_) => Vec::new(),
-        Err(diagnostics) => diagnostics
-            .0
-            .iter()
-            .map(|diagnostic| {
-                assert_eq!(diagnostic.location.file(), file!(), "{diagnostic}");
-                assert!(diagnostic.location.line() > 1);
-                diagnostic.message.clone()
-            })
-            .collect(),
+impl Found {
+    #[track_caller]
+    fn are<const COUNT: usize>(&self, expected: [&str; COUNT]) {
+        assert_eq!(self.0, expected);
     }
 }
 
-fn program(steps: impl FnOnce(&Designer, Setting) -> Vec<glint::dsl::Step>) -> Vec<String> {
+fn finish(d: Designer) -> Found {
+    let found = d.finish().err().map_or_else(Vec::new, |diagnostics| diagnostics.0);
+    for diagnostic in &found {
+        assert_eq!(diagnostic.location.file(), file!(), "{diagnostic}");
+        assert!(diagnostic.location.line() > 1);
+    }
+    Found(found.into_iter().map(|diagnostic| diagnostic.message).collect())
+}
+
+/// A small device with these microinstructions.
+fn program(steps: impl FnOnce(&Designer, Setting) -> Vec<glint::dsl::Step>) -> Found {
     let d = Designer::new("device");
     let x = d.operand("x", BYTE);
     let y = d.register("y", BYTE);
@@ -43,14 +37,22 @@ fn program(steps: impl FnOnce(&Designer, Setting) -> Vec<glint::dsl::Step>) -> V
     finish(d)
 }
 
+/// A small device that is right but for what `wrong` adds.
+fn mistakes(wrong: impl FnOnce(&Designer)) -> Found {
+    program(|d, load| {
+        wrong(d);
+        vec![step("idle", []), step("load", [load]), step("result", [valid(), end()])]
+    })
+}
+
 #[test]
 fn a_right_description_has_no_mistakes() {
-    assert_eq!(mistakes(|_| ()), Vec::<String>::new());
+    mistakes(|_| ()).are([]);
 }
 
 #[test]
 fn two_drivers() {
-    let found = mistakes(|d| {
+    mistakes(|d| {
         let w = d.wire("w", BYTE);
         let a = d.operand("a", BYTE);
         d.drive(w, a.q());
@@ -58,11 +60,8 @@ fn two_drivers() {
         let r = d.register("r", BYTE);
         r.takes(a.q());
         r.takes(w);
-    });
-    assert_eq!(
-        found,
-        ["`w` has two drivers: `a_reg` is the second", "`r` has two drivers: `w` is the second"]
-    );
+    })
+    .are(["`w` has two drivers: `a_reg` is the second", "`r` has two drivers: `w` is the second"]);
 }
 
 #[test]
@@ -84,20 +83,20 @@ fn the_line_of_a_mistake_is_that_of_the_description() {
 
 #[test]
 fn missing_drivers() {
-    let found = mistakes(|d| {
+    mistakes(|d| {
         d.wire("floating", BYTE);
         let r = d.register("idle_register", BYTE);
         let _ = r;
-    });
-    assert_eq!(
-        found,
-        ["nothing drives `floating`", "nothing drives the data input of register `idle_register`"]
-    );
+    })
+    .are([
+        "nothing drives `floating`",
+        "nothing drives the data input of register `idle_register`",
+    ]);
 }
 
 #[test]
 fn combinational_loops() {
-    let found = mistakes(|d| {
+    let Found(found) = mistakes(|d| {
         let a = d.operand("a", BYTE);
         let w = d.wire("w", BYTE);
         let sum = d.add_modulo("sum", w, a.q(), None);
@@ -125,20 +124,23 @@ fn formats_that_do_not_match() {
         d.and("both", a.q(), b.q());
     });
     let expected = [
-        "register `r` is u0.8, but `a_reg` is u2.3 with values from 0 to 31 ulp: narrow it or change the format",
-        "mux `m`: `a_reg` is u2.3 and `b_reg` is u1.7; their points differ (with_fraction aligns them, a bus carries both)",
-        "`s` adds `a_reg` (u2.3) and `b_reg` (u1.7) modulo the width: the formats must be equal",
+        "register `r` is u0.8, but `a_reg` is u2.3 with values from 0 to 31 ulp: narrow \
+         it or change the format",
+        "mux `m`: `a_reg` is u2.3 and `b_reg` is u1.7; their points differ (with_fraction \
+         aligns them, a bus carries both)",
+        "`s` adds `a_reg` (u2.3) and `b_reg` (u1.7) modulo the width: the formats must be \
+         equal",
         "`b_reg` is u1.7: 3 fraction bits would drop some; narrow it",
         "bits 3 to 10 of `a_reg`, which has 5",
         "`a_reg` is u2.3: one bit is wanted here",
         "`b_reg` is u1.7: one bit is wanted here",
     ];
-    assert_eq!(found, expected);
+    found.are(expected);
 }
 
 #[test]
 fn clashing_fields() {
-    let found = program(|d, load| {
+    program(|d, load| {
         let a = d.operand("a", BYTE);
         let b = d.operand("b", BYTE);
         let select = d.select("select", &["a", "b"]);
@@ -149,84 +151,70 @@ fn clashing_fields() {
             step("both", [first.pick(a.q()), second.pick(a.q()), load]),
             step("end", [end()]),
         ]
-    });
-    assert_eq!(
-        found,
-        [
-            "microinstruction `both`: `second.pick(a_reg)` clashes with `first.pick(a_reg)`: they share select lines"
-        ]
-    );
+    })
+    .are(["microinstruction `both`: `second.pick(a_reg)` clashes with `first.pick(a_reg)`: \
+             they share select lines"]);
 }
 
 #[test]
 fn picks_of_what_a_mux_does_not_pass_on() {
-    let found = program(|d, load| {
+    program(|d, load| {
         let a = d.operand("a", BYTE);
         let b = d.operand("b", BYTE);
         let m = d.mux("m", [a.q(), a.q()]);
         vec![step("idle", [m.pick(b.q())]), step("x", [m.pick(a.q()), load]), step("end", [end()])]
-    });
-    assert_eq!(found, ["`b_reg` is no input of `m`", "`a_reg` is more than one input of `m`"]);
+    })
+    .are(["`b_reg` is no input of `m`", "`a_reg` is more than one input of `m`"]);
 }
 
 #[test]
 fn microinstructions_out_of_order() {
-    let found = program(|_, load| {
+    program(|_, load| {
         vec![step("idle", []), step("end", [load.clone(), end()]), step("after", [load])]
-    });
-    assert_eq!(found, ["microinstruction `after` cannot be reached"]);
+    })
+    .are(["microinstruction `after` cannot be reached"]);
 
-    let found = program(|_, load| vec![step("idle", []), step("load", [load])]);
-    assert_eq!(found, ["the last microinstruction, `load`, does not end"]);
+    program(|_, load| vec![step("idle", []), step("load", [load])])
+        .are(["the last microinstruction, `load`, does not end"]);
 
-    let found = program(|_, load| vec![step("idle", [load.clone()]), step("load", [load, end()])]);
-    assert_eq!(
-        found,
-        ["microinstruction `idle` sets `y_load`, but the device also waits for start in it"]
-    );
+    program(|_, load| vec![step("idle", [load.clone()]), step("load", [load, end()])])
+        .are(["microinstruction `idle` sets `y_load`, but the device also waits for start in it"]);
 
-    let found = program(|_, load| vec![step("idle", []), step("two ways", [load, next(), end()])]);
-    assert_eq!(found, ["microinstruction `two ways` states two successors"]);
+    program(|_, load| vec![step("idle", []), step("two ways", [load, next(), end()])])
+        .are(["microinstruction `two ways` states two successors"]);
 
-    let found = program(|_, load| {
+    program(|_, load| {
         vec![step("idle", []), step("twice", [load.clone()]), step("twice", [load, end()])]
-    });
-    assert_eq!(found, ["two microinstructions are named `twice`"]);
+    })
+    .are(["two microinstructions are named `twice`"]);
 
-    let found = program(|_, _| vec![step("idle", []), step("end", [end()])]);
-    assert_eq!(found, ["no microinstruction sets `y_load`"]);
+    program(|_, _| vec![step("idle", []), step("end", [end()])])
+        .are(["no microinstruction sets `y_load`"]);
 
-    let found = program(|_, load| vec![step("only", [load, end()])]);
-    assert_eq!(
-        found,
-        [
-            "a microprogram needs at least two microinstructions: one that waits for start, one that ends"
-        ]
-    );
+    program(|_, load| vec![step("only", [load, end()])])
+        .are(["a microprogram needs at least two microinstructions: one that waits for start, \
+             one that ends"]);
 
-    let found = program(|d, load| {
+    program(|d, load| {
         let bit = d.operand("more", Format::BIT);
         vec![
             step("idle", []),
             step("load", [load, loop_while(bit.q(), "nowhere")]),
             step("end", [end()]),
         ]
-    });
-    assert_eq!(
-        found,
-        ["microinstruction `load` goes to `nowhere`, but no microinstruction has that name"]
-    );
+    })
+    .are(["microinstruction `load` goes to `nowhere`, but no microinstruction has that name"]);
 }
 
 #[test]
 fn no_or_two_microprograms() {
     let d = Designer::new("device");
-    assert_eq!(finish(d), ["the design has no microprogram"]);
+    finish(d).are(["the design has no microprogram"]);
     let d = Designer::new("device");
     for _ in 0..2 {
         d.microprogram([step("idle", []), step("end", [end()])]);
     }
-    assert_eq!(finish(d), ["a second microprogram"]);
+    finish(d).are(["a second microprogram"]);
 }
 
 #[test]
@@ -247,10 +235,7 @@ fn products_taken_under_another_selection() {
         step("wrong", [first.pick(b.q()), y.load()]),
         step("end", [end()]),
     ]);
-    assert_eq!(
-        finish(d),
-        ["microinstruction `wrong` loads `y` with the product of (a), but selects (b)"]
-    );
+    finish(d).are(["microinstruction `wrong` loads `y` with the product of (a), but selects (b)"]);
 }
 
 #[test]
@@ -277,18 +262,15 @@ fn products_held_from_another_selection() {
         ]);
         finish(d)
     };
-    assert_eq!(found(true), Vec::<String>::new());
-    assert_eq!(
-        found(false),
-        [
-            "microinstruction `load` loads `y` with the product of (b), but microinstruction `settle` before it selects (a)"
-        ]
-    );
+    found(true).are([]);
+    found(false)
+        .are(["microinstruction `load` loads `y` with the product of (b), but microinstruction \
+             `settle` before it selects (a)"]);
 }
 
 #[test]
 fn products_that_are_never_formed() {
-    let found = mistakes(|d| {
+    mistakes(|d| {
         let a = d.operand("a", BYTE);
         let b = d.operand("b", Format::unsigned(2, 6));
         let select = d.select("operands", &["a", "b"]);
@@ -297,59 +279,51 @@ fn products_that_are_never_formed() {
         let product = d.shared_mul("product", &first, &second);
         let _ = product.of(a.q(), b.q());
         let _ = product.of_any(&[(a.q(), a.q()), (b.q(), b.q())]);
-    });
-    assert_eq!(
-        found,
-        [
-            "`product` never multiplies `a_reg` by `b_reg`",
-            "the products of `product` that are taken together have [16, 12] fraction bits: append zeros to an operand",
-        ]
-    );
+    })
+    .are([
+        "`product` never multiplies `a_reg` by `b_reg`",
+        "the products of `product` that are taken together have [16, 12] fraction bits: \
+             append zeros to an operand",
+    ]);
 }
 
 #[test]
 fn nets_that_are_too_wide() {
-    let found = mistakes(|d| {
+    mistakes(|d| {
         let a = d.operand("a", Format::unsigned(0, 40));
         d.mul("square", a.q(), a.q());
-    });
-    assert_eq!(found, ["`square` would be 80 bits wide (u0.80); a net has 1 to 64"]);
+    })
+    .are(["`square` would be 80 bits wide (u0.80); a net has 1 to 64"]);
 }
 
 #[test]
 fn roms_that_do_not_fit() {
-    let found = mistakes(|d| {
+    mistakes(|d| {
         let a = d.operand("a", Format::unsigned(3, 0));
         d.rom("short", a.q(), BYTE, &[1, 2, 3], false);
         d.rom("wide", a.q(), BYTE, &[0, 1, 2, 3, 4, 5, 6, 256], false);
-    });
-    assert_eq!(
-        found,
-        [
-            "ROM `short` has 3 words, but its address `a_reg` (u3.0) runs from 0 to 7",
-            "ROM `wide`: word 7 is 256, which does not fit u0.8",
-        ]
-    );
+    })
+    .are([
+        "ROM `short` has 3 words, but its address `a_reg` (u3.0) runs from 0 to 7",
+        "ROM `wide`: word 7 is 256, which does not fit u0.8",
+    ]);
 }
 
 #[test]
 fn constants_that_are_not_representable() {
-    let found = mistakes(|d| {
+    mistakes(|d| {
         d.constant("third", 1.0 / 3.0, BYTE);
         d.raw_constant("many", 256, BYTE);
-    });
-    assert_eq!(
-        found,
-        [
-            "constant `third`: 0.3333333333333333 is not representable in u0.8",
-            "constant `many`: 256 does not fit u0.8"
-        ]
-    );
+    })
+    .are([
+        "constant `third`: 0.3333333333333333 is not representable in u0.8",
+        "constant `many`: 256 does not fit u0.8",
+    ]);
 }
 
 #[test]
 fn names_that_verilog_does_not_take() {
-    let found = mistakes(|d| {
+    let Found(found) = mistakes(|d| {
         d.operand("a", BYTE);
         d.operand("a", BYTE);
         d.operand("module", BYTE);
@@ -376,23 +350,21 @@ fn valid_that_follows_a_signal() {
             vec![step("idle", []), step("load", [load]), step("result", last())]
         })
     };
-    assert_eq!(follows(0, || vec![end()]), Vec::<String>::new());
-    assert_eq!(follows(3, || vec![end()]), Vec::<String>::new());
-    assert_eq!(
-        follows(1, || vec![valid(), end()]),
-        ["microinstruction `result` raises valid, which follows a signal in this design"]
-    );
-    let found = mistakes(|d| {
+    follows(0, || vec![end()]).are([]);
+    follows(3, || vec![end()]).are([]);
+    follows(1, || vec![valid(), end()])
+        .are(["microinstruction `result` raises valid, which follows a signal in this design"]);
+    mistakes(|d| {
         d.valid_after(d.operand("a", BYTE).q(), 1);
-    });
-    assert_eq!(found, ["valid follows `a_reg`, which has more than one bit"]);
-    let found = program(|d, load| {
+    })
+    .are(["valid follows `a_reg`, which has more than one bit"]);
+    program(|d, load| {
         let (a, b) = (d.operand("a", Format::BIT), d.operand("b", Format::BIT));
         d.valid_after(a.q(), 1);
         d.valid_after(b.q(), 1);
         vec![step("idle", []), step("load", [load, end()])]
-    });
-    assert_eq!(found, ["valid follows `b_reg` and another signal"]);
+    })
+    .are(["valid follows `b_reg` and another signal"]);
 }
 
 #[test]
@@ -408,25 +380,23 @@ fn a_jump_around_microinstructions() {
             ]
         })
     };
-    assert_eq!(jumps("result"), Vec::<String>::new());
-    assert_eq!(
-        jumps("nowhere"),
-        ["microinstruction `first` goes to `nowhere`, but no microinstruction has that name"]
-    );
+    jumps("result").are([]);
+    jumps("nowhere")
+        .are(["microinstruction `first` goes to `nowhere`, but no microinstruction has that name"]);
 }
 
 #[test]
 fn a_name_of_the_sequencer() {
     // The second of the two is where the program is, which is what makes it.
-    let found = mistakes(|d| {
+    mistakes(|d| {
         d.operand("word_address", BYTE);
-    });
-    assert_eq!(found, ["the name `word_address` is used twice"]);
+    })
+    .are(["the name `word_address` is used twice"]);
 }
 
 #[test]
 fn formats_that_no_net_can_have() {
-    let found = mistakes(|d| {
+    let Found(found) = mistakes(|d| {
         d.constant("nothing", 0.0, Format::unsigned(-3, 1));
         d.raw_constant("huge", 0, Format::unsigned(i32::MAX, 1));
         d.register("far", Format::unsigned(2001, -2000));
@@ -450,29 +420,23 @@ fn formats_that_no_net_can_have() {
 
 #[test]
 fn valid_in_the_microinstruction_that_loads_the_result() {
-    let early = program(|_, load| {
-        vec![step("idle", []), step("load", [load, valid()]), step("end", [end()])]
-    });
-    assert_eq!(
-        early,
-        [
-            "microinstruction `load` raises valid and loads `y`, which `y_out` shows from the next microinstruction on: valid belongs there"
-        ]
-    );
+    program(|_, load| vec![step("idle", []), step("load", [load, valid()]), step("end", [end()])])
+        .are(["microinstruction `load` raises valid and loads `y`, which `y_out` shows from the \
+             next microinstruction on: valid belongs there"]);
     // A result that is shown while the next is loaded was loaded before.
-    let stream = program(|_, load| {
+    program(|_, load| {
         vec![
             step("idle", []),
             step("first", [load.clone()]),
             step("next", [load, valid()]),
             step("last", [valid(), end()]),
         ]
-    });
-    assert_eq!(stream, Vec::<String>::new());
+    })
+    .are([]);
 }
 
 /// A loop around the load of `y`, as long as `condition` says.
-fn looped(condition: impl for<'d> FnOnce(&'d Designer) -> glint::dsl::Signal<'d>) -> Vec<String> {
+fn looped(condition: impl for<'d> FnOnce(&'d Designer) -> glint::dsl::Signal<'d>) -> Found {
     program(|d, load| {
         let condition = condition(d);
         vec![
@@ -486,25 +450,17 @@ fn looped(condition: impl for<'d> FnOnce(&'d Designer) -> glint::dsl::Signal<'d>
 
 #[test]
 fn a_loop_that_nothing_ends() {
-    let on_operand = looped(|d| {
+    looped(|d| {
         let n = d.operand("n", Format::unsigned(4, 0));
         d.any("more", n.q())
-    });
-    assert_eq!(
-        on_operand,
-        [
-            "microinstruction `again` goes back to `begin` while `more` is 1, and no microinstruction of the loop changes `n_reg`: it never ends, or is no loop"
-        ]
-    );
-    let on_constant = looped(|d| d.raw_constant("steady", 1, Format::BIT));
-    assert_eq!(
-        on_constant,
-        [
-            "microinstruction `again` goes back to `begin` while `steady` is 1, which is constant: it never ends, or is no loop"
-        ]
-    );
+    })
+    .are(["microinstruction `again` goes back to `begin` while `more` is 1, and no \
+             microinstruction of the loop changes `n_reg`: it never ends, or is no loop"]);
+    looped(|d| d.raw_constant("steady", 1, Format::BIT))
+        .are(["microinstruction `again` goes back to `begin` while `steady` is 1, which is \
+             constant: it never ends, or is no loop"]);
     // What the loop loads may end it.
-    let on_register = program(|d, load| {
+    program(|d, load| {
         let count = d.down_counter("count", d.raw_constant("three", 3, Format::unsigned(2, 0)));
         let more = d.any("more", count.q());
         vec![
@@ -513,10 +469,10 @@ fn a_loop_that_nothing_ends() {
             step("again", [count.count(), loop_while(more, "again")]),
             step("result", [valid(), end()]),
         ]
-    });
-    assert_eq!(on_register, Vec::<String>::new());
+    })
+    .are([]);
     // A loop without an end of its own may have a way out.
-    let way_out = program(|d, load| {
+    program(|d, load| {
         let steady = d.raw_constant("steady", 1, Format::BIT);
         let count = d.down_counter("count", d.raw_constant("three", 3, Format::unsigned(2, 0)));
         let none = d.not("none", d.any("more", count.q()));
@@ -527,25 +483,25 @@ fn a_loop_that_nothing_ends() {
             step("again", [loop_while(steady, "test")]),
             step("result", [valid(), end()]),
         ]
-    });
-    assert_eq!(way_out, Vec::<String>::new());
+    })
+    .are([]);
 }
 
 #[test]
 fn an_operand_that_nothing_uses() {
-    let unused = mistakes(|d| {
+    mistakes(|d| {
         let _ = d.operand("spare", BYTE);
-    });
-    assert_eq!(unused, ["operand `spare` is not used: no output depends on it"]);
+    })
+    .are(["operand `spare` is not used: no output depends on it"]);
     // It is read, but by a register that no output shows.
-    let nowhere = program(|d, load| {
+    program(|d, load| {
         let z = d.register("z", BYTE);
         z.takes(d.operand("spare", BYTE).q());
         vec![step("idle", []), step("load", [load, z.load()]), step("end", [valid(), end()])]
-    });
-    assert_eq!(nowhere, ["operand `spare` is not used: no output depends on it"]);
+    })
+    .are(["operand `spare` is not used: no output depends on it"]);
     // How long a loop runs shows.
-    let length = program(|d, load| {
+    program(|d, load| {
         let count = d.down_counter("count", d.operand("n", Format::unsigned(4, 0)).q());
         let more = d.any("more", count.q());
         vec![
@@ -554,8 +510,8 @@ fn an_operand_that_nothing_uses() {
             step("again", [count.count(), loop_while(more, "again")]),
             step("result", [valid(), end()]),
         ]
-    });
-    assert_eq!(length, Vec::<String>::new());
+    })
+    .are([]);
 }
 
 #[test]
@@ -567,7 +523,7 @@ fn signals_of_another_designer() {
     let said = |name: &str| {
         format!("`{name}` is a signal of the designer of `other`, and not of that of `device`")
     };
-    let found = mistakes(|d| {
+    let Found(found) = mistakes(|d| {
         let ours = d.operand("ours", BYTE).q();
         let bit = other.raw_constant("bit", 1, Format::BIT);
         let _ = d.add("sum", ours, theirs.q());
@@ -591,7 +547,7 @@ fn signals_of_another_designer() {
     .concat();
     assert_eq!(found, expected);
     // Knobs and conditions, whose numbers would mean other fields and nets.
-    let found = program(|_, load| {
+    program(|_, load| {
         let more = other.any("more", theirs.q());
         vec![
             step("idle", []),
@@ -599,12 +555,11 @@ fn signals_of_another_designer() {
             step("again", [loop_while(more, "load")]),
             step("result", [valid(), end()]),
         ]
-    });
-    assert_eq!(
-        found,
-        [
-            "microinstruction `load`: `there.load` belongs to the designer of `other`, not to that of `device`",
-            "microinstruction `again`: a condition belongs to the designer of `other`, not to that of `device`"
-        ]
-    );
+    })
+    .are([
+        "microinstruction `load`: `there.load` belongs to the designer of `other`, not to \
+             that of `device`",
+        "microinstruction `again`: a condition belongs to the designer of `other`, not to \
+             that of `device`",
+    ]);
 }

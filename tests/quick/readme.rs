@@ -8,9 +8,10 @@ use std::fs;
 use std::path::Path;
 
 use glint::base::input;
+use glint::base::text::grouped;
 use glint::core::Core;
 use glint::evidence::comparison::{accuracy, clocks_per_point};
-use glint::hdl::netlist::Stage;
+use glint::hdl::netlist::Pipeline;
 use glint::mutate::{GOAL_MEMORY, GOAL_TEXT};
 use glint::registry::Registry;
 use glint::synth::{self, Figures, Frequency, Rate, Record, Target};
@@ -45,16 +46,6 @@ fn table(path: &str, head: &str) -> Vec<Vec<String>> {
     rows
 }
 
-/// Digits in groups of three, with a blank between them.
-fn grouped(number: u64) -> String {
-    let digits = number.to_string();
-    let first = digits.len() % 3;
-    let groups =
-        digits.as_bytes()[first..].chunks(3).map(|it| std::str::from_utf8(it).expect("digits"));
-    let groups: Vec<&str> = [&digits[..first]].into_iter().chain(groups).collect();
-    groups.join(" ").trim().to_owned()
-}
-
 fn number(value: &Value) -> u64 {
     value.as_u64().unwrap_or_else(|| panic!("{value} is no number"))
 }
@@ -68,12 +59,6 @@ fn of(name: &str) -> Core {
     let studies = format!("configs/studies/{name}.toml");
     let path = format!("configs/{name}.toml");
     configuration(if fs::exists(&path).expect("readable") { &path } else { &studies })
-}
-
-#[test]
-fn groups_have_three_digits() {
-    let found = [7, 84, 100, 1000, 20_530, 100_000, 1_048_577_000].map(grouped);
-    assert_eq!(found, ["7", "84", "100", "1 000", "20 530", "100 000", "1 048 577 000"]);
 }
 
 #[test]
@@ -184,24 +169,29 @@ fn area_and_speed() {
     assert_eq!(listed, recorded);
 }
 
+/// The pipeline of a configuration in which the line of the clock is another, or the same.
+fn pipeline(name: &str, clock: Option<&str>) -> Pipeline {
+    let text = read(&format!("configs/{name}_pipelined.toml"));
+    let line = text.lines().find(|line| line.starts_with("clock_mhz")).expect("a clock");
+    let place = tempfile::tempdir().expect("a directory");
+    let path = place.path().join(format!("{name}.toml"));
+    fs::write(&path, text.replace(line, clock.unwrap_or(line))).expect("written");
+    configuration(path.to_str().expect("a path")).design.pipeline.expect("a pipeline")
+}
+
+fn register_bits(pipeline: &Pipeline) -> String {
+    grouped(pipeline.stages.iter().map(|stage| u64::from(stage.register_bits)).sum())
+}
+
 /// Stages and register bits of the pipelines; frequencies and DSP blocks are of `benches/pipeline/ecp5.py`.
 #[test]
 fn pipelines() {
-    let place = tempfile::tempdir().expect("a directory");
     let rows = table("README.md", "| pipeline | stages |");
     for row in &rows {
-        let path = format!("configs/{}_pipelined.toml", row[0]);
-        let slower = place.path().join(format!("{}.toml", row[0]));
-        let text = read(&path);
-        let (before, rest) = text.split_once("clock_mhz = ").expect("a clock");
-        let (_, after) = rest.split_once('\n').expect("the end of its line");
-        fs::write(&slower, format!("{before}clock_mhz = 60\n{after}")).expect("written");
-        let stages = |path: &str| configuration(path).design.pipeline.expect("a pipeline").stages;
-        let bits = |stages: &[Stage]| stages.iter().map(|it| u64::from(it.register_bits)).sum();
-        let now = stages(&path);
-        let slower: u64 = bits(&stages(slower.to_str().expect("a path")));
-        let expected = [now.len().to_string(), grouped(bits(&now)), grouped(slower)];
-        assert_eq!([row[1].clone(), row[5].clone(), row[6].clone()], expected, "{path}");
+        let now = pipeline(&row[0], None);
+        let slower = pipeline(&row[0], Some("clock_mhz = 60"));
+        let expected = [now.stages.len().to_string(), register_bits(&now), register_bits(&slower)];
+        assert_eq!([row[1].clone(), row[5].clone(), row[6].clone()], expected, "{}", row[0]);
     }
     let listed: BTreeSet<String> = rows.iter().map(|row| format!("{}_pipelined", row[0])).collect();
     let all = all_configurations().into_iter();
@@ -214,22 +204,12 @@ fn pipelines() {
 /// All columns but the frequency of pipelines with registered multipliers.
 #[test]
 fn registered_multipliers() {
-    let place = tempfile::tempdir().expect("a directory");
     for row in table("README.md", "| with registered multipliers | stages |") {
-        let text = read(&format!("configs/{}_pipelined.toml", row[0]));
-        let line = text.lines().find(|line| line.starts_with("clock_mhz")).expect("a clock");
         let asked = "clock_mhz = 165\nmultipliers = \"registered\"";
-        let path = place.path().join(format!("{}.toml", row[0]));
-        fs::write(&path, text.replace(line, asked)).expect("written");
-        let core = configuration(path.to_str().expect("a path"));
-        let pipeline = core.design.pipeline.expect("a pipeline");
-        let bits = pipeline.stages.iter().map(|stage| u64::from(stage.register_bits)).sum();
-        let expected = [
-            pipeline.stages.len().to_string(),
-            pipeline.registered.len().to_string(),
-            grouped(bits),
-        ];
-        assert_eq!([row[1].clone(), row[4].clone(), row[5].clone()], expected, "{}", row[0]);
+        let now = pipeline(&row[0], Some(asked));
+        let counts = [now.stages.len(), now.registered.len()].map(|count| count.to_string());
+        assert_eq!((&row[1], &row[4]), (&counts[0], &counts[1]), "{}", row[0]);
+        assert_eq!(row[5], register_bits(&now), "{}", row[0]);
     }
 }
 
@@ -241,8 +221,7 @@ fn records_of_synthesis_are_of_todays_netlists() {
     assert!(!records.is_empty());
     for (path, record) in records {
         let path = path.display();
-        let core = configuration(&record.config);
-        assert_eq!(core.core_digest(), record.core, "{path}: another configuration");
+        let core = today(&record);
         for Recorded { target, netlist, estimated_mhz } in record.targets {
             let Features { adder, mux, logic, rom, product } = Features::new(&core.design, target);
             let now = [adder, mux, logic, rom, product];
@@ -275,6 +254,13 @@ fn record(name: &str) -> Record {
     serde_json::from_str(&read(&path)).unwrap_or_else(|error| panic!("{path}: {error}"))
 }
 
+/// The core of a record, which is of today's configuration.
+fn today<T>(record: &Record<T>) -> Core {
+    let core = configuration(&record.config);
+    assert_eq!(core.core_digest(), record.core, "{}: another configuration", record.name);
+    core
+}
+
 fn figures(record: &Record, target: Target) -> &Figures {
     record.of(target).unwrap_or_else(|| panic!("{}: no figures for {target}", record.name))
 }
@@ -304,8 +290,7 @@ fn fewer_multipliers_fewer_stages() {
                 }
             };
             shown.extend(own.map(|own| own.name.clone()));
-            let core = configuration(&record.config);
-            assert_eq!(core.core_digest(), record.core, "{}: another configuration", row[0]);
+            today(record);
             let figures = figures(record, target);
             let Frequency { lowest, median, highest, .. } = figures.frequency.expect("a frequency");
             let rate = Rate::new(figures, record.clocks_per_point).expect("a rate");
@@ -337,8 +322,7 @@ fn beside_the_literature() {
         let row = rows.iter().find(|row| row[0] == record.name);
         let row = row.unwrap_or_else(|| panic!("no row {}", record.name));
         let cells = figures(&record, Target::Osu018);
-        let core = configuration(&record.config);
-        assert_eq!(core.core_digest(), record.core, "{}: another configuration", record.name);
+        let core = today(&record);
         let error = accuracy(core.contract.as_ref(), 20.0).expect("a highlight").whole.largest;
         let rate = Rate::new(cells, record.clocks_per_point).expect("a frequency");
         assert_eq!(
