@@ -11,9 +11,7 @@ fn place_gappa(place: &Place, script: &str) {
 }
 
 fn certify(place: &Place, arguments: &[&str]) -> Run {
-    let mut command = place.command();
-    command.env("PATH", place.at("tools")).args(["certify", "core.toml"]).args(arguments);
-    Run::of(command.output())
+    place.with_own_tools(["certify", "core.toml"].iter().chain(arguments))
 }
 
 #[test]

@@ -222,9 +222,7 @@ fn with_yosys(script: Option<&str>, arguments: &[&str]) -> Run {
     if let Some(script) = script {
         place.script("tools/yosys", script);
     }
-    let mut command = place.command();
-    command.env("PATH", place.at("tools"));
-    Run::of(command.arg("compare").args(arguments).output())
+    place.with_own_tools(["compare"].iter().chain(arguments))
 }
 
 /// Writes statistics of the module that the script names.

@@ -113,15 +113,13 @@ fn waveforms_that_are_wrong_usage() {
 
 /// A run of an external simulator with `PATH` leading to `tools` alone, which holds `programs`.
 #[cfg(unix)]
-fn with_tools(simulator: &str, programs: &[(&str, &str)], more: &[&str]) -> crate::place::Run {
+fn with_tools(simulator: &str, programs: &[(&str, &str)], more: &[&str]) -> Run {
     let place = Place::with("core.toml", COSINE_POWER);
     for (name, script) in programs {
         place.script(&format!("tools/{name}"), script);
     }
-    let mut command = place.command();
-    command.env("PATH", place.at("tools"));
-    command.args(["cosim", "core.toml", "--points", "2", "--simulator", simulator]);
-    crate::place::Run::of(command.args(more).output())
+    let command = ["cosim", "core.toml", "--points", "2", "--simulator", simulator];
+    place.with_own_tools(command.iter().chain(more))
 }
 
 #[cfg(unix)]
@@ -167,7 +165,7 @@ fn what_differs_in_verilog_is_told_with_its_place() {
         command.env("SOUND", std::env::var_os("PATH").unwrap());
         command.env("PATH", place.at("tools"));
         command.args(["cosim", "core.toml", "--points", "9", "--simulator", "icarus"]);
-        crate::place::Run::of(command.args(json).output())
+        Run::of(command.args(json).output())
     };
     let value = run(&["--json"]).json();
     let one = &value["configurations"][0]["mismatch"];

@@ -1,6 +1,6 @@
 //! `mutate`: the names of faults, one of them with its waveform, scores and records, and what is refused.
 
-use crate::place::{COSINE_POWER, Place, Run};
+use crate::place::{COSINE_POWER, Place};
 
 /// A fault that every computation shows.
 const SHOWS: &str = "accumulator[3]:inverted";
@@ -82,13 +82,7 @@ fn scores_are_recorded_and_nothing_else_is_overwritten() {
 #[test]
 fn a_missing_tool_is_named_before_any_work() {
     let place = place();
-    let run = Run::of(
-        place
-            .command()
-            .args(["mutate", "core.toml", "--full", "--out", "scores"])
-            .env("PATH", place.path())
-            .output(),
-    );
+    let run = place.with_own_tools(["mutate", "core.toml", "--full", "--out", "scores"]);
     run.refused(1, &["`iverilog` is not on PATH", "bash tools/install"]);
     assert!(!place.files().contains_key("scores/core.json"));
 }

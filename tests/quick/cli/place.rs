@@ -99,6 +99,11 @@ echo '{\"modules\":{\"\\\\\\\\'$top'\":{\"num_cells_by_type\":{\"SB_LUT4\":'$lut
         Run::of(self.command().args(arguments).output())
     }
 
+    /// Runs the program where no tools are but those in `tools/` here.
+    pub fn with_own_tools<A: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = A>) -> Run {
+        Run::of(self.command().env("PATH", self.at("tools")).args(arguments).output())
+    }
+
     /// Runs the program, which is expected to succeed.
     #[track_caller]
     pub fn done<A: AsRef<OsStr>>(&self, arguments: impl IntoIterator<Item = A>) -> String {

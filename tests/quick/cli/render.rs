@@ -4,6 +4,7 @@ use std::fs;
 use std::io::Cursor;
 
 use png::{BitDepth, ColorType, Decoder, Encoder};
+use serde_json::Value;
 
 use crate::place::{COSINE_POWER, Place};
 
@@ -35,6 +36,11 @@ fn pixels(png: &[u8]) -> (u32, u32, Vec<[u8; 3]>) {
     (info.width, info.height, pixels.to_vec())
 }
 
+/// The picture that was drawn last.
+fn picture(place: &Place) -> Vec<u8> {
+    fs::read(place.at("out.png")).expect("a picture")
+}
+
 fn png(colour: ColorType, bits: BitDepth, width: u32, bytes: &[u8]) -> Vec<u8> {
     let mut file = Vec::new();
     let row = width as usize * colour.samples() * if bits == BitDepth::Sixteen { 2 } else { 1 };
@@ -45,6 +51,18 @@ fn png(colour: ColorType, bits: BitDepth, width: u32, bytes: &[u8]) -> Vec<u8> {
     writer.write_image_data(bytes).expect("pixels");
     writer.finish().expect("an end");
     file
+}
+
+#[track_caller]
+fn number(told: &Value, key: &str) -> f64 {
+    told[key].as_f64().unwrap_or_else(|| panic!("no number `{key}` in {told}"))
+}
+
+/// What a comparison tells of the formula's error is within the bound.
+#[track_caller]
+fn assert_within_bound(told: &Value) {
+    let units = number(told, "largest_error_of_the_formula_in_units");
+    assert!(units <= number(told, "bound_in_units"), "{told}");
 }
 
 /// A map with bumps, 16 × 16.
@@ -73,7 +91,7 @@ fn the_same_pixels_whichever_computes_them() {
             let arguments = [&[config, "--through", through], more].concat();
             let out = place.done(render(&arguments));
             assert!(out.contains(&format!("through {through}")), "{out}");
-            pictures.push(fs::read(place.at("out.png")).expect("a picture"));
+            pictures.push(picture(&place));
         }
         for (through, picture) in there.iter().zip(&pictures) {
             assert!(pictures[0] == *picture, "{config}: golden, {through}");
@@ -98,11 +116,8 @@ fn every_configuration_draws() {
         for through in ["golden", "rust-hdl"] {
             let run = place.glint(render(&[path, "--through", through, "--compare", "--json"]));
             assert_eq!(run.code, 0, "{path}: {run:?}");
-            let told = &run.json()["compare"];
-            let number = |key: &str| told[key].as_f64().expect("a number");
-            let units = number("largest_error_of_the_formula_in_units");
-            assert!(units <= number("bound_in_units"), "{path}: {told}");
-            pictures.push(fs::read(place.at("out.png")).expect("a picture"));
+            assert_within_bound(&run.json()["compare"]);
+            pictures.push(picture(&place));
         }
         assert!(pictures.iter().all(|it| *it == pictures[0]), "{path}: golden, rust_hdl");
         drawn += 1;
@@ -121,7 +136,7 @@ fn the_same_bytes_with_any_number_of_threads() {
             .env("RAYON_NUM_THREADS", threads)
             .output();
         assert!(run.expect("the program runs").status.success());
-        pictures.push(fs::read(place.at("out.png")).expect("a picture"));
+        pictures.push(picture(&place));
     }
     assert!(pictures.iter().all(|picture| *picture == pictures[0]));
 }
@@ -144,7 +159,7 @@ fn the_pictures_of_the_documentation() {
             .expect("the program runs");
         assert!(run.status.success(), "{run:?}");
         let committed = fs::read(file).unwrap_or_else(|error| panic!("{file}: {error}"));
-        let made = fs::read(place.at("out.png")).expect("a picture");
+        let made = picture(&place);
         assert!(pixels(&made) == pixels(&committed), "{file}: other pixels");
         assert!(made == committed, "{file}: the same pixels in other bytes");
     }
@@ -162,7 +177,7 @@ fn a_highlight_is_where_it_should_be() {
     let done =
         place.done(["render", "--size", "41x41", "--out", "out.png"].into_iter().chain(arguments));
     assert!(done.contains("41x41 pixels, n = 80"), "{done}");
-    let (width, height, pixels) = pixels(&fs::read(place.at("out.png")).expect("a picture"));
+    let (width, height, pixels) = pixels(&picture(&place));
     assert_eq!((width, height), (41, 41));
     let at = |column: usize, row: usize| pixels[row * 41 + column];
     // cos γ is 1 but for half a pixel; W(80, 0) falls short of 1 by an ulp of 2⁻¹⁶ for each squaring.
@@ -191,12 +206,10 @@ fn lines_along_triangles() {
         let mesh = ["--mesh", "large.obj", "--light", "0,0.2,1"];
         let run = place.glint(render(&[&arguments[..], &mesh].concat())).good();
         let told = &run.json()["compare"];
-        let number = |key: &str| told[key].as_f64().expect("a number");
         // Of 0.7·255: cos¹⁶(√(n/16)·δ) is within 0.6 % of cosⁿδ and cos² within 12 %. Angles that grow evenly
         // are less than 0.002 from those of the interpolated normals, which is a level where cos²⁰γ is steepest.
-        assert!(number("largest_difference") <= largest, "{told}");
-        let units = number("largest_error_of_the_formula_in_units");
-        assert!(units <= number("bound_in_units"), "{told}");
+        assert!(number(told, "largest_difference") <= largest, "{told}");
+        assert_within_bound(told);
     }
     let run = place.glint(render(&["quad.toml", "--height", "bumps.png"]));
     run.refused(1, &["walks lines of points, which a height map cannot perturb"]);
@@ -207,7 +220,7 @@ fn comparison_in_numbers() {
     let place = Place::with("power.toml", COSINE_POWER);
     let run = place.glint(render(&["power.toml", "--compare", "--json"])).good();
     let told = run.json();
-    let (width, height, pixels) = pixels(&fs::read(place.at("out.png")).expect("a picture"));
+    let (width, height, pixels) = pixels(&picture(&place));
     // Captions stand in 22 rows below the pictures.
     assert_eq!((width, height), (3 * 48, 36 + 22));
     assert!(pixels[36 * 144..].iter().any(|pixel| pixel[0] > 200), "no letter");
@@ -225,10 +238,8 @@ fn comparison_in_numbers() {
     assert_eq!(told["compare"]["largest_difference"], largest);
     // W(80, γ) with m = 16 is up to 0.018 from cos⁸⁰γ: 3 levels at k_s = 0.7, of two lights.
     assert!((1..=7).contains(&largest), "{told}");
-    assert!(told["compare"]["psnr"].as_f64().expect("decibels") > 40.0, "{told}");
-    let units = told["compare"]["largest_error_of_the_formula_in_units"].as_f64();
-    let bound = told["compare"]["bound_in_units"].as_f64();
-    assert!(units.expect("units") <= bound.expect("a bound"), "{told}");
+    assert!(number(&told["compare"], "psnr") > 40.0, "{told}");
+    assert_within_bound(&told["compare"]);
 }
 
 /// Meshes: a face toward the eye, whichever way around; degenerate triangles are told of.
@@ -240,10 +251,10 @@ fn a_mesh_is_seen_from_both_sides() {
         SQUARE.replace("f 1/1 2/2 3/3 4/4", "f 1/1 4/4 3/3 2/2\nf 1 1 2\nf 2 3 2"),
     );
     place.done(render(&["--mesh", "front.obj"]));
-    let front = fs::read(place.at("out.png")).expect("a picture");
+    let front = picture(&place);
     let run = place.glint(render(&["--mesh", "back.obj"])).good();
     assert!(run.err.contains("2 triangles are without area and were left out"), "{run:?}");
-    assert!(front == fs::read(place.at("out.png")).expect("a picture"));
+    assert!(front == picture(&place));
     let run = place.glint(render(&["--mesh", "back.obj", "--json"]));
     assert_eq!(run.json()["degenerate_triangles"], 2);
     assert_eq!(run.json()["triangles"], 2);
@@ -405,12 +416,7 @@ fn places_that_cannot_be_written() {
 fn an_old_picture_stays() {
     let place = Place::with("core.toml", COSINE_POWER);
     place.write("out.png", "the old one");
-    let run = place
-        .command()
-        .args(render(&["core.toml", "--through", "verilator"]))
-        .env("PATH", place.path())
-        .output();
-    let run = crate::place::Run::of(run);
+    let run = place.with_own_tools(render(&["core.toml", "--through", "verilator"]));
     run.refused(1, &["`verilator` is not on PATH"]);
     assert_eq!(place.read("out.png"), "the old one");
     place.assert_no_staging();

