@@ -70,7 +70,7 @@ ${ line }$
 <% include "compare.v" %>
 <%- endfor %>
             end
-            if (${ names.clock }$ >= KNOWN_FROM) begin
+            if (${ names.clock }$ >= KNOWN_FROM<% if let Some(shown) = shown %> && ${ shown }$<% endif %>) begin
 <%- for output in results %>
 <% include "compare.v" %>
 <%- endfor %>

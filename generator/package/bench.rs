@@ -31,6 +31,8 @@ struct Bench {
     reset_seen: &'static str,
     handshake: Vec<Output>,
     results: Vec<Output>,
+    /// Of a pipeline, where the expected word says that results are those of a point: in a bubble they mean nothing.
+    shown: Option<String>,
     /// None without a microprogram.
     address: Option<String>,
     microprogram: Vec<Microinstruction>,
@@ -108,7 +110,7 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
     let inputs: Vec<_> = design.inputs().collect();
     let outputs: Vec<_> = design.outputs().collect();
     let mut low = total(&outputs);
-    let (mut handshake, mut results) = (Vec::new(), Vec::new());
+    let (mut handshake, mut results, mut shown) = (Vec::new(), Vec::new(), None);
     for port in &outputs {
         let width = design.width(port.net);
         low -= width;
@@ -116,6 +118,9 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
             1 => format!("{}[{low}]", own.want),
             _ => format!("{}[{}:{low}]", own.want, low + width - 1),
         };
+        if design.pipeline.is_some() && port.role == Role::Valid {
+            shown = Some(select.clone());
+        }
         let output = Output { name: port_name(port), select };
         match port.role {
             role if role.is_status() => handshake.push(output),
@@ -158,6 +163,7 @@ fn view(design: &Design, naming: &Naming, vectors: &Vectors) -> Bench {
         reset,
         handshake,
         results,
+        shown,
         address: address.map(|address| {
             let address = &design.net(address).name;
             format!("{}.{}.{address}", own.dut, naming.control_instance)
