@@ -16,6 +16,9 @@ use crate::hdl::netlist::{Design, Driver, RegisterKind, RomId};
 /// Results that are looked at with operands held.
 const POINTS: u64 = 1 << 17;
 
+/// And with all operands held.
+const FEW_POINTS: u64 = 64;
+
 /// The seed with which the others are drawn.
 const SEED: u64 = 3;
 
@@ -39,10 +42,22 @@ pub(super) fn addressing(core: &Core, rom: RomId, word: usize) -> Option<Operand
 /// # Errors
 /// The mutant cannot be simulated.
 pub(super) fn drawn(core: &Core, mutant: &Design, held: Operands) -> Result<Option<Difference>> {
-    let model = core.device.golden(&core.config);
-    let lockstep = Lockstep::new(mutant, model, core.contract.as_ref(), SEED)?.holding(&held);
-    let mismatch = lockstep.run(POINTS, &|_| ())?.mismatch;
+    let mismatch = lockstep(core, mutant, &held)?.run(POINTS, &|_| ())?.mismatch;
     Ok(mismatch.map(|mismatch| Difference { held, mismatch }))
+}
+
+/// The same of few points, where all operands are held.
+///
+/// # Errors
+/// The mutant cannot be simulated.
+pub(super) fn alone(core: &Core, mutant: &Design, held: Operands) -> Result<Option<Difference>> {
+    let mismatch = lockstep(core, mutant, &held)?.run_alone(FEW_POINTS)?.mismatch;
+    Ok(mismatch.map(|mismatch| Difference { held, mismatch }))
+}
+
+fn lockstep<'a>(core: &'a Core, mutant: &'a Design, held: &Operands) -> Result<Lockstep<'a>> {
+    let model = core.device.golden(&core.config);
+    Ok(Lockstep::new(mutant, model, core.contract.as_ref(), SEED)?.holding(held))
 }
 
 /// What goes through the other operands that determine `f` has shown.

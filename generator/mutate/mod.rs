@@ -5,6 +5,7 @@
 //! proved, or *undecided*. What the test does not notice is never called equivalent for that reason. Apart from that,
 //! and on its own, the bench that is shipped with the core runs on each: that is all that its user has.
 
+mod beside;
 mod coverage;
 mod fault;
 mod formal;

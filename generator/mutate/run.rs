@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 
+use super::beside::Beside;
 use super::coverage::{Coverage, Operands, Place};
 use super::fault::{Fault, Site};
 use super::held::{self, Tried};
@@ -35,9 +36,13 @@ pub fn run<'f>(
     progress: &(dyn Fn() + Sync),
 ) -> Result<Vec<Found>> {
     let lockstep = core.lockstep(core::TEST_SEED)?;
+    let sound = plant::bare(&core.design);
+    let pipeline = sound.pipeline.as_ref();
+    let beside = pipeline.map(|it| Beside::new(&sound, it, core.contract.as_ref())).transpose()?;
     let bench = Bench {
         core,
-        sound: plant::bare(&core.design),
+        sound,
+        beside,
         model: core.device.golden(&core.config),
         prover: Prover::new(&core.design),
         tested: Coverage::of(&core.design, &lockstep, core::TEST_POINTS)?,
@@ -60,6 +65,7 @@ pub fn run<'f>(
 struct Bench<'a> {
     core: &'a Core,
     sound: Design,
+    beside: Option<Beside>,
     model: Box<dyn Model>,
     prover: Option<Prover<'a>>,
     /// Which words the default test reads, and where.
@@ -98,8 +104,17 @@ impl Bench<'_> {
         }
         match word {
             Some((rom, words)) => self.directed(mutant, rom, words),
-            None => Ok(Verdict::Undecided),
+            None => self.searched(mutant),
         }
+    }
+
+    /// Of a pipeline, a point that is searched for beside the pipeline without a fault.
+    fn searched(&self, mutant: &Design) -> Result<Verdict> {
+        let Some(beside) = &self.beside else {
+            return Ok(Verdict::Undecided);
+        };
+        let found = beside.search(mutant, |held| held::alone(self.core, mutant, held))?;
+        Ok(found.map_or(Verdict::Undecided, |it| Verdict::Caught(Detector::Directed, it)))
     }
 
     /// The beginning of the default test, or of its streams that read words at fault: there it shows, if anywhere.

@@ -5,7 +5,8 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::proof::Prover;
-use super::{Fault, FaultKind, Faults, plant, unreached};
+use super::shipped::Shipped;
+use super::{Detector, Fault, FaultKind, Faults, How, Verdict, plant, run, unreached};
 use crate::config;
 use crate::core::{Core, TEST_SEED};
 use crate::cosim::Lockstep;
@@ -34,6 +35,8 @@ fn no_proof_of_what_shows() {
         let core = core(&path);
         let prover = Prover::new(&core.design).unwrap();
         let sound = plant::bare(&core.design);
+        let bench = Shipped::of(&core).unwrap();
+        assert!(!bench.notices(&sound).unwrap(), "{path}");
         let faults = Faults::of(&core.design);
         let faults: Vec<_> = faults.iter().step_by(EVERY).collect();
         let of_each: Vec<(bool, bool)> = faults
@@ -45,6 +48,8 @@ fn no_proof_of_what_shows() {
                 let lockstep = Lockstep::new(&mutant, model, core.contract.as_ref(), 5).unwrap();
                 let shows = lockstep.run_alone(POINTS).unwrap().mismatch.is_some();
                 assert!(!(is_proved && shows), "{path}: {}", fault.id);
+                let benched = is_proved && bench.notices(&mutant).unwrap();
+                assert!(!benched, "{path}: the bench notices {}", fault.id);
                 (is_proved, shows)
             })
             .collect();
@@ -75,4 +80,33 @@ fn what_is_never_reached_is_never_noticed() {
     let stuck = |fault: &&&Fault| fault.id.starts_with("run[0]:stuck");
     assert!(faults.iter().any(|fault| stuck(&fault)), "no such fault");
     assert_eq!(unreached.iter().filter(stuck).count(), 0);
+}
+
+/// What becomes of a fault.
+fn verdict(core: &Core, id: &str) -> Verdict {
+    let faults = Faults::of(&core.design);
+    let fault = faults.iter().find(|fault| fault.id == id);
+    run(core, fault, &|| ()).unwrap().remove(0).verdict
+}
+
+/// Only a cosine with no other bit set shows it, and only with an n for which the highlight is still lit there.
+#[test]
+fn a_point_is_searched_for_that_shows_a_fault() {
+    let core = core("configs/cosine_power_pipelined.toml");
+    let verdict = verdict(&core, "cos_gamma_reg_s0[5]:stuck-at-0");
+    let Verdict::Caught(Detector::Directed, difference) = verdict else {
+        panic!("{verdict:?}");
+    };
+    assert!(difference.held.contains(&("cos_gamma".to_owned(), 1 << 5)), "{difference:?}");
+}
+
+/// Below 1.0 are all numbers without a bit from that of 1.0 on, whatever the others are.
+#[test]
+fn lower_bits_do_not_decide_a_comparison() {
+    let core = core("configs/lyon_pipelined.toml");
+    assert_eq!(
+        verdict(&core, "beta_distance_s6[15]:inverted"),
+        Verdict::Equivalent(How::Induction)
+    );
+    assert!(matches!(verdict(&core, "beta_distance_s6[16]:inverted"), Verdict::Caught(..)));
 }

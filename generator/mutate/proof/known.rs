@@ -63,7 +63,8 @@ impl Known {
         self.mask & (self.value ^ value) == 0
     }
 
-    fn zeros(self) -> u64 {
+    /// The bits that are known to be 0.
+    pub(super) fn zeros(self) -> u64 {
         self.mask & !self.value
     }
 

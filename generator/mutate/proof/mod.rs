@@ -211,7 +211,17 @@ impl<'a> Prover<'a> {
                 known::sum_differs([summand(*a), inverted], one, width)
             }
             Op::Mul(a, b) => above(differ(a) | differ(b)),
-            Op::Equal(..) | Op::Less(..) | Op::Any(_) | Op::All(_) => 1,
+            Op::Less(a, b) => {
+                let known = |net: &NetId| nets.known[net.index()];
+                // Below a number with zeros at its end are whole runs of numbers that differ in these bits alone; so are
+                // those above one with ones at its end.
+                let below = mask(known(b).zeros().trailing_ones());
+                let above = mask(known(a).value.trailing_ones());
+                let same = differ(b) == 0 && differ(a) & !below == 0
+                    || differ(a) == 0 && differ(b) & !above == 0;
+                u64::from(!same)
+            }
+            Op::Equal(..) | Op::Any(_) | Op::All(_) => 1,
             Op::Mux { select, inputs } => {
                 let after = nets.known[select.index()];
                 let lines = design.width(*select);
