@@ -57,7 +57,7 @@ impl<'a> Prover<'a> {
             compared[net.index()] = mask(design.width(net));
         }
         let sound = Sound::of(design)?;
-        let windows = Windows::of(design, &sound.order);
+        let windows = Windows::of(design)?;
         Some(Self { sound, compared, windows })
     }
 

@@ -4,6 +4,7 @@
 //! outputs, and backward to the fewest bits that determine it: a minimum cut. Each net of the cut takes
 //! every value of its interval.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
@@ -11,7 +12,7 @@ use super::cut::smallest_cut;
 use super::interval;
 use super::known::Known;
 use crate::base::interval::Interval;
-use crate::hdl::netlist::{Design, Driver, NetId, Op, RomId, eval};
+use crate::hdl::netlist::{Design, Driver, NetId, Op, Pipeline, RomId, eval};
 use crate::mutate::fault::Site;
 
 /// Values that are evaluated together.
@@ -25,7 +26,7 @@ const BITS: u32 = 22;
 
 /// Windows of one design.
 pub(super) struct Windows<'a> {
-    design: &'a Design,
+    design: Cow<'a, Design>,
     order: Vec<NetId>,
     intervals: Vec<Interval>,
     /// The cells that read a net.
@@ -38,12 +39,32 @@ pub(super) struct Windows<'a> {
     read: Vec<OnceLock<Option<BTreeSet<u64>>>>,
 }
 
+/// A pipeline as a point sees it: registers hand on what they take, so that a window reaches over stages. What decides when
+/// points move stays as it is.
+fn flattened(design: &Design, pipeline: &Pipeline) -> Design {
+    let mut flat = design.clone();
+    for register in &mut flat.registers {
+        if !pipeline.handshake.contains(&register.q)
+            && let Some(data) = register.data.take()
+        {
+            flat.nets[register.q.index()].driver = Driver::Op(Op::Relabel(data));
+        }
+    }
+    flat
+}
+
 impl<'a> Windows<'a> {
-    pub(super) fn of(design: &'a Design, order: &[NetId]) -> Self {
+    /// `None` for a design with a combinational loop.
+    pub(super) fn of(design: &'a Design) -> Option<Self> {
+        let design = match &design.pipeline {
+            Some(pipeline) => Cow::Owned(flattened(design, pipeline)),
+            None => Cow::Borrowed(design),
+        };
+        let order = design.levelise().ok()?;
         let mut intervals = vec![(0, 0); design.nets.len()];
-        for &id in order {
+        for &id in &order {
             let of = |net: NetId| intervals[net.index()];
-            intervals[id.index()] = interval::of(design, id, &of, &|_| Known::NOTHING);
+            intervals[id.index()] = interval::of(&design, id, &of, &|_| Known::NOTHING);
         }
         let mut readers = vec![Vec::new(); design.nets.len()];
         let mut sinks = vec![false; design.nets.len()];
@@ -65,15 +86,15 @@ impl<'a> Windows<'a> {
         for net in read.chain(seen) {
             sinks[net.index()] = true;
         }
-        Self {
+        Some(Self {
+            read: design.roms.iter().map(|_| OnceLock::new()).collect(),
             design,
-            order: order.to_vec(),
+            order,
             intervals,
             readers,
             sinks,
             multiplied,
-            read: design.roms.iter().map(|_| OnceLock::new()).collect(),
-        }
+        })
     }
 
     /// Whether the fault never leaves its window.
@@ -177,7 +198,7 @@ impl<'a> Windows<'a> {
         let bits = |net: NetId| 128 - (size(net) - 1).leading_zeros();
         let mut uncut = affected.clone();
         uncut.retain(|net| at_fault(*net).is_none());
-        let cut = smallest_cut(self.design, wanted, &uncut, &bits, BITS)?;
+        let cut = smallest_cut(&self.design, wanted, &uncut, &bits, BITS)?;
         let total = cut
             .iter()
             .try_fold(1i128, |total, net| total.checked_mul(size(*net)))
