@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use crate::common::cores::{configuration, configuration_with};
-use crate::common::sample::sampled;
+use crate::common::sample::sampled_alone;
 use glint::config::Config;
 use glint::core::Core;
 use glint::cosim::exhaustive::{Clocks, Job, MOST_BITS, Proof, Shard, State};
@@ -129,8 +129,7 @@ const PARTS: u64 = 4;
 
 /// All of them in a run of both tiers; of the quick one alone a part, which the commit draws.
 fn parts(what: &str) -> Vec<Shard> {
-    let all = (1..=PARTS).map(|number| Shard { number, of: PARTS });
-    if cfg!(feature = "outside-tools") { all.collect() } else { sampled(what, all, 1) }
+    sampled_alone(what, (1..=PARTS).map(|number| Shard { number, of: PARTS }), 1)
 }
 
 #[test]

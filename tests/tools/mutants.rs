@@ -1,7 +1,7 @@
 //! Faults put into a design or into its Verilog are noticed, or proved to change nothing.
 //!
-//! The records in `mutation/` hold the score of every device's default configuration; here a sample of them is
-//! planted again.
+//! The records in `mutation/` hold the score of every device's default configuration, and of its pipeline; here a sample of
+//! them is planted again.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -15,8 +15,9 @@ use glint::mutate::{self, Detector, Faults, Found, ShippedBench, Text, TextVerdi
 use glint::registry::Registry;
 use serde_json::Value;
 
-/// Faults of the netlist that are planted of each device.
+/// Faults of the netlist that are planted of each device, and of each pipeline.
 const NETLIST_FAULTS: usize = 500;
+const PIPELINE_FAULTS: usize = 200;
 
 /// Faults of the Verilog that are planted of each device.
 const TEXT_FAULTS: usize = 4;
@@ -33,6 +34,14 @@ fn defaults() -> Vec<(String, Core)> {
     let devices = registry.devices().iter();
     let paths = devices.map(|device| format!("configs/{}.toml", device.name.replace('-', "_")));
     paths.map(|path| (path.clone(), configuration(&path))).collect()
+}
+
+/// Their pipelines.
+fn pipelines() -> Vec<(String, Core)> {
+    let is_pipeline = |(path, _): &(String, Core)| {
+        path.strip_prefix("configs/").is_some_and(|name| name.ends_with("_pipelined.toml"))
+    };
+    configurations().into_iter().filter(is_pipeline).collect()
 }
 
 fn record(core: &Core) -> Value {
@@ -95,7 +104,10 @@ fn assert_unnoticed(path: &str, core: &Core, found: &[Found]) {
 
 #[test]
 fn the_records_hold_today() {
-    for (path, core) in defaults() {
+    let pipelines = pipelines();
+    assert_eq!(pipelines.len(), 8);
+    let all = defaults().into_iter().map(|it| (it, NETLIST_FAULTS));
+    for ((path, core), count) in all.chain(pipelines.into_iter().map(|it| (it, PIPELINE_FAULTS))) {
         let record = record(&core);
         let netlist = &record["netlist"];
         let stale = format!("{path}: `glint mutate --out mutation {path}` makes another record");
@@ -105,7 +117,7 @@ fn the_records_hold_today() {
         let undecided = netlist["undecided"].as_array().expect("a list").len();
         assert_eq!(all["undecided"], undecided, "{stale}");
         assert!(undecided * 100 <= faults.len(), "{path}: {undecided} are undecided");
-        let planted = sampled(&path, faults.iter(), NETLIST_FAULTS);
+        let planted = sampled(&path, faults.iter(), count);
         let found =
             mutate::run(&core, planted, &|| ()).unwrap_or_else(|error| panic!("{path}: {error:?}"));
         for Found { fault, verdict, .. } in &found {

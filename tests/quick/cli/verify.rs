@@ -28,25 +28,27 @@ fn verdicts(record: &Value) -> Vec<(&str, &str)> {
 #[test]
 fn page_and_record_are_the_same_every_time_but_for_the_timings() {
     let place = place();
-    let run = place.glint(WITHOUT_TOOLS.iter().chain(&["--out", "first"])).quiet();
+    let verify = [&WITHOUT_TOOLS[..], &["--out", "made"]].concat();
+    let run = place.glint(&verify).quiet();
     assert!(run.out.contains("core.toml: verified"), "{}", run.out);
-    let again = place.glint(WITHOUT_TOOLS.iter().chain(&["--out", "second", "--json"])).quiet();
-    assert_eq!(place.read("first/core.json"), place.read("second/core.json"));
-    let lasting = |name: &str| {
-        let page = place.read(name);
+    let made = || {
+        let page = place.read("made/core.html");
         let (before, after) = page.split_once("id=\"timings\"").expect("timings");
         assert!(after.contains("Seconds"));
-        before.to_owned()
+        (place.read("made/core.json"), before.to_owned())
     };
-    let page = lasting("first/core.html");
-    assert_eq!(page, lasting("second/core.html"));
+    let first = made();
+    // Written over what is there.
+    let again = place.glint(verify.iter().chain(&["--json"])).quiet();
+    assert_eq!(made(), first);
+    let (record, page) = first;
     for reference in ["http", "src=", "url(", "<link", "<script", "file:"] {
         assert!(!page.contains(reference), "`{reference}` in the page");
     }
     let here = place.path().display().to_string();
-    assert!(!page.contains(&here) && !place.read("first/core.json").contains(&here));
+    assert!(!page.contains(&here) && !record.contains(&here));
 
-    let found = place.json("first/core.json");
+    let found = place.json("made/core.json");
     assert_eq!(found["conclusion"], "verified");
     assert_eq!(found["full"], false);
     let verdicts = verdicts(&found);
@@ -62,11 +64,9 @@ fn page_and_record_are_the_same_every_time_but_for_the_timings() {
     assert!(verdicts.contains(&("icarus", "not-covered")), "{verdicts:?}");
     assert!(page.contains("--without-tools leaves it out."));
     assert_eq!(again.json()["configurations"][0]["record"], found);
-    let timings = place.json("second/core.timings.json");
+    let timings = place.json("made/core.timings.json");
     assert_eq!(timings["seconds"].as_array().map(Vec::len), Some(verdicts.len()));
-    // Written over what is there.
-    place.done(WITHOUT_TOOLS.iter().chain(&["--out", "first"]));
-    assert_eq!(place.files().len(), 7);
+    assert_eq!(place.files().len(), 4);
 }
 
 #[test]
@@ -138,11 +138,15 @@ fn a_record_stands_for_the_sweep_of_a_contract() {
 #[test]
 fn a_sweep_that_samples_is_passed_and_not_proved() {
     let place = Place::with("core.toml", include_str!("../../../configs/reduced/rough.toml"));
-    let run = place.glint(WITHOUT_TOOLS);
-    assert!(run.out.contains("Golden model against the formula: passed"), "{}", run.out);
-    assert!(run.out.contains("not covered: values of cos_dgamma between the settings"), "{run:?}");
-    let found = place.json("verification/rough_reduced.json");
-    assert!(verdicts(&found).contains(&("contract", "passed")), "{found}");
+    // Its faults take longer than all else here.
+    if cfg!(feature = "outside-tools") {
+        let run = place.glint(WITHOUT_TOOLS);
+        assert!(run.out.contains("Golden model against the formula: passed"), "{}", run.out);
+        let not_covered = "not covered: values of cos_dgamma between the settings";
+        assert!(run.out.contains(not_covered), "{run:?}");
+        let found = place.json("verification/rough_reduced.json");
+        assert!(verdicts(&found).contains(&("contract", "passed")), "{found}");
+    }
     let run = place.glint(["cosim", "core.toml", "--exhaustive"]);
     assert!(run.out.contains(": within its bound, outside the contract"), "{}", run.out);
     assert!(!run.out.contains("proved"), "{}", run.out);
