@@ -111,3 +111,12 @@ fn lower_bits_do_not_decide_a_comparison() {
     );
     assert!(matches!(verdict(&core, "beta_distance_s6[16]:inverted"), Verdict::Caught(..)));
 }
+
+/// What is left of a dividend is the difference where that is not negative: no more than before.
+#[test]
+fn a_remainder_does_not_grow_by_a_subtraction() {
+    let core = core("configs/schlick_pipelined.toml");
+    let id = "quotient_remainder_s4[25]";
+    assert_eq!(verdict(&core, &format!("{id}:stuck-at-0")), Verdict::Equivalent(How::Induction));
+    assert!(matches!(verdict(&core, &format!("{id}:stuck-at-1")), Verdict::Caught(..)));
+}

@@ -39,11 +39,40 @@ pub(super) fn of(
         }
         Driver::Op(Op::Mux { select, inputs }) => {
             let reached = known::choices(known(*select), design.width(*select), inputs);
-            hull(reached.map(of)).map_or(all, within)
+            let two = inputs.len() == 2 && inputs[0] != inputs[1];
+            let sign = sign(design, *select).filter(|_| two);
+            let signed = |net: NetId| design.net(net).format.signed;
+            let taken = |input: NetId| match sign {
+                // Where its own sign chooses it, it has one sign.
+                Some((of_it, negative))
+                    if signed(input) && known::named(design, input) == of_it =>
+                {
+                    let (low, high) = of(input);
+                    if negative == (input == inputs[1]) {
+                        (low.min(-1), high.min(-1))
+                    } else {
+                        (low.max(0), high.max(0))
+                    }
+                }
+                _ => of(input),
+            };
+            hull(reached.map(taken)).map_or(all, within)
         }
         // The same net under another name too.
         Driver::Op(Op::Mul(a, b)) if known::square(design, *a, *b) => cell(&Op::Mul(*a, *a)),
         Driver::Op(op) => cell(op),
         _ => all,
+    }
+}
+
+/// The net whose sign a bit is, and whether the bit is 1 where it is negative.
+fn sign(design: &Design, bit: NetId) -> Option<(NetId, bool)> {
+    match &design.net(known::named(design, bit)).driver {
+        Driver::Op(Op::Not(a)) => sign(design, *a).map(|(of, negative)| (of, !negative)),
+        Driver::Op(Op::Slice { of, low }) => {
+            let is_sign = design.net(*of).format.signed && low + 1 == design.width(*of);
+            is_sign.then(|| (known::named(design, *of), true))
+        }
+        _ => None,
     }
 }

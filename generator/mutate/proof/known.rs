@@ -235,13 +235,15 @@ fn product(
 
 /// Whether both are the same net, under whatever names.
 pub(super) fn square(design: &Design, a: NetId, b: NetId) -> bool {
-    let named = |mut net: NetId| {
-        while let Driver::Op(Op::Relabel(of)) = design.net(net).driver {
-            net = of;
-        }
-        net
-    };
-    named(a) == named(b)
+    named(design, a) == named(design, b)
+}
+
+/// What a net is another name of, if it is one.
+pub(super) fn named(design: &Design, mut net: NetId) -> NetId {
+    while let Driver::Op(Op::Relabel(of)) = design.net(net).driver {
+        net = of;
+    }
+    net
 }
 
 /// The bits in which a sum may differ from the fault-free one's, when its summands, given as what is known in both

@@ -202,7 +202,7 @@ impl<'a> Windows<'a> {
         let total = cut
             .iter()
             .try_fold(1i128, |total, net| total.checked_mul(size(*net)))
-            .filter(|total| *total <= 1 << BITS)?;
+            .filter(|total| *total <= 1 << BITS)? as u64;
         let mut inside = BTreeSet::new();
         let mut todo: Vec<NetId> = wanted.iter().copied().collect();
         while let Some(net) = todo.pop() {
@@ -214,14 +214,15 @@ impl<'a> Windows<'a> {
             self.order.iter().copied().filter(|net| inside.contains(net)).collect();
         let (mut sound, mut mutant) = (BTreeMap::new(), BTreeMap::new());
         for from in (0..total).step_by(LANES) {
-            let count = (total - from).min(LANES as i128) as usize;
+            let count = (total - from).min(LANES as u64) as usize;
             let mut place = 1;
             for &net in &cut {
                 let (low, _) = self.intervals[net.index()];
                 let format = self.design.net(net).format;
-                let number = |lane: usize| (from + lane as i128) / place % size(net);
+                let size = size(net) as u64;
+                let number = |lane: usize| (from + lane as u64) / place % size;
                 let values = match at_fault(net) {
-                    None => std::array::from_fn(|lane| format.bits(low + number(lane))),
+                    None => std::array::from_fn(|lane| format.bits(low + i128::from(number(lane)))),
                     Some((_, before, words)) => {
                         let word = |lane: usize| words[number(lane) as usize];
                         mutant.insert(net, std::array::from_fn(|lane| word(lane).1));
@@ -229,7 +230,7 @@ impl<'a> Windows<'a> {
                     }
                 };
                 sound.insert(net, values);
-                place *= size(net);
+                place *= size;
             }
             for &net in &steps {
                 let value = self.evaluate(net, &self.design.net(net).driver, &sound, None);
