@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 use std::fs;
 
-use crate::common::cores::{configuration, configurations};
+use crate::common::cores::{all_configurations, configuration, configurations};
 use crate::common::sample::sampled;
 use crate::common::tools::LIMIT;
 use glint::core::{Core, TEST_POINTS};
@@ -41,7 +41,7 @@ fn pipelines() -> Vec<(String, Core)> {
     let is_pipeline = |(path, _): &(String, Core)| {
         path.strip_prefix("configs/").is_some_and(|name| name.ends_with("_pipelined.toml"))
     };
-    configurations().into_iter().filter(is_pipeline).collect()
+    all_configurations().into_iter().filter(is_pipeline).collect()
 }
 
 fn record(core: &Core) -> Value {
