@@ -7,9 +7,11 @@ use rayon::prelude::*;
 use super::proof::Prover;
 use super::shipped::Shipped;
 use super::{Detector, Fault, FaultKind, Faults, How, Verdict, plant, run, unreached};
+use crate::base::fixed::Format;
 use crate::config;
 use crate::core::{Core, TEST_SEED};
 use crate::cosim::Lockstep;
+use crate::hdl::dsl::{Designer, end, step, valid};
 use crate::registry::Registry;
 
 /// One in this number of faults is planted, fewer in a run of the quick tests alone: not a multiple of three, as for each
@@ -110,6 +112,29 @@ fn lower_bits_do_not_decide_a_comparison() {
         Verdict::Equivalent(How::Induction)
     );
     assert!(matches!(verdict(&core, "beta_distance_s6[16]:inverted"), Verdict::Caught(..)));
+}
+
+/// Whether a number is below 0 its sign says alone, though 0 ends in nothing but zeros.
+#[test]
+fn the_sign_decides_a_comparison_with_0() {
+    let d = Designer::new("device");
+    let format = Format::signed(3, 0);
+    let [x, y] = ["x", "y"].map(|name| d.operand(name, format).q());
+    let sum = d.add("sum", x, y);
+    let held = d.register("held", Format::BIT);
+    held.takes(d.less("negative", sum, d.constant("nothing", 0.0, sum.format())));
+    d.output("held_out", held.q());
+    let load = step("load", [held.load()]);
+    d.microprogram([step("idle", []), load, step("result", [valid(), end()])]);
+    let design = d.finish().unwrap();
+    let prover = Prover::new(&design).unwrap();
+    let proved = |id: &str| {
+        let faults = Faults::of(&design);
+        let fault = faults.iter().find(|fault| fault.id == id).expect("a fault");
+        prover.proves(&fault.site).is_some()
+    };
+    assert!(proved("sum[0]:inverted"));
+    assert!(!proved("sum[4]:inverted") && !proved("sum[4]:stuck-at-0"));
 }
 
 /// What is left of a dividend is the difference where that is not negative: no more than before.

@@ -18,7 +18,7 @@ use window::Windows;
 
 use super::fault::{Bit, Site};
 use super::verdict::How;
-use crate::base::fixed::mask;
+use crate::base::fixed::{Format, mask};
 use crate::hdl::netlist::{Design, Driver, NetId, Op, RegId, RegisterKind, RomId};
 
 /// Proves faults of one design equivalent.
@@ -214,9 +214,11 @@ impl<'a> Prover<'a> {
             Op::Less(a, b) => {
                 let known = |net: &NetId| nets.known[net.index()];
                 // Below a number with zeros at its end are whole runs of numbers that differ in these bits alone; so are
-                // those above one with ones at its end.
-                let below = mask(known(b).zeros().trailing_ones());
-                let above = mask(known(a).value.trailing_ones());
+                // those above one with ones at its end. No run goes over a change of sign.
+                let Format { signed, .. } = design.net(*a).format;
+                let most = design.width(*a) - u32::from(signed);
+                let run = |bits: u64| mask(bits.trailing_ones().min(most));
+                let (below, above) = (run(known(b).zeros()), run(known(a).value));
                 let same = differ(b) == 0 && differ(a) & !below == 0
                     || differ(a) == 0 && differ(b) & !above == 0;
                 u64::from(!same)
