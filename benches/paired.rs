@@ -8,12 +8,13 @@
 //! For each device and each pipeline of `configs/`, or those that are named (`rough`, `rough_pipelined`), clocks
 //! per second and thread of
 //! - *design*: the built-in simulator through rust_hdl's `simulate()`, [`LANES`] streams side by side;
-//! - *golden*: `Lockstep::run` as `glint cosim` uses it: stimulus drawn, golden model, every register and
-//!   output compared on every clock, every result measured against the formula;
+//! - *golden*: the golden model beside it, every register and output compared on every clock (`Lockstep::replay`);
+//! - *cosim*: `Lockstep::run` as `glint cosim` uses it: the same with stimulus that is drawn meanwhile, and every result
+//!   measured against the formula;
 //! - Verilator: the emitted Verilog (`-O3`, for this processor) under `paired.cpp`, building excluded;
 //! - Icarus Verilog: `vvp` running the emitted bench, compiling excluded.
 //!
-//! *design*, Verilator and Icarus replay the same recorded streams from memory, the latter two one stream
+//! *design*, *golden*, Verilator and Icarus replay the same recorded streams from memory, the latter two one stream
 //! after the other; a sum over all results shows that they did. Figures are by processor time, because
 //! other programs disturb wall time more; each is the median of several rounds, and ratios are medians
 //! of the ratios within a round. The last column is wall time, all threads, compiling the design
@@ -28,6 +29,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Context, Result, anyhow, ensure};
 use glint::config::{self, Config};
 use glint::core::Core;
+use glint::cosim::{Lockstep, Outcome};
 use glint::hdl::netlist::{NetId, Role};
 use glint::hdl::sim::Simulator;
 use glint::package::Vectors;
@@ -43,8 +45,8 @@ const POINTS: u64 = 64;
 /// Clocks, at least, in one measurement of the design; in as many replays of all streams, one of Verilator has the same.
 const CLOCKS: usize = 4_000_000;
 
-/// Results in one measurement with the golden model.
-const GOLDEN_POINTS: u64 = 1_000_000;
+/// Results in one measurement of a whole co-simulation.
+const COSIM_POINTS: u64 = 1_000_000;
 
 /// Results in the measurement of the time to a verdict.
 const VERDICT_POINTS: u64 = 1_000_000;
@@ -60,8 +62,8 @@ fn main() -> Result<()> {
         "million clocks per second of processor time and thread, and ratios: median of {ROUNDS}"
     );
     println!(
-        "core                    design  golden  Verilator  Icarus  design/Verilator  \
-         golden/Verilator  design/Icarus  {VERDICT_POINTS} points"
+        "core                    design  golden   cosim  Verilator  Icarus  design/Verilator  \
+         golden/Verilator  cosim/Verilator  design/Icarus  {VERDICT_POINTS} points"
     );
     let named: Vec<String> = std::env::args().skip(1).collect();
     let named: Vec<&String> = named.iter().filter(|it| !it.starts_with('-')).collect();
@@ -77,20 +79,23 @@ fn main() -> Result<()> {
         let mut verdicts = Vec::new();
         for _ in 0..ROUNDS {
             let design = streams.design(&core)?;
-            let golden = golden(&core)?;
-            rounds.push([design, golden, verilator.run()?, icarus.run()?].map(|rate| rate / 1e6));
+            let (golden, cosim) = (streams.golden(&core)?, cosim(&core)?);
+            let rates = [design, golden, cosim, verilator.run()?, icarus.run()?];
+            rounds.push(rates.map(|rate| rate / 1e6));
             verdicts.push(verdict(&core)?);
         }
-        let figure = |of: fn(&[f64; 4]) -> f64| median(rounds.iter().map(of).collect());
+        let figure = |of: fn(&[f64; 5]) -> f64| median(rounds.iter().map(of).collect());
         println!(
-            "{name:22} {:7.2} {:7.2} {:10.2} {:7.3} {:17.2} {:17.2} {:14.0} {:10.2} s",
+            "{name:22} {:7.2} {:7.2} {:7.2} {:10.2} {:7.3} {:17.2} {:17.2} {:16.2} {:14.0} {:10.2} s",
             figure(|round| round[0]),
             figure(|round| round[1]),
             figure(|round| round[2]),
             figure(|round| round[3]),
-            figure(|round| round[0] / round[2]),
-            figure(|round| round[1] / round[2]),
+            figure(|round| round[4]),
             figure(|round| round[0] / round[3]),
+            figure(|round| round[1] / round[3]),
+            figure(|round| round[2] / round[3]),
+            figure(|round| round[0] / round[4]),
             median(verdicts),
         );
     }
@@ -219,6 +224,16 @@ impl Streams {
         Ok((passes * self.clocks()) as f64 / seconds)
     }
 
+    /// Clocks per second of one thread with the golden model and the comparison; of a pipeline, whose golden model speaks of
+    /// points and not of inputs, no number.
+    fn golden(&self, core: &Core) -> Result<f64> {
+        if core.design.pipeline.is_some() {
+            return Ok(f64::NAN);
+        }
+        let clocks = self.passes() * self.inputs[0].len();
+        on_one_thread(core, |lockstep| lockstep.replay(&self.inputs, clocks as u64))
+    }
+
     /// All streams one after the other, with the outputs before each edge.
     fn vectors(&self, core: &Core) -> Result<Vectors> {
         let mut simulator: Simulator = Simulator::new(&core.design)?;
@@ -240,11 +255,19 @@ impl Streams {
     }
 }
 
-/// Clocks per second of one thread with golden model and comparison.
-fn golden(core: &Core) -> Result<f64> {
+/// Clocks per second of one thread with stimulus, golden model, comparison and formula.
+fn cosim(core: &Core) -> Result<f64> {
+    on_one_thread(core, |lockstep| lockstep.run(COSIM_POINTS, &|_| ()))
+}
+
+/// Clocks per second of one thread of a run that finds no difference.
+fn on_one_thread(
+    core: &Core,
+    run: impl FnOnce(&Lockstep<'_>) -> Result<Outcome> + Send,
+) -> Result<f64> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let lockstep = core.lockstep(1)?;
-    let (seconds, outcome) = pool.install(|| timed(|| lockstep.run(GOLDEN_POINTS, &|_| ())))?;
+    let (seconds, outcome) = pool.install(move || timed(move || run(&lockstep)))?;
     ensure!(outcome.mismatch.is_none(), "golden model and simulation differ");
     Ok(outcome.clocks as f64 / seconds)
 }

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 
 use super::lockstep::Sequential;
 use super::outcome::Outcome;
@@ -109,6 +109,19 @@ impl<'a> Lockstep<'a> {
         match &self.0 {
             Core(core) => core.record(points, computations),
             Pipe(pipe) => pipe.record(points, computations),
+        }
+    }
+
+    /// Golden model and simulation from power-up on under recorded inputs, those of [`Lockstep::record`] say: by stream,
+    /// then by clock, then by input. Each stream is gone through for `clocks` clocks, again from its beginning after its
+    /// end. Results are compared with the golden model, and not with the formula.
+    ///
+    /// # Errors
+    /// Those of [`Lockstep::run`]; a pipeline, whose golden model speaks of points and not of inputs.
+    pub fn replay(&self, streams: &[Vec<Vec<u64>>], clocks: u64) -> Result<Outcome> {
+        match &self.0 {
+            Core(core) => core.replay(streams, clocks),
+            Pipe(_) => bail!("recorded inputs of a pipeline cannot be replayed"),
         }
     }
 

@@ -5,17 +5,16 @@ use std::sync::Arc;
 use anyhow::{Context, Result, anyhow, ensure};
 
 use super::combinations::{Combinations, Ports};
-use super::outcome::{Seen, Worst};
+use super::measure::Measure;
 use super::points::Points;
 use super::stimulus::Stimulus;
-use crate::base::fixed::{Format, MAX_WIDTH, exp2};
-use crate::golden::{Contract, Model, Output, nearer};
+use crate::golden::{Contract, Model};
 use crate::hdl::netlist::{Design, NetId, RegisterKind};
 
 /// A design and its golden model, bound by the names of ports and registers.
 pub(super) struct Binding<'a> {
     pub(super) design: &'a Design,
-    contract: &'a dyn Contract,
+    pub(super) measure: Measure<'a>,
     /// At power-up; every stream runs a copy of it.
     pub(super) model: Box<dyn Model>,
     pub(super) outputs: Vec<NetId>,
@@ -34,28 +33,6 @@ pub(super) struct Binding<'a> {
     pub(super) points: Points<'a>,
     /// Inputs from power-up on; every stream runs a copy of them with a seed of its own.
     pub(super) stimulus: Stimulus,
-    /// In the order of the contract.
-    results: Vec<Quantity>,
-}
-
-/// A net that carries a number.
-struct Quantity {
-    /// Its position among those that are compared.
-    at: usize,
-    format: Format,
-    /// The value of its last place.
-    unit: f64,
-}
-
-impl Quantity {
-    fn value(&self, bits: u64) -> f64 {
-        if self.format.signed {
-            let drop = MAX_WIDTH - self.format.width();
-            ((bits << drop) as i64 >> drop) as f64 * self.unit
-        } else {
-            bits as f64 * self.unit
-        }
-    }
 }
 
 impl<'a> Binding<'a> {
@@ -101,25 +78,9 @@ impl<'a> Binding<'a> {
         };
         let (busy, valid) = (predicted(handshake.busy)?, predicted(handshake.valid)?);
         let done = predicted(handshake.done)?;
-        let results = contract
-            .outputs()
-            .iter()
-            .map(|Output { name, format }| {
-                let net = find(name)?;
-                let at = position(net);
-                let at =
-                    at.with_context(|| format!("the contract takes `{name}` for an output"))?;
-                let real = design.net(net).format;
-                ensure!(
-                    real == *format,
-                    "the contract takes `{name}` for {format}, and it is {real}"
-                );
-                Ok(Quantity { at, format: real, unit: exp2(-real.frac) })
-            })
-            .collect::<Result<Vec<_>>>()?;
+        let measure = Measure::new(design, contract, |name| position(design.find(name)?))?;
         Ok(Self {
             design,
-            contract,
             model,
             outputs,
             order,
@@ -131,7 +92,7 @@ impl<'a> Binding<'a> {
             address: design.register(design.control.address).q,
             points,
             stimulus,
-            results,
+            measure,
         })
     }
 
@@ -149,7 +110,7 @@ impl<'a> Binding<'a> {
 
     /// Draws lines of at most `results` results.
     pub(super) fn shorten(&mut self, results: i64) {
-        if let Some(length) = self.contract.length() {
+        if let Some(length) = self.measure.contract.length() {
             self.points.limit(length, results - 1);
         }
     }
@@ -157,7 +118,7 @@ impl<'a> Binding<'a> {
     /// Computations with these raw operands, in the order of the contract.
     pub(super) fn listed(&self, computations: &[Vec<i64>]) -> Combinations {
         let mut ports = Ports::new(self.design);
-        let names = self.contract.operands().iter().map(|operand| operand.name.as_str());
+        let names = self.measure.contract.operands().iter().map(|operand| operand.name.as_str());
         ports.list(names, computations);
         Combinations::new(Arc::new(ports), 0, computations.len() as u64)
     }
@@ -169,8 +130,8 @@ impl<'a> Binding<'a> {
 
     /// A bound on the results of one computation.
     pub(super) fn longest(&self) -> u64 {
-        let length = self.contract.length();
-        let operands = self.contract.operands().iter();
+        let length = self.measure.contract.length();
+        let operands = self.measure.contract.operands().iter();
         let operand = operands.filter(|operand| Some(operand.name.as_str()) == length);
         // A length of 0 is a result too.
         operand.map(|it| it.domain.1.unsigned_abs() + 1).max().unwrap_or(1)
@@ -184,41 +145,6 @@ impl<'a> Binding<'a> {
     /// How many registers a golden model must predict.
     pub(super) fn registers(&self) -> usize {
         registers(self.design).len()
-    }
-
-    /// Whether raw operands, in the order of the contract, are in its domain.
-    pub(super) fn inside(&self, operands: &[i64]) -> bool {
-        let pairs = self.contract.operands().iter().zip(operands);
-        let mut pairs =
-            pairs.map(|(operand, raw)| (operand.domain.0..=operand.domain.1).contains(raw));
-        pairs.all(|inside| inside)
-    }
-
-    /// Takes note of the results among these values, number `index` of the computation with these operands of the
-    /// domain: of the word `f`, and of the largest error.
-    pub(super) fn measure(&self, seen: &mut Seen, operands: &[i64], index: u64, values: &[u64]) {
-        if let Some(highlight) = self.contract.highlight() {
-            let point = highlight.point(&operands[..highlight.control()], index);
-            seen.histogram.add(highlight.f_format(), highlight.f(&point));
-        }
-        seen.exact.clear();
-        self.contract.exact(operands, index, &mut seen.exact);
-        let mut largest = (seen.worst.as_ref().map_or(-1.0, |worst| worst.units), None);
-        for (result, &exact) in self.results.iter().zip(&seen.exact) {
-            let units = nearer(result.value(values[result.at]), exact) / result.unit;
-            if units > largest.0 {
-                largest = (units, Some(result.at));
-            }
-        }
-        let (units, Some(at)) = largest else {
-            return;
-        };
-        let names = self.contract.operands().iter().map(|it| it.name.clone());
-        seen.worst = Some(Worst {
-            units,
-            output: self.model.signals()[at].clone(),
-            operands: names.zip(operands.iter().copied()).collect(),
-        });
     }
 }
 

@@ -8,6 +8,7 @@
 
 use std::io::Write;
 use std::ops::Range;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use anyhow::{Result, bail};
@@ -16,6 +17,7 @@ use rayon::prelude::*;
 use super::alone::Alone;
 use super::binding::Binding;
 use super::outcome::{Course, Outcome, Seen, share, stream_seed};
+use super::recorded::Recording;
 use super::together::Together;
 use crate::golden::{Contract, Model};
 use crate::hdl::netlist::Design;
@@ -115,6 +117,28 @@ impl<'a> Sequential<'a> {
             differs.fetch_min(first + at as u64, Ordering::Relaxed);
         }
         group.into_seen()
+    }
+
+    /// See [`Lockstep::replay`](super::Lockstep::replay).
+    ///
+    /// # Errors
+    /// Those of [`Sequential::run`].
+    pub fn replay(&self, streams: &[Vec<Vec<u64>>], clocks: u64) -> Result<Outcome> {
+        let course = |inputs: &Vec<Vec<u64>>| Course::Recorded {
+            recording: Arc::new(Recording::new(inputs)),
+            clocks,
+        };
+        let groups: Vec<Vec<Seen>> = streams
+            .par_chunks(LANES)
+            .map(|streams| {
+                let mut group = Together::<LANES>::new(&self.binding, streams.iter().map(course))?;
+                while !group.ended() {
+                    group.run()?;
+                }
+                group.into_seen()
+            })
+            .collect::<Result<_>>()?;
+        Ok(self.outcome(groups.into_iter().flatten()))
     }
 
     /// One stream of `points` points under the seed of the run.

@@ -1,9 +1,11 @@
 //! What runs show: results, errors, and the first difference.
 
 use std::fmt;
+use std::sync::Arc;
 
 use super::histogram::Histogram;
 use super::random::Random;
+use super::recorded::Recording;
 use crate::golden::Bound;
 
 /// What a run showed.
@@ -117,7 +119,8 @@ pub(super) struct Seen {
     pub(super) worst: Option<Worst>,
     pub(super) histogram: Histogram,
     pub(super) mismatch: Option<Mismatch>,
-    /// What the formula says of the latest result.
+    /// The control operands of the latest result, and what the formula says of it.
+    pub(super) point: Vec<i64>,
     pub(super) exact: Vec<[f64; 2]>,
 }
 
@@ -137,10 +140,12 @@ pub(super) fn share(points: u64, streams: u64, number: u64) -> u64 {
 }
 
 /// What a stream goes through.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum Course {
     /// `points` results under the stimulus of a seed.
     Random { seed: u64, points: u64 },
     /// The combinations of operands at `count` places, from the first on.
     Combinations { first: u64, count: u64 },
+    /// Recorded inputs, again and again, for `clocks` clocks.
+    Recorded { recording: Arc<Recording>, clocks: u64 },
 }

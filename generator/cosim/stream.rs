@@ -5,6 +5,7 @@ use std::mem;
 use super::binding::Binding;
 use super::combinations::Combinations;
 use super::outcome::{Course, Mismatch, Seen};
+use super::recorded::Recorded;
 use super::stimulus::Stimulus;
 use crate::golden::Model;
 use crate::hdl::netlist::NetId;
@@ -13,6 +14,7 @@ use crate::hdl::netlist::NetId;
 enum Source {
     Random { stimulus: Stimulus, seed: u64, points: u64 },
     Combinations(Combinations),
+    Recorded(Recorded),
 }
 
 /// A stream. What the simulated hardware makes of it is for others to say.
@@ -41,6 +43,9 @@ impl Stream {
             Course::Combinations { first, count } => {
                 Source::Combinations(binding.combinations(first, count))
             }
+            Course::Recorded { recording, clocks } => {
+                Source::Recorded(Recorded::new(recording, clocks))
+            }
         };
         Self {
             seen: Seen::default(),
@@ -59,6 +64,7 @@ impl Stream {
             || match &self.source {
                 Source::Random { points, .. } => self.seen.points >= *points,
                 Source::Combinations(combinations) => !self.deaf && combinations.all_started(),
+                Source::Recorded(recorded) => self.seen.clocks >= recorded.clocks,
             }
     }
 
@@ -72,14 +78,16 @@ impl Stream {
         match &self.source {
             &Source::Random { seed, points, .. } => Course::Random { seed, points },
             Source::Combinations(combinations) => combinations.course(),
+            Source::Recorded(recorded) => recorded.course(),
         }
     }
 
-    /// What the inputs can be made again from: the seed, or the place of the combination that runs.
+    /// What the inputs can be made again from: the seed, or the place of the combination that runs; 0 for recorded ones.
     pub(super) fn seed(&self) -> u64 {
         match &self.source {
             Source::Random { seed, .. } => *seed,
             Source::Combinations(combinations) => combinations.place(),
+            Source::Recorded(_) => 0,
         }
     }
 
@@ -87,7 +95,7 @@ impl Stream {
     pub(super) fn since_start(&self) -> u64 {
         match &self.source {
             Source::Combinations(combinations) => combinations.since_start(),
-            Source::Random { .. } => 0,
+            Source::Random { .. } | Source::Recorded(_) => 0,
         }
     }
 
@@ -97,6 +105,7 @@ impl Stream {
         let inputs = match &mut self.source {
             Source::Random { stimulus, .. } => stimulus.next(self.deaf, &binding.points),
             Source::Combinations(combinations) => combinations.next(self.deaf),
+            Source::Recorded(recorded) => recorded.next(),
         };
         match &binding.order {
             None => self.model.clock(inputs),
@@ -115,6 +124,7 @@ impl Stream {
         match &self.source {
             Source::Random { stimulus, .. } => stimulus.inputs(),
             Source::Combinations(combinations) => combinations.inputs(),
+            Source::Recorded(recorded) => recorded.inputs(),
         }
     }
 
@@ -123,7 +133,7 @@ impl Stream {
     pub(super) fn is_idle(&self) -> bool {
         match &self.source {
             Source::Random { stimulus, .. } => stimulus.is_idle(),
-            Source::Combinations(_) => false,
+            Source::Combinations(_) | Source::Recorded(_) => false,
         }
     }
 
@@ -169,17 +179,18 @@ impl Stream {
             return;
         }
         self.seen.points += 1;
-        // All combinations against the formula: that is the proof of the contract.
+        // All combinations against the formula: that is the proof of the contract. Of recorded inputs nobody says which
+        // operands a result is of.
         let Source::Random { stimulus, .. } = &self.source else {
             return;
         };
         if self.index == 0 {
             self.operands.clear();
             self.operands.extend(stimulus.accepted());
-            self.inside = binding.inside(&self.operands);
+            self.inside = binding.measure.inside(&self.operands);
         }
         if self.inside {
-            binding.measure(&mut self.seen, &self.operands, self.index, values);
+            binding.measure.note(&mut self.seen, &self.operands, self.index, values);
         } else {
             self.seen.histogram.add_outside();
         }

@@ -170,10 +170,8 @@ impl Reflectance for Arithmetic {
         vec![format!("cos(pi / 2 * min(abs({angle}), 1)) ** 2")]
     }
 
-    fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
-        let format = self.params.angle_format();
-        let angle = line::angle_at(format, control[1], control[0], index);
-        vec![control[0], angle, control[2]]
+    fn point(&self, control: &mut [i64], index: u64) {
+        control[1] = line::angle_at(self.params.angle_format(), control[1], control[0], index);
     }
 
     fn line(&self, first: &[i64], last: &[i64]) -> Vec<i64> {

@@ -7,7 +7,7 @@ use std::f64::consts::FRAC_PI_2;
 use super::Operand;
 use super::contract::control;
 use super::frame::{Frame, Microinstruction, Slot, idle, step};
-use crate::base::fixed::{Format, Overflow, Rounding, exp2};
+use crate::base::fixed::{Format, MAX_WIDTH, exp2};
 
 /// The raw value of an angle operand that is nearest to `angle`, in radians, or the end of its domain.
 pub fn raw_angle(operand: &Operand, angle: f64) -> i64 {
@@ -86,14 +86,16 @@ fn length_format(length_bits: u32) -> Format {
 }
 
 /// An angle as the accumulator holds it.
+#[inline]
 fn wrapped(format: Format, raw: i64) -> i64 {
-    format.narrow(i128::from(raw), format.frac, Rounding::Truncate, Overflow::Wrap) as i64
+    let above = MAX_WIDTH - format.width();
+    raw << above >> above
 }
 
 /// The angle of point number `index` of a line, as the accumulator holds it.
+#[inline]
 pub fn angle_at(format: Format, start: i64, delta: i64, index: u64) -> i64 {
-    let sum = i128::from(start) + i128::from(delta) * i128::from(index);
-    format.narrow(sum, format.frac, Rounding::Truncate, Overflow::Wrap) as i64
+    wrapped(format, start.wrapping_add(delta.wrapping_mul(index as i64)))
 }
 
 /// The step of a line of `length` intervals from an angle to another; of none that given.

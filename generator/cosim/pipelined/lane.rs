@@ -151,7 +151,14 @@ impl Lane {
         if let Some(point) = self.stages.clock(rst_n, offered, out_ready) {
             self.seen.points += 1;
             let results = &point.expected.results;
-            setup.formula.measure(&mut self.seen, &mut self.raw, &point.operands, results);
+            let operands = setup.measure.contract.operands().iter().zip(&setup.of_contract);
+            self.raw.clear();
+            self.raw.extend(operands.map(|(it, &at)| it.format.raw(point.operands[at]) as i64));
+            if setup.measure.inside(&self.raw) {
+                setup.measure.note(&mut self.seen, &self.raw, 0, results);
+            } else {
+                self.seen.histogram.add_outside();
+            }
         }
         Ok(())
     }
@@ -172,7 +179,7 @@ impl Lane {
 
     /// Raw operands in the order of the contract as bit patterns at the ports. Operands that it does not have are drawn.
     fn bits(&mut self, setup: &Setup<'_>, raw: &[i64]) -> Vec<u64> {
-        let operands = setup.operands.iter().zip(&setup.formula.of_operands);
+        let operands = setup.operands.iter().zip(&setup.in_contract);
         operands
             .map(|(operand, known)| match known {
                 Some(at) => raw[*at] as u64 & mask(operand.format.width()),

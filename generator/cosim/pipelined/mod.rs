@@ -17,6 +17,7 @@ use anyhow::{Context, Result, ensure};
 use rayon::prelude::*;
 
 use super::lockstep::LANES;
+use super::measure::Measure;
 use super::outcome::{Mismatch, Outcome, Seen, share, stream_seed};
 use super::points::Points;
 use crate::golden::{Contract, Model, Operand};
@@ -24,7 +25,7 @@ use crate::hdl::netlist::{Design, NetId, Pipeline, Role};
 use crate::hdl::sim::Simulator;
 use crate::package::Vectors;
 use lane::Lane;
-use reference::{Formula, Reference};
+use reference::Reference;
 
 /// The points of a stream.
 const POINTS: u64 = 2048;
@@ -40,7 +41,10 @@ pub(super) struct Setup<'a> {
     pub design: &'a Design,
     pipeline: &'a Pipeline,
     model: Box<dyn Model>,
-    formula: Formula<'a>,
+    measure: Measure<'a>,
+    /// For each operand of the contract its position among those of the pipeline, and the other way round.
+    of_contract: Vec<usize>,
+    in_contract: Vec<Option<usize>>,
     latency: usize,
     stall: bool,
     side: u32,
@@ -135,7 +139,15 @@ impl<'a> Pipelined<'a> {
                 doc: String::new(),
             })
         });
-        let operands = operands.collect();
+        let operands: Vec<Operand> = operands.collect();
+        let of_contract = contract.operands().iter().map(|operand| {
+            let at = operands.iter().position(|other| other.name == operand.name);
+            at.with_context(|| format!("the contract speaks of operand `{}`", operand.name))
+        });
+        let of_contract = of_contract.collect::<Result<Vec<usize>>>()?;
+        let in_contract = (0..operands.len())
+            .map(|port| of_contract.iter().position(|&operand| operand == port))
+            .collect();
         let results: Vec<NetId> = design
             .ports
             .iter()
@@ -146,7 +158,11 @@ impl<'a> Pipelined<'a> {
         let (in_ready, side_out) = (out(Role::InReady), out(Role::SideOut));
         let (compared, columns) = Columns::new(pipeline, out_valid, in_ready, side_out, &results);
         let setup = Setup {
-            formula: Formula::new(design, contract, &results)?,
+            measure: Measure::new(design, contract, |name| {
+                results.iter().position(|&net| design.net(net).name == name)
+            })?,
+            of_contract,
+            in_contract,
             design,
             pipeline,
             model,

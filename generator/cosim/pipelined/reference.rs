@@ -2,9 +2,7 @@
 
 use anyhow::{Context, Result, anyhow};
 
-use crate::base::fixed::{Format, exp2};
-use crate::cosim::outcome::{Seen, Worst};
-use crate::golden::{Contract, Model, nearer};
+use crate::golden::Model;
 use crate::hdl::netlist::{Design, NetId, Pipeline, Role};
 
 /// The most clocks of a computation.
@@ -128,109 +126,5 @@ impl Reference {
             self.model.clock(&self.inputs);
         }
         Err(anyhow!("the golden model does not end"))
-    }
-}
-
-/// What points show of the formula in f64.
-pub(super) struct Formula<'a> {
-    contract: &'a dyn Contract,
-    /// For each operand of the contract its position among those of the pipeline.
-    operands: Vec<usize>,
-    /// For each operand of the pipeline its position among those of the contract, if it is there.
-    pub(super) of_operands: Vec<Option<usize>>,
-    /// For each output of the contract its position among the results, its format, and the value of its last place.
-    outputs: Vec<(usize, Format, f64)>,
-    /// The names of the results.
-    names: Vec<String>,
-}
-
-impl<'a> Formula<'a> {
-    /// # Errors
-    /// A name of one side that the other does not have.
-    pub(super) fn new(
-        design: &Design,
-        contract: &'a dyn Contract,
-        results: &[NetId],
-    ) -> Result<Self> {
-        let name = |net: NetId| design.net(net).name.as_str();
-        let ports: Vec<&str> = design
-            .ports
-            .iter()
-            .filter(|port| port.role == Role::Point)
-            .map(|port| name(port.net))
-            .collect();
-        let operands = contract
-            .operands()
-            .iter()
-            .map(|operand| {
-                let at = ports.iter().position(|&port| port == operand.name);
-                at.with_context(|| format!("the contract speaks of operand `{}`", operand.name))
-            })
-            .collect::<Result<Vec<usize>>>()?;
-        let of_operands = (0..ports.len())
-            .map(|port| operands.iter().position(|&operand| operand == port))
-            .collect();
-        let outputs = contract
-            .outputs()
-            .iter()
-            .map(|output| {
-                let at = results.iter().position(|&net| name(net) == output.name);
-                let at = at.with_context(|| {
-                    format!("the contract takes `{}` for an output", output.name)
-                })?;
-                let format = design.net(results[at]).format;
-                Ok((at, format, exp2(-format.frac)))
-            })
-            .collect::<Result<_>>()?;
-        let names = results.iter().map(|&net| name(net).to_owned()).collect();
-        Ok(Self { contract, operands, of_operands, outputs, names })
-    }
-
-    /// Takes note of a point by its bit patterns: of the word `f`, and of the largest error. `raw` is room for the raw
-    /// operands.
-    pub(super) fn measure(
-        &self,
-        seen: &mut Seen,
-        raw: &mut Vec<i64>,
-        bits: &[u64],
-        results: &[u64],
-    ) {
-        let operands = self.contract.operands();
-        raw.clear();
-        let mut inside = true;
-        for (operand, &at) in operands.iter().zip(&self.operands) {
-            let value = operand.format.raw(bits[at]) as i64;
-            inside &= (operand.domain.0..=operand.domain.1).contains(&value);
-            raw.push(value);
-        }
-        let highlight = self.contract.highlight();
-        if !inside {
-            if highlight.is_some() {
-                seen.histogram.add_outside();
-            }
-            return;
-        }
-        if let Some(highlight) = highlight {
-            let f = highlight.f(&highlight.point(&raw[..highlight.control()], 0));
-            seen.histogram.add(highlight.f_format(), f);
-        }
-        seen.exact.clear();
-        self.contract.exact(raw, 0, &mut seen.exact);
-        let mut largest = (seen.worst.as_ref().map_or(-1.0, |worst| worst.units), None);
-        for (&(at, format, unit), &exact) in self.outputs.iter().zip(&seen.exact) {
-            let value = format.raw(results[at]) as f64 * unit;
-            let units = nearer(value, exact) / unit;
-            if units > largest.0 {
-                largest = (units, Some(at));
-            }
-        }
-        if let (units, Some(at)) = largest {
-            let names = operands.iter().map(|operand| operand.name.clone());
-            seen.worst = Some(Worst {
-                units,
-                output: self.names[at].clone(),
-                operands: names.zip(raw.iter().copied()).collect(),
-            });
-        }
     }
 }

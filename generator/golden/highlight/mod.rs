@@ -36,13 +36,12 @@ pub trait Reflectance: Send + Sync {
         Vec::new()
     }
 
-    /// The control operands of the one point that result number `index` (from 0) of a computation shows.
+    /// Moves control operands to those of the one point that result number `index` (from 0) of a computation shows.
     ///
     /// A device with one result per `start` shows the point of its operands. One that walks a line of
     /// points from one `start` says here where the walk has come to.
-    fn point(&self, control: &[i64], index: u64) -> Vec<i64> {
-        let _ = index;
-        control.to_vec()
+    fn point(&self, control: &mut [i64], index: u64) {
+        let _ = (control, index);
     }
 
     /// Where the formula is largest: these control operands with those changed that lead there (a cosine to 1, an
@@ -181,11 +180,39 @@ impl Highlight {
     /// As [`Reflectance::point`]: the operands themselves where a computation has one result.
     #[inline]
     pub fn point<'c>(&self, control: &'c [i64], index: u64) -> Cow<'c, [i64]> {
-        if self.single {
-            Cow::Borrowed(control)
-        } else {
-            Cow::Owned(self.reflectance.point(control, index))
+        let mut point = Cow::Borrowed(control);
+        if !self.single {
+            self.reflectance.point(point.to_mut(), index);
         }
+        point
+    }
+
+    /// The f of result number `index` (from 0) of raw operands; `exact` takes what [`Contract::exact`] says of it. `point`
+    /// is room for its control operands.
+    #[inline]
+    pub fn measured(
+        &self,
+        operands: &[i64],
+        index: u64,
+        point: &mut Vec<i64>,
+        exact: &mut Vec<[f64; 2]>,
+    ) -> i64 {
+        let (control, colours) = operands.split_at(self.control());
+        point.clear();
+        point.extend(control);
+        self.reflectance.point(point, index);
+        self.exact_at(point, colours, exact);
+        self.f(point)
+    }
+
+    /// What [`Contract::exact`] says at the control operands of one point.
+    fn exact_at(&self, point: &[i64], colours: &[i64], exact: &mut Vec<[f64; 2]>) {
+        let f = self.references(point);
+        let pairs = self.products.operands.iter().zip(colours);
+        exact.extend(pairs.map(|(operand, &colour)| {
+            let colour = colour as f64 * exp2(-operand.format.frac);
+            f.map(|f| f * colour)
+        }));
     }
 
     /// As [`Reflectance::peak`].
@@ -226,12 +253,7 @@ impl Contract for Highlight {
 
     fn exact(&self, operands: &[i64], index: u64, values: &mut Vec<[f64; 2]>) {
         let (control, colours) = operands.split_at(self.control());
-        let f = self.references(&self.point(control, index));
-        let pairs = self.products.operands.iter().zip(colours);
-        values.extend(pairs.map(|(operand, &colour)| {
-            let colour = colour as f64 * exp2(-operand.format.frac);
-            f.map(|f| f * colour)
-        }));
+        self.exact_at(&self.point(control, index), colours, values);
     }
 
     fn highlight(&self) -> Option<&Highlight> {
