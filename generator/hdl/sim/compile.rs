@@ -55,10 +55,10 @@ impl<'a> Compiler<'a> {
         match &design.net(id).driver {
             Driver::Undriven | Driver::Input => self.of_net[id.index()],
             Driver::Constant(bits) => self.constant(bits & mask(width)),
-            Driver::Register(_) => self.source(),
+            Driver::Register(register) => self.source(design.register(*register).enable),
             Driver::Rom(rom) => {
                 if design.rom(*rom).synchronous {
-                    return self.source();
+                    return self.source(design.rom(*rom).enable);
                 }
                 let address = self.of_net[design.rom(*rom).address.index()];
                 let words = self.roms[rom.index()];

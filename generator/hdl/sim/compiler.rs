@@ -1,9 +1,10 @@
 //! What the parts of the compiler share: slots, instructions, and what is known of them.
 
 use std::collections::{BTreeMap, HashMap};
+use std::mem;
 
 use crate::base::fixed::mask;
-use crate::hdl::netlist::Design;
+use crate::hdl::netlist::{Design, NetId};
 use crate::hdl::sim::machine::execute;
 use crate::hdl::sim::program::{InputPort, Instruction, Slot, Sources, Span};
 
@@ -33,6 +34,8 @@ pub(super) struct Compiler<'a> {
     input_sources: u32,
     /// The next source for what the edge writes.
     next_source: u32,
+    /// The sources of what has an enable.
+    enabled: HashMap<NetId, u32>,
     /// The next source for a field.
     pub(super) next_field: u32,
     /// For each slot; the only lane is that of the folded constants.
@@ -63,6 +66,7 @@ impl<'a> Compiler<'a> {
             sources: Vec::new(),
             input_sources,
             next_source: input_sources,
+            enabled: HashMap::new(),
             next_field: FIRST_FIELD,
             initial: Vec::new(),
             constants: BTreeMap::new(),
@@ -101,12 +105,18 @@ impl<'a> Compiler<'a> {
         (self.sources.len() - 1) as Slot
     }
 
-    /// A slot that the edge writes.
-    pub(super) fn source(&mut self) -> Slot {
-        let source = self.next_source;
-        let next = source + 1;
-        self.next_source = if next == FIRST_FIELD { self.input_sources } else { next };
-        self.fresh(1 << source)
+    /// A slot that the edge writes where `enable` is 1. What has one enable changes together, and is one source.
+    pub(super) fn source(&mut self, enable: Option<NetId>) -> Slot {
+        let number = enable.and_then(|enable| self.enabled.get(&enable).copied());
+        let number = number.unwrap_or_else(|| {
+            let next = self.next_source + 1;
+            let after = if next == FIRST_FIELD { self.input_sources } else { next };
+            mem::replace(&mut self.next_source, after)
+        });
+        if let Some(enable) = enable {
+            self.enabled.insert(enable, number);
+        }
+        self.fresh(1 << number)
     }
 
     pub(super) fn constant(&mut self, bits: u64) -> Slot {

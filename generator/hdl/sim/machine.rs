@@ -342,6 +342,18 @@ fn clock<W: Word, const LANES: usize>(
         news |= store(&mut slots[edge.to as usize], &word, edge.source, news);
     }
     for edge in &bank.registers {
+        let slot = |slot: Slot| slot as usize;
+        let disjoint = match (edge.enable, edge.reset) {
+            (Some(enable), None) => {
+                slots.get_disjoint_mut([slot(edge.q), slot(edge.data), slot(enable)]).ok()
+            }
+            _ => None,
+        };
+        // Most registers of a pipeline: in place.
+        if let Some([q, data, enable]) = disjoint {
+            news |= load(q, data, enable, edge.source, news);
+            continue;
+        }
         let mut next = enabled(slots, edge.q, slots[edge.data as usize], edge.enable);
         if let Some((rst_n, reset)) = edge.reset {
             let (rst_n, reset) = (&slots[rst_n as usize], W::low(reset));
@@ -352,6 +364,30 @@ fn clock<W: Word, const LANES: usize>(
         news |= store(&mut slots[edge.q as usize], &next, edge.source, news);
     }
     news
+}
+
+/// A register takes its data in the lanes that are enabled; `source` when that changes any, unless it is among the `news`
+/// already.
+#[inline(always)]
+fn load<W: Word, const LANES: usize>(
+    q: &mut [W; LANES],
+    data: &[W; LANES],
+    enable: &[W; LANES],
+    source: Sources,
+    news: Sources,
+) -> Sources {
+    let mut differences = W::ZERO;
+    if news & source == 0 {
+        for lane in 0..LANES {
+            let difference = q[lane] ^ data[lane];
+            let enabled = enable[lane] != W::ZERO;
+            differences = differences | select_unpredictable(enabled, difference, W::ZERO);
+        }
+    }
+    for lane in 0..LANES {
+        q[lane] = select_unpredictable(enable[lane] != W::ZERO, data[lane], q[lane]);
+    }
+    if differences == W::ZERO { 0 } else { source }
 }
 
 /// What a slot takes at the edge: a new value in the lanes that are enabled.
