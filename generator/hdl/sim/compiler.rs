@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::mem;
 
 use crate::base::fixed::mask;
-use crate::hdl::netlist::{Design, NetId};
+use crate::hdl::netlist::{Design, Driver, NetId};
 use crate::hdl::sim::machine::execute;
 use crate::hdl::sim::program::{InputPort, Instruction, Slot, Sources, Span};
 
@@ -105,8 +105,11 @@ impl<'a> Compiler<'a> {
         (self.sources.len() - 1) as Slot
     }
 
-    /// A slot that the edge writes where `enable` is 1. What has one enable changes together, and is one source.
+    /// A slot that the edge writes where `enable` is 1. What has one enable changes together, and is one source; but what a
+    /// microinstruction loads is seldom all news.
     pub(super) fn source(&mut self, enable: Option<NetId>) -> Slot {
+        let is_field = |net: &NetId| matches!(self.design.net(*net).driver, Driver::Field(_));
+        let enable = enable.filter(|net| !is_field(net));
         let number = enable.and_then(|enable| self.enabled.get(&enable).copied());
         let number = number.unwrap_or_else(|| {
             let next = self.next_source + 1;
