@@ -85,15 +85,17 @@ fn main() -> Result<()> {
             verdicts.push(verdict(&core)?);
         }
         let figure = |of: fn(&[f64; 5]) -> f64| median(rounds.iter().map(of).collect());
+        let shown =
+            |figure: f64| if figure.is_nan() { "–".to_owned() } else { format!("{figure:.2}") };
         println!(
-            "{name:22} {:7.2} {:7.2} {:7.2} {:10.2} {:7.3} {:17.2} {:17.2} {:16.2} {:14.0} {:10.2} s",
+            "{name:22} {:7.2} {:>7} {:7.2} {:10.2} {:7.3} {:17.2} {:>17} {:16.2} {:14.0} {:10.2} s",
             figure(|round| round[0]),
-            figure(|round| round[1]),
+            shown(figure(|round| round[1])),
             figure(|round| round[2]),
             figure(|round| round[3]),
             figure(|round| round[4]),
             figure(|round| round[0] / round[3]),
-            figure(|round| round[1] / round[3]),
+            shown(figure(|round| round[1] / round[3])),
             figure(|round| round[2] / round[3]),
             figure(|round| round[0] / round[4]),
             median(verdicts),
