@@ -2,8 +2,6 @@
 
 use std::sync::Arc;
 
-use super::outcome::Course;
-
 /// The inputs of some clocks, one clock after another.
 #[derive(Debug)]
 pub(super) struct Recording {
@@ -21,7 +19,7 @@ impl Recording {
 
 /// A stream of recorded inputs.
 pub(super) struct Recorded {
-    recording: Arc<Recording>,
+    pub(super) recording: Arc<Recording>,
     /// How many clocks it has.
     pub(super) clocks: u64,
     /// Where those of the next clock begin.
@@ -31,10 +29,6 @@ pub(super) struct Recorded {
 impl Recorded {
     pub(super) fn new(recording: Arc<Recording>, clocks: u64) -> Self {
         Self { recording, clocks, next: 0 }
-    }
-
-    pub(super) fn course(&self) -> Course {
-        Course::Recorded { recording: self.recording.clone(), clocks: self.clocks }
     }
 
     /// The inputs of the next clock.

@@ -78,7 +78,9 @@ impl Stream {
         match &self.source {
             &Source::Random { seed, points, .. } => Course::Random { seed, points },
             Source::Combinations(combinations) => combinations.course(),
-            Source::Recorded(recorded) => recorded.course(),
+            Source::Recorded(Recorded { recording, clocks, .. }) => {
+                Course::Recorded { recording: recording.clone(), clocks: *clocks }
+            }
         }
     }
 
