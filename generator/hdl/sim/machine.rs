@@ -376,18 +376,13 @@ fn load<W: Word, const LANES: usize>(
     source: Sources,
     news: Sources,
 ) -> Sources {
-    let mut differences = W::ZERO;
-    if news & source == 0 {
-        for lane in 0..LANES {
-            let difference = q[lane] ^ data[lane];
-            let enabled = enable[lane] != W::ZERO;
-            differences = differences | select_unpredictable(enabled, difference, W::ZERO);
-        }
-    }
+    let changed = changed::<W, LANES>(source, news, |lane| {
+        select_unpredictable(enable[lane] == W::ZERO, W::ZERO, q[lane] ^ data[lane])
+    });
     for lane in 0..LANES {
-        q[lane] = select_unpredictable(enable[lane] != W::ZERO, data[lane], q[lane]);
+        q[lane] = select_unpredictable(enable[lane] == W::ZERO, q[lane], data[lane]);
     }
-    if differences == W::ZERO { 0 } else { source }
+    changed
 }
 
 /// What a slot takes at the edge: a new value in the lanes that are enabled.
@@ -415,13 +410,25 @@ fn store<W: Word, const LANES: usize>(
     source: Sources,
     news: Sources,
 ) -> Sources {
-    let mut differences = W::ZERO;
-    if news & source == 0 {
-        for lane in 0..LANES {
-            differences = differences | slot[lane] ^ new[lane];
-        }
-    }
+    let changed = changed::<W, LANES>(source, news, |lane| slot[lane] ^ new[lane]);
     *slot = *new;
+    changed
+}
+
+/// `source` when any lane has a difference, unless it is among the `news` already.
+#[inline(always)]
+fn changed<W: Word, const LANES: usize>(
+    source: Sources,
+    news: Sources,
+    difference: impl Fn(usize) -> W,
+) -> Sources {
+    if news & source != 0 {
+        return 0;
+    }
+    let mut differences = W::ZERO;
+    for lane in 0..LANES {
+        differences = differences | difference(lane);
+    }
     if differences == W::ZERO { 0 } else { source }
 }
 
