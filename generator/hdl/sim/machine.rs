@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use crate::hdl::netlist::NetId;
 use crate::hdl::sim::program::{Bank, Instruction, Place, Program, Slot, Sources, Span, Step};
+use crate::hdl::sim::slots::Slots;
 
 /// The state of `LANES` independent instances of a design, which one pass over the [`Program`]
 /// advances together.
@@ -16,8 +17,8 @@ use crate::hdl::sim::program::{Bank, Instruction, Place, Program, Slot, Sources,
 #[derive(Clone, Debug)]
 pub struct Machine<const LANES: usize = 1> {
     program: Arc<Program>,
-    narrow: Vec<[u32; LANES]>,
-    wide: Vec<[u64; LANES]>,
+    narrow: Slots<u32, LANES>,
+    wide: Slots<u64, LANES>,
     /// The sources that have changed since the machine was last settled.
     changed: Sources,
 }
@@ -101,7 +102,7 @@ impl<const LANES: usize> Machine<LANES> {
     #[inline(always)]
     fn settle(&mut self) {
         let Program { steps, segments, choices, words, .. } = &*self.program;
-        let (narrow, wide) = (self.narrow.as_mut_slice(), self.wide.as_mut_slice());
+        let (narrow, wide) = (&mut *self.narrow, &mut *self.wide);
         let mut changed = mem::take(&mut self.changed);
         let mut rest = steps.as_slice();
         for segment in segments {
@@ -182,17 +183,18 @@ impl<const LANES: usize> Machine<LANES> {
     ) -> [u64; LANES] {
         let all = [u64::MAX; LANES];
         let mut differences = [0; LANES];
+        let (narrow, wide) = (&*self.narrow, &*self.wide);
         for (at, (net, expected)) in nets.iter().zip(expected).enumerate() {
             let known = known.map_or(&all, |known| &known[at]);
             match self.program.place(*net) {
                 Place::Narrow(slot) => {
-                    let bits = &self.narrow[slot as usize];
+                    let bits = &narrow[slot as usize];
                     for lane in 0..LANES {
                         differences[lane] |= (u64::from(bits[lane]) ^ expected[lane]) & known[lane];
                     }
                 }
                 Place::Wide(slot) => {
-                    let bits = &self.wide[slot as usize];
+                    let bits = &wide[slot as usize];
                     for lane in 0..LANES {
                         differences[lane] |= (bits[lane] ^ expected[lane]) & known[lane];
                     }
@@ -256,6 +258,7 @@ impl Vectors {
 /// What a slot holds in a lane.
 pub(super) trait Word:
     Copy
+    + Default
     + Ord
     + From<bool>
     + Into<u64>
@@ -304,9 +307,8 @@ macro_rules! word {
 word!(u32);
 word!(u64);
 
-fn power_up<W: Word, const LANES: usize>(bank: &Bank) -> Vec<[W; LANES]> {
-    let slots = bank.initial.iter();
-    slots.map(|&bits| [W::low(bits); LANES]).collect()
+fn power_up<W: Word, const LANES: usize>(bank: &Bank) -> Slots<W, LANES> {
+    Slots::new(bank.initial.iter().map(|&bits| [W::low(bits); LANES]))
 }
 
 /// The sources that are news, besides those that are already.

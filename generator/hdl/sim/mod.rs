@@ -18,6 +18,7 @@ mod compiler;
 mod lower;
 mod machine;
 mod program;
+mod slots;
 #[cfg(test)]
 mod tests;
 mod vcd;

@@ -1,0 +1,48 @@
+//! The slots of a bank, laid where the processor's vectors begin.
+
+use std::ops::{Deref, DerefMut};
+
+/// The bytes of a line of the processor's cache, as long as its longest vector. One that lies across two lines is slow.
+const LINE: usize = 64;
+
+/// What each slot of a bank holds in each lane; the first begins where a line does.
+#[derive(Debug)]
+pub(super) struct Slots<W, const LANES: usize> {
+    words: Vec<W>,
+    /// The words before the first slot.
+    before: usize,
+}
+
+impl<W: Copy + Default, const LANES: usize> Slots<W, LANES> {
+    pub(super) fn new(slots: impl ExactSizeIterator<Item = [W; LANES]>) -> Self {
+        let room = LINE / size_of::<W>();
+        let mut words: Vec<W> = Vec::with_capacity(room + slots.len() * LANES);
+        let before = words.as_ptr().align_offset(LINE).min(room);
+        words.resize(before, W::default());
+        words.extend(slots.flatten());
+        Self { words, before }
+    }
+}
+
+/// Laid anew: the copy begins elsewhere.
+impl<W: Copy + Default, const LANES: usize> Clone for Slots<W, LANES> {
+    fn clone(&self) -> Self {
+        Self::new(self.iter().copied())
+    }
+}
+
+impl<W, const LANES: usize> Deref for Slots<W, LANES> {
+    type Target = [[W; LANES]];
+
+    #[inline]
+    fn deref(&self) -> &Self::Target {
+        self.words[self.before..].as_chunks().0
+    }
+}
+
+impl<W, const LANES: usize> DerefMut for Slots<W, LANES> {
+    #[inline]
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        self.words[self.before..].as_chunks_mut().0
+    }
+}
