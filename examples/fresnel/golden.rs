@@ -5,7 +5,7 @@ use glint::config::Config;
 use glint::fixed::{Format, Rounding, exp2};
 use glint::golden::contract::{ErrorShare, control};
 use glint::golden::frame::{Frame, Slot, idle, step};
-use glint::golden::highlight::{Highlight, ProductSlots, Products, Reflectance, Shading, shading};
+use glint::golden::highlight::{Highlight, Products, Reflectance, Shading, shading};
 use glint::golden::narrow::{Narrow, rounding_error};
 use glint::golden::{Contract, Model, keys};
 
@@ -77,13 +77,6 @@ struct Device {
     f0: Slot,
     power: Slot,
     f: Slot,
-    products: ProductSlots,
-}
-
-impl Shading for Device {
-    fn products(&self) -> &ProductSlots {
-        &self.products
-    }
 }
 
 /// The golden model.
@@ -94,16 +87,16 @@ pub fn model(config: &Config) -> Box<dyn Model> {
     let c = frame.clamped("cos_half", cosine, 0, 1 << it.cosine);
     let f0 = frame.operand("f0", reflectance);
     let (held, f) = (frame.register("power", power), frame.register("f", power));
-    let products = products(&it, config).slots(&mut frame, f);
-    let device = Device { it, c, f0, power: held, f, products };
+    let products = products(&it, config);
+    let device = Device { it, c, f0, power: held, f };
     let program = vec![
         idle(),
-        step(|d: &Device, s| s[d.power] = d.it.square(s[d.c])),
-        step(|d: &Device, s| s[d.power] = d.it.fourth(s[d.power])),
-        step(|d: &Device, s| s[d.power] = d.it.fifth(s[d.power], s[d.c])),
-        step(|d: &Device, s| s[d.f] = d.it.blend(s[d.power], s[d.f0])),
+        step(|d: &Shading<Device>, s| s[d.power] = d.it.square(s[d.c])),
+        step(|d: &Shading<Device>, s| s[d.power] = d.it.fourth(s[d.power])),
+        step(|d: &Shading<Device>, s| s[d.power] = d.it.fifth(s[d.power], s[d.c])),
+        step(|d: &Shading<Device>, s| s[d.f] = d.it.blend(s[d.power], s[d.f0])),
     ];
-    Box::new(shading(frame, device, program))
+    Box::new(shading(frame, device, (products, f), program))
 }
 
 /// Which function the device computes, and how far off it may be.

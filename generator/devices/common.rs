@@ -4,7 +4,7 @@ use crate::base::fixed::Format;
 use crate::config::{Config, Key, Problems};
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::line::{LineBlocks, OperandBlocks};
-use crate::hdl::dsl::{Designer, Operand, Signal, Step};
+use crate::hdl::dsl::{Designer, Operand, Signal, Step, end, step, valid};
 
 use super::rounding;
 
@@ -12,10 +12,10 @@ use super::rounding;
 pub const ROUNDINGS: [&str; 2] = ["truncate", "nearest"];
 
 /// `cosine.fraction`.
-pub fn cosine_fraction(default: i64) -> Key {
+pub fn cosine_fraction() -> Key {
     Key::integer(
         "cosine.fraction",
-        default,
+        20,
         6..=24,
         "Fraction bits of the cosine operands; 1.0 is representable.",
     )
@@ -82,13 +82,21 @@ pub fn colour_multipliers() -> Key {
 /// The outputs of colours by as many multipliers as `colour.multipliers` says, and the microinstructions that make
 /// them, which stand before the one with the result.
 #[track_caller]
-pub fn colour_outputs<'d>(config: &Config, colours: &Colours<'d>, f: Signal<'d>) -> Vec<Step> {
+pub fn colour_products<'d>(config: &Config, colours: &Colours<'d>, f: Signal<'d>) -> Vec<Step> {
     let rounding = rounding(config, "output.rounding");
     if shares_multiplier(config) {
         return colours.outputs_in_turn(f, rounding);
     }
     colours.outputs(f, rounding);
     Vec::new()
+}
+
+/// The same with the microinstruction that has the result, which ends the microprogram.
+#[track_caller]
+pub fn colour_outputs<'d>(config: &Config, colours: &Colours<'d>, f: Signal<'d>) -> Vec<Step> {
+    let mut steps = colour_products(config, colours, f);
+    steps.push(step("result", [valid(), end()]));
+    steps
 }
 
 /// Whether one multiplier makes the products with all colours.
@@ -108,6 +116,16 @@ pub fn outputs_note(config: &Config, follow: &str, until: &str) -> String {
         "Writes while busy are ignored. The outputs follow {follow} and the colour registers: they hold from valid \
          until a colour is written or the next computation {until}."
     )
+}
+
+/// The keys of the operands of a device that has cos γ, n and colours.
+pub fn operands() -> Vec<Key> {
+    vec![cosine_fraction(), cosine_signed(), exponent_bits(), colour_bits(), colour_multipliers()]
+}
+
+/// The keys of f and of the outputs.
+pub fn reflectance() -> Vec<Key> {
+    vec![intensity_fraction(16), intensity_rounding(), output_rounding()]
 }
 
 /// `intensity.fraction`.
@@ -181,24 +199,12 @@ pub fn length_bits() -> Key {
     )
 }
 
-/// `domain.exponent_min`.
-pub fn exponent_min() -> Key {
-    Key::integer(
-        "domain.exponent_min",
-        1,
-        0..=4095,
-        "The smallest n for which the accuracy contract is stated.",
-    )
-}
-
-/// `domain.exponent_max`.
-pub fn exponent_max() -> Key {
-    Key::integer(
-        "domain.exponent_max",
-        1000,
-        1..=4095,
-        "The largest n for which the accuracy contract is stated.",
-    )
+/// `domain.exponent_min` and `domain.exponent_max`.
+pub fn domain() -> Vec<Key> {
+    let doc = "The smallest n for which the accuracy contract is stated.";
+    let least = Key::integer("domain.exponent_min", 1, 0..=4095, doc);
+    let doc = "The largest n for which the accuracy contract is stated.";
+    vec![least, Key::integer("domain.exponent_max", 1000, 1..=4095, doc)]
 }
 
 /// The domain of n is not empty and fits the operand.
@@ -222,18 +228,43 @@ pub fn check_exponents(config: &Config, problems: &mut Problems) {
 }
 
 /// The most bits of a ROM: a megabit.
-pub const ROM_LIMIT: i64 = 1 << 20;
+const ROM_LIMIT: i64 = 1 << 20;
 
-/// The ROM with `address` address bits and words of `width` bits, which `key` governs, is not too large.
-pub fn check_rom_size(key: &str, rom: &str, address: i64, width: i64, problems: &mut Problems) {
+/// The ROM with as many address bits and bits in a word as `size` says is not too large. `key` governs it.
+pub fn check_rom_size(
+    key: &str,
+    rom: &str,
+    (address, width): (i64, i64),
+    remedy: &str,
+    problems: &mut Problems,
+) {
     let bits = width << address;
     if bits > ROM_LIMIT {
         problems.push(
             key,
             format!("{rom} would have 2^{address} entries of {width} bits, {bits} bits in all"),
-            format!("fewer address bits or narrower entries, for at most {ROM_LIMIT} bits"),
+            format!("{remedy}, for at most {ROM_LIMIT} bits"),
         );
     }
+}
+
+/// Every range of `key`, each a quarter of the one before it, has as many of the `bits` bits of 1 − cos as it is cut by. The
+/// most bits that a segment is left with, up to a range that has too few.
+pub fn check_segments(config: &Config, key: &str, bits: i64, problems: &mut Problems) -> i64 {
+    let mut most = 0;
+    for (range, &prefix) in (0i64..).zip(config.integers(key)) {
+        let bits = (bits - 2 * range).max(0);
+        if prefix > bits {
+            problems.push(
+                key,
+                format!("range {range} has {bits} bits of 1 - cos, which cannot be cut into 2^{prefix} segments"),
+                "fewer ranges or smaller entries, or a larger cosine.fraction".to_owned(),
+            );
+            break;
+        }
+        most = most.max(bits - prefix);
+    }
+    most
 }
 
 /// Seed 000's numbers of the accumulator that walks a line.

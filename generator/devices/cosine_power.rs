@@ -9,7 +9,7 @@ use crate::base::fixed::{Format, Overflow};
 use crate::config::{Config, Schema};
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::squaring::Squarings;
-use crate::hdl::dsl::{Designer, Signal, end, step, valid};
+use crate::hdl::dsl::{Designer, Signal, step};
 use crate::hdl::netlist::About;
 
 use super::{common, rounding};
@@ -18,19 +18,8 @@ use super::{common, rounding};
 pub fn schema() -> Schema {
     Schema {
         device: "cosine-power",
-        keys: vec![
-            common::power(),
-            common::cosine_fraction(20),
-            common::cosine_signed(),
-            common::exponent_bits(),
-            common::colour_bits(),
-            common::colour_multipliers(),
-            common::intensity_fraction(16),
-            common::intensity_rounding(),
-            common::output_rounding(),
-            common::exponent_min(),
-            common::exponent_max(),
-        ],
+        keys: [vec![common::power()], common::operands(), common::reflectance(), common::domain()]
+            .concat(),
         check: common::check_exponents,
     }
 }
@@ -86,9 +75,7 @@ pub fn describe(d: &Designer, config: &Config) {
         [first.pick(base), second.pick(base)],
         [first.pick(accumulator.q()), second.pick(accumulator.q())],
     ));
-    steps.extend(outputs);
-    steps.push(step("result", [valid(), end()]));
-    d.microprogram(steps);
+    d.microprogram(steps.into_iter().chain(outputs));
 }
 
 /// `1 − n/m·(1 − cos γ)` as the complement of the accumulator: an ulp too small, which is what keeps it

@@ -46,13 +46,9 @@ fn check(config: &Config, problems: &mut Problems) {
             format!("at most {fraction}, or a larger angle.fraction"),
         );
     }
-    common::check_rom_size(
-        "table.address",
-        "ROM 12",
-        integer("table.address"),
-        integer("intensity.fraction"),
-        problems,
-    );
+    let size = (integer("table.address"), integer("intensity.fraction"));
+    let remedy = "fewer address bits or narrower entries";
+    common::check_rom_size("table.address", "ROM 12", size, remedy, problems);
 }
 
 /// The device.

@@ -9,7 +9,7 @@ use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::exponential::{self, ExponentialFormats};
 use crate::hdl::blocks::multipartite::{Cut, Offset};
 use crate::hdl::blocks::segmented::{self, Entry, Segment, Segmentation, SegmentedFormats};
-use crate::hdl::dsl::{Designer, Signal, end, step, valid};
+use crate::hdl::dsl::{Designer, Signal, step};
 
 use super::{common, rounding};
 
@@ -43,12 +43,7 @@ pub struct Defaults {
 pub fn keys(defaults: &Defaults) -> Vec<Key> {
     let mut intensity_rounding = common::intensity_rounding();
     intensity_rounding.default = Value::Text("nearest".to_owned());
-    vec![
-        common::cosine_fraction(20),
-        common::cosine_signed(),
-        common::exponent_bits(),
-        common::colour_bits(),
-        common::colour_multipliers(),
+    let own = vec![
         Key::integer(
             "decay.fraction",
             26,
@@ -109,9 +104,8 @@ pub fn keys(defaults: &Defaults) -> Vec<Key> {
         common::intensity_fraction(16),
         intensity_rounding,
         common::output_rounding(),
-        common::exponent_min(),
-        common::exponent_max(),
-    ]
+    ];
+    [common::operands(), own, common::domain()].concat()
 }
 
 /// The most bits of a fraction of n·decay.
@@ -168,17 +162,7 @@ fn check_decay(config: &Config, operand_bits: i64, problems: &mut Problems) {
             "fewer ranges, a smaller decay.tail, or a larger cosine.fraction".to_owned(),
         );
     }
-    for (range, &prefix) in (0i64..).zip(segments) {
-        let bits = (operand_bits - 2 * range).max(0);
-        if prefix > bits {
-            problems.push(
-                "decay.segments",
-                format!("range {range} has {bits} bits of 1 - cos, which cannot be cut into 2^{prefix} segments"),
-                "fewer ranges or smaller entries, or a larger cosine.fraction".to_owned(),
-            );
-            break;
-        }
-    }
+    common::check_segments(config, "decay.segments", operand_bits, problems);
     let fraction = config.integer("decay.fraction");
     for (key, what) in [
         ("decay.slope_fraction", "the rise over a segment"),
@@ -253,16 +237,14 @@ pub fn describe<'d>(d: &'d Designer, config: &Config, cos_gamma: Signal<'d>, cur
     let _ = d.output("f_out", reflectance.q()).doc("the reflectance, for a user's own multipliers");
     let outputs = common::colour_outputs(config, &colours, reflectance.q());
 
-    let mut steps = vec![
+    let steps = vec![
         step("segment of the decay addressed by cos gamma", []),
         step("decay <- base + slope * rest", [decay.load()]),
         step("halvings <- n * decay", [first.pick(factor), second.pick(exponent), halvings.load()]),
         step("tables of 2^-x addressed by the fraction", []),
         step("reflectance <- 2^-halvings", [reflectance.load()]),
     ];
-    steps.extend(outputs);
-    steps.push(step("result", [valid(), end()]));
-    d.microprogram(steps);
+    d.microprogram(steps.into_iter().chain(outputs));
 }
 
 /// How the fraction of n·decay is cut.

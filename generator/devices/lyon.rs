@@ -8,60 +8,52 @@ use crate::base::fixed::{Format, Overflow, Rounding};
 use crate::config::{Config, Key, Problems, Schema};
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::squaring::Squarings;
-use crate::hdl::dsl::{Designer, Setting, Signal, Step, end, loop_while, step, valid};
+use crate::hdl::dsl::{Designer, Setting, Signal, Step, loop_while, step};
 use crate::hdl::netlist::About;
 
 use super::{common, rounding};
 
 /// The keys of the device.
 pub fn schema() -> Schema {
-    Schema {
-        device: "lyon",
-        keys: vec![
-            common::power(),
-            Key::choice(
-                "scale",
-                "shift",
-                &["shift", "multiplier"],
-                "shift: as in the patent, beta is a power of two, and the operand is shift = log2 n, rounded. multiplier: beta = n/(2*power) for every n, by a fifth multiplier.",
-            ),
-            Key::integer(
-                "vector.fraction",
-                16,
-                4..=20,
-                "Fraction bits of the components of D = N - H, which run from -2.0 up to 2.0.",
-            ),
-            Key::integer(
-                "distance.fraction",
-                20,
-                8..=28,
-                "Fraction bits of D^2, which n multiplies.",
-            ),
-            Key::choice(
-                "distance.rounding",
-                "truncate",
-                &common::ROUNDINGS,
-                "Rounding into the register that holds D^2.",
-            ),
-            Key::choice(
-                "distance.multipliers",
-                "3",
-                &["1", "3"],
-                "Multipliers that square the components of D: one for each, or one for all, which takes two clocks a point more and saves DSP blocks. A pipeline has one for each.",
-            )
-            .only_when("architecture", "sequential")
-            .joined_later(),
-            common::exponent_bits(),
-            common::colour_bits(),
-            common::colour_multipliers(),
-            common::intensity_fraction(16),
-            common::intensity_rounding(),
-            common::output_rounding(),
-            common::exponent_min(),
-            common::exponent_max(),
-        ],
-        check,
-    }
+    let own = vec![
+        common::power(),
+        Key::choice(
+            "scale",
+            "shift",
+            &["shift", "multiplier"],
+            "shift: as in the patent, beta is a power of two, and the operand is shift = log2 n, rounded. multiplier: beta = n/(2*power) for every n, by a fifth multiplier.",
+        ),
+        Key::integer(
+            "vector.fraction",
+            16,
+            4..=20,
+            "Fraction bits of the components of D = N - H, which run from -2.0 up to 2.0.",
+        ),
+        Key::integer(
+            "distance.fraction",
+            20,
+            8..=28,
+            "Fraction bits of D^2, which n multiplies.",
+        ),
+        Key::choice(
+            "distance.rounding",
+            "truncate",
+            &common::ROUNDINGS,
+            "Rounding into the register that holds D^2.",
+        ),
+        Key::choice(
+            "distance.multipliers",
+            "3",
+            &["1", "3"],
+            "Multipliers that square the components of D: one for each, or one for all, which takes two clocks a point more and saves DSP blocks. A pipeline has one for each.",
+        )
+        .only_when("architecture", "sequential")
+        .joined_later(),
+        common::exponent_bits(),
+        common::colour_bits(),
+        common::colour_multipliers(),
+    ];
+    Schema { device: "lyon", keys: [own, common::reflectance(), common::domain()].concat(), check }
 }
 
 fn check(config: &Config, problems: &mut Problems) {
@@ -135,9 +127,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let first = [operand.pick(base)].into_iter().chain(scaled.squarings.load());
     let again = [operand.pick(accumulator.q())];
     steps.extend(scaled.squarings.steps(accumulator, first, again));
-    steps.extend(outputs);
-    steps.push(step("result", [valid(), end()]));
-    d.microprogram(steps);
+    d.microprogram(steps.into_iter().chain(outputs));
 }
 
 /// D² = dx² + dy² + dz², 0 … 12.0.

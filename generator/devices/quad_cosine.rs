@@ -22,29 +22,24 @@ pub(super) const AMPLITUDE: ChannelBlocks =
 
 /// The keys of the device.
 pub fn schema() -> Schema {
-    Schema {
-        device: "quad-cosine",
-        keys: vec![
-            common::angle_fraction(26),
-            Key::integer(
-                "angle.multiplied",
-                17,
-                4..=24,
-                "Fraction bits of the angle that multiplier 11 takes: the leading ones.",
-            ),
-            Key::integer("root.fraction", 14, 8..=20, "Fraction bits of sqrt(n/k) in ROM 9."),
-            common::table_address(11),
-            common::length_bits(),
-            common::line_stages(&["2", "7"]),
-            common::exponent_bits(),
-            common::colour_bits(),
-            common::intensity_fraction(10),
-            common::output_rounding(),
-            common::exponent_min(),
-            common::exponent_max(),
-        ],
-        check,
-    }
+    let own = vec![
+        common::angle_fraction(26),
+        Key::integer(
+            "angle.multiplied",
+            17,
+            4..=24,
+            "Fraction bits of the angle that multiplier 11 takes: the leading ones.",
+        ),
+        Key::integer("root.fraction", 14, 8..=20, "Fraction bits of sqrt(n/k) in ROM 9."),
+        common::table_address(11),
+        common::length_bits(),
+        common::line_stages(&["2", "7"]),
+        common::exponent_bits(),
+        common::colour_bits(),
+        common::intensity_fraction(10),
+        common::output_rounding(),
+    ];
+    Schema { device: "quad-cosine", keys: [own, common::domain()].concat(), check }
 }
 
 fn check(config: &Config, problems: &mut Problems) {
@@ -73,13 +68,9 @@ fn check(config: &Config, problems: &mut Problems) {
             format!("at most {product}, or a larger angle.multiplied or root.fraction"),
         );
     }
-    common::check_rom_size(
-        "table.address",
-        "ROM 12",
-        integer("table.address") + 2,
-        integer("intensity.fraction"),
-        problems,
-    );
+    let size = (integer("table.address") + 2, integer("intensity.fraction"));
+    let remedy = "fewer address bits or narrower entries";
+    common::check_rom_size("table.address", "ROM 12", size, remedy, problems);
 }
 
 /// The device.

@@ -9,47 +9,41 @@ mod coefficient;
 use crate::base::fixed::{Format, Overflow};
 use crate::config::{Config, Key, Problems, Schema};
 use crate::hdl::blocks::colour::{ChannelBlocks, Colours};
-use crate::hdl::dsl::{Designer, Rom, Signal, end, step, valid};
+use crate::hdl::dsl::{Designer, Rom, Signal, step};
 use crate::hdl::netlist::About;
 
 use super::{common, rounding};
 
 /// The keys of the device.
 pub fn schema() -> Schema {
+    let coefficient = vec![
+        Key::choice(
+            "coefficient.scheme",
+            "minimax",
+            &["taylor", "minimax"],
+            "ROM(n) holds a(n) = n - 1, which agrees with cos^n to the slope at its peak, or the a(n) whose largest error is least.",
+        ),
+        Key::integer("coefficient.fraction", 8, 0..=12, "Fraction bits of a(n).")
+            .only_when("coefficient.scheme", "minimax"),
+    ];
+    let difference = vec![
+        Key::integer(
+            "difference.fraction",
+            19,
+            8..=28,
+            "Fraction bits of c^2 - c, which a(n) multiplies.",
+        ),
+        Key::choice(
+            "difference.rounding",
+            "truncate",
+            &common::ROUNDINGS,
+            "Rounding into the register that holds c^2 - c.",
+        ),
+    ];
+    let (operands, results) = (common::operands(), common::reflectance());
     Schema {
         device: "quadratic",
-        keys: vec![
-            Key::choice(
-                "coefficient.scheme",
-                "minimax",
-                &["taylor", "minimax"],
-                "ROM(n) holds a(n) = n - 1, which agrees with cos^n to the slope at its peak, or the a(n) whose largest error is least.",
-            ),
-            Key::integer("coefficient.fraction", 8, 0..=12, "Fraction bits of a(n).")
-                .only_when("coefficient.scheme", "minimax"),
-            common::cosine_fraction(20),
-            common::cosine_signed(),
-            common::exponent_bits(),
-            common::colour_bits(),
-            common::colour_multipliers(),
-            Key::integer(
-                "difference.fraction",
-                19,
-                8..=28,
-                "Fraction bits of c^2 - c, which a(n) multiplies.",
-            ),
-            Key::choice(
-                "difference.rounding",
-                "truncate",
-                &common::ROUNDINGS,
-                "Rounding into the register that holds c^2 - c.",
-            ),
-            common::intensity_fraction(16),
-            common::intensity_rounding(),
-            common::output_rounding(),
-            common::exponent_min(),
-            common::exponent_max(),
-        ],
+        keys: [coefficient, operands, difference, results, common::domain()].concat(),
         check,
     }
 }
@@ -119,14 +113,12 @@ pub fn describe(d: &Designer, config: &Config) {
     ));
     let outputs = common::colour_outputs(config, &colours, intensity.q());
 
-    let mut steps = vec![
+    let steps = vec![
         step("operands; ROM(n) addressed", []),
         step("difference <- c^2 - c", [difference.load()]),
         step("intensity <- c + a(n) * difference, not below 0", [intensity.load()]),
     ];
-    steps.extend(outputs);
-    steps.push(step("result", [valid(), end()]));
-    d.microprogram(steps);
+    d.microprogram(steps.into_iter().chain(outputs));
 }
 
 /// Adder 1: multiplier 5's c² plus the inverted c plus its carry-in.

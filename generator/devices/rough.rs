@@ -173,7 +173,7 @@ pub fn describe(d: &Designer, config: &Config) {
         // Without the clamp the square can be 1.0 or more, where f saturates.
         d.narrow("f", r13.q(), formats.f, Rounding::Truncate, Overflow::Saturate).doc(doc)
     };
-    let outputs = common::colour_outputs(config, &colours, f);
+    let outputs = common::colour_products(config, &colours, f);
 
     d.sequencer_lines(43, 44);
     let mut steps = vec![

@@ -8,30 +8,22 @@ use crate::base::fixed::{Format, Overflow, Rounding};
 use crate::config::{Config, Key, Schema};
 use crate::hdl::blocks::colour::Colours;
 use crate::hdl::blocks::divider::Divider;
-use crate::hdl::dsl::{Designer, Signal, end, loop_while, step, valid};
+use crate::hdl::dsl::{Designer, Signal, loop_while, step};
 use crate::hdl::netlist::About;
 
 use super::common;
 
 /// The keys of the device.
 pub fn schema() -> Schema {
+    let fraction = Key {
+        doc: "Fraction bits of the reflectance f, the quotient; each takes a clock. It is truncated: \
+              one bit more is as near as rounding.",
+        ..common::intensity_fraction(10)
+    };
+    let own = vec![fraction, common::output_rounding()];
     Schema {
         device: "schlick",
-        keys: vec![
-            common::cosine_fraction(20),
-            common::cosine_signed(),
-            common::exponent_bits(),
-            common::colour_bits(),
-            common::colour_multipliers(),
-            Key {
-                doc: "Fraction bits of the reflectance f, the quotient; each takes a clock. It is truncated: \
-                      one bit more is as near as rounding.",
-                ..common::intensity_fraction(10)
-            },
-            common::output_rounding(),
-            common::exponent_min(),
-            common::exponent_max(),
-        ],
+        keys: [common::operands(), own, common::domain()].concat(),
         check: common::check_exponents,
     }
 }
@@ -49,7 +41,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let quotient = Divider::new(d, "quotient", cos_gamma, divisor, integer("intensity.fraction"));
     let outputs = common::colour_outputs(config, &colours, quotient.quotient());
 
-    let mut steps = vec![
+    let steps = vec![
         step("operands cos gamma, n", []),
         step("cos gamma by n*(1 - cos gamma) + cos gamma", quotient.load()),
         step(
@@ -60,9 +52,7 @@ pub fn describe(d: &Designer, config: &Config) {
                 .chain([loop_while(quotient.more(), "next bit of the quotient")]),
         ),
     ];
-    steps.extend(outputs);
-    steps.push(step("result", [valid(), end()]));
-    d.microprogram(steps);
+    d.microprogram(steps.into_iter().chain(outputs));
 }
 
 /// `n·(1 − cos γ) + cos γ`, exact; an ulp more where cos γ = 0, which only keeps it above 0: the

@@ -8,34 +8,23 @@
 use crate::base::fixed::{Format, Overflow, Rounding, exp2};
 use crate::config::{Config, Key, Problems, Schema};
 use crate::hdl::blocks::colour::{ChannelBlocks, Colours};
-use crate::hdl::dsl::{Designer, Rom, Signal, end, step, valid};
+use crate::hdl::dsl::{Designer, Rom, Signal, step};
 use crate::hdl::netlist::About;
 
 use super::{common, rounding};
 
 /// The keys of the device.
 pub fn schema() -> Schema {
+    let own = vec![Key::integers(
+        "visibility.levels",
+        &[50],
+        0..=10_000,
+        1..=12,
+        "The levels in ROM(n), in hundredths of an output unit: one for each octave of n (up to 1, 2 to 3, 4 to 7, ...), of which the last holds for all above. A smaller f is shown as 0.",
+    )];
     Schema {
         device: "threshold",
-        keys: vec![
-            common::cosine_fraction(20),
-            common::cosine_signed(),
-            common::exponent_bits(),
-            common::colour_bits(),
-            common::colour_multipliers(),
-            common::intensity_fraction(16),
-            common::intensity_rounding(),
-            common::output_rounding(),
-            Key::integers(
-                "visibility.levels",
-                &[50],
-                0..=10_000,
-                1..=12,
-                "The levels in ROM(n), in hundredths of an output unit: one for each octave of n (up to 1, 2 to 3, 4 to 7, ...), of which the last holds for all above. A smaller f is shown as 0.",
-            ),
-            common::exponent_min(),
-            common::exponent_max(),
-        ],
+        keys: [common::operands(), common::reflectance(), own, common::domain()].concat(),
         check,
     }
 }
@@ -100,14 +89,12 @@ pub fn describe(d: &Designer, config: &Config) {
     intensity.takes(gates(d, config, cos_gamma, exponent, square));
     let outputs = common::colour_outputs(config, &colours, intensity.q());
 
-    let mut steps = vec![
+    let steps = vec![
         step("operands; ROM(n) addressed", []),
         step("scaled <- n/2 * (cos gamma - 1)", [scaled.load()]),
         step("intensity <- (scaled + 1)^2, or 0 below ROM(n)", [intensity.load()]),
     ];
-    steps.extend(outputs);
-    steps.push(step("result", [valid(), end()]));
-    d.microprogram(steps);
+    d.microprogram(steps.into_iter().chain(outputs));
 }
 
 /// The square, or 0 where it is below ROM(n) or the surface faces away.

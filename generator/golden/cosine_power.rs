@@ -2,7 +2,7 @@
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Frame, Slot, idle, step};
-use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading, shading};
+use super::highlight::{Highlight, Keys, Reflectance, Shading, shading};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
@@ -75,17 +75,9 @@ struct Device {
     exponent: Slot,
     accumulator: Slot,
     remaining: Slot,
-    products: ProductSlots,
 }
 
-impl Shading for Device {
-    #[inline]
-    fn products(&self) -> &ProductSlots {
-        &self.products
-    }
-}
-
-fn clocked(it: &Arithmetic) -> Clocked<Device> {
+fn clocked(it: &Arithmetic) -> Clocked<Shading<Device>> {
     let mut frame = Frame::default();
     let [cosine, exponent] = it.keys.slots(&mut frame);
     // A single squaring needs no count of the squarings that remain.
@@ -101,26 +93,25 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
         } else {
             frame.hidden()
         },
-        products: it.keys.products().slots(&mut frame, accumulator),
     };
     // The accumulator takes n/m·(1 − cos γ).
-    let scale = step(|d: &Device, s| {
+    let scale = step(|d: &Shading<Device>, s| {
         s[d.accumulator] = d.it.scaled(s[d.cosine], s[d.exponent]);
         s[d.remaining] = i64::from(d.it.squarings) - 1;
     });
     // It takes the square of its inverse …
-    let base = step(|d: &Device, s| {
+    let base = step(|d: &Shading<Device>, s| {
         s[d.accumulator] = d.it.square(d.it.base(s[d.cosine], s[d.accumulator]));
     });
     // … and then its own square, until log₂ m squarings are done.
-    let square = step(|d: &Device, s| {
+    let square = step(|d: &Shading<Device>, s| {
         s[d.accumulator] = d.it.square(s[d.accumulator]);
         s[d.remaining] -= 1;
     })
     .repeat_while(|d, s| s[d.remaining] > 1);
     let mut program = vec![idle(), scale, base];
     program.extend(counted.then_some(square));
-    shading(frame, device, program)
+    shading(frame, device, (it.keys.products(), accumulator), program)
 }
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.

@@ -9,7 +9,7 @@ use super::contract::{self, ErrorShare};
 use super::curve::{self, Curve, Piece};
 use super::frame::{Clocked, Frame, Slot, idle, step};
 use super::halving::{self, Halving};
-use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading, shading};
+use super::highlight::{Highlight, Keys, Reflectance, Shading, shading};
 use super::narrow::Narrow;
 use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
@@ -248,34 +248,29 @@ struct Device {
     decay: Slot,
     halvings: Slot,
     reflectance: Slot,
-    products: ProductSlots,
 }
 
-impl Shading for Device {
-    #[inline]
-    fn products(&self) -> &ProductSlots {
-        &self.products
-    }
-}
-
-fn clocked(it: &Arithmetic) -> Clocked<Device> {
+fn clocked(it: &Arithmetic) -> Clocked<Shading<Device>> {
     let mut frame = Frame::default();
     let [cosine, exponent] = it.keys.slots(&mut frame);
     let decay = frame.register("decay", Format::unsigned(0, it.params.decay_fraction as i32));
     let halvings = frame.register("halvings", it.halvings);
     let reflectance = frame.register("reflectance", it.keys.f_format());
-    let products = it.keys.products().slots(&mut frame, reflectance);
-    let device =
-        Device { it: it.clone(), cosine, exponent, decay, halvings, reflectance, products };
-    frame.shows("f_out", device.reflectance);
-    let decay = step(|d: &Device, s| s[d.decay] = d.it.decay(s[d.cosine]));
-    let multiply = step(|d: &Device, s| {
+    let device = Device { it: it.clone(), cosine, exponent, decay, halvings, reflectance };
+    frame.shows("f_out", reflectance);
+    let decay = step(|d: &Shading<Device>, s| s[d.decay] = d.it.decay(s[d.cosine]));
+    let multiply = step(|d: &Shading<Device>, s| {
         s[d.halvings] = d.it.halvings(s[d.cosine], s[d.decay], s[d.exponent]);
     });
-    let halve = step(|d: &Device, s| {
+    let halve = step(|d: &Shading<Device>, s| {
         s[d.reflectance] = d.it.reflectance(s[d.cosine], s[d.halvings]);
     });
-    shading(frame, device, vec![idle(), decay, multiply, idle(), halve])
+    shading(
+        frame,
+        device,
+        (it.keys.products(), reflectance),
+        vec![idle(), decay, multiply, idle(), halve],
+    )
 }
 
 /// The accuracy contract of one of the devices. Control operands: `cos_gamma`, `exponent`.

@@ -7,7 +7,7 @@ mod tests;
 pub use contract::contract;
 
 use super::frame::{Clocked, Frame, Microinstruction, Slot, idle, step};
-use super::highlight::{ProductSlots, Products, Shading, shading};
+use super::highlight::{Products, Shading, shading};
 use super::narrow::Narrow;
 use super::{Model, keys};
 use crate::base::fixed::{Format, Rounding};
@@ -249,17 +249,9 @@ struct Device {
     scaled: Slot,
     accumulator: Slot,
     remaining: Slot,
-    products: ProductSlots,
 }
 
-impl Shading for Device {
-    #[inline]
-    fn products(&self) -> &ProductSlots {
-        &self.products
-    }
-}
-
-fn clocked(it: &Arithmetic) -> Clocked<Device> {
+fn clocked(it: &Arithmetic) -> Clocked<Shading<Device>> {
     let (params, squarings) = (&it.params, it.squarings);
     let (vector, scale) = (params.vector_format(), params.scale_format());
     let shift = params.scale == Scale::Shift;
@@ -289,11 +281,9 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
     let accumulator = register_if(true, "accumulator", params.f_format());
     let remaining = Format::unsigned(remaining as i32, 0);
     let remaining = register_if(shift || squarings > 1, "remaining", remaining);
-    let products = params.products().slots(&mut frame, accumulator);
-    let it = it.clone();
-    let device =
-        Device { it, vector, scale, sum, distance, scaled, accumulator, remaining, products };
-    let distance = step(|d: &Device, s| {
+    let (it, products) = (it.clone(), params.products());
+    let device = Device { it, vector, scale, sum, distance, scaled, accumulator, remaining };
+    let distance = step(|d: &Shading<Device>, s| {
         let vector = d.vector.map(|component| s[component]);
         s[d.distance] = if d.it.params.squares_in_turn {
             d.it.rounded_distance(s[d.sum] + vector[2] * vector[2])
@@ -305,7 +295,7 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
         }
     });
     // The accumulator takes the square of the base …
-    let base = step(|d: &Device, s| {
+    let base = step(|d: &Shading<Device>, s| {
         let scaled = match d.it.params.scale {
             Scale::Shift => d.it.scaled(s[d.distance]),
             Scale::Multiplier => s[d.scaled],
@@ -316,28 +306,28 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
         }
     });
     // … and then its own.
-    let square = step(|d: &Device, s| {
+    let square = step(|d: &Shading<Device>, s| {
         s[d.accumulator] = d.it.square(s[d.accumulator]);
         s[d.remaining] -= 1;
     })
     .repeat_while(|d, s| s[d.remaining] > 1);
     let mut program = vec![idle()];
     if params.squares_in_turn {
-        program.push(step(|d: &Device, s| s[d.sum] = s[d.vector[0]] * s[d.vector[0]]));
-        program.push(step(|d: &Device, s| s[d.sum] += s[d.vector[1]] * s[d.vector[1]]));
+        program.push(step(|d: &Shading<Device>, s| s[d.sum] = s[d.vector[0]] * s[d.vector[0]]));
+        program.push(step(|d: &Shading<Device>, s| s[d.sum] += s[d.vector[1]] * s[d.vector[1]]));
     }
     program.extend([distance, scale_step(params.scale), base]);
     program.extend((squarings > 1).then_some(square));
-    shading(frame, device, program)
+    shading(frame, device, (products, accumulator), program)
 }
 
 /// β·D²: the product, or one place of the shift register.
-fn scale_step(scale: Scale) -> Microinstruction<Device> {
+fn scale_step(scale: Scale) -> Microinstruction<Shading<Device>> {
     match scale {
         Scale::Multiplier => {
-            step(|d: &Device, s| s[d.scaled] = d.it.scaled(s[d.distance] * s[d.scale]))
+            step(|d: &Shading<Device>, s| s[d.scaled] = d.it.scaled(s[d.distance] * s[d.scale]))
         }
-        Scale::Shift => step(|d: &Device, s| {
+        Scale::Shift => step(|d: &Shading<Device>, s| {
             s[d.distance] = d.it.shifted(s[d.distance]);
             s[d.remaining] -= 1;
         })

@@ -6,7 +6,7 @@ mod tests;
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Frame, Slot, idle, step};
-use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading, shading};
+use super::highlight::{Highlight, Keys, Reflectance, Shading, shading};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
@@ -121,28 +121,19 @@ struct Device {
     exponent: Slot,
     difference: Slot,
     intensity: Slot,
-    products: ProductSlots,
 }
 
-impl Shading for Device {
-    #[inline]
-    fn products(&self) -> &ProductSlots {
-        &self.products
-    }
-}
-
-fn clocked(it: &Arithmetic) -> Clocked<Device> {
+fn clocked(it: &Arithmetic) -> Clocked<Shading<Device>> {
     let mut frame = Frame::default();
     let [cosine, exponent] = it.keys.slots(&mut frame);
     let difference = frame.register("difference", difference_format(it.difference_fraction));
     let intensity = frame.register("intensity", it.keys.f_format());
-    let products = it.keys.products().slots(&mut frame, intensity);
-    let device = Device { it: it.clone(), cosine, exponent, difference, intensity, products };
-    let subtract = step(|d: &Device, s| s[d.difference] = d.it.difference(s[d.cosine]));
-    let blend = step(|d: &Device, s| {
+    let device = Device { it: it.clone(), cosine, exponent, difference, intensity };
+    let subtract = step(|d: &Shading<Device>, s| s[d.difference] = d.it.difference(s[d.cosine]));
+    let blend = step(|d: &Shading<Device>, s| {
         s[d.intensity] = d.it.intensity(s[d.cosine], s[d.exponent], s[d.difference]);
     });
-    shading(frame, device, vec![idle(), subtract, blend])
+    shading(frame, device, (it.keys.products(), intensity), vec![idle(), subtract, blend])
 }
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.

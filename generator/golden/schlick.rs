@@ -2,7 +2,7 @@
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Frame, Slot, idle, step};
-use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading, shading};
+use super::highlight::{Highlight, Keys, Reflectance, Shading, shading};
 use super::{Contract, Model};
 use crate::base::fixed::{Format, exp2, mask};
 use crate::config::Config;
@@ -50,17 +50,9 @@ struct Device {
     found: Slot,
     /// What the quotient's register held before.
     before: Slot,
-    products: ProductSlots,
 }
 
-impl Shading for Device {
-    #[inline]
-    fn products(&self) -> &ProductSlots {
-        &self.products
-    }
-}
-
-fn clocked(it: &Arithmetic) -> Clocked<Device> {
+fn clocked(it: &Arithmetic) -> Clocked<Shading<Device>> {
     let Keys { intensity_fraction: bits, cosine_fraction, exponent_bits, .. } = it.0;
     let mut frame = Frame::default();
     let [cosine, exponent] = it.0.slots(&mut frame);
@@ -78,10 +70,9 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
             .register("quotient_remaining", Format::unsigned((bits - 1).ilog2() as i32 + 1, 0)),
         found: frame.hidden(),
         before: frame.hidden(),
-        products: it.0.products().slots(&mut frame, quotient),
     };
     // The divider takes cos γ and n − n·cos γ + cos γ.
-    let begin = step(|d: &Device, s| {
+    let begin = step(|d: &Shading<Device>, s| {
         let cosine = s[d.cosine];
         s[d.divisor] = d.it.divisor(cosine, s[d.exponent]);
         s[d.remainder] = cosine;
@@ -90,7 +81,7 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
         s[d.before] = s[d.quotient];
     });
     // It finds a bit of the quotient, as often as the quotient has bits.
-    let bit = step(|d: &Device, s| {
+    let bit = step(|d: &Shading<Device>, s| {
         s[d.found] += 1;
         let found = s[d.found] as u32;
         let (quotient, remainder) = divide(s[d.cosine], s[d.divisor], found);
@@ -99,7 +90,8 @@ fn clocked(it: &Arithmetic) -> Clocked<Device> {
         s[d.remainder] = remainder;
         s[d.remaining] -= 1;
     });
-    shading(frame, device, vec![idle(), begin, bit.repeat_while(|d, s| s[d.remaining] != 0)])
+    let program = vec![idle(), begin, bit.repeat_while(|d, s| s[d.remaining] != 0)];
+    shading(frame, device, (it.0.products(), quotient), program)
 }
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.

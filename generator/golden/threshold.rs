@@ -5,7 +5,7 @@ mod tests;
 
 use super::contract::{self, ErrorShare};
 use super::frame::{Clocked, Frame, Slot, idle, step};
-use super::highlight::{Highlight, Keys, ProductSlots, Reflectance, Shading, shading};
+use super::highlight::{Highlight, Keys, Reflectance, Shading, shading};
 use super::narrow::{Narrow, rounding_error};
 use super::{Contract, Model, keys};
 use crate::base::fixed::{Format, Rounding, exp2};
@@ -106,29 +106,21 @@ struct Device {
     exponent: Slot,
     scaled: Slot,
     intensity: Slot,
-    products: ProductSlots,
 }
 
-impl Shading for Device {
-    #[inline]
-    fn products(&self) -> &ProductSlots {
-        &self.products
-    }
-}
-
-fn clocked(it: &Arithmetic) -> Clocked<Device> {
+fn clocked(it: &Arithmetic) -> Clocked<Shading<Device>> {
     let mut frame = Frame::default();
     let [cosine, exponent] = it.keys.slots(&mut frame);
     let fraction = it.keys.intensity_fraction as i32;
     let scaled = frame.register("scaled", Format::signed(0, fraction));
     let intensity = frame.register("intensity", it.keys.f_format());
-    let products = it.keys.products().slots(&mut frame, intensity);
-    let device = Device { it: it.clone(), cosine, exponent, scaled, intensity, products };
-    let scale = step(|d: &Device, s| s[d.scaled] = d.it.scaled(s[d.cosine], s[d.exponent]));
-    let gate = step(|d: &Device, s| {
+    let device = Device { it: it.clone(), cosine, exponent, scaled, intensity };
+    let scale =
+        step(|d: &Shading<Device>, s| s[d.scaled] = d.it.scaled(s[d.cosine], s[d.exponent]));
+    let gate = step(|d: &Shading<Device>, s| {
         s[d.intensity] = d.it.gated(s[d.cosine], s[d.exponent], s[d.scaled]);
     });
-    shading(frame, device, vec![idle(), scale, gate])
+    shading(frame, device, (it.keys.products(), intensity), vec![idle(), scale, gate])
 }
 
 /// The accuracy contract. Control operands: `cos_gamma`, `exponent`.

@@ -7,33 +7,33 @@ use crate::devices::common;
 pub fn schema() -> Schema {
     let exact = ("arithmetic", "exact");
     let segmented = ("sine.scheme", "segmented");
-    Schema {
-        device: "rough",
-        keys: vec![
-            Key::choice("arithmetic", "exact", &["exact", "patent"], "exact: numbers with an integer position. patent: numbers modulo 1.0, as in UA 60139."),
-            Key::flag("clamp", true, "Clamp a negative n/2*(cos - 1) + 1 to 0; without it a ring appears around the highlight.").only_when(exact.0, exact.1),
-            common::cosine_fraction(20),
-            common::cosine_signed().only_when(exact.0, exact.1),
-            common::exponent_bits(),
-            common::colour_bits(),
-            common::colour_multipliers(),
-            Key::integer("product.fraction", 22, 8..=28, "Fraction bits of registers 11 and 12, the products of cosines and of sines.").only_when(exact.0, exact.1),
-            Key::choice("product.rounding", "truncate", &common::ROUNDINGS, "Rounding into registers 11 and 12.").only_when(exact.0, exact.1),
-            common::intensity_fraction(16).only_when(exact.0, exact.1),
-            common::intensity_rounding().only_when(exact.0, exact.1),
-            common::output_rounding(),
-            Key::choice("sine.scheme", "segmented", &["segmented", "direct"], "ROM 18: segments that shrink toward cos = 1, with interpolation; or one entry a bucket, as in the patent."),
-            Key::integer("sine.fraction", 22, 8..=28, "Fraction bits of the sine.").only_when(exact.0, exact.1),
-            Key::flag("sine.synchronous", true, "ROM 18 reads on the clock edge (block RAM) instead of at once (logic)."),
-            Key::integer("sine.address", 12, 4..=16, "Address bits of the direct table.").only_when("sine.scheme", "direct"),
-            Key::integers("sine.segments", &[6, 8, 7, 6, 5, 4, 3, 3, 2], 2..=10, 1..=11, "log2 of the segments for each factor of four of 1 - cos, from the top.").only_when(segmented.0, segmented.1),
-            Key::integer("sine.slope_fraction", 18, 8..=28, "Fraction bits of the rise over a segment.").only_when(segmented.0, segmented.1),
-            common::exponent_min(),
-            common::exponent_max(),
-            Key::number("domain.deviation", 30.0, 0.0..=90.0, "The largest angle between the normal and the perturbed normal, in degrees."),
-        ],
-        check,
-    }
+    let own = vec![
+        Key::choice("arithmetic", "exact", &["exact", "patent"], "exact: numbers with an integer position. patent: numbers modulo 1.0, as in UA 60139."),
+        Key::flag("clamp", true, "Clamp a negative n/2*(cos - 1) + 1 to 0; without it a ring appears around the highlight.").only_when(exact.0, exact.1),
+        common::cosine_fraction(),
+        common::cosine_signed().only_when(exact.0, exact.1),
+        common::exponent_bits(),
+        common::colour_bits(),
+        common::colour_multipliers(),
+        Key::integer("product.fraction", 22, 8..=28, "Fraction bits of registers 11 and 12, the products of cosines and of sines.").only_when(exact.0, exact.1),
+        Key::choice("product.rounding", "truncate", &common::ROUNDINGS, "Rounding into registers 11 and 12.").only_when(exact.0, exact.1),
+        common::intensity_fraction(16).only_when(exact.0, exact.1),
+        common::intensity_rounding().only_when(exact.0, exact.1),
+        common::output_rounding(),
+        Key::choice("sine.scheme", "segmented", &["segmented", "direct"], "ROM 18: segments that shrink toward cos = 1, with interpolation; or one entry a bucket, as in the patent."),
+        Key::integer("sine.fraction", 22, 8..=28, "Fraction bits of the sine.").only_when(exact.0, exact.1),
+        Key::flag("sine.synchronous", true, "ROM 18 reads on the clock edge (block RAM) instead of at once (logic)."),
+        Key::integer("sine.address", 12, 4..=16, "Address bits of the direct table.").only_when("sine.scheme", "direct"),
+        Key::integers("sine.segments", &[6, 8, 7, 6, 5, 4, 3, 3, 2], 2..=10, 1..=11, "log2 of the segments for each factor of four of 1 - cos, from the top.").only_when(segmented.0, segmented.1),
+        Key::integer("sine.slope_fraction", 18, 8..=28, "Fraction bits of the rise over a segment.").only_when(segmented.0, segmented.1),
+    ];
+    let deviation = Key::number(
+        "domain.deviation",
+        30.0,
+        0.0..=90.0,
+        "The largest angle between the normal and the perturbed normal, in degrees.",
+    );
+    Schema { device: "rough", keys: [own, common::domain(), vec![deviation]].concat(), check }
 }
 
 fn check(config: &Config, problems: &mut Problems) {
@@ -68,22 +68,12 @@ fn check(config: &Config, problems: &mut Problems) {
                 format!("at most {cosine}, or a larger cosine.fraction"),
             );
         }
-        check_rom_size(config.integer("sine.address"), fraction, problems);
+        let remedy = "fewer address bits, or sine.scheme = \"segmented\"";
+        let address = config.integer("sine.address");
+        common::check_rom_size("sine.address", "ROM 18", (address, fraction), remedy, problems);
         return;
     }
-    let mut most = 0;
-    for (range, &prefix) in (0i64..).zip(config.integers("sine.segments")) {
-        let bits = cosine - 2 * range;
-        if prefix > bits {
-            problems.push(
-                "sine.segments",
-                format!("range {range} has {bits} bits of 1 - cos, which cannot be cut into 2^{prefix} segments"),
-                "fewer ranges or smaller entries, or a larger cosine.fraction".to_owned(),
-            );
-            break;
-        }
-        most = most.max(bits - prefix);
-    }
+    let most = common::check_segments(config, "sine.segments", cosine, problems);
     let rest = cosine - 2 * config.integers("sine.segments").len() as i64;
     if !(0..=12).contains(&rest) {
         problems.push(
@@ -98,23 +88,6 @@ fn check(config: &Config, problems: &mut Problems) {
             "sine.slope_fraction",
             format!("{slope} fraction bits of the slope do not go with {fraction} of the sine"),
             format!("{} to {fraction}", (fraction - most).max(8)),
-        );
-    }
-}
-
-/// The most bits of ROM 18: a megabit. The direct table alone can be larger, since a segmented one
-/// has at most 2^10 entries a range.
-const ROM_LIMIT: i64 = 1 << 20;
-
-fn check_rom_size(address: i64, width: i64, problems: &mut Problems) {
-    let bits = width << address;
-    if bits > ROM_LIMIT {
-        problems.push(
-            "sine.address",
-            format!("ROM 18 would have 2^{address} entries of {width} bits, {bits} bits in all"),
-            format!(
-                "fewer address bits, for at most {ROM_LIMIT} bits, or sine.scheme = \"segmented\""
-            ),
         );
     }
 }

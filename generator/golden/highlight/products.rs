@@ -1,5 +1,7 @@
 //! What a reflectance multiplies.
 
+use std::ops::Deref;
+
 use crate::base::fixed::{Format, Rounding};
 use crate::golden::frame::{Clocked, Datapath, Frame, Microinstruction, Slot, State, idle, step};
 use crate::golden::narrow::Narrow;
@@ -97,48 +99,57 @@ pub struct ProductSlots {
     in_turn: bool,
 }
 
-/// A device that multiplies colours by f. Registers and outputs change by loads alone.
-pub trait Shading: Send + Sync + 'static {
-    /// The products.
-    fn products(&self) -> &ProductSlots;
+/// A device that multiplies colours by f: its slots, with those of the products. Registers and outputs change by loads
+/// alone.
+pub struct Shading<D> {
+    device: D,
+    products: ProductSlots,
+}
 
-    /// As [`Datapath::edge`].
+impl<D> Deref for Shading<D> {
+    type Target = D;
+
     #[inline]
-    fn edge(&self, state: &mut State) {
-        let _ = state;
+    fn deref(&self) -> &D {
+        &self.device
     }
 }
 
-impl<D: Shading> Datapath for D {
+impl<D> AsRef<ProductSlots> for Shading<D> {
+    #[inline]
+    fn as_ref(&self) -> &ProductSlots {
+        &self.products
+    }
+}
+
+impl<D: Send + Sync + 'static> Datapath for Shading<D> {
     const LOADS_ALONE: bool = true;
 
     #[inline]
-    fn edge(&self, state: &mut State) {
-        Shading::edge(self, state);
-    }
-
-    #[inline]
     fn outputs(&self, state: &mut State) {
-        self.products().show(state);
+        self.products.show(state);
     }
 }
 
-/// The device at power-up: the products of what `program` leaves in f are made, and shown in its last microinstruction.
-pub fn shading<D: Shading>(
-    frame: Frame,
+/// The device at power-up: the products of what `program` leaves in the slot f are made, and shown in its last
+/// microinstruction.
+pub fn shading<D: Send + Sync + 'static>(
+    mut frame: Frame,
     device: D,
-    mut program: Vec<Microinstruction<D>>,
-) -> Clocked<D> {
-    program.extend(device.products().program());
+    (products, f): (Products, Slot),
+    mut program: Vec<Microinstruction<Shading<D>>>,
+) -> Clocked<Shading<D>> {
+    let products = products.slots(&mut frame, f);
+    program.extend(products.program());
     program.push(idle().valid().end());
-    frame.model(device, program)
+    frame.model(Shading { device, products }, program)
 }
 
 impl ProductSlots {
     /// The microinstructions that make the products, before the one with the result; none where they are made at once.
-    pub fn program<D: Shading>(&self) -> Vec<Microinstruction<D>> {
-        fn make<D: Shading, const COLOUR: usize>(device: &D, state: &mut State) {
-            let it = device.products();
+    pub fn program<D: AsRef<Self>>(&self) -> Vec<Microinstruction<D>> {
+        fn make<D: AsRef<ProductSlots>, const COLOUR: usize>(device: &D, state: &mut State) {
+            let it = device.as_ref();
             let (operand, held) = it.pairs[COLOUR];
             state[held] = it.narrow.apply(state[it.f] * state[operand]);
         }

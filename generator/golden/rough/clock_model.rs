@@ -4,8 +4,8 @@ use super::{Arithmetic, Params};
 use crate::base::fixed::Format;
 use crate::config::Config;
 use crate::golden::Model;
-use crate::golden::frame::{Clocked, Frame, Slot, State, idle, step};
-use crate::golden::highlight::{ProductSlots, Shading};
+use crate::golden::frame::{Clocked, Datapath, Frame, Slot, State, idle, step};
+use crate::golden::highlight::ProductSlots;
 
 /// The golden model.
 pub fn model(config: &Config) -> Box<dyn Model> {
@@ -34,10 +34,18 @@ pub(super) struct Device {
     products: ProductSlots,
 }
 
-impl Shading for Device {
-    #[inline]
-    fn products(&self) -> &ProductSlots {
+impl AsRef<ProductSlots> for Device {
+    fn as_ref(&self) -> &ProductSlots {
         &self.products
+    }
+}
+
+impl Datapath for Device {
+    const LOADS_ALONE: bool = true;
+
+    #[inline]
+    fn outputs(&self, s: &mut State) {
+        self.products.show(s);
     }
 
     #[inline]
