@@ -138,7 +138,7 @@ mod tests {
     use crate::base::fixed::Format;
     use crate::golden::contract::{ErrorShare, control};
     use crate::golden::highlight::{Products, Reflectance};
-    use crate::hdl::dsl::{Designer, end, loop_while, step, valid};
+    use crate::hdl::dsl::{Designer, end, fixture, loop_while, step, valid};
 
     /// cosⁿγ itself, but for an eighth too much: one fraction bit of the cosine, eight of f.
     struct Line;
@@ -215,15 +215,13 @@ mod tests {
 
     #[test]
     fn multipliers_are_listed_by_size() {
-        let d = Designer::new("products");
-        let a = d.operand("a", Format::unsigned(0, 4)).q();
-        let b = d.operand("b", Format::signed(0, 8)).q();
-        let square = d.mul("square", a, a);
-        let scaled = d.mul("scaled", a, b);
-        d.output("square_out", square);
-        d.output("scaled_out", scaled);
-        d.microprogram([step("idle", []), step("result", [valid(), end()])]);
-        let design = d.finish().unwrap_or_else(|mistakes| panic!("{mistakes}"));
+        let design = fixture::design(|d| {
+            let a = d.operand("a", Format::unsigned(0, 4)).q();
+            let b = d.operand("b", Format::signed(0, 8)).q();
+            d.output("square_out", d.mul("square", a, a));
+            d.output("scaled_out", d.mul("scaled", a, b));
+            Vec::new()
+        });
         // A sign bit each.
         let sizes: Vec<String> = multipliers(&design).iter().map(Multiplier::to_string).collect();
         assert_eq!(sizes, ["9x5", "4x4"]);

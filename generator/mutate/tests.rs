@@ -11,7 +11,8 @@ use crate::base::fixed::Format;
 use crate::config;
 use crate::core::{Core, TEST_SEED};
 use crate::cosim::Lockstep;
-use crate::hdl::dsl::{Designer, end, step, valid};
+use crate::hdl::dsl::fixture::design;
+use crate::hdl::dsl::step;
 use crate::registry::Registry;
 
 /// One in this number of faults is planted, fewer in a run of the quick tests alone: not a multiple of three, as for each
@@ -117,16 +118,14 @@ fn lower_bits_do_not_decide_a_comparison() {
 /// Whether a number is below 0 its sign says alone, though 0 ends in nothing but zeros.
 #[test]
 fn the_sign_decides_a_comparison_with_0() {
-    let d = Designer::new("device");
-    let format = Format::signed(3, 0);
-    let [x, y] = ["x", "y"].map(|name| d.operand(name, format).q());
-    let sum = d.add("sum", x, y);
-    let held = d.register("held", Format::BIT);
-    held.takes(d.less("negative", sum, d.constant("nothing", 0.0, sum.format())));
-    d.output("held_out", held.q());
-    let load = step("load", [held.load()]);
-    d.microprogram([step("idle", []), load, step("result", [valid(), end()])]);
-    let design = d.finish().unwrap();
+    let design = design(|d| {
+        let [x, y] = ["x", "y"].map(|name| d.operand(name, Format::signed(3, 0)).q());
+        let sum = d.add("sum", x, y);
+        let held = d.register("held", Format::BIT);
+        held.takes(d.less("negative", sum, d.constant("nothing", 0.0, sum.format())));
+        d.output("held_out", held.q());
+        vec![step("load", [held.load()])]
+    });
     let prover = Prover::new(&design).unwrap();
     let proved = |id: &str| {
         let faults = Faults::of(&design);

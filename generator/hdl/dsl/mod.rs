@@ -65,6 +65,8 @@ macro_rules! described {
     };
 }
 
+#[cfg(test)]
+pub mod fixture;
 mod narrow;
 mod operand_mux;
 mod output_registers;

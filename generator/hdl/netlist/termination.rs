@@ -83,24 +83,21 @@ fn decides(design: &Design, net: NetId) -> Option<RegId> {
 mod tests {
     use super::*;
     use crate::base::fixed::Format;
-    use crate::hdl::dsl::{Designer, Signal, end, loop_while, step, valid};
+    use crate::hdl::dsl::fixture::design;
+    use crate::hdl::dsl::{Designer, Signal, loop_while, step};
 
     type Condition = for<'d> fn(&'d Designer, Signal<'d>, Signal<'d>) -> Signal<'d>;
 
     /// A counter of three bits goes from the operand to 0 in microinstruction 2.
     fn counted(condition: Condition) -> Design {
-        let d = Designer::new("counted");
-        let x = d.operand("x", Format::unsigned(3, 0));
-        let turns = d.down_counter("turns", x.q());
-        let more = condition(&d, turns.q(), x.q());
-        d.output("turns_out", turns.q());
-        d.microprogram([
-            step("idle", []),
-            step("load", [turns.load()]),
-            step("count", [turns.count(), loop_while(more, "count")]),
-            step("result", [valid(), end()]),
-        ]);
-        d.finish().unwrap_or_else(|error| panic!("{error}"))
+        design(|d| {
+            let x = d.operand("x", Format::unsigned(3, 0));
+            let turns = d.down_counter("turns", x.q());
+            let more = condition(d, turns.q(), x.q());
+            d.output("turns_out", turns.q());
+            let count = [turns.count(), loop_while(more, "count")];
+            vec![step("load", [turns.load()]), step("count", count)]
+        })
     }
 
     #[test]

@@ -278,23 +278,21 @@ fn slice(graph: &mut Graph, of: NetId, low: u32, format: Format, label: &Label) 
 #[cfg(test)]
 mod tests {
     use crate::base::fixed::Format;
-    use crate::hdl::dsl::{Designer, Operand, Signal, end, step, valid};
+    use crate::hdl::dsl::fixture::design;
+    use crate::hdl::dsl::{Designer, Operand, Signal, step};
     use crate::hdl::netlist::{Design, Driver, Interpreter, Op};
     use crate::hdl::pipeline::{Delays, Goal, Options, TARGETS, Target, pipeline};
 
     /// A product in one stage, of a device whose multipliers take 4 bits by 4.
     fn product(factors: impl for<'d> Fn(&'d Designer) -> [Signal<'d>; 2]) -> Design {
-        let d = Designer::new("factors");
-        let [a, b] = factors(&d);
-        let product = d.mul("product", a, b);
-        let held = d.register("held", product.format());
-        held.takes(product);
-        d.output("product_out", held.q());
-        d.microprogram([
-            step("operands", []),
-            step("product", [held.load()]),
-            step("result", [valid(), end()]),
-        ]);
+        let design = design(|d| {
+            let [a, b] = factors(d);
+            let product = d.mul("product", a, b);
+            let held = d.register("held", product.format());
+            held.takes(product);
+            d.output("product_out", held.q());
+            vec![step("product", [held.load()])]
+        });
         let target: &Target =
             Box::leak(Box::new(Target { multiplier: (4, 4), ..TARGETS[0].clone() }));
         let options = Options {
@@ -305,7 +303,7 @@ mod tests {
             side: 0,
             delays: Delays::Registers,
         };
-        pipeline(&d.finish().expect("a design"), &options).expect("a pipeline")
+        pipeline(&design, &options).expect("a pipeline")
     }
 
     /// What comes out for the bit patterns of its operands, and the widths of the factors of its multipliers.

@@ -1,7 +1,8 @@
 use super::{Delays, Goal, Options, Target, pipeline};
 use crate::base::fixed::Format;
 use crate::hdl::blocks::divider::Divider;
-use crate::hdl::dsl::{Designer, end, loop_while, step, valid, wait_for_start};
+use crate::hdl::dsl::fixture::design;
+use crate::hdl::dsl::{loop_while, step, wait_for_start};
 use crate::hdl::netlist::{Design, Driver, Net, NetId, Op, RegId, Register};
 
 fn options(goal: Goal) -> Options {
@@ -11,18 +12,16 @@ fn options(goal: Goal) -> Options {
 
 /// A quotient of 8 bits, a bit a clock.
 fn ratio() -> Design {
-    let d = Designer::new("ratio");
-    let a = d.operand("a", Format::unsigned(8, 0));
-    let b = d.operand("b", Format::unsigned(8, 0));
-    let ratio = Divider::new(&d, "ratio", a.q(), b.q(), 8);
-    d.output("ratio_out", ratio.quotient());
-    d.microprogram([
-        step("operands", []),
-        step("load", ratio.load()),
-        step("bit", ratio.step().into_iter().chain([loop_while(ratio.more(), "bit")])),
-        step("result", [valid(), end()]),
-    ]);
-    d.finish().unwrap()
+    design(|d| {
+        let a = d.operand("a", Format::unsigned(8, 0));
+        let b = d.operand("b", Format::unsigned(8, 0));
+        let ratio = Divider::new(d, "ratio", a.q(), b.q(), 8);
+        d.output("ratio_out", ratio.quotient());
+        vec![
+            step("load", ratio.load()),
+            step("bit", ratio.step().into_iter().chain([loop_while(ratio.more(), "bit")])),
+        ]
+    })
 }
 
 fn refused(design: &Design, goal: Goal) -> String {
@@ -73,71 +72,58 @@ fn more_stages_than_are_of_use_are_refused_with_the_most() {
 
 #[test]
 fn a_microprogram_that_waits_on_the_way_cannot_be_unrolled() {
-    let d = Designer::new("pauses");
-    let x = d.operand("x", Format::unsigned(8, 0));
-    let y = d.register("y", x.q().format());
-    y.takes(x.q());
-    d.output("y_out", y.q());
-    d.microprogram([
-        step("operands", []),
-        step("pause", [wait_for_start()]),
-        step("load", [y.load()]),
-        step("result", [valid(), end()]),
-    ]);
-    let text = refused(&d.finish().unwrap(), Goal::ClockMhz(100.0));
+    let design = design(|d| {
+        let x = d.operand("x", Format::unsigned(8, 0));
+        let y = d.register("y", x.q().format());
+        y.takes(x.q());
+        d.output("y_out", y.q());
+        vec![step("pause", [wait_for_start()]), step("load", [y.load()])]
+    });
+    let text = refused(&design, Goal::ClockMhz(100.0));
     assert!(text.contains("`pause` waits for `start`"), "{text}");
     assert!(text.contains("pipeline/tests.rs"), "{text}");
 }
 
 #[test]
 fn a_loop_without_a_bound_cannot_be_unrolled() {
-    let d = Designer::new("endless");
-    let x = d.operand("x", Format::unsigned(20, 0));
-    let turns = d.down_counter("turns", x.q());
-    let more = d.any("more", turns.q());
-    d.output("turns_out", turns.q());
-    d.microprogram([
-        step("operands", []),
-        step("load", [turns.load()]),
-        step("count", [turns.count(), loop_while(more, "count")]),
-        step("result", [valid(), end()]),
-    ]);
-    let text = refused(&d.finish().unwrap(), Goal::ClockMhz(100.0));
+    let design = design(|d| {
+        let x = d.operand("x", Format::unsigned(20, 0));
+        let turns = d.down_counter("turns", x.q());
+        let more = d.any("more", turns.q());
+        d.output("turns_out", turns.q());
+        vec![
+            step("load", [turns.load()]),
+            step("count", [turns.count(), loop_while(more, "count")]),
+        ]
+    });
+    let text = refused(&design, Goal::ClockMhz(100.0));
     assert!(text.contains("`count` goes on by a condition for which no bound is found"), "{text}");
 }
 
 #[test]
 fn what_an_earlier_computation_left_cannot_be_a_result() {
-    let d = Designer::new("sums");
-    let x = d.operand("x", Format::unsigned(8, 0));
-    let total = d.register("total", Format::unsigned(8, 0));
-    total.takes(d.add_modulo("sum", total.q(), x.q(), None));
-    d.output("total_out", total.q());
-    d.microprogram([
-        step("operands", []),
-        step("add", [total.load()]),
-        step("result", [valid(), end()]),
-    ]);
-    let text = refused(&d.finish().unwrap(), Goal::ClockMhz(100.0));
+    let design = design(|d| {
+        let x = d.operand("x", Format::unsigned(8, 0));
+        let total = d.register("total", Format::unsigned(8, 0));
+        total.takes(d.add_modulo("sum", total.q(), x.q(), None));
+        d.output("total_out", total.q());
+        vec![step("add", [total.load()])]
+    });
+    let text = refused(&design, Goal::ClockMhz(100.0));
     assert!(text.contains("`total_out` depends on what `total` held before"), "{text}");
 }
 
 /// The fourth power of an operand, by two products.
 fn power() -> Design {
-    let d = Designer::new("power");
-    let x = d.operand("x", Format::unsigned(9, 0));
-    let square = d.register("square", Format::unsigned(18, 0));
-    let fourth = d.register("fourth", Format::unsigned(36, 0));
-    square.takes(d.mul("x_square", x.q(), x.q()));
-    fourth.takes(d.mul("x_fourth", square.q(), square.q()));
-    d.output("fourth_out", fourth.q());
-    d.microprogram([
-        step("operands", []),
-        step("square", [square.load()]),
-        step("fourth", [fourth.load()]),
-        step("result", [valid(), end()]),
-    ]);
-    d.finish().unwrap()
+    design(|d| {
+        let x = d.operand("x", Format::unsigned(9, 0));
+        let square = d.register("square", Format::unsigned(18, 0));
+        let fourth = d.register("fourth", Format::unsigned(36, 0));
+        square.takes(d.mul("x_square", x.q(), x.q()));
+        fourth.takes(d.mul("x_fourth", square.q(), square.q()));
+        d.output("fourth_out", fourth.q());
+        vec![step("square", [square.load()]), step("fourth", [fourth.load()])]
+    })
 }
 
 #[test]
@@ -198,27 +184,22 @@ fn a_delay_line_begins_behind_a_registered_multiplier() {
 
 /// `(taken ? x : 0) + y` beside a fourth power, which leaves it time.
 fn row_beside_a_power() -> Design {
-    let d = Designer::new("rows");
-    let x = d.operand("x", Format::unsigned(9, 0));
-    let y = d.operand("y", Format::unsigned(9, 0));
-    let taken = d.operand("taken", Format::BIT);
-    let square = d.register("square", Format::unsigned(18, 0));
-    let fourth = d.register("fourth", Format::unsigned(36, 0));
-    let total = d.register("total", Format::unsigned(10, 0));
-    square.takes(d.mul("x_square", x.q(), x.q()));
-    fourth.takes(d.mul("x_fourth", square.q(), square.q()));
-    let zero = d.constant("zero", 0.0, Format::unsigned(9, 0));
-    let row = d.choose("row", taken.q(), [zero, x.q()]);
-    total.takes(d.add("row_sum", row, y.q()));
-    d.output("fourth_out", fourth.q());
-    d.output("total_out", total.q());
-    d.microprogram([
-        step("operands", []),
-        step("square", [square.load(), total.load()]),
-        step("fourth", [fourth.load()]),
-        step("result", [valid(), end()]),
-    ]);
-    d.finish().unwrap()
+    design(|d| {
+        let x = d.operand("x", Format::unsigned(9, 0));
+        let y = d.operand("y", Format::unsigned(9, 0));
+        let taken = d.operand("taken", Format::BIT);
+        let square = d.register("square", Format::unsigned(18, 0));
+        let fourth = d.register("fourth", Format::unsigned(36, 0));
+        let total = d.register("total", Format::unsigned(10, 0));
+        square.takes(d.mul("x_square", x.q(), x.q()));
+        fourth.takes(d.mul("x_fourth", square.q(), square.q()));
+        let zero = d.constant("zero", 0.0, Format::unsigned(9, 0));
+        let row = d.choose("row", taken.q(), [zero, x.q()]);
+        total.takes(d.add("row_sum", row, y.q()));
+        d.output("fourth_out", fourth.q());
+        d.output("total_out", total.q());
+        vec![step("square", [square.load(), total.load()]), step("fourth", [fourth.load()])]
+    })
 }
 
 #[test]
@@ -248,28 +229,25 @@ enum By {
 
 /// The clock in MHz of a stage in which a sum goes to a register.
 fn clock_of_a_sum(by: By) -> f64 {
-    let d = Designer::new("sum");
-    let wide = Format::unsigned(40, 0);
-    let (a, b) = (d.operand("a", wide), d.operand("b", wide));
-    let taken = d.operand("taken", Format::BIT);
-    let sum = d.add_modulo("a_and_b", a.q(), b.q(), None);
-    let zero = d.constant("zero", 0.0, wide);
-    let total = d.register("total", wide);
-    let held = d.register("held", Format::BIT);
-    held.takes(taken.q());
-    total.takes(match by {
-        By::Nothing => sum,
-        By::Operand => d.choose("chosen", taken.q(), [zero, sum]),
-        By::Sum => d.choose("chosen", sum.bit(39), [zero, sum]),
+    let design = design(|d| {
+        let wide = Format::unsigned(40, 0);
+        let (a, b) = (d.operand("a", wide), d.operand("b", wide));
+        let taken = d.operand("taken", Format::BIT);
+        let sum = d.add_modulo("a_and_b", a.q(), b.q(), None);
+        let zero = d.constant("zero", 0.0, wide);
+        let total = d.register("total", wide);
+        let held = d.register("held", Format::BIT);
+        held.takes(taken.q());
+        total.takes(match by {
+            By::Nothing => sum,
+            By::Operand => d.choose("chosen", taken.q(), [zero, sum]),
+            By::Sum => d.choose("chosen", sum.bit(39), [zero, sum]),
+        });
+        d.output("total_out", total.q());
+        d.output("held_out", held.q());
+        vec![step("sum", [total.load(), held.load()])]
     });
-    d.output("total_out", total.q());
-    d.output("held_out", held.q());
-    d.microprogram([
-        step("operands", []),
-        step("sum", [total.load(), held.load()]),
-        step("result", [valid(), end()]),
-    ]);
-    let made = pipeline(&d.finish().unwrap(), &options(Goal::Stages(1))).unwrap();
+    let made = pipeline(&design, &options(Goal::Stages(1))).unwrap();
     made.pipeline.expect("a pipeline").clock_mhz
 }
 
