@@ -4,55 +4,28 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::contract::ErrorShare;
 use super::frame::{Clocked, Datapath, Frame, Slot, State};
-use super::highlight::{Highlight, ProductSlots, Products, Reflectance};
+use super::highlight::{Highlight, ProductSlots, Reflectance};
 use super::line::{self, CosineTable, Walker, magnitude};
 use super::{Axis, Contract, Model, Operand, Sweep, Values, keys};
-use crate::base::fixed::{Format, Rounding, exp2};
+use crate::base::fixed::{Format, exp2};
 use crate::config::Config;
 use crate::golden::formulas;
 
 /// What a configuration of the device says.
 #[derive(Clone)]
 struct Params {
+    keys: line::Keys,
     /// `angle.integer`: integer bits of a stretched angle in right angles.
     angle_integer: u32,
-    /// `angle.fraction`: its fraction bits, F.
-    angle_fraction: u32,
-    /// `table.address`: log₂ of the steps of ROM 12, T.
-    table_address: u32,
-    /// `length.bits`: bits of counter 5.
-    length_bits: u32,
-    /// `line.stages`: clocks from an angle to its result.
-    stages: u32,
-    /// `colour.bits`: bits of the amplitude and of the output, K.
-    colour_bits: u32,
-    /// `intensity.fraction`: fraction bits of ROM 12.
-    intensity_fraction: u32,
-    /// `output.rounding`: of the output.
-    output_rounding: Rounding,
 }
 
 impl Params {
     fn of(config: &Config) -> Self {
-        Self {
-            angle_integer: keys::bits(config, "angle.integer"),
-            angle_fraction: keys::bits(config, "angle.fraction"),
-            table_address: keys::bits(config, "table.address"),
-            length_bits: keys::bits(config, "length.bits"),
-            stages: keys::bits(config, "line.stages"),
-            colour_bits: keys::bits(config, "colour.bits"),
-            intensity_fraction: keys::bits(config, "intensity.fraction"),
-            output_rounding: keys::rounding(config, "output.rounding"),
-        }
+        Self { keys: line::Keys::new(config), angle_integer: keys::bits(config, "angle.integer") }
     }
 
     fn angle_format(&self) -> Format {
-        Format::signed(self.angle_integer as i32, self.angle_fraction as i32)
-    }
-
-    fn products(&self) -> Products {
-        let f = Format::unsigned(0, self.intensity_fraction as i32);
-        Products::amplitude(f, self.colour_bits, self.output_rounding)
+        Format::signed(self.angle_integer as i32, self.keys.angle_fraction as i32)
     }
 }
 
@@ -66,14 +39,17 @@ struct Arithmetic {
 
 impl Arithmetic {
     fn new(params: Params) -> Self {
-        Self { table: CosineTable::new(2, params.table_address, params.intensity_fraction), params }
+        Self {
+            table: CosineTable::new(2, params.keys.table_address, params.keys.intensity_fraction),
+            params,
+        }
     }
 
     /// The address of ROM 12 for a stretched angle.
     #[inline]
     fn step_of(&self, angle: i64) -> i64 {
         let params = &self.params;
-        magnitude(angle, params.angle_fraction, params.table_address)
+        magnitude(angle, params.keys.angle_fraction, params.keys.table_address)
             .unwrap_or(self.table.words.len() as i64 - 1)
     }
 
@@ -131,11 +107,13 @@ impl Datapath for Device {
 
 fn clocked(params: Params) -> Clocked<Device> {
     let mut frame = Frame::default();
-    let walker = Walker::new(&mut frame, params.angle_format(), params.length_bits, params.stages);
+    let walker =
+        Walker::new(&mut frame, params.angle_format(), params.keys.length_bits, params.keys.stages);
     let program = walker.program();
     let cosine = frame.hidden();
-    let stages = (params.stages > 2).then(|| (frame.hidden(), frame.hidden()));
-    let products = params.products().slots(&mut frame, stages.map_or(cosine, |(_, last)| last));
+    let stages = (params.keys.stages > 2).then(|| (frame.hidden(), frame.hidden()));
+    let products =
+        params.keys.products().slots(&mut frame, stages.map_or(cosine, |(_, last)| last));
     let device = Device { it: Arithmetic::new(params), walker, cosine, stages, products };
     frame.model(device, program)
 }
@@ -148,8 +126,8 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
 
 fn highlight(params: Params) -> Highlight {
     let mut operands = line::angle_operands(params.angle_format()).to_vec();
-    operands.push(line::length_operand(params.length_bits));
-    let products = params.products();
+    operands.push(line::length_operand(params.keys.length_bits));
+    let products = params.keys.products();
     Highlight::new(Arithmetic::new(params), operands, products)
 }
 
@@ -161,7 +139,7 @@ impl Reflectance for Arithmetic {
 
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
-        let right = exp2(self.params.angle_fraction as i32);
+        let right = exp2(self.params.keys.angle_fraction as i32);
         formulas::cosine_squared(control[1] as f64 / right * FRAC_PI_2)
     }
 
@@ -201,7 +179,7 @@ impl Reflectance for Arithmetic {
         Some(Sweep {
             axes: vec![Axis {
                 name: "step of the table".to_string(),
-                values: Values::Range(0, (1 << self.params.table_address) - 1),
+                values: Values::Range(0, (1 << self.params.keys.table_address) - 1),
             }],
             omits: String::new(),
         })
@@ -211,8 +189,8 @@ impl Reflectance for Arithmetic {
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let step = place[0];
         let word = self.table.words[step as usize];
-        let f = word as f64 * exp2(-(self.params.intensity_fraction as i32));
-        let ulp = exp2(-(self.params.table_address as i32));
+        let f = word as f64 * exp2(-(self.params.keys.intensity_fraction as i32));
+        let ulp = exp2(-(self.params.keys.table_address as i32));
         let end = |step: i64| formulas::cosine_squared(step as f64 * ulp * FRAC_PI_2);
         Some((end(step) - f).max(f - end(step + 1)))
     }
@@ -233,16 +211,7 @@ mod tests {
 
     #[test]
     fn f_by_hand() {
-        let contract = highlight(Params {
-            angle_integer: 2,
-            angle_fraction: 6,
-            table_address: 3,
-            length_bits: 12,
-            stages: 2,
-            colour_bits: 8,
-            intensity_fraction: 6,
-            output_rounding: Rounding::Nearest,
-        });
+        let contract = highlight(Params { keys: line::Keys::small(), angle_integer: 2 });
         let f = |angle| contract.f(&[0, angle, 0]);
         // Steps of 11.25°: (1 + cos² 11.25°)/2 = 0.98097; 20/64 is step 2: (0.85355 + 0.69134)/2 = 0.77245.
         assert_eq!(f(0), 63);

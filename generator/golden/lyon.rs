@@ -7,7 +7,7 @@ mod tests;
 pub use contract::contract;
 
 use super::frame::{Clocked, Frame, Microinstruction, Slot, idle, step};
-use super::highlight::{Products, Shading, shading};
+use super::highlight::{Keys, Shading, shading};
 use super::narrow::Narrow;
 use super::{Model, keys};
 use crate::base::fixed::{Format, Rounding};
@@ -25,6 +25,7 @@ enum Scale {
 /// What a configuration of the device says.
 #[derive(Clone)]
 struct Params {
+    keys: Keys,
     /// `power`: m, a power of two, 2 … 16.
     power: u32,
     /// `scale`.
@@ -37,25 +38,14 @@ struct Params {
     squares_in_turn: bool,
     /// `distance.rounding`: of D².
     distance_rounding: Rounding,
-    /// `exponent.bits`: bits of n.
-    exponent_bits: u32,
-    /// `colour.bits`: bits of a colour operand and of a colour output.
-    colour_bits: u32,
-    /// `colour.multipliers`: one for all colours, which takes them in turn.
-    colours_in_turn: bool,
-    /// `intensity.fraction`: fraction bits of the accumulator.
-    intensity_fraction: u32,
     /// `intensity.rounding`: of β·D² and of the squares.
     intensity_rounding: Rounding,
-    /// `output.rounding`: of the colour outputs.
-    output_rounding: Rounding,
-    /// `domain.exponent_min` and `domain.exponent_max`: the contract's n.
-    exponents: (i64, i64),
 }
 
 impl Params {
     fn of(config: &Config) -> Self {
         Self {
+            keys: Keys::without_cosine(config),
             power: keys::bits(config, "power"),
             scale: match config.choice("scale") {
                 "shift" => Scale::Shift,
@@ -65,13 +55,7 @@ impl Params {
             distance_fraction: keys::bits(config, "distance.fraction"),
             squares_in_turn: config.choice("distance.multipliers") == "1",
             distance_rounding: keys::rounding(config, "distance.rounding"),
-            exponent_bits: keys::bits(config, "exponent.bits"),
-            colour_bits: keys::bits(config, "colour.bits"),
-            colours_in_turn: keys::colours_in_turn(config),
-            intensity_fraction: keys::bits(config, "intensity.fraction"),
             intensity_rounding: keys::rounding(config, "intensity.rounding"),
-            output_rounding: keys::rounding(config, "output.rounding"),
-            exponents: keys::exponents(config),
         }
     }
 
@@ -87,18 +71,9 @@ impl Params {
     /// Of n, or of log₂ n, which is `exponent.bits` at most.
     fn scale_format(&self) -> Format {
         match self.scale {
-            Scale::Shift => Format::unsigned(self.exponent_bits.ilog2() as i32 + 1, 0),
-            Scale::Multiplier => Format::unsigned(self.exponent_bits as i32, 0),
+            Scale::Shift => Format::unsigned(self.keys.exponent_bits.ilog2() as i32 + 1, 0),
+            Scale::Multiplier => self.keys.exponent_format(),
         }
-    }
-
-    fn f_format(&self) -> Format {
-        Format::unsigned(0, self.intensity_fraction as i32)
-    }
-
-    fn products(&self) -> Products {
-        Products::colours(self.f_format(), self.colour_bits, self.output_rounding)
-            .in_turn(self.colours_in_turn)
     }
 
     /// The operand `shift` or `exponent` for an exponent: log₂ n to the nearest, or n itself.
@@ -123,7 +98,7 @@ impl Params {
 
     /// The domain of that operand.
     fn scale_domain(&self) -> (i64, i64) {
-        (self.scale_operand(self.exponents.0), self.scale_operand(self.exponents.1))
+        (self.scale_operand(self.keys.exponents.0), self.scale_operand(self.keys.exponents.1))
     }
 
     /// The exponent that an operand `shift` or `exponent` stands for.
@@ -144,14 +119,16 @@ struct Arithmetic {
     one: i64,
     /// The largest word of the shift register.
     shifted_most: i64,
+    /// From the sum of the squares.
     distance: Narrow,
+    /// β·D², saturated below 2.0, from the product or the shift register's word.
     scaled: Narrow,
     square: Narrow,
 }
 
 impl Arithmetic {
     fn new(params: Params) -> Self {
-        let (f, squarings) = (params.intensity_fraction, params.squarings());
+        let (f, squarings) = (params.keys.intensity_fraction, params.squarings());
         let distance = params.distance_fraction;
         let rounding = params.intensity_rounding;
         // n/2^(s+1) is the integer n with s + 1 fraction bits; the shift register has one more.
@@ -169,7 +146,7 @@ impl Arithmetic {
                 params.distance_rounding,
             ),
             scaled: Narrow::new(distance + beta_fraction, Format::unsigned(1, f as i32), rounding),
-            square: Narrow::new(2 * f, Format::unsigned(0, f as i32), rounding),
+            square: Narrow::new(2 * f, params.keys.f_format(), rounding),
             params,
         }
     }
@@ -178,13 +155,7 @@ impl Arithmetic {
     #[inline]
     fn distance(&self, vector: [i64; 3]) -> i64 {
         let [x, y, z] = vector;
-        self.rounded_distance(x * x + y * y + z * z)
-    }
-
-    /// The sum of the squares as the register takes it.
-    #[inline]
-    fn rounded_distance(&self, sum: i64) -> i64 {
-        self.distance.apply(sum)
+        self.distance.apply(x * x + y * y + z * z)
     }
 
     /// One place of the shift register.
@@ -193,16 +164,10 @@ impl Arithmetic {
         (2 * word).min(self.shifted_most)
     }
 
-    /// What the multiplier gives, and what becomes of the shift register's word: β·D², saturated below 2.0.
-    #[inline]
-    fn scaled(&self, product: i64) -> i64 {
-        self.scaled.apply(product)
-    }
-
     /// β·D² from the word of D² and the operand `shift` or `exponent`.
     #[inline]
     fn beta_distance(&self, distance: i64, operand: i64) -> i64 {
-        self.scaled(match self.params.scale {
+        self.scaled.apply(match self.params.scale {
             Scale::Multiplier => distance * operand,
             Scale::Shift => (distance << (operand + 1)).min(self.shifted_most),
         })
@@ -276,17 +241,17 @@ fn clocked(it: &Arithmetic) -> Clocked<Shading<Device>> {
     } else {
         register_if(true, "distance", Format::unsigned(4, point))
     };
-    let scaled = Format::unsigned(1, params.intensity_fraction as i32);
+    let scaled = Format::unsigned(1, params.keys.intensity_fraction as i32);
     let scaled = register_if(!shift, "scaled", scaled);
-    let accumulator = register_if(true, "accumulator", params.f_format());
+    let accumulator = register_if(true, "accumulator", params.keys.f_format());
     let remaining = Format::unsigned(remaining as i32, 0);
     let remaining = register_if(shift || squarings > 1, "remaining", remaining);
-    let (it, products) = (it.clone(), params.products());
+    let (it, products) = (it.clone(), params.keys.products());
     let device = Device { it, vector, scale, sum, distance, scaled, accumulator, remaining };
     let distance = step(|d: &Shading<Device>, s| {
         let vector = d.vector.map(|component| s[component]);
         s[d.distance] = if d.it.params.squares_in_turn {
-            d.it.rounded_distance(s[d.sum] + vector[2] * vector[2])
+            d.it.distance.apply(s[d.sum] + vector[2] * vector[2])
         } else {
             d.it.distance(vector)
         };
@@ -297,7 +262,7 @@ fn clocked(it: &Arithmetic) -> Clocked<Shading<Device>> {
     // The accumulator takes the square of the base …
     let base = step(|d: &Shading<Device>, s| {
         let scaled = match d.it.params.scale {
-            Scale::Shift => d.it.scaled(s[d.distance]),
+            Scale::Shift => d.it.scaled.apply(s[d.distance]),
             Scale::Multiplier => s[d.scaled],
         };
         s[d.accumulator] = d.it.square(d.it.base(scaled));
@@ -324,9 +289,9 @@ fn clocked(it: &Arithmetic) -> Clocked<Shading<Device>> {
 /// β·D²: the product, or one place of the shift register.
 fn scale_step(scale: Scale) -> Microinstruction<Shading<Device>> {
     match scale {
-        Scale::Multiplier => {
-            step(|d: &Shading<Device>, s| s[d.scaled] = d.it.scaled(s[d.distance] * s[d.scale]))
-        }
+        Scale::Multiplier => step(|d: &Shading<Device>, s| {
+            s[d.scaled] = d.it.scaled.apply(s[d.distance] * s[d.scale])
+        }),
         Scale::Shift => step(|d: &Shading<Device>, s| {
             s[d.distance] = d.it.shifted(s[d.distance]);
             s[d.remaining] -= 1;

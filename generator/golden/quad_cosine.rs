@@ -7,35 +7,22 @@ mod tests;
 pub use contract::contract;
 
 use super::frame::{Clocked, Datapath, Frame, Slot, State};
-use super::highlight::{ProductSlots, Products};
-use super::line::{CosineTable, Walker, magnitude};
+use super::highlight::ProductSlots;
+use super::line::{self, CosineTable, Walker, magnitude};
 use super::{Model, keys};
-use crate::base::fixed::{Format, Rounding};
+use crate::base::fixed::Format;
 use crate::config::Config;
 
 /// What a configuration of the device says.
 #[derive(Clone)]
 struct Params {
-    /// `angle.fraction`: fraction bits of an angle in right angles, F.
-    angle_fraction: u32,
+    keys: line::Keys,
     /// `angle.multiplied`: those that multiplier 11 takes, A.
     angle_multiplied: u32,
     /// `root.fraction`: fraction bits of ROM 9, G.
     root_fraction: u32,
-    /// `table.address`: log₂ of the steps of a table of ROM 12, T.
-    table_address: u32,
-    /// `length.bits`: bits of counter 5.
-    length_bits: u32,
-    /// `line.stages`: clocks from an angle to its result.
-    stages: u32,
     /// `exponent.bits`: bits of n.
     exponent_bits: u32,
-    /// `colour.bits`: bits of the amplitude and of the output, K.
-    colour_bits: u32,
-    /// `intensity.fraction`: fraction bits of ROM 12.
-    intensity_fraction: u32,
-    /// `output.rounding`: of the output.
-    output_rounding: Rounding,
     /// `domain.exponent_min` and `domain.exponent_max`: the contract's n.
     exponents: (i64, i64),
 }
@@ -43,31 +30,20 @@ struct Params {
 impl Params {
     fn of(config: &Config) -> Self {
         Self {
-            angle_fraction: keys::bits(config, "angle.fraction"),
+            keys: line::Keys::new(config),
             angle_multiplied: keys::bits(config, "angle.multiplied"),
             root_fraction: keys::bits(config, "root.fraction"),
-            table_address: keys::bits(config, "table.address"),
-            length_bits: keys::bits(config, "length.bits"),
-            stages: keys::bits(config, "line.stages"),
             exponent_bits: keys::bits(config, "exponent.bits"),
-            colour_bits: keys::bits(config, "colour.bits"),
-            intensity_fraction: keys::bits(config, "intensity.fraction"),
-            output_rounding: keys::rounding(config, "output.rounding"),
             exponents: keys::exponents(config),
         }
     }
 
     fn angle_format(&self) -> Format {
-        Format::signed(1, self.angle_fraction as i32)
+        Format::signed(1, self.keys.angle_fraction as i32)
     }
 
     fn exponent_format(&self) -> Format {
         Format::unsigned(self.exponent_bits as i32, 0)
-    }
-
-    fn products(&self) -> Products {
-        let f = Format::unsigned(0, self.intensity_fraction as i32);
-        Products::amplitude(f, self.colour_bits, self.output_rounding)
     }
 }
 
@@ -100,12 +76,13 @@ struct Arithmetic {
 
 impl Arithmetic {
     fn new(params: Params) -> Self {
-        let f = params.intensity_fraction;
+        let f = params.keys.intensity_fraction;
         Self {
             roots: (0..1 << params.exponent_bits)
                 .map(|n| root(n, POWERS[range_of(n)], params.root_fraction))
                 .collect(),
-            tables: POWERS.map(|power| CosineTable::new(power as u32, params.table_address, f)),
+            tables: POWERS
+                .map(|power| CosineTable::new(power as u32, params.keys.table_address, f)),
             params,
         }
     }
@@ -114,7 +91,7 @@ impl Arithmetic {
     #[inline]
     fn magnitude(&self, angle: i64) -> Option<i64> {
         let params = &self.params;
-        magnitude(angle, params.angle_fraction, params.angle_multiplied)
+        magnitude(angle, params.keys.angle_fraction, params.angle_multiplied)
     }
 
     /// The word of ROM 12 for n, the magnitude, and ROM 9's word.
@@ -128,7 +105,7 @@ impl Arithmetic {
     #[inline]
     fn step_of(&self, scaled: i64) -> usize {
         let fraction = self.params.angle_multiplied + self.params.root_fraction;
-        CosineTable::address(scaled, fraction, self.params.table_address)
+        CosineTable::address(scaled, fraction, self.params.keys.table_address)
     }
 
     #[inline]
@@ -243,13 +220,14 @@ impl Datapath for Device {
 
 fn clocked(params: Params) -> Clocked<Device> {
     let mut frame = Frame::default();
-    let walker = Walker::new(&mut frame, params.angle_format(), params.length_bits, params.stages);
+    let walker =
+        Walker::new(&mut frame, params.angle_format(), params.keys.length_bits, params.keys.stages);
     let program = walker.program();
     let exponent = frame.operand("exponent", params.exponent_format());
     let (root, cosine) = (frame.hidden(), frame.hidden());
-    let stages = (params.stages > 2).then(|| Stages::new(&mut frame));
+    let stages = (params.keys.stages > 2).then(|| Stages::new(&mut frame));
     let shown = stages.as_ref().map_or(cosine, |stages| stages.cosine);
-    let products = params.products().slots(&mut frame, shown);
+    let products = params.keys.products().slots(&mut frame, shown);
     let it = Arithmetic::new(params);
     let device = Device { it, walker, exponent, root, cosine, stages, products };
     frame.model(device, program)

@@ -9,7 +9,7 @@ mod tests;
 pub use clock_model::model;
 pub use contract::contract;
 
-use super::highlight::Products;
+use super::highlight::Keys;
 use super::keys;
 use super::narrow::Narrow;
 use super::sine::{self, Sine, TableScheme};
@@ -31,16 +31,8 @@ enum Kind {
 /// `product.*`, `intensity.*` and `sine.fraction` do not apply.
 #[derive(Clone)]
 struct Params {
-    /// `cosine.fraction`: fraction bits of both cosines, C.
-    cosine_fraction: u32,
-    /// `cosine.signed`: cos γ may be negative, and is then taken as 0.
-    cosine_signed: bool,
-    /// `exponent.bits`: bits of n, N.
-    exponent_bits: u32,
-    /// `colour.bits`: bits of a colour operand and of a colour output, K.
-    colour_bits: u32,
-    /// `colour.multipliers`: one for all colours, which takes them in turn.
-    colours_in_turn: bool,
+    /// In the patent's arithmetic f has the fraction bits of the cosine, which has no sign.
+    keys: Keys,
     /// `arithmetic`.
     arithmetic: Kind,
     /// `clamp`: a negative base becomes 0.
@@ -49,20 +41,14 @@ struct Params {
     product_fraction: u32,
     /// `product.rounding`: of what they take.
     product_rounding: Rounding,
-    /// `intensity.fraction`: fraction bits of register 13, F.
-    intensity_fraction: u32,
     /// `intensity.rounding`: of what it takes.
     intensity_rounding: Rounding,
-    /// `output.rounding`: of the colour outputs.
-    output_rounding: Rounding,
     /// `sine.scheme` with `sine.address`, or `sine.segments` and `sine.slope_fraction`.
     sine_scheme: TableScheme,
     /// `sine.fraction`: fraction bits of the sine, S.
     sine_fraction: u32,
     /// `sine.synchronous`: ROM 18 answers a clock later.
     sine_synchronous: bool,
-    /// `domain.exponent_min` and `domain.exponent_max`: the contract's n.
-    exponents: (i64, i64),
     /// `domain.deviation`: the contract's largest dγ, in degrees, 0 … 90.
     deviation: f64,
 }
@@ -81,26 +67,25 @@ impl Params {
                 slope_fraction: keys::bits(config, "sine.slope_fraction"),
             },
         };
+        let mut keys = Keys::new(config);
+        let arithmetic = match config.choice("arithmetic") {
+            "patent" => Kind::Patent,
+            _ => Kind::Exact,
+        };
+        if arithmetic == Kind::Patent {
+            keys.intensity_fraction = keys.cosine_fraction;
+            keys.cosine_signed = false;
+        }
         Self {
-            cosine_fraction: keys::bits(config, "cosine.fraction"),
-            cosine_signed: config.flag("cosine.signed"),
-            exponent_bits: keys::bits(config, "exponent.bits"),
-            colour_bits: keys::bits(config, "colour.bits"),
-            colours_in_turn: keys::colours_in_turn(config),
-            arithmetic: match config.choice("arithmetic") {
-                "patent" => Kind::Patent,
-                _ => Kind::Exact,
-            },
+            keys,
+            arithmetic,
             clamp: config.flag("clamp"),
             product_fraction: keys::bits(config, "product.fraction"),
             product_rounding: keys::rounding(config, "product.rounding"),
-            intensity_fraction: keys::bits(config, "intensity.fraction"),
             intensity_rounding: keys::rounding(config, "intensity.rounding"),
-            output_rounding: keys::rounding(config, "output.rounding"),
             sine_scheme,
             sine_fraction: keys::bits(config, "sine.fraction"),
             sine_synchronous: config.flag("sine.synchronous"),
-            exponents: keys::exponents(config),
             deviation: config.number("domain.deviation"),
         }
     }
@@ -111,48 +96,30 @@ impl Params {
 
     fn sine(&self) -> sine::Params {
         sine::Params {
-            operand_fraction: self.cosine_fraction,
-            fraction: if self.patent() { self.cosine_fraction } else { self.sine_fraction },
+            operand_fraction: self.keys.cosine_fraction,
+            fraction: if self.patent() { self.keys.cosine_fraction } else { self.sine_fraction },
             scheme: self.sine_scheme.clone(),
         }
     }
 
-    /// Fraction bits of the word f.
-    fn f_fraction(&self) -> u32 {
-        if self.patent() { self.cosine_fraction } else { self.intensity_fraction }
-    }
-
     /// The format of cos γ, which may have a sign.
     fn cos_gamma_format(&self) -> Format {
-        Format { signed: self.cosine_signed && !self.patent(), ..self.cos_dgamma_format() }
+        Format { signed: self.keys.cosine_signed, ..self.cos_dgamma_format() }
     }
 
     fn cos_dgamma_format(&self) -> Format {
         let int = if self.patent() { 0 } else { 1 };
-        Format::unsigned(int, self.cosine_fraction as i32)
-    }
-
-    fn exponent_format(&self) -> Format {
-        Format::unsigned(self.exponent_bits as i32, 0)
-    }
-
-    fn f_format(&self) -> Format {
-        Format::unsigned(0, self.f_fraction() as i32)
-    }
-
-    fn products(&self) -> Products {
-        Products::colours(self.f_format(), self.colour_bits, self.output_rounding)
-            .in_turn(self.colours_in_turn)
+        Format::unsigned(int, self.keys.cosine_fraction as i32)
     }
 
     /// The largest raw cosine that a register holds: 1.0, or in the patent's words an ulp less.
     fn largest_cosine(&self) -> i64 {
-        (1 << self.cosine_fraction) - i64::from(self.patent())
+        (1 << self.keys.cosine_fraction) - i64::from(self.patent())
     }
 
     /// The format of register 13.
     fn result_format(&self) -> Format {
-        let frac = self.f_fraction() as i32;
+        let frac = self.keys.intensity_fraction as i32;
         match (self.arithmetic, self.clamp) {
             (Kind::Patent, _) => Format::unsigned(0, frac),
             (Kind::Exact, true) => Format::signed(0, frac),
@@ -189,11 +156,11 @@ enum Blocks {
 
 impl Arithmetic {
     fn new(params: Params) -> Self {
-        let (p, f) = (params.product_fraction, params.intensity_fraction);
+        let (p, f) = (params.product_fraction, params.keys.intensity_fraction);
         let kind = match params.arithmetic {
             Kind::Patent => Blocks::Patent {
-                width: params.cosine_fraction,
-                mask: (1 << params.cosine_fraction) - 1,
+                width: params.keys.cosine_fraction,
+                mask: (1 << params.keys.cosine_fraction) - 1,
             },
             Kind::Exact => {
                 let product = |from, int| {
@@ -205,7 +172,7 @@ impl Arithmetic {
                     product_one: 1 << p,
                     result_one: 1 << f,
                     clamp: params.clamp,
-                    cos_cos: product(2 * params.cosine_fraction, 1),
+                    cos_cos: product(2 * params.keys.cosine_fraction, 1),
                     sin_sin: product(2 * params.sine_fraction, 0),
                     scaled: result(p + 1),
                     square: result(2 * f),

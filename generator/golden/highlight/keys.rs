@@ -33,6 +33,15 @@ impl Keys {
         Self {
             cosine_fraction: keys::bits(config, "cosine.fraction"),
             cosine_signed: config.flag("cosine.signed"),
+            ..Self::without_cosine(config)
+        }
+    }
+
+    /// Those of a device to which the angle comes in another way.
+    pub fn without_cosine(config: &Config) -> Self {
+        Self {
+            cosine_fraction: 0,
+            cosine_signed: false,
             exponent_bits: keys::bits(config, "exponent.bits"),
             colour_bits: keys::bits(config, "colour.bits"),
             colours_in_turn: keys::colours_in_turn(config),

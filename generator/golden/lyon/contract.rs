@@ -31,7 +31,7 @@ pub(super) fn highlight(params: Params) -> Highlight {
     let mut operands: Vec<Operand> = ["dx", "dy", "dz"].map(component).into();
     let (name, format) = (params.scale_name(), params.scale_format());
     operands.push(shared::control(name, format, params.scale_domain(), doc));
-    let products = params.products();
+    let products = params.keys.products();
     Highlight::new(Arithmetic::new(params), operands, products)
 }
 
@@ -76,7 +76,7 @@ impl Reflectance for Arithmetic {
 
     /// The normal is (0, 0, 1), and the half vector (sin γ, 0, cos γ).
     fn at(&self, operands: &[Operand], gamma: f64, n: f64) -> Option<Vec<i64>> {
-        let (first, last) = self.params.exponents;
+        let (first, last) = self.params.keys.exponents;
         let exponent = n as i64;
         if exponent as f64 != n || !(first..=last).contains(&exponent) {
             return None;
@@ -117,7 +117,8 @@ impl Reflectance for Arithmetic {
     #[inline]
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (operand, word) = (place[0], place[1]);
-        let f = self.f_of(word, operand) as f64 * exp2(-(self.params.intensity_fraction as i32));
+        let f =
+            self.f_of(word, operand) as f64 * exp2(-(self.params.keys.intensity_fraction as i32));
         let word = word as f64;
         let ulp = exp2(-(self.params.distance_fraction as i32));
         let exact = 2 * self.params.vector_fraction <= self.params.distance_fraction;
@@ -147,7 +148,7 @@ impl Reflectance for Arithmetic {
     /// most: only the larger of the two counts.
     fn shares(&self) -> Vec<ErrorShare> {
         let params = &self.params;
-        let (f, power) = (params.intensity_fraction, f64::from(params.power));
+        let (f, power) = (params.keys.intensity_fraction, f64::from(params.power));
         let ulp = exp2(-(f as i32));
         let distance = rounding_error(
             2 * params.vector_fraction,
@@ -177,11 +178,11 @@ impl Reflectance for Arithmetic {
 
     /// What a β that is a power of two costs: most where n is midway between two.
     fn remarks(&self) -> Vec<String> {
-        let (params, (first, last)) = (&self.params, self.params.exponents);
+        let (params, (first, last)) = (&self.params, self.params.keys.exponents);
         if params.scale == Scale::Multiplier {
             return Vec::new();
         }
-        let midway = (0..=params.exponent_bits)
+        let midway = (0..=params.keys.exponent_bits)
             .map(|octave| (exp2(octave as i32) * std::f64::consts::SQRT_2) as i64);
         let worst = midway
             .flat_map(|n| [n, n + 1])

@@ -9,19 +9,14 @@ use crate::golden::watch;
 /// V = 4, D = 6, F = 4, K = 4, small enough to follow by hand.
 fn small(power: u32, scale: Scale) -> Params {
     Params {
+        keys: Keys::small(),
         power,
         scale,
         vector_fraction: 4,
         distance_fraction: 6,
-        exponent_bits: 4,
-        colour_bits: 4,
-        colours_in_turn: false,
         squares_in_turn: false,
-        intensity_fraction: 4,
         distance_rounding: Rounding::Truncate,
         intensity_rounding: Rounding::Truncate,
-        output_rounding: Rounding::Nearest,
-        exponents: (1, 15),
     }
 }
 

@@ -20,8 +20,8 @@ pub fn contract(config: &Config) -> Box<dyn Contract> {
 pub(super) fn highlight(params: Params) -> Highlight {
     let mut operands = line::angle_operands(params.angle_format()).to_vec();
     operands.push(shared::exponent_operand(params.exponent_format(), params.exponents));
-    operands.push(line::length_operand(params.length_bits));
-    let products = params.products();
+    operands.push(line::length_operand(params.keys.length_bits));
+    let products = params.keys.products();
     Highlight::new(Arithmetic::new(params), operands, products)
 }
 
@@ -52,7 +52,7 @@ impl Reflectance for Arithmetic {
     #[inline]
     fn reference(&self, control: &[i64]) -> f64 {
         let (angle, n) = (control[1], control[2]);
-        let right = 1i64 << self.params.angle_fraction;
+        let right = 1i64 << self.params.keys.angle_fraction;
         if angle >= right {
             return 0.0;
         }
@@ -83,7 +83,7 @@ impl Reflectance for Arithmetic {
     }
 
     fn cosine(&self, _: &[Operand], control: &[i64]) -> Option<f64> {
-        let angle = control[1] as f64 * exp2(-(self.params.angle_fraction as i32));
+        let angle = control[1] as f64 * exp2(-(self.params.keys.angle_fraction as i32));
         Some(libm::cos(angle * FRAC_PI_2).max(0.0))
     }
 
@@ -113,7 +113,7 @@ impl Reflectance for Arithmetic {
     fn sweep_error(&self, place: &[i64]) -> Option<f64> {
         let (n, magnitude) = (place[0], place[1]);
         let word = self.cosine_of(n, Some(magnitude), self.root(n));
-        let f = word as f64 * exp2(-(self.params.intensity_fraction as i32));
+        let f = word as f64 * exp2(-(self.params.keys.intensity_fraction as i32));
         let ulp = exp2(-(self.params.angle_multiplied as i32));
         let end = |magnitude: i64| formulas::quad_cosine(magnitude as f64 * ulp * FRAC_PI_2, n);
         Some((end(magnitude) - f).max(f - end(magnitude + 1)))

@@ -4,16 +4,10 @@ use super::*;
 /// The default with 4 + 4 bits of angle and root, and tables of 8 steps.
 fn small() -> Params {
     Params {
-        stages: 2,
-        angle_fraction: 6,
+        keys: line::Keys::small(),
         angle_multiplied: 4,
         root_fraction: 4,
-        table_address: 3,
-        length_bits: 12,
         exponent_bits: 10,
-        colour_bits: 8,
-        intensity_fraction: 6,
-        output_rounding: Rounding::Nearest,
         exponents: (1, 1000),
     }
 }

@@ -114,7 +114,7 @@ impl Weight {
 }
 
 fn exponents(params: &Params) -> (f64, f64) {
-    (params.exponents.0 as f64, params.exponents.1 as f64)
+    (params.keys.exponents.0 as f64, params.keys.exponents.1 as f64)
 }
 
 fn bin(angle: f64) -> usize {
@@ -124,9 +124,9 @@ fn bin(angle: f64) -> usize {
 fn exact(params: &Params, sine: &Sine) -> Vec<ErrorShare> {
     let errors = Errors::new(sine);
     let deviation = bin(params.deviation.to_radians() + SLACK);
-    let (p, f, s) = (params.product_fraction, params.intensity_fraction, params.sine_fraction);
+    let (p, f, s) = (params.product_fraction, params.keys.intensity_fraction, params.sine_fraction);
 
-    let cos_cos = rounding_error(2 * params.cosine_fraction, p, params.product_rounding);
+    let cos_cos = rounding_error(2 * params.keys.cosine_fraction, p, params.product_rounding);
     let mut sin_sin = rounding_error(2 * s, p, params.product_rounding);
     let largest_product = errors.sines[deviation] + errors.errors[deviation].0;
     if params.product_rounding == Rounding::Nearest && largest_product >= 1.0 - exp2(-(p as i32)) {

@@ -85,7 +85,7 @@ pub(super) fn clocked(params: Params) -> Clocked<Device> {
     let device = Device {
         cos_gamma: frame.clamped("cos_gamma", params.cos_gamma_format(), 0, largest),
         cos_dgamma: frame.clamped("cos_dgamma", params.cos_dgamma_format(), 0, largest),
-        exponent: frame.operand("exponent", params.exponent_format()),
+        exponent: frame.operand("exponent", params.keys.exponent_format()),
         dgamma_negative: frame.operand("dgamma_negative", Format::BIT),
         sin_gamma: frame.register("reg19_sin_gamma", sine),
         cos_cos: frame.register("reg11_cos_cos", cos_cos),
@@ -95,7 +95,7 @@ pub(super) fn clocked(params: Params) -> Clocked<Device> {
         turned,
         shown: frame.hidden(),
         addressed: frame.hidden(),
-        products: params.products().slots(&mut frame, reflectance),
+        products: params.keys.products().slots(&mut frame, reflectance),
         it: Arithmetic::new(params),
     };
     // Each odd microinstruction captures what the one before it let settle.

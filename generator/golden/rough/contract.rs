@@ -14,13 +14,13 @@ const SWEPT_DEVIATIONS: [f64; 4] = [0.0, 1.0, 5.0, 15.0];
 /// The accuracy contract. Control operands: `cos_gamma`, `cos_dgamma`, `exponent`, `dgamma_negative`.
 pub fn contract(config: &Config) -> Box<dyn Contract> {
     let params = Params::of(config);
-    let (operands, products) = (params.operands(), params.products());
+    let (operands, products) = (params.operands(), params.keys.products());
     Box::new(Highlight::new(Arithmetic::new(params), operands, products))
 }
 
 impl Params {
     fn ulp(&self) -> f64 {
-        exp2(-(self.cosine_fraction as i32))
+        exp2(-(self.keys.cosine_fraction as i32))
     }
 
     /// The domain of cos dγ: from the smallest cosine whose angle is within the deviation.
@@ -42,7 +42,7 @@ impl Params {
                 self.cos_dgamma_domain(),
                 "cosine of the deviation of the microfacet",
             ),
-            shared::exponent_operand(self.exponent_format(), self.exponents),
+            shared::exponent_operand(self.keys.exponent_format(), self.keys.exponents),
             shared::control("dgamma_negative", Format::BIT, (0, 1), sign),
         ]
     }

@@ -9,21 +9,14 @@ use crate::golden::highlight::Reflectance;
 /// C = 4, S = P = 6, F = 4, and the sine table that `sine.rs` works out by hand.
 fn small() -> Params {
     Params {
-        cosine_fraction: 4,
-        exponent_bits: 4,
-        colour_bits: 4,
-        colours_in_turn: false,
+        keys: Keys::small(),
         product_fraction: 6,
-        intensity_fraction: 4,
         sine_scheme: TableScheme::Segmented { segments: vec![2], slope_fraction: 5 },
         sine_fraction: 6,
-        exponents: (1, 15),
-        cosine_signed: false,
         arithmetic: Kind::Exact,
         clamp: true,
         product_rounding: Rounding::Truncate,
         intensity_rounding: Rounding::Truncate,
-        output_rounding: Rounding::Nearest,
         sine_synchronous: true,
         deviation: 30.0,
     }
