@@ -100,6 +100,20 @@ impl Device {
     }
 }
 
+/// Devices by the modules that describe and predict them, each with its name and summary.
+macro_rules! of_catalogue {
+    ($($module:ident: $name:literal, $summary:literal;)*) => {
+        vec![$(Device {
+            name: $name,
+            summary: $summary,
+            schema: devices::$module::schema,
+            describe: devices::$module::describe,
+            model: golden::$module::model,
+            contract: golden::$module::contract,
+        }),*]
+    };
+}
+
 /// The devices that a command line knows.
 #[derive(Clone)]
 pub struct Registry(Vec<Device>);
@@ -112,87 +126,17 @@ impl Registry {
 
     /// The devices of the seeds.
     pub fn catalogue() -> Self {
-        Self(vec![
-            Device {
-                name: "quad-cosine",
-                summary: "cos^k(sqrt(n/k)*delta) along a scan line, k = 1, 2, 4, 16 by n (seed 000)",
-                schema: devices::quad_cosine::schema,
-                describe: devices::quad_cosine::describe,
-                model: golden::quad_cosine::model,
-                contract: golden::quad_cosine::contract,
-            },
-            Device {
-                name: "cosine-squared",
-                summary: "cos^2(a*delta) along a scan line, a = sqrt(n/2) outside (seed 000's prototype)",
-                schema: devices::cosine_squared::schema,
-                describe: devices::cosine_squared::describe,
-                model: golden::cosine_squared::model,
-                contract: golden::cosine_squared::contract,
-            },
-            Device {
-                name: "lyon",
-                summary: "max(0, 1 - beta*D^2)^m, D = N - H, m = 2, 4, 8, 16 (US 5 739 820)",
-                schema: devices::lyon::schema,
-                describe: devices::lyon::describe,
-                model: golden::lyon::model,
-                contract: golden::lyon::contract,
-            },
-            Device {
-                name: "rough",
-                summary: "rough surface, (n/2*(cos(gamma +- dgamma) - 1) + 1)^2 (UA 60139)",
-                schema: devices::rough::schema,
-                describe: devices::rough::describe,
-                model: golden::rough::model,
-                contract: golden::rough::contract,
-            },
-            Device {
-                name: "threshold",
-                summary: "(n/2*(cos gamma - 1) + 1)^2 where it reaches ROM(n) (UA 30041)",
-                schema: devices::threshold::schema,
-                describe: devices::threshold::describe,
-                model: golden::threshold::model,
-                contract: golden::threshold::contract,
-            },
-            Device {
-                name: "quadratic",
-                summary: "c + a(n)*(c^2 - c), c = cos gamma, a(n) from ROM (UA 20998)",
-                schema: devices::quadratic::schema,
-                describe: devices::quadratic::describe,
-                model: golden::quadratic::model,
-                contract: golden::quadratic::contract,
-            },
-            Device {
-                name: "cosine-power",
-                summary: "W(n, gamma) = (n/m*(cos gamma - 1) + 1)^m, m = 2, 4, 8, 16 (seed 002)",
-                schema: devices::cosine_power::schema,
-                describe: devices::cosine_power::describe,
-                model: golden::cosine_power::model,
-                contract: golden::cosine_power::contract,
-            },
-            Device {
-                name: "schlick",
-                summary: "Schlick's function, c / (n - n*c + c), by a divider (seed 002)",
-                schema: devices::schlick::schema,
-                describe: devices::schlick::describe,
-                model: golden::schlick::model,
-                contract: golden::schlick::contract,
-            },
-            Device {
-                name: "blinn",
-                summary: "cos(gamma)^n itself, by tables of -log2 and 2^-x (seeds 000 to 002)",
-                schema: devices::blinn::schema,
-                describe: devices::blinn::describe,
-                model: golden::blinn::model,
-                contract: golden::blinn::contract,
-            },
-            Device {
-                name: "gauss",
-                summary: "exp(-n*gamma^2/2), by tables of gamma^2 and 2^-x (seed 002)",
-                schema: devices::gauss::schema,
-                describe: devices::gauss::describe,
-                model: golden::gauss::model,
-                contract: golden::gauss::contract,
-            },
+        Self(of_catalogue![
+            quad_cosine: "quad-cosine", "cos^k(sqrt(n/k)*delta) along a scan line, k = 1, 2, 4, 16 by n (seed 000)";
+            cosine_squared: "cosine-squared", "cos^2(a*delta) along a scan line, a = sqrt(n/2) outside (seed 000's prototype)";
+            lyon: "lyon", "max(0, 1 - beta*D^2)^m, D = N - H, m = 2, 4, 8, 16 (US 5 739 820)";
+            rough: "rough", "rough surface, (n/2*(cos(gamma +- dgamma) - 1) + 1)^2 (UA 60139)";
+            threshold: "threshold", "(n/2*(cos gamma - 1) + 1)^2 where it reaches ROM(n) (UA 30041)";
+            quadratic: "quadratic", "c + a(n)*(c^2 - c), c = cos gamma, a(n) from ROM (UA 20998)";
+            cosine_power: "cosine-power", "W(n, gamma) = (n/m*(cos gamma - 1) + 1)^m, m = 2, 4, 8, 16 (seed 002)";
+            schlick: "schlick", "Schlick's function, c / (n - n*c + c), by a divider (seed 002)";
+            blinn: "blinn", "cos(gamma)^n itself, by tables of -log2 and 2^-x (seeds 000 to 002)";
+            gauss: "gauss", "exp(-n*gamma^2/2), by tables of gamma^2 and 2^-x (seed 002)";
         ])
     }
 

@@ -13,7 +13,7 @@ use crate::common::cores::{configuration, configuration_with};
 use crate::common::sample::sampled_alone;
 use glint::config::Config;
 use glint::core::Core;
-use glint::cosim::exhaustive::{Clocks, Job, MOST_BITS, Proof, Shard, State};
+use glint::cosim::exhaustive::{Clocks, Difference, Job, MOST_BITS, Proof, Shard, State};
 use glint::golden::Model;
 use glint::registry::{Device, Registry};
 use serde_json::Value;
@@ -182,10 +182,9 @@ fn every_combination_of_every_pipeline() {
 }
 
 /// The combination of which a model errs, in a pipeline: found, had again, and no other.
-#[test]
-fn a_fault_that_one_combination_of_a_pipeline_shows_is_found() {
-    let core = configuration_with(NARROW, PIPELINED);
-    let job = job(&core, ONE);
+/// The one combination that differs; no other does.
+fn the_one(core: &Core) -> Difference {
+    let job = job(core, ONE);
     let clocks = job.clocks.as_ref().expect("combinations");
     let place = whole(&job).clocks.differs.expect("it differs");
     let found = clocks.difference(place).expect("it can be had again");
@@ -194,37 +193,28 @@ fn a_fault_that_one_combination_of_a_pipeline_shows_is_found() {
         assert_eq!(operand.map(|(_, bits)| bits), Some(bits), "{found:?}");
     }
     assert_eq!((found.place, found.mismatch.signal.as_str()), (place, "red_out"));
-    // It shows when the point is at the end.
-    let latency = core.design.pipeline.as_ref().expect("a pipeline").stages.len();
-    assert_eq!(found.clock, latency as u64 - 1);
     let block = place / (clocks.count() / clocks.blocks());
     let others = (0..clocks.blocks()).filter(|&other| other != block);
     assert_eq!(clocks.check(others.collect(), &|_| ()).expect("checked"), None);
     assert!(clocks.difference(place + 1).is_err());
+    found
+}
+
+#[test]
+fn a_fault_that_one_combination_of_a_pipeline_shows_is_found() {
+    let core = configuration_with(NARROW, PIPELINED);
+    // It shows when the point is at the end.
+    let latency = core.design.pipeline.as_ref().expect("a pipeline").stages.len();
+    assert_eq!(the_one(&core).clock, latency as u64 - 1);
 }
 
 #[test]
 fn a_fault_that_one_combination_shows_is_found() {
-    let core = configuration(NARROW);
-    let job = job(&core, ONE);
-    let clocks = job.clocks.as_ref().expect("combinations");
-    let place = whole(&job).clocks.differs.expect("it differs");
-    let found = clocks.difference(place).expect("it can be had again");
-    for (name, bits) in ONE {
-        let operand = found.operands.iter().find(|(operand, _)| operand == name);
-        assert_eq!(operand.map(|(_, bits)| bits), Some(bits), "{found:?}");
-    }
-    assert_eq!(found.place, place);
-    assert_eq!(found.mismatch.signal, "red_out");
+    let found = the_one(&configuration(NARROW));
     assert_eq!(found.mismatch.golden ^ found.mismatch.simulated, 1);
     // Microinstruction 3 is the result's. It begins with the edge that ends 2, three clocks after that of `start`.
     assert!(found.mismatch.during.starts_with("microinstruction `intensity"), "{found:?}");
     assert_eq!(found.clock, 3);
-    // No other combination differs.
-    let block = place / (clocks.count() / clocks.blocks());
-    let others = (0..clocks.blocks()).filter(|&other| other != block);
-    assert_eq!(clocks.check(others.collect(), &|_| ()).expect("checked"), None);
-    assert!(clocks.difference(place + 1).is_err());
 }
 
 #[test]

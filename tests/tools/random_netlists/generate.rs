@@ -2,31 +2,24 @@
 
 use std::panic::Location;
 
+use glint::cosim;
 use glint::fixed::{Format, mask};
 use glint::hdl::netlist::{
     Design, Driver, Field, FieldId, FieldKind, Microinstruction, Net, NetId, Op, Partition, Port,
     RegId, RegisterKind, Role, Rom, RomId, Sequence,
 };
 
-/// Splitmix64.
-pub struct Random(u64);
+/// Numbers at random.
+pub struct Random(cosim::Random);
 
 impl Random {
     /// A stream of its own for each seed.
     pub fn new(seed: u64) -> Self {
-        Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut mixed = self.0;
-        mixed = (mixed ^ mixed >> 30).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        mixed = (mixed ^ mixed >> 27).wrapping_mul(0x94d0_49bb_1331_11eb);
-        mixed ^ mixed >> 31
+        Self(cosim::Random::new(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15)))
     }
 
     fn below(&mut self, bound: usize) -> usize {
-        (self.next() % bound as u64) as usize
+        (self.0.bits() % bound as u64) as usize
     }
 
     fn chance(&mut self, percent: usize) -> bool {
@@ -39,7 +32,7 @@ impl Random {
         if self.chance(30) {
             ends[self.below(ends.len())] & mask(width)
         } else {
-            self.next() & mask(width)
+            self.0.bits() & mask(width)
         }
     }
 }
