@@ -93,18 +93,18 @@ module cosine_power_axis_formal (
     );
 
     // Internal signals that the proof refers to.
-    (* hierconn *) wire  \dut.start ;
-    (* hierconn *) wire  \dut.valid ;
-    (* hierconn *) wire  \dut.waiting ;
+    (* hierconn *) wire \dut.start ;
+    (* hierconn *) wire \dut.valid ;
+    (* hierconn *) wire \dut.waiting ;
     (* hierconn *) wire [63:0] \dut.operands ;
-    (* hierconn *) wire  \dut.operands_user ;
-    (* hierconn *) wire  \dut.user ;
-    (* hierconn *) wire  \dut.core.computing ;
-    (* hierconn *) wire  \dut.operands_last ;
-    (* hierconn *) wire  \dut.last ;
-    (* hierconn *) wire  \dut.held ;
-    (* hierconn *) wire  \dut.held_last ;
-    (* hierconn *) wire  \dut.held_user ;
+    (* hierconn *) wire \dut.operands_user ;
+    (* hierconn *) wire \dut.user ;
+    (* hierconn *) wire \dut.core.computing ;
+    (* hierconn *) wire \dut.operands_last ;
+    (* hierconn *) wire \dut.last ;
+    (* hierconn *) wire \dut.held ;
+    (* hierconn *) wire \dut.held_last ;
+    (* hierconn *) wire \dut.held_user ;
     (* hierconn *) wire [23:0] \dut.held_results ;
     (* hierconn *) wire [20:0] \dut.core.cos_gamma ;
     (* hierconn *) wire [9:0] \dut.core.exponent ;

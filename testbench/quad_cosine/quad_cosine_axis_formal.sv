@@ -118,15 +118,15 @@ module quad_cosine_axis_formal (
     );
 
     // Internal signals that the proof refers to.
-    (* hierconn *) wire  \dut.start ;
-    (* hierconn *) wire  \dut.valid ;
-    (* hierconn *) wire  \dut.waiting ;
+    (* hierconn *) wire \dut.start ;
+    (* hierconn *) wire \dut.valid ;
+    (* hierconn *) wire \dut.waiting ;
     (* hierconn *) wire [103:0] \dut.operands ;
-    (* hierconn *) wire  \dut.operands_user ;
-    (* hierconn *) wire  \dut.user ;
-    (* hierconn *) wire  \dut.core.computing ;
+    (* hierconn *) wire \dut.operands_user ;
+    (* hierconn *) wire \dut.user ;
+    (* hierconn *) wire \dut.core.computing ;
     (* hierconn *) wire [12:0] \dut.core.to_come ;
-    (* hierconn *) wire  \dut.read ;
+    (* hierconn *) wire \dut.read ;
     (* hierconn *) wire [12:0] \dut.read_at ;
     (* hierconn *) wire [12:0] \dut.write_at ;
     (* hierconn *) wire [12:0] \dut.next_line ;

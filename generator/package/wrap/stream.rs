@@ -4,10 +4,10 @@ use anyhow::{Context, Result};
 use askama::Template;
 
 use super::fields::{Field, bits, operands, packed, padding, results, sink};
-use super::{Wrappers, connected, core_wire, script, stub_free, stub_ports};
+use super::{Wrappers, connected, core_wire, script, seen_inside, stub_free, stub_ports};
 use crate::hdl::netlist::{Design, Role};
 use crate::hdl::verilog::rows::separated;
-use crate::hdl::verilog::text::{literal, range};
+use crate::hdl::verilog::text::literal;
 use crate::package::{EmitInputs, render};
 
 /// Of a core that walks lines: the operand that says how long one is, and the buffer.
@@ -239,11 +239,7 @@ fn inside(
     nets.extend(own.into_iter().map(|(net, width)| (net.to_owned(), width)));
     let ports = operands.iter().chain(results);
     nets.extend(ports.map(|field| (format!("core.{}", field.name), field.width)));
-    let declared = |(net, width): (String, u32)| {
-        let range = range(width);
-        format!("(* hierconn *) wire {range} \\dut.{net} ;")
-    };
-    Ok(nets.into_iter().map(declared).collect())
+    Ok(nets.into_iter().map(seen_inside).collect())
 }
 
 fn line(inputs: &EmitInputs, operands: &[Field]) -> Result<Option<Line>> {
