@@ -61,14 +61,14 @@ impl Format {
         u32::try_from(self.int + self.frac + i32::from(self.signed)).expect("a positive width")
     }
 
-    /// The smallest raw value.
+    /// The smallest raw value; of a format that no net can have, of those of an `i128`.
     pub fn min_raw(self) -> i128 {
-        if self.signed { -(1i128 << (self.width() - 1)) } else { 0 }
+        if self.signed { i128::MIN >> 128u32.saturating_sub(self.width()) } else { 0 }
     }
 
-    /// The largest raw value.
+    /// The largest raw value; of a format that no net can have, of those of an `i128`.
     pub fn max_raw(self) -> i128 {
-        (1i128 << (self.width() - u32::from(self.signed))) - 1
+        i128::MAX >> 127u32.saturating_sub(self.width() - u32::from(self.signed))
     }
 
     /// The smallest and the largest raw value.
@@ -167,8 +167,9 @@ impl Rounding {
     pub fn shift(self, raw: i128, places: i32) -> i128 {
         match (self, places) {
             (_, ..=0) => raw << -places,
-            (Self::Truncate, _) => raw >> places,
-            (Self::Nearest, _) => (raw + (1i128 << (places - 1))) >> places,
+            // Of more places than there are bits, the sign is what is left.
+            (Self::Truncate, _) => raw >> places.min(127),
+            (Self::Nearest, _) => ((raw >> (places - 1).min(127)) + 1) >> 1,
         }
     }
 }
@@ -229,6 +230,19 @@ mod tests {
         assert_eq!(Format::holding(-(1 << 20), 5, 20), Format::signed(0, 20));
         assert_eq!(Format::holding(0, 0, 4).width(), 1);
         assert_eq!(Format::holding(-1, 0, 0).width(), 1);
+    }
+
+    #[test]
+    fn formats_that_no_net_can_have_hold_what_there_is() {
+        assert_eq!(Format::unsigned(127, 0).range(), (0, i128::MAX));
+        assert_eq!(Format::signed(127, 0).range(), (i128::MIN, i128::MAX));
+        assert_eq!(Format::unsigned(300, 0).range(), (0, i128::MAX));
+        assert_eq!(Format::signed(300, 0).range(), (i128::MIN, i128::MAX));
+        assert_eq!(Format::signed(126, 0).range(), (-(1 << 126), (1 << 126) - 1));
+        // 2^200 times smaller, no number is near 1 or below -1.
+        assert_eq!([Rounding::Truncate, Rounding::Nearest].map(|it| it.shift(-5, 200)), [-1, 0]);
+        assert_eq!(Rounding::Nearest.shift(i128::MAX, 127), 1);
+        assert_eq!([i128::MIN, i128::MAX].map(|raw| Rounding::Nearest.shift(raw, 128)), [0, 0]);
     }
 
     #[test]

@@ -205,10 +205,11 @@ impl Designer {
 
     /// The constant `raw`, an integer, in the given format.
     #[track_caller]
-    pub fn raw_constant(&self, name: &str, raw: i128, format: Format) -> Signal<'_> {
+    pub fn raw_constant(&self, name: &str, mut raw: i128, format: Format) -> Signal<'_> {
         let format = self.sound(name, format);
         if !format.holds(raw) {
             self.error(format!("constant `{name}`: {raw} does not fit {format}"));
+            raw = 0;
         }
         let id = self.add_wiring(name, format, (raw, raw), Driver::Constant(format.bits(raw)));
         self.signal(id)
@@ -263,12 +264,13 @@ impl Designer {
                 address.format()
             ));
         }
-        if let Some((at, raw)) = words.iter().enumerate().find(|(_, raw)| !format.holds(**raw)) {
-            self.error(format!("ROM `{name}`: word {at} is {raw}, which does not fit {format}"));
-        }
         // A synchronous read starts from the power-up value 0.
         let first = synchronous.then_some(0);
-        let range = interval::of_values(words.iter().copied().chain(first)).unwrap_or((0, 0));
+        let mut range = interval::of_values(words.iter().copied().chain(first)).unwrap_or((0, 0));
+        if let Some((at, raw)) = words.iter().enumerate().find(|(_, raw)| !format.holds(**raw)) {
+            self.error(format!("ROM `{name}`: word {at} is {raw}, which does not fit {format}"));
+            range = format.range();
+        }
         let data = self.add_net(&format!("{name}_word"), format, range, Driver::Undriven, true);
         let words = words.iter().map(|&raw| format.bits(raw)).collect();
         let rom = NetRom::new(name, address.id(), data, words, Location::caller());
