@@ -64,7 +64,8 @@ impl Core {
     /// Builds and checks the design.
     ///
     /// # Errors
-    /// The mistakes of the description; constraints with a clock that the pipeline is not made for.
+    /// The mistakes of the description; constraints with a clock that the pipeline is not made for; a style of ROMs that
+    /// there are not.
     pub fn new(device: Device, config: Config) -> Result<Self> {
         let design = device
             .design(&config)
@@ -72,6 +73,7 @@ impl Core {
         if let Some(pipeline) = &design.pipeline {
             package::check_clock(&config, pipeline)?;
         }
+        package::check_rom_style(&config, &design)?;
         device.check_golden(&config)?;
         let contract = (device.contract)(&config);
         Ok(Self { device, config, design, contract })

@@ -60,7 +60,7 @@ pub use cocotb::driver;
 pub use instance::instance;
 pub use points::{POINTS_FILE, PointsBench, RESULTS_FILE};
 pub use seal::{Seal, is_sealed, sealed, sealed_json};
-pub use surroundings::{Surroundings, check_clock};
+pub use surroundings::{Surroundings, check_clock, check_rom_style};
 pub use unfit::Unfit;
 pub use window::{WINDOW_FILE, window};
 

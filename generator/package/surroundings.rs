@@ -2,7 +2,7 @@
 
 use super::Unfit;
 use crate::config::{Config, Schema};
-use crate::hdl::netlist::Pipeline;
+use crate::hdl::netlist::{Design, Pipeline};
 use crate::hdl::verilog::naming::Style;
 
 /// The clock of constraints for a sequential core, unless a key says another.
@@ -10,6 +10,9 @@ const CLOCK_MHZ: f64 = 100.0;
 
 /// The key that says another.
 const CLOCK: &str = "package.clock_mhz";
+
+/// The key that says where ROMs are to be.
+const ROM_STYLE: &str = "package.rom_style";
 
 /// That constraints do not ask more of a pipeline than it is made for.
 ///
@@ -33,6 +36,25 @@ pub fn check_clock(config: &Config, pipeline: &Pipeline) -> Result<(), Unfit> {
         CLOCK,
         format!("`{CLOCK}` = {asked:?} is above the {made_for} MHz that {made}"),
         format!("{faster}set {CLOCK} to {made_for} or less"),
+    ))
+}
+
+/// That a style is asked for of ROMs that there are.
+///
+/// # Errors
+/// A style, and no ROM that is read on the clock.
+pub fn check_rom_style(config: &Config, design: &Design) -> Result<(), Unfit> {
+    let style = config.choice(ROM_STYLE);
+    if style == "auto" || design.roms.iter().any(|rom| rom.synchronous) {
+        return Ok(());
+    }
+    Err(Unfit::new(
+        ROM_STYLE,
+        format!(
+            "`{ROM_STYLE}` = \"{style}\": `{}` has no ROM that is read on the clock",
+            design.name
+        ),
+        "remove it",
     ))
 }
 
@@ -98,7 +120,7 @@ impl Surroundings {
             software: config.flag("package.software"),
             style: Style {
                 inline: config.choice("package.memories") == "inline",
-                rom_style: match config.choice("package.rom_style") {
+                rom_style: match config.choice(ROM_STYLE) {
                     "block" => Some("rom_style = \"block\""),
                     // To Yosys, which reads the first, memory in look-up tables is one that can be written.
                     "distributed" => Some("ram_style = \"logic\", rom_style = \"distributed\""),
