@@ -1,4 +1,4 @@
-//! The built-in simulator against Verilator and Icarus Verilog, paired: the same stimulus, in turns, as
+//! The built-in simulator against Verilator and Icarus Verilog, paired: the same stimulus, alternately, as
 //! ratios.
 //!
 //! ```text

@@ -43,7 +43,7 @@ pub fn describe(d: &Designer, config: &Config) {
     let grazing = complement("grazing", c.q());
     let absorbed = complement("absorbed", f0.q());
 
-    // The one multiplier, and what it multiplies. A word that does not turn a mux leaves it at its first
+    // The one multiplier, and what it multiplies. A word that does not control a mux leaves it at its first
     // input, so that comes first which most words want.
     let first = d.mux("first", [power.q(), grazing]);
     let second = d.mux("second", [power.q(), grazing, absorbed]);

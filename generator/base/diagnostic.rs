@@ -24,7 +24,7 @@ impl Diagnostic {
         Self { message, location, notes: Vec::new(), key: None }
     }
 
-    /// The same as the fault of a configuration's key, with a remedy.
+    /// The same as a problem of a configuration's key, with a remedy.
     pub(crate) fn of_key(mut self, key: &'static str, remedy: String) -> Self {
         self.key = Some((key, remedy));
         self

@@ -35,11 +35,11 @@ pub fn fits(interval: Interval, format: Format) -> bool {
 
 /// The multiple of the modulus that brings numbers of this range into the format, as hardware that drops what is
 /// above its bits does; `None` if it is not one for all.
-pub fn turns((low, high): Interval, format: Format) -> Option<i128> {
+pub fn wrap((low, high): Interval, format: Format) -> Option<i128> {
     let (least, most) = format.range();
     let modulus = most - least + 1;
-    let turn =
+    let wrap =
         (least - low).div_euclid(modulus) + i128::from((least - low).rem_euclid(modulus) != 0);
-    let turn = turn * modulus;
-    (low + turn >= least && high + turn <= most).then_some(turn)
+    let wrap = wrap * modulus;
+    (low + wrap >= least && high + wrap <= most).then_some(wrap)
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::polynomial::Polynomial;
 use super::quotient::Quotient;
 use crate::base::cone;
-use crate::base::interval::{self, Interval, common, turns};
+use crate::base::interval::{self, Interval, common, wrap};
 use crate::hdl::netlist::{NetId, Op, RomId, interval::of_cell};
 use crate::hdl::pipeline::{Cell, Graph};
 
@@ -194,13 +194,13 @@ fn polynomial(
         _ => known.get(id).copied(),
     };
     // All that comes to the node, with one multiple of the modulus added.
-    let turned = |whole: Interval, polynomial: Polynomial| {
-        polynomial.plus(Polynomial::constant(turns(whole, node.format)?), 1)
+    let wrapped = |whole: Interval, polynomial: Polynomial| {
+        polynomial.plus(Polynomial::constant(wrap(whole, node.format)?), 1)
     };
     match &node.cell {
         Cell::Operand(_) => Some(Polynomial::operand(id)),
-        Cell::Op(Op::Relabel(a) | Op::Extend(a)) => turned(of(a), known(a)?),
-        Cell::Op(Op::Slice { of: a, low: 0 }) => turned(of(a), known(a)?),
+        Cell::Op(Op::Relabel(a) | Op::Extend(a)) => wrapped(of(a), known(a)?),
+        Cell::Op(Op::Slice { of: a, low: 0 }) => wrapped(of(a), known(a)?),
         Cell::Op(Op::Not(a)) => {
             let most = if node.format.signed { -1 } else { node.format.range().1 };
             Polynomial::constant(most).plus(known(a)?, -1)
@@ -219,10 +219,10 @@ fn polynomial(
             let one = carry.as_ref().map_or((0, 0), of);
             let whole = (of(a).0 + of(b).0 + one.0, of(a).1 + of(b).1 + one.1);
             let carry = Polynomial::constant(one.0);
-            turned(whole, known(a)?.plus(known(b)?, 1)?.plus(carry, 1)?)
+            wrapped(whole, known(a)?.plus(known(b)?, 1)?.plus(carry, 1)?)
         }
         Cell::Op(Op::Sub(a, b)) => {
-            turned((of(a).0 - of(b).1, of(a).1 - of(b).0), known(a)?.plus(known(b)?, -1)?)
+            wrapped((of(a).0 - of(b).1, of(a).1 - of(b).0), known(a)?.plus(known(b)?, -1)?)
         }
         Cell::Op(Op::Mul(a, b)) => known(a)?.times(known(b)?),
         _ => None,

@@ -7,7 +7,7 @@ use super::exact::word_variable;
 use super::quotient::{Quotient, widened};
 use super::terms::{Direction, Id, Term, Terms};
 use crate::base::fixed::exp2;
-use crate::base::interval::{Interval, turns};
+use crate::base::interval::{Interval, wrap};
 use crate::hdl::netlist::{NetId, Op, RomId};
 use crate::hdl::pipeline::{Cell, Graph};
 
@@ -174,8 +174,8 @@ impl<'a> Hardware<'a> {
             _ => return Err(format!("`{name}` is nothing that the operands determine")),
         };
         // What is to be added where bits above the format are dropped.
-        let turn = |range: Interval| {
-            turns(range, node.format).ok_or_else(|| {
+        let wrap_of = |range: Interval| {
+            wrap(range, node.format).ok_or_else(|| {
                 let ((low, high), format) = (range, node.format);
                 format!("`{name}` is {format}, and {low} to {high} ulp come to it as far as intervals tell")
             })
@@ -184,16 +184,16 @@ impl<'a> Hardware<'a> {
         let range = |id: &NetId| case.ranges[id.index()];
         match op {
             Op::Relabel(a) | Op::Extend(a) => {
-                let turn = turn(range(a))?;
+                let wrap = wrap_of(range(a))?;
                 let a = self.value(terms, *a)?;
-                Ok(add(terms, a, Value::Constant(turn), Term::Add, &name))
+                Ok(add(terms, a, Value::Constant(wrap), Term::Add, &name))
             }
             Op::Mux { select, inputs } => {
                 let chosen = range(select).0 as usize;
                 self.value(terms, inputs[chosen.min(inputs.len() - 1)])
             }
             Op::Slice { of, low } => {
-                let turn = turn((range(of).0 >> low, range(of).1 >> low))?;
+                let wrap = wrap_of((range(of).0 >> low, range(of).1 >> low))?;
                 let (from, to) = range(of);
                 let of = self.value(terms, *of)?;
                 if graph.width(id) == 1 && *low > 0 && from >= 0 && to < 2 << low {
@@ -201,7 +201,7 @@ impl<'a> Hardware<'a> {
                     return Ok(cut(terms, of, low + 1, Direction::Nearest, &name));
                 }
                 let cut = cut(terms, of, *low, Direction::Down, &name);
-                Ok(add(terms, cut, Value::Constant(turn), Term::Add, &name))
+                Ok(add(terms, cut, Value::Constant(wrap), Term::Add, &name))
             }
             Op::Concat(parts) => {
                 let mut sum = Value::Constant(0);
@@ -233,19 +233,20 @@ impl<'a> Hardware<'a> {
             Op::Add { a, b, carry } => {
                 if let Some((of, low)) = self.rounded(*a, *b) {
                     let half = 1 << (low - 1);
-                    let turn = turn(((range(&of).0 + half) >> low, (range(&of).1 + half) >> low))?;
+                    let wrap =
+                        wrap_of(((range(&of).0 + half) >> low, (range(&of).1 + half) >> low))?;
                     let of = self.value(terms, of)?;
                     let cut = cut(terms, of, low, Direction::Nearest, &name);
-                    return Ok(add(terms, cut, Value::Constant(turn), Term::Add, &name));
+                    return Ok(add(terms, cut, Value::Constant(wrap), Term::Add, &name));
                 }
                 let one = carry.as_ref().map_or((0, 0), range);
-                let turn =
-                    turn((range(a).0 + range(b).0 + one.0, range(a).1 + range(b).1 + one.1))?;
+                let wrap =
+                    wrap_of((range(a).0 + range(b).0 + one.0, range(a).1 + range(b).1 + one.1))?;
                 let (a, b) = (self.value(terms, *a)?, self.value(terms, *b)?);
                 let (a, b) = match (a, b) {
-                    (Value::Constant(a), b) => (Value::Constant(a + turn), b),
-                    (a, Value::Constant(b)) => (a, Value::Constant(b + turn)),
-                    (a, b) => (add(terms, a, Value::Constant(turn), Term::Add, &name), b),
+                    (Value::Constant(a), b) => (Value::Constant(a + wrap), b),
+                    (a, Value::Constant(b)) => (a, Value::Constant(b + wrap)),
+                    (a, b) => (add(terms, a, Value::Constant(wrap), Term::Add, &name), b),
                 };
                 let sum = add(terms, a, b, Term::Add, &name);
                 match carry {
@@ -257,10 +258,10 @@ impl<'a> Hardware<'a> {
                 }
             }
             Op::Sub(a, b) => {
-                let turn = turn((range(a).0 - range(b).1, range(a).1 - range(b).0))?;
+                let wrap = wrap_of((range(a).0 - range(b).1, range(a).1 - range(b).0))?;
                 let (a, b) = (self.value(terms, *a)?, self.value(terms, *b)?);
                 let difference = add(terms, a, b, Term::Sub, &name);
-                Ok(add(terms, difference, Value::Constant(turn), Term::Add, &name))
+                Ok(add(terms, difference, Value::Constant(wrap), Term::Add, &name))
             }
             Op::Mul(a, b) => {
                 let frac = |id: &NetId| graph.node(*id).format.frac;

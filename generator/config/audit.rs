@@ -11,38 +11,38 @@ impl Schema {
     /// refused by `check`; conditions on keys or values that do not exist.
     ///
     /// A schema without mistakes gives an empty list; the reader relies on that.
-    pub fn faults(&self) -> Vec<String> {
-        let mut faults = Vec::new();
+    pub fn mistakes(&self) -> Vec<String> {
+        let mut mistakes = Vec::new();
         for (index, key) in self.keys.iter().enumerate() {
             let name = key.name;
             if !name.split('.').all(is_plain) {
-                faults.push(format!("`{name}` is not made of plain lower-case words"));
+                mistakes.push(format!("`{name}` is not made of plain lower-case words"));
             }
             let shared = shared_keys().iter().map(|key| key.name);
             let mut common = super::COMMON.iter().map(|(common, _)| *common).chain(shared);
             if common.any(|common| common == name) {
-                faults.push(format!("`{name}` is a key of every device"));
+                mistakes.push(format!("`{name}` is a key of every device"));
             }
             if self.keys[..index].iter().any(|other| other.name == name) {
-                faults.push(format!("`{name}` is declared twice"));
+                mistakes.push(format!("`{name}` is declared twice"));
             }
             let table = format!("{name}.");
             if self.all_keys().any(|other| other.name.starts_with(&table)) {
-                faults.push(format!("`{name}` is both a key and a table"));
+                mistakes.push(format!("`{name}` is both a key and a table"));
             }
-            for fault in key.faults_of(&key.default) {
-                faults.push(format!("default of `{name}`: {}", fault.message));
+            for violation in key.violations_of(&key.default) {
+                mistakes.push(format!("default of `{name}`: {}", violation.message));
             }
             if key.kind.mixes_integers_and_words() {
-                faults.push(format!("`{name}` is a choice among integers and words"));
+                mistakes.push(format!("`{name}` is a choice among integers and words"));
             }
             if let Some((other, value)) = key.only_when {
                 // Only an earlier key, so that chains of conditions end.
                 match self.keys[..index].iter().find(|key| key.name == other) {
-                    None => faults.push(format!(
+                    None => mistakes.push(format!(
                         "`{name}` depends on `{other}`, which is not declared before it"
                     )),
-                    Some(other) if !other.can_be(value) => faults.push(format!(
+                    Some(other) if !other.can_be(value) => mistakes.push(format!(
                         "`{name}` depends on `{}` = {value}, which that can never be",
                         other.name
                     )),
@@ -50,12 +50,13 @@ impl Schema {
                 }
             }
         }
-        if faults.is_empty() {
+        if mistakes.is_empty() {
             let mut problems = Problems::default();
             (self.check)(&Config::defaults(self, self.device), &mut problems);
-            faults.extend(problems.iter().map(|problem| format!("defaults: {}", problem.message)));
+            mistakes
+                .extend(problems.iter().map(|problem| format!("defaults: {}", problem.message)));
         }
-        faults
+        mistakes
     }
 }
 

@@ -1,6 +1,6 @@
 //! Names of Verilog modules: which are legal, and what is wrong with the others.
 
-use super::problems::{Fault, quoted};
+use super::problems::{Violation, quoted};
 use crate::base::keywords::is_keyword;
 
 /// The longest name; the modules and files derived from it append to it.
@@ -8,9 +8,9 @@ const LONGEST: usize = 60;
 
 /// What is wrong with a module name; nothing if it is an identifier of Verilog and SystemVerilog
 /// that every tool takes, and a plain file name.
-pub(super) fn fault(name: &str) -> Option<Fault> {
+pub(super) fn violation(name: &str) -> Option<Violation> {
     let message = complaint(name)?;
-    Some(Fault {
+    Some(Violation {
         entry: None,
         message,
         remedy: format!(

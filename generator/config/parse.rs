@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue, Error};
 
 use super::module_name;
 use super::nearest::{listed, nearest};
-use super::problems::{Fault, Problems, STANDARD_INPUT, out_of_range, quoted, shown};
+use super::problems::{Problems, STANDARD_INPUT, Violation, out_of_range, quoted, shown};
 use super::schema::{Key, Kind, Schema};
 use super::validate::{Draft, keys_of};
 use super::values::{Config, Value};
@@ -177,17 +177,18 @@ impl Reader<'_> {
             None => {
                 let stem = Path::new(file_name).file_stem().unwrap_or_default();
                 let name = stem.to_string_lossy().replace('-', "_");
-                if let Some(fault) = module_name::fault(&name) {
-                    let message = format!("{}; it comes from the name of the file", fault.message);
-                    let remedy = format!("set `name`: {}", fault.remedy);
+                if let Some(violation) = module_name::violation(&name) {
+                    let message =
+                        format!("{}; it comes from the name of the file", violation.message);
+                    let remedy = format!("set `name`: {}", violation.remedy);
                     self.problems.push("name", message, remedy);
                 }
                 name
             }
             Some(value) => match value.get_ref() {
                 DeValue::String(name) => {
-                    if let Some(fault) = module_name::fault(name) {
-                        self.report("name", value.span(), fault.message, fault.remedy);
+                    if let Some(violation) = module_name::violation(name) {
+                        self.report("name", value.span(), violation.message, violation.remedy);
                     }
                     name.clone().into_owned()
                 }
@@ -264,13 +265,13 @@ impl Reader<'_> {
         self.problems.locate(key.name, span.clone());
         match converted(key, value) {
             Ok(value) => draft.give(key, Some(value)),
-            Err(faults) => {
+            Err(violations) => {
                 draft.give(key, None);
-                for fault in faults {
-                    let entry = fault.entry.zip(value.get_ref().as_array());
+                for violation in violations {
+                    let entry = violation.entry.zip(value.get_ref().as_array());
                     let entry = entry.and_then(|(index, entries)| entries.get(index));
                     let span = entry.map_or_else(|| span.clone(), Spanned::span);
-                    self.report(key.name, span, fault.message, fault.remedy);
+                    self.report(key.name, span, violation.message, violation.remedy);
                 }
             }
         }
@@ -327,9 +328,9 @@ impl Reader<'_> {
 }
 
 /// A value as its key wants it, or all that is wrong with it.
-fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Fault>> {
+fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Violation>> {
     let wrong_type = || vec![key.wrong_type(&described(value))];
-    let too_large = || vec![key.fault(out_of_range(key.name, written(value)))];
+    let too_large = || vec![key.violation(out_of_range(key.name, written(value)))];
     let converted = match (&key.kind, value.get_ref()) {
         (Kind::Integer { .. }, DeValue::Integer(_)) => {
             Value::Integer(integer(value).ok_or_else(too_large)?)
@@ -350,7 +351,7 @@ fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Fault>> {
         (Kind::Flag, DeValue::Boolean(flag)) => Value::Flag(*flag),
         (Kind::Integers { .. }, DeValue::Array(entries)) => {
             let mut values = Vec::new();
-            let mut faults = Vec::new();
+            let mut violations = Vec::new();
             for (index, entry) in entries.iter().enumerate() {
                 let place = format!("{}[{index}]", key.name);
                 let message = match (integer(entry), entry.get_ref()) {
@@ -361,17 +362,17 @@ fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Fault>> {
                     (None, DeValue::Integer(_)) => out_of_range(&place, written(entry)),
                     (None, _) => format!("`{place}` must be an integer, not {}", described(entry)),
                 };
-                faults.push(Fault { entry: Some(index), ..key.fault(message) });
+                violations.push(Violation { entry: Some(index), ..key.violation(message) });
             }
-            if !faults.is_empty() {
-                return Err(faults);
+            if !violations.is_empty() {
+                return Err(violations);
             }
             Value::Integers(values)
         }
         _ => return Err(wrong_type()),
     };
-    let faults = key.faults_of(&converted);
-    if faults.is_empty() { Ok(converted) } else { Err(faults) }
+    let violations = key.violations_of(&converted);
+    if violations.is_empty() { Ok(converted) } else { Err(violations) }
 }
 
 /// The value of an integer that fits 64 bits.

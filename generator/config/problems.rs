@@ -185,7 +185,7 @@ impl fmt::Display for Problems {
 impl std::error::Error for Problems {}
 
 /// What is wrong with a value, before it is known where it stands.
-pub(super) struct Fault {
+pub(super) struct Violation {
     /// The entry of a list that it is about.
     pub entry: Option<usize>,
     pub message: String,

@@ -40,7 +40,7 @@ pub fn read_located(path: &Path, schemas: &[Schema]) -> Result<(Config, Problems
     match std::str::from_utf8(&bytes) {
         Ok(text) => located(&file_name, text, schemas),
         Err(error) => {
-            // Up to the fault the lossy text is the file's own, so the place is right in it.
+            // Up to the wrong byte the lossy text is the file's own, so the location is right in it.
             let lossy = String::from_utf8_lossy(&bytes);
             let start = error.valid_up_to();
             let end = start + char::REPLACEMENT_CHARACTER.len_utf8();

@@ -5,13 +5,13 @@ use std::collections::BTreeSet;
 use super::follow::follow;
 use super::module_name;
 use super::nearest::nearest;
-use super::problems::{Fault, Problem, Problems, out_of_range, quoted, shown};
+use super::problems::{Problem, Problems, Violation, out_of_range, quoted, shown};
 use super::schema::{Key, Kind, Schema};
 use super::values::{Config, Value};
 
 impl Key {
     /// What is wrong with a value; empty if the key accepts it.
-    pub(super) fn faults_of(&self, value: &Value) -> Vec<Fault> {
+    pub(super) fn violations_of(&self, value: &Value) -> Vec<Violation> {
         let name = self.name;
         match (&self.kind, value) {
             (Kind::Integer { min, max }, Value::Integer(given)) => {
@@ -30,14 +30,14 @@ impl Key {
                     }
                 })
                 .into_iter()
-                .map(|fault| self.with_suggestion(fault, given))
+                .map(|violation| self.with_suggestion(violation, given))
                 .collect(),
             (Kind::Flag, Value::Flag(_)) => Vec::new(),
             (Kind::Text(pattern), Value::Text(given)) => {
                 self.unless(pattern.fits(given), || format!("`{name}` cannot be {}", quoted(given)))
             }
             (Kind::Integers { min, max, len_min, len_max }, Value::Integers(given)) => {
-                let mut faults = self.unless((len_min..=len_max).contains(&&given.len()), || {
+                let mut all = self.unless((len_min..=len_max).contains(&&given.len()), || {
                     let plural = if given.len() == 1 { "y" } else { "ies" };
                     format!("`{name}` has {} entr{plural}", given.len())
                 });
@@ -45,18 +45,16 @@ impl Key {
                     let inside = (min..=max).contains(&entry);
                     let place = format!("{name}[{index}]");
                     let found = self.unless(inside, || out_of_range(&place, entry));
-                    faults.extend(
-                        found.into_iter().map(|fault| Fault { entry: Some(index), ..fault }),
-                    );
+                    all.extend(found.into_iter().map(|it| Violation { entry: Some(index), ..it }));
                 }
-                faults
+                all
             }
             (_, other) => vec![self.wrong_type(&other.described())],
         }
     }
 
-    /// The fault of a value of another type, which `found` describes.
-    pub(super) fn wrong_type(&self, found: &str) -> Fault {
+    /// The violation of a value of another type, which `found` describes.
+    pub(super) fn wrong_type(&self, found: &str) -> Violation {
         let wanted = match self.kind {
             Kind::Integer { .. } => "an integer",
             Kind::Number { .. } => "a number",
@@ -65,34 +63,35 @@ impl Key {
             Kind::Flag => "true or false",
             Kind::Integers { .. } => "a list of integers",
         };
-        self.fault(format!("`{}` must be {wanted}, not {found}", self.name))
+        self.violation(format!("`{}` must be {wanted}, not {found}", self.name))
     }
 
-    /// A fault with the usual remedy: what the key accepts.
-    pub(super) fn fault(&self, message: String) -> Fault {
-        Fault {
+    /// A violation with the usual remedy: what the key accepts.
+    pub(super) fn violation(&self, message: String) -> Violation {
+        Violation {
             entry: None,
             message,
             remedy: format!("give {} (default {})", self.accepts(), self.default.toml()),
         }
     }
 
-    fn unless(&self, good: bool, message: impl FnOnce() -> String) -> Vec<Fault> {
-        if good { Vec::new() } else { vec![self.fault(message())] }
+    fn unless(&self, good: bool, message: impl FnOnce() -> String) -> Vec<Violation> {
+        if good { Vec::new() } else { vec![self.violation(message())] }
     }
 
-    fn with_suggestion(&self, fault: Fault, given: &str) -> Fault {
+    fn with_suggestion(&self, violation: Violation, given: &str) -> Violation {
         let Kind::Choice(options) = self.kind else {
-            return fault;
+            return violation;
         };
         // Among numbers the nearest spelling means nothing.
         let near =
             nearest(given, options.iter().copied()).filter(|_| !self.kind.is_integer_choice());
         match near {
-            None => fault,
-            Some(near) => {
-                Fault { remedy: format!("did you mean \"{near}\"? {}", fault.remedy), ..fault }
-            }
+            None => violation,
+            Some(near) => Violation {
+                remedy: format!("did you mean \"{near}\"? {}", violation.remedy),
+                ..violation
+            },
         }
     }
 
@@ -265,10 +264,10 @@ fn trials(schema: &Schema, draft: &Draft) -> Vec<Config> {
         .collect();
     let count = stand_ins.iter().map(|(_, values)| values.len()).max();
     (0..count.unwrap_or(1))
-        .map(|turn| {
+        .map(|round| {
             let mut trial = draft.config.clone();
             for (name, values) in &stand_ins {
-                trial.set(name, values[turn % values.len()].clone());
+                trial.set(name, values[round % values.len()].clone());
             }
             trial
         })
@@ -297,8 +296,8 @@ impl Config {
     ) -> Result<Self, Problems> {
         let mut problems = Problems::default();
         let mut draft = Draft::new(schema, name);
-        if let Some(fault) = module_name::fault(name) {
-            problems.push("name", fault.message, fault.remedy);
+        if let Some(violation) = module_name::violation(name) {
+            problems.push("name", violation.message, violation.remedy);
         }
         for (name, value) in values {
             let Some(key) = schema.key(&name) else {
@@ -306,10 +305,10 @@ impl Config {
                 problems.push(&name, message, keys_of(schema, ""));
                 continue;
             };
-            let faults = key.faults_of(&value);
-            draft.give(key, faults.is_empty().then_some(value));
-            for fault in faults {
-                problems.push(key.name, fault.message, fault.remedy);
+            let violations = key.violations_of(&value);
+            draft.give(key, violations.is_empty().then_some(value));
+            for violation in violations {
+                problems.push(key.name, violation.message, violation.remedy);
             }
         }
         draft.finish(schema, problems)

@@ -52,10 +52,10 @@ impl Outcome {
     }
 
     /// What does not hold, with a contract whose bound this is.
-    pub fn faults(&self, bound: &Bound) -> Vec<String> {
-        let mut faults = Vec::new();
+    pub fn failures(&self, bound: &Bound) -> Vec<String> {
+        let mut failures = Vec::new();
         if let Some(mismatch) = &self.mismatch {
-            faults.push(format!(
+            failures.push(format!(
                 "seed {}, after clock {}, {mismatch}",
                 mismatch.seed, mismatch.clock
             ));
@@ -63,12 +63,12 @@ impl Outcome {
         if let Some(worst) = &self.worst
             && worst.units > bound.units
         {
-            faults.push(format!(
+            failures.push(format!(
                 "`{}` is off by {:.4} units, beyond the stated bound of {:.4}",
                 worst.output, worst.units, bound.units
             ));
         }
-        faults
+        failures
     }
 }
 

@@ -97,7 +97,7 @@ fn plant_bit(design: &mut Design, net: NetId, bit: u32, how: Bit) {
 
 /// All that reads `from` reads `to`, but the nets in `except`.
 fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
-    let turn = |net: &mut NetId| {
+    let redirect = |net: &mut NetId| {
         if *net == from {
             *net = to;
         }
@@ -106,15 +106,15 @@ fn redirect(design: &mut Design, from: NetId, to: NetId, except: &[NetId]) {
         if let Driver::Op(op) = &mut net.driver
             && !except.contains(&NetId(at as u32))
         {
-            op.operands_mut().into_iter().for_each(turn);
+            op.operands_mut().into_iter().for_each(redirect);
         }
     }
     for register in &mut design.registers {
-        register.data.as_mut().map(turn);
-        register.enable.as_mut().map(turn);
+        register.data.as_mut().map(redirect);
+        register.enable.as_mut().map(redirect);
     }
     for rom in &mut design.roms {
-        turn(&mut rom.address);
+        redirect(&mut rom.address);
     }
 }
 

@@ -41,7 +41,7 @@ pub struct Port<'a> {
 pub struct Field<'a> {
     /// Its name.
     pub name: &'a str,
-    /// What it turns: `select`, `enable`, `flag` or `sequence`.
+    /// What it controls: `select`, `enable`, `flag` or `sequence`.
     pub kind: &'static str,
     /// Its lowest bit in the control word.
     pub low: u32,

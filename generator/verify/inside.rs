@@ -91,7 +91,7 @@ fn lockstep(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
             counted(outcome.outputs, "output"),
         ),
     )
-    .faults(outcome.faults(&bound))
+    .failures(outcome.failures(&bound))
     .open("Operands that were not drawn."))
 }
 
@@ -150,7 +150,7 @@ fn contract(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
         domain(&job),
         format!("The stated bound is {:.3} units; {}.", contract.bound().units, proof.words("")),
     )
-    .faults(proof.faults)
+    .failures(proof.failures)
     .open(job.f.sweep().omits.clone()))
 }
 
@@ -169,7 +169,7 @@ fn recorded(
     progress: &(dyn Fn(u64) + Sync),
 ) -> Finding {
     let job = Job::of_sweep(contract, record.sweep(contract));
-    let (again, faults) = record.recheck(contract, AGAIN, progress);
+    let (again, failures) = record.recheck(contract, AGAIN, progress);
     let path = record.path.display().to_string().replace('\\', "/");
     let words = format!(
         "The stated bound is {:.3} units; by the record `{path}` {}. Of it, {} evaluations, spread evenly, and the one with the \
@@ -180,7 +180,7 @@ fn recorded(
         if job.colours.count() > 0 { ", and all colour products," } else { "" },
     );
     let verdict = of_sweep(job.f.sweep());
-    let finding = Finding::new(verdict, domain(&job), words).faults(faults);
+    let finding = Finding::new(verdict, domain(&job), words).failures(failures);
     Finding { record: Some(path), ..finding }.open(job.f.sweep().omits.clone())
 }
 
@@ -211,7 +211,7 @@ pub const CLOCKS: Check = Check {
             return Ok(Finding::without(Verdict::NotCovered, clocks.omits()));
         }
         let differs = clocks.check((0..clocks.blocks()).collect(), progress)?;
-        let faults = match differs {
+        let failures = match differs {
             Some(place) => vec![clocks.difference(place)?.to_string()],
             None => Vec::new(),
         };
@@ -220,7 +220,7 @@ pub const CLOCKS: Check = Check {
             format!("{} combinations of {} operand bits", grouped(clocks.count()), clocks.bits()),
             "Every register and output equals the golden model on every clock.",
         )
-        .faults(faults)
+        .failures(failures)
         .open(clocks.omits()))
     },
 };

@@ -97,7 +97,8 @@ pub struct Finding {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub complete_with: Option<String>,
     /// What does not hold, each with its reproducer.
-    pub faults: Vec<String>,
+    #[serde(rename = "faults")]
+    pub failures: Vec<String>,
 }
 
 impl Finding {
@@ -111,10 +112,10 @@ impl Finding {
         Self { verdict, words: why.into(), ..Self::default() }
     }
 
-    /// A failure if there are faults.
-    fn faults(self, faults: Vec<String>) -> Self {
-        let verdict = if faults.is_empty() { self.verdict } else { Verdict::Failed };
-        Self { verdict, faults, ..self }
+    /// A verdict of failure if there are any.
+    fn failures(self, failures: Vec<String>) -> Self {
+        let verdict = if failures.is_empty() { self.verdict } else { Verdict::Failed };
+        Self { verdict, failures, ..self }
     }
 
     fn open(self, open: impl Into<String>) -> Self {
@@ -210,7 +211,7 @@ impl Check {
         let versions = tools.iter().filter_map(|tool| tool.version().ok());
         let versions = versions.collect();
         let finding = (self.run)(subject, &tools, progress)
-            .unwrap_or_else(|error| Finding::default().faults(vec![format!("{error:#}")]));
+            .unwrap_or_else(|error| Finding::default().failures(vec![format!("{error:#}")]));
         (versions, finding)
     }
 }

@@ -110,7 +110,7 @@ pub const EQUALITY: Check = Check {
             )
             .open("Stalls and resets: a value of a stage is made of this stage alone, and the handshake is proved by induction."),
             equality::Verdict::Different(difference) => {
-                Finding::default().faults(vec![difference.to_string()])
+                Finding::default().failures(vec![difference.to_string()])
             }
             equality::Verdict::Open(why) => {
                 Finding::without(Verdict::NotCovered, format!("It is not decided: {why}."))
@@ -137,11 +137,11 @@ pub const LINT: Check = Check {
             }
         }
         let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
-        let mut faults = Vec::new();
+        let mut failures = Vec::new();
         for tool in tools {
             let remarks = lint(tool, place.path(), &sources, name, limit)?;
             if !remarks.trim().is_empty() {
-                faults.push(format!("{tool}: {}", remarks.trim()));
+                failures.push(format!("{tool}: {}", remarks.trim()));
             }
         }
         Ok(Finding::new(
@@ -149,7 +149,7 @@ pub const LINT: Check = Check {
             sources.join(", "),
             "Neither Icarus Verilog nor Verilator has a remark.",
         )
-        .faults(faults))
+        .failures(failures))
     },
 };
 
@@ -181,14 +181,14 @@ fn bench(subject: &Subject<'_>, simulator: Simulator) -> Result<Finding> {
     let files = package::sources(core.files(subject.path, vectors)?);
     let top = format!("{}_tb", core.config.name);
     let outcome = run_bench(simulator, &files, &top, effort.time_limit)?;
-    let faults =
+    let failures =
         if outcome.passed { Vec::new() } else { vec![outcome.transcript.trim().to_owned()] };
     Ok(Finding::new(
         Verdict::Passed,
         format!("{} results in {} clocks (seed {BENCH_SEED})", grouped(points), grouped(clocks)),
         "Every output is right on every clock.",
     )
-    .faults(faults)
+    .failures(failures)
     .open("Operands that were not drawn."))
 }
 
@@ -300,7 +300,7 @@ pub const COCOTB: Check = Check {
         let bench = format!("testbench/{name}/test_{name}.py");
         let run = python.run([&bench], place.path(), limit)?;
         let verdict = run.output.lines().rev().find(|line| line.contains(&format!("{name}: ")));
-        let faults = match (run.status.success(), verdict) {
+        let failures = match (run.status.success(), verdict) {
             (true, Some(_)) => Vec::new(),
             _ => vec![run.output.trim().to_owned()],
         };
@@ -309,7 +309,7 @@ pub const COCOTB: Check = Check {
             format!("{bench}, with cocotb {}", version.output.trim()),
             verdict.unwrap_or_default(),
         )
-        .faults(faults)
+        .failures(failures)
         .open("Operands that were not drawn."))
     },
 };
@@ -342,7 +342,7 @@ pub const GATES: Check = Check {
         let clocks = vectors.inputs.len() as u64;
         let sources = package::sources(subject.core.files(subject.path, vectors)?);
         let families: Vec<_> = simulated().collect();
-        let faults: Vec<Option<String>> = families
+        let failures: Vec<Option<String>> = families
             .par_iter()
             .map(|family| {
                 let rtl = subject.core.verilog_for(family.name)?;
@@ -351,8 +351,8 @@ pub const GATES: Check = Check {
                 let files = gates::bench(&tools[0], sources.clone(), &names, netlist, family)?;
                 let outcome = run_bench(Simulator::Icarus, &files, &format!("{name}_tb"), limit)?;
                 progress(1);
-                let fault = || format!("{}: {}", family.title, outcome.transcript.trim());
-                Ok((!outcome.passed).then(fault))
+                let failure = || format!("{}: {}", family.title, outcome.transcript.trim());
+                Ok((!outcome.passed).then(failure))
             })
             .collect::<Result<_>>()?;
         let titles: Vec<&str> = families.iter().map(|family| family.title).collect();
@@ -366,7 +366,7 @@ pub const GATES: Check = Check {
             ),
             "Every output is right on every clock.",
         )
-        .faults(faults.into_iter().flatten().collect())
+        .failures(failures.into_iter().flatten().collect())
         .open("Timing: the models of the cells have none. Families without models of all cells."))
     },
 };

@@ -52,7 +52,7 @@ fn a_fault_in_the_design_fails_the_lockstep() {
         "in the simulated hardware",
         "in the golden model",
     ] {
-        assert!(lockstep.faults[0].contains(part), "{:?}", lockstep.faults);
+        assert!(lockstep.failures[0].contains(part), "{:?}", lockstep.failures);
     }
     // Its sweep leaves values of cos_dgamma out.
     assert_eq!(finding(&record, "contract").verdict, Verdict::Passed);

@@ -128,8 +128,8 @@ pub fn computations(core: &Core) -> Vec<Computation> {
 pub fn assert_agrees(core: &Core, points: u64, what: &str) {
     let outcome = core.lockstep(1).and_then(|it| it.run(points, &|_| ())).expect("a run");
     assert!(outcome.mismatch.is_none(), "{what}: {:?}", outcome.mismatch);
-    let faults = outcome.faults(&core.contract.bound());
-    assert!(faults.is_empty(), "{what}: {faults:?}");
+    let failures = outcome.failures(&core.contract.bound());
+    assert!(failures.is_empty(), "{what}: {failures:?}");
 }
 
 /// A valid configuration drawn at random, as TOML for messages, and its unit.

@@ -150,7 +150,7 @@ fn every_combination_of_every_device() {
             let difference = state.clocks.differs.map(|place| clocks.difference(place));
             assert!(difference.is_none(), "{path}: {difference:?}");
             let proof = Proof::new(core.contract.as_ref(), state.f.peak, state.colours.peak);
-            assert!(proof.faults.is_empty(), "{path}: {:?}", proof.faults);
+            assert!(proof.failures.is_empty(), "{path}: {:?}", proof.failures);
         }
         devices.insert(core.device.name);
     }

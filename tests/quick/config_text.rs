@@ -83,7 +83,7 @@ fn samples_cover_ends_and_both_sides_of_every_choice() {
 
 #[test]
 fn mistakes_in_a_schema_are_found() {
-    assert_eq!(lamp().faults(), Vec::<String>::new());
+    assert_eq!(lamp().mistakes(), Vec::<String>::new());
     let doc = "Something.";
     let faulty = Schema {
         device: "faulty",
@@ -102,7 +102,7 @@ fn mistakes_in_a_schema_are_found() {
         check: |_, _| {},
     };
     assert_eq!(
-        faulty.faults(),
+        faulty.mistakes(),
         [
             "`a` is both a key and a table",
             "default of `a`: `a` = 0 is out of range",
@@ -118,5 +118,5 @@ fn mistakes_in_a_schema_are_found() {
     );
     let refused =
         Schema { check: |_, problems| problems.push("power", "too much", "less"), ..lamp() };
-    assert_eq!(refused.faults(), ["defaults: too much"]);
+    assert_eq!(refused.mistakes(), ["defaults: too much"]);
 }

@@ -235,7 +235,7 @@ fn drawn(document: &Document) -> BTreeSet<u16> {
         let words = text.split(' ').map(str::to_owned);
         // Control lines may be several; a block has its number before its name.
         let count = match class {
-            "turn" => usize::MAX,
+            "control-lines" => usize::MAX,
             "tick small" => 0,
             _ => 1,
         };

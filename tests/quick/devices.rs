@@ -49,7 +49,7 @@ fn unit(v: &[f64]) -> Vec<f64> {
 #[test]
 fn schemas_are_sound_and_defaults_are_proven() {
     for device in DEVICES {
-        assert_eq!((device.schema)().faults(), Vec::<String>::new());
+        assert_eq!((device.schema)().mistakes(), Vec::<String>::new());
         let core = default(device);
         assert!(core.contract.highlight().is_none());
         let bound = core.contract.bound();
@@ -121,7 +121,7 @@ fn a_narrow_normaliser_is_proved() {
     assert_eq!(job.clocks.as_ref().map(Clocks::count), Some(4096));
     let proof = Proof::new(contract, state.f.peak, state.colours.peak);
     assert_eq!(
-        (proof.verdict(contract, &contract.sweep()), &proof.faults[..]),
+        (proof.verdict(contract, &contract.sweep()), &proof.failures[..]),
         ("proved", &[][..])
     );
     let said = proof.words("");

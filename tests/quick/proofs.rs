@@ -81,7 +81,7 @@ fn the_records_hold_today() {
         let colour = colours.check(every(&colours, 1), &|_| ());
         assert_eq!(record["colour_units"], json!(colour.error), "{stale}");
         let proof = Proof::new(contract, peak, colour);
-        assert_eq!(proof.faults, Vec::<String>::new(), "{path}");
+        assert_eq!(proof.failures, Vec::<String>::new(), "{path}");
     }
 }
 

@@ -104,7 +104,7 @@ fn a_configuration_outside_the_contract_is_refused_when_strict() {
 
 #[test]
 fn the_schema_is_sound() {
-    assert_eq!((FRESNEL.schema)().faults(), Vec::<String>::new());
+    assert_eq!((FRESNEL.schema)().mistakes(), Vec::<String>::new());
 }
 
 /// Every cosine and every reflectance, against the formula written out here.

@@ -148,13 +148,13 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             notes.push(outside(entry, arguments.exponent));
         }
     }
-    let faults: Vec<String> = entries
+    let failures: Vec<String> = entries
         .iter()
         .flat_map(|entry| &entry.usage)
         .filter_map(|usage| usage.as_ref().err().cloned())
         .collect();
-    show::show(output, arguments, &entries, &notes, &faults)?;
-    Ok(faults.is_empty())
+    show::show(output, arguments, &entries, &notes, &failures)?;
+    Ok(failures.is_empty())
 }
 
 /// The device's defaults with these keys replaced, where it has them and accepts the value.

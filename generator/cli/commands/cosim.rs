@@ -128,10 +128,10 @@ fn built_in(output: Output, loaded: &[Loaded], arguments: &Arguments) -> Result<
     let mut list = Vec::new();
     for (one, outcome) in loaded.iter().zip(&outcomes) {
         let bound = one.core.contract.bound();
-        let faults = outcome.faults(&bound);
-        holds &= faults.is_empty();
+        let failures = outcome.failures(&bound);
+        holds &= failures.is_empty();
         if output.json {
-            list.push(as_json(one, outcome, &bound, &faults)?);
+            list.push(as_json(one, outcome, &bound, &failures)?);
             continue;
         }
         say!(
@@ -141,7 +141,7 @@ fn built_in(output: Output, loaded: &[Loaded], arguments: &Arguments) -> Result<
             text::grouped(outcome.clocks),
             outcome.registers,
             outcome.outputs,
-            verdict(&bound, &faults),
+            verdict(&bound, &failures),
         );
         if let Some(worst) = &outcome.worst {
             say!(
@@ -154,8 +154,8 @@ fn built_in(output: Output, loaded: &[Loaded], arguments: &Arguments) -> Result<
         if one.core.contract.highlight().is_some() {
             spread::print(&outcome.histogram);
         }
-        for fault in faults {
-            say!("  FAILS: {fault}");
+        for failure in failures {
+            say!("  FAILS: {failure}");
         }
         if let Some(mismatch) = &outcome.mismatch {
             let reproducer = Reproducer::of_run(one, mismatch)?;
@@ -196,7 +196,7 @@ pub fn place(one: &Loaded, worst: &Worst) -> String {
 }
 
 /// An outcome for scripts. What differs leaves a waveform.
-pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, faults: &[String]) -> Result<Value> {
+pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, failed: &[String]) -> Result<Value> {
     let mismatch = outcome.mismatch.as_ref().map(|mismatch| {
         let reproducer = Reproducer::of_run(one, mismatch)?;
         anyhow::Ok(reproducer.json(mismatch))
@@ -222,9 +222,9 @@ pub fn as_json(one: &Loaded, outcome: &Outcome, bound: &Bound, faults: &[String]
         })),
         "f": one.core.contract.highlight().map(|_| spread::as_json(&outcome.histogram)),
         "rom_bits": one.core.design.rom_bits(),
-        "holds": faults.is_empty(),
-        "verdict": verdict(bound, faults),
-        "faults": faults,
+        "holds": failed.is_empty(),
+        "verdict": verdict(bound, failed),
+        "faults": failed,
         "mismatch": mismatch.transpose()?,
     }))
 }

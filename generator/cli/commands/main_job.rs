@@ -23,7 +23,7 @@ struct Finding {
     bound: Bound,
     outcome: Outcome,
     /// What does not hold.
-    faults: Vec<String>,
+    failures: Vec<String>,
 }
 
 /// The main job. With `details` it says of each configuration where the largest error is.
@@ -39,7 +39,7 @@ pub fn run(registry: &Registry, output: Output, details: bool) -> Result<bool> {
     let findings: Vec<Finding> =
         loaded.par_iter().map(|one| finding(one, &bar)).collect::<Result<_>>()?;
     bar.finish_and_clear();
-    let holds = findings.iter().all(|finding| finding.faults.is_empty());
+    let holds = findings.iter().all(|finding| finding.failures.is_empty());
     if output.json {
         let list: Vec<Value> = loaded
             .iter()
@@ -57,8 +57,8 @@ fn finding(one: &Loaded, bar: &indicatif::ProgressBar) -> Result<Finding> {
     let lockstep = one.core.lockstep(TEST_SEED)?;
     let outcome = lockstep.run(TEST_POINTS, &|points| bar.inc(points))?;
     let bound = one.core.contract.bound();
-    let faults = outcome.faults(&bound);
-    Ok(Finding { timing: one.core.timing()?, bound, outcome, faults })
+    let failures = outcome.failures(&bound);
+    Ok(Finding { timing: one.core.timing()?, bound, outcome, failures })
 }
 
 /// The columns of the table, which is the last thing on the screen but for the line that counts.
@@ -87,8 +87,8 @@ fn print(loaded: &[Loaded], findings: &[Finding], details: bool) -> Result<()> {
                 cosim::place(one, worst)
             );
         }
-        for fault in &finding.faults {
-            say!("{}: FAILS: {fault}", one.path);
+        for failure in &finding.failures {
+            say!("{}: FAILS: {failure}", one.path);
         }
         if let Some(mismatch) = &finding.outcome.mismatch {
             let where_to_look = Reproducer::of_run(one, mismatch)?.text(mismatch);
@@ -108,7 +108,7 @@ fn print(loaded: &[Loaded], findings: &[Finding], details: bool) -> Result<()> {
             text::grouped(one.core.design.rom_bits()),
             finding.bound.words(),
             worst.map_or_else(|| "-".to_owned(), |worst| format!("{:.3}", worst.units)),
-            verdict(&finding.bound, &finding.faults).to_owned(),
+            verdict(&finding.bound, &finding.failures).to_owned(),
         ]
     });
     tables::print(&COLUMNS, rows);
@@ -124,7 +124,7 @@ fn short(path: &str) -> &str {
 
 /// How many hold, how many are outside the contract, how many fail.
 fn counts(findings: &[Finding]) -> String {
-    let verdicts = findings.iter().map(|finding| verdict(&finding.bound, &finding.faults));
+    let verdicts = findings.iter().map(|finding| verdict(&finding.bound, &finding.failures));
     let count = |wanted| verdicts.clone().filter(|verdict| *verdict == wanted).count();
     let mut parts = vec![format!("{} of {} hold", count(HOLDS), findings.len())];
     let (outside, fail) = (count(OUTSIDE), count(FAILS));
@@ -138,7 +138,7 @@ fn counts(findings: &[Finding]) -> String {
 }
 
 fn as_json(one: &Loaded, finding: &Finding) -> Result<Value> {
-    let mut value = cosim::as_json(one, &finding.outcome, &finding.bound, &finding.faults)?;
+    let mut value = cosim::as_json(one, &finding.outcome, &finding.bound, &finding.failures)?;
     value["clocks_per_point"] = json!(finding.timing.clocks_per_point());
     Ok(value)
 }

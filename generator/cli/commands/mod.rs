@@ -124,15 +124,15 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
         .with_context(|| format!("no device `{}`", config.device))?;
     let name = path.display().to_string().replace('\\', "/");
     let core = Core::new(*device, config).map_err(|error| {
-        // What the configuration asks for and the description cannot give is a fault of the configuration.
+        // What the configuration asks for and the description cannot give is a mistake in the configuration.
         let mut problems = places.clone();
         if let Some(unfit) = error.downcast_ref::<Unfit>() {
             problems.push(unfit.key, &unfit.message, &unfit.remedy);
         }
-        let faults = error.downcast_ref::<Diagnostics>().map_or(&[][..], |faults| &faults.0);
-        for fault in faults {
-            if let Some((key, remedy)) = &fault.key {
-                problems.push(key, format!("{} ({})", fault.message, fault.location), remedy);
+        let found = error.downcast_ref::<Diagnostics>().map_or(&[][..], |found| &found.0);
+        for it in found {
+            if let Some((key, remedy)) = &it.key {
+                problems.push(key, format!("{} ({})", it.message, it.location), remedy);
             }
         }
         if problems.is_empty() { error.context(format!("`{name}`")) } else { problems.into() }
@@ -154,12 +154,12 @@ const OUTSIDE: &str = "outside the contract";
 /// The verdict on one whose outputs are right, and held against no bound.
 const UNSTATED: &str = "no bound is stated";
 
-/// The verdict on one with faults.
+/// The verdict on one with failures.
 const FAILS: &str = "FAILS";
 
-/// What is said of a configuration with this bound, and these faults.
-fn verdict(bound: &Bound, faults: &[String]) -> &'static str {
-    match (faults.is_empty(), bound.units < 1.0) {
+/// What is said of a configuration with this bound, and these failures.
+fn verdict(bound: &Bound, failures: &[String]) -> &'static str {
+    match (failures.is_empty(), bound.units < 1.0) {
         (true, _) if !bound.is_stated() => UNSTATED,
         (true, true) => HOLDS,
         (true, false) => OUTSIDE,

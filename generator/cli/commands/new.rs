@@ -36,11 +36,11 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let text = config::commented(&schema, &name);
     // A name that the reader would refuse is refused here.
     if let Err(problems) = config::parse("<new>", &text, &[schema]) {
-        let faults: Vec<String> = problems
+        let found: Vec<String> = problems
             .iter()
             .map(|problem| format!("{}; {}", problem.message, problem.remedy))
             .collect();
-        bail!(WrongUsage(faults.join("\n")));
+        bail!(WrongUsage(found.join("\n")));
     }
     if output.json {
         tables::print_json(&json!({ "ok": true, "device": device, "name": name, "text": text }));

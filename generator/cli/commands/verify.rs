@@ -173,8 +173,8 @@ fn print(one: &Loaded, answer: &Answer) {
     if !finding.words.is_empty() && finding.verdict != Verdict::Failed {
         say!("  {}", finding.words);
     }
-    for fault in &finding.faults {
-        say!("  FAILS: {fault}");
+    for failure in &finding.failures {
+        say!("  FAILS: {failure}");
     }
     if !finding.open.is_empty() {
         say!("  not covered: {}", finding.open);

@@ -38,7 +38,7 @@ pub struct Proof {
     /// The largest error of a colour multiplier, in output units.
     pub colours: Peak,
     /// What is not within the stated bound, or not below one unit though the bound is.
-    pub faults: Vec<String>,
+    pub failures: Vec<String>,
 }
 
 impl Proof {
@@ -48,16 +48,16 @@ impl Proof {
         let largest = colour.map_or(1.0, |operand| operand.domain.1 as f64);
         let bound = contract.bound();
         let of_f = contract.highlight().is_some();
-        let mut proof = Self { of_f, f, f_units: f.error * largest, colours, faults: Vec::new() };
+        let mut proof = Self { of_f, f, f_units: f.error * largest, colours, failures: Vec::new() };
         if f.error > bound.f + F64 / largest {
             let what = if of_f { "f is" } else { "an output is, in units," };
-            proof.faults.push(format!(
+            proof.failures.push(format!(
                 "{what} off by {:e}, beyond the stated bound of {:e}",
                 f.error, bound.f
             ));
         }
         if proof.together() > bound.units + F64 {
-            proof.faults.push(format!(
+            proof.failures.push(format!(
                 "an output may be off by {:.4} units, beyond the stated bound of {:.4}",
                 proof.together(),
                 bound.units
@@ -69,7 +69,7 @@ impl Proof {
     /// What the proof shows: "proved" only if the sweep left no control operands out, and only of a bound that keeps
     /// the contract.
     pub fn verdict(&self, contract: &dyn Contract, sweep: &Sweep) -> &'static str {
-        if !self.faults.is_empty() {
+        if !self.failures.is_empty() {
             "FAILS"
         } else if !contract.bound().is_stated() {
             "no bound is stated"

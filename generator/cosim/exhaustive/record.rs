@@ -144,10 +144,10 @@ impl Record {
     ) -> (u64, Vec<String>) {
         let f = Places::of_sweep(contract, self.sweep(contract));
         let colours = Places::of_colours(contract);
-        let mut faults = Vec::new();
+        let mut failures = Vec::new();
         let path = self.path.display();
         let mut differs = |what: &str, found: f64, recorded: f64| {
-            faults.push(format!("{what} is {found:e}, and {recorded:e} in the record `{path}`"));
+            failures.push(format!("{what} is {found:e}, and {recorded:e} in the record `{path}`"));
         };
         let at_peak = if self.f.place < f.count() { f.error(self.f.place) } else { 0.0 };
         if (at_peak - self.f.error).abs() > SAME {
@@ -164,11 +164,11 @@ impl Record {
             differs("the error of a colour multiplier", colour.error, self.colour_units);
         }
         let peak = Peak { error: self.f.error, place: self.f.place };
-        faults.extend(Proof::new(contract, peak, colour).faults);
+        failures.extend(Proof::new(contract, peak, colour).failures);
         if !self.holds {
-            faults.push(format!("the record `{path}` says that the bound does not hold"));
+            failures.push(format!("the record `{path}` says that the bound does not hold"));
         }
-        (visits + 1, faults)
+        (visits + 1, failures)
     }
 }
 

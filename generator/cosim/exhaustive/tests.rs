@@ -187,11 +187,11 @@ fn a_shard_is_one_of_so_many() {
 }
 
 #[test]
-fn errors_beyond_the_bound_are_faults() {
+fn errors_beyond_the_bound_are_failures() {
     let peak = |error| Peak { error, place: 0 };
     // The bound of `Counting` is 1.0 for f and 1.0 units in all.
-    let faults = |f, colour| Proof::new(&Counting, peak(f), peak(colour)).faults.len();
-    assert_eq!(faults(0.5, 0.5), 0);
-    assert_eq!(faults(0.5, 0.6), 1);
-    assert_eq!(faults(1.5, 0.0), 2);
+    let failures = |f, colour| Proof::new(&Counting, peak(f), peak(colour)).failures.len();
+    assert_eq!(failures(0.5, 0.5), 0);
+    assert_eq!(failures(0.5, 0.6), 1);
+    assert_eq!(failures(1.5, 0.0), 2);
 }

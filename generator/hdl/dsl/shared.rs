@@ -57,7 +57,7 @@ impl Designer {
         self.add_net(&name, format, range, driver, false)
     }
 
-    /// What `act` adds stands at `place`, wherever in the builder it is made: its names may be at fault.
+    /// What `act` adds stands at `place`, wherever in the builder it is made: its names may be wrong.
     pub(crate) fn placed<T>(&self, place: SourceLocation, act: impl FnOnce() -> T) -> T {
         let own = self.with(|inner| (inner.design.nets.len(), inner.design.roms.len()));
         let made = act();

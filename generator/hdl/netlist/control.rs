@@ -30,13 +30,13 @@ pub struct Field {
     pub name: String,
     /// The net that it drives in the datapath or the sequencer.
     pub net: NetId,
-    /// What it turns.
+    /// What it controls.
     pub kind: FieldKind,
     /// The numbers of its lines in the source's figure, most significant first, or empty.
     pub lines: Vec<u16>,
 }
 
-/// What a field of the control word turns.
+/// What a field of the control word controls.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FieldKind {
     /// Select lines of muxes; the names of the choices, by value.

@@ -91,21 +91,21 @@ mod tests {
     use crate::base::fixed::Format;
     use crate::hdl::dsl::{Designer, Signal, end, loop_while, step};
 
-    /// A counter of three bits, which starts from what is said, and `valid` two clocks after a loop's last turn.
+    /// A counter of three bits, which starts from what is said, and `valid` two clocks after a loop's last iteration.
     fn counted(start: for<'d> fn(&'d Designer, Signal<'d>) -> Signal<'d>) -> Design {
         let d = Designer::new("counted");
         let x = d.operand("x", Format::unsigned(3, 0));
-        let turns = d.down_counter("turns", start(&d, x.q()));
-        let more = d.any("more", turns.q());
+        let iterations = d.down_counter("iterations", start(&d, x.q()));
+        let more = d.any("more", iterations.q());
         let result = d.register("result", Format::unsigned(3, 0));
-        result.takes(turns.q());
+        result.takes(iterations.q());
         d.output("result_out", result.q());
         d.output("x_out", x.q());
         d.valid_after(result.loading(), 2);
         d.microprogram([
             step("idle", []),
-            step("load", [turns.load()]),
-            step("count", [turns.count(), loop_while(more, "count")]),
+            step("load", [iterations.load()]),
+            step("count", [iterations.count(), loop_while(more, "count")]),
             step("result", [result.load()]),
             step("wait", []),
             step("shown", [end()]),

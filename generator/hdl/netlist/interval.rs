@@ -2,7 +2,7 @@
 
 use super::{NetId, Op};
 use crate::base::fixed::{Format, mask};
-use crate::base::interval::{Interval, hull, product, turns};
+use crate::base::interval::{Interval, hull, product, wrap};
 
 /// The interval of a cell in `format` as [`Op`] documents it; all that the format has where nothing closer is known.
 /// `of` gives the interval of an operand, `format_of` its format. Two operands that are one net are a square.
@@ -13,8 +13,8 @@ pub fn of_cell(
     of: &impl Fn(NetId) -> Interval,
 ) -> Interval {
     let all = format.range();
-    let wrapped = |interval: Interval| match turns(interval, format) {
-        Some(turn) => (interval.0 + turn, interval.1 + turn),
+    let wrapped = |interval: Interval| match wrap(interval, format) {
+        Some(wrap) => (interval.0 + wrap, interval.1 + wrap),
         None => all,
     };
     let bit = |never: bool, always: bool| (i128::from(always), i128::from(!never));

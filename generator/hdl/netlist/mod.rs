@@ -38,7 +38,7 @@ pub use delay::{DelayLine, DelayMemory, Delayed};
 pub use eval::Interpreter;
 pub use handshake::Handshake;
 pub use held::register_held;
-pub use needed::turned;
+pub use needed::setting_of;
 pub use pipeline::{Checkpoint, Multiplier, Pipeline, Stage, value_name};
 pub use termination::latest_done;
 

@@ -8,7 +8,7 @@ use crate::base::fixed::mask;
 /// For each net the clock, counted from that of the first microinstruction of a computation, in which its value
 /// first matters: reaches an output, the sequencer, or a register that is loaded. `usize::MAX` if it never does.
 ///
-/// A microinstruction that turns a mux needs its chosen input alone.
+/// A microinstruction that controls a mux needs its chosen input alone.
 pub fn needed(design: &Design) -> Vec<usize> {
     let mut walk = Walk {
         design,
@@ -24,7 +24,7 @@ pub fn needed(design: &Design) -> Vec<usize> {
         let (Some(data), Some(enable)) = (register.data, register.enable) else { continue };
         walk.at_once(enable);
         for at in addresses.clone() {
-            if turned(design, &design.control.microprogram[at], enable) != Some(0) {
+            if setting_of(design, &design.control.microprogram[at], enable) != Some(0) {
                 walk.from(at, data);
             }
         }
@@ -40,9 +40,13 @@ pub fn needed(design: &Design) -> Vec<usize> {
 }
 
 /// The value of a control line in a microinstruction: a field, or what is made of fields alone.
-pub fn turned(design: &Design, microinstruction: &Microinstruction, line: NetId) -> Option<u64> {
+pub fn setting_of(
+    design: &Design,
+    microinstruction: &Microinstruction,
+    line: NetId,
+) -> Option<u64> {
     let net = design.net(line);
-    let of = |line: NetId| turned(design, microinstruction, line);
+    let of = |line: NetId| setting_of(design, microinstruction, line);
     match &net.driver {
         Driver::Field(field) => Some(microinstruction.values[field.index()]),
         Driver::Constant(bits) => Some(*bits),
@@ -84,7 +88,7 @@ impl Walk<'_> {
             match &design.net(net).driver {
                 Driver::Op(Op::Mux { select, inputs }) => {
                     pending.push((at, *select));
-                    match turned(design, &design.control.microprogram[at], *select) {
+                    match setting_of(design, &design.control.microprogram[at], *select) {
                         Some(chosen) => {
                             let chosen = inputs.get(chosen as usize).or(inputs.last());
                             pending.extend(chosen.map(|&input| (at, input)));

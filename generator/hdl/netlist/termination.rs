@@ -1,7 +1,7 @@
 //! How long a computation can take, by its microprogram alone.
 //!
 //! A loop of one microinstruction ends because a counter counts down: its condition depends on nothing else. That the
-//! counter does count in every turn is not assumed anywhere; the formal proof has to show it.
+//! counter does count in every iteration is not assumed anywhere; the formal proof has to show it.
 
 use crate::hdl::netlist::{Design, Driver, NetId, RegId, Sequence};
 
@@ -92,30 +92,31 @@ mod tests {
     fn counted(condition: Condition) -> Design {
         design(|d| {
             let x = d.operand("x", Format::unsigned(3, 0));
-            let turns = d.down_counter("turns", x.q());
-            let more = condition(d, turns.q(), x.q());
-            d.output("turns_out", turns.q());
-            let count = [turns.count(), loop_while(more, "count")];
-            vec![step("load", [turns.load()]), step("count", count)]
+            let iterations = d.down_counter("iterations", x.q());
+            let more = condition(d, iterations.q(), x.q());
+            d.output("iterations_out", iterations.q());
+            let count = [iterations.count(), loop_while(more, "count")];
+            vec![step("load", [iterations.load()]), step("count", count)]
         })
     }
 
     #[test]
     fn a_counter_bounds_its_loop() {
-        let design = counted(|d, turns, _| d.any("more", turns));
+        let design = counted(|d, iterations, _| d.any("more", iterations));
         let left = remaining(&design).expect("a bound");
         let clocks: Vec<u64> = left.iter().map(|left| left.clocks).collect();
-        // The result; up to seven turns more and the result; from the first of eight turns; the load.
+        // The result; up to seven iterations more and the result; from the first of eight iterations; the load.
         assert_eq!(clocks, [10, 9, 1, 0]);
         let counted: Vec<bool> = left.iter().map(|left| left.counter.is_some()).collect();
         assert_eq!(counted, [false, false, true, false]);
-        // Words 0 and 1 in clocks 1 and 2, eight turns, the result.
+        // Words 0 and 1 in clocks 1 and 2, eight iterations, the result.
         assert_eq!(latest_done(&design), Some(11));
     }
 
     #[test]
     fn what_else_decides_about_a_loop_bounds_nothing() {
-        let design = counted(|d, turns, x| d.or("more", d.any("some", turns), d.any("none", x)));
+        let design =
+            counted(|d, iterations, x| d.or("more", d.any("some", iterations), d.any("none", x)));
         assert_eq!(remaining(&design), None);
         assert_eq!(latest_done(&design), None);
     }

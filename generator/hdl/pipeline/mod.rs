@@ -86,9 +86,9 @@ pub fn options(config: &Config) -> Option<Options> {
 /// A microprogram that cannot be unrolled, with its source line; a clock or a number of stages that
 /// cannot be reached, with the nearest that can.
 pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagnostics> {
-    let sequentially = |faults: Diagnostics| {
+    let sequentially = |found: Diagnostics| {
         let remedy = || "set architecture = \"sequential\"".to_owned();
-        Diagnostics(faults.0.into_iter().map(|it| it.of_key("architecture", remedy())).collect())
+        Diagnostics(found.0.into_iter().map(|it| it.of_key("architecture", remedy())).collect())
     };
     let unrolled =
         split::split(&unroll::unroll_in_powers(sequential).map_err(sequentially)?, options.target);

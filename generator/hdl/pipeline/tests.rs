@@ -88,12 +88,12 @@ fn a_microprogram_that_waits_on_the_way_cannot_be_unrolled() {
 fn a_loop_without_a_bound_cannot_be_unrolled() {
     let design = design(|d| {
         let x = d.operand("x", Format::unsigned(20, 0));
-        let turns = d.down_counter("turns", x.q());
-        let more = d.any("more", turns.q());
-        d.output("turns_out", turns.q());
+        let iterations = d.down_counter("iterations", x.q());
+        let more = d.any("more", iterations.q());
+        d.output("iterations_out", iterations.q());
         vec![
-            step("load", [turns.load()]),
-            step("count", [turns.count(), loop_while(more, "count")]),
+            step("load", [iterations.load()]),
+            step("count", [iterations.count(), loop_while(more, "count")]),
         ]
     });
     let text = refused(&design, Goal::ClockMhz(100.0));

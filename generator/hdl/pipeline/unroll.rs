@@ -6,7 +6,7 @@
 //! enable follow their inputs by a clock here too.
 //!
 //! A condition that is a constant decides where control goes. One that depends on an operand is
-//! followed both ways: a loop is executed as often as it can be, each turn under the conditions of
+//! followed both ways: a loop is executed as often as it can be, each iteration under the conditions of
 //! those before, and a jump ahead is executed with and without what it skips. Where the ways meet, each
 //! register is chosen by the condition.
 
@@ -68,7 +68,7 @@ struct At {
 
 struct Executor<'a> {
     design: &'a Design,
-    turns: Turns,
+    iterations: Iterations,
     unrolled: Unrolled,
     visits: Vec<usize>,
     /// Set when the results are on the outputs.
@@ -81,28 +81,28 @@ struct Executor<'a> {
 /// A microprogram that has no fixed bound, waits for `start` on the way or gives several results; a
 /// result that depends on what an earlier computation has left.
 pub fn unroll(design: &Design) -> Result<Unrolled, Diagnostics> {
-    run(design, Turns::OneByOne).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
+    run(design, Iterations::OneByOne).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-/// The same with fewer values, where turns of a loop can be taken together.
+/// The same with fewer values, where iterations of a loop can be taken together.
 ///
 /// # Errors
 /// Those of [`unroll`].
 pub fn unroll_in_powers(design: &Design) -> Result<Unrolled, Diagnostics> {
-    run(design, Turns::InPowers).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
+    run(design, Iterations::InPowers).map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 
-/// How the turns of a loop are executed of which operands decide the number.
+/// How the iterations of a loop are executed of which operands decide the number.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Turns {
+enum Iterations {
     /// Each under the conditions of those before.
     OneByOne,
-    /// Where the number is known by a few bits and the turns are alike: 8, 4, 2 and 1, each under a bit of the number.
+    /// Where the number is known by a few bits and the iterations are alike: 8, 4, 2 and 1, each under a bit of the number.
     InPowers,
 }
 
-fn run(design: &Design, turns: Turns) -> Result<Unrolled, Diagnostic> {
-    let mut executor = Executor::new(design, turns);
+fn run(design: &Design, iterations: Iterations) -> Result<Unrolled, Diagnostic> {
+    let mut executor = Executor::new(design, iterations);
     let state = executor.power_up();
     let state = executor.start(&state);
     executor.follow(At { state, address: 0 }, None)?;
@@ -121,12 +121,12 @@ fn run(design: &Design, turns: Turns) -> Result<Unrolled, Diagnostic> {
 }
 
 impl<'a> Executor<'a> {
-    fn new(design: &'a Design, turns: Turns) -> Self {
+    fn new(design: &'a Design, iterations: Iterations) -> Self {
         let ports = design.ports.iter();
         let operands = ports.filter(|port| matches!(port.role, Role::Operand { .. }));
         Self {
             design,
-            turns,
+            iterations,
             visits: vec![0; design.control.microprogram.len()],
             unrolled: Unrolled {
                 graph: Graph::default(),
@@ -180,7 +180,8 @@ impl<'a> Executor<'a> {
                         }
                         None if to <= at.address => {
                             let free = at.state.registers.clone();
-                            let state = self.turns(after, condition, (to, at.address), &free)?;
+                            let state =
+                                self.iterations(after, condition, (to, at.address), &free)?;
                             at = At { state, address: at.address + 1 };
                         }
                         None => {
@@ -210,13 +211,13 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// Every turn but the first of the loop from `to` to `last`, of which `condition` says whether there
+    /// Every iteration but the first of the loop from `to` to `last`, of which `condition` says whether there
     /// is one; `state` is that after the first. The loop is bounded whatever the registers `free`, with
     /// which it begins, hold.
     ///
-    /// What the condition is made of goes from turn to turn as if every turn were taken: a turn counts only where those
+    /// What the condition is made of goes from iteration to iteration as if every iteration were taken: an iteration counts only where those
     /// before it were taken, and a counter needs no muxes then.
-    fn turns(
+    fn iterations(
         &mut self,
         mut state: State,
         mut condition: NetId,
@@ -229,7 +230,7 @@ impl<'a> Executor<'a> {
             match possible::ever(&self.unrolled.graph, condition, free) {
                 Some(false) => {
                     let mut taken = None;
-                    if self.turns == Turns::InPowers {
+                    if self.iterations == Iterations::InPowers {
                         taken = self.in_powers(&first, &conditions, &counters, (to, last), free);
                     }
                     let Some(mut after) = taken else { return Ok(state) };
@@ -265,8 +266,8 @@ impl<'a> Executor<'a> {
         }
     }
 
-    /// The state after the turns of a loop, of which there are as many as `conditions` hold, but for the registers that
-    /// count them: 8, 4, 2 and 1 turns, each under a bit of their number. None if a turn depends on the registers that
+    /// The state after the iterations of a loop, of which there are as many as `conditions` hold, but for the registers that
+    /// count them: 8, 4, 2 and 1 iterations, each under a bit of their number. None if an iteration depends on the registers that
     /// count them or on a memory, or the number on more than a few bits.
     fn in_powers(
         &mut self,
@@ -276,8 +277,8 @@ impl<'a> Executor<'a> {
         (to, last): (usize, usize),
         free: &[NetId],
     ) -> Option<State> {
-        let (count, turns) = possible::count(&self.unrolled.graph, conditions, free)?;
-        // Three turns are as many choices as two powers.
+        let (count, iterations) = possible::count(&self.unrolled.graph, conditions, free)?;
+        // Three iterations are as many choices as two powers.
         let bits = conditions.len().checked_ilog2().filter(|&bits| bits > 1)? + 1;
         let (steps, visits) = (self.unrolled.steps.len(), self.visits.clone());
         let nodes = self.unrolled.graph.nodes.len();
@@ -301,15 +302,15 @@ impl<'a> Executor<'a> {
             }
             let graph = &mut self.unrolled.graph;
             let label = Label { named: false, ..graph.node(count).label.clone() };
-            let bit_of = |turns: usize| turns >> bit & 1;
+            let bit_of = |iterations: usize| iterations >> bit & 1;
             let is_place = |place: &u32| {
-                let mut values = turns.iter().enumerate();
+                let mut values = iterations.iter().enumerate();
                 values.all(|(at, it)| it.is_none_or(|it| bit_of(it) == at >> place & 1))
             };
             let taken = match (0..graph.width(count)).find(is_place) {
                 Some(low) => graph.op(Op::Slice { of: count, low }, Format::BIT, &label),
                 None => {
-                    let bits = turns.iter().map(|it| bit_of(it.unwrap_or(0)) as u64);
+                    let bits = iterations.iter().map(|it| bit_of(it.unwrap_or(0)) as u64);
                     let inputs = bits.map(|it| graph.constant(it, Format::BIT, &label)).collect();
                     graph.op(Op::Mux { select: count, inputs }, Format::BIT, &label)
                 }

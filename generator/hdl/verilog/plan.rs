@@ -86,7 +86,7 @@ impl<'a> Plan<'a> {
         Ok(plan)
     }
 
-    /// The module that declares a net: fields belong to the control unit whatever they turn.
+    /// The module that declares a net: fields belong to the control unit whatever they control.
     pub fn partition(&self, net: NetId) -> Partition {
         match self.design.net(net).driver {
             Driver::Field(_) => Partition::Control,

@@ -2,7 +2,7 @@
 //!
 //! Every field of the control word is a constant in its clock, so multiplexers are wires and enables are
 //! decided. A loop that counts a constant unrolls by itself. One that depends on an operand is executed as
-//! often as its counter can ask for; what it leaves is chosen by the conditions of its turns.
+//! often as its counter can ask for; what it leaves is chosen by the conditions of its iterations.
 
 use anyhow::{Context, Result, bail, ensure};
 
@@ -81,7 +81,7 @@ struct Walk<'d> {
     order: Vec<NetId>,
     graph: Graph,
     sections: Vec<String>,
-    /// For each microinstruction the most turns of its loop.
+    /// For each microinstruction the most iterations of its loop.
     left: Option<Vec<termination::Left>>,
 }
 
@@ -172,7 +172,7 @@ impl<'d> Walk<'d> {
                 bail!("what follows microinstruction {address} depends on its operands");
             };
             if to == address {
-                state = self.turns(address, condition, clock, next)?;
+                state = self.iterations(address, condition, clock, next)?;
             } else {
                 ensure!(
                     to > address,
@@ -189,8 +189,8 @@ impl<'d> Walk<'d> {
         }
     }
 
-    /// The state after a loop of one microinstruction; `clock` and `next` are of its first turn.
-    fn turns(
+    /// The state after a loop of one microinstruction; `clock` and `next` are of its first iteration.
+    fn iterations(
         &mut self,
         address: usize,
         condition: NetId,
@@ -202,23 +202,23 @@ impl<'d> Walk<'d> {
         let counter = counter
             .with_context(|| format!("the loop in microinstruction {address} has no bound"))?;
         let most = mask(design.width(design.register(counter).q));
-        let mut turns = Vec::new();
+        let mut iterations = Vec::new();
         loop {
             let more = clock[condition.index()];
             let ended = self.at(&next, address + 1);
-            turns.push((more, ended));
-            if turns.len() as u64 > most || self.graph.constant_of(more) == Some(0) {
+            iterations.push((more, ended));
+            if iterations.len() as u64 > most || self.graph.constant_of(more) == Some(0) {
                 break;
             }
             ensure!(self.graph.values.len() < MOST_VALUES, "it is too long to be unrolled");
-            self.enter(address, &format!(", turn {}", turns.len() + 1));
+            self.enter(address, &format!(", turn {}", iterations.len() + 1));
             let state = self.at(&next, address);
             clock = self.clock(&state, false)?;
             next = self.graph.after(design, &state, &clock)?;
         }
         self.enter(address, ", what it leaves");
-        let (_, mut merged) = turns.pop().context("a loop has a turn")?;
-        for (more, ended) in turns.into_iter().rev() {
+        let (_, mut merged) = iterations.pop().context("a loop has an iteration")?;
+        for (more, ended) in iterations.into_iter().rev() {
             for (at, merged) in merged.registers.iter_mut().enumerate() {
                 *merged = self.chosen(more, ended.registers[at], *merged)?;
                 let net = design.net(design.registers[at].q);
@@ -258,9 +258,9 @@ impl<'d> Walk<'d> {
         Ok(address as usize)
     }
 
-    fn enter(&mut self, address: usize, turn: &str) {
+    fn enter(&mut self, address: usize, iteration: &str) {
         let name = &self.design.control.microprogram[address].name;
         self.graph.section = self.sections.len();
-        self.sections.push(format!("{address}: {name}{turn}"));
+        self.sections.push(format!("{address}: {name}{iteration}"));
     }
 }

@@ -270,7 +270,7 @@ impl<'a> Blocks<'a> {
         self.behind(nets).0
     }
 
-    /// The fields of the control word that turn a block: its select or enable, and what its logic takes of them.
+    /// The fields of the control word that control a block: its select or enable, and what its logic takes of them.
     pub fn fields(&self, id: NetId) -> Vec<FieldId> {
         self.behind(match &self.design.net(id).driver {
             Driver::Register(register) => {

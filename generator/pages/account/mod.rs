@@ -182,10 +182,10 @@ fn lines(lines: &[u16]) -> String {
 
 /// The fields of the control word.
 pub fn fields(design: &Design) -> Table {
-    let mut table = Table::of("field | lines | bits | turns");
+    let mut table = Table::of("field | lines | bits | controls");
     for field in facts::fields(design) {
         let width = field.width as usize;
-        let turns = match field.kind {
+        let controls = match field.kind {
             "select" => {
                 let choices: Vec<String> = (0..)
                     .zip(field.choices)
@@ -201,7 +201,7 @@ pub fn fields(design: &Design) -> Table {
             1 => field.low.to_string(),
             _ => format!("{}:{}", field.low + field.width - 1, field.low),
         };
-        table.row([code(field.name), lines(field.lines), bits, turns]);
+        table.row([code(field.name), lines(field.lines), bits, controls]);
     }
     table.without_empty("lines")
 }

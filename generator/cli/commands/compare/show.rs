@@ -19,15 +19,15 @@ pub fn show(
     arguments: &Arguments,
     entries: &[Entry],
     notes: &[String],
-    faults: &[String],
+    failures: &[String],
 ) -> Result<()> {
     if output.json {
-        tables::print_json(&as_json(arguments, entries, notes, faults));
+        tables::print_json(&as_json(arguments, entries, notes, failures));
         return Ok(());
     }
     if arguments.csv {
         tables::print_csv(as_csv(arguments, entries))?;
-        for note in notes.iter().chain(faults) {
+        for note in notes.iter().chain(failures) {
             failure::warn(note);
         }
         return Ok(());
@@ -38,8 +38,8 @@ pub fn show(
     for note in entries.iter().filter_map(at_rest).chain(notes.iter().cloned()) {
         say!("Note: {note}.");
     }
-    for fault in faults {
-        say!("FAILS: {fault}");
+    for failure in failures {
+        say!("FAILS: {failure}");
     }
     Ok(())
 }
@@ -314,11 +314,11 @@ struct Speed {
     rate: Rate,
 }
 
-fn as_json(arguments: &Arguments, entries: &[Entry], notes: &[String], faults: &[String]) -> Value {
+fn as_json(arguments: &Arguments, entries: &[Entry], notes: &[String], failed: &[String]) -> Value {
     let entries: Vec<Value> = entries.iter().map(entry_json).collect();
-    let problems: Vec<Value> = faults.iter().map(|fault| failure::problem(fault)).collect();
+    let problems: Vec<Value> = failed.iter().map(|failure| failure::problem(failure)).collect();
     json!({
-        "ok": faults.is_empty(),
+        "ok": failed.is_empty(),
         "exponent": arguments.exponent,
         "angles": { "from_degrees": 0, "to_degrees": 90, "count": ANGLES },
         "entries": entries,

@@ -34,7 +34,7 @@ pub fn batch(output: Output, one: &Loaded, given: &[Option<i64>], path: &Path) -
         let record = record.with_context(|| format!("cannot read `{shown}`"))?;
         let line = record.position().map_or(0, csv::Position::line);
         let row = row(one, given, &columns, &record);
-        rows.push(row.map_err(|fault| anyhow!("`{shown}`, line {line}: {fault}"))?);
+        rows.push(row.map_err(|why| anyhow!("`{shown}`, line {line}: {why}"))?);
     }
     ensure!(!rows.is_empty(), "`{shown}` has no row of operands below the row with their names");
     if output.json {
@@ -54,7 +54,7 @@ fn columns<'a>(
     let known = one.core.contract.operands();
     let mut columns: Vec<usize> = Vec::new();
     for heading in headings {
-        let at = operands::position(known, heading).map_err(|fault| anyhow!("{fault}"))?;
+        let at = operands::position(known, heading).map_err(|why| anyhow!("{why}"))?;
         if columns.contains(&at) || given[at].is_some() {
             bail!("operand `{heading}` is given twice");
         }

@@ -40,7 +40,7 @@ pub fn completed(operands: &[Operand], given: &[Option<i64>]) -> Vec<i64> {
 
 /// The raw value that a text gives to an operand; what is wrong with it names the operand.
 pub fn named_value(operand: &Operand, text: &str) -> Result<i64, String> {
-    value(operand, text).map_err(|fault| format!("operand `{}`: {fault}", operand.name))
+    value(operand, text).map_err(|why| format!("operand `{}`: {why}", operand.name))
 }
 
 fn value(operand: &Operand, text: &str) -> Result<i64, String> {

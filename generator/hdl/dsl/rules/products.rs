@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::SelectedProduct;
 use crate::base::diagnostic::Diagnostic;
-use crate::hdl::netlist::{Design, Driver, FieldKind, NetId, Op, turned};
+use crate::hdl::netlist::{Design, Driver, FieldKind, NetId, Op, setting_of};
 
 /// Registers of `design` that are loaded with a product under a selection that means another one; `views` are the
 /// products that a selection gives their meaning.
@@ -56,9 +56,9 @@ impl Checker<'_> {
                     break;
                 }
                 if let Driver::Op(Op::Mux { select, inputs }) = &design.net(id).driver
-                    && let Some(chosen) = turned(design, &microprogram[now], *select)
+                    && let Some(chosen) = setting_of(design, &microprogram[now], *select)
                 {
-                    // Of a mux that the microinstruction turns, only the chosen input matters.
+                    // Of a mux that the microinstruction controls, only the chosen input matters.
                     let chosen = inputs.get(chosen as usize).or(inputs.last());
                     pending.extend(chosen.map(|&input| (now, input)));
                     continue;

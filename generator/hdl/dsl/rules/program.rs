@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use crate::base::cone::reached;
 use crate::base::diagnostic::Diagnostic;
 use crate::hdl::netlist::{
-    Control, Design, Driver, NetId, Op, RegId, RegisterKind, Role, Sequence, turned,
+    Control, Design, Driver, NetId, Op, RegId, RegisterKind, Role, Sequence, setting_of,
 };
 
 /// Microinstructions that raise `valid` too early, and loops that nothing in them ends.
@@ -21,7 +21,7 @@ fn early(design: &Design) -> Vec<Diagnostic> {
     let control = &design.control;
     let valid = design.port(|role| role == Role::Valid).map(|port| port.net);
     let raises = |at: usize| {
-        valid.is_some_and(|valid| turned(design, &control.microprogram[at], valid) == Some(1))
+        valid.is_some_and(|valid| setting_of(design, &control.microprogram[at], valid) == Some(1))
     };
     let mut found = Vec::new();
     for at in (0..control.microprogram.len()).filter(|&at| raises(at)) {
@@ -62,7 +62,7 @@ fn register(design: &Design, id: NetId) -> Option<RegId> {
 /// Whether microinstruction `at` loads a register, as far as the microinstruction alone says so. One without an enable loads always.
 fn loads(design: &Design, at: usize, register: RegId) -> Option<u64> {
     match design.register(register).enable {
-        Some(enable) => turned(design, &design.control.microprogram[at], enable),
+        Some(enable) => setting_of(design, &design.control.microprogram[at], enable),
         None => Some(1),
     }
 }
@@ -78,13 +78,13 @@ fn controlled(control: &Control, from: usize, goes: impl Fn(usize) -> bool) -> H
     reached([from], |now| if goes(now) { control.successors(now) } else { Vec::new() })
 }
 
-/// The nets on which a net depends within the clock of microinstruction `at`, and itself. Of a mux that the microinstruction turns, only the
+/// The nets on which a net depends within the clock of microinstruction `at`, and itself. Of a mux that the microinstruction controls, only the
 /// chosen input counts; fields are what the microinstruction says.
 fn cone(design: &Design, at: usize, net: NetId) -> HashSet<NetId> {
     reached([net], |id| match &design.net(id).driver {
         Driver::Field(_) => Vec::new(),
         Driver::Op(Op::Mux { select, inputs }) => {
-            match turned(design, &design.control.microprogram[at], *select) {
+            match setting_of(design, &design.control.microprogram[at], *select) {
                 Some(chosen) => {
                     inputs.get(chosen as usize).or(inputs.last()).copied().into_iter().collect()
                 }

@@ -9,7 +9,7 @@
 //! - The first point writes values of operands alone into the walk; every other writes one function of walk and
 //!   operands; and nothing else writes it between them.
 
-use super::{Clock, Executor, State, Turns, Unrolled};
+use super::{Clock, Executor, Iterations, State, Unrolled};
 use crate::base::cone::reached;
 use crate::base::diagnostic::{Diagnostic, Diagnostics};
 use crate::hdl::netlist::{Design, NetId, RegisterKind, Role, Sequence};
@@ -43,7 +43,7 @@ pub struct Walked {
 /// # Errors
 /// The points are not alike in the way that is described above.
 pub fn unroll_line(design: &Design) -> Result<Line, Diagnostics> {
-    let executor = Executor::new(design, Turns::OneByOne);
+    let executor = Executor::new(design, Iterations::OneByOne);
     Points { executor }.line().map_err(|diagnostic| Diagnostics(vec![diagnostic]))
 }
 

@@ -24,7 +24,7 @@ pub struct Node {
     pub name: String,
     /// What it is made of, and its format.
     pub caption: String,
-    /// The control lines that turn it, by number or name; may be empty.
+    /// The lines that control it, by number or name; may be empty.
     pub control: String,
     /// Its tooltip.
     pub title: String,
@@ -158,7 +158,8 @@ impl<'a> Builder<'a> {
             name: "control unit".to_owned(),
             caption: format!("{words} words × {width} bits"),
             control: String::new(),
-            title: "Control unit: sequencer and control ROM; its lines turn the blocks".to_owned(),
+            title: "Control unit: sequencer and control ROM; its lines control the blocks"
+                .to_owned(),
         });
         let start = self.design.port(|role| role == Role::Start);
         if let Some(start) = start {
@@ -199,7 +200,7 @@ impl<'a> Builder<'a> {
         added
     }
 
-    /// The numbers or names of the lines that turn a block, and of the port that writes an operand.
+    /// The numbers or names of the lines that control a block, and of the port that writes an operand.
     fn turned_by(&self, block: &Block) -> String {
         let fields = self.blocks.fields(block.output);
         let mut lines: Vec<String> = fields.into_iter().map(|field| self.lines(field)).collect();

@@ -1,6 +1,6 @@
 //! The block diagram: the blocks of the netlist, laid out in ranks from the inputs to the outputs.
 //!
-//! `place` and `route` lay it out from left to right. The page shows it turned, from top to bottom: a datapath has more
+//! `place` and `route` lay it out from left to right. The page shows it setting_of, from top to bottom: a datapath has more
 //! ranks than blocks in one, so that this is the form that fits a page, on a screen and on paper.
 
 mod graph;
@@ -85,7 +85,7 @@ pub fn drawing(design: &Design) -> Drawing {
     }
 }
 
-/// What a box takes in the layout, which sees the page turned: its height there is the width on the page.
+/// What a box takes in the layout, which sees the page setting_of: its height there is the width on the page.
 struct Sizes {
     lanes: f64,
     stub: f64,
@@ -123,7 +123,7 @@ fn is_port(one: &Node) -> bool {
     matches!(one.form, BoxForm::Input | BoxForm::Output)
 }
 
-/// The text of a box, with the class of each line; the control lines that turn it are the last.
+/// The text of a box, with the class of each line; the lines that control it are the last.
 fn lines(one: &Node) -> Vec<(&'static str, String)> {
     let head = match one.number {
         Some(number) => format!("{number} {}", one.name),
@@ -138,7 +138,7 @@ fn lines(one: &Node) -> Vec<(&'static str, String)> {
         _ => lines.push(("tick small", one.caption.clone())),
     }
     if !one.control.is_empty() {
-        lines.push(("turn", one.control.clone()));
+        lines.push(("control-lines", one.control.clone()));
     }
     lines
 }
@@ -155,7 +155,7 @@ fn coordinate(value: f64) -> i32 {
     value.round() as i32 + BORDER
 }
 
-/// A place of the layout on the page, which shows it turned.
+/// A place of the layout on the page, which shows it setting_of.
 fn point((x, y): (f64, f64)) -> String {
     format!("{} {}", coordinate(y), coordinate(x))
 }
@@ -191,7 +191,7 @@ fn draw_box(one: &Node, left: f64, body: &Body, items: &mut Vec<Item>) {
     let mut base = y + PADDING - 3;
     for (class, text) in lines(one) {
         base += LINE;
-        if class == "turn" {
+        if class == "control-lines" {
             let (middle, stub) = (base - 4, STUB as i32);
             items.push(Item::path("control wire", format!("M{} {middle}h{stub}", x - stub)));
             items.push(Item::path("control arrow", format!("M{x} {middle}l-6 -3v6Z")));

@@ -51,7 +51,7 @@ pub fn report(
     let mut proof = Proof::new(contract, state.f.peak, state.colours.peak);
     let found = found(one, job, state)?;
     if let Some((difference, _)) = &found {
-        proof.faults.push(difference.to_string());
+        proof.failures.push(difference.to_string());
     }
     if output.json {
         list.push(as_json(one, job, &proof, state, found.as_ref()));
@@ -62,7 +62,7 @@ pub fn report(
             say!("  {text}");
         }
     }
-    Ok(proof.faults.is_empty())
+    Ok(proof.failures.is_empty())
 }
 
 /// The first combination that differs, with its waveform.
@@ -86,7 +86,7 @@ fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &State) {
         .collect();
     let verdict = match state.shard == Shard::WHOLE {
         true => proof.verdict(one.core.contract.as_ref(), job.f.sweep()).to_owned(),
-        false if proof.faults.is_empty() => {
+        false if proof.failures.is_empty() => {
             "holds so far; `glint merge` joins the shards".to_owned()
         }
         false => "FAILS".to_owned(),
@@ -96,8 +96,8 @@ fn print(one: &Loaded, job: &Job<'_>, proof: &Proof, state: &State) {
         proof.words(&format!(", at raw {}", at.join(" "))),
         one.core.contract.bound().words(),
     );
-    for fault in &proof.faults {
-        say!("  FAILS: {fault}");
+    for failure in &proof.failures {
+        say!("  FAILS: {failure}");
     }
     if !job.f.sweep().omits.is_empty() {
         say!("  undecided: {}", job.f.sweep().omits);
@@ -139,9 +139,9 @@ fn as_json(
         "colour_units": proof.colours.error,
         "together": proof.together(),
         "bound": one.core.contract.bound().units,
-        "holds": proof.faults.is_empty(),
+        "holds": proof.failures.is_empty(),
         "verdict": proof.verdict(one.core.contract.as_ref(), places.sweep()),
-        "faults": proof.faults,
+        "faults": proof.failures,
     });
     if let Some(clocks) = &job.clocks {
         value["clocks"] = json!({
