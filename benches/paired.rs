@@ -284,11 +284,11 @@ fn verdict(core: &Core) -> Result<f64> {
 }
 
 /// Writes what the simulators outside need, and returns the names of the Verilog files.
-fn write(core: &Core, vectors: &Vectors, place: &Path) -> Result<Vec<String>> {
+fn write(core: &Core, vectors: &Vectors, dir: &Path) -> Result<Vec<String>> {
     let mut sources = Vec::new();
     for file in core.files("bench", vectors.clone())? {
         let name = file.name().to_owned();
-        fs::write(place.join(&name), &file.contents)?;
+        fs::write(dir.join(&name), &file.contents)?;
         if name.ends_with(".v") {
             sources.push(name);
         }
@@ -299,7 +299,7 @@ fn write(core: &Core, vectors: &Vectors, place: &Path) -> Result<Vec<String>> {
 /// The emitted Verilog as a program that replays the streams.
 struct Verilator {
     program: Tool,
-    place: tempfile::TempDir,
+    dir: tempfile::TempDir,
     clocks: usize,
     passes: usize,
     sum: u64,
@@ -307,9 +307,9 @@ struct Verilator {
 
 impl Verilator {
     fn build(core: &Core, streams: &Streams) -> Result<Self> {
-        let place = tempfile::tempdir()?;
+        let dir = tempfile::tempdir()?;
         let name = |net: NetId| &core.design.net(net).name;
-        let sources = write(core, &streams.vectors(core)?, place.path())?;
+        let sources = write(core, &streams.vectors(core)?, dir.path())?;
         let mut ports = format!(
             "constexpr int INPUTS = {};\n\nstatic void drive(Vtop& top, const uint64_t* row) {{\n",
             core.design.inputs().count()
@@ -322,11 +322,11 @@ impl Verilator {
             let name = name(net);
             writeln!(ports, "\nstatic uint64_t {role}(const Vtop& top) {{ return top.{name}; }}")?;
         }
-        fs::write(place.path().join("ports.h"), ports)?;
-        fs::write(place.path().join("paired.cpp"), include_str!("paired.cpp"))?;
+        fs::write(dir.path().join("ports.h"), ports)?;
+        fs::write(dir.path().join("paired.cpp"), include_str!("paired.cpp"))?;
         let words = streams.inputs.iter().flatten().flatten();
         let rows: Vec<u8> = words.flat_map(|word| word.to_ne_bytes()).collect();
-        fs::write(place.path().join("rows"), rows)?;
+        fs::write(dir.path().join("rows"), rows)?;
         let mut arguments: Vec<&str> =
             "--cc --exe --build -j 1 -O3 --x-assign fast --x-initial fast \
              --noassert --prefix Vtop --Mdir build -o paired -CFLAGS -O3 -CFLAGS -march=native \
@@ -338,10 +338,10 @@ impl Verilator {
         arguments
             .extend(sources.iter().map(String::as_str).filter(|file| !file.ends_with("_tb.v")));
         arguments.push("paired.cpp");
-        Tool::find("verilator")?.run_to_success(arguments, place.path(), LIMIT)?;
+        Tool::find("verilator")?.run_to_success(arguments, dir.path(), LIMIT)?;
         Ok(Self {
-            program: Tool::find_in("paired", place.path().join("build").as_os_str())?,
-            place,
+            program: Tool::find_in("paired", dir.path().join("build").as_os_str())?,
+            dir,
             clocks: streams.clocks(),
             passes: streams.passes(),
             sum: streams.sum,
@@ -352,7 +352,7 @@ impl Verilator {
     fn run(&self) -> Result<f64> {
         let passes = self.passes.to_string();
         let arguments = ["rows", &passes];
-        let said = self.program.run_to_success(arguments, self.place.path(), LIMIT)?;
+        let said = self.program.run_to_success(arguments, self.dir.path(), LIMIT)?;
         let numbers: Vec<&str> = said.split_whitespace().collect();
         let [processor, _wall, sum] = numbers[..] else {
             anyhow::bail!("the verilated model said `{said}`");
@@ -368,25 +368,25 @@ impl Verilator {
 /// The emitted bench with the streams, compiled for Icarus Verilog.
 struct Icarus {
     vvp: Tool,
-    place: tempfile::TempDir,
+    dir: tempfile::TempDir,
     clocks: usize,
 }
 
 impl Icarus {
     fn build(core: &Core, streams: &Streams) -> Result<Self> {
-        let place = tempfile::tempdir()?;
-        let sources = write(core, &streams.vectors(core)?, place.path())?;
+        let dir = tempfile::tempdir()?;
+        let sources = write(core, &streams.vectors(core)?, dir.path())?;
         let mut arguments = ["-g2012", "-o", "bench.vvp"].map(str::to_owned).to_vec();
         arguments.extend(sources);
-        Tool::find("iverilog")?.run_to_success(arguments, place.path(), LIMIT)?;
-        Ok(Self { vvp: Tool::find("vvp")?, place, clocks: streams.clocks() })
+        Tool::find("iverilog")?.run_to_success(arguments, dir.path(), LIMIT)?;
+        Ok(Self { vvp: Tool::find("vvp")?, dir, clocks: streams.clocks() })
     }
 
     /// Clocks per second. Starting vvp takes a few milliseconds of it.
     fn run(&self) -> Result<f64> {
         let since = Instant::now();
         let begin = children_time(since);
-        let directory = self.place.path();
+        let directory = self.dir.path();
         let said = self.vvp.run_to_success(["-n", "bench.vvp"], directory, LIMIT)?;
         ensure!(said.contains("PASS"), "the bench failed: {said}");
         Ok(self.clocks as f64 / (children_time(since) - begin))

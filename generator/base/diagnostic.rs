@@ -13,7 +13,7 @@ pub struct Diagnostic {
     pub message: String,
     /// Where in the Rust source.
     pub location: SourceLocation,
-    /// Other places that take part.
+    /// Other source locations that take part.
     pub notes: Vec<(String, SourceLocation)>,
     /// The key of the configuration that asks for what the description cannot give, and what to do about it.
     pub key: Option<(&'static str, String)>,

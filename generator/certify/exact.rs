@@ -206,7 +206,7 @@ fn word(rom: &str, place: &Real, setting: &Setting, terms: &mut Terms) -> Result
     let (name, range) = match place {
         Real::Operand(name) => (name.as_str(), setting.ranges.get(name).copied()),
         Real::Number(value) => ("", Some((*value, *value))),
-        _ => return Err(format!("`{rom}` is read at a place that is computed")),
+        _ => return Err(format!("`{rom}` is read at an address that is computed")),
     };
     let (low, high) = range.ok_or_else(|| format!("there is no operand `{name}`"))?;
     if setting.operands.iter().any(|operand| operand.name == name && operand.format.frac != 0) {

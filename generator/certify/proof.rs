@@ -28,11 +28,10 @@ const TRIALS: [(&str, bool); 2] = [
 /// # Errors
 /// It does not tell them apart; it does not run.
 pub fn ensure_works(gappa: &Tool, limit: Duration) -> Result<()> {
-    let place = Directory::new().context("cannot make a temporary directory")?;
+    let dir = Directory::new().context("cannot make a temporary directory")?;
     for (script, holds) in TRIALS {
-        fs::write(place.path().join("trial.g"), script)
-            .context("cannot write a script for Gappa")?;
-        let run = gappa.run(["trial.g"], place.path(), limit)?;
+        fs::write(dir.path().join("trial.g"), script).context("cannot write a script for Gappa")?;
+        let run = gappa.run(["trial.g"], dir.path(), limit)?;
         if run.status.success() != holds {
             let (does, what) =
                 if holds { ("refuses", "holds") } else { ("accepts", "does not hold") };
@@ -55,12 +54,12 @@ pub fn prove(
     statement: &Statement,
     limit: Duration,
 ) -> Result<Outcome> {
-    let place = Directory::new().context("cannot make a temporary directory")?;
+    let dir = Directory::new().context("cannot make a temporary directory")?;
     let mut why = String::new();
     for (number, script) in statement.scripts.iter().enumerate() {
-        fs::write(place.path().join("statement.g"), script)
+        fs::write(dir.path().join("statement.g"), script)
             .context("cannot write a script for Gappa")?;
-        let run = match gappa.run(["statement.g"], place.path(), limit) {
+        let run = match gappa.run(["statement.g"], dir.path(), limit) {
             Ok(run) => run,
             Err(error) if error.is::<LimitReached>() => {
                 why = format!("Gappa did not end within {} s", limit.as_secs());
@@ -80,16 +79,16 @@ pub fn prove(
             continue;
         }
         if let Some(coq) = coq {
-            let proof = gappa.run(["-Bcoq", "statement.g"], place.path(), limit)?;
+            let proof = gappa.run(["-Bcoq", "statement.g"], dir.path(), limit)?;
             if !proof.status.success() {
                 bail!("Gappa proves a statement, and cannot write it for Coq: {}", proof.output);
             }
             // Warnings come in between.
             let lines = proof.output.lines().filter(|line| !line.starts_with("Warning:"));
             let proof: String = lines.flat_map(|line| [line, "\n"]).collect();
-            fs::write(place.path().join("statement.v"), proof)
+            fs::write(dir.path().join("statement.v"), proof)
                 .context("cannot write a proof for Coq")?;
-            let check = coq.run(["statement.v"], place.path(), limit * 10)?;
+            let check = coq.run(["statement.v"], dir.path(), limit * 10)?;
             if !check.status.success() {
                 why = format!("Coq refuses: {}", check.output.lines().next().unwrap_or_default());
                 continue;

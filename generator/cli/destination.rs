@@ -11,10 +11,10 @@ use anyhow::{Context, Result};
 /// written itself.
 pub struct Destination {
     path: PathBuf,
-    place: Place,
+    sink: Sink,
 }
 
-enum Place {
+enum Sink {
     Itself(File),
     Beside(transient::File),
 }
@@ -25,13 +25,13 @@ impl Destination {
     /// # Errors
     /// It cannot.
     pub fn open(path: &Path) -> Result<Self> {
-        let place = if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+        let sink = if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
             let file = OpenOptions::new().write(true).open(path);
-            Place::Itself(file.with_context(|| cannot(path))?)
+            Sink::Itself(file.with_context(|| cannot(path))?)
         } else {
-            Place::Beside(staged::beside(path)?)
+            Sink::Beside(staged::beside(path)?)
         };
-        Ok(Self { path: path.to_owned(), place })
+        Ok(Self { path: path.to_owned(), sink })
     }
 
     /// The file to write.
@@ -39,9 +39,9 @@ impl Destination {
     /// # Errors
     /// The system has no more files.
     pub fn file(&self) -> Result<File> {
-        let file = match &self.place {
-            Place::Itself(file) => file.try_clone(),
-            Place::Beside(staged) => staged.reopen(),
+        let file = match &self.sink {
+            Sink::Itself(file) => file.try_clone(),
+            Sink::Beside(staged) => staged.reopen(),
         };
         file.with_context(|| cannot(&self.path))
     }
@@ -51,9 +51,9 @@ impl Destination {
     /// # Errors
     /// It cannot be moved; then nothing was changed.
     pub fn commit(self) -> Result<()> {
-        match self.place {
-            Place::Itself(_) => Ok(()),
-            Place::Beside(staged) => staged.persist(&self.path).with_context(|| cannot(&self.path)),
+        match self.sink {
+            Sink::Itself(_) => Ok(()),
+            Sink::Beside(staged) => staged.persist(&self.path).with_context(|| cannot(&self.path)),
         }
     }
 }

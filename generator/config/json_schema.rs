@@ -29,11 +29,11 @@ fn of_device(schema: &Schema) -> Json {
     }
     for key in schema.all_keys() {
         let (tables, leaf) = key.table_and_leaf();
-        let mut place = properties(&mut device);
+        let mut level = properties(&mut device);
         for name in tables.split('.').filter(|name| !name.is_empty()) {
-            place = properties(place.entry(name).or_insert_with(table));
+            level = properties(level.entry(name).or_insert_with(table));
         }
-        place.insert(leaf.to_owned(), of_key(key));
+        level.insert(leaf.to_owned(), of_key(key));
     }
     device["title"] = json!(schema.device);
     device["required"] = json!(["device"]);

@@ -2,7 +2,7 @@
 //!
 //! A device states its keys as a [`Schema`]; nothing here knows a device. [`read()`] and [`parse()`]
 //! turn a file into a [`Config`], whose values need no further checks, or into [`Problems`], each
-//! with its place and a remedy. [`commented`] writes the file to start from, and [`sample()`] draws
+//! with its location and a remedy. [`commented`] writes the file to start from, and [`sample()`] draws
 //! valid configurations for tests.
 
 mod audit;

@@ -128,8 +128,8 @@ impl Reader<'_> {
         draft.config.strict = strict;
         self.table(document, "", schema, &mut draft);
         if self.valid_toml {
-            let places = self.problems.cleared();
-            Ok((draft.finish(schema, self.problems)?, places))
+            let locations = self.problems.cleared();
+            Ok((draft.finish(schema, self.problems)?, locations))
         } else {
             Err(self.problems)
         }
@@ -353,14 +353,14 @@ fn converted(key: &Key, value: &Spanned<DeValue>) -> Result<Value, Vec<Violation
             let mut values = Vec::new();
             let mut violations = Vec::new();
             for (index, entry) in entries.iter().enumerate() {
-                let place = format!("{}[{index}]", key.name);
+                let named = format!("{}[{index}]", key.name);
                 let message = match (integer(entry), entry.get_ref()) {
                     (Some(value), _) => {
                         values.push(value);
                         continue;
                     }
-                    (None, DeValue::Integer(_)) => out_of_range(&place, written(entry)),
-                    (None, _) => format!("`{place}` must be an integer, not {}", described(entry)),
+                    (None, DeValue::Integer(_)) => out_of_range(&named, written(entry)),
+                    (None, _) => format!("`{named}` must be an integer, not {}", described(entry)),
                 };
                 violations.push(Violation { entry: Some(index), ..key.violation(message) });
             }

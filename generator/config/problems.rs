@@ -1,4 +1,4 @@
-//! Everything that is wrong with a configuration, with the place and a remedy for each.
+//! Everything that is wrong with a configuration, with the location and a remedy for each.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -7,7 +7,7 @@ use std::ops::Range;
 use annotate_snippets::{AnnotationKind, Level, Origin, Renderer, Snippet};
 use serde_json::{Value as Json, json};
 
-/// All problems of one configuration file, in the order of their places.
+/// All problems of one configuration file, in the order of their locations.
 ///
 /// Displays each as a snippet of the file in plain text; [`Problems::to_json`] is for scripts.
 #[derive(Clone, Debug, Default)]
@@ -15,7 +15,7 @@ pub struct Problems {
     file: String,
     text: String,
     /// Where the file gives each key: what [`Problems::push`] points at.
-    places: BTreeMap<String, Range<usize>>,
+    locations: BTreeMap<String, Range<usize>>,
     list: Vec<Problem>,
     /// Problems beyond the limit, which are counted only.
     further: usize,
@@ -49,11 +49,11 @@ impl Problems {
     /// Adds a problem of a key. It is shown where the file gives the key; if the file does not,
     /// then with the file's name alone.
     pub fn push(&mut self, key: &str, message: impl Into<String>, remedy: impl Into<String>) {
-        let span = self.places.get(key).cloned();
+        let span = self.locations.get(key).cloned();
         self.insert(key, message.into(), remedy.into(), span);
     }
 
-    /// Adds a problem at a place in the text.
+    /// Adds a problem at a location in the text.
     pub(super) fn push_at(
         &mut self,
         span: Range<usize>,
@@ -69,10 +69,10 @@ impl Problems {
 
     /// Notes where the file gives a key.
     pub(super) fn locate(&mut self, key: &str, span: Range<usize>) {
-        self.places.insert(key.to_owned(), span);
+        self.locations.insert(key.to_owned(), span);
     }
 
-    /// The same file and places, no problems: for a trial run of a check.
+    /// The same file and locations, no problems: for a trial run of a check.
     pub(super) fn cleared(&self) -> Self {
         Problems { list: Vec::new(), further: 0, ..self.clone() }
     }
@@ -84,15 +84,15 @@ impl Problems {
         }
     }
 
-    /// Keeps the list sorted by place, those without a place last, and free of repetitions.
+    /// Keeps the list sorted by location, those without one last, and free of repetitions.
     fn insert(&mut self, key: &str, message: String, remedy: String, span: Option<Range<usize>>) {
         let problem = Problem { key: key.to_owned(), message, remedy, span };
         if self.list.len() == LIMIT {
             self.further += 1;
         } else if !self.list.contains(&problem) {
             let rank = |problem: &Problem| problem.start().unwrap_or(usize::MAX);
-            let place = self.list.partition_point(|other| rank(other) <= rank(&problem));
-            self.list.insert(place, problem);
+            let position = self.list.partition_point(|other| rank(other) <= rank(&problem));
+            self.list.insert(position, problem);
         }
     }
 
@@ -106,7 +106,7 @@ impl Problems {
         self.list.len() + self.further
     }
 
-    /// The problems, in the order of their places; those without a place last.
+    /// The problems, in the order of their locations; those without one last.
     pub fn iter(&self) -> impl Iterator<Item = &Problem> {
         self.list.iter()
     }
@@ -124,7 +124,7 @@ impl Problems {
         Some((line, before[line_start..].chars().count() + 1))
     }
 
-    /// A list with one object per problem: `file`, `line`, `column` (null without a place), `key`
+    /// A list with one object per problem: `file`, `line`, `column` (null without a location), `key`
     /// (null for the whole file), `message`, `remedy`.
     pub fn to_json(&self) -> Json {
         let each = |problem: &Problem| {

@@ -43,8 +43,8 @@ impl Key {
                 });
                 for (index, entry) in given.iter().enumerate() {
                     let inside = (min..=max).contains(&entry);
-                    let place = format!("{name}[{index}]");
-                    let found = self.unless(inside, || out_of_range(&place, entry));
+                    let named = format!("{name}[{index}]");
+                    let found = self.unless(inside, || out_of_range(&named, entry));
                     all.extend(found.into_iter().map(|it| Violation { entry: Some(index), ..it }));
                 }
                 all

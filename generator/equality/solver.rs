@@ -26,7 +26,7 @@ pub enum Said {
 pub struct Solver<'a> {
     tool: &'a Tool,
     end: Instant,
-    pub place: Directory,
+    pub dir: Directory,
     /// Questions that it was asked.
     pub asked: usize,
 }
@@ -35,8 +35,8 @@ impl<'a> Solver<'a> {
     /// # Errors
     /// No temporary directory can be made.
     pub fn new(tool: &'a Tool, limit: Duration) -> Result<Self> {
-        let place = Directory::new().context("cannot make a temporary directory")?;
-        Ok(Self { tool, end: Instant::now() + limit, place, asked: 0 })
+        let dir = Directory::new().context("cannot make a temporary directory")?;
+        Ok(Self { tool, end: Instant::now() + limit, dir, asked: 0 })
     }
 
     /// Whether terms of one bit can all be 1, given facts about the products.
@@ -53,10 +53,10 @@ impl<'a> Solver<'a> {
         self.asked += 1;
         let facts = facts::about(terms, wanted, products, parts);
         let script = script(terms, wanted, &facts);
-        fs::write(self.place.path().join("question.smt2"), script)
+        fs::write(self.dir.path().join("question.smt2"), script)
             .context("cannot write a question for the solver")?;
         let left = self.end.saturating_duration_since(Instant::now());
-        let run = match self.tool.run(["question.smt2"], self.place.path(), left) {
+        let run = match self.tool.run(["question.smt2"], self.dir.path(), left) {
             Ok(run) => run,
             Err(error) if error.is::<LimitReached>() => return Ok(Said::Nothing),
             Err(error) => return Err(error),

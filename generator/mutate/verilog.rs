@@ -249,8 +249,8 @@ impl Text {
         let lines = lines.map(|(at, line)| if at == fault.line { &fault.text } else { line });
         files[fault.file].1 = lines.fold(String::new(), |text, line| text + line + "\n");
         let is_linted = self.is_linted(&files, verilator, limit)?;
-        let (shipped, place) = self.benches(&files, limit)?;
-        let verdict = match (shipped, place) {
+        let (shipped, bench) = self.benches(&files, limit)?;
+        let verdict = match (shipped, bench) {
             _ if is_linted => TextVerdict::Lint,
             // What Icarus does not build is noticed as lint is.
             (ShippedBench::Refused, _) => TextVerdict::Lint,
@@ -273,15 +273,15 @@ impl Text {
         verilator: &Tool,
         limit: Duration,
     ) -> Result<bool> {
-        let place = Directory::new().context("cannot make a temporary directory")?;
+        let dir = Directory::new().context("cannot make a temporary directory")?;
         for (name, contents) in files {
-            fs::write(place.path().join(name), contents)
+            fs::write(dir.path().join(name), contents)
                 .with_context(|| format!("cannot write `{name}`"))?;
         }
         let mut arguments = vec!["--lint-only", "-Wall", "--top-module"];
         arguments.push(self.top.trim_end_matches("_tb"));
         arguments.extend(self.modules.iter().map(|&at| files[at].0.as_str()));
-        let lint = verilator.run(arguments, place.path(), limit)?;
+        let lint = verilator.run(arguments, dir.path(), limit)?;
         Ok(!lint.status.success() || !lint.output.is_empty())
     }
 
@@ -321,12 +321,12 @@ impl Text {
         &self,
         mutant: &[(String, String)],
         file: usize,
-        place: &Path,
+        dir: &Path,
         limit: Duration,
     ) -> Result<bool> {
         let (name, fault_free) = &self.files[file];
-        fs::write(place.join(formal::MUTANT), &mutant[file].1)
-            .and_then(|()| fs::write(place.join(name), fault_free))
+        fs::write(dir.join(formal::MUTANT), &mutant[file].1)
+            .and_then(|()| fs::write(dir.join(name), fault_free))
             .with_context(|| format!("cannot write `{name}`"))?;
         let top = self.top.trim_end_matches("_tb");
         let multiplier = format!("{top}_multiplier.v");
@@ -339,7 +339,7 @@ impl Text {
         let gate = gold.iter().map(|file| if file == name { formal::MUTANT } else { file });
         let gate: Vec<&str> = gate.collect();
         let module = gold[0].trim_end_matches(".v");
-        formal::proves(place, module, [&gold, &gate], limit.min(PROOF_LIMIT))
+        formal::proves(dir, module, [&gold, &gate], limit.min(PROOF_LIMIT))
     }
 }
 

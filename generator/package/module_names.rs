@@ -12,7 +12,7 @@ use super::OutputFile;
 /// Makes sure that the name of every module in some files of one configuration stands for the module alone.
 ///
 /// # Errors
-/// A module, and the place where its name is that of something else.
+/// A module, and where its name is that of something else.
 pub fn check(files: &[OutputFile]) -> Result<()> {
     let sources: Vec<(&OutputFile, Vec<Token<'_>>)> =
         verilog(files).map(|file| (file, tokens(&file.contents))).collect();

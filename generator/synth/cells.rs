@@ -14,7 +14,7 @@ use anyhow::{Context, Result, bail};
 use super::figures::{Area, Figures, Step, rounded};
 use super::harness::TOP;
 use super::netlist::{self, Netlist};
-use super::place::{self, HARNESS, Place};
+use super::workspace::{self, HARNESS, Workspace};
 use super::{Subject, Target};
 use crate::tools::Tool;
 
@@ -58,16 +58,16 @@ pub fn measure(
     let gate = gate(&text).with_context(|| {
         format!("`{}` tells no area of the cell {GATE}, the unit of gates", liberty.display())
     })?;
-    let place = Place::new(subject)?;
+    let workspace = Workspace::new(subject)?;
     let library = "cells.lib";
-    fs::write(place.path().join(library), text)
+    fs::write(workspace.path().join(library), text)
         .context("cannot write the library for synthesis")?;
-    fs::write(place.path().join(CONSTRAINTS), LOAD)
+    fs::write(workspace.path().join(CONSTRAINTS), LOAD)
         .context("cannot write the constraints for synthesis")?;
     let map = |top: &str| format!("synth -flatten -top {top}; {MAPPING}");
     let name = &subject.design.name;
     let commands = [
-        place.read_core(),
+        workspace.read_core(),
         "design -save source".to_owned(),
         map(name),
         format!("tee -q -o {STATISTICS} stat -liberty {library}"),
@@ -76,16 +76,16 @@ pub fn measure(
         map(TOP),
         // Names that netlist and OpenSTA share.
         "splitnets; opt_clean -purge; rename -enumerate -pattern glint_%".to_owned(),
-        format!("write_json {}", place::NETLIST),
+        format!("write_json {}", workspace::NETLIST),
         format!("write_verilog -noattr -noexpr -simple-lhs {NETLIST}"),
     ];
-    place.yosys(yosys, &commands.join("; "))?;
+    workspace.yosys(yosys, &commands.join("; "))?;
     done();
-    let statistics =
-        fs::read_to_string(place.path().join(STATISTICS)).context("`yosys` wrote no statistics")?;
+    let statistics = fs::read_to_string(workspace.path().join(STATISTICS))
+        .context("`yosys` wrote no statistics")?;
     let area = area(&statistics, gate).context("`yosys` does not tell the area of the cells")?;
-    let netlist = place.netlist()?;
-    let (period, path) = timing(sta, subject, &place, &netlist)?;
+    let netlist = workspace.netlist()?;
+    let (period, path) = timing(sta, subject, &workspace, &netlist)?;
     done();
     Ok(Figures::new(Target::Osu018, DEVICE, area).with_runs(vec![(1000.0 / period, path)]))
 }
@@ -119,7 +119,7 @@ fn area(statistics: &str, gate: f64) -> Option<Area> {
 fn timing(
     sta: &Tool,
     subject: &Subject,
-    place: &Place,
+    workspace: &Workspace,
     netlist: &Netlist,
 ) -> Result<(f64, Vec<Step>)> {
     // Longer than any path: what is left of it is the slack.
@@ -130,8 +130,10 @@ fn timing(
          create_clock -name clk -period {PERIOD} [get_ports clk]\n\
          report_checks -path_delay max -fields {{net}} -digits 4\nexit\n"
     );
-    fs::write(place.path().join(SCRIPT), script).context("cannot write the script of OpenSTA")?;
-    let said = sta.run_to_success(["-no_splash", "-exit", SCRIPT], place.path(), subject.limit)?;
+    fs::write(workspace.path().join(SCRIPT), script)
+        .context("cannot write the script of OpenSTA")?;
+    let said =
+        sta.run_to_success(["-no_splash", "-exit", SCRIPT], workspace.path(), subject.limit)?;
     if let Some(error) = said.lines().find(|line| line.starts_with("Error")) {
         bail!("`sta` failed: {error}");
     }

@@ -5,7 +5,7 @@ use serde_json::Value;
 
 use super::figures::{Figures, Step};
 use super::netlist::{self, Netlist};
-use super::place::Place;
+use super::workspace::Workspace;
 use super::{Subject, Target};
 use crate::tools::Tool;
 use crate::tools::synthesis::{FAMILIES, Usage};
@@ -49,15 +49,15 @@ pub fn measure(
     subject: &Subject,
     done: &(dyn Fn() + Sync),
 ) -> Result<Figures> {
-    let place = Place::new(subject)?;
-    let (usage, netlist) = place.synthesise(yosys, &FAMILIES[1])?;
+    let workspace = Workspace::new(subject)?;
+    let (usage, netlist) = workspace.synthesise(yosys, &FAMILIES[1])?;
     no_registers_in_blocks(&netlist)?;
     done();
     let fitting = CHIPS.iter().find(|chip| chip.holds(usage));
     let chip = fitting.unwrap_or(&CHIPS[1]);
     let mut figures = Figures::new(Target::Ecp5, chip.name, usage.into());
     figures.untimed = fitting.is_none().then(|| "does not fit".to_owned());
-    figures.routed(subject, done, |seed| route(nextpnr, &place, &netlist, chip, seed))
+    figures.routed(subject, done, |seed| route(nextpnr, &workspace, &netlist, chip, seed))
 }
 
 impl Chip {
@@ -86,7 +86,7 @@ fn no_registers_in_blocks(netlist: &Netlist) -> Result<()> {
 
 fn route(
     nextpnr: &Tool,
-    place: &Place,
+    workspace: &Workspace,
     netlist: &Netlist,
     chip: &Chip,
     seed: u32,
@@ -96,8 +96,8 @@ fn route(
     let options = format!(
         "--lpf-allow-unconstrained {flag} --speed 6 --package {package} --freq {GOAL} --report {report}"
     );
-    place.nextpnr(nextpnr, seed, &options)?;
-    let report = place.json(&report)?;
+    workspace.nextpnr(nextpnr, seed, &options)?;
+    let report = workspace.json(&report)?;
     // Clock pins of DSP blocks that are tied to ground are listed as a clock too.
     let clocks = report["fmax"].as_object().into_iter().flatten();
     let clock = clocks

@@ -10,7 +10,7 @@ use serde_json::Value;
 
 use super::figures::{Figures, Step};
 use super::netlist::{self, Netlist};
-use super::place::Place;
+use super::workspace::Workspace;
 use super::{Subject, Target};
 use crate::tools::Tool;
 use crate::tools::synthesis::{FAMILIES, Usage};
@@ -30,13 +30,14 @@ pub fn measure(
     subject: &Subject,
     done: &(dyn Fn() + Sync),
 ) -> Result<Figures> {
-    let place = Place::new(subject)?;
-    let (usage, netlist) = place.synthesise(yosys, &FAMILIES[0])?;
+    let workspace = Workspace::new(subject)?;
+    let (usage, netlist) = workspace.synthesise(yosys, &FAMILIES[0])?;
     only_multipliers(&netlist)?;
     done();
     let mut figures = Figures::new(Target::Ice40, DEVICE, usage.into());
     figures.untimed = lack(usage);
-    figures.routed(subject, done, |seed| route(nextpnr, icetime, subject, &place, &netlist, seed))
+    figures
+        .routed(subject, done, |seed| route(nextpnr, icetime, subject, &workspace, &netlist, seed))
 }
 
 /// What the chip has too little of.
@@ -74,7 +75,7 @@ fn route(
     nextpnr: &Tool,
     icetime: &Tool,
     subject: &Subject,
-    place: &Place,
+    workspace: &Workspace,
     netlist: &Netlist,
     seed: u32,
 ) -> Result<(f64, Vec<Step>)> {
@@ -83,14 +84,14 @@ fn route(
     let options = format!(
         "--up5k --package sg48 --pcf-allow-unconstrained --freq {GOAL} --asc {bits} --write {placed}"
     );
-    place.nextpnr(nextpnr, seed, &options)?;
+    workspace.nextpnr(nextpnr, seed, &options)?;
     let arguments = ["-d", "up5k", "-P", "sg48", "-i", "-t", "-j", &timing, &bits];
-    let said = icetime.run_to_success(arguments, place.path(), subject.limit)?;
+    let said = icetime.run_to_success(arguments, workspace.path(), subject.limit)?;
     let nanoseconds = said.lines().find_map(|line| {
         line.strip_prefix("Total path delay: ")?.split(' ').next()?.parse::<f64>().ok()
     });
     let nanoseconds = nanoseconds.context("`icetime` does not tell the longest path")?;
-    let (path, placed) = (place.json(&timing)?, place.json(&placed)?);
+    let (path, placed) = (workspace.json(&timing)?, workspace.json(&placed)?);
     Ok((1000.0 / nanoseconds, steps(netlist, &path, &placed)))
 }
 
@@ -100,26 +101,26 @@ fn steps(netlist: &Netlist, path: &Value, placed: &Value) -> Vec<Step> {
     let outputs = outputs(placed);
     let points = path[0].as_array().into_iter().flatten();
     netlist::path(points.filter_map(|point| {
-        let net = outputs.get(&place_of(point["cell"].as_str()?)?)?;
+        let net = outputs.get(&location_of(point["cell"].as_str()?)?)?;
         let name = netlist.name(net)?;
         Some((name.to_owned(), point["delay_ns"].as_f64()?))
     }))
 }
 
-/// The place of a cell of icetime, `lc40_16_2_0`, as nextpnr writes it, without the kind of cell: `16 2 0`. Routing is at no place.
-fn place_of(cell: &str) -> Option<String> {
+/// The location of a cell of icetime, `lc40_16_2_0`, as nextpnr writes it, without the kind of cell: `16 2 0`. Routing is at no location.
+fn location_of(cell: &str) -> Option<String> {
     let mut parts = cell.split('_');
     let kind = parts.next()?;
     // DSP blocks and block RAMs have a tile, or the tile of their first part, to themselves.
-    let place: Vec<&str> = parts.collect();
+    let location: Vec<&str> = parts.collect();
     match kind {
-        "lc40" => (place.len() == 3).then(|| place.join(" ")),
-        "MAC16" | "ram" | "ram40" => Some(format!("{} {}", place.first()?, place.get(1)?)),
+        "lc40" => (location.len() == 3).then(|| location.join(" ")),
+        "MAC16" | "ram" | "ram40" => Some(format!("{} {}", location.first()?, location.get(1)?)),
         _ => None,
     }
 }
 
-/// A net that each cell drives, by the cell's place: of a block the first of its outputs.
+/// A net that each cell drives, by the cell's location: of a block the first of its outputs.
 fn outputs(placed: &Value) -> BTreeMap<String, String> {
     // nextpnr calls the only module `top`.
     let Some(module) = placed["modules"].as_object().and_then(|modules| modules.values().next())
@@ -140,7 +141,7 @@ fn outputs(placed: &Value) -> BTreeMap<String, String> {
         let (Some(x), Some(y), Some(z)) = (parts.next(), parts.next(), parts.next()) else {
             continue;
         };
-        let (prefix, place) = match cell["type"].as_str() {
+        let (prefix, location) = match cell["type"].as_str() {
             Some("ICESTORM_LC") => ("O", format!("{x} {y} {z}")),
             Some("ICESTORM_DSP") => ("O_", format!("{x} {y}")),
             Some("ICESTORM_RAM") => ("RDATA_", format!("{x} {y}")),
@@ -152,7 +153,7 @@ fn outputs(placed: &Value) -> BTreeMap<String, String> {
             _ => port.starts_with(prefix),
         });
         let net = driven.filter_map(|(_, bits)| nets.get(&bits[0].as_u64()?)).next();
-        found.extend(net.map(|net| (place, net.clone())));
+        found.extend(net.map(|net| (location, net.clone())));
     }
     found
 }

@@ -10,8 +10,8 @@ mod figures;
 mod harness;
 mod ice40;
 mod netlist;
-mod place;
 mod record;
+mod workspace;
 
 use std::ffi::OsStr;
 use std::fmt;
@@ -26,8 +26,8 @@ use crate::package;
 use crate::tools::Tool;
 use crate::tools::synthesis::FAMILIES;
 pub use figures::{Area, Figures, Frequency, Step};
-use place::Place;
 pub use record::{DIRECTORY, Rate, Record, tools};
+use workspace::Workspace;
 
 /// What a core is measured for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -185,8 +185,8 @@ fn version(tool: &Tool) -> Result<String> {
 /// The area for Xilinx 7.
 fn area(yosys: &Tool, subject: &Subject, done: &dyn Fn()) -> Result<Figures> {
     let family = &FAMILIES[2];
-    let place = Place::new(subject)?;
-    let usage = place.area(yosys, family)?;
+    let workspace = Workspace::new(subject)?;
+    let usage = workspace.area(yosys, family)?;
     done();
     let mut figures = Figures::new(Target::Xilinx7, family.title, usage.into());
     figures.untimed = Some("Yosys gives areas; there is no open place and route".to_owned());

@@ -85,7 +85,7 @@ pub(super) fn run_bench_in<N: AsRef<str>, C: AsRef<[u8]>>(
 
 /// A bench that was built, in a temporary directory of its own, and that can be run again and again.
 pub struct BuiltBench {
-    place: Directory,
+    dir: Directory,
     simulator: Simulator,
     top: String,
     /// The program to run and its arguments.
@@ -126,8 +126,8 @@ impl BuiltBench {
             }
             Simulator::Verilator => (Tool::find_in("verilator", search)?, None),
         };
-        let place = Directory::new().context("cannot make a temporary directory")?;
-        let directory = place.path();
+        let dir = Directory::new().context("cannot make a temporary directory")?;
+        let directory = dir.path();
         let sources = write_files(directory, files)?;
 
         let mut arguments: Vec<&str> = match simulator {
@@ -153,12 +153,12 @@ impl BuiltBench {
                 (Tool::find_in("bench", built.as_os_str())?, &[])
             }
         };
-        Ok(Self { simulator, top: top.to_owned(), program, build, place })
+        Ok(Self { simulator, top: top.to_owned(), program, build, dir })
     }
 
     /// Where it runs: beside its files, and those that it writes.
     pub fn directory(&self) -> &Path {
-        self.place.path()
+        self.dir.path()
     }
 
     /// Runs the bench.

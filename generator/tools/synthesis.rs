@@ -130,8 +130,8 @@ pub fn synthesise(
 ) -> Result<Usage> {
     const STATISTICS: &str = "statistics.json";
     let command = format!("tee -q -o {STATISTICS} stat -json");
-    let place = run(yosys, files, top, family, &command, limit)?;
-    usage(&place.path().join(STATISTICS), top, family)
+    let dir = run(yosys, files, top, family, &command, limit)?;
+    usage(&dir.path().join(STATISTICS), top, family)
         .with_context(|| format!("`{}` for {}", family.command, family.title))
 }
 
@@ -144,16 +144,16 @@ pub(super) fn run(
     command: &str,
     limit: Duration,
 ) -> Result<Directory> {
-    let place = Directory::new().context("cannot make a directory for synthesis")?;
+    let dir = Directory::new().context("cannot make a directory for synthesis")?;
     for (name, contents) in files {
-        fs::write(place.path().join(name), contents)
+        fs::write(dir.path().join(name), contents)
             .with_context(|| format!("cannot write `{name}` for synthesis"))?;
     }
     let sources: Vec<&str> =
         files.iter().map(|(name, _)| name.as_str()).filter(|name| name.ends_with(".v")).collect();
     let script = format!("read_verilog {}; {}; {command}", sources.join(" "), family.script(top),);
-    yosys.run_to_success(["-q", "-p", &script], place.path(), limit)?;
-    Ok(place)
+    yosys.run_to_success(["-q", "-p", &script], dir.path(), limit)?;
+    Ok(dir)
 }
 
 /// Reads what `stat -json` has written.

@@ -11,13 +11,13 @@ struct Fakes(tempfile::TempDir);
 
 impl Fakes {
     fn new(scripts: &[(&str, &str)]) -> Self {
-        let place = tempfile::tempdir().unwrap();
+        let dir = tempfile::tempdir().unwrap();
         for (name, script) in scripts {
             // A shell writes the file: while this process had it open for writing, another test's
             // fork could inherit it, and then the file is busy and does not run.
             let mut shell = Command::new("/bin/sh")
                 .args(["-c", "cat > \"$0\" && chmod +x \"$0\"", name])
-                .current_dir(&place)
+                .current_dir(&dir)
                 .stdin(Stdio::piped())
                 .spawn()
                 .unwrap();
@@ -26,7 +26,7 @@ impl Fakes {
             drop(input);
             assert!(shell.wait().unwrap().success());
         }
-        Self(place)
+        Self(dir)
     }
 
     fn run(&self, name: &str, limit: Duration) -> Result<Run> {

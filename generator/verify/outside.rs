@@ -127,10 +127,10 @@ pub const LINT: Check = Check {
     tools: &["iverilog", "verilator"],
     steps: |_| 1,
     run: |subject, tools, _| {
-        let place = Directory::new().context("cannot make a directory for the linters")?;
+        let dir = Directory::new().context("cannot make a directory for the linters")?;
         let mut sources = Vec::new();
         for (name, contents) in subject.core.verilog()? {
-            fs::write(place.path().join(&name), contents)
+            fs::write(dir.path().join(&name), contents)
                 .with_context(|| format!("cannot write `{name}` for the linters"))?;
             if name.ends_with(".v") {
                 sources.push(name);
@@ -139,7 +139,7 @@ pub const LINT: Check = Check {
         let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
         let mut failures = Vec::new();
         for tool in tools {
-            let remarks = lint(tool, place.path(), &sources, name, limit)?;
+            let remarks = lint(tool, dir.path(), &sources, name, limit)?;
             if !remarks.trim().is_empty() {
                 failures.push(format!("{tool}: {}", remarks.trim()));
             }
@@ -229,12 +229,12 @@ pub const FORMAL: Check = Check {
     tools: &["yosys", "yosys-smtbmc", "z3"],
     steps: |_| 1,
     run: |subject, _, _| {
-        let place = place(subject)?;
+        let dir = written(subject)?;
         let (name, limit) = (&subject.core.config.name, subject.effort.time_limit);
-        let flat = place.path().join("proof");
+        let flat = dir.path().join("proof");
         fs::create_dir(&flat).context("cannot make a directory for the proof")?;
         for directory in ["rtl_out", "testbench"] {
-            let directory = place.path().join(directory).join(name);
+            let directory = dir.path().join(directory).join(name);
             for entry in directory.read_dir().context("cannot read what was emitted")? {
                 let entry = entry.context("cannot read what was emitted")?;
                 if entry.path().is_dir() {
@@ -295,10 +295,10 @@ pub const COCOTB: Check = Check {
             );
             return Ok(Finding::without(Verdict::NotRun, why));
         }
-        let place = place(subject)?;
+        let dir = written(subject)?;
         let name = &subject.core.config.name;
         let bench = format!("testbench/{name}/test_{name}.py");
-        let run = python.run([&bench], place.path(), limit)?;
+        let run = python.run([&bench], dir.path(), limit)?;
         let verdict = run.output.lines().rev().find(|line| line.contains(&format!("{name}: ")));
         let failures = match (run.status.success(), verdict) {
             (true, Some(_)) => Vec::new(),
@@ -315,18 +315,18 @@ pub const COCOTB: Check = Check {
 };
 
 /// Everything that is emitted, in a directory of its own.
-fn place(subject: &Subject<'_>) -> Result<Directory> {
-    let place = Directory::new().context("cannot make a directory for what is emitted")?;
+fn written(subject: &Subject<'_>) -> Result<Directory> {
+    let dir = Directory::new().context("cannot make a directory for what is emitted")?;
     let vectors = subject.core.shipped_vectors()?;
     let files = subject.core.files(subject.path, vectors)?;
     for file in files.iter().chain([&package::driver()]) {
-        let path = place.path().join(&file.path);
+        let path = dir.path().join(&file.path);
         path.parent()
             .map_or(Ok(()), fs::create_dir_all)
             .and_then(|()| fs::write(&path, &file.contents))
             .with_context(|| format!("cannot write `{}` for a tool", file.path))?;
     }
-    Ok(place)
+    Ok(dir)
 }
 
 /// The synthesised netlists.

@@ -29,11 +29,11 @@ fn is_alive(number: u32) -> bool {
 #[test]
 #[cfg(target_os = "linux")]
 fn a_killed_child_takes_a_session_of_its_child_along() {
-    let place = Directory::new().unwrap();
+    let dir = Directory::new().unwrap();
     let script = "setsid sh -c 'echo $$ > inner; exec sleep 1000' & sleep 1000";
     let mut child =
-        Child::spawn(Command::new("sh").args(["-c", script]).current_dir(&place)).unwrap();
-    let inner = number_in(&place.path().join("inner"));
+        Child::spawn(Command::new("sh").args(["-c", script]).current_dir(&dir)).unwrap();
+    let inner = number_in(&dir.path().join("inner"));
     assert!(is_alive(inner) && is_alive(child.id()));
     child.kill();
     let deadline = Instant::now() + Duration::from_secs(10);
@@ -45,19 +45,19 @@ fn a_killed_child_takes_a_session_of_its_child_along() {
 
 #[test]
 fn what_is_dropped_is_gone_and_off_the_list() {
-    let place = Directory::new().unwrap();
-    let inner = Directory::beside(place.path(), ".glint-").unwrap();
+    let dir = Directory::new().unwrap();
+    let inner = Directory::beside(dir.path(), ".glint-").unwrap();
     let path = inner.path().to_owned();
     assert!(path.is_dir() && list().paths.contains(&path));
     drop(inner);
     assert!(!path.exists() && !list().paths.contains(&path));
 
-    let file = File::made(|| tempfile::NamedTempFile::new_in(place.path())).unwrap();
-    assert_eq!(fs::read_dir(place.path()).unwrap().count(), 1);
-    file.persist(&place.path().join("kept")).unwrap();
-    assert!(place.path().join("kept").is_file());
-    assert!(!list().paths.iter().any(|path| path.parent() == Some(place.path())));
+    let file = File::made(|| tempfile::NamedTempFile::new_in(dir.path())).unwrap();
+    assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
+    file.persist(&dir.path().join("kept")).unwrap();
+    assert!(dir.path().join("kept").is_file());
+    assert!(!list().paths.iter().any(|path| path.parent() == Some(dir.path())));
 
-    let kept = Directory::beside(place.path(), "k").unwrap().keep();
+    let kept = Directory::beside(dir.path(), "k").unwrap().keep();
     assert!(kept.is_dir() && !list().paths.contains(&kept));
 }

@@ -56,7 +56,7 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let loaded = load_sequential(registry, &arguments.configs.paths, "certify")?;
     let limit = Duration::from_secs(arguments.time_limit);
     if let Some(out) = arguments.out.as_deref().filter(|out| out.exists() && !out.is_dir()) {
-        bail!("`{}` is no directory: give another place with --out", out.display());
+        bail!("`{}` is no directory: give another directory with --out", out.display());
     }
     let gappa = Tool::find("gappa")?;
     ensure_works(&gappa, limit)?;

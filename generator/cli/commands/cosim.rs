@@ -148,7 +148,7 @@ fn built_in(output: Output, loaded: &[Loaded], arguments: &Arguments) -> Result<
                 "  largest error {:.3} units (bound {}) at {}",
                 worst.units,
                 bound.words(),
-                place(one, worst)
+                worst_operands(one, worst)
             );
         }
         if one.core.contract.highlight().is_some() {
@@ -182,7 +182,7 @@ fn outcome(
 }
 
 /// The operands of the largest error, as values.
-pub fn place(one: &Loaded, worst: &Worst) -> String {
+pub fn worst_operands(one: &Loaded, worst: &Worst) -> String {
     let operands = one.core.contract.operands();
     let values: Vec<String> = worst
         .operands

@@ -84,7 +84,7 @@ fn print(loaded: &[Loaded], findings: &[Finding], details: bool) -> Result<()> {
                 finding.outcome.registers,
                 finding.outcome.outputs,
                 text::grouped(finding.outcome.clocks),
-                cosim::place(one, worst)
+                cosim::worst_operands(one, worst)
             );
         }
         for failure in &finding.failures {

@@ -71,7 +71,7 @@ impl Reproducer {
         )
     }
 
-    /// For scripts: a difference with its place and how to have it again.
+    /// For scripts: where a difference is and how to have it again.
     pub fn json(&self, mismatch: &Mismatch) -> Value {
         let mut value = as_json(mismatch);
         value["vcd"] = json!(self.vcd.display().to_string());

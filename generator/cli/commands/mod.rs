@@ -46,8 +46,8 @@ pub struct Loaded {
     /// As the command line names it, with `/`.
     path: String,
     core: Core,
-    /// No problems, but the places of the keys in the file.
-    places: Problems,
+    /// No problems, but the locations of the keys in the file.
+    locations: Problems,
 }
 
 /// The configurations named, or all in `configs/`, sorted.
@@ -118,14 +118,14 @@ fn load_sequential(registry: &Registry, named: &[PathBuf], command: &str) -> Res
 }
 
 fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Result<Loaded> {
-    let (config, places) = config::read_located(path, schemas)?;
+    let (config, locations) = config::read_located(path, schemas)?;
     let device = registry
         .device(&config.device)
         .with_context(|| format!("no device `{}`", config.device))?;
     let name = path.display().to_string().replace('\\', "/");
     let core = Core::new(*device, config).map_err(|error| {
         // What the configuration asks for and the description cannot give is a mistake in the configuration.
-        let mut problems = places.clone();
+        let mut problems = locations.clone();
         if let Some(unfit) = error.downcast_ref::<Unfit>() {
             problems.push(unfit.key, &unfit.message, &unfit.remedy);
         }
@@ -137,7 +137,7 @@ fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Res
         }
         if problems.is_empty() { error.context(format!("`{name}`")) } else { problems.into() }
     })?;
-    Ok(Loaded { path: name, core, places })
+    Ok(Loaded { path: name, core, locations })
 }
 
 /// Yosys; where it is missing a note says so, and what there is without it.
@@ -172,7 +172,7 @@ impl Loaded {
     fn files(&self, vectors: Vectors) -> Result<Vec<OutputFile>> {
         self.core.files(&self.path, vectors).map_err(|error| match error.downcast_ref::<Unfit>() {
             Some(unfit) => {
-                let mut problems = self.places.clone();
+                let mut problems = self.locations.clone();
                 problems.push(unfit.key, &unfit.message, &unfit.remedy);
                 problems.into()
             }

@@ -21,10 +21,10 @@ fn files(text: &str) -> Vec<OutputFile> {
 }
 
 fn written(text: &str) -> tempfile::TempDir {
-    let place = tempfile::tempdir().unwrap();
-    write(place.path(), "core", &files(text), false).unwrap();
-    fs::write(place.path().join("rtl_out/core/.DS_Store"), "mine").unwrap();
-    place
+    let dir = tempfile::tempdir().unwrap();
+    write(dir.path(), "core", &files(text), false).unwrap();
+    fs::write(dir.path().join("rtl_out/core/.DS_Store"), "mine").unwrap();
+    dir
 }
 
 /// Nothing but the new files and the foreign one is there.
@@ -45,52 +45,52 @@ fn killed(staging: Staging) -> PathBuf {
 
 #[test]
 fn one_that_was_killed_before_the_moves() {
-    let place = written("old");
-    let staging = killed(Staging::new(place.path(), &files("half")).unwrap());
+    let dir = written("old");
+    let staging = killed(Staging::new(dir.path(), &files("half")).unwrap());
     fs::remove_file(staging.join("testbench/core/core_tb.v")).unwrap();
-    write(place.path(), "core", &files("new"), false).unwrap();
-    assert_renewed(place.path());
+    write(dir.path(), "core", &files("new"), false).unwrap();
+    assert_renewed(dir.path());
 }
 
 #[test]
 fn one_that_was_killed_between_the_moves() {
-    let out = |place: &tempfile::TempDir, path: &str| place.path().join(path);
+    let out = |dir: &tempfile::TempDir, path: &str| dir.path().join(path);
     for moves in 1..=3 {
-        let place = written("old");
-        let staging = killed(Staging::new(place.path(), &files("new")).unwrap());
+        let dir = written("old");
+        let staging = killed(Staging::new(dir.path(), &files("new")).unwrap());
         let aside = staging.join("old/rtl_out");
         fs::create_dir_all(&aside).unwrap();
-        fs::rename(out(&place, "rtl_out/core"), aside.join("core")).unwrap();
+        fs::rename(out(&dir, "rtl_out/core"), aside.join("core")).unwrap();
         if moves > 1 {
-            fs::rename(staging.join("rtl_out/core"), out(&place, "rtl_out/core")).unwrap();
+            fs::rename(staging.join("rtl_out/core"), out(&dir, "rtl_out/core")).unwrap();
         }
         if moves > 2 {
             fs::create_dir_all(staging.join("old/testbench")).unwrap();
-            fs::rename(out(&place, "testbench/core"), staging.join("old/testbench/core")).unwrap();
+            fs::rename(out(&dir, "testbench/core"), staging.join("old/testbench/core")).unwrap();
         }
-        staging::recover(place.path()).unwrap();
-        assert_renewed(place.path());
+        staging::recover(dir.path()).unwrap();
+        assert_renewed(dir.path());
     }
 }
 
 #[test]
 fn what_is_not_provably_glints_stays() {
-    let place = written("old");
+    let dir = written("old");
     // One in use, one with a note in it, and two that only look like one.
-    let used = Staging::new(place.path(), &files("half")).unwrap();
-    let noted = killed(Staging::new(place.path(), &files("half")).unwrap());
+    let used = Staging::new(dir.path(), &files("half")).unwrap();
+    let noted = killed(Staging::new(dir.path(), &files("half")).unwrap());
     fs::write(noted.join("rtl_out/core/note"), "mine").unwrap();
     for (name, lock) in [(".glint-a", None), (".glint-b", Some("my own lock\n"))] {
-        fs::create_dir(place.path().join(name)).unwrap();
-        fs::write(place.path().join(name).join("file"), "mine").unwrap();
+        fs::create_dir(dir.path().join(name)).unwrap();
+        fs::write(dir.path().join(name).join("file"), "mine").unwrap();
         if let Some(text) = lock {
-            fs::write(place.path().join(name).join("glint.lock"), text).unwrap();
+            fs::write(dir.path().join(name).join("glint.lock"), text).unwrap();
         }
     }
-    write(place.path(), "core", &files("new"), false).unwrap();
+    write(dir.path(), "core", &files("new"), false).unwrap();
     assert_eq!(fs::read_to_string(noted.join("rtl_out/core/note")).unwrap(), "mine");
     for name in [".glint-a/file", ".glint-b/file"] {
-        assert_eq!(fs::read_to_string(place.path().join(name)).unwrap(), "mine");
+        assert_eq!(fs::read_to_string(dir.path().join(name)).unwrap(), "mine");
     }
     let used = killed(used);
     assert!(used.join("rtl_out/core/core.v").exists());

@@ -83,12 +83,11 @@ impl Engine for Verilog {
             }
             list.push('\n');
         }
-        let place = self.bench.directory();
-        fs::write(place.join(POINTS_FILE), list).context("cannot write the list of points")?;
+        let dir = self.bench.directory();
+        fs::write(dir.join(POINTS_FILE), list).context("cannot write the list of points")?;
         let run = self.bench.run(self.limit)?;
         ensure!(run.passed, "the bench fails:\n{}", run.transcript.trim());
-        let text =
-            fs::read_to_string(place.join(RESULTS_FILE)).context("the bench wrote nothing")?;
+        let text = fs::read_to_string(dir.join(RESULTS_FILE)).context("the bench wrote nothing")?;
         let mut out = Vec::with_capacity(points.result_count() * self.results.len());
         let (mut at, mut shown) = (0, 0);
         for line in text.lines() {

@@ -373,8 +373,8 @@ impl Designer {
     pub fn finish(self) -> Result<Design, Diagnostics> {
         let program = self.inner.borrow_mut().program.take();
         if let Some(mut program) = program {
-            let place = program.location;
-            self.placed(place, || {
+            let location = program.location;
+            self.located(location, || {
                 if self.with(|inner| inner.registers_outputs) {
                     output_registers::insert(&self, &mut program);
                 }
@@ -384,8 +384,8 @@ impl Designer {
                 program::assemble(&self, &program);
             });
         } else {
-            let place = self.net(self.start).location;
-            self.report(Diagnostic::new("the design has no microprogram".to_owned(), place));
+            let location = self.net(self.start).location;
+            self.report(Diagnostic::new("the design has no microprogram".to_owned(), location));
         }
         let Inner { mut design, views, mut diagnostics, .. } = self.inner.into_inner();
         if diagnostics.is_empty() {

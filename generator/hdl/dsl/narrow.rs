@@ -29,7 +29,7 @@ impl Designer {
             (true, _) => (Op::Relabel(self.resized(rounded, format)), (low, high)),
             (false, Overflow::Wrap) => (self.low_bits(rounded, format), format.range()),
             (false, Overflow::Saturate) => (
-                self.placed(Location::caller(), || self.saturated(name, rounded, format)),
+                self.located(Location::caller(), || self.saturated(name, rounded, format)),
                 (
                     low.clamp(format.min_raw(), format.max_raw()),
                     high.clamp(format.min_raw(), format.max_raw()),

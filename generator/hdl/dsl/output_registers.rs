@@ -62,7 +62,7 @@ fn behind(d: &Designer, port: NetId, kind: RegisterKind, enable: Option<NetId>) 
     };
     // It holds 0 from power-up to its first load.
     let range = (net.range.0.min(0), net.range.1.max(0));
-    let q = d.placed(net.location, || {
+    let q = d.located(net.location, || {
         d.add_register(&format!("{}_reg", net.name), net.format, range, kind)
     });
     d.set_doc(q, "holds the output");

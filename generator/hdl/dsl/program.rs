@@ -317,7 +317,7 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
             }
             _ => continue,
         };
-        if let Some((first, place)) = &found
+        if let Some((first, location)) = &found
             && *first != sequence
         {
             d.report(
@@ -325,7 +325,7 @@ fn sequence(d: &Designer, steps: &[Step], step: &Step) -> Sequence {
                     format!("microinstruction `{}` states two successors", step.name),
                     setting.location,
                 )
-                .note("the other way".to_owned(), place),
+                .note("the other way".to_owned(), location),
             );
         }
         found = Some((sequence, setting.location));
@@ -384,7 +384,7 @@ fn microinstructions(
                 },
                 _ => continue,
             };
-            if let Some((other, other_what, place)) = set[field.index()]
+            if let Some((other, other_what, location)) = set[field.index()]
                 && other != value
             {
                 d.report(
@@ -392,7 +392,7 @@ fn microinstructions(
                         format!("microinstruction `{}`: `{what}` clashes with `{other_what}`: they share select lines", step.name),
                         setting.location,
                     )
-                    .note("the other".to_owned(), place),
+                    .note("the other".to_owned(), location),
                 );
             }
             set[field.index()] = Some((value, what, setting.location));

@@ -57,16 +57,16 @@ impl Designer {
         self.add_net(&name, format, range, driver, false)
     }
 
-    /// What `act` adds stands at `place`, wherever in the builder it is made: its names may be wrong.
-    pub(crate) fn placed<T>(&self, place: SourceLocation, act: impl FnOnce() -> T) -> T {
+    /// What `act` adds stands at `location`, wherever in the builder it is made: its names may be wrong.
+    pub(crate) fn located<T>(&self, location: SourceLocation, act: impl FnOnce() -> T) -> T {
         let own = self.with(|inner| (inner.design.nets.len(), inner.design.roms.len()));
         let made = act();
         self.with(|Inner { design, .. }| {
             let nets = design.nets[own.0..].iter_mut();
             let roms = design.roms[own.1..].iter_mut();
-            let places = nets.map(|net| &mut net.location);
-            for location in places.chain(roms.map(|rom| &mut rom.location)) {
-                *location = place;
+            let all = nets.map(|net| &mut net.location);
+            for it in all.chain(roms.map(|rom| &mut rom.location)) {
+                *it = location;
             }
         });
         made
@@ -215,8 +215,8 @@ impl Designer {
         notes: [(&str, SourceLocation); N],
     ) {
         let mut diagnostic = Diagnostic::new(message, Location::caller());
-        for (note, place) in notes {
-            diagnostic = diagnostic.note(note.to_owned(), place);
+        for (note, location) in notes {
+            diagnostic = diagnostic.note(note.to_owned(), location);
         }
         self.report(diagnostic);
     }

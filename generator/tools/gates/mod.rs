@@ -30,8 +30,8 @@ pub fn netlist(
 ) -> Result<String> {
     const NETLIST: &str = "netlist.v";
     let command = format!("write_verilog -noattr {NETLIST}");
-    let place = synthesis::run(yosys, files, top, family, &command, limit)?;
-    fs::read_to_string(place.path().join(NETLIST)).context("`yosys` wrote no netlist")
+    let dir = synthesis::run(yosys, files, top, family, &command, limit)?;
+    fs::read_to_string(dir.path().join(NETLIST)).context("`yosys` wrote no netlist")
 }
 
 /// The files of the bench around a netlist, of `sources`, those of device and bench: without those named in

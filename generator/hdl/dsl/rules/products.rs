@@ -51,8 +51,8 @@ impl Checker<'_> {
                         })
                 {
                     let diagnostic = self.wrong_product(at, wrong, register.q, view);
-                    let place = design.net(id).location;
-                    self.found.push(diagnostic.note("the product".to_owned(), place));
+                    let location = design.net(id).location;
+                    self.found.push(diagnostic.note("the product".to_owned(), location));
                     break;
                 }
                 if let Driver::Op(Op::Mux { select, inputs }) = &design.net(id).driver

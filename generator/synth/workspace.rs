@@ -14,7 +14,7 @@ use crate::tools::Tool;
 use crate::tools::synthesis::{self, Family, Usage};
 
 /// Where the core's sources and its harness stand.
-pub struct Place<'a> {
+pub struct Workspace<'a> {
     directory: Directory,
     subject: &'a Subject<'a>,
 }
@@ -25,7 +25,7 @@ pub const HARNESS: &str = "glint_harness.v";
 pub const NETLIST: &str = "harness.json";
 const STATISTICS: &str = "area.json";
 
-impl<'a> Place<'a> {
+impl<'a> Workspace<'a> {
     /// Writes the sources.
     ///
     /// # Errors
@@ -74,7 +74,7 @@ impl<'a> Place<'a> {
     /// What the core alone takes.
     ///
     /// # Errors
-    /// Those of [`Place::yosys`].
+    /// Those of [`Workspace::yosys`].
     pub fn area(&self, yosys: &Tool, family: &Family) -> Result<Usage> {
         let top = &self.subject.design.name;
         let (read, script) = (self.read_core(), family.script(top));
@@ -86,7 +86,7 @@ impl<'a> Place<'a> {
     /// file [`NETLIST`].
     ///
     /// # Errors
-    /// Those of [`Place::yosys`].
+    /// Those of [`Workspace::yosys`].
     pub fn synthesise(&self, yosys: &Tool, family: &Family) -> Result<(Usage, Netlist)> {
         let top = &self.subject.design.name;
         let commands = [
