@@ -5,7 +5,7 @@ use std::f64::consts::FRAC_PI_2;
 use super::contract::ErrorShare;
 use super::frame::{Clocked, Datapath, Frame, Slot, State};
 use super::highlight::{Highlight, ProductSlots, Reflectance};
-use super::line::{self, CosineTable, Walker, magnitude};
+use super::line::{self, CosineTable, LineKeys, Walker, magnitude};
 use super::{Axis, Contract, Model, Operand, Sweep, Values, keys};
 use crate::base::fixed::{Format, exp2};
 use crate::config::Config;
@@ -14,14 +14,14 @@ use crate::golden::formulas;
 /// What a configuration of the device says.
 #[derive(Clone)]
 struct Params {
-    keys: line::Keys,
+    keys: LineKeys,
     /// `angle.integer`: integer bits of a stretched angle in right angles.
     angle_integer: u32,
 }
 
 impl Params {
     fn of(config: &Config) -> Self {
-        Self { keys: line::Keys::new(config), angle_integer: keys::bits(config, "angle.integer") }
+        Self { keys: LineKeys::new(config), angle_integer: keys::bits(config, "angle.integer") }
     }
 
     fn angle_format(&self) -> Format {
@@ -211,7 +211,7 @@ mod tests {
 
     #[test]
     fn f_by_hand() {
-        let contract = highlight(Params { keys: line::Keys::small(), angle_integer: 2 });
+        let contract = highlight(Params { keys: LineKeys::small(), angle_integer: 2 });
         let f = |angle| contract.f(&[0, angle, 0]);
         // Steps of 11.25°: (1 + cos² 11.25°)/2 = 0.98097; 20/64 is step 2: (0.85355 + 0.69134)/2 = 0.77245.
         assert_eq!(f(0), 63);

@@ -20,7 +20,7 @@ pub fn raw_angle(operand: &Operand, angle: f64) -> i64 {
 
 /// The keys that the devices share.
 #[derive(Clone)]
-pub struct Keys {
+pub struct LineKeys {
     /// `angle.fraction`: fraction bits of an angle in right angles, F.
     pub angle_fraction: u32,
     /// `table.address`: log₂ of the steps of a table of ROM 12, T.
@@ -37,7 +37,7 @@ pub struct Keys {
     pub output_rounding: Rounding,
 }
 
-impl Keys {
+impl LineKeys {
     /// The keys of a configuration.
     pub fn new(config: &Config) -> Self {
         Self {

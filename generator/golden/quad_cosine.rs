@@ -8,7 +8,7 @@ pub use contract::contract;
 
 use super::frame::{Clocked, Datapath, Frame, Slot, State};
 use super::highlight::ProductSlots;
-use super::line::{self, CosineTable, Walker, magnitude};
+use super::line::{CosineTable, LineKeys, Walker, magnitude};
 use super::{Model, keys};
 use crate::base::fixed::Format;
 use crate::config::Config;
@@ -16,7 +16,7 @@ use crate::config::Config;
 /// What a configuration of the device says.
 #[derive(Clone)]
 struct Params {
-    keys: line::Keys,
+    keys: LineKeys,
     /// `angle.multiplied`: those that multiplier 11 takes, A.
     angle_multiplied: u32,
     /// `root.fraction`: fraction bits of ROM 9, G.
@@ -30,7 +30,7 @@ struct Params {
 impl Params {
     fn of(config: &Config) -> Self {
         Self {
-            keys: line::Keys::new(config),
+            keys: LineKeys::new(config),
             angle_multiplied: keys::bits(config, "angle.multiplied"),
             root_fraction: keys::bits(config, "root.fraction"),
             exponent_bits: keys::bits(config, "exponent.bits"),

@@ -4,7 +4,7 @@ use super::*;
 /// The default with 4 + 4 bits of angle and root, and tables of 8 steps.
 fn small() -> Params {
     Params {
-        keys: line::Keys::small(),
+        keys: LineKeys::small(),
         angle_multiplied: 4,
         root_fraction: 4,
         exponent_bits: 10,
