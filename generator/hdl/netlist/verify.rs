@@ -60,7 +60,7 @@ impl Design {
                 Driver::Undriven | Driver::Input | Driver::Constant(_) => {}
             }
         }
-        // What is no net has no place of its own in the description.
+        // What is no net has no location of its own in the description.
         let Some(first) = self.nets.first().map(|net| net.location) else { return };
         let registers = self.registers.iter();
         let of_registers = registers.flat_map(|it| [Some(it.q), it.data, it.enable]).flatten();
