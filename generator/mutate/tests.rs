@@ -17,7 +17,7 @@ use crate::registry::Registry;
 
 /// One in this number of faults is planted, fewer in a run of the quick tests alone: not a multiple of three, as for each
 /// bit there are three.
-const EVERY: usize = if cfg!(feature = "outside-tools") { 29 } else { 101 };
+const EVERY: usize = if cfg!(feature = "outside-tools") { 29 } else { 211 };
 
 /// Points in which most faults show.
 const POINTS: u64 = 200;

@@ -13,7 +13,7 @@ use super::tools::{LIMIT, tool};
 
 /// A built bench beside its memories, which it reads when it starts.
 pub struct Bench {
-    place: TempDir,
+    dir: TempDir,
     simulator: Simulator,
 }
 
@@ -39,8 +39,8 @@ impl Bench {
     }
 
     fn build_with(simulator: Simulator, files: &Files, top: &str) -> (Self, String) {
-        let place = tempfile::tempdir().expect("a directory");
-        write(place.path(), files);
+        let dir = tempfile::tempdir().expect("a directory");
+        write(dir.path(), files);
         let sources =
             files.iter().map(|(name, _)| name.as_str()).filter(|name| name.ends_with(".v"));
         let (compiler, arguments) = match simulator {
@@ -52,9 +52,9 @@ impl Bench {
         };
         let arguments = arguments.split(' ').chain([top]).chain(sources);
         let output = tool(compiler)
-            .run_to_success(arguments, place.path(), LIMIT)
+            .run_to_success(arguments, dir.path(), LIMIT)
             .unwrap_or_else(|error| panic!("{top}: {error:#}"));
-        (Self { place, simulator }, output)
+        (Self { dir, simulator }, output)
     }
 
     /// Replaces a memory.
@@ -62,7 +62,7 @@ impl Bench {
     /// # Panics
     /// It cannot be written.
     pub fn replace(&self, name: &str, contents: &str) {
-        fs::write(self.place.path().join(name), contents).expect("a memory");
+        fs::write(self.dir.path().join(name), contents).expect("a memory");
     }
 
     /// Runs the bench.
@@ -70,7 +70,7 @@ impl Bench {
     /// # Panics
     /// It does not start or does not end.
     pub fn run(&self) -> Run {
-        let directory = self.place.path();
+        let directory = self.dir.path();
         let run = match self.simulator {
             // -n: a $stop ends the run instead of asking the terminal.
             Simulator::Icarus => tool("vvp").run(["-n", "bench.vvp"], directory, LIMIT),

@@ -187,24 +187,24 @@ impl Emitted {
 
     /// All files in a directory, each where it would be written.
     pub fn tree(&self) -> TempDir {
-        let place = tempfile::tempdir().expect("a directory");
+        let dir = tempfile::tempdir().expect("a directory");
         for file in &self.files {
-            let path = place.path().join(&file.path);
+            let path = dir.path().join(&file.path);
             fs::create_dir_all(path.parent().expect("a directory")).expect("a directory");
             fs::write(path, &file.contents).expect("written");
         }
-        place
+        dir
     }
 
     /// The files of which the path begins so, beside each other in a directory. A form of a file for one target has the
     /// name of the portable one, and is left out.
     pub fn beside(&self, start: &str) -> TempDir {
-        let place = tempfile::tempdir().expect("a directory");
+        let dir = tempfile::tempdir().expect("a directory");
         let files = self.files.iter().filter(|file| file.path.starts_with(start));
         for file in files.filter(|file| !file.path.contains("/ecp5/")) {
-            fs::write(place.path().join(file.name()), &file.contents).expect("written");
+            fs::write(dir.path().join(file.name()), &file.contents).expect("written");
         }
-        place
+        dir
     }
 
     fn below(&self, directory: &str) -> Files {

@@ -22,8 +22,8 @@ pub const LIMIT: Duration = Duration::from_secs(1200);
 pub fn tool(name: &str) -> Tool {
     let venv = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/tools/venv/bin");
     let path = env::var_os("PATH").unwrap_or_default();
-    let places = std::iter::once(venv).chain(env::split_paths(&path));
-    let search: OsString = env::join_paths(places).expect("a search path");
+    let dirs = std::iter::once(venv).chain(env::split_paths(&path));
+    let search: OsString = env::join_paths(dirs).expect("a search path");
     Tool::find_in(name, &search).unwrap_or_else(|error| panic!("{error:#}"))
 }
 

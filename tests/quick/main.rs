@@ -37,4 +37,4 @@ mod streams;
 mod tune;
 mod worst;
 
-use cli::{place, refusals};
+use cli::{refusals, workspace};

@@ -173,8 +173,8 @@ fn area_and_speed() {
 fn pipeline(name: &str, clock: Option<&str>) -> Pipeline {
     let text = read(&format!("configs/{name}_pipelined.toml"));
     let line = text.lines().find(|line| line.starts_with("clock_mhz")).expect("a clock");
-    let place = tempfile::tempdir().expect("a directory");
-    let path = place.path().join(format!("{name}.toml"));
+    let dir = tempfile::tempdir().expect("a directory");
+    let path = dir.path().join(format!("{name}.toml"));
     fs::write(&path, text.replace(line, clock.unwrap_or(line))).expect("written");
     configuration(path.to_str().expect("a path")).design.pipeline.expect("a pipeline")
 }

@@ -72,8 +72,8 @@ fn what_differs_can_be_had_again_with_its_waveform() {
     let core = core("rough");
     let wrong = rarely_wrong(&core);
     let found = run(&core, &wrong, POINTS, 2).mismatch.expect("it differs");
-    let place = tempfile::tempdir().expect("a directory");
-    let path = place.path().join("window.vcd");
+    let dir = tempfile::tempdir().expect("a directory");
+    let path = dir.path().join("window.vcd");
     let file = File::create(&path).expect("a file");
     let from = found.clock.saturating_sub(10);
     let again =

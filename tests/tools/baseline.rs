@@ -143,10 +143,10 @@ fn its_sine_table_is_the_sine() {
 
 #[test]
 fn it_is_clean() {
-    let place = tempfile::tempdir().unwrap();
+    let dir = tempfile::tempdir().unwrap();
     for name in ["rough_hand.v", "rough_hand_sine.mem"] {
         let (name, text) = baseline(name);
-        fs::write(place.path().join(name), text).unwrap();
+        fs::write(dir.path().join(name), text).unwrap();
     }
-    tools::assert_lint_clean(place.path(), "rough_hand");
+    tools::assert_lint_clean(dir.path(), "rough_hand");
 }

@@ -91,8 +91,8 @@ fn true_vectors_pass_and_every_wrong_output_fails_in_both_simulators() {
             wrong.expected[clock][at.unwrap_or_default()] ^= 1;
             let outcome = run(simulator, wrong);
             assert!(!outcome.passed, "{simulator}, {output}:\n{}", outcome.transcript);
-            let place = format!("clock {clock}, microinstruction {executed}: {output} is ");
-            assert!(outcome.transcript.contains(&place), "{place}\n{}", outcome.transcript);
+            let dir = format!("clock {clock}, microinstruction {executed}: {output} is ");
+            assert!(outcome.transcript.contains(&dir), "{dir}\n{}", outcome.transcript);
             assert!(outcome.transcript.contains("FAIL squarer: 1 differences in 6 clocks"));
         }
     }

@@ -50,9 +50,9 @@ fn stated(name: &str, keys: &str) -> Vec<Statement> {
 
 fn accepted(script: &str) -> bool {
     let gappa = Tool::find("gappa").unwrap_or_else(|error| panic!("{error}"));
-    let place = tempfile::tempdir().expect("a directory");
-    std::fs::write(place.path().join("statement.g"), script).expect("a script");
-    let run = gappa.run(["statement.g"], place.path(), LIMIT);
+    let dir = tempfile::tempdir().expect("a directory");
+    std::fs::write(dir.path().join("statement.g"), script).expect("a script");
+    let run = gappa.run(["statement.g"], dir.path(), LIMIT);
     run.is_ok_and(|run| run.status.success() && !run.output.contains("trivially equal"))
 }
 
@@ -138,14 +138,14 @@ fn a_bound_is_found_where_none_is_stated() {
 /// By its own command line, as its author uses it.
 #[test]
 fn the_bound_of_a_device_of_a_user_is_printed() {
-    let place = tempfile::tempdir().expect("a directory");
-    std::fs::write(place.path().join("s.toml"), "device = \"smoothstep\"\n").expect("a file");
+    let dir = tempfile::tempdir().expect("a directory");
+    std::fs::write(dir.path().join("s.toml"), "device = \"smoothstep\"\n").expect("a file");
     let mut cargo = Command::new(env!("CARGO"));
     cargo.args(["run", "--quiet", "--features", "outside-tools", "--example", "smoothstep"]);
     if !cfg!(debug_assertions) {
         cargo.arg("--release");
     }
-    let file = place.path().join("s.toml");
+    let file = dir.path().join("s.toml");
     let output = cargo.args(["--", "certify"]).arg(&file).output().expect("the example runs");
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{output:?}");
@@ -308,9 +308,9 @@ fn committed_certificates_are_those_of_today_and_proved() {
         all.into_par_iter().for_each(|(certificate, statement)| {
             let Statement { output, number, scripts, .. } = statement;
             let (_, script) = certificate.split_once("\n\n").expect("a head and a script");
-            let place = format!("{name}: {output}, statement {number}");
-            assert!(scripts.iter().any(|it| it == script), "{place} is of another time");
-            assert!(accepted(&certificate), "{place} is not proved");
+            let dir = format!("{name}: {output}, statement {number}");
+            assert!(scripts.iter().any(|it| it == script), "{dir} is of another time");
+            assert!(accepted(&certificate), "{dir} is not proved");
         });
     }
 }

@@ -54,8 +54,8 @@ fn a_bench_of_a_line_with_buffers_passes() {
 }
 
 fn assert_passes(what: &str, core: &Core) {
-    let place = place(core);
-    let run = run(place.path(), &core.config.name);
+    let dir = dir(core);
+    let run = run(dir.path(), &core.config.name);
     let passed = |test: &&str| run.output.contains(&format!("{test} passed"));
     let tests = tests(core);
     let says = format!("PASS {}: {} tests, 0 failed", core.config.name, tests.len());
@@ -72,9 +72,9 @@ fn every_test_notices_a_fault() {
         let parts: Vec<&str> = fault.of.split(' ').collect();
         let [name, file, test] = parts[..] else { panic!("{}", fault.of) };
         let core = configuration(&format!("configs/{name}.toml"));
-        let place = place(&core);
-        fault.plant(&place.path().join(format!("rtl_out/{name}/{name}{file}")));
-        assert_noticed(place.path(), &core, test, &format!("`{}` in {file}", fault.wrong));
+        let dir = dir(&core);
+        fault.plant(&dir.path().join(format!("rtl_out/{name}/{name}{file}")));
+        assert_noticed(dir.path(), &core, test, &format!("`{}` in {file}", fault.wrong));
     });
 }
 
@@ -108,31 +108,31 @@ fn wrong_order_of_words_is_noticed() {
 
 fn memory_is_noticed(name: &str, rom: &str, wrong: impl Fn(&str) -> String) {
     let core = configuration(&format!("configs/{name}.toml"));
-    let place = place(&core);
+    let dir = dir(&core);
     let file = format!("rtl_out/{name}/{name}_{rom}.mem");
-    let text = fs::read_to_string(place.path().join(&file)).expect("a memory");
-    fs::write(place.path().join(&file), wrong(&text)).expect("written");
-    assert_noticed(place.path(), &core, "computations_are_exact", &file);
+    let text = fs::read_to_string(dir.path().join(&file)).expect("a memory");
+    fs::write(dir.path().join(&file), wrong(&text)).expect("written");
+    assert_noticed(dir.path(), &core, "computations_are_exact", &file);
 }
 
 /// The files of a configuration where the bench expects them.
-fn place(core: &Core) -> tempfile::TempDir {
+fn dir(core: &Core) -> tempfile::TempDir {
     let mut emitted = Emitted::new(core, 1, 1);
     emitted.files.push(package::driver());
     emitted.tree()
 }
 
 /// Runs the command that the head of the bench gives.
-fn run(place: &Path, name: &str) -> Run {
+fn run(dir: &Path, name: &str) -> Run {
     let bench = format!("testbench/{name}/test_{name}.py");
-    let text = fs::read_to_string(place.join(&bench)).expect("a bench");
+    let text = fs::read_to_string(dir.join(&bench)).expect("a bench");
     assert!(text.contains(&format!("    $ python {bench}\n")), "{text}");
-    tool("python").run([bench], place, LIMIT).unwrap_or_else(|error| panic!("{error:#}"))
+    tool("python").run([bench], dir, LIMIT).unwrap_or_else(|error| panic!("{error:#}"))
 }
 
-fn assert_noticed(place: &Path, core: &Core, test: &str, what: &str) {
+fn assert_noticed(dir: &Path, core: &Core, test: &str, what: &str) {
     let (name, count) = (&core.config.name, tests(core).len());
-    let run = run(place, name);
+    let run = run(dir, name);
     let says = |word: &str| run.output.lines().any(|line| line.starts_with(word));
     assert!(
         !run.status.success()

@@ -53,27 +53,27 @@ fn bad_verilog_is_quoted() {
 
 #[test]
 fn lint_tells_clean_from_dubious() {
-    let place = tempfile::tempdir().unwrap();
-    let write = |text: &str| fs::write(place.path().join("counter.v"), text).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let write = |text: &str| fs::write(dir.path().join("counter.v"), text).unwrap();
     write(COUNTER);
-    tools::assert_lint_clean(place.path(), "counter");
+    tools::assert_lint_clean(dir.path(), "counter");
     write(&COUNTER.replace("4'd1", "5'd1"));
-    let lint = || tools::assert_lint_clean(place.path(), "counter");
+    let lint = || tools::assert_lint_clean(dir.path(), "counter");
     assert!(std::panic::catch_unwind(lint).is_err(), "a width mismatch went through");
 }
 
 #[test]
 fn yosys_synthesises_and_refuses_latches() {
-    let place = tempfile::tempdir().unwrap();
-    let write = |text: &str| fs::write(place.path().join("counter.v"), text).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    let write = |text: &str| fs::write(dir.path().join("counter.v"), text).unwrap();
     write(COUNTER);
-    let protocol = tools::yosys(place.path(), "read_verilog counter.v; synth_ice40 -top counter");
+    let protocol = tools::yosys(dir.path(), "read_verilog counter.v; synth_ice40 -top counter");
     assert!(protocol.contains("SB_DFF"), "{protocol}");
     let latch =
         COUNTER.replace("posedge clk", "*").replace("else        count <= count + 4'd1;", "");
     write(&latch);
     let commands = "read_verilog counter.v; proc; select -assert-none t:$dlatch";
-    let check = || tools::yosys(place.path(), commands);
+    let check = || tools::yosys(dir.path(), commands);
     let panic = std::panic::catch_unwind(check).expect_err("a latch went through");
     let text = panic.downcast_ref::<String>().expect("a message");
     assert!(text.contains("t:$dlatch") && text.contains("count"), "{text}");

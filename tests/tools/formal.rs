@@ -19,8 +19,8 @@ use rayon::prelude::*;
 #[test]
 fn every_configuration_is_proved() {
     all_configurations().par_iter().for_each(|(path, core)| {
-        let (place, name) = emitted(core);
-        prove(place.path(), &name, LIMIT).unwrap_or_else(|error| panic!("{path}: {error:#}"));
+        let (dir, name) = emitted(core);
+        prove(dir.path(), &name, LIMIT).unwrap_or_else(|error| panic!("{path}: {error:#}"));
     });
 }
 
@@ -30,16 +30,16 @@ fn pipelines_with_and_without_stalls_and_a_side_channel_are_proved() {
         ["side = 8", "stall = \"none\"", "stall = \"none\"\nside = 3", "stages = 1\nside = 2"]
     {
         let core = pipeline(more);
-        let (place, name) = emitted(&core);
-        prove(place.path(), &name, LIMIT).unwrap_or_else(|error| panic!("{more}: {error:#}"));
+        let (dir, name) = emitted(&core);
+        prove(dir.path(), &name, LIMIT).unwrap_or_else(|error| panic!("{more}: {error:#}"));
     }
 }
 
 #[test]
 fn starts_in_the_last_clock_are_proved() {
     ["lyon", "quad-cosine"].par_iter().for_each(|device| {
-        let (place, name) = emitted(&buffered(device));
-        prove(place.path(), &name, LIMIT).unwrap_or_else(|error| panic!("{device}: {error:#}"));
+        let (dir, name) = emitted(&buffered(device));
+        prove(dir.path(), &name, LIMIT).unwrap_or_else(|error| panic!("{device}: {error:#}"));
     });
     let core = buffered("quad-cosine");
     faults("buffered").par_iter().for_each(|fault| assert_breaks(&core, fault));
@@ -77,8 +77,8 @@ fn faults_break_the_proof() {
 }
 
 fn assert_breaks(core: &Core, fault: &Fault) {
-    let (place, name) = emitted(core);
-    fault.assert_breaks(place.path(), &name, &format!("{name}{}", fault.of));
+    let (dir, name) = emitted(core);
+    fault.assert_breaks(dir.path(), &name, &format!("{name}{}", fault.of));
 }
 
 /// The lowest bit of a control word lets the program go on; the one above it is `valid` in `rough`.
@@ -88,11 +88,11 @@ fn a_wrong_bit_of_sequencing_breaks_the_proof() {
     bits.par_iter().for_each(|&(config, bit)| {
         let core = configuration(&format!("configs/{config}.toml"));
         (0..core.design.control.microprogram.len()).into_par_iter().for_each(|word| {
-            let (place, name) = emitted(&core);
-            let path = place.path().join(format!("{name}_control.mem"));
+            let (dir, name) = emitted(&core);
+            let path = dir.path().join(format!("{name}_control.mem"));
             let text = fs::read_to_string(&path).expect("a file");
             fs::write(&path, with_flipped_bit(&text, word, bit)).expect("written");
-            let proof = prove(place.path(), &name, LIMIT);
+            let proof = prove(dir.path(), &name, LIMIT);
             assert!(proof.is_err(), "{name}: word {word} without bit {bit}");
         });
     });
@@ -104,18 +104,18 @@ fn a_wrong_bit_of_sequencing_breaks_the_proof() {
 fn a_domain_narrower_than_its_port_is_proved() {
     let text = "device = \"lyon\"\n[domain]\nexponent_min = 100\nexponent_max = 150\n";
     let core = parsed("test.toml", text);
-    let (place, name) = emitted(&core);
-    prove(place.path(), &name, PROOF_LIMITS).unwrap_or_else(|error| panic!("{error:#}"));
+    let (dir, name) = emitted(&core);
+    prove(dir.path(), &name, PROOF_LIMITS).unwrap_or_else(|error| panic!("{error:#}"));
 }
 
 #[test]
 fn a_proof_that_takes_too_much_says_so() {
-    let (place, name) = emitted(&configuration("configs/rough.toml"));
+    let (dir, name) = emitted(&configuration("configs/rough.toml"));
     let time = Limits { time: Duration::from_millis(50), memory: None };
     // Enough for Yosys and Python, not for the solver.
     let memory = Limits { time: LIMIT, memory: Some(40 << 20) };
     for limits in [time, memory] {
-        let error = prove(place.path(), &name, limits).expect_err("a limit");
+        let error = prove(dir.path(), &name, limits).expect_err("a limit");
         assert!(error.downcast_ref::<LimitReached>().is_some(), "{limits:?}: {error:#}");
     }
 }

@@ -84,9 +84,9 @@ fn agrees_within_its_bound(toml: &str, core: &Core) {
 fn passes_outside(toml: &str, core: &Core, seed: u64) {
     let check = || {
         let emitted = Emitted::new(core, BENCH_POINTS, seed);
-        let place = tempfile::tempdir().expect("a directory");
-        write(place.path(), &emitted.rtl());
-        assert_lint_clean(place.path(), &emitted.name);
+        let dir = tempfile::tempdir().expect("a directory");
+        write(dir.path(), &emitted.rtl());
+        assert_lint_clean(dir.path(), &emitted.name);
         assert_bench_passes(Simulator::Icarus, &emitted.simulated(), &emitted.bench());
     };
     if let Err(panic) = catch_unwind(AssertUnwindSafe(check)) {

@@ -22,22 +22,22 @@ fn configurations() -> Vec<PathBuf> {
 
 /// A directory with the schema, by `glint schema`.
 fn with_schema() -> tempfile::TempDir {
-    let place = tempfile::tempdir().expect("a directory");
+    let dir = tempfile::tempdir().expect("a directory");
     let glint = Command::new(env!("CARGO_BIN_EXE_glint")).arg("schema").output().expect("glint");
     assert!(glint.status.success() && glint.stderr.is_empty(), "{glint:?}");
-    fs::write(place.path().join("schema.json"), glint.stdout).expect("written");
-    place
+    fs::write(dir.path().join("schema.json"), glint.stdout).expect("written");
+    dir
 }
 
 /// What each validator says of some files: whether they are valid.
-fn verdicts(place: &Path, files: &[PathBuf]) -> [(bool, String); 2] {
+fn verdicts(dir: &Path, files: &[PathBuf]) -> [(bool, String); 2] {
     let files = || files.iter().map(|file| file.display().to_string());
     let options = |all: &[&str]| all.iter().map(|&it| it.to_owned()).collect::<Vec<_>>();
-    let schema = format!("file://{}", place.join("schema.json").display());
+    let schema = format!("file://{}", dir.join("schema.json").display());
     let check = options(&["--schemafile", "schema.json", "--default-filetype", "toml"]);
     let taplo = options(&["lint", "--no-auto-config", "--schema", &schema]);
     [("check-jsonschema", check), ("taplo", taplo)].map(|(name, arguments)| {
-        let run = tool(name).run(arguments.into_iter().chain(files()), place, LIMIT);
+        let run = tool(name).run(arguments.into_iter().chain(files()), dir, LIMIT);
         let run = run.unwrap_or_else(|error| panic!("{name}: {error:#}"));
         (run.status.success(), run.output)
     })
@@ -45,15 +45,15 @@ fn verdicts(place: &Path, files: &[PathBuf]) -> [(bool, String); 2] {
 
 #[test]
 fn every_configuration_is_valid() {
-    let place = with_schema();
-    for (valid, output) in verdicts(place.path(), &configurations()) {
+    let dir = with_schema();
+    for (valid, output) in verdicts(dir.path(), &configurations()) {
         assert!(valid, "{output}");
     }
 }
 
 #[test]
 fn mistakes_are_found() {
-    let place = with_schema();
+    let dir = with_schema();
     let mistakes = [
         "device = \"cosine-powr\"\n",
         "device = \"cosine-power\"\npower = 3\n",
@@ -66,9 +66,9 @@ fn mistakes_are_found() {
         "power = 4\n",
     ];
     for (at, mistake) in mistakes.iter().enumerate() {
-        let file = place.path().join(format!("mistake_{at}.toml"));
+        let file = dir.path().join(format!("mistake_{at}.toml"));
         fs::write(&file, mistake).expect("written");
-        for (valid, output) in verdicts(place.path(), &[file]) {
+        for (valid, output) in verdicts(dir.path(), &[file]) {
             assert!(!valid, "{mistake} is valid: {output}");
         }
     }

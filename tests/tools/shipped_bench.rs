@@ -17,8 +17,8 @@ use glint::tools::{Simulator, run_bench};
 fn shipped(core: &str) -> Files {
     let mut files = Files::new();
     for directory in ["rtl_out", "testbench"] {
-        let place = Path::new(directory).join(core);
-        let entries = fs::read_dir(&place).unwrap_or_else(|error| panic!("{place:?}: {error}"));
+        let dir = Path::new(directory).join(core);
+        let entries = fs::read_dir(&dir).unwrap_or_else(|error| panic!("{dir:?}: {error}"));
         for entry in entries {
             let path = entry.expect("an entry").path();
             let is_read = path.extension().is_some_and(|it| it == "v" || it == "mem");

@@ -28,33 +28,33 @@ fn run(command: &mut Command) -> String {
 }
 
 /// The configuration, written into a directory.
-fn config(place: &Path) -> String {
-    let path = place.join("core.toml");
-    fs::create_dir_all(place).expect("a directory");
+fn config(dir: &Path) -> String {
+    let path = dir.join("core.toml");
+    fs::create_dir_all(dir).expect("a directory");
     fs::write(&path, CONFIG).expect("a configuration");
     path.to_str().expect("a plain name").to_owned()
 }
 
-fn submit(place: &Path) -> Command {
+fn submit(dir: &Path) -> Command {
     let mut command = Command::new("bash");
     command.args([
         "tools/slurm/submit",
         "exhaustive",
-        &config(place),
+        &config(dir),
         "-g",
         env!("CARGO_BIN_EXE_glint"),
         "-n",
     ]);
-    command.arg(PARTS.to_string()).arg("-o").arg(place);
+    command.arg(PARTS.to_string()).arg("-o").arg(dir);
     command
 }
 
 /// The record of one process, without an engine.
-fn whole(place: &Path) -> String {
+fn whole(dir: &Path) -> String {
     run(Command::new(env!("CARGO_BIN_EXE_glint")).args([
         "--quiet",
         "cosim",
-        &config(place),
+        &config(dir),
         "--exhaustive",
         "--json",
     ]))
@@ -64,9 +64,9 @@ fn whole(place: &Path) -> String {
 struct Loopback(PathBuf);
 
 impl Loopback {
-    fn start(place: PathBuf) -> Self {
-        run(Command::new("bash").args(["tools/slurm/loopback", "start"]).arg(&place));
-        Self(place)
+    fn start(dir: PathBuf) -> Self {
+        run(Command::new("bash").args(["tools/slurm/loopback", "start"]).arg(&dir));
+        Self(dir)
     }
 
     fn command(&self, name: &str) -> Command {
@@ -97,9 +97,9 @@ fn wait(what: &str, mut done: impl FnMut() -> bool) {
 
 #[test]
 fn a_job_array_with_a_requeued_task_gives_the_record_of_one_process() {
-    let place = tempfile::tempdir().expect("a directory");
-    let slurm = Loopback::start(place.path().join("slurm"));
-    let results = place.path().join("results");
+    let dir = tempfile::tempdir().expect("a directory");
+    let slurm = Loopback::start(dir.path().join("slurm"));
+    let results = dir.path().join("results");
     let mut command = submit(&results);
     let said = run(command.env("SLURM_CONF", slurm.0.join("slurm.conf")));
     let array = said.split("job array ").nth(1).and_then(|rest| rest.split(',').next());
@@ -118,18 +118,16 @@ fn a_job_array_with_a_requeued_task_gives_the_record_of_one_process() {
 
 #[test]
 fn gnu_parallel_gives_the_record_of_one_process() {
-    let place = tempfile::tempdir().expect("a directory");
-    run(submit(place.path()).args(["-j", "2"]));
-    let merged = || fs::read_to_string(place.path().join("merged.json")).expect("a record");
-    assert_eq!(merged(), whole(place.path()));
+    let dir = tempfile::tempdir().expect("a directory");
+    run(submit(dir.path()).args(["-j", "2"]));
+    let merged = || fs::read_to_string(dir.path().join("merged.json")).expect("a record");
+    assert_eq!(merged(), whole(dir.path()));
     // Submitted again, nothing is left to do.
-    let before = fs::metadata(place.path().join("part-1.json"))
-        .and_then(|it| it.modified())
-        .expect("a part");
-    run(submit(place.path()).args(["-j", "2"]));
-    let after = fs::metadata(place.path().join("part-1.json"))
-        .and_then(|it| it.modified())
-        .expect("a part");
+    let before =
+        fs::metadata(dir.path().join("part-1.json")).and_then(|it| it.modified()).expect("a part");
+    run(submit(dir.path()).args(["-j", "2"]));
+    let after =
+        fs::metadata(dir.path().join("part-1.json")).and_then(|it| it.modified()).expect("a part");
     assert_eq!(before, after);
 }
 
@@ -145,15 +143,15 @@ fn mistakes_are_told() {
         let text = String::from_utf8_lossy(&output.stderr);
         assert!(!output.status.success() && text.contains(complaint), "{text}");
     };
-    let place = tempfile::tempdir().expect("a directory");
-    let core = config(place.path());
+    let dir = tempfile::tempdir().expect("a directory");
+    let core = config(dir.path());
     let core = core.as_str();
-    let place = place.path().to_str().expect("a plain name");
+    let dir = dir.path().to_str().expect("a plain name");
     let glint = env!("CARGO_BIN_EXE_glint");
     refused(&["exhaustive", core], "-o DIR says where results go");
-    refused(&["exhaustive", "-o", place, "-g", glint], "no configuration");
-    refused(&["exhaustive", "-o", place, "-g", glint, "none.toml"], "there is no none.toml");
-    refused(&["exhaustive", "-o", place, "-g", "no-such-program", core], "there is no program");
-    refused(&["exhaustive", "-o", place, "-g", glint, "-n", "0", core], "0 is no number of parts");
-    refused(&["polish", "-o", place, "-g", glint, core], "there is no polish");
+    refused(&["exhaustive", "-o", dir, "-g", glint], "no configuration");
+    refused(&["exhaustive", "-o", dir, "-g", glint, "none.toml"], "there is no none.toml");
+    refused(&["exhaustive", "-o", dir, "-g", "no-such-program", core], "there is no program");
+    refused(&["exhaustive", "-o", dir, "-g", glint, "-n", "0", core], "0 is no number of parts");
+    refused(&["polish", "-o", dir, "-g", glint, core], "there is no polish");
 }

@@ -18,10 +18,10 @@ const RUN_LIMIT: Duration = Duration::from_secs(900);
 #[test]
 fn a_processor_renders_through_its_cores() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let place = tempfile::tempdir().expect("a directory");
+    let dir = tempfile::tempdir().expect("a directory");
     let glint = format!("GLINT={}", env!("CARGO_BIN_EXE_glint"));
     let script = root.join("examples/soc/run");
-    let arguments = [glint.as_ref(), script.as_os_str(), place.path().as_os_str()];
+    let arguments = [glint.as_ref(), script.as_os_str(), dir.path().as_os_str()];
     let output = tool("env")
         .run_to_success(arguments, root, RUN_LIMIT)
         .unwrap_or_else(|error| panic!("{error:#}"));
@@ -59,12 +59,12 @@ fn faults_of_the_span_engine_break_its_proof() {
 /// Proves the engine for so many words of operands a pixel, with what is made of its Verilog.
 fn proof(words: u32, change: impl Fn(String) -> String) -> Result<()> {
     let soc = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/soc");
-    let place = tempfile::tempdir()?;
+    let dir = tempfile::tempdir()?;
     let read = |name: &str| fs::read_to_string(soc.join(name)).expect("a file");
     let problem = read("span_formal.sv")
         .replace("parameter WORDS = 1", &format!("parameter WORDS = {words}"));
-    fs::write(place.path().join("span_formal.sv"), problem)?;
-    fs::write(place.path().join("span_formal.ys"), read("span_formal.ys"))?;
-    fs::write(place.path().join("span.v"), change(read("span.v")))?;
-    prove(place.path(), "span", LIMIT)
+    fs::write(dir.path().join("span_formal.sv"), problem)?;
+    fs::write(dir.path().join("span_formal.ys"), read("span_formal.ys"))?;
+    fs::write(dir.path().join("span.v"), change(read("span.v")))?;
+    prove(dir.path(), "span", LIMIT)
 }

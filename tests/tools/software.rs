@@ -82,7 +82,7 @@ fn the_model_is_the_golden_model_at_every_combination() {
 #[test]
 fn a_faulty_model_is_noticed() {
     let model = Model::new("configs/reduced/cosine_power.toml");
-    let path = model.place.path().join("cosine_power_reduced_model.c");
+    let path = model.dir.path().join("cosine_power_reduced_model.c");
     let text = fs::read_to_string(&path).expect("the model");
     let wrong = text.replacen("results.red_out = ", "results.red_out = 1u ^ ", 1);
     assert_ne!(text, wrong);
@@ -111,12 +111,12 @@ fn values_become_operands_as_formats_say() {
         writeln!(expected, "{}", operand.format.min_raw()).expect("text");
     }
     text += "return 0; }\n";
-    let place = model.place.path();
-    fs::write(place.join("conversions.c"), text).expect("written");
-    let _ = fs::remove_file(place.join("conversions"));
+    let dir = model.dir.path();
+    fs::write(dir.join("conversions.c"), text).expect("written");
+    let _ = fs::remove_file(dir.join("conversions"));
     let compile = ["-std=c99", "-Wall", "-Wextra", "-Werror", "-o", "conversions", "conversions.c"];
-    tool("cc").run_to_success(compile, place, LIMIT).unwrap_or_else(|error| panic!("{error:#}"));
-    let printed = run_program(&place.join("conversions"), place);
+    tool("cc").run_to_success(compile, dir, LIMIT).unwrap_or_else(|error| panic!("{error:#}"));
+    let printed = run_program(&dir.join("conversions"), dir);
     assert_eq!(printed, expected);
 }
 
@@ -124,15 +124,15 @@ fn values_become_operands_as_formats_say() {
 fn the_example_in_python_computes_the_manifests_example() {
     ["quad_cosine", "rough"].par_iter().for_each(|name| {
         let model = Model::new(&format!("configs/{name}.toml"));
-        let place = model.place.path();
-        let text = fs::read_to_string(place.join(format!("{name}_model.py"))).expect("the example");
+        let dir = model.dir.path();
+        let text = fs::read_to_string(dir.join(format!("{name}_model.py"))).expect("the example");
         let library = format!("{name}_model.so");
         let source = format!("{name}_model.c");
         let compile = ["-std=c99", "-O2", "-shared", "-fPIC", "-o", &library, &source];
         assert!(text.contains(&format!("$ cc {}\n", compile.join(" "))), "{text}");
-        let compiled = tool("cc").run_to_success(compile, place, LIMIT);
+        let compiled = tool("cc").run_to_success(compile, dir, LIMIT);
         compiled.unwrap_or_else(|error| panic!("{error:#}"));
-        let printed = tool("python").run_to_success([format!("{name}_model.py")], place, LIMIT);
+        let printed = tool("python").run_to_success([format!("{name}_model.py")], dir, LIMIT);
         let printed = printed.unwrap_or_else(|error| panic!("{error:#}"));
         let example = model.core.example().expect("an example");
         let first: Vec<String> = example.outputs.iter().map(|it| it.raw.to_string()).collect();
@@ -143,14 +143,14 @@ fn the_example_in_python_computes_the_manifests_example() {
 /// A configuration with its model in C in a directory.
 struct Model {
     core: Core,
-    place: tempfile::TempDir,
+    dir: tempfile::TempDir,
 }
 
 impl Model {
     fn new(config: &str) -> Self {
         let core = configuration_with(config, SOFTWARE);
-        let place = Emitted::new(&core, 1, 1).beside("software/");
-        Self { core, place }
+        let dir = Emitted::new(&core, 1, 1).beside("software/");
+        Self { core, dir }
     }
 
     fn is_line(&self) -> bool {
@@ -188,23 +188,23 @@ impl Model {
 
     /// Makes the program that [`Model::run`] runs.
     fn compile(&self) {
-        let (name, place) = (&self.core.config.name, self.place.path());
-        fs::write(place.join("driver.c"), self.driver()).expect("written");
+        let (name, dir) = (&self.core.config.name, self.dir.path());
+        fs::write(dir.join("driver.c"), self.driver()).expect("written");
         let model = format!("{name}_model.c");
         let arguments = FLAGS.split(' ').chain(["-fno-sanitize-recover=all", "-o", "driver"]);
         let arguments: Vec<&str> = arguments.chain(["driver.c", &model]).collect();
-        let compiled = tool("cc").run_to_success(&arguments, place, LIMIT);
+        let compiled = tool("cc").run_to_success(&arguments, dir, LIMIT);
         let compiled = compiled.unwrap_or_else(|error| panic!("{error:#}"));
         assert_eq!(compiled, "", "{name}: words of the compiler");
     }
 
     /// What the model in C says.
     fn run(&self, operands: &[Vec<i64>]) -> Vec<i64> {
-        let place = self.place.path();
+        let dir = self.dir.path();
         let bytes: Vec<u8> = operands.iter().flatten().flat_map(|raw| raw.to_le_bytes()).collect();
-        fs::write(place.join("operands"), bytes).expect("written");
-        run_program(&place.join("driver"), place);
-        let bytes = fs::read(place.join("results")).expect("results");
+        fs::write(dir.join("operands"), bytes).expect("written");
+        run_program(&dir.join("driver"), dir);
+        let bytes = fs::read(dir.join("results")).expect("results");
         let raw = |bytes: &[u8]| i64::from_le_bytes(bytes.try_into().expect("eight bytes"));
         bytes.chunks_exact(8).map(raw).collect()
     }
@@ -248,9 +248,9 @@ impl Model {
     }
 }
 
-fn run_program(program: &Path, place: &Path) -> String {
+fn run_program(program: &Path, dir: &Path) -> String {
     let program = program.to_str().expect("a path").to_owned();
-    let printed = tool("env").run_to_success([program], place, LIMIT);
+    let printed = tool("env").run_to_success([program], dir, LIMIT);
     printed.unwrap_or_else(|error| panic!("{error:#}"))
 }
 

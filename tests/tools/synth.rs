@@ -25,8 +25,8 @@ const RUNS: usize = 1;
 fn flow(target: Target) -> Flow {
     let venv = Path::new(env!("CARGO_MANIFEST_DIR")).join("target/tools/venv/bin");
     let path = env::var_os("PATH").unwrap_or_default();
-    let places = env::split_paths(&path).chain([venv]);
-    let search: OsString = env::join_paths(places).expect("a search path");
+    let dirs = env::split_paths(&path).chain([venv]);
+    let search: OsString = env::join_paths(dirs).expect("a search path");
     let liberty = Path::new("/usr/share/qflow/tech/osu018/osu018_stdcells.lib");
     Flow::find(target, &search, liberty).unwrap_or_else(|error| panic!("{error:#}"))
 }

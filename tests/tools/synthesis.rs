@@ -37,9 +37,9 @@ fn configurations_are_synthesised_whole() {
     let pairs = configurations.iter().flat_map(|one| FAMILIES.iter().map(move |it| (one, it)));
     sampled("synthesis", pairs, PAIRS).into_par_iter().for_each(|((path, unit), family)| {
         let emitted = Emitted::new(unit, POINTS, 1);
-        let place = tempfile::tempdir().expect("a directory");
-        synthesise(place.path(), &emitted, family);
-        let netlist = fs::read_to_string(place.path().join("netlist.json")).expect("a netlist");
+        let dir = tempfile::tempdir().expect("a directory");
+        synthesise(dir.path(), &emitted, family);
+        let netlist = fs::read_to_string(dir.path().join("netlist.json")).expect("a netlist");
         let netlist = serde_json::from_str(&netlist).expect("a netlist");
         let cells = Cells::new(&netlist, &emitted.name);
         let what = format!("{path}, {}", family.command);
@@ -53,7 +53,7 @@ fn configurations_are_synthesised_whole() {
             cells.0.len()
         );
         if gates::is_simulated(family) {
-            let netlist = fs::read_to_string(place.path().join("netlist.v")).expect("a netlist");
+            let netlist = fs::read_to_string(dir.path().join("netlist.v")).expect("a netlist");
             netlist::bench(&emitted, netlist, family).assert_passes();
         }
     });
@@ -68,9 +68,9 @@ fn usage_is_that_of_the_netlist() {
         let told =
             synthesis::synthesise(&tool("yosys"), &emitted.rtl(), &emitted.name, family, LIMIT)
                 .unwrap_or_else(|error| panic!("{error:#}"));
-        let place = tempfile::tempdir().expect("a directory");
-        synthesise(place.path(), &emitted, family);
-        let netlist = fs::read_to_string(place.path().join("netlist.json")).expect("a netlist");
+        let dir = tempfile::tempdir().expect("a directory");
+        synthesise(dir.path(), &emitted, family);
+        let netlist = fs::read_to_string(dir.path().join("netlist.json")).expect("a netlist");
         let netlist = serde_json::from_str(&netlist).expect("a netlist");
         let cells = Cells::new(&netlist, &emitted.name);
         let wanted = Usage {

@@ -30,21 +30,21 @@ const COLUMNS: usize = 100;
 fn every_configuration_is_clean_verilog() {
     all_configurations().par_iter().for_each(|(path, core)| {
         let emitted = Emitted::new(core, 4, SEED);
-        let place = emitted.beside("rtl_out/");
-        assert_lint_clean(place.path(), &emitted.name);
+        let dir = emitted.beside("rtl_out/");
+        assert_lint_clean(dir.path(), &emitted.name);
         for file in &emitted.files {
-            let place = format!("{path}: {}", file.path);
-            assert!(file.contents.is_ascii(), "{place} is not ASCII");
-            assert!(file.contents.ends_with('\n'), "{place} has no last newline");
+            let dir = format!("{path}: {}", file.path);
+            assert!(file.contents.is_ascii(), "{dir} is not ASCII");
+            assert!(file.contents.ends_with('\n'), "{dir} has no last newline");
             for (at, line) in file.contents.lines().enumerate() {
-                assert!(!line.ends_with(' ') && !line.contains('\t'), "{place}:{}: blanks", at + 1);
+                assert!(!line.ends_with(' ') && !line.contains('\t'), "{dir}:{}: blanks", at + 1);
                 assert!(
                     // A FuseSoC core names a file twice in a line, and XML breaks no text.
                     line.len() <= COLUMNS
                         || [".json", ".core", ".xml"]
                             .iter()
                             .any(|ending| file.path.ends_with(ending)),
-                    "{place}:{} is longer than {COLUMNS} columns",
+                    "{dir}:{} is longer than {COLUMNS} columns",
                     at + 1
                 );
             }
@@ -52,10 +52,10 @@ fn every_configuration_is_clean_verilog() {
                 let text = &file.contents;
                 assert!(
                     text.contains("\n`default_nettype none\n"),
-                    "{place} declares nets by mistake"
+                    "{dir} declares nets by mistake"
                 );
-                assert!(text.ends_with("\n`default_nettype wire\n"), "{place} does not restore it");
-                assert!(!text.contains("lint_off"), "{place} silences a linter");
+                assert!(text.ends_with("\n`default_nettype wire\n"), "{dir} does not restore it");
+                assert!(!text.contains("lint_off"), "{dir} silences a linter");
             }
         }
     });
@@ -91,16 +91,15 @@ fn initial_values_are_known_without_a_reset() {
         let more = format!("\nname = \"core\"\n[package]\ninitial_values = {values}\n");
         let text = format!("device = \"cosine-power\"{more}");
         let emitted = Emitted::new(&parsed("core.toml", &text), 4, SEED);
-        let place = tempfile::tempdir().expect("a directory");
+        let dir = tempfile::tempdir().expect("a directory");
         let mut files = emitted.rtl();
         files.push(("bench.v".to_owned(), bench.to_owned()));
-        write(place.path(), &files);
+        write(dir.path(), &files);
         let sources = ["core_control.v", "core_datapath.v", "core.v", "bench.v"];
-        let build =
-            tool("iverilog").run(["-o", "bench"].iter().chain(&sources), place.path(), LIMIT);
+        let build = tool("iverilog").run(["-o", "bench"].iter().chain(&sources), dir.path(), LIMIT);
         let build = build.unwrap_or_else(|error| panic!("{error:#}"));
         assert!(build.status.success(), "{}", build.output);
-        let run = tool("vvp").run(["bench"], place.path(), LIMIT);
+        let run = tool("vvp").run(["bench"], dir.path(), LIMIT);
         run.unwrap_or_else(|error| panic!("{error:#}")).output
     };
     assert!(shown(true).contains("before 0 00000000\nvalid 200\n"), "{}", shown(true));

@@ -26,12 +26,12 @@ fn script(name: &str, arguments: &[&OsStr]) -> String {
 fn cores_shade_under_the_beam() {
     let signals = ["icebreaker-ball", "ulx3s-ball", "ulx3s-mesh"];
     for signal in sampled("signals of examples/video", signals, 1) {
-        let place = tempfile::tempdir().expect("a directory");
-        let output = script("run", &[place.path().as_os_str(), "2".as_ref(), signal.as_ref()]);
+        let dir = tempfile::tempdir().expect("a directory");
+        let output = script("run", &[dir.path().as_os_str(), "2".as_ref(), signal.as_ref()]);
         let frames = [1, 2].map(|frame| {
             let equal = format!("{signal}, frame {frame}: the pictures are equal, 921600 bytes");
             assert!(output.contains(&equal), "{output}");
-            let path = place.path().join(signal).join(format!("frame{frame}.ppm"));
+            let path = dir.path().join(signal).join(format!("frame{frame}.ppm"));
             std::fs::read(path).expect("a frame")
         });
         // The light of the ball moves.
@@ -39,7 +39,7 @@ fn cores_shade_under_the_beam() {
         if signal == "ulx3s-ball" {
             let shown = root().join("docs/images/video.png");
             let compare = root().join("examples/soc/compare.py");
-            let seen = place.path().join("ulx3s-ball/frame1.ppm");
+            let seen = dir.path().join("ulx3s-ball/frame1.ppm");
             tool("python3").run_to_success([compare, shown, seen], root(), LIMIT).unwrap_or_else(
                 |error| panic!("docs/images/video.png is of another time: {error:#}"),
             );
@@ -51,12 +51,11 @@ fn cores_shade_under_the_beam() {
 fn boards_keep_the_clocks() {
     let signals = [("icebreaker", "ball"), ("ulx3s", "ball"), ("ulx3s", "mesh")];
     for (board, scene) in sampled("bitstreams of examples/video", signals, 1) {
-        let place = tempfile::tempdir().expect("a directory");
-        let output =
-            script("bitstream", &[board.as_ref(), scene.as_ref(), place.path().as_os_str()]);
+        let dir = tempfile::tempdir().expect("a directory");
+        let output = script("bitstream", &[board.as_ref(), scene.as_ref(), dir.path().as_os_str()]);
         assert!(output.contains("PASS") && !output.contains("FAIL"), "{output}");
         let file = if board == "icebreaker" { "icebreaker.bin" } else { "ulx3s.bit" };
-        let path = place.path().join(format!("{board}-{scene}")).join(file);
+        let path = dir.path().join(format!("{board}-{scene}")).join(file);
         let bitstream = std::fs::metadata(path).expect("a bitstream");
         assert!(bitstream.len() > 10_000, "{} bytes", bitstream.len());
     }

@@ -3,12 +3,12 @@
 
 use serde_json::{Value, json};
 
-use crate::place::{COSINE_POWER, Place, Run};
+use crate::workspace::{COSINE_POWER, Run, Workspace};
 
 /// A comparison without synthesis.
 fn compare(arguments: &[&str]) -> Run {
-    let place = Place::with("core.toml", COSINE_POWER);
-    place.glint(["compare", "--no-synthesis"].iter().chain(arguments))
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    dir.glint(["compare", "--no-synthesis"].iter().chain(arguments))
 }
 
 #[track_caller]
@@ -84,8 +84,8 @@ fn all_of_schlick_at_20() {
 
 #[test]
 fn every_device_is_there_and_configurations_as_they_are() {
-    let place = Place::new();
-    let devices = place.glint(["list", "--json"]).json()["devices"].clone();
+    let dir = Workspace::new();
+    let devices = dir.glint(["list", "--json"]).json()["devices"].clone();
     let mut names: Vec<&str> = devices
         .as_array()
         .expect("a list")
@@ -184,8 +184,8 @@ fn figures_of_a_record_stand_beside_its_device() {
 
 #[test]
 fn comma_separated() {
-    let place = Place::with("a, \"b\".toml", format!("{COSINE_POWER}name = \"mine\"\n"));
-    let run = place.glint(["compare", "--no-synthesis", "--csv", "a, \"b\".toml"]).quiet();
+    let dir = Workspace::with("a, \"b\".toml", format!("{COSINE_POWER}name = \"mine\"\n"));
+    let run = dir.glint(["compare", "--no-synthesis", "--csv", "a, \"b\".toml"]).quiet();
     let lines: Vec<&str> = run.out.lines().collect();
     assert!(lines[0].starts_with("name,device,exponent,error_largest,error_mean,formula_largest,"));
     assert!(lines[0].ends_with(",bound_units,clocks_per_point,rom_bits,multipliers"));
@@ -218,11 +218,11 @@ fn wrong_usage() {
 /// A comparison with `PATH` leading to this `yosys` alone, if to any.
 #[cfg(unix)]
 fn with_yosys(script: Option<&str>, arguments: &[&str]) -> Run {
-    let place = Place::new();
+    let dir = Workspace::new();
     if let Some(script) = script {
-        place.script("tools/yosys", script);
+        dir.script("tools/yosys", script);
     }
-    place.with_own_tools(["compare"].iter().chain(arguments))
+    dir.with_own_tools(["compare"].iter().chain(arguments))
 }
 
 /// Writes statistics of the module that the script names.

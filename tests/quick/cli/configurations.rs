@@ -1,25 +1,24 @@
-//! Configuration files that are refused: exit code 1, the place, the remedy.
+//! Configuration files that are refused: exit code 1, the location, the remedy.
 
 use std::fs;
 
 use serde_json::json;
 
-use crate::place::{COSINE_POWER, Place, Run};
+use crate::workspace::{COSINE_POWER, Run, Workspace};
 
 #[test]
 fn files_that_cannot_be_read() {
-    let place = Place::with("core.toml", COSINE_POWER);
-    let missing = place.glint(["generate", "cores.toml"]);
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    let missing = dir.glint(["generate", "cores.toml"]);
     missing.refused(1, &["there is no such file", "--> cores.toml", "did you mean `core.toml`?"]);
-    fs::create_dir(place.at("directory.toml")).unwrap();
-    let directory = place.glint(["cosim", "directory.toml"]);
+    fs::create_dir(dir.at("directory.toml")).unwrap();
+    let directory = dir.glint(["cosim", "directory.toml"]);
     directory.refused(1, &["this is a directory", "--> directory.toml"]);
-    place.write("latin.toml", b"device = \"rough\"\n# gl\xe4nzend\n");
-    let latin = place.glint(["eval", "latin.toml"]);
+    dir.write("latin.toml", b"device = \"rough\"\n# gl\xe4nzend\n");
+    let latin = dir.glint(["eval", "latin.toml"]);
     latin.refused(1, &["the file is not UTF-8: byte 21 is 0xe4", "--> latin.toml:2:5"]);
-    place.write("empty.toml", "");
-    place
-        .glint(["generate", "empty.toml"])
+    dir.write("empty.toml", "");
+    dir.glint(["generate", "empty.toml"])
         .refused(1, &["the file is empty", "devices: quad-cosine, cosine-squared, lyon, rough"]);
 }
 
@@ -27,24 +26,24 @@ fn files_that_cannot_be_read() {
 #[cfg(unix)]
 #[test]
 fn pipes_and_devices_are_no_configurations() {
-    let place = Place::new();
-    crate::place::shell("mkfifo \"$1\"", &place.at("pipe.toml"), "".as_ref());
+    let dir = Workspace::new();
+    crate::workspace::shell("mkfifo \"$1\"", &dir.at("pipe.toml"), "".as_ref());
     for path in ["pipe.toml", "/dev/zero"] {
-        let run = place.glint(["cosim", path]);
+        let run = dir.glint(["cosim", path]);
         run.refused(1, &["this is a pipe or a device, not a file", "- for standard input"]);
     }
 }
 
 #[test]
 fn a_configuration_may_come_from_standard_input() {
-    let place = Place::with("core.toml", format!("{COSINE_POWER}name = \"piped\"\n"));
+    let dir = Workspace::with("core.toml", format!("{COSINE_POWER}name = \"piped\"\n"));
     let with = |file: &str, arguments: &[&str]| {
-        let input = fs::File::open(place.at(file)).expect("a file");
-        Run::of(place.command().args(arguments).stdin(input).output())
+        let input = fs::File::open(dir.at(file)).expect("a file");
+        Run::of(dir.command().args(arguments).stdin(input).output())
     };
     with("core.toml", &["generate", "-"]).good();
-    assert!(place.at("rtl_out/piped/piped.v").exists());
-    place.write("nameless.toml", COSINE_POWER);
+    assert!(dir.at("rtl_out/piped/piped.v").exists());
+    dir.write("nameless.toml", COSINE_POWER);
     let run = with("nameless.toml", &["generate", "-"]);
     run.refused(1, &["the module has no name", "--> standard input", "add `name = \"…\"`"]);
     let run = with("core.toml", &["generate", "-", "-"]);
@@ -55,21 +54,21 @@ fn a_configuration_may_come_from_standard_input() {
 #[test]
 fn a_file_without_permission() {
     use std::os::unix::fs::PermissionsExt;
-    let place = Place::with("core.toml", COSINE_POWER);
-    fs::set_permissions(place.at("core.toml"), PermissionsExt::from_mode(0o000)).unwrap();
-    let run = crate::refusals::unprivileged(&place, &["generate", "core.toml"]);
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    fs::set_permissions(dir.at("core.toml"), PermissionsExt::from_mode(0o000)).unwrap();
+    let run = crate::refusals::unprivileged(&dir, &["generate", "core.toml"]);
     run.refused(
         1,
         &["the file cannot be read: Permission denied", "check the path and its permissions"],
     );
 }
 
-/// Three files: two wrong in two places each, one that is missing, and a good one.
-fn wrong() -> Place {
-    let place = Place::with("a.toml", "device = \"rough\"\nclamp = 1\n[colour]\nbits = 0\n");
-    place.write("b.toml", "device = \"cosine-power\"\npower = 3\nname = \"wire\"\n");
-    place.write("good.toml", COSINE_POWER);
-    place
+/// Three files: two wrong in two lines each, one that is missing, and a good one.
+fn wrong() -> Workspace {
+    let dir = Workspace::with("a.toml", "device = \"rough\"\nclamp = 1\n[colour]\nbits = 0\n");
+    dir.write("b.toml", "device = \"cosine-power\"\npower = 3\nname = \"wire\"\n");
+    dir.write("good.toml", COSINE_POWER);
+    dir
 }
 
 const WRONG: [&str; 4] = ["a.toml", "good.toml", "b.toml", "missing.toml"];
@@ -93,7 +92,7 @@ fn all_problems_are_json_for_scripts() {
         assert_eq!((run.code, run.err.as_str()), (1, ""), "{run:?}");
         let value = run.json();
         assert_eq!(value["ok"], false);
-        let places: Vec<_> = value["problems"]
+        let locations: Vec<_> = value["problems"]
             .as_array()
             .expect("a list")
             .iter()
@@ -102,7 +101,7 @@ fn all_problems_are_json_for_scripts() {
             })
             .collect();
         assert_eq!(
-            places,
+            locations,
             [
                 json!(["a.toml", 2, 9, "clamp"]),
                 json!(["a.toml", 4, 8, "colour.bits"]),
@@ -116,11 +115,11 @@ fn all_problems_are_json_for_scripts() {
 
 #[test]
 fn two_configurations_of_one_name() {
-    let place = Place::with("a.toml", format!("{COSINE_POWER}name = \"same\"\n"));
-    place.write("b.toml", format!("{COSINE_POWER}name = \"same\"\n"));
-    let run = place.glint(["generate", "a.toml", "b.toml"]);
+    let dir = Workspace::with("a.toml", format!("{COSINE_POWER}name = \"same\"\n"));
+    dir.write("b.toml", format!("{COSINE_POWER}name = \"same\"\n"));
+    let run = dir.glint(["generate", "a.toml", "b.toml"]);
     run.refused(1, &["`a.toml` and `b.toml` both name their module `same`"]);
-    let run = place.glint(["generate", "a.toml", "b.toml", "--json"]);
+    let run = dir.glint(["generate", "a.toml", "b.toml", "--json"]);
     assert_eq!(run.code, 1);
     let message = &run.json()["problems"][0]["message"];
     assert!(message.as_str().unwrap().contains("both name their module `same`"), "{message}");
@@ -130,8 +129,8 @@ fn two_configurations_of_one_name() {
 fn outside_the_accuracy_contract() {
     // Six fraction bits of f move an output of 255 by about 4.
     let coarse = "[intensity]\nfraction = 6\n";
-    let place = Place::with("core.toml", format!("{COSINE_POWER}{coarse}"));
-    let run = place.glint(["generate", "core.toml"]).good();
+    let dir = Workspace::with("core.toml", format!("{COSINE_POWER}{coarse}"));
+    let run = dir.glint(["generate", "core.toml"]).good();
     // Most is the base's, times 16; a bit more halves it.
     let parts = [
         "warning: core.toml: outside the accuracy contract",
@@ -141,20 +140,20 @@ fn outside_the_accuracy_contract() {
     for part in parts {
         assert!(run.err.contains(part), "{}", run.err);
     }
-    let place = Place::with("core.toml", format!("{COSINE_POWER}strict = true\n{coarse}"));
-    let run = place.glint(["generate", "core.toml"]);
+    let dir = Workspace::with("core.toml", format!("{COSINE_POWER}strict = true\n{coarse}"));
+    let run = dir.glint(["generate", "core.toml"]);
     run.refused(
         1,
         &["outside the accuracy contract", "`intensity.fraction`", "`strict = true` refuses that"],
     );
-    assert!(!place.at("rtl_out").exists());
+    assert!(!dir.at("rtl_out").exists());
 }
 
 /// Its rounding is at its best already: another key is named.
 #[test]
 fn advice_is_what_still_helps() {
-    let place = Place::with("core.toml", COSINE_POWER);
-    let page = place.done(["describe", "core.toml"]);
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    let page = dir.done(["describe", "core.toml"]);
     assert!(page.contains("output.rounding | nearest") || page.contains("`output.rounding`"));
     let advice = "The key that helps most: `intensity.fraction = 17` in place of 16 would bring the bound to";
     assert!(page.contains(advice), "{page}");
@@ -162,10 +161,10 @@ fn advice_is_what_still_helps() {
 
 #[test]
 fn no_configuration_at_all() {
-    let place = Place::new();
-    place.glint([] as [&str; 0]).refused(1, &["cannot read `configs/`", "glint new DEVICE"]);
-    fs::create_dir(place.at("configs")).unwrap();
-    place.glint(["generate"]).refused(1, &["there is no configuration in `configs/`"]);
+    let dir = Workspace::new();
+    dir.glint([] as [&str; 0]).refused(1, &["cannot read `configs/`", "glint new DEVICE"]);
+    fs::create_dir(dir.at("configs")).unwrap();
+    dir.glint(["generate"]).refused(1, &["there is no configuration in `configs/`"]);
 }
 
 /// Ranges of two bits each, more than there are bits.
@@ -173,8 +172,8 @@ fn no_configuration_at_all() {
 fn no_count_is_negative() {
     let segments = "[decay]\nsegments = [2, 2, 2, 2, 2, 2, 2, 2, 2, 2]\ntail = 1\n";
     let text = format!("device = \"blinn\"\n[cosine]\nfraction = 12\n{segments}");
-    let place = Place::with("core.toml", text);
-    let run = place.glint(["generate", "core.toml"]);
+    let dir = Workspace::with("core.toml", text);
+    let run = dir.glint(["generate", "core.toml"]);
     run.refused(1, &["0 of the 11 bits of 1 - cos", "has 1 bits of 1 - cos"]);
     let negative = run.err.split_whitespace().find(|word| {
         word.strip_prefix('-').is_some_and(|count| count.starts_with(|c: char| c.is_ascii_digit()))

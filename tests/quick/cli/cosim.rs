@@ -7,16 +7,16 @@ use std::io::BufReader;
 use serde_json::Value;
 use vcd::{Command, Parser, ScopeItem, Var};
 
-use crate::place::{COSINE_POWER, Place, Run};
+use crate::workspace::{COSINE_POWER, Run, Workspace};
 
 const ROUGH: &str = "device = \"rough\"\n";
 
 #[test]
 fn built_in() {
-    let place = Place::with("core.toml", ROUGH);
-    let text = place.done(["cosim", "core.toml", "--points", "50"]);
+    let dir = Workspace::with("core.toml", ROUGH);
+    let text = dir.done(["cosim", "core.toml", "--points", "50"]);
     assert!(text.starts_with("core.toml: 50 points, ") && text.contains(": holds\n"), "{text}");
-    let run = place.glint(["cosim", "core.toml", "--points", "50", "--json"]);
+    let run = dir.glint(["cosim", "core.toml", "--points", "50", "--json"]);
     let value = run.json();
     assert_eq!((run.code, &value["ok"]), (0, &Value::Bool(true)), "{run:?}");
     let one = &value["configurations"][0];
@@ -26,26 +26,25 @@ fn built_in() {
     let (error, bound) = (&one["largest_error"]["units"], &one["bound"]["units"]);
     assert!(error.as_f64() <= bound.as_f64() && bound.as_f64() < Some(1.0), "{one}");
     // The seed decides.
-    let again = place.glint(["cosim", "core.toml", "--points", "50", "--json"]);
+    let again = dir.glint(["cosim", "core.toml", "--points", "50", "--json"]);
     assert_eq!(again.out, run.out);
-    let other = place.glint(["cosim", "core.toml", "--points", "50", "--json", "--seed", "2"]);
+    let other = dir.glint(["cosim", "core.toml", "--points", "50", "--json", "--seed", "2"]);
     assert_ne!(other.out, run.out);
 }
 
 #[cfg(feature = "outside-tools")]
 #[test]
 fn emitted_verilog() {
-    let place = Place::with("core.toml", COSINE_POWER);
+    let dir = Workspace::with("core.toml", COSINE_POWER);
     for simulator in ["icarus", "verilator"] {
-        let text = place.done(["cosim", "core.toml", "--points", "3", "--simulator", simulator]);
+        let text = dir.done(["cosim", "core.toml", "--points", "3", "--simulator", simulator]);
         assert!(text.starts_with("core.toml: 3 points, ") && text.ends_with(": holds\n"), "{text}");
     }
-    let run =
-        place.glint(["cosim", "core.toml", "--points", "3", "--simulator", "icarus", "--json"]);
+    let run = dir.glint(["cosim", "core.toml", "--points", "3", "--simulator", "icarus", "--json"]);
     let one = &run.json()["configurations"][0];
     assert_eq!((&one["simulator"], &one["passed"]), (&"icarus".into(), &true.into()), "{run:?}");
     assert!(one["transcript"].as_str().unwrap().contains("PASS"), "{one}");
-    assert_eq!(place.files().len(), 1, "something is left");
+    assert_eq!(dir.files().len(), 1, "something is left");
 }
 
 /// All variables with the path of their scopes, joined by dots.
@@ -62,11 +61,11 @@ fn variables(items: &[ScopeItem], path: &str, found: &mut Vec<(String, Var)>) {
 
 #[test]
 fn waveform() {
-    let place = Place::with("core.toml", ROUGH);
-    place.done(["generate", "core.toml"]);
-    let manifest = place.json("rtl_out/core/core.json");
-    place.done(["cosim", "core.toml", "--points", "20", "--vcd", "wave.vcd"]);
-    let file = BufReader::new(fs::File::open(place.at("wave.vcd")).unwrap());
+    let dir = Workspace::with("core.toml", ROUGH);
+    dir.done(["generate", "core.toml"]);
+    let manifest = dir.json("rtl_out/core/core.json");
+    dir.done(["cosim", "core.toml", "--points", "20", "--vcd", "wave.vcd"]);
+    let file = BufReader::new(fs::File::open(dir.at("wave.vcd")).unwrap());
     let mut parser = Parser::new(file);
     let header = parser.parse_header().unwrap();
     let mut found = Vec::new();
@@ -102,24 +101,24 @@ fn waveform() {
 
 #[test]
 fn waveforms_that_are_wrong_usage() {
-    let place = Place::with("a.toml", COSINE_POWER);
-    place.write("b.toml", COSINE_POWER);
-    let two = place.glint(["cosim", "a.toml", "b.toml", "--vcd", "wave.vcd"]);
+    let dir = Workspace::with("a.toml", COSINE_POWER);
+    dir.write("b.toml", COSINE_POWER);
+    let two = dir.glint(["cosim", "a.toml", "b.toml", "--vcd", "wave.vcd"]);
     two.refused(2, &["--vcd is for one configuration; here are 2"]);
-    let icarus = place.glint(["cosim", "a.toml", "--simulator", "icarus", "--vcd", "wave.vcd"]);
+    let icarus = dir.glint(["cosim", "a.toml", "--simulator", "icarus", "--vcd", "wave.vcd"]);
     icarus.refused(2, &["--vcd is for the built-in simulator"]);
-    assert!(!place.at("wave.vcd").exists());
+    assert!(!dir.at("wave.vcd").exists());
 }
 
 /// A run of an external simulator with `PATH` leading to `tools` alone, which holds `programs`.
 #[cfg(unix)]
 fn with_tools(simulator: &str, programs: &[(&str, &str)], more: &[&str]) -> Run {
-    let place = Place::with("core.toml", COSINE_POWER);
+    let dir = Workspace::with("core.toml", COSINE_POWER);
     for (name, script) in programs {
-        place.script(&format!("tools/{name}"), script);
+        dir.script(&format!("tools/{name}"), script);
     }
     let command = ["cosim", "core.toml", "--points", "2", "--simulator", simulator];
-    place.with_own_tools(command.iter().chain(more))
+    dir.with_own_tools(command.iter().chain(more))
 }
 
 #[cfg(unix)]
@@ -153,17 +152,17 @@ fn a_simulator_that_fails() {
 #[cfg(all(unix, feature = "outside-tools"))]
 #[test]
 fn what_differs_in_verilog_is_told_with_its_place() {
-    let place = Place::with("core.toml", COSINE_POWER);
+    let dir = Workspace::with("core.toml", COSINE_POWER);
     let spoil = "/bin/sed -i 's/accumulator . red_reg;/accumulator * green_reg;/' core_datapath.v";
-    place.script(
+    dir.script(
         "tools/iverilog",
         &format!("{spoil}\nexec /usr/bin/env PATH=\"$SOUND\" iverilog \"$@\""),
     );
-    place.script("tools/vvp", "exec /usr/bin/env PATH=\"$SOUND\" vvp \"$@\"");
+    dir.script("tools/vvp", "exec /usr/bin/env PATH=\"$SOUND\" vvp \"$@\"");
     let run = |json: &[&str]| {
-        let mut command = place.command();
+        let mut command = dir.command();
         command.env("SOUND", std::env::var_os("PATH").unwrap());
-        command.env("PATH", place.at("tools"));
+        command.env("PATH", dir.at("tools"));
         command.args(["cosim", "core.toml", "--points", "9", "--simulator", "icarus"]);
         Run::of(command.args(json).output())
     };
@@ -172,7 +171,7 @@ fn what_differs_in_verilog_is_told_with_its_place() {
     assert_eq!((&one["signal"], &one["seed"]), (&"red_out".into(), &1.into()), "{value}");
     assert_eq!(one["vcd"], "core_mismatch.vcd");
     assert_ne!(one["golden"], one["simulated"]);
-    assert!(place.read("core_mismatch.vcd").contains("red_out"));
+    assert!(dir.read("core_mismatch.vcd").contains("red_out"));
     let (clock, during) = (&one["clock"], one["during"].as_str().unwrap());
     let told = format!("FAILS: seed 1, clock {clock}, {during}: `red_out` is ");
     let text = run(&[]);
@@ -198,8 +197,8 @@ fn a_simulator_that_hangs() {
 fn exhaustive() {
     let text = "device = \"cosine-power\"\npower = 2\ncosine.fraction = 8\nexponent.bits = 3\n\
                 colour.bits = 2\nintensity.fraction = 8\ndomain.exponent_max = 7\n";
-    let place = Place::with("core.toml", text);
-    let run = place.glint(["cosim", "core.toml", "--exhaustive", "--json"]);
+    let dir = Workspace::with("core.toml", text);
+    let run = dir.glint(["cosim", "core.toml", "--exhaustive", "--json"]);
     let value = run.json();
     assert_eq!((run.code, &value["ok"]), (0, &Value::Bool(true)), "{run:?}");
     let one = &value["configurations"][0];
@@ -213,7 +212,7 @@ fn exhaustive() {
     );
     assert_eq!(one["clocks"]["mismatch"], Value::Null);
     assert!(one["together"].as_f64() <= one["bound"].as_f64(), "{one}");
-    let text = place.done(["cosim", "core.toml", "--exhaustive"]);
+    let text = dir.done(["cosim", "core.toml", "--exhaustive"]);
     assert!(
         text.contains("1 799 evaluations of f and 1 024 colour products (cos_gamma = 0 to 256 x exponent = 1 to 7)"),
         "{text}"
@@ -225,13 +224,13 @@ fn exhaustive() {
     );
     assert!(text.contains("  less than a second on ") || text.contains("  about "), "{text}");
     // Of a wide configuration it says that it does not cover them.
-    place.write("wide.toml", "device = \"cosine-power\"\npower = 2\ndomain.exponent_max = 2\n");
-    let text = place.done(["cosim", "wide.toml", "--exhaustive"]);
+    dir.write("wide.toml", "device = \"cosine-power\"\npower = 2\ndomain.exponent_max = 2\n");
+    let text = dir.done(["cosim", "wide.toml", "--exhaustive"]);
     assert!(
         text.contains("not covered: registers at every clock: the operands have 55 bits"),
         "{text}"
     );
-    let run = place.glint(["cosim", "core.toml", "--exhaustive", "--points", "5"]);
+    let run = dir.glint(["cosim", "core.toml", "--exhaustive", "--points", "5"]);
     assert_eq!(run.code, 2, "{run:?}");
     assert!(run.err.contains("--exhaustive"), "{run:?}");
 }
@@ -239,43 +238,43 @@ fn exhaustive() {
 /// A sweep of other values than the contract's: what it says, in one piece and in parts.
 #[test]
 fn exhaustive_with_other_values() {
-    let place = Place::with("core.toml", COSINE_POWER);
+    let dir = Workspace::with("core.toml", COSINE_POWER);
     let check = ["cosim", "core.toml", "--exhaustive", "--values", "exponent=7,1..9/4"];
-    let value = place.glint(check.iter().chain(&["--json"])).json();
+    let value = dir.glint(check.iter().chain(&["--json"])).json();
     let one = &value["configurations"][0];
     assert_eq!(one["axes"][1], serde_json::json!({ "name": "exponent", "values": [1, 5, 7, 9] }));
     assert_eq!(one["not_covered"], "values of exponent that are not named");
     assert_eq!(one["verdict"], "passed, not proved");
     let part = check.iter().chain(&["--json", "--resume", "part.json", "--shard", "1/1"]);
-    place.done(part);
+    dir.done(part);
     let merge = ["merge", "core.toml", "part.json", "--json", "--values", "exponent=1..9/4,7"];
-    assert_eq!(place.glint(merge).json(), value);
-    place.glint(&merge[..3]).refused(1, &["of another sweep (--values)"]);
+    assert_eq!(dir.glint(merge).json(), value);
+    dir.glint(&merge[..3]).refused(1, &["of another sweep (--values)"]);
     let refused = |values: &str, text: &str| {
-        place.glint(["cosim", "core.toml", "--exhaustive", "--values", values]).refused(2, &[text]);
+        dir.glint(["cosim", "core.toml", "--exhaustive", "--values", values]).refused(2, &[text]);
     };
     refused("n=1", "no operand `n`; its operands are cos_gamma, exponent");
     refused("exponent=0..9", "`exponent` is 1 to 1000 in this check, not 0");
-    place.glint(["cosim", "core.toml", "--values", "exponent=1"]).refused(2, &["--exhaustive"]);
+    dir.glint(["cosim", "core.toml", "--values", "exponent=1"]).refused(2, &["--exhaustive"]);
     // All are looked at before the first is checked.
-    place.write("rough.toml", "device = \"rough\"\n");
+    dir.write("rough.toml", "device = \"rough\"\n");
     let both =
         ["cosim", "rough.toml", "core.toml", "--exhaustive", "--values", "cos_dgamma=1000000"];
-    let run = place.glint(both);
+    let run = dir.glint(both);
     assert_eq!(run.out, "", "{run:?}");
     run.refused(2, &["--values for `core.toml`: the check goes through no operand `cos_dgamma`"]);
 }
 
 #[test]
 fn a_division_into_more_shards_than_there_can_be() {
-    let place = Place::with("core.toml", COSINE_POWER);
+    let dir = Workspace::with("core.toml", COSINE_POWER);
     for of in ["18446744073709551615", "1000000000000", "1000001"] {
         let shard = format!("1/{of}");
         let arguments = ["cosim", "core.toml", "--exhaustive", "--resume", "a.json", "--shard"];
-        let run = place.glint(arguments.iter().chain(&[shard.as_str()]));
+        let run = dir.glint(arguments.iter().chain(&[shard.as_str()]));
         run.refused(2, &["N at most 1 000 000"]);
     }
-    assert_eq!(place.files().len(), 1);
+    assert_eq!(dir.files().len(), 1);
 }
 
 /// A job that is killed, resumed, and divided reports what an uninterrupted one does.
@@ -289,36 +288,36 @@ fn exhaustive_in_parts() {
 }
 
 fn in_parts(text: &str) {
-    let place = Place::with("core.toml", text);
-    let whole = place.done(["cosim", "core.toml", "--exhaustive", "--json"]);
+    let dir = Workspace::with("core.toml", text);
+    let whole = dir.done(["cosim", "core.toml", "--exhaustive", "--json"]);
     let proof = ["cosim", "core.toml", "--exhaustive", "--json", "--resume"];
 
-    let mut child = place
+    let mut child = dir
         .command()
         .args(proof)
         .arg("state.json")
         .stdout(std::process::Stdio::null())
         .spawn()
         .expect("started");
-    while !place.at("state.json").exists() {
+    while !dir.at("state.json").exists() {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
     child.kill().expect("killed");
     child.wait().expect("ended");
-    let resumed = place.done(proof.iter().chain(&["state.json"]));
+    let resumed = dir.done(proof.iter().chain(&["state.json"]));
     assert_eq!(resumed, whole);
     // There is nothing left to do the second time.
-    assert_eq!(place.done(proof.iter().chain(&["state.json"])), whole);
+    assert_eq!(dir.done(proof.iter().chain(&["state.json"])), whole);
 
     for shard in ["1/2", "2/2"] {
         let file = format!("part{}.json", &shard[..1]);
-        place.done(proof.iter().chain(&[file.as_str(), "--shard", shard]));
+        dir.done(proof.iter().chain(&[file.as_str(), "--shard", shard]));
     }
     let merge = ["merge", "core.toml", "--json", "part2.json", "part1.json"];
-    assert_eq!(place.done(merge), whole);
+    assert_eq!(dir.done(merge), whole);
 
     let refused = |arguments: &[&str]| {
-        let run = place.glint(arguments);
+        let run = dir.glint(arguments);
         assert_eq!(run.code, 1, "{run:?}");
         run.err
     };
@@ -329,14 +328,14 @@ fn in_parts(text: &str) {
     let error = refused(&["cosim", "core.toml", "--exhaustive", "--resume", "part1.json"]);
     assert!(error.contains("another configuration, sweep, shard"), "{error}");
     // A bit that a disk has turned over.
-    let part = place.read("part1.json");
+    let part = dir.read("part1.json");
     let damaged = part.replacen("\"done\": ", "\"done\": 1", 1);
     assert_ne!(damaged, part);
-    place.write("part1.json", damaged);
+    dir.write("part1.json", damaged);
     let error = refused(&["merge", "core.toml", "part1.json", "part2.json"]);
     assert!(error.contains("the checksum is wrong"), "{error}");
-    place.write("part1.json", part);
-    place.write("core.toml", "device = \"cosine-power\"\npower = 4\n");
+    dir.write("part1.json", part);
+    dir.write("core.toml", "device = \"cosine-power\"\npower = 4\n");
     let error = refused(&["merge", "core.toml", "part1.json", "part2.json"]);
     assert!(error.contains("not of `core.toml` as it stands"), "{error}");
     let error = refused(&["cosim", "core.toml", "--exhaustive", "--resume", "gone/state.json"]);
@@ -345,14 +344,14 @@ fn in_parts(text: &str) {
 
 #[test]
 fn points_are_counted_as_people_write_them() {
-    let place = Place::with("core.toml", COSINE_POWER);
+    let dir = Workspace::with("core.toml", COSINE_POWER);
     for (points, shown) in [("1e2", "100 points"), ("1.5e2", "150 points"), ("2_00", "200 points")]
     {
-        let text = place.done(["cosim", "core.toml", "--points", points]);
+        let text = dir.done(["cosim", "core.toml", "--points", points]);
         assert!(text.contains(shown), "{points}: {text}");
     }
     for points in ["0", "0e3", "1.5", "1e-1", "1e99", "ten", ""] {
-        let run = place.glint(["cosim", "core.toml", "--points", points]);
+        let run = dir.glint(["cosim", "core.toml", "--points", points]);
         run.refused(2, &["a whole number from 1 on is wanted, as 1000000 or 1e6"]);
     }
 }
@@ -360,8 +359,8 @@ fn points_are_counted_as_people_write_them() {
 #[test]
 fn one_thread_is_a_thread() {
     let text = "device = \"cosine-power\"\npower = 2\ncosine.fraction = 8\nexponent.bits = 3\ncolour.bits = 2\nintensity.fraction = 8\n";
-    let place = Place::with("core.toml", format!("{text}domain.exponent_max = 7\n"));
-    let mut command = place.command();
+    let dir = Workspace::with("core.toml", format!("{text}domain.exponent_max = 7\n"));
+    let mut command = dir.command();
     let command =
         command.args(["cosim", "core.toml", "--exhaustive"]).env("RAYON_NUM_THREADS", "1");
     let run = Run::of(command.output()).good();

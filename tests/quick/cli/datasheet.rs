@@ -2,48 +2,48 @@
 
 use serde_json::Value;
 
-use crate::place::{COSINE_POWER, Place, Run};
+use crate::workspace::{COSINE_POWER, Run, Workspace};
 
-fn place() -> Place {
-    Place::with("core.toml", COSINE_POWER)
+fn dir() -> Workspace {
+    Workspace::with("core.toml", COSINE_POWER)
 }
 
-fn datasheet(place: &Place, arguments: &[&str]) -> Run {
+fn datasheet(dir: &Workspace, arguments: &[&str]) -> Run {
     let start = ["datasheet", "core.toml", "--no-synthesis"];
-    place.glint(start.iter().chain(arguments))
+    dir.glint(start.iter().chain(arguments))
 }
 
-fn names(place: &Place) -> Vec<String> {
-    place.files().into_keys().collect()
+fn names(dir: &Workspace) -> Vec<String> {
+    dir.files().into_keys().collect()
 }
 
 #[test]
 fn pages_go_where_they_are_told_to() {
-    let place = place();
-    let run = datasheet(&place, &[]).good();
+    let dir = dir();
+    let run = datasheet(&dir, &[]).good();
     assert_eq!(run.out, "core.toml: datasheets/core.html written\n");
-    assert_eq!(names(&place), ["core.toml", "datasheets/core.html"]);
-    let again = datasheet(&place, &[]);
+    assert_eq!(names(&dir), ["core.toml", "datasheets/core.html"]);
+    let again = datasheet(&dir, &[]);
     assert_eq!(again.out, "core.toml: datasheets/core.html up to date\n");
-    let single = datasheet(&place, &["--out", "one.html", "--wavedrom", "--json"]);
+    let single = datasheet(&dir, &["--out", "one.html", "--wavedrom", "--json"]);
     let told = single.json();
     assert_eq!(told["datasheets"][0]["file"], "one.html", "{told}");
     assert_eq!(told["datasheets"][1]["file"], "one.wavedrom.json");
-    assert_eq!(place.read("one.html"), place.read("datasheets/core.html"));
-    place.assert_no_staging();
+    assert_eq!(dir.read("one.html"), dir.read("datasheets/core.html"));
+    dir.assert_no_staging();
 
-    let page = place.read("one.html");
+    let page = dir.read("one.html");
     assert!(page.contains("Not synthesised for this page"));
     assert!(page.contains("There is no record of such a check"));
-    let directory = place.path().display().to_string();
+    let directory = dir.path().display().to_string();
     assert!(!page.contains(&directory), "a path of this machine");
 }
 
 #[test]
 fn waves_have_one_length() {
-    let place = place();
-    datasheet(&place, &["--out", "core.html", "--wavedrom"]);
-    let waves: Value = place.json("core.wavedrom.json");
+    let dir = dir();
+    datasheet(&dir, &["--out", "core.html", "--wavedrom"]);
+    let waves: Value = dir.json("core.wavedrom.json");
     let signal = waves["signal"].as_array().expect("signals");
     let lengths = signal.iter().map(|lane| {
         let wave = lane["wave"].as_str().expect("a wave");
@@ -59,72 +59,72 @@ fn waves_have_one_length() {
 
 #[test]
 fn what_was_edited_stays() {
-    let place = place();
+    let dir = dir();
     let arguments = ["--out", "core.html", "--wavedrom"];
-    datasheet(&place, &arguments);
+    datasheet(&dir, &arguments);
     for file in ["core.html", "core.wavedrom.json"] {
-        let ours = place.read(file);
+        let ours = dir.read(file);
         for mine in [&ours.replace("core", "mine"), "my notes\n"] {
-            place.write(file, mine);
-            let run = datasheet(&place, &arguments);
+            dir.write(file, mine);
+            let run = datasheet(&dir, &arguments);
             run.refused(1, &[file, "was edited since; nothing was changed", "--force"]);
-            assert_eq!(place.read(file), mine);
+            assert_eq!(dir.read(file), mine);
         }
-        datasheet(&place, &["--out", "core.html", "--wavedrom", "--force"]);
-        assert_eq!(place.read(file), ours);
+        datasheet(&dir, &["--out", "core.html", "--wavedrom", "--force"]);
+        assert_eq!(dir.read(file), ours);
     }
 }
 
 #[test]
 fn a_page_of_another_configuration_is_replaced() {
-    let place = place();
-    datasheet(&place, &[]);
-    let before = place.read("datasheets/core.html");
-    place.write("core.toml", "device = \"cosine-power\"\npower = 2\n");
-    assert_eq!(datasheet(&place, &[]).code, 0);
-    assert_ne!(place.read("datasheets/core.html"), before);
+    let dir = dir();
+    datasheet(&dir, &[]);
+    let before = dir.read("datasheets/core.html");
+    dir.write("core.toml", "device = \"cosine-power\"\npower = 2\n");
+    assert_eq!(datasheet(&dir, &[]).code, 0);
+    assert_ne!(dir.read("datasheets/core.html"), before);
 }
 
 #[test]
 fn wrong_requests() {
-    let place = place();
-    place.write("other.toml", "device = \"schlick\"\n");
-    place.write("taken", "a file");
+    let dir = dir();
+    dir.write("other.toml", "device = \"schlick\"\n");
+    dir.write("taken", "a file");
     let both = ["datasheet", "core.toml", "other.toml", "--out", "both.html"];
-    place.glint(both).refused(2, &["both.html", "give a directory"]);
-    let missing = place.glint(["datasheet", "missing.toml"]);
+    dir.glint(both).refused(2, &["both.html", "give a directory"]);
+    let missing = dir.glint(["datasheet", "missing.toml"]);
     missing.refused(1, &["missing.toml"]);
-    datasheet(&place, &["--out", "taken"]).refused(1, &["taken"]);
-    datasheet(&place, &["--out", "taken/deeper"]).refused(1, &["taken"]);
-    assert!(!names(&place).iter().any(|name| name.ends_with(".html")));
+    datasheet(&dir, &["--out", "taken"]).refused(1, &["taken"]);
+    datasheet(&dir, &["--out", "taken/deeper"]).refused(1, &["taken"]);
+    assert!(!names(&dir).iter().any(|name| name.ends_with(".html")));
 }
 
 #[test]
 fn a_record_must_be_of_the_configuration() {
-    let place = place();
+    let dir = dir();
     let record = include_str!("../../../proofs/cosine_power.json");
-    place.write("records/any_name.json", record);
-    place.write("records/beside.json", "{}");
-    datasheet(&place, &["--proofs", "records"]).good();
-    let page = place.read("datasheets/core.html");
+    dir.write("records/any_name.json", record);
+    dir.write("records/beside.json", "{}");
+    datasheet(&dir, &["--proofs", "records"]).good();
+    let page = dir.read("datasheets/core.html");
     // 1 048 577 cosines and 1000 exponents.
     assert!(page.contains("1\u{202f}048\u{202f}577\u{202f}000 evaluations"));
-    place.write("core.toml", "device = \"cosine-power\"\npower = 2\n");
-    datasheet(&place, &["--proofs", "records", "--force"]).good();
-    assert!(place.read("datasheets/core.html").contains("There is no record of such a check"));
+    dir.write("core.toml", "device = \"cosine-power\"\npower = 2\n");
+    datasheet(&dir, &["--proofs", "records", "--force"]).good();
+    assert!(dir.read("datasheets/core.html").contains("There is no record of such a check"));
     // Of this configuration, but what it was made with had another bound.
-    place.write("core.toml", "device = \"cosine-power\"\n");
-    place.write("records/any_name.json", record.replace("\"bound\": 0.6", "\"bound\": 0.5"));
-    let run = datasheet(&place, &["--proofs", "records"]);
+    dir.write("core.toml", "device = \"cosine-power\"\n");
+    dir.write("records/any_name.json", record.replace("\"bound\": 0.6", "\"bound\": 0.5"));
+    let run = datasheet(&dir, &["--proofs", "records"]);
     run.refused(1, &["records/any_name.json", "another version of Glint", "--exhaustive --json"]);
 }
 
 #[cfg(unix)]
 #[test]
 fn synthesis_has_its_section() {
-    let place = place();
-    Run::of(place.with_yosys().args(["datasheet", "core.toml"]).output()).good();
-    let page = place.read("datasheets/core.html");
+    let dir = dir();
+    Run::of(dir.with_yosys().args(["datasheet", "core.toml"]).output()).good();
+    let page = dir.read("datasheets/core.html");
     assert!(page.contains("by Yosys 0."));
     // The families count other cells, of which the made-up netlist has 100 of each kind.
     for (family, luts) in [("iCE40", 100), ("ECP5", 100), ("Xilinx 7", 200)] {

@@ -1,14 +1,14 @@
 //! `describe`: pages printed and written, and whose they are.
 
-use crate::place::{COSINE_POWER, Place};
+use crate::workspace::{COSINE_POWER, Workspace};
 
-fn place() -> Place {
-    Place::with("core.toml", COSINE_POWER)
+fn dir() -> Workspace {
+    Workspace::with("core.toml", COSINE_POWER)
 }
 
 #[test]
 fn a_page_is_printed() {
-    let page = place().done(["describe", "core.toml"]);
+    let page = dir().done(["describe", "core.toml"]);
     let headings = "# Specular intensity, ## Ports, ## Blocks, ## ROMs, ## Microprogram, ## Clocks, \
         ## Accuracy, ## A worked example, ## Configuration";
     for heading in headings.split(", ") {
@@ -22,57 +22,57 @@ fn a_page_is_printed() {
 
 #[test]
 fn pages_are_written_where_they_are_told_to_go() {
-    let place = place();
-    let page = place.done(["describe", "core.toml"]);
-    let out = place.done(["describe", "core.toml", "--out", "docs/pages"]);
+    let dir = dir();
+    let page = dir.done(["describe", "core.toml"]);
+    let out = dir.done(["describe", "core.toml", "--out", "docs/pages"]);
     assert_eq!(out, "core.toml: core.md written\n");
-    assert_eq!(place.read("docs/pages/core.md"), page);
-    let again = place.done(["describe", "core.toml", "--out", "docs/pages"]);
+    assert_eq!(dir.read("docs/pages/core.md"), page);
+    let again = dir.done(["describe", "core.toml", "--out", "docs/pages"]);
     assert_eq!(again, "core.toml: core.md up to date\n");
-    let names: Vec<String> = place.files().into_keys().collect();
+    let names: Vec<String> = dir.files().into_keys().collect();
     assert_eq!(names, ["core.toml", "docs/pages/core.md"]);
 }
 
 #[test]
 fn a_page_of_glints_is_replaced() {
-    let place = place();
-    place.done(["describe", "core.toml", "--out", "."]);
-    place.write("core.toml", "device = \"cosine-power\"\npower = 2\n");
-    place.done(["describe", "core.toml", "--out", "."]);
-    let page = place.done(["describe", "core.toml"]);
-    assert_eq!(place.read("core.md"), page);
-    place.assert_no_staging();
+    let dir = dir();
+    dir.done(["describe", "core.toml", "--out", "."]);
+    dir.write("core.toml", "device = \"cosine-power\"\npower = 2\n");
+    dir.done(["describe", "core.toml", "--out", "."]);
+    let page = dir.done(["describe", "core.toml"]);
+    assert_eq!(dir.read("core.md"), page);
+    dir.assert_no_staging();
 }
 
 #[test]
 fn an_edited_or_foreign_page_is_not_overwritten() {
-    let place = place();
-    let page = place.done(["describe", "core.toml"]);
+    let dir = dir();
+    let page = dir.done(["describe", "core.toml"]);
     for mine in ["my notes\n", &page.replace("## Clocks", "## Times")] {
-        place.write("core.md", mine);
-        let run = place.glint(["describe", "core.toml", "--out", "."]);
+        dir.write("core.md", mine);
+        let run = dir.glint(["describe", "core.toml", "--out", "."]);
         run.refused(1, &["core.md", "was edited since; nothing was changed", "--force"]);
-        assert_eq!(place.read("core.md"), mine);
-        place.done(["describe", "core.toml", "--out", ".", "--force"]);
-        assert_eq!(place.read("core.md"), page);
+        assert_eq!(dir.read("core.md"), mine);
+        dir.done(["describe", "core.toml", "--out", ".", "--force"]);
+        assert_eq!(dir.read("core.md"), page);
     }
-    place.assert_no_staging();
+    dir.assert_no_staging();
 }
 
 #[test]
 fn a_page_is_text_for_scripts_too() {
-    let place = place();
-    let page = place.done(["describe", "core.toml"]);
-    let value = place.glint(["describe", "core.toml", "--json"]).json();
+    let dir = dir();
+    let page = dir.done(["describe", "core.toml"]);
+    let value = dir.glint(["describe", "core.toml", "--json"]).json();
     assert_eq!(value["described"][0]["name"], "core");
     assert_eq!(value["described"][0]["page"], page.as_str());
 }
 
 #[test]
 fn a_directory_that_cannot_be_is_said() {
-    let place = place();
-    place.write("taken", "a file");
-    let run = place.glint(["describe", "core.toml", "--out", "taken"]);
+    let dir = dir();
+    dir.write("taken", "a file");
+    let run = dir.glint(["describe", "core.toml", "--out", "taken"]);
     run.refused(1, &["`core.toml` was not described", "taken"]);
-    place.glint(["describe", "core.toml", "--force"]).refused(2, &["--out"]);
+    dir.glint(["describe", "core.toml", "--force"]).refused(2, &["--out"]);
 }

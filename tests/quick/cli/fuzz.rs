@@ -7,7 +7,7 @@ use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::select;
 
-use crate::place::{Place, Run};
+use crate::workspace::{Run, Workspace};
 
 /// A run that takes so long hangs: none of the arguments asks for much.
 const HANGS: Duration = Duration::from_secs(120);
@@ -45,10 +45,10 @@ fn arguments() -> impl Strategy<Value = Vec<String>> {
 }
 
 /// Runs the program, which must end; without outside tools, and on one thread.
-fn run(place: &Place, arguments: &[String]) -> Run {
+fn run(dir: &Workspace, arguments: &[String]) -> Run {
     let begin = Instant::now();
-    let mut command = place.command();
-    command.current_dir(place.at(INNER));
+    let mut command = dir.command();
+    command.current_dir(dir.at(INNER));
     command.env("PATH", "").env("RAYON_NUM_THREADS", "1");
     let run = Run::of(command.args(arguments).output());
     assert!(begin.elapsed() < HANGS, "{arguments:?} hangs");
@@ -56,17 +56,17 @@ fn run(place: &Place, arguments: &[String]) -> Run {
 }
 
 /// A directory with what the pieces speak of.
-fn place() -> Place {
-    let place = Place::new();
+fn dir() -> Workspace {
+    let dir = Workspace::new();
     let inner = |name: &str| format!("{INNER}/{name}");
-    place.write(&inner("core.toml"), NARROW);
-    place.write(&inner("bad.toml"), "device = \"rough\"\ncosine.fraction = 99\n[[");
+    dir.write(&inner("core.toml"), NARROW);
+    dir.write(&inner("bad.toml"), "device = \"rough\"\ncosine.fraction = 99\n[[");
     let evil = NARROW.replace("cosine_squared_reduced", "../../evil");
     assert_ne!(evil, NARROW);
-    place.write(&inner("evil.toml"), evil);
-    place.write(&inner("part.json"), "{}");
-    place.write(&inner("empty"), "");
-    place
+    dir.write(&inner("evil.toml"), evil);
+    dir.write(&inner("part.json"), "{}");
+    dir.write(&inner("empty"), "");
+    dir
 }
 
 proptest! {
@@ -79,12 +79,12 @@ proptest! {
 
     #[test]
     fn any_arguments(arguments in arguments()) {
-        let place = place();
-        let run = run(&place, &arguments);
+        let dir = dir();
+        let run = run(&dir, &arguments);
         prop_assert!((0..=2).contains(&run.code), "{arguments:?}: {run:?}");
         // A failure says something.
         prop_assert!(run.code == 0 || !run.err.is_empty() || !run.out.is_empty(), "{arguments:?}");
-        for name in place.files().keys() {
+        for name in dir.files().keys() {
             prop_assert!(name.starts_with("inner/"), "{arguments:?} wrote {name}");
             prop_assert!(!name.contains(".glint-"), "{arguments:?} left {name}");
         }

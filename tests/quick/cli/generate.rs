@@ -1,52 +1,52 @@
 //! `generate` and the main job, when all is well and when foreign files stand in the way.
 
-use crate::place::{COSINE_POWER, Place, Run};
+use crate::workspace::{COSINE_POWER, Run, Workspace};
 
 const FILES: [&str; 2] = ["rtl_out/core/core.v", "testbench/core/core_tb.v"];
 
-fn generated() -> Place {
-    let place = Place::with("core.toml", COSINE_POWER);
-    place.done(["generate", "core.toml"]);
-    place
+fn generated() -> Workspace {
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    dir.done(["generate", "core.toml"]);
+    dir
 }
 
 /// Changes the configuration, so that other files would be generated.
-fn reconfigure(place: &Place) {
-    place.write("core.toml", format!("{COSINE_POWER}power = 4\n"));
+fn reconfigure(dir: &Workspace) {
+    dir.write("core.toml", format!("{COSINE_POWER}power = 4\n"));
 }
 
 #[test]
 fn files_are_written_once_and_checked() {
-    let place = Place::with("core.toml", COSINE_POWER);
-    let absent = place.glint(["generate", "--check", "core.toml"]);
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    let absent = dir.glint(["generate", "--check", "core.toml"]);
     assert_eq!(absent.code, 1, "{absent:?}");
     assert!(absent.out.contains("differs: rtl_out/core/core.v\n"), "{}", absent.out);
-    assert_eq!(place.files().len(), 1, "--check wrote something");
+    assert_eq!(dir.files().len(), 1, "--check wrote something");
 
-    assert!(place.done(["generate", "core.toml"]).ends_with("files written\n"));
-    let files = place.files();
+    assert!(dir.done(["generate", "core.toml"]).ends_with("files written\n"));
+    let files = dir.files();
     for name in FILES.iter().chain(&["rtl_out/core/core.json", "rtl_out/core/core.core"]) {
         assert!(files.contains_key(*name), "no {name}");
     }
-    assert!(place.done(["generate", "core.toml"]).ends_with("files up to date\n"));
-    place.done(["generate", "--check", "core.toml"]);
-    assert_eq!(place.files(), files);
-    place.assert_no_staging();
+    assert!(dir.done(["generate", "core.toml"]).ends_with("files up to date\n"));
+    dir.done(["generate", "--check", "core.toml"]);
+    assert_eq!(dir.files(), files);
+    dir.assert_no_staging();
 
-    reconfigure(&place);
-    let stale = place.glint(["generate", "--check", "--json", "core.toml"]);
+    reconfigure(&dir);
+    let stale = dir.glint(["generate", "--check", "--json", "core.toml"]);
     assert_eq!(stale.code, 1, "{stale:?}");
     let different = stale.json()["different"].clone();
     assert!(different.as_array().unwrap().contains(&"rtl_out/core/core.v".into()), "{different}");
-    assert_eq!(place.files().len(), files.len());
-    place.done(["generate", "core.toml"]);
-    assert_ne!(place.files()["rtl_out/core/core.v"], files["rtl_out/core/core.v"]);
+    assert_eq!(dir.files().len(), files.len());
+    dir.done(["generate", "core.toml"]);
+    assert_ne!(dir.files()["rtl_out/core/core.v"], files["rtl_out/core/core.v"]);
 }
 
 #[test]
 fn another_directory_and_json() {
-    let place = Place::with("core.toml", COSINE_POWER);
-    let run = place.glint(["generate", "core.toml", "--out", "a/b", "--json"]).good();
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    let run = dir.glint(["generate", "core.toml", "--out", "a/b", "--json"]).good();
     let value = run.json();
     assert_eq!(value["ok"], true);
     let one = &value["generated"][0];
@@ -62,7 +62,7 @@ fn another_directory_and_json() {
         .collect();
     let mut sorted = listed.clone();
     sorted.sort();
-    let found: Vec<String> = place.files().into_keys().filter(|name| name != "core.toml").collect();
+    let found: Vec<String> = dir.files().into_keys().filter(|name| name != "core.toml").collect();
     assert_eq!(found, sorted);
 }
 
@@ -70,33 +70,33 @@ fn another_directory_and_json() {
 #[test]
 fn an_edited_driver_stays() {
     const DRIVER: &str = "testbench/glint_cocotb.py";
-    let place = Place::with("core.toml", COSINE_POWER);
-    place.done(["generate", "core.toml"]);
-    let driver = place.read(DRIVER);
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    dir.done(["generate", "core.toml"]);
+    let driver = dir.read(DRIVER);
     let edited = driver.replacen("import json", "import json as json", 1);
-    place.write(DRIVER, &edited);
-    let run = place.glint(["generate", "core.toml"]);
+    dir.write(DRIVER, &edited);
+    let run = dir.glint(["generate", "core.toml"]);
     assert_eq!(run.code, 1, "{run:?}");
     assert!(run.err.contains(DRIVER) && run.err.contains("--force"), "{run:?}");
-    assert_eq!(place.read(DRIVER), edited);
-    let check = place.glint(["generate", "core.toml", "--check"]);
+    assert_eq!(dir.read(DRIVER), edited);
+    let check = dir.glint(["generate", "core.toml", "--check"]);
     assert!(check.code == 1 && check.out.contains(DRIVER), "{check:?}");
-    place.done(["generate", "core.toml", "--force"]);
-    assert_eq!(place.read(DRIVER), driver);
+    dir.done(["generate", "core.toml", "--force"]);
+    assert_eq!(dir.read(DRIVER), driver);
 }
 
 #[test]
 fn the_main_job_generates_and_checks_everything() {
-    let place = Place::with("configs/one.toml", COSINE_POWER);
-    place.write("configs/two.toml", format!("{COSINE_POWER}power = 2\n"));
-    place.write("configs/notes.txt", "no configuration");
-    place.write("configs/studies/three.toml", COSINE_POWER);
+    let dir = Workspace::with("configs/one.toml", COSINE_POWER);
+    dir.write("configs/two.toml", format!("{COSINE_POWER}power = 2\n"));
+    dir.write("configs/notes.txt", "no configuration");
+    dir.write("configs/studies/three.toml", COSINE_POWER);
     // A bound of 1.5 units: outside the contract, and right within it.
-    place.write(
+    dir.write(
         "configs/wide.toml",
         format!("{COSINE_POWER}output.rounding = \"truncate\"\nintensity.fraction = 9\n"),
     );
-    let run = place.glint([] as [&str; 0]);
+    let run = dir.glint([] as [&str; 0]);
     assert_eq!(run.code, 0, "{run:?}");
     let row = |name: &str| {
         let name = format!("| {name} ");
@@ -113,11 +113,11 @@ fn the_main_job_generates_and_checks_everything() {
     let mut last = run.out.lines().rev();
     assert_eq!(last.next(), Some(count));
     assert!(last.next().expect("the table").starts_with("| wide "), "{run:?}");
-    let details = place.done(["--details"]);
+    let details = dir.done(["--details"]);
     assert!(details.contains("configs/one.toml: ") && details.contains("the largest error is at"));
-    std::fs::remove_file(place.at("configs/wide.toml")).expect("removed");
-    assert!(place.at("rtl_out/one/one.v").exists() && place.at("testbench/two/two_tb.v").exists());
-    let run = place.glint(["--json"]).good();
+    std::fs::remove_file(dir.at("configs/wide.toml")).expect("removed");
+    assert!(dir.at("rtl_out/one/one.v").exists() && dir.at("testbench/two/two_tb.v").exists());
+    let run = dir.glint(["--json"]).good();
     let value = run.json();
     assert_eq!(value["ok"], true);
     assert_eq!(value["configurations"][1]["config"], "configs/two.toml");
@@ -128,7 +128,7 @@ fn the_main_job_generates_and_checks_everything() {
 /// At 60 columns no line is longer, and no number is broken.
 #[test]
 fn tables_fit_the_terminal() {
-    let place = Place::with("configs/a_name_of_thirty_characters_.toml", COSINE_POWER);
+    let dir = Workspace::with("configs/a_name_of_thirty_characters_.toml", COSINE_POWER);
     for (arguments, number) in [
         (&[][..], "0.621"),
         (&["compare", "--no-synthesis"], "0.00954"),
@@ -136,7 +136,7 @@ fn tables_fit_the_terminal() {
         (&["list"], ""),
     ] {
         for columns in ["80", "60"] {
-            let mut command = place.command();
+            let mut command = dir.command();
             let run = Run::of(command.args(arguments).env("COLUMNS", columns).output());
             let most: usize = columns.parse().expect("a number");
             let rows = run.out.lines().filter(|line| line.starts_with('|'));
@@ -151,16 +151,16 @@ fn tables_fit_the_terminal() {
 #[test]
 fn an_edited_file_is_not_overwritten() {
     for name in FILES {
-        let place = generated();
-        place.write(name, "// my own\n");
-        reconfigure(&place);
-        let before = place.files();
-        let run = place.glint(["generate", "core.toml"]);
+        let dir = generated();
+        dir.write(name, "// my own\n");
+        reconfigure(&dir);
+        let before = dir.files();
+        let run = dir.glint(["generate", "core.toml"]);
         run.refused(1, &["were edited since; nothing was changed", name, "--force"]);
-        assert_eq!(place.files(), before);
-        place.done(["generate", "core.toml", "--force"]);
-        place.done(["generate", "core.toml", "--check"]);
-        place.assert_no_staging();
+        assert_eq!(dir.files(), before);
+        dir.done(["generate", "core.toml", "--force"]);
+        dir.done(["generate", "core.toml", "--check"]);
+        dir.assert_no_staging();
     }
 }
 
@@ -175,52 +175,51 @@ const FOREIGN: [&str; 5] = [
 
 #[test]
 fn foreign_files_stay_and_do_not_block() {
-    let place = generated();
+    let dir = generated();
     for name in FOREIGN {
-        place.write(name, "mine");
+        dir.write(name, "mine");
     }
-    place.done(["generate", "core.toml", "--check"]);
-    assert!(place.done(["generate", "core.toml"]).ends_with("files up to date\n"));
+    dir.done(["generate", "core.toml", "--check"]);
+    assert!(dir.done(["generate", "core.toml"]).ends_with("files up to date\n"));
     for force in [None, Some("--force")] {
-        reconfigure(&place);
-        let before = place.files();
-        place.done(["generate", "core.toml"].into_iter().chain(force));
-        let after = place.files();
+        reconfigure(&dir);
+        let before = dir.files();
+        dir.done(["generate", "core.toml"].into_iter().chain(force));
+        let after = dir.files();
         for name in FOREIGN {
             assert_eq!(after.get(name), before.get(name), "{name}");
         }
         assert_ne!(after["rtl_out/core/core.v"], before["rtl_out/core/core.v"]);
-        place.done(["generate", "core.toml", "--check"]);
-        place.assert_no_staging();
-        place.write("core.toml", COSINE_POWER);
-        place.done(["generate", "core.toml"]);
+        dir.done(["generate", "core.toml", "--check"]);
+        dir.assert_no_staging();
+        dir.write("core.toml", COSINE_POWER);
+        dir.done(["generate", "core.toml"]);
     }
 }
 
 #[test]
 fn a_directory_in_the_way_is_named() {
-    let place = Place::with("core.toml", COSINE_POWER);
-    place.write("rtl_out/core/core.v/mine.txt", "mine");
-    let before = place.files();
-    place.glint(["generate", "core.toml"]).refused(1, &["rtl_out/core/core.v", "--force"]);
-    assert_eq!(place.files(), before);
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    dir.write("rtl_out/core/core.v/mine.txt", "mine");
+    let before = dir.files();
+    dir.glint(["generate", "core.toml"]).refused(1, &["rtl_out/core/core.v", "--force"]);
+    assert_eq!(dir.files(), before);
 }
 
 #[test]
 fn a_directory_that_glint_never_wrote() {
-    let place = Place::with("core.toml", COSINE_POWER);
-    place.write("rtl_out/core/core.v", "module core; endmodule\n");
-    place.write("rtl_out/other/other.v", "module other; endmodule\n");
-    let before = place.files();
-    place
-        .glint(["generate", "core.toml"])
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    dir.write("rtl_out/core/core.v", "module core; endmodule\n");
+    dir.write("rtl_out/other/other.v", "module other; endmodule\n");
+    let before = dir.files();
+    dir.glint(["generate", "core.toml"])
         .refused(1, &["were not written by Glint", "rtl_out/core/core.v"]);
-    assert_eq!(place.files(), before);
+    assert_eq!(dir.files(), before);
     // A manifest that is none of Glint's vouches for nothing.
-    place.write("rtl_out/core/core.json", "{\"sha256\": {}}");
-    place.glint(["generate", "core.toml"]).refused(1, &["rtl_out/core/core.v"]);
-    place.done(["generate", "core.toml", "--force"]);
-    let after = place.files();
+    dir.write("rtl_out/core/core.json", "{\"sha256\": {}}");
+    dir.glint(["generate", "core.toml"]).refused(1, &["rtl_out/core/core.v"]);
+    dir.done(["generate", "core.toml", "--force"]);
+    let after = dir.files();
     assert_eq!(after["rtl_out/other/other.v"], before["rtl_out/other/other.v"]);
     assert_ne!(after["rtl_out/core/core.v"], before["rtl_out/core/core.v"]);
 }
@@ -231,23 +230,24 @@ fn a_directory_that_glint_never_wrote() {
 fn a_module_named_like_something_inside_is_refused() {
     let names = ["control", "clk", "start", "red", "CONTROL_FILE", "divisor", "dut", "stimulus"];
     for name in names {
-        let place = Place::with("core.toml", format!("device = \"schlick\"\nname = \"{name}\"\n"));
-        let run = place.glint(["generate", "core.toml"]);
+        let dir =
+            Workspace::with("core.toml", format!("device = \"schlick\"\nname = \"{name}\"\n"));
+        let run = dir.glint(["generate", "core.toml"]);
         let message = format!("a module cannot be named `{name}`");
         run.refused(1, &[&message, "set another `name` in the configuration"]);
-        assert_eq!(place.files().len(), 1, "{name}: something was written");
+        assert_eq!(dir.files().len(), 1, "{name}: something was written");
     }
 }
 
 #[test]
 fn two_configurations_that_make_one_module_are_refused() {
     for other in ["core_control", "core_datapath", "core_tb", "core_formal"] {
-        let place = Place::with("core.toml", COSINE_POWER);
-        place.write(&format!("{other}.toml"), COSINE_POWER);
-        let run = place.glint(["generate", "core.toml", &format!("{other}.toml")]);
+        let dir = Workspace::with("core.toml", COSINE_POWER);
+        dir.write(&format!("{other}.toml"), COSINE_POWER);
+        let run = dir.glint(["generate", "core.toml", &format!("{other}.toml")]);
         let message = format!("both make a module `{other}`");
         run.refused(1, &[&message, "`core.toml`", "set another `name`"]);
-        assert_eq!(place.files().len(), 2, "{other}: something was written");
+        assert_eq!(dir.files().len(), 2, "{other}: something was written");
     }
 }
 
@@ -255,9 +255,9 @@ fn two_configurations_that_make_one_module_are_refused() {
 #[test]
 fn computations_name_their_columns_in_the_order_of_the_ports() {
     for device in ["quad-cosine", "rough", "lyon"] {
-        let place = Place::with("core.toml", format!("device = \"{device}\"\n"));
-        place.done(["generate", "core.toml"]);
-        let manifest: serde_json::Value = place.json("rtl_out/core/core.json");
+        let dir = Workspace::with("core.toml", format!("device = \"{device}\"\n"));
+        dir.done(["generate", "core.toml"]);
+        let manifest: serde_json::Value = dir.json("rtl_out/core/core.json");
         let ports = |role: &str| -> Vec<&str> {
             let ports = manifest["ports"].as_array().expect("a list").iter();
             let ports = ports.filter(|port| port["role"] == role);

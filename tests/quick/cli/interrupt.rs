@@ -9,9 +9,9 @@ use std::time::{Duration, Instant};
 
 use rustix::process::{Pid, Signal, kill_process};
 
-use crate::place::{COSINE_POWER, Place, Run};
+use crate::workspace::{COSINE_POWER, Run, Workspace};
 
-/// The environment variable by which the processes of a run are known; its value is the place.
+/// The environment variable by which the processes of a run are known; its value is the directory.
 const MARK: &str = "GLINT_TEST_PLACE";
 
 const PATIENCE: Duration = Duration::from_secs(300);
@@ -23,8 +23,8 @@ fn signalled(command: &Command) -> Command {
     let mut signalled = Command::new("env");
     signalled.arg("--default-signal=INT,TERM,HUP").arg(command.get_program());
     signalled.args(command.get_args());
-    command.get_current_dir().into_iter().for_each(|place| {
-        signalled.current_dir(place);
+    command.get_current_dir().into_iter().for_each(|dir| {
+        signalled.current_dir(dir);
     });
     for (name, value) in command.get_envs() {
         match value {
@@ -35,36 +35,36 @@ fn signalled(command: &Command) -> Command {
     signalled
 }
 
-/// The program in a place with tools of its own, while it runs.
+/// The program in a directory with tools of its own, while it runs.
 struct Running<'a> {
-    place: &'a Place,
+    dir: &'a Workspace,
     child: Child,
     before: BTreeMap<String, Vec<u8>>,
 }
 
 impl<'a> Running<'a> {
     /// Tools in `tools/` come before those of the system.
-    fn start(place: &'a Place, arguments: &[&str]) -> Self {
-        fs::create_dir_all(place.at("tmp")).expect("a directory");
+    fn start(dir: &'a Workspace, arguments: &[&str]) -> Self {
+        fs::create_dir_all(dir.at("tmp")).expect("a directory");
         let search = std::env::var_os("PATH").unwrap_or_default();
-        let search = std::iter::once(place.at("tools")).chain(std::env::split_paths(&search));
-        let before = place.files();
-        let child = signalled(&place.command())
+        let search = std::iter::once(dir.at("tools")).chain(std::env::split_paths(&search));
+        let before = dir.files();
+        let child = signalled(&dir.command())
             .args(arguments)
             .env("PATH", std::env::join_paths(search).expect("a search path"))
-            .env("TMPDIR", place.at("tmp"))
-            .env(MARK, place.path())
+            .env("TMPDIR", dir.at("tmp"))
+            .env(MARK, dir.path())
             .stdin(Stdio::null())
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
             .spawn()
             .expect("the program starts");
-        Self { place, child, before }
+        Self { dir, child, before }
     }
 
     /// The names of all processes of the run.
     fn processes(&self) -> Vec<String> {
-        let mark = format!("{MARK}={}", self.place.path().display());
+        let mark = format!("{MARK}={}", self.dir.path().display());
         let entries = fs::read_dir("/proc").expect("/proc");
         let names = entries.filter_map(|entry| {
             let path = entry.ok()?.path();
@@ -104,16 +104,16 @@ impl<'a> Running<'a> {
 
     /// Interrupts, and looks for what is left.
     fn end(self, signal: Signal, code: i32) {
-        let (place, before) = (self.place, self.before.clone());
-        let probe = Running { place, child: dead(), before: BTreeMap::new() };
+        let (dir, before) = (self.dir, self.before.clone());
+        let probe = Running { dir, child: dead(), before: BTreeMap::new() };
         let run = self.interrupted_by(signal);
         assert_eq!(run.code, code, "{run:?}");
         let left = probe.processes();
         assert!(left.is_empty(), "still there: {left:?}");
-        assert_eq!(place.files().keys().collect::<Vec<_>>(), before.keys().collect::<Vec<_>>());
-        let temporary: Vec<_> = fs::read_dir(place.at("tmp")).expect("tmp").collect();
+        assert_eq!(dir.files().keys().collect::<Vec<_>>(), before.keys().collect::<Vec<_>>());
+        let temporary: Vec<_> = fs::read_dir(dir.at("tmp")).expect("tmp").collect();
         assert!(temporary.is_empty(), "{temporary:?}");
-        place.assert_no_staging();
+        dir.assert_no_staging();
     }
 }
 
@@ -130,20 +130,20 @@ const ENDLESS: &str = "case \"$1\" in --version|-V) echo 'Endless 1'; exit;; esa
 echo 'left' > \"${TMPDIR:-/tmp}/left-by-a-tool\"
 sleep 1000 & setsid sleep 1001 & sleep 1002";
 
-fn with_endless(tools: &[&str]) -> Place {
-    let place = Place::with("core.toml", COSINE_POWER);
+fn with_endless(tools: &[&str]) -> Workspace {
+    let dir = Workspace::with("core.toml", COSINE_POWER);
     for tool in tools {
-        place.write(&format!("tools/{tool}"), "");
-        place.script(&format!("tools/{tool}"), ENDLESS);
+        dir.write(&format!("tools/{tool}"), "");
+        dir.script(&format!("tools/{tool}"), ENDLESS);
     }
-    place
+    dir
 }
 
 #[test]
 #[cfg(feature = "outside-tools")]
 fn the_compiler_of_verilator_ends() {
-    let place = Place::with("core.toml", COSINE_POWER);
-    let mut run = Running::start(&place, &["cosim", "core.toml", "--simulator", "verilator"]);
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    let mut run = Running::start(&dir, &["cosim", "core.toml", "--simulator", "verilator"]);
     run.until("cc1plus", |run| run.processes().iter().any(|name| name == "cc1plus"));
     run.end(Signal::INT, 130);
 }
@@ -166,8 +166,8 @@ fn every_command_ends_with_its_tools() {
         ),
     ];
     for (arguments, tool, signal, code) in commands {
-        let place = with_endless(&[tool]);
-        let mut run = Running::start(&place, arguments);
+        let dir = with_endless(&[tool]);
+        let mut run = Running::start(&dir, arguments);
         run.until_tools_sleep();
         run.end(signal, code);
     }
@@ -185,11 +185,11 @@ domain = { exponent_min = 2, exponent_max = 3 }
 
 #[test]
 fn what_faults_of_the_verilog_are_shown_to_ends() {
-    let place = with_endless(&["iverilog", "vvp", "verilator", "yosys"]);
-    place.write("core.toml", NARROW);
-    fs::create_dir_all(place.at("records")).expect("a directory");
+    let dir = with_endless(&["iverilog", "vvp", "verilator", "yosys"]);
+    dir.write("core.toml", NARROW);
+    fs::create_dir_all(dir.at("records")).expect("a directory");
     let arguments = ["mutate", "core.toml", "--full", "--out", "records"];
-    let mut run = Running::start(&place, &arguments);
+    let mut run = Running::start(&dir, &arguments);
     run.until_tools_sleep();
     run.end(Signal::INT, 130);
 }
@@ -199,8 +199,8 @@ fn what_needs_no_tool_ends_too() {
     let worst = ["worst", "core.toml", "--starts", "1e9", "--out", "records"];
     let commands = [&["mutate", "core.toml"][..], &["cosim", "core.toml", "--exhaustive"], &worst];
     for arguments in commands {
-        let place = Place::with("core.toml", COSINE_POWER);
-        let run = Running::start(&place, arguments);
+        let dir = Workspace::with("core.toml", COSINE_POWER);
+        let run = Running::start(&dir, arguments);
         // The signals are listened to from the start of the program on.
         thread::sleep(Duration::from_millis(700));
         run.end(Signal::INT, 130);
@@ -210,11 +210,11 @@ fn what_needs_no_tool_ends_too() {
 /// As `nohup` starts it, and as a shell starts what runs in the background.
 #[test]
 fn an_ignored_signal_stays_ignored() {
-    let place = Place::with("core.toml", COSINE_POWER);
+    let dir = Workspace::with("core.toml", COSINE_POWER);
     let program = env!("CARGO_BIN_EXE_glint");
     let script = format!("trap '' HUP; (sleep 0.3; kill -HUP $$) & exec '{program}' \"$@\"");
     let mut shell = std::process::Command::new("sh");
-    shell.current_dir(place.path()).args(["-c", &script, "sh"]);
+    shell.current_dir(dir.path()).args(["-c", &script, "sh"]);
     shell.args(["cosim", "core.toml", "--points", "60000"]);
     Run::of(shell.output()).good();
 }
@@ -222,20 +222,20 @@ fn an_ignored_signal_stays_ignored() {
 #[test]
 fn a_proof_keeps_what_is_done() {
     let config = "device = \"cosine-power\"\n[cosine]\nfraction = 18\n[exponent]\nbits = 8\n[domain]\nexponent_max = 255\n";
-    let place = Place::with("core.toml", config);
+    let dir = Workspace::with("core.toml", config);
     let arguments = ["cosim", "core.toml", "--exhaustive", "--resume", "state.json"];
-    let mut run = Running::start(&place, &arguments);
-    run.until("state", |run| run.place.at("state.json").exists());
+    let mut run = Running::start(&dir, &arguments);
+    run.until("state", |run| run.dir.at("state.json").exists());
     thread::sleep(Duration::from_millis(300));
     let ended = run.interrupted_by(Signal::INT);
     ended.refused(130, &["evaluations are still to do", "state.json"]);
-    place.assert_no_staging();
-    let state: serde_json::Value = place.json("state.json");
+    dir.assert_no_staging();
+    let state: serde_json::Value = dir.json("state.json");
     let done = state["state"]["f"]["done"].as_u64().expect("a number");
     assert!(done > 0, "nothing was kept: {state}");
 
-    let resumed = place.done(arguments);
-    let whole = place.done(["cosim", "core.toml", "--exhaustive"]);
+    let resumed = dir.done(arguments);
+    let whole = dir.done(["cosim", "core.toml", "--exhaustive"]);
     let last = |text: &str| text.lines().last().expect("a line").to_owned();
     assert_eq!(last(&resumed), last(&whole));
 }

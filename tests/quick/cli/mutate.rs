@@ -1,64 +1,64 @@
 //! `mutate`: the names of faults, one of them with its waveform, scores and records, and what is refused.
 
-use crate::place::{COSINE_POWER, Place};
+use crate::workspace::{COSINE_POWER, Workspace};
 
 /// A fault that every computation shows.
 const SHOWS: &str = "accumulator[3]:inverted";
 
-fn place() -> Place {
-    Place::with("core.toml", COSINE_POWER)
+fn dir() -> Workspace {
+    Workspace::with("core.toml", COSINE_POWER)
 }
 
 #[test]
 fn faults_are_named_and_none_is_planted() {
-    let place = place();
-    let text = place.done(["mutate", "core.toml", "--list"]);
+    let dir = dir();
+    let text = dir.done(["mutate", "core.toml", "--list"]);
     assert!(text.starts_with("core.toml: "), "{text}");
     assert!(text.contains(SHOWS), "{text}");
-    let json = place.glint(["mutate", "core.toml", "--list", "--json"]);
+    let json = dir.glint(["mutate", "core.toml", "--list", "--json"]);
     let json = json.json();
     let faults = json["configurations"][0]["faults"].as_array();
     let faults = faults.expect("faults");
     assert_eq!(faults.len(), text.lines().count() - 1);
     let named = faults.iter().find(|fault| fault["id"] == SHOWS);
     assert_eq!(named.expect("the fault")["kind"], "inverted");
-    assert_eq!(place.files().len(), 1);
+    assert_eq!(dir.files().len(), 1);
 }
 
 #[test]
 fn a_fault_alone_shows_where_it_is_caught() {
-    let place = place();
-    let out = place.done(["mutate", "core.toml", "--only", SHOWS]);
+    let dir = dir();
+    let out = dir.done(["mutate", "core.toml", "--only", SHOWS]);
     assert!(out.contains("caught by co-simulation: seed 1, after clock"), "{out}");
     assert!(out.contains("`accumulator` is "), "{out}");
     assert!(out.contains("the shipped bench notices it"), "{out}");
-    let waveform = place.read("core_mutant.vcd");
+    let waveform = dir.read("core_mutant.vcd");
     assert!(waveform.contains("$enddefinitions"), "{waveform}");
-    let json = place.glint(["mutate", "core.toml", "--only", SHOWS, "--json"]).json();
+    let json = dir.glint(["mutate", "core.toml", "--only", SHOWS, "--json"]).json();
     assert_eq!(json["ok"], true);
     assert_eq!(json["caught"]["by"], "cosim");
     assert_eq!(json["caught"]["signal"], "accumulator");
     assert_eq!(json["shipped"], true);
-    place.assert_no_staging();
+    dir.assert_no_staging();
 }
 
 #[test]
 fn what_is_no_fault_is_refused() {
-    let place = place();
-    let run = place.glint(["mutate", "core.toml", "--only", "nothing[0]:inverted"]);
+    let dir = dir();
+    let run = dir.glint(["mutate", "core.toml", "--only", "nothing[0]:inverted"]);
     run.refused(2, &["no fault `nothing[0]:inverted`", "--list"]);
-    place.write("more.toml", COSINE_POWER);
-    let run = place.glint(["mutate", "core.toml", "more.toml", "--only", SHOWS]);
+    dir.write("more.toml", COSINE_POWER);
+    let run = dir.glint(["mutate", "core.toml", "more.toml", "--only", SHOWS]);
     run.refused(2, &["--only is for one configuration"]);
 }
 
 #[test]
 fn scores_are_recorded_and_nothing_else_is_overwritten() {
-    let place = place();
-    let run = place.glint(["mutate", "core.toml", "--json", "--out", "scores"]).quiet();
+    let dir = dir();
+    let run = dir.glint(["mutate", "core.toml", "--json", "--out", "scores"]).quiet();
     let printed = run.json();
     assert_eq!(printed["ok"], true);
-    let record = place.json("scores/core.json");
+    let record = dir.json("scores/core.json");
     assert_eq!(printed["configurations"][0], record);
     let all = &record["netlist"]["all"];
     let undecided = record["netlist"]["undecided"].as_array().expect("a list").len();
@@ -72,17 +72,17 @@ fn scores_are_recorded_and_nothing_else_is_overwritten() {
     assert!((caught..=caught + undecided).contains(&(shipped + missed)), "{all}");
     assert!(all["planted"].as_u64() > Some(2000), "{all}");
     // Over its own record it writes.
-    place.done(["mutate", "core.toml", "--out", "scores"]);
-    place.write("scores/core.json", "mine");
-    let run = place.glint(["mutate", "core.toml", "--out", "scores"]);
+    dir.done(["mutate", "core.toml", "--out", "scores"]);
+    dir.write("scores/core.json", "mine");
+    let run = dir.glint(["mutate", "core.toml", "--out", "scores"]);
     run.refused(1, &["core.json", "not of Glint's making", "--out"]);
-    assert_eq!(place.read("scores/core.json"), "mine");
+    assert_eq!(dir.read("scores/core.json"), "mine");
 }
 
 #[test]
 fn a_missing_tool_is_named_before_any_work() {
-    let place = place();
-    let run = place.with_own_tools(["mutate", "core.toml", "--full", "--out", "scores"]);
+    let dir = dir();
+    let run = dir.with_own_tools(["mutate", "core.toml", "--full", "--out", "scores"]);
     run.refused(1, &["`iverilog` is not on PATH", "bash tools/install"]);
-    assert!(!place.files().contains_key("scores/core.json"));
+    assert!(!dir.files().contains_key("scores/core.json"));
 }

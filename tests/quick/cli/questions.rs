@@ -3,14 +3,14 @@
 use glint::registry::Registry;
 use serde_json::{Value, json};
 
-use crate::place::{Place, Run};
+use crate::workspace::{Run, Workspace};
 
 /// (n/2·(cos γ − 1) + 1)², six bits of which would do for these points.
 const SQUARE: &str = "device = \"cosine-power\"\npower = 2\n";
 
 fn eval(operands: &[&str]) -> Run {
-    let place = Place::with("core.toml", SQUARE);
-    place.glint(["eval", "core.toml"].iter().chain(operands))
+    let dir = Workspace::with("core.toml", SQUARE);
+    dir.glint(["eval", "core.toml"].iter().chain(operands))
 }
 
 fn named<'a>(list: &'a Value, name: &str) -> &'a Value {
@@ -59,11 +59,11 @@ fn a_point_outside_the_domain_is_marked() {
 
 #[test]
 fn points_are_evaluated_in_batch() {
-    let place = Place::with("core.toml", SQUARE);
+    let dir = Workspace::with("core.toml", SQUARE);
     // (n/2·(c − 1) + 1)² at n = 2 is c².
     let points = "cos_gamma, exponent ,red\n0.5,2,200\n#1048576,2,#100\n0.25,2,\n";
-    place.write("points.csv", points);
-    let table = place.done(["eval", "core.toml", "--batch", "points.csv", "green=0", "blue=64"]);
+    dir.write("points.csv", points);
+    let table = dir.done(["eval", "core.toml", "--batch", "points.csv", "green=0", "blue=64"]);
     let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
     assert_eq!(
         rows[0].join(","),
@@ -77,19 +77,19 @@ fn points_are_evaluated_in_batch() {
     // What is empty is taken from the top: a sixteenth of 255.
     assert_eq!((rows[3][2], rows[3][6], rows.len()), ("255", "16", 4));
     let json = ["eval", "core.toml", "--batch", "points.csv", "--json"];
-    let told: Value = serde_json::from_str(&place.done(json)).expect("JSON");
+    let told: Value = serde_json::from_str(&dir.done(json)).expect("JSON");
     assert_eq!(told["points"][0]["outputs"]["red_out"], 50);
     assert_eq!(told["points"][0]["operands"]["cos_gamma"], 524_288);
     // From standard input the same.
-    let input = std::fs::File::open(place.at("points.csv")).expect("a file");
-    let mut command = place.command();
+    let input = std::fs::File::open(dir.at("points.csv")).expect("a file");
+    let mut command = dir.command();
     command.args(["eval", "core.toml", "--batch", "-", "green=0", "blue=64"]).stdin(input);
     assert_eq!(Run::of(command.output()).out, table);
 }
 
 #[test]
 fn a_batch_that_is_wrong_is_refused_with_its_line() {
-    let place = Place::with("core.toml", SQUARE);
+    let dir = Workspace::with("core.toml", SQUARE);
     for (text, message) in [
         ("cos_gama\n1\n", "there is no operand `cos_gama`; did you mean `cos_gamma`?"),
         ("red,red\n1,1\n", "operand `red` is given twice"),
@@ -97,15 +97,13 @@ fn a_batch_that_is_wrong_is_refused_with_its_line() {
         ("red,green\n1\n", "cannot read `points.csv`"),
         ("red\n", "has no row of operands"),
     ] {
-        place.write("points.csv", text);
-        place.glint(["eval", "core.toml", "--batch", "points.csv"]).refused(1, &[message]);
+        dir.write("points.csv", text);
+        dir.glint(["eval", "core.toml", "--batch", "points.csv"]).refused(1, &[message]);
     }
     let twice = ["eval", "core.toml", "red=1", "--batch", "points.csv"];
-    place.write("points.csv", "red\n1\n");
-    place.glint(twice).refused(1, &["operand `red` is given twice"]);
-    place
-        .glint(["eval", "core.toml", "--batch", "none.csv"])
-        .refused(1, &["cannot read `none.csv`"]);
+    dir.write("points.csv", "red\n1\n");
+    dir.glint(twice).refused(1, &["operand `red` is given twice"]);
+    dir.glint(["eval", "core.toml", "--batch", "none.csv"]).refused(1, &["cannot read `none.csv`"]);
 }
 
 #[test]
@@ -140,19 +138,19 @@ fn operands_that_are_wrong_usage() {
 
 #[test]
 fn devices_and_configurations_are_listed() {
-    let place = Place::with("configs/mine.toml", SQUARE);
-    let text = place.done(["list"]);
+    let dir = Workspace::with("configs/mine.toml", SQUARE);
+    let text = dir.done(["list"]);
     for part in ["| rough ", "| cosine-power ", "\nconfigs/mine.toml\n"] {
         assert!(text.contains(part), "no {part} in {text}");
     }
-    let value = place.glint(["list", "--json"]).json();
+    let value = dir.glint(["list", "--json"]).json();
     assert_eq!(value["configs"], json!(["configs/mine.toml"]));
     let names: Vec<&Value> =
         value["devices"].as_array().unwrap().iter().map(|device| &device["name"]).collect();
     let registry = Registry::catalogue();
     let catalogue: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
     assert_eq!(names, catalogue);
-    assert_eq!(Place::new().glint(["list", "--json"]).json()["configs"], json!([]));
+    assert_eq!(Workspace::new().glint(["list", "--json"]).json()["configs"], json!([]));
 }
 
 #[test]
@@ -160,15 +158,15 @@ fn a_new_configuration_is_accepted() {
     for (device, name) in
         [("rough", "rough"), ("cosine-power", "cosine_power"), ("schlick", "schlick")]
     {
-        let place = Place::new();
-        let text = place.done(["new", device]);
-        place.write("file.toml", &text);
-        let run = place.glint(["generate", "file.toml"]);
+        let dir = Workspace::new();
+        let text = dir.done(["new", device]);
+        dir.write("file.toml", &text);
+        let run = dir.glint(["generate", "file.toml"]);
         // Defaults are inside the contract: there is no warning of it.
         assert_eq!(run.code, 0, "{run:?}");
         assert!(!run.err.contains("outside the accuracy contract"), "{run:?}");
-        assert!(place.at(&format!("rtl_out/{name}/{name}.v")).exists());
-        let value = place.glint(["new", device, "--json", "--name", "mine"]).json();
+        assert!(dir.at(&format!("rtl_out/{name}/{name}.v")).exists());
+        let value = dir.glint(["new", device, "--json", "--name", "mine"]).json();
         assert_eq!((&value["device"], &value["name"]), (&device.into(), &"mine".into()));
         let renamed = text.replace(&format!("name = \"{name}\""), "name = \"mine\"");
         assert_eq!(value["text"], renamed);
@@ -177,8 +175,8 @@ fn a_new_configuration_is_accepted() {
 
 #[test]
 fn new_with_wrong_words() {
-    let place = Place::new();
-    let run = place.glint(["new", "cosine_powr"]);
+    let dir = Workspace::new();
+    let run = dir.glint(["new", "cosine_powr"]);
     run.refused(2, &["there is no device `cosine_powr`; did you mean `cosine-power`? The devices are: quad-cosine, cosine-squared"]);
     assert_eq!(run.out, "");
     for (name, message) in [
@@ -188,7 +186,7 @@ fn new_with_wrong_words() {
         ("a\"\nb", "has the character"),
         ("", "is empty"),
     ] {
-        let run = place.glint(["new", "rough", "--name", name]);
+        let run = dir.glint(["new", "rough", "--name", name]);
         run.refused(2, &[message, "give a Verilog identifier"]);
         assert_eq!(run.out, "");
     }
@@ -196,15 +194,15 @@ fn new_with_wrong_words() {
 
 #[test]
 fn help_teaches_by_example() {
-    let place = Place::new();
+    let dir = Workspace::new();
     for command in ["generate", "cosim", "eval", "compare", "list", "new"] {
-        let text = place.done([command, "--help"]);
+        let text = dir.done([command, "--help"]);
         let (_, examples) = text.split_once("Example").expect("an example");
         assert!(examples.contains(&format!("  glint {command} ")), "{text}");
     }
-    let text = place.done(["--help"]);
+    let text = dir.done(["--help"]);
     assert!(text.contains("Examples:\n  glint ") && text.contains("Exit codes: 0"), "{text}");
     for flag in ["-V", "--version"] {
-        assert_eq!(place.done([flag]), format!("glint {}\n", env!("CARGO_PKG_VERSION")));
+        assert_eq!(dir.done([flag]), format!("glint {}\n", env!("CARGO_PKG_VERSION")));
     }
 }

@@ -3,41 +3,41 @@
 use std::ffi::OsString;
 
 use crate::common::said::{Case, cases};
-use crate::place::{COSINE_POWER, Place};
+use crate::workspace::{COSINE_POWER, Workspace};
 
 /// Runs a copy of the program as a user who may not do everything, if this one may.
 #[cfg(unix)]
-pub fn unprivileged(place: &Place, arguments: &[&str]) -> crate::place::Run {
+pub fn unprivileged(dir: &Workspace, arguments: &[&str]) -> crate::workspace::Run {
     use std::fs;
     use std::os::unix::fs::{MetadataExt, PermissionsExt};
     use std::os::unix::process::CommandExt;
     use std::process::Command;
 
-    use crate::place::shell;
+    use crate::workspace::shell;
 
     // Its own directory may be closed to others.
-    let elsewhere = Place::new();
+    let elsewhere = Workspace::new();
     let program = elsewhere.at("glint");
     let original = env!("CARGO_BIN_EXE_glint");
     shell("cp \"$2\" \"$1\"", &program, original.as_ref());
     let mut command = Command::new(&program);
-    command.args(arguments).current_dir(place.path());
+    command.args(arguments).current_dir(dir.path());
     // The owner of what a process makes is the user that it runs as.
     if fs::metadata(&program).expect("a copy").uid() == 0 {
         for (path, mode) in [(elsewhere.path(), 0o755), (&program, 0o755)] {
             fs::set_permissions(path, PermissionsExt::from_mode(mode)).expect("permissions");
         }
-        let mode = fs::metadata(place.path()).expect("a place").permissions().mode();
+        let mode = fs::metadata(dir.path()).expect("a directory").permissions().mode();
         let open = PermissionsExt::from_mode(mode | 0o055);
-        fs::set_permissions(place.path(), open).expect("permissions");
+        fs::set_permissions(dir.path(), open).expect("permissions");
         command.uid(65534).gid(65534);
     }
-    crate::place::Run::of(command.output())
+    crate::workspace::Run::of(command.output())
 }
 
 #[test]
 fn wrong_usage() {
-    let place = Place::with("core.toml", COSINE_POWER);
+    let dir = Workspace::with("core.toml", COSINE_POWER);
     for (arguments, message) in [
         (&["generat"][..], "similar subcommands exist: 'render', 'generate'"),
         (&["cosim", "--point", "3"], "a similar argument exists: '--points'"),
@@ -49,26 +49,26 @@ fn wrong_usage() {
         (&["eval"], "required arguments were not provided"),
         (&["new"], "required arguments were not provided"),
     ] {
-        let run = place.glint(arguments);
+        let run = dir.glint(arguments);
         run.refused(2, &[message]);
         assert_eq!(run.out, "");
-        let run = place.glint(arguments.iter().chain(&["--json"]));
+        let run = dir.glint(arguments.iter().chain(&["--json"]));
         assert_eq!((run.code, run.err.as_str()), (2, ""), "{run:?}");
         let value = run.json();
         assert_eq!(value["ok"], false);
         assert!(value["problems"][0]["message"].as_str().unwrap().contains(message), "{value}");
     }
     let most = "cosim core.toml --simulator icarus --points 18446744073709551615";
-    let run = place.glint(most.split(' '));
+    let run = dir.glint(most.split(' '));
     run.refused(2, &["an external simulator takes at most 1000000"]);
 }
 
 #[test]
 fn nothing_panics() {
-    let place = Place::with("core.toml", COSINE_POWER);
-    place.write("null.toml", [0; 64]);
-    place.write("deep.toml", format!("a = {}", "[".repeat(100_000)));
-    place.write("long.toml", format!("{COSINE_POWER}{} = 1\n", "k".repeat(100_000)));
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    dir.write("null.toml", [0; 64]);
+    dir.write("deep.toml", format!("a = {}", "[".repeat(100_000)));
+    dir.write("long.toml", format!("{COSINE_POWER}{} = 1\n", "k".repeat(100_000)));
     let odd = "- -- = # core.toml null.toml deep.toml long.toml / ü=1 🙂".split(' ');
     let mut odd: Vec<OsString> = odd.chain([""]).map(OsString::from).collect();
     #[cfg(unix)]
@@ -80,7 +80,7 @@ fn nothing_panics() {
                 if command == "cosim" && argument == "core.toml" {
                     continue; // 100 000 points, which other tests check fewer of.
                 }
-                let run = place.glint(&arguments);
+                let run = dir.glint(&arguments);
                 assert!((0..=2).contains(&run.code), "{arguments:?}: {run:?}");
             }
         }
@@ -91,12 +91,12 @@ fn nothing_panics() {
 #[test]
 fn files_that_are_refused() {
     for Case { heading: commands, file, said } in cases(include_str!("refused.txt")) {
-        let place = Place::with("core.toml", &file);
+        let dir = Workspace::with("core.toml", &file);
         for command in commands.split(' ') {
-            place.glint([command, "core.toml"]).refused(1, &said);
-            let value = place.glint([command, "core.toml", "--json"]).json();
+            dir.glint([command, "core.toml"]).refused(1, &said);
+            let value = dir.glint([command, "core.toml", "--json"]).json();
             assert!(value["problems"][0]["line"].as_u64().is_some(), "{value}");
         }
-        assert_eq!(place.files().len(), 1, "something was written: {file}");
+        assert_eq!(dir.files().len(), 1, "something was written: {file}");
     }
 }

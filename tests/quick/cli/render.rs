@@ -6,7 +6,7 @@ use std::io::Cursor;
 use png::{BitDepth, ColorType, Decoder, Encoder};
 use serde_json::Value;
 
-use crate::place::{COSINE_POWER, Place};
+use crate::workspace::{COSINE_POWER, Workspace};
 
 /// Every line of the documentation's list of pictures that is a command.
 const PICTURES: &str = "docs/images/README.md";
@@ -37,8 +37,8 @@ fn pixels(png: &[u8]) -> (u32, u32, Vec<[u8; 3]>) {
 }
 
 /// The picture that was drawn last.
-fn picture(place: &Place) -> Vec<u8> {
-    fs::read(place.at("out.png")).expect("a picture")
+fn picture(dir: &Workspace) -> Vec<u8> {
+    fs::read(dir.at("out.png")).expect("a picture")
 }
 
 fn png(colour: ColorType, bits: BitDepth, width: u32, bytes: &[u8]) -> Vec<u8> {
@@ -73,11 +73,11 @@ fn bumps() -> Vec<u8> {
 
 #[test]
 fn the_same_pixels_whichever_computes_them() {
-    let place = Place::with("power.toml", COSINE_POWER);
-    place.write("rough.toml", "device = \"rough\"\n");
-    place.write("bumps.png", bumps());
-    place.write("quad.toml", "device = \"quad-cosine\"\n");
-    place.write("squared.toml", "device = \"cosine-squared\"\n");
+    let dir = Workspace::with("power.toml", COSINE_POWER);
+    dir.write("rough.toml", "device = \"rough\"\n");
+    dir.write("bumps.png", bumps());
+    dir.write("quad.toml", "device = \"quad-cosine\"\n");
+    dir.write("squared.toml", "device = \"cosine-squared\"\n");
     for (config, more) in [
         ("power.toml", &["--height", "bumps.png"][..]),
         ("rough.toml", &["--height", "bumps.png"]),
@@ -89,21 +89,21 @@ fn the_same_pixels_whichever_computes_them() {
         let there = if cfg!(feature = "outside-tools") { &all[..] } else { &all[..2] };
         for through in there {
             let arguments = [&[config, "--through", through], more].concat();
-            let out = place.done(render(&arguments));
+            let out = dir.done(render(&arguments));
             assert!(out.contains(&format!("through {through}")), "{out}");
-            pictures.push(picture(&place));
+            pictures.push(picture(&dir));
         }
         for (through, picture) in there.iter().zip(&pictures) {
             assert!(pictures[0] == *picture, "{config}: golden, {through}");
         }
     }
-    place.assert_no_staging();
+    dir.assert_no_staging();
 }
 
 /// Every configuration that comes with Glint is understood, and stays within its bound in a picture.
 #[test]
 fn every_configuration_draws() {
-    let place = Place::new();
+    let dir = Workspace::new();
     let configs = ["configs", "configs/studies"].map(|path| fs::read_dir(path).expect(path));
     let mut drawn = 0;
     for entry in configs.into_iter().flatten() {
@@ -114,10 +114,10 @@ fn every_configuration_draws() {
         let path = path.to_str().expect("UTF-8");
         let mut pictures = Vec::new();
         for through in ["golden", "rust-hdl"] {
-            let run = place.glint(render(&[path, "--through", through, "--compare", "--json"]));
+            let run = dir.glint(render(&[path, "--through", through, "--compare", "--json"]));
             assert_eq!(run.code, 0, "{path}: {run:?}");
             assert_within_bound(&run.json()["compare"]);
-            pictures.push(picture(&place));
+            pictures.push(picture(&dir));
         }
         assert!(pictures.iter().all(|it| *it == pictures[0]), "{path}: golden, rust_hdl");
         drawn += 1;
@@ -127,16 +127,16 @@ fn every_configuration_draws() {
 
 #[test]
 fn the_same_bytes_with_any_number_of_threads() {
-    let place = Place::with("power.toml", COSINE_POWER);
+    let dir = Workspace::with("power.toml", COSINE_POWER);
     let mut pictures = Vec::new();
     for threads in ["1", "2", "5"] {
-        let run = place
+        let run = dir
             .command()
             .args(render(&["power.toml", "--shape", "group", "--compare"]))
             .env("RAYON_NUM_THREADS", threads)
             .output();
         assert!(run.expect("the program runs").status.success());
-        pictures.push(picture(&place));
+        pictures.push(picture(&dir));
     }
     assert!(pictures.iter().all(|picture| *picture == pictures[0]));
 }
@@ -148,18 +148,18 @@ fn the_pictures_of_the_documentation() {
     let commands: Vec<&str> =
         text.lines().filter_map(|line| line.strip_prefix("    glint ")).collect();
     assert!(!commands.is_empty(), "no command in {PICTURES}");
-    let place = Place::new();
+    let dir = Workspace::new();
     for command in commands {
         let (command, file) = command.split_once(" --out ").expect("an --out at the end");
         let run = std::process::Command::new(env!("CARGO_BIN_EXE_glint"))
             .args(command.split_whitespace())
             .arg("--out")
-            .arg(place.at("out.png"))
+            .arg(dir.at("out.png"))
             .output()
             .expect("the program runs");
         assert!(run.status.success(), "{run:?}");
         let committed = fs::read(file).unwrap_or_else(|error| panic!("{file}: {error}"));
-        let made = picture(&place);
+        let made = picture(&dir);
         assert!(pixels(&made) == pixels(&committed), "{file}: other pixels");
         assert!(made == committed, "{file}: the same pixels in other bytes");
     }
@@ -169,15 +169,15 @@ fn the_pictures_of_the_documentation() {
 /// be, and the corners are the background.
 #[test]
 fn a_highlight_is_where_it_should_be() {
-    let place = Place::with("power.toml", COSINE_POWER);
+    let dir = Workspace::with("power.toml", COSINE_POWER);
     let eye = ["--camera", "0,0,10", "--fov", "12.5", "--light", "0,0,1"];
     let plain = ["--diffuse", "0", "--ambient", "0", "--specular", "1"];
     let more = ["power.toml", "--samples", "1", "--background", "0,0,1"];
     let arguments = [&eye[..], &plain, &more].concat();
     let done =
-        place.done(["render", "--size", "41x41", "--out", "out.png"].into_iter().chain(arguments));
+        dir.done(["render", "--size", "41x41", "--out", "out.png"].into_iter().chain(arguments));
     assert!(done.contains("41x41 pixels, n = 80"), "{done}");
-    let (width, height, pixels) = pixels(&picture(&place));
+    let (width, height, pixels) = pixels(&picture(&dir));
     assert_eq!((width, height), (41, 41));
     let at = |column: usize, row: usize| pixels[row * 41 + column];
     // cos γ is 1 but for half a pixel; W(80, 0) falls short of 1 by an ulp of 2⁻¹⁶ for each squaring.
@@ -193,34 +193,34 @@ fn a_highlight_is_where_it_should_be() {
 /// Lines of points along the spans of triangles, set up by the host.
 #[test]
 fn lines_along_triangles() {
-    let place = Place::with("quad.toml", "device = \"quad-cosine\"\n");
-    place.write("squared.toml", "device = \"cosine-squared\"\nlength.bits = 4\n");
-    place.write("bumps.png", bumps());
+    let dir = Workspace::with("quad.toml", "device = \"quad-cosine\"\n");
+    dir.write("squared.toml", "device = \"cosine-squared\"\nlength.bits = 4\n");
+    dir.write("bumps.png", bumps());
     // One large triangle whose normals turn from side to side: spans of up to 80 samples.
-    place.write(
+    dir.write(
         "large.obj",
         "v -1 -1 0\nv 1 -1 0\nv 0 1 0\nvn -0.2 0.1 1\nvn 0.2 0.1 1\nvn 0 0.3 1\nf 1//1 2//2 3//3\n",
     );
     for (config, largest) in [("quad.toml", 4.0), ("squared.toml", 26.0)] {
         let arguments = [config, "--compare", "--json", "--exponent", "20"];
         let mesh = ["--mesh", "large.obj", "--light", "0,0.2,1"];
-        let run = place.glint(render(&[&arguments[..], &mesh].concat())).good();
+        let run = dir.glint(render(&[&arguments[..], &mesh].concat())).good();
         let told = &run.json()["compare"];
         // Of 0.7·255: cos¹⁶(√(n/16)·δ) is within 0.6 % of cosⁿδ and cos² within 12 %. Angles that grow evenly
         // are less than 0.002 from those of the interpolated normals, which is a level where cos²⁰γ is steepest.
         assert!(number(told, "largest_difference") <= largest, "{told}");
         assert_within_bound(told);
     }
-    let run = place.glint(render(&["quad.toml", "--height", "bumps.png"]));
+    let run = dir.glint(render(&["quad.toml", "--height", "bumps.png"]));
     run.refused(1, &["walks lines of points, which a height map cannot perturb"]);
 }
 
 #[test]
 fn comparison_in_numbers() {
-    let place = Place::with("power.toml", COSINE_POWER);
-    let run = place.glint(render(&["power.toml", "--compare", "--json"])).good();
+    let dir = Workspace::with("power.toml", COSINE_POWER);
+    let run = dir.glint(render(&["power.toml", "--compare", "--json"])).good();
     let told = run.json();
-    let (width, height, pixels) = pixels(&picture(&place));
+    let (width, height, pixels) = pixels(&picture(&dir));
     // Captions stand in 22 rows below the pictures.
     assert_eq!((width, height), (3 * 48, 36 + 22));
     assert!(pixels[36 * 144..].iter().any(|pixel| pixel[0] > 200), "no letter");
@@ -245,17 +245,17 @@ fn comparison_in_numbers() {
 /// Meshes: a face toward the eye, whichever way around; degenerate triangles are told of.
 #[test]
 fn a_mesh_is_seen_from_both_sides() {
-    let place = Place::with("front.obj", SQUARE);
-    place.write(
+    let dir = Workspace::with("front.obj", SQUARE);
+    dir.write(
         "back.obj",
         SQUARE.replace("f 1/1 2/2 3/3 4/4", "f 1/1 4/4 3/3 2/2\nf 1 1 2\nf 2 3 2"),
     );
-    place.done(render(&["--mesh", "front.obj"]));
-    let front = picture(&place);
-    let run = place.glint(render(&["--mesh", "back.obj"])).good();
+    dir.done(render(&["--mesh", "front.obj"]));
+    let front = picture(&dir);
+    let run = dir.glint(render(&["--mesh", "back.obj"])).good();
     assert!(run.err.contains("2 triangles are without area and were left out"), "{run:?}");
-    assert!(front == picture(&place));
-    let run = place.glint(render(&["--mesh", "back.obj", "--json"]));
+    assert!(front == picture(&dir));
+    let run = dir.glint(render(&["--mesh", "back.obj", "--json"]));
     assert_eq!(run.json()["degenerate_triangles"], 2);
     assert_eq!(run.json()["triangles"], 2);
 }
@@ -278,22 +278,22 @@ fn a_million_triangles() {
             let _ = writeln!(text, "f {at} {} {} {}", at + 1, at + columns + 1, at + columns);
         }
     }
-    let place = Place::with("sheet.obj", text);
-    let run = place.glint(render(&["--mesh", "sheet.obj", "--json"])).good();
+    let dir = Workspace::with("sheet.obj", text);
+    let run = dir.glint(render(&["--mesh", "sheet.obj", "--json"])).good();
     assert_eq!(run.json()["triangles"], 1_000_000);
 }
 
 #[test]
 fn meshes_that_cannot_be_used() {
-    let place = Place::with("binary.obj", [0x76, 0x20, 0xff, 0xfe]);
-    place.write("empty.obj", "");
-    place.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
-    place.write("vertex.obj", "v 0 0 0\nv 1 NaN 0\n");
-    place.write("normal.obj", format!("vn 0 nan 1\n{SQUARE}"));
-    place.write("index.obj", format!("{SQUARE}f 1 2 9\n"));
-    place.write("face.obj", format!("{SQUARE}f 1 2\n"));
-    place.write("huge.obj", "v 1e200 0 0\nv -1e200 0 0\nv 0 1e200 0\nf 1 2 3\n");
-    let before = place.files();
+    let dir = Workspace::with("binary.obj", [0x76, 0x20, 0xff, 0xfe]);
+    dir.write("empty.obj", "");
+    dir.write("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
+    dir.write("vertex.obj", "v 0 0 0\nv 1 NaN 0\n");
+    dir.write("normal.obj", format!("vn 0 nan 1\n{SQUARE}"));
+    dir.write("index.obj", format!("{SQUARE}f 1 2 9\n"));
+    dir.write("face.obj", format!("{SQUARE}f 1 2\n"));
+    dir.write("huge.obj", "v 1e200 0 0\nv -1e200 0 0\nv 0 1e200 0\nf 1 2 3\n");
+    let before = dir.files();
     for (file, message) in [
         ("missing.obj", "No such file"),
         (".", "it is a directory"),
@@ -306,27 +306,27 @@ fn meshes_that_cannot_be_used() {
         ("face.obj", "line 10: a face has 2 corners"),
         ("huge.obj", "vertex 1 is farther away than 1e30"),
     ] {
-        let run = place.glint(render(&["--mesh", file]));
+        let run = dir.glint(render(&["--mesh", file]));
         let causes = run.err.replace("\n  caused by: ", ": ");
         assert_eq!(run.code, 1, "{run:?}");
         assert!(causes.contains(message), "no `{message}` in\n{causes}");
     }
-    assert!(before == place.files());
+    assert!(before == dir.files());
 }
 
 #[test]
 fn height_maps_that_cannot_be_used() {
-    let place = Place::with("text.png", "P2 1 1 255 0");
+    let dir = Workspace::with("text.png", "P2 1 1 255 0");
     let colour = png(ColorType::Rgb, BitDepth::Eight, 2, &[9; 12]);
-    place.write("rgb.png", &colour);
-    place.write("alpha.png", png(ColorType::GrayscaleAlpha, BitDepth::Eight, 2, &[9; 8]));
+    dir.write("rgb.png", &colour);
+    dir.write("alpha.png", png(ColorType::GrayscaleAlpha, BitDepth::Eight, 2, &[9; 8]));
     let whole = png(ColorType::Grayscale, BitDepth::Sixteen, 4, &[9; 32]);
-    place.write("deep.png", &whole);
-    place.write("cut.png", &whole[..whole.len() - 20]);
-    place.write("wide.png", png(ColorType::Grayscale, BitDepth::Eight, 8193, &[0; 8193]));
-    place.write("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    place.write("rough.toml", "device = \"rough\"\n");
-    let before = place.files();
+    dir.write("deep.png", &whole);
+    dir.write("cut.png", &whole[..whole.len() - 20]);
+    dir.write("wide.png", png(ColorType::Grayscale, BitDepth::Eight, 8193, &[0; 8193]));
+    dir.write("bare.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    dir.write("rough.toml", "device = \"rough\"\n");
+    let before = dir.files();
     for (file, message) in [
         ("missing.png", "No such file"),
         ("text.png", "it is not a PNG file"),
@@ -335,25 +335,24 @@ fn height_maps_that_cannot_be_used() {
         ("cut.png", "it is not a whole PNG file"),
         ("wide.png", "it has 8193x1 pixels; at most 8192x8192"),
     ] {
-        let run = place.glint(render(&["--height", file]));
+        let run = dir.glint(render(&["--height", file]));
         run.refused(1, &["the height map", file, message]);
     }
-    let run = place.glint(render(&["--height", "deep.png", "--mesh", "bare.obj"]));
+    let run = dir.glint(render(&["--height", "deep.png", "--mesh", "bare.obj"]));
     run.refused(2, &["texture coordinates (`vt`) at every corner"]);
-    assert!(before == place.files());
-    place.done(render(&["rough.toml", "--height", "deep.png"]));
+    assert!(before == dir.files());
+    dir.done(render(&["rough.toml", "--height", "deep.png"]));
     // Steeper than 30°, the domain's largest dγ.
-    place.write("bumps.png", bumps());
-    let run = place
-        .glint(render(&["rough.toml", "--height", "bumps.png", "--height-depth", "40"]))
-        .good();
+    dir.write("bumps.png", bumps());
+    let run =
+        dir.glint(render(&["rough.toml", "--height", "bumps.png", "--height-depth", "40"])).good();
     assert!(run.err.contains("the deviation exceeds the device's domain"), "{run:?}");
 }
 
 #[test]
 fn wrong_settings() {
-    let place = Place::with("narrow.toml", "device = \"rough\"\ndomain.exponent_max = 128\n");
-    let before = place.files();
+    let dir = Workspace::with("narrow.toml", "device = \"rough\"\ndomain.exponent_max = 128\n");
+    let before = dir.files();
     for (arguments, message) in [
         (&["--size", "100000x10"][..], "1x1 to 8192x8192 are possible"),
         (&["--size", "0x10"], "1x1 to 8192x8192 are possible"),
@@ -381,43 +380,43 @@ fn wrong_settings() {
         let size = !arguments.contains(&"--size");
         let small = if size { &SMALL[..] } else { &SMALL[2..] };
         let all = ["render"].iter().chain(small).chain(arguments);
-        place.glint(all).refused(2, &[message]);
+        dir.glint(all).refused(2, &[message]);
     }
     let many: Vec<&str> = (0..17).flat_map(|_| ["--light", "1,1,1"]).collect();
-    place.glint(render(&many)).refused(2, &["17 lights; 1 to 16 are possible"]);
-    place.glint(["render"]).refused(2, &["--out <FILE>"]);
-    let run = place.glint(["render", "--out", "sphere.jpg"]);
+    dir.glint(render(&many)).refused(2, &["17 lights; 1 to 16 are possible"]);
+    dir.glint(["render"]).refused(2, &["--out <FILE>"]);
+    let run = dir.glint(["render", "--out", "sphere.jpg"]);
     run.refused(2, &["the picture is a PNG file"]);
-    let run = place.glint(render(&["--camera", "0,0,0"]));
+    let run = dir.glint(render(&["--camera", "0,0,0"]));
     run.refused(1, &["the camera stands where it looks at"]);
-    assert!(before == place.files());
+    assert!(before == dir.files());
 }
 
 #[test]
 fn places_that_cannot_be_written() {
-    let place = Place::with("core.toml", COSINE_POWER);
-    fs::create_dir(place.at("here.png")).expect("a directory");
-    let before = place.files();
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    fs::create_dir(dir.at("here.png")).expect("a directory");
+    let before = dir.files();
     for (out, part) in [
         ("nowhere/out.png", "cannot write `nowhere/out.png`"),
         ("here.png", "cannot write `here.png`"),
         ("core.toml/out.png", "cannot write `core.toml/out.png`"),
     ] {
-        let run = place.glint(["render", "core.toml", "--size", "8x8", "--out", out]);
+        let run = dir.glint(["render", "core.toml", "--size", "8x8", "--out", out]);
         run.refused(1, &[part]);
     }
-    assert!(before == place.files());
-    place.assert_no_staging();
+    assert!(before == dir.files());
+    dir.assert_no_staging();
 }
 
 /// What was there stays when something fails late.
 #[cfg(unix)]
 #[test]
 fn an_old_picture_stays() {
-    let place = Place::with("core.toml", COSINE_POWER);
-    place.write("out.png", "the old one");
-    let run = place.with_own_tools(render(&["core.toml", "--through", "verilator"]));
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    dir.write("out.png", "the old one");
+    let run = dir.with_own_tools(render(&["core.toml", "--through", "verilator"]));
     run.refused(1, &["`verilator` is not on PATH"]);
-    assert_eq!(place.read("out.png"), "the old one");
-    place.assert_no_staging();
+    assert_eq!(dir.read("out.png"), "the old one");
+    dir.assert_no_staging();
 }

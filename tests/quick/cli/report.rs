@@ -1,35 +1,35 @@
-//! `report`: the ledger for scripts, the same bytes twice, a page that needs nothing but itself, and places
+//! `report`: the ledger for scripts, the same bytes twice, a page that needs nothing but itself, and directories
 //! that cannot be written.
 
 use serde_json::Value;
 
-use crate::place::{Place, Run};
+use crate::workspace::{Run, Workspace};
 
-fn report(place: &Place, arguments: &[&str]) -> Run {
-    place.glint(["report", "--no-synthesis"].iter().chain(arguments))
+fn report(dir: &Workspace, arguments: &[&str]) -> Run {
+    dir.glint(["report", "--no-synthesis"].iter().chain(arguments))
 }
 
 #[test]
 fn twice_the_same_and_self_contained() {
-    let place = Place::new();
-    let run = report(&place, &["--out", "first", "--json"]).quiet();
+    let dir = Workspace::new();
+    let run = report(&dir, &["--out", "first", "--json"]).quiet();
     let told = run.json();
     assert_eq!(told["ok"], true);
     assert_eq!(told["written"][0], "first/report.json");
-    report(&place, &["--out", "second"]).good();
-    let page = place.read("first/report.html");
-    let figures = place.read("first/report.json");
-    assert_eq!(page, place.read("second/report.html"));
-    assert_eq!(figures, place.read("second/report.json"));
-    assert_eq!(place.files().len(), 4);
+    report(&dir, &["--out", "second"]).good();
+    let page = dir.read("first/report.html");
+    let figures = dir.read("first/report.json");
+    assert_eq!(page, dir.read("second/report.html"));
+    assert_eq!(figures, dir.read("second/report.json"));
+    assert_eq!(dir.files().len(), 4);
     // Written over what is there, and nothing else comes to lie beside it.
-    report(&place, &["--out", "first"]).good();
-    assert_eq!(place.files().len(), 4);
+    report(&dir, &["--out", "first"]).good();
+    assert_eq!(dir.files().len(), 4);
 
     for reference in ["http", "src=", "url(", "@import", "<link", "<script", "file:"] {
         assert!(!page.contains(reference), "`{reference}` in the page");
     }
-    let path = place.path().display().to_string();
+    let path = dir.path().display().to_string();
     assert!(!page.contains(&path) && !figures.contains(&path));
     links_lead_somewhere(&page);
     plots_are_described(&page);
@@ -85,12 +85,12 @@ fn plots_are_described(page: &str) {
 
 #[test]
 fn timings_stand_apart() {
-    let place = Place::new();
-    let plain = report(&place, &["--out", "plain"]);
-    let timed = report(&place, &["--out", "timed", "--benchmark", "--json"]);
+    let dir = Workspace::new();
+    let plain = report(&dir, &["--out", "plain"]);
+    let timed = report(&dir, &["--out", "timed", "--benchmark", "--json"]);
     assert_eq!((plain.code, timed.code), (0, 0), "{timed:?}");
-    assert_eq!(place.read("plain/report.json"), place.read("timed/report.json"));
-    let timings: Value = place.json("timed/benchmark.json");
+    assert_eq!(dir.read("plain/report.json"), dir.read("timed/report.json"));
+    let timings: Value = dir.json("timed/benchmark.json");
     assert_eq!(timings["claimed"], 2.3);
     // m = 2, 4, 8, 16; two precisions; one by one and many at once.
     let pairs = timings["pairs"].as_array().expect("pairs");
@@ -100,38 +100,38 @@ fn timings_stand_apart() {
         let ratio: Vec<f64> = ratio.iter().filter_map(Value::as_f64).collect();
         assert!(ratio[0] > 0.0 && ratio.is_sorted(), "{pair}");
     }
-    assert!(place.read("timed/report.html").contains("id=\"speed\""));
-    assert!(!place.read("plain/report.html").contains("id=\"speed\""));
+    assert!(dir.read("timed/report.html").contains("id=\"speed\""));
+    assert!(!dir.read("plain/report.html").contains("id=\"speed\""));
 }
 
 #[test]
 fn what_is_not_ours_stays() {
     for (name, text) in [("report.html", "<p>Sales, third quarter.</p>"), ("report.json", "{}")] {
-        let place = Place::with(&format!("report/{name}"), text);
-        let run = report(&place, &[]);
+        let dir = Workspace::with(&format!("report/{name}"), text);
+        let run = report(&dir, &[]);
         run.refused(1, &[name, "is not of Glint's making", "--out"]);
-        assert_eq!(place.read(&format!("report/{name}")), text);
-        assert_eq!(place.files().len(), 1);
+        assert_eq!(dir.read(&format!("report/{name}")), text);
+        assert_eq!(dir.files().len(), 1);
     }
-    let place = Place::with("report/report.html", [0xff, 0xfe, 0x00]);
-    report(&place, &[]).refused(1, &["is not of Glint's making"]);
+    let dir = Workspace::with("report/report.html", [0xff, 0xfe, 0x00]);
+    report(&dir, &[]).refused(1, &["is not of Glint's making"]);
 }
 
 #[test]
 fn a_directory_that_cannot_be() {
-    let place = Place::with("taken", "a file");
-    report(&place, &["--out", "taken"]).refused(1, &["cannot create the directory `taken`"]);
-    report(&place, &["--out", "taken/deeper"]).refused(1, &["cannot create the directory"]);
-    let run = report(&place, &["--out", "taken", "--json"]);
+    let dir = Workspace::with("taken", "a file");
+    report(&dir, &["--out", "taken"]).refused(1, &["cannot create the directory `taken`"]);
+    report(&dir, &["--out", "taken/deeper"]).refused(1, &["cannot create the directory"]);
+    let run = report(&dir, &["--out", "taken", "--json"]);
     assert_eq!((run.code, run.json()["ok"] == false), (1, true), "{run:?}");
-    assert_eq!(place.read("taken"), "a file");
+    assert_eq!(dir.read("taken"), "a file");
 }
 
 #[cfg(unix)]
 #[test]
 fn synthesis_joins_the_ledger() {
-    let place = Place::new();
-    let mut command = place.with_yosys();
+    let dir = Workspace::new();
+    let mut command = dir.with_yosys();
     let run = Run::of(command.args(["report", "--json"]).output()).good();
     let told = run.json();
     let claims = told["claims"].as_array().expect("claims");
@@ -139,5 +139,5 @@ fn synthesis_joins_the_ledger() {
     let simpler = simpler.expect("the claim of simplicity");
     assert_eq!(simpler["verdict"], "holds", "{simpler}");
     assert_eq!(simpler["ours"][1]["text"], "100 for 120");
-    assert!(place.read("report/report.html").contains("Yosys 0"));
+    assert!(dir.read("report/report.html").contains("Yosys 0"));
 }

@@ -1,6 +1,6 @@
 //! `glint schedule`, and what is said of pipelines that cannot be made.
 
-use crate::place::Place;
+use crate::workspace::Workspace;
 
 #[test]
 fn what_is_proposed_can_be_reached() {
@@ -9,12 +9,12 @@ fn what_is_proposed_can_be_reached() {
             "device = \"schlick\"\narchitecture = \"pipelined\"\npipeline.clock_mhz = {clock}\n"
         )
     };
-    let place = Place::with("core.toml", text("1900"));
-    let refused = place.glint(["schedule", "core.toml"]);
+    let dir = Workspace::with("core.toml", text("1900"));
+    let refused = dir.glint(["schedule", "core.toml"]);
     let nearest = refused.err.split("set pipeline.clock_mhz to ").nth(1).expect("a remedy");
     let nearest = nearest.split(' ').next().expect("a number");
-    let place = Place::with("core.toml", text(nearest));
-    place.glint(["schedule", "core.toml", "--json"]).good();
+    let dir = Workspace::with("core.toml", text(nearest));
+    dir.glint(["schedule", "core.toml", "--json"]).good();
 }
 
 #[test]
@@ -28,11 +28,11 @@ fn constraints_have_the_clock_of_the_schedule() {
             "device = \"schlick\"\narchitecture = \"pipelined\"\n[pipeline]\n{pipeline}\n[package]\n\
              constraints = true\n{clock}\n"
         );
-        let place = Place::with("core.toml", &text);
-        let schedule = place.glint(["schedule", "core.toml", "--json"]).json();
+        let dir = Workspace::with("core.toml", &text);
+        let schedule = dir.glint(["schedule", "core.toml", "--json"]).json();
         let stated = schedule["schedules"][0]["clock_mhz"].as_f64().expect("a clock");
-        place.done(["generate", "core.toml"]);
-        let constraints = place.read("rtl_out/core/core.sdc");
+        dir.done(["generate", "core.toml"]);
+        let constraints = dir.read("rtl_out/core/core.sdc");
         let period = constraints.split("-period ").nth(1).expect("a period");
         let period: f64 = period.split(' ').next().expect("a number").parse().expect("a number");
         // Whole picoseconds.
@@ -44,18 +44,18 @@ fn constraints_have_the_clock_of_the_schedule() {
 #[test]
 fn the_drawing_is_a_file_of_its_own_and_no_other_is_overwritten() {
     let text = "device = \"schlick\"\narchitecture = \"pipelined\"\n";
-    let place = Place::with("core.toml", text);
+    let dir = Workspace::with("core.toml", text);
     let draw = ["schedule", "core.toml", "--svg", "out"];
-    place.done(draw);
-    let drawn = place.read("out/core.svg");
+    dir.done(draw);
+    let drawn = dir.read("out/core.svg");
     let document = roxmltree::Document::parse(&drawn).expect("XML");
     assert_eq!(document.root_element().tag_name().name(), "svg");
     for load in ["url(", "@import", "href"] {
         assert!(!drawn.contains(load), "{load}");
     }
-    place.done(draw);
-    assert_eq!(place.read("out/core.svg"), drawn);
-    place.write("out/core.svg", "mine");
-    place.glint(draw).refused(1, &["core.svg", "--force"]);
-    assert_eq!(place.read("out/core.svg"), "mine");
+    dir.done(draw);
+    assert_eq!(dir.read("out/core.svg"), drawn);
+    dir.write("out/core.svg", "mine");
+    dir.glint(draw).refused(1, &["core.svg", "--force"]);
+    assert_eq!(dir.read("out/core.svg"), "mine");
 }

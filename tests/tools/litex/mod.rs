@@ -14,18 +14,18 @@ const PACKAGE: &str = "[package]\nmemories = \"inline\"\nlitex = true\n";
 fn system(name: &str, keys: &str, face: &str) -> Vec<(String, String)> {
     let keys = format!("{keys}{PACKAGE}");
     let core = configuration_between(&format!("configs/{name}.toml"), &keys);
-    let place = Emitted::new(&core, 1, 1).tree();
+    let dir = Emitted::new(&core, 1, 1).tree();
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tools/litex/system.py");
     let script = script.display().to_string();
-    let run = tool("python").run_to_success([&script, ".", name, face], place.path(), LIMIT);
+    let run = tool("python").run_to_success([&script, ".", name, face], dir.path(), LIMIT);
     run.unwrap_or_else(|error| panic!("{name}, {face}: {error:#}"));
     let text = |path: &Path| fs::read_to_string(path).expect("text");
-    let sources = text(&place.path().join("sources.txt"));
+    let sources = text(&dir.path().join("sources.txt"));
     let file = |path: &Path| {
         let name = path.file_name().expect("a name").to_string_lossy().into_owned();
         (name, text(path))
     };
-    let own = ["soc.v", "tb.v"].map(|name| place.path().join(name));
+    let own = ["soc.v", "tb.v"].map(|name| dir.path().join(name));
     own.iter()
         .map(|path| file(path))
         .chain(sources.lines().map(|line| file(Path::new(line))))
@@ -54,16 +54,16 @@ fn litex_builds_systems_that_compute() {
 #[test]
 fn litex_reaches_registers_on_axi4_lite() {
     let files = system("threshold_levels", "registers = \"axi-lite\"\n", "registers");
-    let place = tempfile::tempdir().expect("a directory");
-    write(place.path(), &files);
+    let dir = tempfile::tempdir().expect("a directory");
+    write(dir.path(), &files);
     let options =
         ["--binary", "--timing", "-Wno-fatal", "-Wno-lint", "-Wno-style", "--top-module", "tb"];
     let names = files.iter().map(|(name, _)| name.as_str());
     let built =
-        tool("verilator").run_to_success(options.into_iter().chain(names), place.path(), LIMIT);
+        tool("verilator").run_to_success(options.into_iter().chain(names), dir.path(), LIMIT);
     built.unwrap_or_else(|error| panic!("{error:#}"));
-    let bench = place.path().join("obj_dir/Vtb").display().to_string();
-    let told = tool("env").run_to_success([&bench], place.path(), LIMIT);
+    let bench = dir.path().join("obj_dir/Vtb").display().to_string();
+    let told = tool("env").run_to_success([&bench], dir.path(), LIMIT);
     let told = told.unwrap_or_else(|error| panic!("{error:#}"));
     assert!(told.starts_with("PASS: 12 points"), "{told}");
 }

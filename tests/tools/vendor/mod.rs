@@ -29,25 +29,25 @@ fn cosine_power() -> tempfile::TempDir {
 }
 
 /// What a script calls, with the slack that Vivado's stand-in tells of, and whether it ends well. Paths are relative.
-fn calls(place: &Path, script: &str, arguments: &[&str], slack: &str) -> (bool, String) {
+fn calls(dir: &Path, script: &str, arguments: &[&str], slack: &str) -> (bool, String) {
     let stubs = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tools/vendor/stubs.tcl");
     let (stubs, slack) = (stubs.display().to_string(), format!("SLACK={slack}"));
-    let place = place.canonicalize().expect("a place");
-    let script = place.join(script).display().to_string();
-    let run_in = place.join("run");
+    let dir = dir.canonicalize().expect("a directory");
+    let script = dir.join(script).display().to_string();
+    let run_in = dir.join("run");
     fs::create_dir_all(&run_in).expect("a directory");
     let command = [slack.as_str(), "tclsh", &stubs, &script];
     let run = tool("env").run(command.iter().chain(arguments), &run_in, LIMIT);
     let run = run.unwrap_or_else(|error| panic!("{error:#}"));
-    let output = run.output.replace(&format!("{}/", place.display()), "");
+    let output = run.output.replace(&format!("{}/", dir.display()), "");
     (run.status.success(), output)
 }
 
 #[test]
 fn vivado_builds_a_module() {
-    let place = cosine_power();
+    let dir = cosine_power();
     let arguments = ["cosine_power_axis", "xc7k70tfbg484-1"];
-    let (ok, calls_made) = calls(place.path(), "cosine_power_vivado.tcl", &arguments, "0.25");
+    let (ok, calls_made) = calls(dir.path(), "cosine_power_vivado.tcl", &arguments, "0.25");
     assert!(ok, "{calls_made}");
     let expected = "\
 read_verilog cosine_power_axis.v
@@ -73,29 +73,29 @@ cosine_power_axis on xc7k70tfbg484-1: slack 0.25 ns
 
 #[test]
 fn vivado_fails_where_it_should() {
-    let place = cosine_power();
+    let dir = cosine_power();
     let script = "cosine_power_vivado.tcl";
-    let (ok, told) = calls(place.path(), script, &["cosine"], "1");
+    let (ok, told) = calls(dir.path(), script, &["cosine"], "1");
     assert!(!ok && told.contains("there is no module cosine; there are: cosine_power, "), "{told}");
     for (slack, module) in [("-0.1", "cosine_power"), ("", "cosine_power_wb")] {
-        let (ok, told) = calls(place.path(), script, &[module], slack);
+        let (ok, told) = calls(dir.path(), script, &[module], slack);
         assert!(!ok && told.contains(&format!("the clock of {module}.xdc is not met")), "{told}");
     }
     // What a run left, or anything else of that name, is not written over.
-    let (ok, told) = calls(place.path(), script, &[], "1");
+    let (ok, told) = calls(dir.path(), script, &[], "1");
     assert!(!ok && told.contains("run/cosine_power_vivado is there already"), "{told}");
     assert!(!told.contains("synth_design"), "{told}");
     // A source that is missing.
-    fs::remove_file(place.path().join("cosine_power_control.mem")).expect("removed");
-    let (ok, told) = calls(place.path(), script, &["cosine_power_axis"], "1");
+    fs::remove_file(dir.path().join("cosine_power_control.mem")).expect("removed");
+    let (ok, told) = calls(dir.path(), script, &["cosine_power_axis"], "1");
     assert!(!ok && told.contains("there is no "), "{told}");
 }
 
 #[test]
 fn vivado_packages_ip() {
-    let place = cosine_power();
+    let dir = cosine_power();
     let script = "cosine_power_vivado_ip.tcl";
-    let (ok, told) = calls(place.path(), script, &["cosine_power_axis"], "");
+    let (ok, told) = calls(dir.path(), script, &["cosine_power_axis"], "");
     assert!(ok, "{told}");
     for call in [
         "add_files -norecurse cosine_power_control.mem\n",
@@ -113,7 +113,7 @@ fn vivado_packages_ip() {
         assert!(told.contains(call), "{call}{told}");
     }
     assert!(told.ends_with("ipx::save_core core0\nclose_project\n"), "{told}");
-    let (ok, told) = calls(place.path(), script, &["cosine_power_wb"], "");
+    let (ok, told) = calls(dir.path(), script, &["cosine_power_wb"], "");
     assert!(ok && told.contains("set_property value ACTIVE_HIGH parameter0\n"), "{told}");
     assert!(
         told.contains("infer_bus_interface wb_clk_i xilinx.com:signal:clock_rtl:1.0"),
@@ -123,10 +123,10 @@ fn vivado_packages_ip() {
 
 #[test]
 fn quartus_builds_a_module() {
-    let place = cosine_power();
+    let dir = cosine_power();
     let script = "cosine_power_quartus.tcl";
     let arguments = ["cosine_power_wb", "Cyclone 10 LP", "10CL025YU256C8G"];
-    let (ok, told) = calls(place.path(), script, &arguments, "");
+    let (ok, told) = calls(dir.path(), script, &arguments, "");
     assert!(ok, "{told}");
     let expected = "\
 project_new cosine_power_wb
@@ -147,18 +147,18 @@ export_assignments
 execute_flow -compile
 project_close
 ";
-    let here = place.path().canonicalize().expect("a place").display().to_string();
+    let here = dir.path().canonicalize().expect("a directory").display().to_string();
     assert_eq!(told.replace(&here, "PLACE"), expected);
-    let (ok, told) = calls(place.path(), script, &arguments, "");
+    let (ok, told) = calls(dir.path(), script, &arguments, "");
     assert!(!ok && told.contains("cosine_power_wb_quartus is there already"), "{told}");
 }
 
 #[test]
 fn platform_designer_gets_interfaces() {
     let registers = ALL.replace("wishbone", "axi-lite");
-    let place = emitted(&configuration_between("configs/cosine_power.toml", &registers));
+    let dir = emitted(&configuration_between("configs/cosine_power.toml", &registers));
     let of_top = |top: &str| {
-        let (ok, told) = calls(place.path(), &format!("{top}_hw.tcl"), &[], "");
+        let (ok, told) = calls(dir.path(), &format!("{top}_hw.tcl"), &[], "");
         assert!(ok, "{told}");
         told
     };
@@ -198,17 +198,17 @@ fn components_follow_their_schema_and_the_verilog() {
     ]
     .into_par_iter()
     .for_each(|(name, keys, suffixes)| {
-        let place = emitted(&configuration_between(&format!("configs/{name}.toml"), keys));
+        let dir = emitted(&configuration_between(&format!("configs/{name}.toml"), keys));
         let suffixes = suffixes.split(' ').map(|suffix| format!("{name}_{suffix}"));
         let mut files = Vec::new();
         for top in suffixes.chain([name.to_owned()]) {
             let script = format!(
                 "read_verilog {name}*.v; hierarchy -top {top}; proc; write_json {top}.ports"
             );
-            yosys(place.path(), &script);
+            yosys(dir.path(), &script);
             files.extend([format!("{top}.xml"), format!("{top}.ports")]);
         }
-        let told = validate(place.path(), &files);
+        let told = validate(dir.path(), &files);
         assert_eq!(
             told.unwrap_or_else(|error| panic!("{error:#}")).lines().count(),
             files.len() / 2
@@ -219,27 +219,27 @@ fn components_follow_their_schema_and_the_verilog() {
             ("<ipxact:left>7<", "<ipxact:left>8<"),
             ("</ipxact:ports>", "<ipxact:port/></ipxact:ports>"),
         ] {
-            let path = place.path().join(&files[0]);
+            let path = dir.path().join(&files[0]);
             let text = fs::read_to_string(&path).expect("a component");
             let faulty = text.replacen(right, wrong, 1);
             if faulty != text {
                 fs::write(&path, faulty).expect("written");
-                assert!(validate(place.path(), &files[..2]).is_err(), "{right} {wrong}");
+                assert!(validate(dir.path(), &files[..2]).is_err(), "{right} {wrong}");
                 fs::write(&path, text).expect("written");
             }
         }
     });
 }
 
-fn validate(place: &Path, files: &[String]) -> anyhow::Result<String> {
+fn validate(dir: &Path, files: &[String]) -> anyhow::Result<String> {
     let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tools/vendor/ip_xact.py");
     let arguments = std::iter::once(script.display().to_string()).chain(files.iter().cloned());
-    tool("python").run_to_success(arguments, place, LIMIT)
+    tool("python").run_to_success(arguments, dir, LIMIT)
 }
 
 #[test]
 fn constraints_are_read_by_opensta() {
-    let place = cosine_power();
+    let dir = cosine_power();
     let cells = "/usr/share/qflow/tech/osu018/osu018_stdcells.lib";
     for (top, clock) in [("cosine_power", "clk"), ("cosine_power_wb", "wb_clk_i")] {
         let synthesis = format!(
@@ -247,13 +247,13 @@ fn constraints_are_read_by_opensta() {
              abc -liberty {cells}; splitnets; opt_clean -purge; \
              write_verilog -noattr -noexpr -simple-lhs netlist.v"
         );
-        yosys_quietly(place.path(), &synthesis);
+        yosys_quietly(dir.path(), &synthesis);
         let script = format!(
             "read_liberty {cells}\nread_verilog netlist.v\nlink_design {top}\nread_sdc {top}.sdc\n\
              puts \"period [get_property [get_clocks {clock}] period]\"\nreport_checks -format end\nexit\n"
         );
-        fs::write(place.path().join("read.tcl"), script).expect("written");
-        let told = tool("sta").run_to_success(["-exit", "read.tcl"], place.path(), LIMIT);
+        fs::write(dir.path().join("read.tcl"), script).expect("written");
+        let told = tool("sta").run_to_success(["-exit", "read.tcl"], dir.path(), LIMIT);
         let told = told.unwrap_or_else(|error| panic!("{error:#}"));
         assert!(told.contains("period 10.000"), "{told}");
         let wrong = ["warning", "error"].iter().any(|word| told.to_lowercase().contains(word));
@@ -264,8 +264,8 @@ fn constraints_are_read_by_opensta() {
 }
 
 /// Yosys with its warnings, of which it has some about liberty files.
-fn yosys_quietly(place: &Path, commands: &str) {
-    let run = tool("yosys").run_to_success(["-q", "-p", commands], place, LIMIT);
+fn yosys_quietly(dir: &Path, commands: &str) {
+    let run = tool("yosys").run_to_success(["-q", "-p", commands], dir, LIMIT);
     run.unwrap_or_else(|error| panic!("{error:#}"));
 }
 
@@ -290,9 +290,9 @@ fn rom_contents_in_the_verilog_are_those_of_the_files() {
             let files: Vec<_> = rtl.iter().chain(&bench).cloned().collect();
             assert_bench_passes(simulator, &files, &with_files.bench());
         }
-        let place = tempfile::tempdir().expect("a directory");
-        write(place.path(), &rtl);
-        assert_lint_clean(place.path(), &emitted.name);
+        let dir = tempfile::tempdir().expect("a directory");
+        write(dir.path(), &rtl);
+        assert_lint_clean(dir.path(), &emitted.name);
         // A wrong word is noticed.
         let wrong = wrong_word(&rtl);
         let files: Vec<_> = wrong.into_iter().chain(bench).collect();
@@ -321,10 +321,10 @@ fn wrong_word(rtl: &[(String, String)]) -> Vec<(String, String)> {
 #[test]
 fn synthesis_makes_block_ram_of_rom_contents_in_the_verilog() {
     let cells = |more: &str| {
-        let place = emitted(&configuration_with("configs/rough.toml", more));
+        let dir = emitted(&configuration_with("configs/rough.toml", more));
         let script = "read_verilog rough*.v; synth_ice40 -dsp -top rough; tee -o stat.txt stat";
-        yosys(place.path(), script);
-        let figures = fs::read_to_string(place.path().join("stat.txt")).expect("figures");
+        yosys(dir.path(), script);
+        let figures = fs::read_to_string(dir.path().join("stat.txt")).expect("figures");
         // Small ROMs are logic, which comes out a little different where names do.
         let same = |line: &&str| ["SB_RAM", "SB_MAC", "SB_DFF"].iter().any(|it| line.contains(it));
         figures.lines().filter(same).collect::<Vec<_>>().join("\n")
@@ -336,19 +336,19 @@ fn synthesis_makes_block_ram_of_rom_contents_in_the_verilog() {
 
 #[test]
 fn fusesoc_sets_up_the_vendors_projects() {
-    let place = tempfile::tempdir().expect("a directory");
+    let dir = tempfile::tempdir().expect("a directory");
     let root = env!("CARGO_MANIFEST_DIR");
     let (rtl, benches) = (format!("{root}/rtl_out"), format!("{root}/testbench"));
     let run = |arguments: &[&str]| {
         let common = ["--cores-root", &rtl, "--cores-root", &benches, "run"];
         let core = ["glint:device:cosine_power"];
         let all = common.iter().chain(arguments).chain(&core);
-        let run = tool("fusesoc").run_to_success(all, place.path(), LIMIT);
+        let run = tool("fusesoc").run_to_success(all, dir.path(), LIMIT);
         run.unwrap_or_else(|error| panic!("{error:#}"))
     };
     let text_below = |target: &str, ending: &str| {
         let mut found = String::new();
-        let mut directories = vec![place.path().join("build")];
+        let mut directories = vec![dir.path().join("build")];
         while let Some(directory) = directories.pop() {
             for entry in fs::read_dir(directory).expect("a directory") {
                 let path = entry.expect("an entry").path();
@@ -376,7 +376,7 @@ fn fusesoc_sets_up_the_vendors_projects() {
     for (target, cell) in [("ecp5", "TRELLIS_FF"), ("gowin", "\"DFF")] {
         run(&["--setup", "--target", target]);
         let core = "glint_device_cosine_power_0.1.0";
-        let directory = place.path().join("build").join(core).join(target);
+        let directory = dir.path().join("build").join(core).join(target);
         let netlist = format!("{core}.json");
         let made = tool("make").run_to_success([&netlist], &directory, LIMIT);
         made.unwrap_or_else(|error| panic!("{error:#}"));

@@ -37,8 +37,8 @@ fn with_interface(keys: &str) -> Vec<(String, Core)> {
 fn streams_are_clean_verilog() {
     with_interface(STREAM).par_iter().for_each(|(path, core)| {
         let emitted = Emitted::new(core, 1, 1);
-        let place = emitted.beside("rtl_out/");
-        assert_lint_clean(place.path(), &format!("{}_axis", emitted.name));
+        let dir = emitted.beside("rtl_out/");
+        assert_lint_clean(dir.path(), &format!("{}_axis", emitted.name));
         for file in emitted.files.iter().filter(|file| file.path.contains("_axis")) {
             let long = file.contents.lines().find(|line| line.len() > 100);
             assert_eq!(long, None, "{path}: {}", file.path);
@@ -49,8 +49,8 @@ fn streams_are_clean_verilog() {
 #[test]
 fn streams_are_proved() {
     PROVED.par_iter().for_each(|(name, keys)| {
-        let place = proof(name, keys);
-        prove(place.path(), &format!("{name}_axis"), LIMIT)
+        let dir = proof(name, keys);
+        prove(dir.path(), &format!("{name}_axis"), LIMIT)
             .unwrap_or_else(|error| panic!("{name}, {keys}: {error:#}"));
     });
 }
@@ -79,9 +79,9 @@ fn proof(name: &str, keys: &str) -> tempfile::TempDir {
 #[test]
 fn streams_carry_every_point() {
     with_interface(STREAM).par_iter().for_each(|(path, core)| {
-        let place = Emitted::new(core, 1, 1).tree();
+        let dir = Emitted::new(core, 1, 1).tree();
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/tools/wrappers/stream.py");
-        let run = tool("python").run([script, &core.config.name], place.path(), LIMIT);
+        let run = tool("python").run([script, &core.config.name], dir.path(), LIMIT);
         let run = run.unwrap_or_else(|error| panic!("{error:#}"));
         let says = format!("PASS {}: 6 tests, 0 failed", core.config.name);
         assert!(run.status.success() && run.output.contains(&says), "{path}:\n{}", run.output);
@@ -111,8 +111,8 @@ fn on_buses() -> Vec<(String, Core, &'static str)> {
 fn registers_are_clean_verilog() {
     on_buses().par_iter().for_each(|(path, core, bus)| {
         let emitted = Emitted::new(core, 1, 1);
-        let place = emitted.beside("rtl_out/");
-        assert_lint_clean(place.path(), &format!("{}_{bus}", emitted.name));
+        let dir = emitted.beside("rtl_out/");
+        assert_lint_clean(dir.path(), &format!("{}_{bus}", emitted.name));
         let of_registers = |path: &str| {
             ["_axil", "_wb", "_registers", ".rdl"].iter().any(|part| path.contains(part))
         };
@@ -130,9 +130,9 @@ fn registers_are_proved() {
     let proved = ["cosine_power", "lyon", "blinn", "rough"];
     proved.par_iter().for_each(|name| {
         for (keys, bus) in BUSES {
-            let place = proof(name, keys);
+            let dir = proof(name, keys);
             for wrapper in [bus, "registers"] {
-                prove(place.path(), &format!("{name}_{wrapper}"), LIMIT)
+                prove(dir.path(), &format!("{name}_{wrapper}"), LIMIT)
                     .unwrap_or_else(|error| panic!("{name}_{wrapper}: {error:#}"));
             }
         }
@@ -153,9 +153,9 @@ fn faults_break_the_proofs_of_registers() {
 #[test]
 fn registers_start_cores_and_give_their_results() {
     on_buses().par_iter().for_each(|(path, core, bus)| {
-        let place = Emitted::new(core, 1, 1).tree();
+        let dir = Emitted::new(core, 1, 1).tree();
         let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/tools/wrappers/registers.py");
-        let run = tool("python").run([script, &core.config.name, bus], place.path(), LIMIT);
+        let run = tool("python").run([script, &core.config.name, bus], dir.path(), LIMIT);
         let run = run.unwrap_or_else(|error| panic!("{error:#}"));
         let says = format!("PASS {}: 8 tests, 0 failed", core.config.name);
         assert!(run.status.success() && run.output.contains(&says), "{path}:\n{}", run.output);
@@ -186,15 +186,15 @@ fn main() {
 #[test]
 fn registers_for_software() {
     let core = configuration_between("configs/cosine_power.toml", BUSES[1].0);
-    let place = Emitted::new(&core, 1, 1).tree();
-    let place = &place.path().join("software/cosine_power");
-    fs::write(place.join("main.c"), CONVERSIONS).expect("written");
-    fs::write(place.join("main.rs"), RUST_CONVERSIONS).expect("written");
+    let dir = Emitted::new(&core, 1, 1).tree();
+    let dir = &dir.path().join("software/cosine_power");
+    fs::write(dir.join("main.c"), CONVERSIONS).expect("written");
+    fs::write(dir.join("main.rs"), RUST_CONVERSIONS).expect("written");
     let strict = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Werror"];
     let sanitized = ["-fsanitize=undefined", "-fno-sanitize-recover", "main.c", "-o", "main_c"];
     let run = |name: &str, arguments: &[&str]| {
         tool(name)
-            .run_to_success(arguments.iter().copied(), place, LIMIT)
+            .run_to_success(arguments.iter().copied(), dir, LIMIT)
             .unwrap_or_else(|error| panic!("{name}: {error:#}"))
     };
     run("cc", &[&strict[..], &sanitized].concat());
@@ -204,19 +204,19 @@ fn registers_for_software() {
     }
     // Nothing of `std` is used.
     let bare = "#![no_std]\n#[path = \"cosine_power_registers.rs\"]\npub mod registers;\n";
-    fs::write(place.join("bare.rs"), bare).expect("written");
+    fs::write(dir.join("bare.rs"), bare).expect("written");
     run("rustc", &["--edition=2021", "--crate-type=lib", "--emit=metadata", "bare.rs"]);
     // PeakRDL puts every register where Glint does.
     let made = [("c-header", "peak.h"), ("ip-xact", "peak.xml"), ("html", "peak")];
     for (kind, to) in made {
         run("peakrdl", &[kind, "cosine_power.rdl", "-o", to]);
     }
-    let xml = fs::read_to_string(place.join("peak.xml")).expect("IP-XACT");
+    let xml = fs::read_to_string(dir.join("peak.xml")).expect("IP-XACT");
     for (register, offset) in [("control", "'h14"), ("cos_gamma", "'h20"), ("results", "'h34")] {
         let says = format!("<ipxact:name>{register}</ipxact:name>");
         let at = xml.find(&says).unwrap_or_else(|| panic!("no {register} in {xml}"));
         let offset = format!("<ipxact:addressOffset>{offset}</ipxact:addressOffset>");
         assert!(xml[at..].contains(&offset), "{register}: {xml}");
     }
-    assert!(place.join("peak/index.html").exists());
+    assert!(dir.join("peak/index.html").exists());
 }

@@ -13,7 +13,7 @@ use tempfile::TempDir;
 pub const COSINE_POWER: &str = "device = \"cosine-power\"\n";
 
 /// A temporary directory.
-pub struct Place(TempDir);
+pub struct Workspace(TempDir);
 
 /// What a run of the program came to.
 #[derive(Debug)]
@@ -26,16 +26,16 @@ pub struct Run {
     pub err: String,
 }
 
-impl Place {
+impl Workspace {
     pub fn new() -> Self {
         Self(TempDir::new().expect("a temporary directory"))
     }
 
-    /// A place with one file.
+    /// A directory with one file.
     pub fn with(name: &str, text: impl AsRef<[u8]>) -> Self {
-        let place = Self::new();
-        place.write(name, text);
-        place
+        let dir = Self::new();
+        dir.write(name, text);
+        dir
     }
 
     pub fn path(&self) -> &Path {
@@ -111,7 +111,7 @@ echo '{\"modules\":{\"\\\\\\\\'$top'\":{\"num_cells_by_type\":{\"SB_LUT4\":'$lut
         run.out
     }
 
-    /// Every file below this place, with its contents.
+    /// Every file below this directory, with its contents.
     pub fn files(&self) -> BTreeMap<String, Vec<u8>> {
         let mut found = BTreeMap::new();
         let mut directories = vec![self.path().to_owned()];
