@@ -31,7 +31,7 @@ impl<W: Write> VcdWriter<W> {
         let mut probe = write_vcd_header(page.clone(), &Named { name, circuit });
         probe.timestamp(time)?;
         let mut writer = Self { probe: Some(write_vcd_dump(probe, circuit)), page, file };
-        writer.turn()?;
+        writer.write_out()?;
         Ok(writer)
     }
 
@@ -44,7 +44,7 @@ impl<W: Write> VcdWriter<W> {
             probe.timestamp(time)?;
             self.probe = Some(write_vcd_change(probe, circuit));
         }
-        self.turn()
+        self.write_out()
     }
 
     /// Ends the waveform at `time` and hands the file back, flushed.
@@ -55,13 +55,13 @@ impl<W: Write> VcdWriter<W> {
         if let Some(probe) = &mut self.probe {
             probe.timestamp(time)?;
         }
-        self.turn()?;
+        self.write_out()?;
         self.file.flush().context(CANNOT_WRITE)?;
         Ok(self.file)
     }
 
     /// Brings the page to the file.
-    fn turn(&mut self) -> Result<()> {
+    fn write_out(&mut self) -> Result<()> {
         self.file.write_all(&self.page.take()).context(CANNOT_WRITE)
     }
 }
