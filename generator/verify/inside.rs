@@ -78,10 +78,14 @@ fn lockstep(subject: &Subject<'_>, progress: &(dyn Fn(u64) + Sync)) -> Result<Fi
             worst.units, bound.units
         )
     });
+    let stimulus = match subject.core.design.pipeline {
+        None => "resets, pauses, starts and writes while busy",
+        Some(_) => "resets, bubbles and stalls",
+    };
     Ok(Finding::new(
         Verdict::Passed,
         format!(
-            "{} results in {} clocks, with resets, pauses, starts and writes while busy (seed {TEST_SEED})",
+            "{} results in {} clocks, with {stimulus} (seed {TEST_SEED})",
             grouped(outcome.points),
             grouped(outcome.clocks)
         ),
@@ -237,7 +241,7 @@ pub const MUTATION: Check = Check {
     },
     run: |subject, _, progress| {
         if subject.core.design.pipeline.is_some() {
-            let why = "Faults are planted in netlists with a microprogram; a pipeline has none.";
+            let why = "Of a pipeline this check plants none; `glint mutate` does.";
             return Ok(Finding::without(Verdict::NotCovered, why));
         }
         let faults = Faults::of(&subject.core.design);

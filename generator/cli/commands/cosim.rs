@@ -4,6 +4,7 @@ mod benches;
 pub mod exhaustive;
 mod spread;
 
+use std::fs;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result};
@@ -104,6 +105,13 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let loaded = load(registry, &arguments.configs.paths)?;
     if arguments.vcd.is_some() && loaded.len() != 1 {
         wrong_usage!("--vcd is for one configuration; here are {}", loaded.len());
+    }
+    if let Some(vcd) = &arguments.vcd
+        && fs::canonicalize(vcd).ok().is_some_and(|vcd| {
+            arguments.configs.paths.iter().any(|it| fs::canonicalize(it).ok() == Some(vcd.clone()))
+        })
+    {
+        wrong_usage!("--vcd would overwrite the configuration `{}`", vcd.display());
     }
     let which = match arguments.simulator {
         Simulator::RustHdl => return built_in(output, &loaded, arguments),

@@ -86,11 +86,25 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
     let operands = contract.operands();
     let raw = operands::completed(operands, given);
     let mut model = one.core.device.golden(&one.core.config);
-    let signals = signals(model.as_mut(), operands, &raw)?;
+    let mut signals = signals(model.as_mut(), operands, &raw)?;
     let outside = outside(operands, &raw);
     let (f, exact) = formula(contract, &raw);
+    // The golden model of a pipeline is that of its sequential core: formats are those of its nets, and of the rest of it
+    // nothing is in the pipeline.
+    let sequential = match &one.core.design.pipeline {
+        None => None,
+        Some(pipeline) => {
+            let registers: Vec<&str> =
+                pipeline.checkpoints.iter().map(|it| it.register.as_str()).collect();
+            signals.retain(|(name, _)| {
+                registers.contains(&name.as_str()) || one.core.design.find(name).is_some()
+            });
+            Some(one.core.device.sequential(&one.core.config)?)
+        }
+    };
+    let design = sequential.as_ref().unwrap_or(&one.core.design);
     let value_of = |name: &str, bits: u64| {
-        let net = one.core.design.find(name).map(|id| one.core.design.net(id));
+        let net = design.find(name).map(|id| design.net(id));
         net.map_or((i128::from(bits), bits as f64, String::new()), |net| {
             let raw = net.format.raw(bits);
             (raw, net.format.to_f64(raw), net.format.to_string())

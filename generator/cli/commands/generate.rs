@@ -97,10 +97,12 @@ fn files(one: &Loaded) -> Result<Vec<OutputFile>> {
 
 /// Writes the files of a configuration, and the driver that its bench in Python shares with others.
 pub fn write(out: &Path, one: &Loaded, files: &[OutputFile], force: bool) -> Result<Written> {
-    let written = store::write(out, &one.core.config.name, files, force)
-        .with_context(|| format!("`{}` was not generated", one.path))?;
     let driver = package::driver();
     let path = out.join(&driver.path);
+    // Before anything is written.
+    store::may_write(&path, Seal::Python, force)?;
+    let written = store::write(out, &one.core.config.name, files, force)
+        .with_context(|| format!("`{}` was not generated", one.path))?;
     store::write_sealed(&path, &driver.contents, Seal::Python, force)?;
     Ok(written)
 }

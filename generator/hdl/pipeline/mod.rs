@@ -138,7 +138,7 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
                 let least = schedule.latency;
                 let plural = if stages == 1 { "" } else { "s" };
                 let message = format!(
-                    "`{name}` cannot have {stages} stage{plural}: its block memories need {least} on {target}"
+                    "`{name}` cannot have {stages} stage{plural}: its registered memories and multipliers need {least} on {target}"
                 );
                 return Err(wrong(key, message, format!("set pipeline.stages to {least} or more"), None));
             }

@@ -108,6 +108,8 @@ fn waveforms_that_are_wrong_usage() {
     let icarus = dir.glint(["cosim", "a.toml", "--simulator", "icarus", "--vcd", "wave.vcd"]);
     icarus.refused(2, &["--vcd is for the built-in simulator"]);
     assert!(!dir.at("wave.vcd").exists());
+    let itself = dir.glint(["cosim", "a.toml", "--vcd", "./a.toml"]);
+    itself.refused(2, &["--vcd would overwrite the configuration"]);
 }
 
 /// A run of an external simulator with `PATH` leading to `tools` alone, which holds `programs`.

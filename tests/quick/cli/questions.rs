@@ -46,6 +46,18 @@ fn a_point_is_evaluated_for_scripts() {
     }
 }
 
+/// What its registers hold has the formats of the sequential core, whose handshake it does not have.
+#[test]
+fn a_point_of_a_pipeline_is_evaluated() {
+    let dir = Workspace::with("core.toml", "device = \"lyon\"\narchitecture = \"pipelined\"\n");
+    let value = dir.glint(["eval", "core.toml", "dx=-0.5", "--json"]).quiet().json();
+    let raw = named(&value["operands"], "dx")["raw"].clone();
+    let held = named(&value["signals"], "dx_reg");
+    assert_eq!((&held["raw"], &held["value"]), (&raw, &json!(-0.5)), "{held}");
+    let signals = value["signals"].as_array().expect("a list");
+    assert!(signals.iter().all(|it| it["format"] != "" && it["name"] != "busy"), "{signals:?}");
+}
+
 #[test]
 fn a_point_outside_the_domain_is_marked() {
     let run = eval(&["exponent=0"]);

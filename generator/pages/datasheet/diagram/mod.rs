@@ -1,6 +1,6 @@
 //! The block diagram: the blocks of the netlist, laid out in ranks from the inputs to the outputs.
 //!
-//! `place` and `route` lay it out from left to right. The page shows it setting_of, from top to bottom: a datapath has more
+//! `place` and `route` lay it out from left to right. The page shows it turned, from top to bottom: a datapath has more
 //! ranks than blocks in one, so that this is the form that fits a page, on a screen and on paper.
 
 mod graph;
@@ -85,7 +85,7 @@ pub fn drawing(design: &Design) -> Drawing {
     }
 }
 
-/// What a box takes in the layout, which sees the page setting_of: its height there is the width on the page.
+/// What a box takes in the layout, which sees the page turned: its height there is the width on the page.
 struct Sizes {
     lanes: f64,
     stub: f64,
@@ -155,7 +155,7 @@ fn coordinate(value: f64) -> i32 {
     value.round() as i32 + BORDER
 }
 
-/// A place of the layout on the page, which shows it setting_of.
+/// A place of the layout on the page, which shows it turned.
 fn point((x, y): (f64, f64)) -> String {
     format!("{} {}", coordinate(y), coordinate(x))
 }
