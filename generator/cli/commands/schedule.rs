@@ -78,7 +78,8 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
     let period = 1000.0 / pipeline.clock_mhz;
     let bits: u32 = pipeline.stages.iter().map(|stage| stage.register_bits).sum();
     let delayed: u32 = pipeline.stages.iter().map(|stage| stage.delayed_bits).sum();
-    let delayed = if delayed > 0 { format!(", {delayed} in delay lines") } else { String::new() };
+    let delayed =
+        if delayed > 0 { format!(", and {delayed} bits in delay lines") } else { String::new() };
     let multipliers = match pipeline.registered.len() {
         0 => String::new(),
         some => format!(" beside those in {}", counted(some, "multiplier")),

@@ -215,6 +215,14 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
     let outputs = contract.outputs().len();
     let registers = design.registers.iter();
     let flip_flops: u32 = registers.map(|register| design.width(register.q)).sum();
+    let delayed: u32 = match &design.pipeline {
+        None => 0,
+        Some(pipeline) => pipeline.stages.iter().map(|stage| stage.delayed_bits).sum(),
+    };
+    let register_bits = match delayed {
+        0 => flip_flops.to_string(),
+        _ => format!("{}, and {delayed} in delay lines", flip_flops - delayed),
+    };
     let bound = contract.bound();
     let error = if bound.is_stated() {
         format!("{:.3} units, proven", bound.units)
@@ -237,7 +245,7 @@ fn glance(subject: &Subject, measured: &Measured) -> Vec<(&'static str, String)>
             }
         },
         ("ROM", format!("{} bits", grouped(design.rom_bits()))),
-        ("Register bits", flip_flops.to_string()),
+        ("Register bits", register_bits),
         ("Multipliers", multipliers(design)),
     ];
     if let Some(highlight) = contract.highlight() {

@@ -106,6 +106,8 @@ fn a_batch_that_is_wrong_is_refused_with_its_line() {
         ("cos_gama\n1\n", "there is no operand `cos_gama`; did you mean `cos_gamma`?"),
         ("red,red\n1,1\n", "operand `red` is given twice"),
         ("red,green\n1,2\n1.5,2\n", "`points.csv`, line 3: operand `red`: 1.5 is not an integer"),
+        ("red,green\n1,2\n\n\n1.5,2\n", "`points.csv`, line 5: operand `red`"),
+        ("red,green\r\n\r\n1,2\r\n1.5,2", "`points.csv`, line 4: operand `red`"),
         ("red,green\n1\n", "cannot read `points.csv`"),
         ("red\n", "has no row of operands"),
     ] {

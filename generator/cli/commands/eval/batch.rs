@@ -1,5 +1,6 @@
 //! Many points: operands from CSV, results as CSV.
 
+use std::io;
 use std::path::Path;
 
 use anyhow::{Context, Result, anyhow, bail, ensure};
@@ -25,16 +26,19 @@ struct Row {
 pub fn batch(output: Output, one: &Loaded, given: &[Option<i64>], path: &Path) -> Result<bool> {
     let shown = path.display();
     let file = input::open(path).with_context(|| format!("cannot read `{shown}`"))?;
-    let mut reader = ReaderBuilder::new().trim(Trim::All).from_reader(file);
+    let text = io::read_to_string(file).with_context(|| format!("cannot read `{shown}`"))?;
+    let mut reader = ReaderBuilder::new().trim(Trim::All).from_reader(text.as_bytes());
     let headings = reader.headers().with_context(|| format!("cannot read `{shown}`"))?.clone();
     let columns =
         columns(one, given, headings.iter()).with_context(|| format!("`{shown}`, first row"))?;
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record.with_context(|| format!("cannot read `{shown}`"))?;
-        let line = record.position().map_or(0, csv::Position::line);
-        let row = row(one, given, &columns, &record);
-        rows.push(row.map_err(|why| anyhow!("`{shown}`, line {line}: {why}"))?);
+        let row = row(one, given, &columns, &record).map_err(|why| {
+            let start = record.position().map_or(0, |it| it.byte() as usize);
+            anyhow!("`{shown}`, line {}: {why}", line(&text, start))
+        });
+        rows.push(row?);
     }
     ensure!(!rows.is_empty(), "`{shown}` has no row of operands below the row with their names");
     if output.json {
@@ -43,6 +47,12 @@ pub fn batch(output: Output, one: &Loaded, given: &[Option<i64>], path: &Path) -
         print_csv(one, &rows)?
     }
     Ok(true)
+}
+
+/// The line of a record that is said to begin here: empty lines before it count as a part of it.
+fn line(text: &str, start: usize) -> usize {
+    let record = text[start..].trim_start_matches(['\r', '\n']);
+    1 + text[..text.len() - record.len()].matches('\n').count()
 }
 
 /// The operand of each column.
