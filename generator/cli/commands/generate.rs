@@ -99,8 +99,10 @@ fn files(one: &Loaded) -> Result<Vec<OutputFile>> {
 pub fn write(out: &Path, one: &Loaded, files: &[OutputFile], force: bool) -> Result<Written> {
     let driver = package::driver();
     let path = out.join(&driver.path);
-    // Before anything is written.
-    store::may_write(&path, Seal::Python, force)?;
+    // Before anything is written; what else is in the way shows in writing.
+    if path.is_file() {
+        store::may_write(&path, Seal::Python, force)?;
+    }
     let written = store::write(out, &one.core.config.name, files, force)
         .with_context(|| format!("`{}` was not generated", one.path))?;
     store::write_sealed(&path, &driver.contents, Seal::Python, force)?;
