@@ -117,7 +117,8 @@ impl<'a> Lockstep<'a> {
     /// end. Results are compared with the golden model, and not with the formula.
     ///
     /// # Errors
-    /// Those of [`Lockstep::run`]; a pipeline, whose golden model speaks of points and not of inputs.
+    /// Those of [`Lockstep::run`]; a stream without a clock, or a clock with more or fewer inputs than the design; a
+    /// pipeline, whose golden model speaks of points and not of inputs.
     pub fn replay(&self, streams: &[Vec<Vec<u64>>], clocks: u64) -> Result<Outcome> {
         match &self.0 {
             Core(core) => core.replay(streams, clocks),

@@ -11,7 +11,7 @@ use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use anyhow::{Result, bail};
+use anyhow::{Result, bail, ensure};
 use rayon::prelude::*;
 
 use super::alone::Alone;
@@ -122,8 +122,19 @@ impl<'a> Sequential<'a> {
     /// See [`Lockstep::replay`](super::Lockstep::replay).
     ///
     /// # Errors
-    /// Those of [`Sequential::run`].
+    /// Those of [`Sequential::run`]; a stream without a clock, or a clock with more or fewer inputs than the design.
     pub fn replay(&self, streams: &[Vec<Vec<u64>>], clocks: u64) -> Result<Outcome> {
+        let inputs = self.binding.design.inputs().count();
+        for (number, stream) in streams.iter().enumerate() {
+            ensure!(!stream.is_empty(), "recorded stream {number} has no clock");
+            let wrong = stream.iter().position(|clock| clock.len() != inputs);
+            if let Some(clock) = wrong {
+                let found = stream[clock].len();
+                bail!(
+                    "clock {clock} of recorded stream {number} has {found} inputs and not {inputs}"
+                );
+            }
+        }
         let course = |inputs: &Vec<Vec<u64>>| Course::Recorded {
             recording: Arc::new(Recording::new(inputs)),
             clocks,

@@ -107,9 +107,8 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         wrong_usage!("--vcd is for one configuration; here are {}", loaded.len());
     }
     if let Some(vcd) = &arguments.vcd
-        && fs::canonicalize(vcd).ok().is_some_and(|vcd| {
-            arguments.configs.paths.iter().any(|it| fs::canonicalize(it).ok() == Some(vcd.clone()))
-        })
+        && let Ok(there) = fs::canonicalize(vcd)
+        && arguments.configs.paths.iter().any(|it| fs::canonicalize(it).is_ok_and(|it| it == there))
     {
         wrong_usage!("--vcd would overwrite the configuration `{}`", vcd.display());
     }

@@ -91,17 +91,14 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
     let (f, exact) = formula(contract, &raw);
     // The golden model of a pipeline is that of its sequential core: formats are those of its nets, and of the rest of it
     // nothing is in the pipeline.
-    let sequential = match &one.core.design.pipeline {
-        None => None,
-        Some(pipeline) => {
-            let registers: Vec<&str> =
-                pipeline.checkpoints.iter().map(|it| it.register.as_str()).collect();
-            signals.retain(|(name, _)| {
-                registers.contains(&name.as_str()) || one.core.design.find(name).is_some()
-            });
-            Some(one.core.device.sequential(&one.core.config)?)
-        }
-    };
+    let pipeline = one.core.design.pipeline.as_ref();
+    let sequential = pipeline.map(|_| one.core.device.sequential(&one.core.config)).transpose()?;
+    if let Some(pipeline) = pipeline {
+        signals.retain(|(name, _)| {
+            let mut registers = pipeline.checkpoints.iter().map(|it| &it.register);
+            registers.any(|it| it == name) || one.core.design.find(name).is_some()
+        });
+    }
     let design = sequential.as_ref().unwrap_or(&one.core.design);
     let value_of = |name: &str, bits: u64| {
         let net = design.find(name).map(|id| design.net(id));

@@ -2,12 +2,12 @@
 
 use std::hint::select_unpredictable;
 use std::mem;
-use std::ops::{BitAnd, BitOr, BitXor, Shl, Shr};
 use std::sync::Arc;
 
 use crate::hdl::netlist::NetId;
 use crate::hdl::sim::program::{Bank, Instruction, Place, Program, Slot, Sources, Span, Step};
 use crate::hdl::sim::slots::Slots;
+use crate::hdl::sim::word::Word;
 
 /// The state of `LANES` independent instances of a design, which one pass over the [`Program`]
 /// advances together.
@@ -254,58 +254,6 @@ impl Vectors {
         }
     }
 }
-
-/// What a slot holds in a lane.
-pub(super) trait Word:
-    Copy
-    + Default
-    + Ord
-    + From<bool>
-    + Into<u64>
-    + BitAnd<Output = Self>
-    + BitOr<Output = Self>
-    + BitXor<Output = Self>
-    + Shl<u8, Output = Self>
-    + Shr<u8, Output = Self>
-{
-    const ZERO: Self;
-    /// The low bits.
-    fn low(bits: u64) -> Self;
-    fn wrapping_add(self, other: Self) -> Self;
-    fn wrapping_sub(self, other: Self) -> Self;
-    fn wrapping_mul(self, other: Self) -> Self;
-}
-
-macro_rules! word {
-    ($word:ident) => {
-        impl Word for $word {
-            const ZERO: Self = 0;
-
-            #[inline(always)]
-            fn low(bits: u64) -> Self {
-                bits as Self
-            }
-
-            #[inline(always)]
-            fn wrapping_add(self, other: Self) -> Self {
-                $word::wrapping_add(self, other)
-            }
-
-            #[inline(always)]
-            fn wrapping_sub(self, other: Self) -> Self {
-                $word::wrapping_sub(self, other)
-            }
-
-            #[inline(always)]
-            fn wrapping_mul(self, other: Self) -> Self {
-                $word::wrapping_mul(self, other)
-            }
-        }
-    };
-}
-
-word!(u32);
-word!(u64);
 
 fn power_up<W: Word, const LANES: usize>(bank: &Bank) -> Slots<W, LANES> {
     Slots::new(bank.initial.iter().map(|&bits| [W::low(bits); LANES]))

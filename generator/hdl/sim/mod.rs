@@ -23,6 +23,7 @@ mod slots;
 mod tests;
 mod vcd;
 mod wire;
+mod word;
 
 use std::io::Write;
 use std::mem;

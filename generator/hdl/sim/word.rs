@@ -1,0 +1,55 @@
+//! The words of the two banks of slots, of 32 and of 64 bits.
+
+use std::ops::{BitAnd, BitOr, BitXor, Shl, Shr};
+
+/// What a slot holds in a lane.
+pub(super) trait Word:
+    Copy
+    + Default
+    + Ord
+    + From<bool>
+    + Into<u64>
+    + BitAnd<Output = Self>
+    + BitOr<Output = Self>
+    + BitXor<Output = Self>
+    + Shl<u8, Output = Self>
+    + Shr<u8, Output = Self>
+{
+    const ZERO: Self;
+    /// The low bits.
+    fn low(bits: u64) -> Self;
+    fn wrapping_add(self, other: Self) -> Self;
+    fn wrapping_sub(self, other: Self) -> Self;
+    fn wrapping_mul(self, other: Self) -> Self;
+}
+
+macro_rules! word {
+    ($word:ident) => {
+        impl Word for $word {
+            const ZERO: Self = 0;
+
+            #[inline(always)]
+            fn low(bits: u64) -> Self {
+                bits as Self
+            }
+
+            #[inline(always)]
+            fn wrapping_add(self, other: Self) -> Self {
+                $word::wrapping_add(self, other)
+            }
+
+            #[inline(always)]
+            fn wrapping_sub(self, other: Self) -> Self {
+                $word::wrapping_sub(self, other)
+            }
+
+            #[inline(always)]
+            fn wrapping_mul(self, other: Self) -> Self {
+                $word::wrapping_mul(self, other)
+            }
+        }
+    };
+}
+
+word!(u32);
+word!(u64);
