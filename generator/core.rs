@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use anyhow::{Context, Result};
 
+use crate::base::input;
 use crate::config::{Config, Key};
 use crate::cosim::batch::{Engine, Golden, RustHdl, Verilog};
 use crate::cosim::exhaustive::{Clocks, Job, Places};
@@ -214,7 +215,7 @@ impl Core {
         lockstep.record(BENCH_POINTS * results, &directed)
     }
 
-    /// Every file of the configuration, which the command line knows as `config`.
+    /// Every file of the configuration, which the command line knows as `config`, a path.
     ///
     /// # Errors
     /// Golden model and simulation do not agree, or the design cannot be written as Verilog.
@@ -225,7 +226,7 @@ impl Core {
             _ => None,
         };
         let inputs = EmitInputs {
-            config: config.to_owned(),
+            config: input::label(config),
             configuration: self.digest(),
             timing: self.timing()?,
             example: Some(self.example()?),

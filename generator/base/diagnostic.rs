@@ -17,11 +17,13 @@ pub struct Diagnostic {
     pub notes: Vec<(String, SourceLocation)>,
     /// The key of the configuration that asks for what the description cannot give, and what to do about it.
     pub key: Option<(&'static str, String)>,
+    /// The nearest value of that key that the description can give.
+    pub nearest: Option<f64>,
 }
 
 impl Diagnostic {
     pub(crate) fn new(message: String, location: SourceLocation) -> Self {
-        Self { message, location, notes: Vec::new(), key: None }
+        Self { message, location, notes: Vec::new(), key: None, nearest: None }
     }
 
     /// The same as a problem of a configuration's key, with a remedy.

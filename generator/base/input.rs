@@ -10,6 +10,16 @@ use serde::de::DeserializeOwned;
 /// The path that stands for standard input.
 pub const STDIN: &str = "-";
 
+/// The name by which written files know the file `path`: without directories, so that they are the same wherever their
+/// user stands. What could end a comment or a string is `%` with the byte in hexadecimal, as in a URL.
+pub fn label(path: &str) -> String {
+    let name = path.rsplit('/').next().unwrap_or(path);
+    let plain = |sign: char| sign.is_alphanumeric() || "._+-".contains(sign);
+    let escaped =
+        |sign: char| sign.to_string().bytes().map(|byte| format!("%{byte:02X}")).collect();
+    name.chars().map(|sign| if plain(sign) { sign.to_string() } else { escaped(sign) }).collect()
+}
+
 /// Opens a file, or standard input where the path is [`STDIN`].
 ///
 /// # Errors
@@ -54,4 +64,24 @@ pub fn records<T: DeserializeOwned>(directory: &Path) -> Result<Vec<(PathBuf, T)
         records.extend(serde_json::from_slice(&bytes).ok().map(|record| (path, record)));
     }
     Ok(records)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_end_no_comment() {
+        for (path, wanted) in [
+            ("configs/lyon.toml", "lyon.toml"),
+            ("/home/me/glänzend-2.toml", "glänzend-2.toml"),
+            ("a\nendmodule.toml", "a%0Aendmodule.toml"),
+            ("a */ b", "%20b"),
+            ("\"\"\" # \\", "%22%22%22%20%23%20%5C"),
+            ("\u{202e}", "%E2%80%AE"),
+            (STDIN, "-"),
+        ] {
+            assert_eq!(label(path), wanted);
+        }
+    }
 }

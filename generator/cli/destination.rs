@@ -25,13 +25,14 @@ impl Destination {
     /// # Errors
     /// It cannot.
     pub fn open(path: &Path) -> Result<Self> {
-        let sink = if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
+        if fs::metadata(path).is_ok_and(|found| !found.is_file()) {
             let file = OpenOptions::new().write(true).open(path);
-            Sink::Itself(file.with_context(|| cannot(path))?)
-        } else {
-            Sink::Beside(staged::beside(path)?)
-        };
-        Ok(Self { path: path.to_owned(), sink })
+            let sink = Sink::Itself(file.with_context(|| cannot(path))?);
+            return Ok(Self { path: path.to_owned(), sink });
+        }
+        let path = staged::place(path)?;
+        let sink = Sink::Beside(staged::beside(&path)?);
+        Ok(Self { path, sink })
     }
 
     /// The file to write.

@@ -121,6 +121,12 @@ struct Output {
     quiet: bool,
 }
 
+/// A finite number.
+fn number(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number: &f64| number.is_finite());
+    number.ok_or_else(|| "a number is wanted, as 0.75 or 12e6".to_owned())
+}
+
 /// A number of things, at least one: `1000000`, `1_000_000` or `1e6`.
 fn count(text: &str) -> Result<u64, String> {
     let wanted = || "a whole number from 1 on is wanted, as 1000000 or 1e6".to_owned();

@@ -1,11 +1,25 @@
 //! Single files, written beside their place and moved there when they are whole.
 
-use std::io::Write;
-use std::path::Path;
+use std::fs;
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, anyhow};
 
-use crate::base::transient::File;
+use crate::base::transient::{self, File};
+
+/// Where the file `path` is written: what a symbolic link leads to, which is not replaced by a file.
+///
+/// # Errors
+/// A link that leads nowhere.
+pub fn place(path: &Path) -> Result<PathBuf> {
+    if !path.is_symlink() {
+        return Ok(path.to_owned());
+    }
+    fs::canonicalize(path).with_context(|| {
+        format!("cannot write `{}`: it is a symbolic link that leads nowhere", path.display())
+    })
+}
 
 /// A temporary file in the directory of `path`, to be persisted there.
 ///
@@ -16,12 +30,13 @@ pub fn beside(path: &Path) -> Result<File> {
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),
     };
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".glint-");
-    // As any new file: the umask takes away from it.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    File::made(|| builder.tempfile_in(directory))
+    transient::delete_left_files(directory);
+    let cannot = |error: io::Error| match error.kind() {
+        ErrorKind::NotFound => anyhow!("there is no directory `{}`; make it", directory.display()),
+        _ => error.into(),
+    };
+    File::beside(directory)
+        .map_err(cannot)
         .with_context(|| format!("cannot write `{}`", path.display()))
 }
 
@@ -30,6 +45,7 @@ pub fn beside(path: &Path) -> Result<File> {
 /// # Errors
 /// It cannot be written.
 pub fn replace(path: &Path, contents: &[u8]) -> Result<()> {
+    let path = &place(path)?;
     let staged = beside(path)?;
     staged
         .reopen()

@@ -1,6 +1,6 @@
 //! The valid word that somebody meant.
 
-/// The candidate closest to `word`, if it is close enough to be a slip of the pen.
+/// The candidate closest to `word`, if it is close enough to be a slip of the pen; else the first that begins with `word`.
 ///
 /// Case and the choice between `-` and `_` do not count. Among equals the first wins.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
@@ -10,16 +10,14 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         return None;
     }
     let word = fold(word);
-    let (distance, best) = candidates
-        .into_iter()
-        .map(|candidate| {
-            let distance = strsim::damerau_levenshtein(&word, &fold(candidate));
-            (distance, candidate)
-        })
-        .min_by_key(|(distance, _)| *distance)?;
+    let candidates: Vec<&str> = candidates.into_iter().collect();
+    let distance = |candidate: &&&str| strsim::damerau_levenshtein(&word, &fold(candidate));
+    let best = candidates.iter().min_by_key(distance)?;
     let longest = word.chars().count().max(best.chars().count());
     // A third of the letters wrong, and one in words of two.
-    (distance * 3 <= longest.max(3)).then_some(best)
+    let slip = Some(best).filter(|best| distance(best) * 3 <= longest.max(3));
+    let begins = |candidate: &&&str| word.len() > 2 && fold(candidate).starts_with(&word);
+    slip.or_else(|| candidates.iter().find(begins)).copied()
 }
 
 /// Words for a sentence: `a, b and c`.

@@ -72,6 +72,11 @@ impl Problems {
         self.locations.insert(key.to_owned(), span);
     }
 
+    /// Whether the file gives a key.
+    pub fn gives(&self, key: &str) -> bool {
+        self.locations.contains_key(key)
+    }
+
     /// The same file and locations, no problems: for a trial run of a check.
     pub(super) fn cleared(&self) -> Self {
         Problems { list: Vec::new(), further: 0, ..self.clone() }

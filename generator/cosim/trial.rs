@@ -178,7 +178,7 @@ pub fn throughput(
 /// # Errors
 /// Those of [`timing`].
 pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClocks>> {
-    let mut operands = example_operands(contract);
+    let mut operands = typical(contract, &[]);
     let name = contract.length();
     let place = contract.operands().iter().position(|operand| name == Some(operand.name.as_str()));
     let (Some(name), Some(at)) = (name, place) else { return Ok(None) };
@@ -210,7 +210,7 @@ pub fn line(design: &Design, contract: &dyn Contract) -> Result<Option<LineClock
 /// # Errors
 /// Those of [`timing`].
 pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample> {
-    let operands = example_operands(contract);
+    let operands = typical(contract, &[]);
     let trial = run(design, contract, &operands, &mut |_| Ok(()))?;
     let quantity = |name: &str, format: Format, raw: i64| Quantity {
         name: name.to_owned(),
@@ -240,16 +240,20 @@ pub fn example(design: &Design, contract: &dyn Contract) -> Result<WorkedExample
     })
 }
 
-/// Typical operands: of the fractions among those of control the first that can (a cosine, an angle) is
-/// lowered until f is well inside 0 … 1.
-fn example_operands(contract: &dyn Contract) -> Vec<i64> {
+/// Typical operands around those that are given: of the fractions among those of control the first that can (a cosine, an
+/// angle) is lowered until f is well inside 0 … 1.
+pub fn typical(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
+    let given = |at: usize| given.get(at).copied().flatten();
     let mut colour = 0;
     let mut values: Vec<i64> = contract
         .operands()
         .iter()
-        .map(|operand| {
+        .enumerate()
+        .map(|(at, operand)| {
             let (low, high) = operand.domain;
-            if operand.colour {
+            if let Some(raw) = given(at) {
+                raw
+            } else if operand.colour {
                 colour += 1;
                 high - high * (colour - 1) / 3
             } else if operand.format.frac > 0 {
@@ -261,10 +265,12 @@ fn example_operands(contract: &dyn Contract) -> Vec<i64> {
         })
         .collect();
     let Some(highlight) = contract.highlight() else {
-        return hinted(contract).unwrap_or(values);
+        let hinted = hinted(contract).unwrap_or(values.clone());
+        return (0..).zip(hinted).map(|(at, raw)| given(at).unwrap_or(raw)).collect();
     };
     let control = highlight.control();
-    for at in (0..control).filter(|&at| contract.operands()[at].format.frac > 0) {
+    let movable = |at: &usize| contract.operands()[*at].format.frac > 0 && given(*at).is_none();
+    for at in (0..control).filter(movable) {
         let (low, high) = contract.operands()[at].domain;
         let typical = values[at];
         for step in 0..256 {
@@ -276,7 +282,7 @@ fn example_operands(contract: &dyn Contract) -> Vec<i64> {
             };
             let f = highlight.reference(&highlight.point(&values[..control], 0));
             if (0.4..0.8).contains(&f) {
-                slow_down(contract, highlight, &mut values);
+                slow_down(contract, highlight, &mut values, &movable);
                 return values;
             }
         }
@@ -286,7 +292,12 @@ fn example_operands(contract: &dyn Contract) -> Vec<i64> {
 }
 
 /// Of a line: lowers what f does not depend on at its first point until f at its middle is a quarter of that.
-fn slow_down(contract: &dyn Contract, highlight: &Highlight, values: &mut [i64]) {
+fn slow_down(
+    contract: &dyn Contract,
+    highlight: &Highlight,
+    values: &mut [i64],
+    movable: &dyn Fn(&usize) -> bool,
+) {
     let length =
         contract.operands().iter().position(|it| contract.length() == Some(it.name.as_str()));
     let Some(middle) = length.map(|at| values[at] as u64 / 2) else { return };
@@ -294,7 +305,7 @@ fn slow_down(contract: &dyn Contract, highlight: &Highlight, values: &mut [i64])
     let f =
         |values: &[i64], index| highlight.reference(&highlight.point(&values[..control], index));
     let first = f(values, 0);
-    for at in (0..control).filter(|&at| contract.operands()[at].format.frac > 0) {
+    for at in (0..control).filter(movable) {
         let typical = values[at];
         let low = contract.operands()[at].domain.0.max(0);
         while f(values, 0) == first && f(values, middle) < first / 4.0 && values[at] > low {
@@ -331,7 +342,7 @@ fn results(design: &Design, contract: &dyn Contract) -> Vec<NetId> {
 /// Those of [`timing`].
 pub fn record(design: &Design, contract: &dyn Contract, nets: &[NetId]) -> Result<Vec<Vec<u64>>> {
     let mut clocks = Vec::new();
-    run(design, contract, &example_operands(contract), &mut |simulator| {
+    run(design, contract, &typical(contract, &[]), &mut |simulator| {
         simulator.settle()?;
         clocks.push(nets.iter().map(|&net| simulator.value(net)).collect());
         Ok(())
@@ -350,7 +361,7 @@ pub fn record_points(
     nets: &[NetId],
 ) -> Result<Vec<Vec<u64>>> {
     let (mut random, points) = (Random::new(1), Points::new(contract));
-    let mut list = vec![example_operands(contract)];
+    let mut list = vec![typical(contract, &[])];
     list.resize_with(POINTS, || points.of_domain(&mut random));
     Through::new(design, contract)?.record(&list, PAUSE, nets, LIMIT)
 }

@@ -125,7 +125,7 @@ pub fn sources_for(files: Vec<OutputFile>, target: &str) -> Vec<(String, String)
 /// What the files say beyond the design.
 #[derive(Clone, Debug, Default)]
 pub struct EmitInputs {
-    /// The configuration as the command line names it, `configs/<name>.toml`.
+    /// The configuration by its [`crate::base::input::label`].
     pub config: String,
     /// Tells the configuration from others: SHA-256 in hexadecimal.
     pub configuration: String,

@@ -16,17 +16,18 @@ pub use markdown::page;
 
 use anyhow::Result;
 
+use crate::base::input;
 use crate::core::Core;
 
 impl Core {
-    /// The page of the configuration, which the command line knows as `config`.
+    /// The page of the configuration, which the command line knows as `config`, a path.
     ///
     /// # Errors
     /// A device that does not end.
     pub fn page(&self, config: &str) -> Result<String> {
         let line = self.line()?;
         let inputs = PageInputs {
-            path: config,
+            path: &input::label(config),
             config: &self.config,
             schema: &(self.device.schema)(),
             contract: self.contract.as_ref(),

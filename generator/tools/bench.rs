@@ -7,7 +7,7 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use anyhow::{Context, Result, bail, ensure};
+use anyhow::{Context, Result, anyhow, bail, ensure};
 
 use super::{Tool, capture};
 use crate::base::transient::Directory;
@@ -150,7 +150,13 @@ impl BuiltBench {
             Some(vvp) => (vvp, &["-n", "bench.vvp"]),
             None => {
                 let built = directory.join("build");
-                (Tool::find_in("bench", built.as_os_str())?, &[])
+                let made = Tool::find_in("bench", built.as_os_str());
+                (
+                    made.map_err(|_| {
+                        anyhow!("{simulator} ended well, and made no program of `{top}`")
+                    })?,
+                    &[],
+                )
             }
         };
         Ok(Self { simulator, top: top.to_owned(), program, build, dir })

@@ -5,6 +5,7 @@ use std::ops::ControlFlow;
 use anyhow::Result;
 
 use super::{Check, Finding, Subject, Verdict};
+use crate::base::input;
 use crate::base::text::{counted, grouped};
 use crate::core::{TEST_POINTS, TEST_SEED};
 use crate::cosim::exhaustive::{Job, Proof, Record as Recorded, Shard, State};
@@ -195,7 +196,7 @@ fn without_record(subject: &Subject<'_>, evaluations: u64) -> Finding {
         grouped(evaluations),
         subject.proofs.display(),
     );
-    let command = format!("glint verify {} --full{without_tools}", subject.path);
+    let command = format!("glint verify {} --full{without_tools}", input::label(subject.path));
     Finding { complete_with: Some(command), ..Finding::without(Verdict::NotRun, why) }
 }
 

@@ -18,6 +18,7 @@ use std::time::{Duration, Instant};
 use anyhow::Result;
 use serde::Serialize;
 
+use crate::base::input;
 use crate::core::Core;
 use crate::tools::Tool;
 
@@ -303,7 +304,7 @@ impl Record {
     pub fn new(subject: &Subject<'_>, checks: Vec<Answer>) -> Self {
         Self {
             glint: env!("CARGO_PKG_VERSION"),
-            config: subject.path.to_owned(),
+            config: input::label(subject.path),
             name: subject.core.config.name.clone(),
             device: subject.core.device.name,
             configuration: subject.core.digest(),

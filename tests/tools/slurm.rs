@@ -1,10 +1,13 @@
-//! Job arrays: an exhaustive check in parts, one of which is put back in its middle, joined to the record of one process.
+//! Job arrays: an exhaustive check in parts, of which one is put back and one killed in its middle, joined to the record of
+//! one process; and tasks that fail.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
+
+use rustix::process::{Pid, Signal, kill_process};
 
 /// 18 operand bits: long enough that a task can be met in its middle, short enough for a test.
 const CONFIG: &str = "device = \"cosine-power\"\ncosine.fraction = 8\nexponent.bits = 6\ncolour.bits = 1\nintensity.fraction = 8\n";
@@ -36,15 +39,12 @@ fn config(dir: &Path) -> String {
 }
 
 fn submit(dir: &Path) -> Command {
+    submit_with(dir, env!("CARGO_BIN_EXE_glint"))
+}
+
+fn submit_with(dir: &Path, program: &str) -> Command {
     let mut command = Command::new("bash");
-    command.args([
-        "tools/slurm/submit",
-        "exhaustive",
-        &config(dir),
-        "-g",
-        env!("CARGO_BIN_EXE_glint"),
-        "-n",
-    ]);
+    command.args(["tools/slurm/submit", "exhaustive", &config(dir), "-g", program, "-n"]);
     command.arg(PARTS.to_string()).arg("-o").arg(dir);
     command
 }
@@ -74,6 +74,18 @@ impl Loopback {
         command.env("SLURM_CONF", self.0.join("slurm.conf"));
         command
     }
+
+    /// Submits what `command` says; the number of its array.
+    fn submit(&self, command: &mut Command) -> String {
+        let said = run(command.env("SLURM_CONF", self.0.join("slurm.conf")));
+        let array = said.split("job array ").nth(1).and_then(|rest| rest.split(',').next());
+        array.unwrap_or_else(|| panic!("{said}")).to_owned()
+    }
+
+    /// Waits until no job is left.
+    fn wait(&self) {
+        wait("the last job", || run(self.command("squeue").arg("-h")).trim().is_empty());
+    }
 }
 
 impl Drop for Loopback {
@@ -86,6 +98,19 @@ impl Drop for Loopback {
     }
 }
 
+/// The process that the program runs as for a part, if it does.
+fn process_of(part: &Path) -> Option<Pid> {
+    let path = part.to_str().expect("a plain name").as_bytes();
+    fs::read_dir("/proc").expect("/proc").find_map(|entry| {
+        let entry = entry.ok()?;
+        let words = fs::read(entry.path().join("cmdline")).ok()?;
+        let mut words = words.split(|&byte| byte == 0);
+        let is_glint = words.next()? == env!("CARGO_BIN_EXE_glint").as_bytes();
+        let number = entry.file_name().to_str()?.parse().ok()?;
+        (is_glint && words.any(|word| word == path)).then(|| Pid::from_raw(number))?
+    })
+}
+
 /// Waits until `done` is true.
 fn wait(what: &str, mut done: impl FnMut() -> bool) {
     let start = Instant::now();
@@ -96,24 +121,43 @@ fn wait(what: &str, mut done: impl FnMut() -> bool) {
 }
 
 #[test]
-fn a_job_array_with_a_requeued_task_gives_the_record_of_one_process() {
+fn a_job_array_with_tasks_put_back_and_killed_gives_the_record_of_one_process() {
     let dir = tempfile::tempdir().expect("a directory");
     let slurm = Loopback::start(dir.path().join("slurm"));
     let results = dir.path().join("results");
-    let mut command = submit(&results);
-    let said = run(command.env("SLURM_CONF", slurm.0.join("slurm.conf")));
-    let array = said.split("job array ").nth(1).and_then(|rest| rest.split(',').next());
-    let array = array.unwrap_or_else(|| panic!("{said}")).to_owned();
+    let array = slurm.submit(&mut submit(&results));
     // The first task has begun: its state is there, and not complete.
     wait("the first part", || results.join("part-1.json").exists());
     run(slurm.command("scontrol").args(["requeue", &format!("{array}_1")]));
     let restarts = || run(slurm.command("scontrol").args(["show", "job", &format!("{array}_1")]));
     assert!(restarts().contains("Restarts=1"), "{}", restarts());
-    wait("the joined record", || run(slurm.command("squeue").arg("-h")).trim().is_empty());
+    let mut killed = None;
+    wait("the second part", || {
+        let ended = results.join("done/2").exists();
+        assert!(!ended, "the second part is too short to be killed");
+        killed = process_of(&results.join("part-2.json"));
+        killed.is_some()
+    });
+    kill_process(killed.expect("a process"), Signal::KILL).expect("a signal");
+    slurm.wait();
     let log = |name: &str| fs::read_to_string(results.join(name)).unwrap_or_default();
     let merged = fs::read_to_string(results.join("merged.json"))
         .unwrap_or_else(|error| panic!("{error}: {} {}", log("last.log"), log("task-1.log")));
     assert_eq!(merged, whole(&results));
+    assert!(log("task-2.log").contains("killed; start 2 of 5"), "{}", log("task-2.log"));
+
+    // A task that fails of its own accord, and one that is cancelled before it begins.
+    let (results, program) = (dir.path().join("failed"), dir.path().join("program"));
+    let script = "#!/bin/sh\ncase \"$*\" in *part-2*) exit 1;; *) sleep 2;; esac\n";
+    fs::write(&program, script).expect("a program");
+    run(Command::new("chmod").arg("755").arg(&program));
+    let program = program.to_str().expect("a plain name");
+    let array = slurm.submit(submit_with(&results, program).args(["-x", "--exclusive"]));
+    run(slurm.command("scancel").arg(format!("{array}_3")));
+    slurm.wait();
+    let missing = fs::read_to_string(results.join("missing")).expect("the names of tasks");
+    assert!(missing.starts_with("these tasks did not end well: 2 3;"), "{missing}");
+    assert!(!results.join("merged.json").exists());
 }
 
 #[test]

@@ -24,7 +24,7 @@ impl Child {
         std::os::unix::process::CommandExt::process_group(command, 0);
         let mut list = list();
         let child = command.spawn()?;
-        list.children.insert(child.id());
+        list.add(child.id());
         Ok(Self { child, ended: false })
     }
 
@@ -42,7 +42,7 @@ impl Child {
         let mut list = list();
         let status = self.child.try_wait()?;
         if status.is_some() {
-            list.children.remove(&self.child.id());
+            list.remove(self.child.id());
             self.ended = true;
         }
         Ok(status)
@@ -58,7 +58,7 @@ impl Child {
         // Errors mean that it has just ended.
         let _ = self.child.kill();
         let _ = self.child.wait();
-        list.children.remove(&self.child.id());
+        list.remove(self.child.id());
         self.ended = true;
     }
 }

@@ -2,9 +2,12 @@
 //!
 //! Each stands on a list until it is gone. [`clear`] ends and deletes all of them, for a process that is
 //! interrupted. A child is started, and a temporary path made, under the list's lock: nothing can appear
-//! between the end of the listing and the end of the process.
+//! between the end of the listing and the end of the process. Of a process that is killed, a guard ends the children, and
+//! the next one deletes the temporary paths, which are locked while they are in use.
 
 mod child;
+#[cfg(unix)]
+mod guard;
 mod scratch;
 
 #[cfg(all(test, unix))]
@@ -19,21 +22,42 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 pub use child::{Child, adopt_orphans};
-pub use scratch::{Directory, File};
+pub use scratch::{Directory, File, delete_left_files};
 
 /// How long [`clear`] waits for killed processes, and for a directory that something still writes to.
 const CLEARING_LIMIT: Duration = Duration::from_secs(5);
 /// Between two looks.
 const PAUSE: Duration = Duration::from_millis(10);
 
-static LIST: Mutex<List> = Mutex::new(List { children: BTreeSet::new(), paths: BTreeSet::new() });
+static LIST: Mutex<List> = Mutex::new(List {
+    children: BTreeSet::new(),
+    #[cfg(unix)]
+    guard: guard::Guard::new(),
+    paths: BTreeSet::new(),
+});
 static UNDIVIDED: Mutex<()> = Mutex::new(());
 
 struct List {
     /// Process numbers of children that are not collected yet.
     children: BTreeSet<u32>,
+    #[cfg(unix)]
+    guard: guard::Guard,
     /// Temporary files and directories.
     paths: BTreeSet<PathBuf>,
+}
+
+impl List {
+    fn add(&mut self, child: u32) {
+        self.children.insert(child);
+        #[cfg(unix)]
+        self.guard.tell(&self.children);
+    }
+
+    fn remove(&mut self, child: u32) {
+        self.children.remove(&child);
+        #[cfg(unix)]
+        self.guard.tell(&self.children);
+    }
 }
 
 fn list() -> MutexGuard<'static, List> {

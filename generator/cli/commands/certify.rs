@@ -9,6 +9,7 @@ use rayon::prelude::*;
 use serde_json::json;
 
 use super::load_sequential;
+use crate::base::input;
 use crate::certify::{self, Outcome, Statement, ensure_works, prove, questions, statements};
 use crate::cli::own_file::OwnFile;
 use crate::cli::{Configs, Output, progress, say, tables};
@@ -201,7 +202,8 @@ fn write(
         };
         let name = format!("{output}_{number}.g");
         let outputs = [std::slice::from_ref(output), also.as_slice()].concat().join(" and ");
-        let head = format!("{MARKER}{config}, {outputs}, statement {number}: {state}.");
+        let head =
+            format!("{MARKER}{}, {outputs}, statement {number}: {state}.", input::label(config));
         let script = &scripts[chosen];
         let digest = digest(script.as_bytes());
         let text = format!("{head} To check: gappa {name}\n{DIGEST}{digest}\n\n{script}");

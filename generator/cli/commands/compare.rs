@@ -124,6 +124,14 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             figures.with_context(|| format!("`{label}`"))
         })
         .collect::<Result<_>>()?;
+    if figures.iter().all(|it| it.accuracy.is_none()) {
+        bar.finish_and_clear();
+        let most = cores.iter().filter_map(|(_, core)| domain(core)).map(|(_, high)| high);
+        wrong_usage!(
+            "--exponent {n}: it is not in the domain of any device; the largest n of one is {}",
+            most.fold(0.0, f64::max)
+        );
+    }
     if let Some(yosys) = &yosys {
         let unknown = cores.iter().zip(&mut usage).filter(|(_, usage)| usage.is_empty());
         let (unknown, places): (Vec<_>, Vec<_>) = unknown.unzip();
@@ -234,15 +242,19 @@ fn synthesise(
 
 /// Why a configuration has no errors to show.
 fn outside(entry: &Entry, n: u32) -> String {
-    let operands = entry.core.contract.operands();
-    let exponent = operands.iter().find(|operand| operand.name == contract::EXPONENT);
     let label = &entry.label;
-    match exponent {
+    match domain(&entry.core) {
         None => format!("{label}: none of its operands stand for gamma and n = {n}"),
-        Some(operand) => {
-            let value = |raw: i64| operand.format.to_f64(i128::from(raw));
-            let (low, high) = (value(operand.domain.0), value(operand.domain.1));
+        Some((low, high)) => {
             format!("{label}: n = {n} is not in its domain, n = {low} to {high}")
         }
     }
+}
+
+/// The least and the largest exponent of a device that has one for an operand.
+fn domain(core: &Core) -> Option<(f64, f64)> {
+    let operands = core.contract.operands();
+    let exponent = operands.iter().find(|operand| operand.name == contract::EXPONENT)?;
+    let value = |raw: i64| exponent.format.to_f64(i128::from(raw));
+    Some((value(exponent.domain.0), value(exponent.domain.1)))
 }

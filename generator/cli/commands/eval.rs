@@ -10,10 +10,11 @@ use clap::Args;
 use serde_json::{Value, json};
 
 use super::{Loaded, load_one};
+use crate::base::fixed::Format;
 use crate::cli::failure::WrongUsage;
 use crate::cli::tables::Column;
 use crate::cli::{Output, say, tables, wrong_usage};
-use crate::golden::{Contract, Model, Operand};
+use crate::golden::{self, Contract, Model, Operand};
 use crate::registry::Registry;
 
 /// Compute one point: golden registers, outputs and the formula in f64
@@ -23,12 +24,12 @@ Examples:
   glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
   glint eval my_core.toml cos_gamma=#1038090     a raw integer, as the port takes it
   glint eval my_core.toml --batch points.csv     a row of results for each row of operands
-  glint eval my_core.toml --json                 the middle of the domain, for scripts")]
+  glint eval my_core.toml --json                 a typical point, for scripts")]
 pub struct Arguments {
     /// A configuration
     config: PathBuf,
     /// Operands: `cos_gamma=0.99` is a value, `cos_gamma=#1038090` a raw integer. An operand that is not
-    /// given is the middle of its domain, a colour the largest
+    /// given has a value at which results show, a colour the largest
     #[arg(value_name = "OPERAND=VALUE")]
     operands: Vec<String>,
     /// Compute many points: a CSV file with the names of operands in its first row, or - for standard input. The
@@ -84,11 +85,11 @@ fn outside(operands: &[Operand], raw: &[i64]) -> Vec<String> {
 fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
     let contract = one.core.contract.as_ref();
     let operands = contract.operands();
-    let raw = operands::completed(operands, given);
+    let raw = operands::completed(contract, given);
     let mut model = one.core.device.golden(&one.core.config);
     let mut signals = signals(model.as_mut(), operands, &raw)?;
     let outside = outside(operands, &raw);
-    let (f, exact) = formula(contract, &raw);
+    let results = results(contract, &raw);
     // The golden model of a pipeline is that of its sequential core: formats are those of its nets, and of the rest of it
     // nothing is in the pipeline.
     let pipeline = one.core.design.pipeline.as_ref();
@@ -128,10 +129,7 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
             "operands": operands,
             "inside_the_domain": outside.is_empty(),
             "signals": signals,
-            "formula": match f {
-                Some(f) => json!({ "f": f, "outputs": exact }),
-                None => json!({ "outputs": exact }),
-            },
+            "formula": as_json(&results),
         }));
         return Ok(true);
     }
@@ -152,12 +150,60 @@ fn point(output: Output, one: &Loaded, given: &[Option<i64>]) -> Result<bool> {
         vec![name.clone(), format, raw.to_string(), value.to_string()]
     });
     print_values("golden, when valid", rows);
-    let f = f.map_or_else(String::new, |f| format!(" f = {f}"));
-    say!("formula in f64:{f}");
-    for (output, exact) in contract.outputs().iter().zip(exact) {
-        say!("  {} = {exact:.6}", output.name);
-    }
+    let columns = [
+        Column::words("result"),
+        Column::numbers("value"),
+        Column::numbers("formula in f64"),
+        Column::numbers("error in last places"),
+    ];
+    let rows = results.into_iter().map(|it| {
+        vec![it.name, it.value.to_string(), format!("{:.9}", it.exact), format!("{:.3}", it.error)]
+    });
+    tables::print(&columns, rows);
     Ok(true)
+}
+
+/// What the device makes of a point, beside the formula: f of a highlight, and each output.
+struct Computed {
+    name: String,
+    value: f64,
+    exact: f64,
+    /// In last places of the result, from the nearer side where the formula jumps.
+    error: f64,
+}
+
+/// The name of f among the results.
+const F: &str = "f";
+
+fn results(contract: &dyn Contract, raw: &[i64]) -> Vec<Computed> {
+    let of = |name: &str, format: Format, raw: i64, exact: [f64; 2]| Computed {
+        name: name.to_owned(),
+        value: format.to_f64(i128::from(raw)),
+        exact: exact[0],
+        error: golden::nearer(raw as f64, exact.map(|it| it / format.to_f64(1))),
+    };
+    let f = contract.highlight().map(|it| {
+        let point = it.point(&raw[..it.control()], 0);
+        of(F, it.f_format(), it.f(&point), [it.reference(&point); 2])
+    });
+    let (mut bits, mut exact) = (Vec::new(), Vec::new());
+    contract.results(raw, 0, &mut bits);
+    contract.exact(raw, 0, &mut exact);
+    let outputs = contract.outputs().iter().zip(bits).zip(exact);
+    let outputs = outputs.map(|((it, raw), exact)| of(&it.name, it.format, raw, exact));
+    f.into_iter().chain(outputs).collect()
+}
+
+fn as_json(results: &[Computed]) -> Value {
+    let (f, outputs): (Vec<&Computed>, Vec<_>) = results.iter().partition(|it| it.name == F);
+    let exact: Vec<f64> = outputs.iter().map(|it| it.exact).collect();
+    let errors: Vec<f64> = outputs.iter().map(|it| it.error).collect();
+    match f.first() {
+        Some(f) => {
+            json!({ "f": f.exact, "f_error": f.error, "outputs": exact, "errors": errors })
+        }
+        None => json!({ "outputs": exact, "errors": errors }),
+    }
 }
 
 fn print_values(what: &str, rows: impl Iterator<Item = Vec<String>>) {

@@ -26,11 +26,11 @@ struct Finding {
     failures: Vec<String>,
 }
 
-/// The main job. With `details` it says of each configuration where the largest error is.
+/// The main job. With `details` it says of each configuration where the largest error is, and what its formula is no good for.
 pub fn run(registry: &Registry, output: Output, details: bool) -> Result<bool> {
     let loaded = load(registry, &[])?;
     for one in &loaded {
-        one.contract()?;
+        one.bound()?;
     }
     for (one, files) in loaded.iter().zip(generate::all_files(output, &loaded)?) {
         generate::write(Path::new("."), one, &files, false)?;
@@ -86,6 +86,9 @@ fn print(loaded: &[Loaded], findings: &[Finding], details: bool) -> Result<()> {
                 text::grouped(finding.outcome.clocks),
                 cosim::worst_operands(one, worst)
             );
+        }
+        for remark in one.core.contract.remarks().iter().filter(|_| details) {
+            say!("{}: {remark}", one.path);
         }
         for failure in &finding.failures {
             say!("{}: FAILS: {failure}", one.path);

@@ -118,12 +118,28 @@ fn load_sequential(registry: &Registry, named: &[PathBuf], command: &str) -> Res
 }
 
 fn load_one(registry: &Registry, schemas: &[config::Schema], path: &Path) -> Result<Loaded> {
+    let name = path.display().to_string().replace('\\', "/");
+    if name.contains(char::is_control) {
+        bail!(
+            "{name:?} has control characters in its name, which is written into files; rename it"
+        );
+    }
     let (config, locations) = config::read_located(path, schemas)?;
     let device = registry
         .device(&config.device)
         .with_context(|| format!("no device `{}`", config.device))?;
-    let name = path.display().to_string().replace('\\', "/");
-    let core = Core::new(*device, config).map_err(|error| {
+    // A key that the file leaves out follows.
+    let follow = |error: anyhow::Error| {
+        let found = error.downcast_ref::<Diagnostics>().and_then(|found| found.0.first());
+        let nearest = found.and_then(|it| Some((it.key.as_ref()?.0, it.nearest?)));
+        let Some((key, value)) = nearest.filter(|(key, _)| !locations.gives(key)) else {
+            return Err(error);
+        };
+        let mut config = config.clone();
+        config.set(key, config::Value::Number(value));
+        Core::new(*device, config)
+    };
+    let core = Core::new(*device, config.clone()).or_else(follow).map_err(|error| {
         // What the configuration asks for and the description cannot give is a mistake in the configuration.
         let mut problems = locations.clone();
         if let Some(unfit) = error.downcast_ref::<Unfit>() {
@@ -180,8 +196,22 @@ impl Loaded {
         })
     }
 
-    /// Warns when the configuration misses the accuracy contract; refuses it when it is strict.
+    /// As [`Loaded::bound`], and warns of what the formula is no good for, unless the device's own keys are as the catalogue
+    /// has them, whose page says it.
     fn contract(&self) -> Result<()> {
+        self.bound()?;
+        let config = &self.core.config;
+        if (self.core.device.schema)().keys.iter().any(|key| *config.value(key.name) != key.default)
+        {
+            for remark in self.core.contract.remarks() {
+                failure::warn(&format!("{}: {remark}", self.path));
+            }
+        }
+        Ok(())
+    }
+
+    /// Warns when the configuration misses the accuracy contract; refuses it when it is strict.
+    fn bound(&self) -> Result<()> {
         let bound = self.core.contract.bound();
         if !bound.is_stated() {
             let message = format!(
@@ -208,9 +238,6 @@ impl Loaded {
                 bail!("{message}; `strict = true` refuses that");
             }
             failure::warn(&message);
-        }
-        for remark in self.core.contract.remarks() {
-            failure::warn(&format!("{}: {remark}", self.path));
         }
         Ok(())
     }

@@ -11,7 +11,7 @@ use super::load_one;
 use crate::base::{input, text};
 use crate::cli::destination::Destination;
 use crate::cli::failure::{self, WrongUsage};
-use crate::cli::{Output, TimeLimit, progress, say, tables, wrong_usage};
+use crate::cli::{Output, TimeLimit, number, progress, say, tables, wrong_usage};
 use crate::config::Config;
 use crate::core::{self, Core};
 use crate::registry::Registry;
@@ -74,11 +74,12 @@ pub struct Arguments {
         value_name = "PERCENT",
         default_value_t = 1.0,
         allow_negative_numbers = true,
-        requires = "height"
+        requires = "height",
+        value_parser = number
     )]
     height_depth: f64,
     /// How many times the height map is repeated
-    #[arg(long, value_name = "TIMES", default_value_t = 4.0, requires = "height")]
+    #[arg(long, value_name = "TIMES", default_value_t = 4.0, requires = "height", value_parser = number)]
     height_repeat: f64,
     /// A light: the direction toward it and its colour, x right, y up, z to the front [default: a white one
     /// from the upper left, a weaker one from behind on the right]

@@ -105,11 +105,11 @@ fn print(one: &Loaded, pipeline: &Pipeline) {
     let columns = [
         Column::numbers("stage"),
         Column::words("microinstructions"),
-        Column::words("computes").dispensable(1),
-        Column::numbers("logic ns"),
-        Column::numbers("slack ns"),
-        Column::numbers("bits"),
-        Column::numbers("delayed"),
+        Column::words("computes"),
+        Column::numbers("logic ns").dispensable(3),
+        Column::numbers("slack ns").dispensable(1),
+        Column::numbers("bits").dispensable(2),
+        Column::numbers("delayed").dispensable(4),
     ];
     tables::print(&columns, rows);
 }

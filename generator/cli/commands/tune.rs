@@ -12,7 +12,7 @@ use serde_json::{Value as Json, json};
 
 use crate::cli::destination::Destination;
 use crate::cli::tables::{self, Column};
-use crate::cli::{Output, progress, say, wrong_usage};
+use crate::cli::{Output, number, progress, say, wrong_usage};
 use crate::config::{self, Config, Value};
 use crate::registry::{Device, Registry};
 use crate::synth::Target;
@@ -34,7 +34,7 @@ pub struct Arguments {
     /// A device of `glint list`
     device: String,
     /// The largest error
-    #[arg(long, value_name = "E")]
+    #[arg(long, value_name = "E", value_parser = number)]
     error: f64,
     /// What the error is measured in: the reflectance f, 0 to 1, or the outputs' least significant bit
     #[arg(long, value_enum, default_value_t = ErrorUnit::Output)]
@@ -46,10 +46,10 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = Objective::Area)]
     objective: Objective,
     /// The clock that the core must reach, by the estimate
-    #[arg(long, value_name = "MHZ")]
+    #[arg(long, value_name = "MHZ", value_parser = number)]
     clock: Option<f64>,
     /// How many million points a second the core must compute, by the estimated clock and the clocks of a point
-    #[arg(long, value_name = "MPOINTS")]
+    #[arg(long, value_name = "MPOINTS", value_parser = number)]
     rate: Option<f64>,
     /// A key with the value that it must have: a format, the domain, or any other; may be repeated
     #[arg(long = "set", value_name = "KEY=VALUE")]
@@ -236,11 +236,11 @@ fn print(answer: &Answer, arguments: &Arguments, text: &str) {
         Column::numbers("output units"),
         Column::numbers("LUT"),
         Column::numbers("DSP"),
-        Column::numbers("RAM"),
-        Column::numbers("ROM bits"),
-        Column::numbers("MHz"),
-        Column::numbers("M points/s"),
-        Column::words("keys").dispensable(1),
+        Column::numbers("RAM").dispensable(1),
+        Column::numbers("ROM bits").dispensable(3),
+        Column::numbers("MHz").dispensable(2),
+        Column::numbers("M points/s").dispensable(4),
+        Column::words("keys"),
     ];
     let rows = answer.front.iter().map(|candidate| {
         let cost = &candidate.cost;

@@ -149,7 +149,7 @@ fn print_conclusion(one: &Loaded, record: &Record) {
         _ => format!("{}: {words}", one.path),
     });
     for command in with(Verdict::NotRun).filter_map(|it| it.finding.complete_with.as_ref()) {
-        say!("  complete it with: {command}");
+        say!("  complete it with: {}", command.replacen(&record.config, &one.path, 1));
     }
     match with(Verdict::NotCovered).count() {
         0 => (),

@@ -7,7 +7,7 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, ensure};
 
 use super::survey::{Digests, Owner, files_below};
 use super::{create_parent, directories, relative_name};
@@ -99,6 +99,14 @@ fn swap_each(
 ) -> Result<()> {
     let aside = staging.join(OLD);
     let (new, old) = (directories(staging, name), directories(&aside, name));
+    for place in directories(out, name) {
+        ensure!(
+            !place.is_symlink(),
+            "`{}` is a symbolic link, and directories are replaced as a whole; nothing was changed\n\
+             give --out where it leads, or make a directory of it",
+            place.display()
+        );
+    }
     for ((place, new), old) in directories(out, name).into_iter().zip(new).zip(old) {
         let below = relative_name(out, &place) + "/";
         // One that the configuration no longer asks for goes. One that it asks for and that is not here any more

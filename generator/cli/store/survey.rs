@@ -40,7 +40,8 @@ impl Survey {
             let wanted = files.iter().any(|file| file.path == relative);
             let below = format!("{relative}/");
             let in_the_way = files.iter().any(|file| file.path.starts_with(&below));
-            if wanted && !survey.different.contains(&relative) {
+            // A link to the right text is none of Glint's files all the same: it would be replaced with the others.
+            if wanted && !path.is_symlink() && !survey.different.contains(&relative) {
                 continue;
             }
             match digests.owner(&relative, &path) {
@@ -93,6 +94,9 @@ impl Digests {
         let Some(digests) = &self.digests else {
             return Owner::Other;
         };
+        if path.is_symlink() {
+            return Owner::Other;
+        }
         if relative == self.manifest {
             return Owner::Glint;
         }

@@ -120,7 +120,9 @@ pub fn pipeline(sequential: &Design, options: &Options) -> Result<Design, Diagno
             });
             let faster = if faster { ", or pipeline.multipliers = \"registered\"" } else { "" };
             let remedy = format!("set pipeline.clock_mhz to {nearest} or less{faster}");
-            wrong("pipeline.clock_mhz", message, remedy, Some(limiting))
+            let mut wrong = wrong("pipeline.clock_mhz", message, remedy, Some(limiting));
+            wrong.0.iter_mut().for_each(|it| it.nearest = Some(nearest));
+            wrong
         })?,
         Goal::Stages(stages) => {
             let key = "pipeline.stages";

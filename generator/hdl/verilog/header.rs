@@ -9,7 +9,7 @@ use crate::observation::Timing;
 /// What a file's header says beyond the design.
 #[derive(Clone, Copy)]
 pub struct Origin<'a> {
-    /// The configuration as the command line names it, `configs/<name>.toml`.
+    /// The configuration by its [`crate::base::input::label`].
     pub config: &'a str,
     /// Clocks between the events of the handshake.
     pub timing: &'a Timing,

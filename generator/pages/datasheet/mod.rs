@@ -32,7 +32,7 @@ const SAMPLES: u32 = 2;
 pub struct Subject<'a> {
     /// The configuration.
     pub core: &'a Core,
-    /// As the command line names it, `configs/<name>.toml`.
+    /// The configuration as the command line names it; the page has its label.
     pub path: &'a str,
     /// The record of its exhaustive check, where there is one.
     pub proof: Option<Record>,

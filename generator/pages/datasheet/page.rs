@@ -9,7 +9,7 @@ use super::measured::{self, RecordView};
 use super::microprogram::Microprogram;
 use super::table::TableView;
 use super::{Measured, Subject, diagram, timing};
-use crate::base::text;
+use crate::base::{input, text};
 use crate::evidence::chart::Chart;
 use crate::evidence::comparison::{self, Multiplier};
 use crate::evidence::hardware::FamilyUsage;
@@ -115,13 +115,14 @@ struct HighlightView {
 /// A chart that cannot be plotted, or a template that fails to print.
 pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
     let core = subject.core;
+    let path = &input::label(subject.path);
     let design = &core.design;
     let about = &design.about;
     let contract = core.contract.as_ref();
     let schema = (core.device.schema)();
     let bound = contract.bound();
     let inputs = PageInputs {
-        path: subject.path,
+        path,
         config: &core.config,
         schema: &schema,
         contract,
@@ -135,7 +136,7 @@ pub fn page(subject: &Subject, measured: &Measured) -> Result<String> {
     let page = Page {
         version: env!("CARGO_PKG_VERSION"),
         design,
-        path: subject.path,
+        path,
         title: html(&about.title),
         formula: formula::typeset(&about.formula),
         source: html(&about.source),

@@ -108,6 +108,9 @@ fn waveforms_that_are_wrong_usage() {
     let icarus = dir.glint(["cosim", "a.toml", "--simulator", "icarus", "--vcd", "wave.vcd"]);
     icarus.refused(2, &["--vcd is for the built-in simulator"]);
     assert!(!dir.at("wave.vcd").exists());
+    let nowhere = dir.glint(["cosim", "a.toml", "--vcd", "none/wave.vcd"]);
+    nowhere.refused(1, &["cannot write `none/wave.vcd`: there is no directory `none`; make it"]);
+    assert!(!nowhere.err.contains(".glint"), "{nowhere:?}");
     let itself = dir.glint(["cosim", "a.toml", "--vcd", "./a.toml"]);
     itself.refused(2, &["--vcd would overwrite the configuration"]);
 }
@@ -144,6 +147,8 @@ fn a_simulator_that_fails() {
     run.refused(1, &["`iverilog` failed (exit status: 3)", "out of luck"]);
     let silent = with_tools("icarus", &[("iverilog", "exit 0"), ("vvp", "exit 0")], &[]);
     silent.refused(1, &["ended without a PASS or FAIL line"]);
+    let idle = with_tools("verilator", &[("verilator", "exit 0")], &[]);
+    idle.refused(1, &["Verilator ended well, and made no program of `core_tb`"]);
     let wrong =
         with_tools("icarus", &[("iverilog", "exit 0"), ("vvp", "echo FAIL: red_out; exit 1")], &[]);
     assert_eq!(wrong.code, 1, "{wrong:?}");

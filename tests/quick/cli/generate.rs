@@ -23,7 +23,8 @@ fn files_are_written_once_and_checked() {
     assert!(absent.out.contains("differs: rtl_out/core/core.v\n"), "{}", absent.out);
     assert_eq!(dir.files().len(), 1, "--check wrote something");
 
-    assert!(dir.done(["generate", "core.toml"]).ends_with("files written\n"));
+    let first = dir.glint(["generate", "core.toml"]).quiet();
+    assert!(first.out.ends_with("files written\n"));
     let files = dir.files();
     for name in FILES.iter().chain(&["rtl_out/core/core.json", "rtl_out/core/core.core"]) {
         assert!(files.contains_key(*name), "no {name}");
@@ -110,6 +111,8 @@ fn the_main_job_generates_and_checks_everything() {
     assert!(row("wide").contains(" outside the contract "), "{run:?}");
     let advice = "configs/wide.toml: outside the accuracy contract";
     assert!(run.err.contains(advice) && run.err.contains(" would bring the bound to "), "{run:?}");
+    // What the formula is no good for is a detail, and no warning.
+    assert!(!run.err.contains("warning: configs/one.toml"), "{run:?}");
     // The table and the line that counts are the last on the screen.
     let count = "2 of 3 hold; 1 outside the accuracy contract, within their own bound.";
     let mut last = run.out.lines().rev();
@@ -117,6 +120,7 @@ fn the_main_job_generates_and_checks_everything() {
     assert!(last.next().expect("the table").starts_with("| wide "), "{run:?}");
     let details = dir.done(["--details"]);
     assert!(details.contains("configs/one.toml: ") && details.contains("the largest error is at"));
+    assert!(details.contains("configs/one.toml: power = 16 is above some n of the domain"));
     std::fs::remove_file(dir.at("configs/wide.toml")).expect("removed");
     assert!(dir.at("rtl_out/one/one.v").exists() && dir.at("testbench/two/two_tb.v").exists());
     let run = dir.glint(["--json"]).good();
@@ -197,6 +201,92 @@ fn foreign_files_stay_and_do_not_block() {
         dir.write("core.toml", COSINE_POWER);
         dir.done(["generate", "core.toml"]);
     }
+}
+
+/// Links above the directories of a configuration are followed. These directories and their files are replaced, and what they
+/// lead to is not Glint's.
+#[test]
+#[cfg(unix)]
+fn symbolic_links_are_followed_or_refused() {
+    use std::os::unix::fs::symlink;
+    let moved = |name: &str| {
+        let dir = generated();
+        dir.write("rtl_out/core/notes.txt", "mine");
+        dir.write("elsewhere/before.txt", "mine");
+        std::fs::rename(dir.at(name), dir.at("elsewhere/it")).expect("moved");
+        symlink(dir.at("elsewhere/it"), dir.at(name)).expect("a link");
+        dir.done(["generate", "core.toml", "--check"]);
+        reconfigure(&dir);
+        dir
+    };
+    let dir = moved("rtl_out");
+    dir.done(["generate", "core.toml"]);
+    dir.done(["generate", "core.toml", "--check"]);
+    assert!(dir.at("rtl_out").is_symlink() && dir.at("elsewhere/it/core/notes.txt").exists());
+    assert_eq!(dir.read("elsewhere/it/core/core.v"), dir.read("rtl_out/core/core.v"));
+
+    for name in ["rtl_out/core", "testbench/core", FILES[0], "rtl_out/core/core.json"] {
+        let dir = moved(name);
+        let before = dir.files();
+        for force in [None, Some("--force")] {
+            if name.contains('.') && force.is_some() {
+                continue;
+            }
+            let run = dir.glint(["generate", "core.toml"].into_iter().chain(force));
+            run.refused(1, &["nothing was changed", name, "--out"]);
+            assert!(dir.at(name).is_symlink() && dir.files() == before, "{name}: {run:?}");
+            dir.assert_no_staging();
+        }
+    }
+
+    // The output directory, and the driver that configurations share.
+    let dir = Workspace::with("core.toml", COSINE_POWER);
+    dir.write("elsewhere/notes.txt", "mine");
+    symlink("elsewhere", dir.at("out")).expect("a link");
+    dir.done(["generate", "core.toml", "--out", "out"]);
+    let driver = dir.at("elsewhere/testbench/glint_cocotb.py");
+    std::fs::rename(&driver, dir.at("driver.py")).expect("moved");
+    symlink(dir.at("driver.py"), &driver).expect("a link");
+    dir.done(["generate", "core.toml", "--out", "out", "--force"]);
+    assert!(driver.is_symlink() && dir.at("elsewhere/notes.txt").exists());
+    let page = dir.done(["describe", "core.toml"]);
+    dir.write("page.md", &page);
+    symlink("page.md", dir.at("core.md")).expect("a link");
+    dir.done(["describe", "core.toml", "--out", "."]);
+    assert!(dir.at("core.md").is_symlink());
+    reconfigure(&dir);
+    dir.done(["describe", "core.toml", "--out", "."]);
+    assert!(dir.at("core.md").is_symlink() && dir.read("page.md") != page);
+}
+
+/// The same bytes wherever the user stands, and no directory of theirs.
+#[test]
+fn files_name_the_configuration_without_its_path() {
+    let dir = generated();
+    let path = dir.at("core.toml");
+    let path = path.to_str().expect("a plain name");
+    dir.done(["generate", path, "--out", "far"]);
+    for (name, text) in dir.files() {
+        if let Some(near) = name.strip_prefix("far/") {
+            assert_eq!(text, dir.files()[near], "{name}");
+        }
+    }
+    assert!(dir.read("rtl_out/core/core.v").contains("glint generate core.toml\n"));
+    let page = dir.done(["describe", path]);
+    assert!(page == dir.done(["describe", "core.toml"]) && page.contains("describe core.toml"));
+    let odd = "a \"*b.toml";
+    dir.write(odd, format!("name = \"odd\"\n{COSINE_POWER}"));
+    dir.done(["generate", odd]);
+    assert!(dir.read("rtl_out/odd/odd.v").contains("glint generate a%20%22%2Ab.toml\n"));
+}
+
+#[test]
+#[cfg(unix)]
+fn a_name_with_control_characters_is_refused() {
+    let dir = Workspace::with("a\nendmodule.toml", COSINE_POWER);
+    let run = dir.glint(["generate", "a\nendmodule.toml"]);
+    run.refused(1, &["\"a\\nendmodule.toml\" has control characters in its name", "rename it"]);
+    assert_eq!(dir.files().len(), 1);
 }
 
 #[test]

@@ -183,6 +183,29 @@ colour.bits = 1
 domain = { exponent_min = 2, exponent_max = 3 }
 ";
 
+/// Nobody asks a process that is killed: its guard ends the tools, and the next run deletes what is left.
+#[test]
+fn a_killed_run_leaves_nothing_for_long() {
+    let dir = with_endless(&["iverilog"]);
+    let arguments = ["cosim", "core.toml", "--simulator", "icarus"];
+    let temporary = || fs::read_dir(dir.at("tmp")).expect("tmp").count();
+    let mut run = Running::start(&dir, &arguments);
+    run.until_tools_sleep();
+    run.child.kill().expect("a signal");
+    run.child.wait().expect("its end");
+    let begin = Instant::now();
+    while !run.processes().is_empty() {
+        assert!(begin.elapsed() < Duration::from_secs(30), "still there: {:?}", run.processes());
+        thread::sleep(PAUSE);
+    }
+    assert_eq!(temporary(), 1, "there is nothing to delete");
+    let mut next = Running::start(&dir, &arguments);
+    next.until_tools_sleep();
+    assert_eq!(temporary(), 1, "what the killed run has left is still there");
+    next.interrupted_by(Signal::INT);
+    assert_eq!(temporary(), 0);
+}
+
 #[test]
 fn what_faults_of_the_verilog_are_shown_to_ends() {
     let dir = with_endless(&["iverilog", "vvp", "verilator", "yosys"]);

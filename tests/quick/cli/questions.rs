@@ -22,10 +22,38 @@ fn named<'a>(list: &'a Value, name: &str) -> &'a Value {
 fn a_point_is_evaluated() {
     // n = 2, cos γ = 1/2: (−1/2 + 1)² = 1/4 of 200.
     let run = eval(&["cos_gamma=0.5", "exponent=2", "red=200"]).quiet();
-    assert!(run.out.contains("formula in f64: f = 0.25\n  red_out = 50.000000\n"), "{}", run.out);
-    let row = run.out.lines().find(|line| line.contains("red_out")).expect("a row");
-    let cells: Vec<&str> = row.split('|').map(str::trim).collect();
-    assert_eq!(cells[1..4], ["red_out", "u8.0", "50"], "{row}");
+    let rows = run.out.lines().filter(|line| line.contains("red_out") || line.contains("| f "));
+    let cells = |row: &str| row.split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
+    let rows: Vec<Vec<String>> = rows.map(cells).collect();
+    let wanted = [
+        ["red_out", "u8.0", "50", "50"],
+        ["f", "0.25", "0.250000000", "0.000"],
+        ["red_out", "50", "50.000000000", "0.000"],
+    ];
+    assert_eq!(rows.len(), wanted.len(), "{}", run.out);
+    rows.iter().zip(wanted).for_each(|(row, wanted)| assert_eq!(row[1..5], wanted));
+}
+
+/// Whatever is left out, the point is lit and its error is in the bound.
+#[test]
+fn a_point_of_the_evaluators_choice_is_lit() {
+    let registry = Registry::catalogue();
+    let names: Vec<&str> = registry.devices().iter().map(|device| device.name).collect();
+    for name in names {
+        let dir = Workspace::with("core.toml", format!("device = \"{name}\"\n"));
+        let value = dir.glint(["eval", "core.toml", "--json"]).quiet().json();
+        let formula = &value["formula"];
+        let f = formula["f"].as_f64().expect("f");
+        assert!((0.3..0.9).contains(&f) && value["inside_the_domain"] == true, "{name}: {formula}");
+        let errors = formula["errors"].as_array().expect("errors").iter();
+        let errors: Vec<f64> = errors.map(|error| error.as_f64().expect("a number")).collect();
+        assert!(errors.len() == 3 && errors.iter().all(|error| *error < 1.0), "{name}: {errors:?}");
+    }
+    // Around what is given: n/2·(c − 1) + 1 is 0 at c = 0.98 for n = 100.
+    let value = eval(&["exponent=100", "--json"]).quiet().json();
+    let (f, cosine) = (&value["formula"]["f"], named(&value["operands"], "cos_gamma"));
+    assert!((0.4..0.8).contains(&f.as_f64().expect("f")), "{f}");
+    assert!(cosine["value"].as_f64().expect("a cosine") > 0.98, "{cosine}");
 }
 
 #[test]
@@ -40,7 +68,8 @@ fn a_point_is_evaluated_for_scripts() {
         json!({ "name": "cos_gamma", "raw": 524_288, "value": 0.5, "format": "u1.20" })
     );
     assert_eq!(value["inside_the_domain"], true);
-    assert_eq!(value["formula"], json!({ "f": 0.25, "outputs": [50.0, 25.0, 0.0] }));
+    let formula = json!({ "f": 0.25, "f_error": 0.0, "outputs": [50.0, 25.0, 0.0], "errors": [0.0, 0.0, 0.0] });
+    assert_eq!(value["formula"], formula);
     for (name, raw) in [("red_out", 50), ("green_out", 25), ("blue_out", 0), ("valid", 1)] {
         assert_eq!(named(&value["signals"], name)["raw"], raw, "{name}");
     }
@@ -193,6 +222,8 @@ fn new_with_wrong_words() {
     let run = dir.glint(["new", "cosine_powr"]);
     run.refused(2, &["there is no device `cosine_powr`; did you mean `cosine-power`? The devices are: quad-cosine, cosine-squared"]);
     assert_eq!(run.out, "");
+    dir.glint(["new", "cosine"])
+        .refused(2, &["`cosine`; did you mean `cosine-squared`? The devices"]);
     for (name, message) in [
         ("always", "\"always\" is a keyword"),
         ("a/b", "\"a/b\" looks like a path"),

@@ -46,6 +46,12 @@ fn wrong_usage() {
         (&["cosim", "--points", "many"], "a whole number from 1 on is wanted"),
         (&["cosim", "--simulator", "icaru"], "a similar value exists: 'icarus'"),
         (&["cosim", "--time-limit", "18446744073709551615"], "is not in 1..=1000000"),
+        (&["tune", "lyon", "--error", "small"], "a number is wanted, as 0.75 or 12e6"),
+        (
+            &["render", "core.toml", "--height", "a.png", "--height-depth", "inf"],
+            "a number is wanted",
+        ),
+        (&["compare", "-n", "5000", "--no-synthesis"], "the largest n of one is 1000"),
         (&["eval"], "required arguments were not provided"),
         (&["new"], "required arguments were not provided"),
     ] {

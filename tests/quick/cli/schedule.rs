@@ -1,6 +1,6 @@
 //! `glint schedule`, and what is said of pipelines that cannot be made.
 
-use crate::workspace::Workspace;
+use crate::workspace::{Run, Workspace};
 
 #[test]
 fn what_is_proposed_can_be_reached() {
@@ -15,6 +15,28 @@ fn what_is_proposed_can_be_reached() {
     let nearest = nearest.split(' ').next().expect("a number");
     let dir = Workspace::with("core.toml", text(nearest));
     dir.glint(["schedule", "core.toml", "--json"]).good();
+}
+
+/// The clock follows the target where the file leaves it out, and only there.
+#[test]
+fn a_clock_that_is_left_out_follows_the_target() {
+    let text = "device = \"schlick\"\narchitecture = \"pipelined\"\npipeline.target = \"ice40\"\n";
+    let dir = Workspace::with("core.toml", text);
+    let value = dir.glint(["schedule", "core.toml", "--json"]).quiet().json();
+    let clock = value["schedules"][0]["clock_mhz"].as_f64().expect("a clock");
+    dir.write("core.toml", format!("{text}pipeline.clock_mhz = 130\n"));
+    let refused = dir.glint(["schedule", "core.toml"]);
+    refused.refused(1, &[&format!("set pipeline.clock_mhz to {clock} or less"), "core.toml:4:"]);
+}
+
+/// At 80 columns what a stage computes stays, and what can be spared goes.
+#[test]
+fn what_stages_compute_is_shown_in_a_narrow_terminal() {
+    let dir =
+        Workspace::with("core.toml", "device = \"threshold\"\narchitecture = \"pipelined\"\n");
+    let run = Run::of(dir.command().args(["schedule", "core.toml"]).env("COLUMNS", "80").output());
+    assert!(run.out.contains("| computes"), "{}", run.out);
+    assert!(run.out.lines().all(|line| line.chars().count() <= 80), "{}", run.out);
 }
 
 #[test]

@@ -88,7 +88,7 @@ fn row(
             given[at] = Some(operands::named_value(&known[at], text)?);
         }
     }
-    let raw = operands::completed(known, &given);
+    let raw = operands::completed(contract, &given);
     let f = contract.highlight().map(|it| it.f(&it.point(&raw[..it.control()], 0)));
     let mut outputs = Vec::new();
     contract.results(&raw, 0, &mut outputs);

@@ -1,7 +1,8 @@
 //! Operands as the user writes them: `0.99` is a value, `#1038090` a raw integer.
 
 use crate::config;
-use crate::golden::Operand;
+use crate::cosim::trial;
+use crate::golden::{Contract, Operand};
 
 /// The raw operands that `name=value` settings give.
 pub fn given(operands: &[Operand], settings: &[String]) -> Result<Vec<Option<i64>>, String> {
@@ -29,11 +30,12 @@ pub fn position(operands: &[Operand], name: &str) -> Result<usize, String> {
     })
 }
 
-/// All operands: what is not given comes from the middle of its domain, colours from the top.
-pub fn completed(operands: &[Operand], given: &[Option<i64>]) -> Vec<i64> {
-    let each = operands.iter().zip(given).map(|(operand, raw)| {
-        let (low, high) = operand.domain;
-        raw.unwrap_or(if operand.colour { high } else { low.midpoint(high) })
+/// All operands: what is not given is typical, so that results show, and of a colour the largest.
+pub fn completed(contract: &dyn Contract, given: &[Option<i64>]) -> Vec<i64> {
+    let typical = trial::typical(contract, given);
+    let each = contract.operands().iter().zip(given).zip(typical);
+    let each = each.map(|((operand, given), typical)| {
+        given.unwrap_or(if operand.colour { operand.domain.1 } else { typical })
     });
     each.collect()
 }
