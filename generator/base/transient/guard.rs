@@ -14,7 +14,7 @@ tree() {
     kill -KILL "$1"
 }
 while read -r line; do children=$line; done
-for child in $children; do tree "$child"; kill -KILL -- "-$child"; done
+for child in $children; do tree "$child"; kill -KILL "-$child"; done
 "#;
 
 /// The pipe to the shell; none before the first child, and none on a system without a shell.

@@ -45,6 +45,17 @@ fn files_are_written_once_and_checked() {
 }
 
 #[test]
+fn whole_configurations_of_the_readme_give_no_warning() {
+    let readme = include_str!("../../../README.md");
+    let blocks = readme.split("```toml\n").skip(1).filter_map(|rest| rest.split("```").next());
+    let whole: Vec<&str> = blocks.filter(|text| text.contains("device = ")).collect();
+    assert_eq!(whole.len(), 2, "highlight.toml and my_pipeline.toml");
+    for text in whole {
+        Workspace::with("core.toml", text).glint(["generate", "core.toml"]).quiet();
+    }
+}
+
+#[test]
 fn another_directory_and_json() {
     let dir = Workspace::with("core.toml", COSINE_POWER);
     let run = dir.glint(["generate", "core.toml", "--out", "a/b", "--json"]).good();

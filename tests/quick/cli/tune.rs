@@ -1,6 +1,6 @@
 //! `tune` from the command line.
 
-use super::workspace::Workspace;
+use super::workspace::{Run, Workspace};
 
 #[test]
 fn the_file_is_one_that_generate_takes() {
@@ -19,6 +19,10 @@ fn the_file_is_one_that_generate_takes() {
     let svg = dir.read("front.svg");
     let drawing = roxmltree::Document::parse(&svg).unwrap_or_else(|error| panic!("{error}: {svg}"));
     assert!(drawing.descendants().any(|it| it.has_tag_name("polyline")), "{svg}");
+    let mut narrow = dir.command();
+    let narrow = Run::of(narrow.args(arguments).env("COLUMNS", "80").output()).good();
+    let table: Vec<&str> = narrow.out.lines().filter(|line| line.starts_with('|')).collect();
+    assert!(table[0].contains("| keys ") && table.iter().all(|row| row.len() <= 80), "{narrow:?}");
     let csv = dir.done(arguments.into_iter().chain(["--csv"]));
     let first = csv.lines().next().expect("a heading");
     assert!(
