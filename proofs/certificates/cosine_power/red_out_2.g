@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_power.toml, red_out and green_out and blue_out, statement 2: accepted. To check: gappa red_out_2.g
+# Certificate by Glint: cosine_power.toml, red_out and green_out and blue_out, statement 2: accepted. To check: gappa red_out_2.g
 # SHA-256 of the script below: 16bd105eaf0b4a0ea09de1b5410677ae554044b1175aa1b34df5067bc86bfd8b
 
 complement_2 = 1 - cos_gamma;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_power.toml, red_out and green_out and blue_out, statement 4: accepted. To check: gappa red_out_4.g
+# Certificate by Glint: cosine_power.toml, red_out and green_out and blue_out, statement 4: accepted. To check: gappa red_out_4.g
 # SHA-256 of the script below: f60c97bd9c60eec98ea682a0aba0ec2685e19aab5ccff3d0f30469d282c8d326
 
 product_5 = 1 * exponent_over_16;

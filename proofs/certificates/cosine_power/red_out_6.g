@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_power.toml, red_out and green_out and blue_out, statement 6: accepted. To check: gappa red_out_6.g
+# Certificate by Glint: cosine_power.toml, red_out and green_out and blue_out, statement 6: accepted. To check: gappa red_out_6.g
 # SHA-256 of the script below: fc0e4c014b94543b8ad85aa5bc5eb0a252e45dc69c1eaf5978eb537b323cceba
 
 complement_6 = 1 - cos_gamma;

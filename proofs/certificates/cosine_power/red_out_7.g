@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_power.toml, red_out and green_out and blue_out, statement 7: accepted. To check: gappa red_out_7.g
+# Certificate by Glint: cosine_power.toml, red_out and green_out and blue_out, statement 7: accepted. To check: gappa red_out_7.g
 # SHA-256 of the script below: 27eabd57d296dca2caf166c703f8ff72f7c4fd4e731f9b067d84739f3a72ffd6
 
 red_product_2 = 0.999755859375 * red;

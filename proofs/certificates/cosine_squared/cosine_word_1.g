@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 1: accepted. To check: gappa cosine_word_1.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 1: accepted. To check: gappa cosine_word_1.g
 # SHA-256 of the script below: 1cc1b64d8c2a435d01510dc0d9ed5fab946b8118acef21d46f3338a0df0cc8c4
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

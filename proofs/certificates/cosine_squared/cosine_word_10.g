@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 10: accepted. To check: gappa cosine_word_10.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 10: accepted. To check: gappa cosine_word_10.g
 # SHA-256 of the script below: 32617845325d819878570113f0a9569f6e480be974075901224e357ecad4b8fb
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 100: accepted. To check: gappa cosine_word_100.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 100: accepted. To check: gappa cosine_word_100.g
 # SHA-256 of the script below: d51eb16f3458d6ed24ff8f722ba92e98f41a65e3eadd638647e34599f4a61fea
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 103: accepted. To check: gappa cosine_word_103.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 103: accepted. To check: gappa cosine_word_103.g
 # SHA-256 of the script below: 531a072d2e37a3b214f44007ef5e408a7dedbaa4d5c3845b114d2bb2fc093d5e
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

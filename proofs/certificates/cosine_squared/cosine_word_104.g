@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 104: accepted. To check: gappa cosine_word_104.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 104: accepted. To check: gappa cosine_word_104.g
 # SHA-256 of the script below: 142600a5edb9c79e7e9337b83e050f0ee7abc54a956c06a6b1fc76b10aba0797
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

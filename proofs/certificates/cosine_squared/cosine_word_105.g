@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 105: accepted. To check: gappa cosine_word_105.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 105: accepted. To check: gappa cosine_word_105.g
 # SHA-256 of the script below: 191014f3e5b3a8cdecbbc931c7d29ae7660f96ff53bee471a6b8538eb9e392f3
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

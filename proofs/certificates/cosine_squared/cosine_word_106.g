@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 106: accepted. To check: gappa cosine_word_106.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 106: accepted. To check: gappa cosine_word_106.g
 # SHA-256 of the script below: 00ed406aa8b941d89d924365d5a4c50c9f18e8698df207357e964c9623ce21da
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 108: accepted. To check: gappa cosine_word_108.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 108: accepted. To check: gappa cosine_word_108.g
 # SHA-256 of the script below: 821d2ca993c10a91831f34ca2a1539b23f8ac37d9d7d9f3d90fd35371739ddff
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

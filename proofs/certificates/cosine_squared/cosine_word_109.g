@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 109: accepted. To check: gappa cosine_word_109.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 109: accepted. To check: gappa cosine_word_109.g
 # SHA-256 of the script below: 9f794b2aa16dd91967459a699307dc8681ecee8e91ff395300101c97de82021e
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 110: accepted. To check: gappa cosine_word_110.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 110: accepted. To check: gappa cosine_word_110.g
 # SHA-256 of the script below: e696f4618de233ed4c03e83a38cc496884f6dac1746e437908b56a78fc1adbb9
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 111: accepted. To check: gappa cosine_word_111.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 111: accepted. To check: gappa cosine_word_111.g
 # SHA-256 of the script below: d7190e3e24c4ea078b7dd083e187c7ba8c16917632b3fee99743a2873dee5a85
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

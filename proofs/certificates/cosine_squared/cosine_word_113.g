@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 113: accepted. To check: gappa cosine_word_113.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 113: accepted. To check: gappa cosine_word_113.g
 # SHA-256 of the script below: 282460ea2c7f80f7ef8cba80300fc064306e09abcaffbb6e72a68a22b4488823
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

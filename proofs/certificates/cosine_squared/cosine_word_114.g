@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 114: accepted. To check: gappa cosine_word_114.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 114: accepted. To check: gappa cosine_word_114.g
 # SHA-256 of the script below: bb0b60c84d22b75e2861d50c864f647342dbe4f6c945539ad2b7bed9201ff832
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

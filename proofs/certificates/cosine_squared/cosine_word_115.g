@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 115: accepted. To check: gappa cosine_word_115.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 115: accepted. To check: gappa cosine_word_115.g
 # SHA-256 of the script below: a32c73ba9c763be2264f9aaae266b0409a42c04ffa3dbc437221abb404020d5a
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 116: accepted. To check: gappa cosine_word_116.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 116: accepted. To check: gappa cosine_word_116.g
 # SHA-256 of the script below: dd942a392c35f0cdcc2186e7714ef7834cf107423e9da54611f7da3f82ba745b
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 118: accepted. To check: gappa cosine_word_118.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 118: accepted. To check: gappa cosine_word_118.g
 # SHA-256 of the script below: 9dd89b7e07c09b552b7ffcd094f81692c3113ed264f7e50466c425458184ef22
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

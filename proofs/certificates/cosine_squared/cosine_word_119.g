@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 119: accepted. To check: gappa cosine_word_119.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 119: accepted. To check: gappa cosine_word_119.g
 # SHA-256 of the script below: ea4672ac7b2a6210dc5e91a99cc232958535ec708b2cba647c06d81d1cfa6b82
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

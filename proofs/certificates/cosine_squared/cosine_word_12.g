@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 12: accepted. To check: gappa cosine_word_12.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 12: accepted. To check: gappa cosine_word_12.g
 # SHA-256 of the script below: a5c93fa23879ac5232440436bebe88374e9db78ea6550f28fd53fb73293a7057
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

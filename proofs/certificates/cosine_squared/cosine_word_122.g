@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 122: accepted. To check: gappa cosine_word_122.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 122: accepted. To check: gappa cosine_word_122.g
 # SHA-256 of the script below: 936405d9c0f1db21029bc94c81f2563ca53d39dc5e893bf8933309af173d275f
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

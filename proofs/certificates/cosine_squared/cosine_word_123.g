@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 123: accepted. To check: gappa cosine_word_123.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 123: accepted. To check: gappa cosine_word_123.g
 # SHA-256 of the script below: b8ce21953b3b0dc82f22ac5e889b1832ec31ee0e2fb3b3a9f10bed2037ef5ef7
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 124: accepted. To check: gappa cosine_word_124.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 124: accepted. To check: gappa cosine_word_124.g
 # SHA-256 of the script below: 68ed4702dc9ad2c5378ee30009d613c2d29c9ff73458b3c3c5d245b106fa66d9
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

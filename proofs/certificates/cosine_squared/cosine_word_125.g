@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 125: accepted. To check: gappa cosine_word_125.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 125: accepted. To check: gappa cosine_word_125.g
 # SHA-256 of the script below: ef8125d4858d9a78bb5f4a63c29a3ec29a54a9eceb949814f23bb6b6e28c1c12
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 127: accepted. To check: gappa cosine_word_127.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 127: accepted. To check: gappa cosine_word_127.g
 # SHA-256 of the script below: cdcf81c71fd1128dfe8247799890e39f86a11edd7dc44021890f939a7e317eef
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 128: accepted. To check: gappa cosine_word_128.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 128: accepted. To check: gappa cosine_word_128.g
 # SHA-256 of the script below: 8f269ace7470af470ec3db44adc70aa027d2edae192fae6b5c62709eeafd5850
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 14: accepted. To check: gappa cosine_word_14.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 14: accepted. To check: gappa cosine_word_14.g
 # SHA-256 of the script below: a26a785c986409576eaf698119b020846b72681be1bf17acbd43fde7968bdc93
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 15: accepted. To check: gappa cosine_word_15.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 15: accepted. To check: gappa cosine_word_15.g
 # SHA-256 of the script below: 35f5cff3398c01613856cdae7c7492609c23ee09944887e38a56e10464bf7473
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

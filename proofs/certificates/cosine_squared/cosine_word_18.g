@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 18: accepted. To check: gappa cosine_word_18.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 18: accepted. To check: gappa cosine_word_18.g
 # SHA-256 of the script below: e71cad1e4b3c3ec2ee5314dcfa85a649479d0c5a8ce986ebbe67bfc5b00aa6de
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

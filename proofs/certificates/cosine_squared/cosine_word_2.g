@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 2: accepted. To check: gappa cosine_word_2.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 2: accepted. To check: gappa cosine_word_2.g
 # SHA-256 of the script below: 0d970af77b0a699c84c3ab55c00f32c10d6f794114217a67a307f083071fe229
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

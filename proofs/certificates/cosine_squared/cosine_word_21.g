@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 21: accepted. To check: gappa cosine_word_21.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 21: accepted. To check: gappa cosine_word_21.g
 # SHA-256 of the script below: 14ae336b0bf1db51030127b385ca0bb31eb3fd9eac2f81bb6a3b4fabfe04f6a1
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

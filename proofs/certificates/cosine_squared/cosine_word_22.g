@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 22: accepted. To check: gappa cosine_word_22.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 22: accepted. To check: gappa cosine_word_22.g
 # SHA-256 of the script below: 87a4c80ff0d6c997e09936dc4c9e9cbc57d1eebd5ae14392934d5b129761bd4e
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 24: accepted. To check: gappa cosine_word_24.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 24: accepted. To check: gappa cosine_word_24.g
 # SHA-256 of the script below: 4caa47aaf4a5f87cac218d8c3748e9af2055e8b49e6adffe006aa793ccb46c91
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 25: accepted. To check: gappa cosine_word_25.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 25: accepted. To check: gappa cosine_word_25.g
 # SHA-256 of the script below: af1c4701fbf89ccf201092a9cbb64770b030e527fe7740d7a7ae842874ad30da
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 29: accepted. To check: gappa cosine_word_29.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 29: accepted. To check: gappa cosine_word_29.g
 # SHA-256 of the script below: b03c849d31d3117bac86d27c45a0b109123eb32123b3423922ca4cd787fa5095
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

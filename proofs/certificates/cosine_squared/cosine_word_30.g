@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 30: accepted. To check: gappa cosine_word_30.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 30: accepted. To check: gappa cosine_word_30.g
 # SHA-256 of the script below: 7a63ac5ca1326320081511548fdb578e7e6be150ec9df252b7de13def003f8e9
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

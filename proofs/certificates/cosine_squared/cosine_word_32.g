@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 32: accepted. To check: gappa cosine_word_32.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 32: accepted. To check: gappa cosine_word_32.g
 # SHA-256 of the script below: 51999bb8c15c0ec503581caf1246ef1cdfea9a4deced8eac8a97c79a20ff43c3
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

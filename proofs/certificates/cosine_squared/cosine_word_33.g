@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 33: accepted. To check: gappa cosine_word_33.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 33: accepted. To check: gappa cosine_word_33.g
 # SHA-256 of the script below: 9a1b425088082a5fef2f865659b2adca271693f3c1eee1959831af0e8a889325
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

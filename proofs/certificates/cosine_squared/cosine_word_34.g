@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 34: accepted. To check: gappa cosine_word_34.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 34: accepted. To check: gappa cosine_word_34.g
 # SHA-256 of the script below: 3c1d3a87e6edcb20ae00c63fd04bad2bec8cb04014cd08d9e36c74443b39fcbd
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

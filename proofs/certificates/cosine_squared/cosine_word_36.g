@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 36: accepted. To check: gappa cosine_word_36.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 36: accepted. To check: gappa cosine_word_36.g
 # SHA-256 of the script below: 114ecfb714e6926128f621fe4cc8cb8a851d1b2ec255a532939503df5deccc38
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 38: accepted. To check: gappa cosine_word_38.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 38: accepted. To check: gappa cosine_word_38.g
 # SHA-256 of the script below: 5330f7224d206e7dc2147ccf68356dc81838b38671047c202616a9f69a0c32c6
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 39: accepted. To check: gappa cosine_word_39.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 39: accepted. To check: gappa cosine_word_39.g
 # SHA-256 of the script below: 298328b494ad8f7928c517feede21be18fd8bc584b17e7e6b2c5518107da0a09
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 4: accepted. To check: gappa cosine_word_4.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 4: accepted. To check: gappa cosine_word_4.g
 # SHA-256 of the script below: 6b90f486247ff07913516f49725743d3b7dcabb9a26c02a272f9704ae7bb1997
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

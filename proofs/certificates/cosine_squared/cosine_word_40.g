@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 40: accepted. To check: gappa cosine_word_40.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 40: accepted. To check: gappa cosine_word_40.g
 # SHA-256 of the script below: bcc2236d0d0e0f91639c104b323a9331f4ee07d8e9d355afb06d5e66614bfcb8
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

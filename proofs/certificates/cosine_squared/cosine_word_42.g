@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 42: accepted. To check: gappa cosine_word_42.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 42: accepted. To check: gappa cosine_word_42.g
 # SHA-256 of the script below: 47c7278d69c2a00a3415adf46ae0432827e29504acaea0afcf036c5cb96e3966
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 44: accepted. To check: gappa cosine_word_44.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 44: accepted. To check: gappa cosine_word_44.g
 # SHA-256 of the script below: f3bcb2f0288a98d23589afa750fade5e0af394b96768cae6ce7965050881efc2
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

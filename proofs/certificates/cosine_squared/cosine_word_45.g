@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 45: accepted. To check: gappa cosine_word_45.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 45: accepted. To check: gappa cosine_word_45.g
 # SHA-256 of the script below: bbb5a0e9c6dd0d257c81830a856931fb17691890b69415fb640554f8afe09e9a
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 46: accepted. To check: gappa cosine_word_46.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 46: accepted. To check: gappa cosine_word_46.g
 # SHA-256 of the script below: 1ef92b4742cbd2dbec364ab0bd09c2c1a7d54b3392aa051b67a076270495aa96
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

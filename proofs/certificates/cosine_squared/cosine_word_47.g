@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 47: accepted. To check: gappa cosine_word_47.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 47: accepted. To check: gappa cosine_word_47.g
 # SHA-256 of the script below: dabf795e473f3440932527cf281965a81c86acc05f7c85043f0a1926f3008e81
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

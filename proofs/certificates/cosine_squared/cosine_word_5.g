@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 5: accepted. To check: gappa cosine_word_5.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 5: accepted. To check: gappa cosine_word_5.g
 # SHA-256 of the script below: c22184c20da6ca63f12ef5a88f89a58137dced4a244168549ddd85bd9a527346
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

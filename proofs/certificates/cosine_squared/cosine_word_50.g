@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 50: accepted. To check: gappa cosine_word_50.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 50: accepted. To check: gappa cosine_word_50.g
 # SHA-256 of the script below: ce81e1557f0d0b67a127167785e1d14de72d44dacd5caaafe44cd6acd12d175b
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

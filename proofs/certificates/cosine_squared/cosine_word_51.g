@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 51: accepted. To check: gappa cosine_word_51.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 51: accepted. To check: gappa cosine_word_51.g
 # SHA-256 of the script below: d4c5abb10d29bc039722603b9bc06b97f26ae38e31d986dc50986855a9d374c1
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 52: accepted. To check: gappa cosine_word_52.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 52: accepted. To check: gappa cosine_word_52.g
 # SHA-256 of the script below: aaa6593b8ed370c72cd8277159424eb04580c58d55e80634ea24400d09fe303d
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

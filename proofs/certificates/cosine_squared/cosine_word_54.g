@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 54: accepted. To check: gappa cosine_word_54.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 54: accepted. To check: gappa cosine_word_54.g
 # SHA-256 of the script below: 0c3a93e4e2211fbe04958aa55c265c72639b6bd33cb70a00e1cc1842dc5351d2
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 56: accepted. To check: gappa cosine_word_56.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 56: accepted. To check: gappa cosine_word_56.g
 # SHA-256 of the script below: 1c0c53885d500e724926507b5f5fe0ca8024fbefd504bcd0da4c1d634f86cdd2
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 57: accepted. To check: gappa cosine_word_57.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 57: accepted. To check: gappa cosine_word_57.g
 # SHA-256 of the script below: 55ba957542ab4ac48bda264b7bf5a2f3b18343569244c64e7603f84d4fece098
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

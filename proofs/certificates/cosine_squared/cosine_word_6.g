@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 6: accepted. To check: gappa cosine_word_6.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 6: accepted. To check: gappa cosine_word_6.g
 # SHA-256 of the script below: e394e60abe1885205476148815dca995d3d7c0935c2a9eebfd05fc10fd433ac4
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 63: accepted. To check: gappa cosine_word_63.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 63: accepted. To check: gappa cosine_word_63.g
 # SHA-256 of the script below: 82a72170f06304ce6d15796a8071164fe4f4a811d2acbaaae7768a53e0cd2d39
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

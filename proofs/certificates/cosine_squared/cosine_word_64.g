@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 64: accepted. To check: gappa cosine_word_64.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 64: accepted. To check: gappa cosine_word_64.g
 # SHA-256 of the script below: 897cf3b421307ca177711be733f3ecf43347ab2d1fb1308da8732a695157e442
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 65: accepted. To check: gappa cosine_word_65.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 65: accepted. To check: gappa cosine_word_65.g
 # SHA-256 of the script below: dc143eec0c4f75fc618ab1077f37fff63d230a64247acf1cda2a3cea9590578c
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 66: accepted. To check: gappa cosine_word_66.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 66: accepted. To check: gappa cosine_word_66.g
 # SHA-256 of the script below: f3e1c7867c723ec367a9023cb40de1f36e4ad0d739dac4ee79ce19ce9d5b871c
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

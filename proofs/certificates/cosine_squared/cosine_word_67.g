@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 67: accepted. To check: gappa cosine_word_67.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 67: accepted. To check: gappa cosine_word_67.g
 # SHA-256 of the script below: 17fde762b99622ebbedddc80f27947c08c908075936cda4b29121a9e417a2e40
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 69: accepted. To check: gappa cosine_word_69.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 69: accepted. To check: gappa cosine_word_69.g
 # SHA-256 of the script below: 64f393aca584b459cc41164a636bf31b6e2fb8bd31840dac7c78e28719f52232
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

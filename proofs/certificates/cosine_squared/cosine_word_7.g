@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 7: accepted. To check: gappa cosine_word_7.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 7: accepted. To check: gappa cosine_word_7.g
 # SHA-256 of the script below: 6ad1c570b7c718f9d00d7fbaa0ceb98e7ed6ef29d511ad64559820825e9809a3
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 70: accepted. To check: gappa cosine_word_70.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 70: accepted. To check: gappa cosine_word_70.g
 # SHA-256 of the script below: 71310d4949609593dfc1cd35628310c8f7d32821cb27f5feffb7936951f0c3b0
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

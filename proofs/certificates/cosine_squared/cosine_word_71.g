@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 71: accepted. To check: gappa cosine_word_71.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 71: accepted. To check: gappa cosine_word_71.g
 # SHA-256 of the script below: 81b2017ce73e70e6cde09ab774eec7d19c4251790394643293af614657b186ca
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

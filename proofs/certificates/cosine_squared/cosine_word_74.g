@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 74: accepted. To check: gappa cosine_word_74.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 74: accepted. To check: gappa cosine_word_74.g
 # SHA-256 of the script below: 0c59523414cacb1e59c4bde46fb8a542e0c546932308339ceba1394d2b5f5981
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

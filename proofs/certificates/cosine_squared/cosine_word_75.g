@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 75: accepted. To check: gappa cosine_word_75.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 75: accepted. To check: gappa cosine_word_75.g
 # SHA-256 of the script below: 0c51f689a7f9be3a137314233770507c8699b6e2c3dd13eb18364f46c89a709e
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 76: accepted. To check: gappa cosine_word_76.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 76: accepted. To check: gappa cosine_word_76.g
 # SHA-256 of the script below: 945e72fa73bf19f8237f8bde195dd2b3184e52a5c5a4b3a7c80ff0ae3f2b00b1
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

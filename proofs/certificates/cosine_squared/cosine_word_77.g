@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 77: accepted. To check: gappa cosine_word_77.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 77: accepted. To check: gappa cosine_word_77.g
 # SHA-256 of the script below: c379e7b2ff1593dc87ea5925db762e262c655d1d73db4596f663062dda9d78ef
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

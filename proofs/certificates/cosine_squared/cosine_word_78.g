@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 78: accepted. To check: gappa cosine_word_78.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 78: accepted. To check: gappa cosine_word_78.g
 # SHA-256 of the script below: b8d136aa25b322aa9214bb07014d9600aae4c1bd682fcfa9e5331090eb4cca45
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

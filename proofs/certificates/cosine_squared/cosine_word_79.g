@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 79: accepted. To check: gappa cosine_word_79.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 79: accepted. To check: gappa cosine_word_79.g
 # SHA-256 of the script below: 3008181aa3ec3f749e6ed551485a28200459d7ab2e7442879d573706fdba66eb
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 8: accepted. To check: gappa cosine_word_8.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 8: accepted. To check: gappa cosine_word_8.g
 # SHA-256 of the script below: a3947dd96866c1aebe99b30863c2640a5746f9f2970da04b521cc41dafe134ed
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 80: accepted. To check: gappa cosine_word_80.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 80: accepted. To check: gappa cosine_word_80.g
 # SHA-256 of the script below: be66bbf9c1ef09ab2d54dee12cd4e61b34615d951cf863cede1c690148a4c71f
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

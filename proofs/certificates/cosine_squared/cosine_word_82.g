@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 82: accepted. To check: gappa cosine_word_82.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 82: accepted. To check: gappa cosine_word_82.g
 # SHA-256 of the script below: 4a9e43da5fc3260d3142534ec341c242ef64f9fc15ab51686d39ba576e4ca66c
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

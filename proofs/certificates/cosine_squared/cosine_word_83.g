@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 83: accepted. To check: gappa cosine_word_83.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 83: accepted. To check: gappa cosine_word_83.g
 # SHA-256 of the script below: 9971e172e5502371daa1215e9022ab83bf155b4183a1eba7026c041716df3a30
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

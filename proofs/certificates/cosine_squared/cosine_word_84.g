@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 84: accepted. To check: gappa cosine_word_84.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 84: accepted. To check: gappa cosine_word_84.g
 # SHA-256 of the script below: 56cd6c7244f207371d2a06b8ab841f61cb40b33d14545962c48041420d5b856d
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 85: accepted. To check: gappa cosine_word_85.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 85: accepted. To check: gappa cosine_word_85.g
 # SHA-256 of the script below: f7fbfac2255e5c1487214a4ad1554207e95f1f915463b43d833a41118db0c80e
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 86: accepted. To check: gappa cosine_word_86.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 86: accepted. To check: gappa cosine_word_86.g
 # SHA-256 of the script below: a98d649166eccd0ba7ea34731e4e06b7f52d6d97e4ef909dc73f1509020b731e
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 87: accepted. To check: gappa cosine_word_87.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 87: accepted. To check: gappa cosine_word_87.g
 # SHA-256 of the script below: b0530d6b77be34aacc3d807275ec3a7784f0603dc2c310b90f1afb11c03d49fe
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 88: accepted. To check: gappa cosine_word_88.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 88: accepted. To check: gappa cosine_word_88.g
 # SHA-256 of the script below: acecced363f2fc7b42a9bf94100606c1d49303aca5cd3c6dea02cbae05629727
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

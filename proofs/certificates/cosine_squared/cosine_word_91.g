@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 91: accepted. To check: gappa cosine_word_91.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 91: accepted. To check: gappa cosine_word_91.g
 # SHA-256 of the script below: bbc24a1b99db0fc370e1445817b3d9d3fac8673fe360abcdc36cf08c737efd90
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

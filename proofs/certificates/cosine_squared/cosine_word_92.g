@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 92: accepted. To check: gappa cosine_word_92.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 92: accepted. To check: gappa cosine_word_92.g
 # SHA-256 of the script below: d025c90987a0b39bfb1ea343c402e50882ffc71172e31ed367b1bd063dc2db05
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 93: accepted. To check: gappa cosine_word_93.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 93: accepted. To check: gappa cosine_word_93.g
 # SHA-256 of the script below: 2d04c14abb6884a5983a4181e478257830f50d452798b206c53d2fe7e9d36957
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

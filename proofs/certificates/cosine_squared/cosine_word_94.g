@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 94: accepted. To check: gappa cosine_word_94.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 94: accepted. To check: gappa cosine_word_94.g
 # SHA-256 of the script below: 0b59532ffa3b589d66ebbc6515136debeb779d4fadf1565cf5dbeefcc7ed847a
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, cosine_word, statement 95: accepted. To check: gappa cosine_word_95.g
+# Certificate by Glint: cosine_squared.toml, cosine_word, statement 95: accepted. To check: gappa cosine_word_95.g
 # SHA-256 of the script below: a1594c55e4eb17a98de4cafed498a6ac025fd41d816fc65b6c319c0ff1f9a7b5
 
 # By Taylor the cosine of y is 1 - y^2/2! + y^4/4! - ... + rest y^22/22! with |rest| <= 1.

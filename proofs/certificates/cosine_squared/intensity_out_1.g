@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/cosine_squared.toml, intensity_out, statement 1: accepted. To check: gappa intensity_out_1.g
+# Certificate by Glint: cosine_squared.toml, intensity_out, statement 1: accepted. To check: gappa intensity_out_1.g
 # SHA-256 of the script below: be21d882eff03edac85eec012be575371020ef7a0da624b32b68f97c64c28dcf
 
 intensity_product_2 = cosine_45 * amplitude;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 1: accepted. To check: gappa red_out_1.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 1: accepted. To check: gappa red_out_1.g
 # SHA-256 of the script below: 9d7bdd55e4cbe96100d5a673c26b420712b0d1d6b9918256836468b2dfd40ee7
 
 multiplier1_1 = dx * dx;

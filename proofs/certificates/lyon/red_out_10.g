@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 10: accepted. To check: gappa red_out_10.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 10: accepted. To check: gappa red_out_10.g
 # SHA-256 of the script below: ca76664dda4a2def88e74bd76f5f6bbea56653c70c8d909eb70017bcd67f95b0
 
 multiplier1_1 = dx * dx;

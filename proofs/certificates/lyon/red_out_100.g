@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 100: accepted. To check: gappa red_out_100.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 100: accepted. To check: gappa red_out_100.g
 # SHA-256 of the script below: e4810d28db192706760d0da34d35340337b5afed9634fae95f9f0db49d04e996
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 101: accepted. To check: gappa red_out_101.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 101: accepted. To check: gappa red_out_101.g
 # SHA-256 of the script below: 4d34515077cf89d51bac457f337a485b23870ad78f1a5ebceee60903b90f7eab
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 102: accepted. To check: gappa red_out_102.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 102: accepted. To check: gappa red_out_102.g
 # SHA-256 of the script below: df5f0dad3d4657e3bd33c94ce642204d0225a3924ce5abddad287822fd24bdaf
 
 multiplier1_6 = dx * dx;

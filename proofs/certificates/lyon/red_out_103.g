@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 103: accepted. To check: gappa red_out_103.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 103: accepted. To check: gappa red_out_103.g
 # SHA-256 of the script below: 617f4b2997f8a2845622483afa1ef70482549cb2dcc19b79a24cd1c66c4ae3cb
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 104: accepted. To check: gappa red_out_104.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 104: accepted. To check: gappa red_out_104.g
 # SHA-256 of the script below: acd92f2dc7d80b1d9652697c5764e1980b2cc8b8c233bde82b4aa5252204eafa
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 105: accepted. To check: gappa red_out_105.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 105: accepted. To check: gappa red_out_105.g
 # SHA-256 of the script below: c4e81def4dac2d3a03136712621723721ce9f33d9c82672b3f2efdd794d1b815
 
 multiplier1_6 = dx * dx;

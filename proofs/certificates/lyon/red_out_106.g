@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 106: accepted. To check: gappa red_out_106.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 106: accepted. To check: gappa red_out_106.g
 # SHA-256 of the script below: fb2c7f48f098aae7c6ad6989267b35d73d78121f75743ecb5a5f8ba5fd74132e
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 107: accepted. To check: gappa red_out_107.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 107: accepted. To check: gappa red_out_107.g
 # SHA-256 of the script below: c86588a14b18ee9894dc2a249f79fd878be5e2a6aca55a08757294a99c3ce0f3
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 108: accepted. To check: gappa red_out_108.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 108: accepted. To check: gappa red_out_108.g
 # SHA-256 of the script below: 5bd4f35f2c36d3d86d3965a027b2eab5e377898fca58882888fb14d25407a57f
 
 multiplier1_6 = dx * dx;

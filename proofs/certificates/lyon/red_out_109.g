@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 109: accepted. To check: gappa red_out_109.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 109: accepted. To check: gappa red_out_109.g
 # SHA-256 of the script below: 4494f19b955c36104984d829adbfd45d7acceb2c84197134ed06c51f1f79cb58
 
 multiplier1_6 = dx * dx;

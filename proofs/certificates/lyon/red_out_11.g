@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 11: accepted. To check: gappa red_out_11.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 11: accepted. To check: gappa red_out_11.g
 # SHA-256 of the script below: e09a031ab49755f5af59fca6d6fce6ba3bd048e029824678dd549a730ef36a03
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 110: accepted. To check: gappa red_out_110.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 110: accepted. To check: gappa red_out_110.g
 # SHA-256 of the script below: 8977441c4fb9472ca020c8e1b885f1692393fcc3e632b1714e35929f1d61d7ae
 
 multiplier1_6 = dx * dx;

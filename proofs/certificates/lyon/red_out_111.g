@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 111: accepted. To check: gappa red_out_111.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 111: accepted. To check: gappa red_out_111.g
 # SHA-256 of the script below: 955e710d9019ef0acfcbea0631b7681f01c9af58e15b2fadd2ade4c9c0de6b8f
 
 multiplier1_6 = dx * dx;

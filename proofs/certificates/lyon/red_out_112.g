@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 112: accepted. To check: gappa red_out_112.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 112: accepted. To check: gappa red_out_112.g
 # SHA-256 of the script below: 48f41b9102546c388b9209d41a65fb07495276635557e8b28a18798334b8677f
 
 multiplier1_6 = dx * dx;

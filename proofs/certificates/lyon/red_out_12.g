@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 12: accepted. To check: gappa red_out_12.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 12: accepted. To check: gappa red_out_12.g
 # SHA-256 of the script below: 85a31b0f6a267846f809af00e519fdadc4c61c2b81f04761dd3da02869d118ed
 
 multiplier1_6 = dx * dx;

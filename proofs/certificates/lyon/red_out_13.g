@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 13: accepted. To check: gappa red_out_13.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 13: accepted. To check: gappa red_out_13.g
 # SHA-256 of the script below: cdc651752a516c4386aba8be11153be9e2ece7979c6e329aecb19e5934b8ca24
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 14: accepted. To check: gappa red_out_14.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 14: accepted. To check: gappa red_out_14.g
 # SHA-256 of the script below: f0b2784fef0432b81ff46405dca119ff7957cdfbf2083c265edc20e5e9b14761
 
 multiplier1_6 = dx * dx;

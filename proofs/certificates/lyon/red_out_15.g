@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 15: accepted. To check: gappa red_out_15.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 15: accepted. To check: gappa red_out_15.g
 # SHA-256 of the script below: d32b76deced6a639ebdd39b34f3f0aa2f5629e869c3e28fc6e352324c60fe105
 
 multiplier1_1 = dx * dx;

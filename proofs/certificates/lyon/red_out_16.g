@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 16: accepted. To check: gappa red_out_16.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 16: accepted. To check: gappa red_out_16.g
 # SHA-256 of the script below: 7b59be6a6611fc117b303d49c953b061b9d039a301889c2f3f5d3644404e259d
 
 multiplier1_1 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 17: accepted. To check: gappa red_out_17.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 17: accepted. To check: gappa red_out_17.g
 # SHA-256 of the script below: 4f339964ee214ff9d7a1ec9a0715845aa5fe1c4f5c36175f5bb8d8a7de5d074e
 
 multiplier1_6 = dx * dx;

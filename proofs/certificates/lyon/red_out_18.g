@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 18: accepted. To check: gappa red_out_18.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 18: accepted. To check: gappa red_out_18.g
 # SHA-256 of the script below: 6672cf4b2d03fecc1eca013ddb2952a8aeb47c346ad1a8f3a55f694f87825cb2
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 19: accepted. To check: gappa red_out_19.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 19: accepted. To check: gappa red_out_19.g
 # SHA-256 of the script below: 77927d6fe9332a1cd7bad482735eea1f15bdc9b59385c7903d9de9b4c16d12da
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 2: accepted. To check: gappa red_out_2.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 2: accepted. To check: gappa red_out_2.g
 # SHA-256 of the script below: 93f3f98964a4364292db39c41f06893fb120264fd78dfc19fb369bdc124d7d0c
 
 multiplier1_1 = dx * dx;

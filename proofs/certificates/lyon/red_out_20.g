@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 20: accepted. To check: gappa red_out_20.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 20: accepted. To check: gappa red_out_20.g
 # SHA-256 of the script below: 7cdd71c23837bda59dbddc7a093f14b50270ff900fa9bc2e7b698daa1d0e3fad
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 21: accepted. To check: gappa red_out_21.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 21: accepted. To check: gappa red_out_21.g
 # SHA-256 of the script below: af59fc6aad9774f15170b5fc1902c3d5f4c96a81a5c8dc45d7c782c9f89427a3
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 22: accepted. To check: gappa red_out_22.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 22: accepted. To check: gappa red_out_22.g
 # SHA-256 of the script below: 405087645742a82dc62e256a7b035c51aa180697b2c079e2f85e33444b7a3650
 
 multiplier1_6 = dx * dx;

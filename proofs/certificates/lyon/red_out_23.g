@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 23: accepted. To check: gappa red_out_23.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 23: accepted. To check: gappa red_out_23.g
 # SHA-256 of the script below: 28d712edcf60278acf85748f2a669da00e824b5d1a163e73db34e38ad9acf800
 
 multiplier1_1 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 24: accepted. To check: gappa red_out_24.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 24: accepted. To check: gappa red_out_24.g
 # SHA-256 of the script below: 0813d22bf108d4ace2d59df3ff950b43e058da3afd8b932698ee5e517a0ba54f
 
 multiplier1_1 = dx * dx;

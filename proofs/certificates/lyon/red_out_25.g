@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 25: accepted. To check: gappa red_out_25.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 25: accepted. To check: gappa red_out_25.g
 # SHA-256 of the script below: b11a68cf955bd861c494f28eb8c3168b7f73853d552a3a32488aab4395ddd505
 
 multiplier1_6 = dx * dx;

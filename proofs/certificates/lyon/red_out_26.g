@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 26: accepted. To check: gappa red_out_26.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 26: accepted. To check: gappa red_out_26.g
 # SHA-256 of the script below: 47b9d320c706319d748ac3777c174103848e254531d3aba1ebf19e6f79d375c6
 
 multiplier1_6 = dx * dx;

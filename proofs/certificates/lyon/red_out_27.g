@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 27: accepted. To check: gappa red_out_27.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 27: accepted. To check: gappa red_out_27.g
 # SHA-256 of the script below: 453b3771a82fb69fdc042f67468da897fce74a0844baca9021393939cc6fc51f
 
 multiplier1_6 = dx * dx;

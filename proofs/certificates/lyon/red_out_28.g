@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 28: accepted. To check: gappa red_out_28.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 28: accepted. To check: gappa red_out_28.g
 # SHA-256 of the script below: eb6eb6fc96045a14051175f1418459867c5a784f1a734a25d1510c782e499c49
 
 multiplier1_6 = dx * dx;

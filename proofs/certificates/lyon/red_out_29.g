@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 29: accepted. To check: gappa red_out_29.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 29: accepted. To check: gappa red_out_29.g
 # SHA-256 of the script below: ddb61c491f6fcfb1136d675cf27775267554dadf120ba5a15879047d31f7d2af
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 3: accepted. To check: gappa red_out_3.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 3: accepted. To check: gappa red_out_3.g
 # SHA-256 of the script below: 3d209e3bc8366aa3c7b172451b582bf106858aa49a338d8f9cb8d02d80ee56ec
 
 multiplier1_1 = dx * dx;

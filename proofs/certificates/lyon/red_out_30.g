@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 30: accepted. To check: gappa red_out_30.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 30: accepted. To check: gappa red_out_30.g
 # SHA-256 of the script below: e78a973f81a30ff0967ce7d0ed348911956e08e9a79d990fa67450eaf83faecf
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 31: accepted. To check: gappa red_out_31.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 31: accepted. To check: gappa red_out_31.g
 # SHA-256 of the script below: 35899677946d6aa5e494d62138d8a0ce8ca80e71426c08cd1112bf75367fa4a5
 
 multiplier1_6 = dx * dx;

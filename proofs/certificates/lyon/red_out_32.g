@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 32: accepted. To check: gappa red_out_32.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 32: accepted. To check: gappa red_out_32.g
 # SHA-256 of the script below: 38fd2c173be3f3932ad7c54d519400f66c6d9feac86c3c79fcc51c77d4237938
 
 multiplier1_6 = dx * dx;

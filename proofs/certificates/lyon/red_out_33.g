@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 33: accepted. To check: gappa red_out_33.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 33: accepted. To check: gappa red_out_33.g
 # SHA-256 of the script below: f9664001e9d104b56de40501a22b97b46c9c2545aa0e07a0213016b753f7c41e
 
 multiplier1_1 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 34: accepted. To check: gappa red_out_34.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 34: accepted. To check: gappa red_out_34.g
 # SHA-256 of the script below: 9a9bdf5fdd8cd096516824119db7390dfd3138dbfd1ce942a73ec2a169832ecf
 
 multiplier1_1 = dx * dx;

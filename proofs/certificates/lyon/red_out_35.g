@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 35: accepted. To check: gappa red_out_35.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 35: accepted. To check: gappa red_out_35.g
 # SHA-256 of the script below: bb68b2e86d5dcc4e4c04cefaa5d97161f7aa5fbdc6725461b6acda02fe5f23d4
 
 multiplier1_6 = dx * dx;

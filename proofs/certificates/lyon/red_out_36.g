@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 36: accepted. To check: gappa red_out_36.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 36: accepted. To check: gappa red_out_36.g
 # SHA-256 of the script below: b727cc2a5d8be64eb945fb914c1d45e37aebbf239668aaaeab54231d4a9404c7
 
 multiplier1_6 = dx * dx;

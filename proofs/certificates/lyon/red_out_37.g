@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 37: accepted. To check: gappa red_out_37.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 37: accepted. To check: gappa red_out_37.g
 # SHA-256 of the script below: 036c69ea471d33be608f28771345630551a5bb3026ee11f8027030a3eb8d986a
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 38: accepted. To check: gappa red_out_38.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 38: accepted. To check: gappa red_out_38.g
 # SHA-256 of the script below: 3358aa12b2ba83f14665bb24a615aa7c1a36c06daebcf2ff3df3a79e74558ded
 
 multiplier1_6 = dx * dx;

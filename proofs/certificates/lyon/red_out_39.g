@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 39: accepted. To check: gappa red_out_39.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 39: accepted. To check: gappa red_out_39.g
 # SHA-256 of the script below: ce2f521ec4153655c226eb2e9c02b2a32d420805cec4ec8849eafa7044919fd4
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 4: accepted. To check: gappa red_out_4.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 4: accepted. To check: gappa red_out_4.g
 # SHA-256 of the script below: 8dbc6316eb44ff6ddfc200c3716a439bb8dc0bfb11dea3f5e3fca10c3f3b8a7d
 
 multiplier1_1 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 40: accepted. To check: gappa red_out_40.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 40: accepted. To check: gappa red_out_40.g
 # SHA-256 of the script below: 53c1d00f97670e58ad10868a364c2032f07bac102e92e86ff2f23adc3046dfcc
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 41: accepted. To check: gappa red_out_41.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 41: accepted. To check: gappa red_out_41.g
 # SHA-256 of the script below: 45fee3a903bb4650255638e4c2d9f1133d4667aa6b1fa58757edb7930c05f573
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 42: accepted. To check: gappa red_out_42.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 42: accepted. To check: gappa red_out_42.g
 # SHA-256 of the script below: c1cd3e543c97a7446d14316ba53e945d537f0e79334a75992968c58cec3ae74c
 
 multiplier1_6 = dx * dx;

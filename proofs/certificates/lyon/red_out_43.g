@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 43: accepted. To check: gappa red_out_43.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 43: accepted. To check: gappa red_out_43.g
 # SHA-256 of the script below: 1427d53be791b2bb126af22064ce0bbc38b79a1af5de621f74aa7eef0777a1cc
 
 multiplier1_6 = dx * dx;

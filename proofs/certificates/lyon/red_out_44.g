@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 44: accepted. To check: gappa red_out_44.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 44: accepted. To check: gappa red_out_44.g
 # SHA-256 of the script below: 6bf70929c683f6596059d5f82668747cdfecb83f376f5f30b50c643fd5176825
 
 multiplier1_6 = dx * dx;

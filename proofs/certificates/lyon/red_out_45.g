@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 45: accepted. To check: gappa red_out_45.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 45: accepted. To check: gappa red_out_45.g
 # SHA-256 of the script below: 4687206918ed94f87a820ce6c6395508e74870309b41d6e6e09a0ccdf9b56827
 
 multiplier1_1 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 46: accepted. To check: gappa red_out_46.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 46: accepted. To check: gappa red_out_46.g
 # SHA-256 of the script below: 342b5b22116b0a1a668f48ae4b545c638d4e0bcbcd17f6c16bf6de973865b417
 
 multiplier1_1 = dx * dx;

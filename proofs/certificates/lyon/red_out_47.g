@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 47: accepted. To check: gappa red_out_47.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 47: accepted. To check: gappa red_out_47.g
 # SHA-256 of the script below: 30a3425a8aced8c7731b49471b7e1667c6c47eff648d12257ac72ceb7d104b2e
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 48: accepted. To check: gappa red_out_48.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 48: accepted. To check: gappa red_out_48.g
 # SHA-256 of the script below: 0c80a611a43e73403b4613008b44c2e54298028b029f4b2ec2fe69a9f0627c0c
 
 multiplier1_6 = dx * dx;

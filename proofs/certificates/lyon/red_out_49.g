@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 49: accepted. To check: gappa red_out_49.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 49: accepted. To check: gappa red_out_49.g
 # SHA-256 of the script below: ef5ead1b2bd8de808e7a9e0803a864bb36ebc336b3d8c72ee90401dd59a05d46
 
 multiplier1_6 = dx * dx;

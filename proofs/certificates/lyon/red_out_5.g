@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 5: accepted. To check: gappa red_out_5.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 5: accepted. To check: gappa red_out_5.g
 # SHA-256 of the script below: 77ebc5c0e3e95371e13a42ad96d2ad78cc9104951e64fb983b0e8df1cf102c26
 
 multiplier1_1 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 50: accepted. To check: gappa red_out_50.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 50: accepted. To check: gappa red_out_50.g
 # SHA-256 of the script below: d03468d9eb686a026f5c8f69e826b7eac638cb697a771d49b386bc530a413870
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 51: accepted. To check: gappa red_out_51.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 51: accepted. To check: gappa red_out_51.g
 # SHA-256 of the script below: 354a0f834f1603faf3e01f6db1a31dea674a9477098eaff055ce176001471ed6
 
 multiplier1_6 = dx * dx;

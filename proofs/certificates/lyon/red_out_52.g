@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 52: accepted. To check: gappa red_out_52.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 52: accepted. To check: gappa red_out_52.g
 # SHA-256 of the script below: 149eba5d4ebd081e3383df5bddc051318aa65e0658ffc5e2e299d50811e71033
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 53: accepted. To check: gappa red_out_53.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 53: accepted. To check: gappa red_out_53.g
 # SHA-256 of the script below: 7af9139ccce4ce035c0700d56e607718761b590543398b8e96dfa7898f9f325f
 
 multiplier1_6 = dx * dx;

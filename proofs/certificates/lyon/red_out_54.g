@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 54: accepted. To check: gappa red_out_54.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 54: accepted. To check: gappa red_out_54.g
 # SHA-256 of the script below: 8477584d599ec2a482d3ba5bf26991f52cde20ae7104614cfc037e01f6eaff85
 
 multiplier1_6 = dx * dx;

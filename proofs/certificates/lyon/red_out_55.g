@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 55: accepted. To check: gappa red_out_55.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 55: accepted. To check: gappa red_out_55.g
 # SHA-256 of the script below: 9d7b814c33779518da3478cddbaf256f7e32cd70b38d71ececa4f8510d2ebb20
 
 multiplier1_6 = dx * dx;

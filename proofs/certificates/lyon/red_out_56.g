@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 56: accepted. To check: gappa red_out_56.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 56: accepted. To check: gappa red_out_56.g
 # SHA-256 of the script below: 4d67446dc742f4829ed6b7d64b8e6133c188815e2b2af8576629fb37b68a4f96
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 57: accepted. To check: gappa red_out_57.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 57: accepted. To check: gappa red_out_57.g
 # SHA-256 of the script below: 45cc3b28982e84769a66c7d3b5e508d5ccde8000c7052bbbf0ba135f961a24c1
 
 multiplier1_6 = dx * dx;

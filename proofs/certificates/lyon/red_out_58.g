@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 58: accepted. To check: gappa red_out_58.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 58: accepted. To check: gappa red_out_58.g
 # SHA-256 of the script below: 0a04d70c3d0c40ceee33ef0a6130dd805f7af2bb7047841d5a64e2da77334f92
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 59: accepted. To check: gappa red_out_59.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 59: accepted. To check: gappa red_out_59.g
 # SHA-256 of the script below: 93cf9117ec3dd3973ff213dd981afc3ccbc0debc8dce5d37356efdf2318bfe3b
 
 multiplier1_1 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 6: accepted. To check: gappa red_out_6.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 6: accepted. To check: gappa red_out_6.g
 # SHA-256 of the script below: 6b61d2eac2fa57ad355fa98415a391cf04e83cd78cfadc9cfa39f33226680a64
 
 multiplier1_1 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 60: accepted. To check: gappa red_out_60.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 60: accepted. To check: gappa red_out_60.g
 # SHA-256 of the script below: 7d7327d2aa6516e03036e98d489bc65351e02626aa902d678b4aad0b5306f118
 
 multiplier1_1 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 61: accepted. To check: gappa red_out_61.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 61: accepted. To check: gappa red_out_61.g
 # SHA-256 of the script below: 96ff5c3310f81d0f3c40eca8383feac16634895cb3b23098c8c87e4dc019c131
 
 multiplier1_6 = dx * dx;

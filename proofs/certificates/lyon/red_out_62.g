@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 62: accepted. To check: gappa red_out_62.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 62: accepted. To check: gappa red_out_62.g
 # SHA-256 of the script below: dd83a97609cef4286bff7acb0ab622da0ce71766dd77415ef8b80edc7468dc69
 
 multiplier1_6 = dx * dx;

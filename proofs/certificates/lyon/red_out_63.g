@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 63: accepted. To check: gappa red_out_63.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 63: accepted. To check: gappa red_out_63.g
 # SHA-256 of the script below: 7ea29deb3e0327769222494b862d60555c6dd1f787d79213545a414d66f61c56
 
 multiplier1_6 = dx * dx;

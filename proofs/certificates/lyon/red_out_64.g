@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 64: accepted. To check: gappa red_out_64.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 64: accepted. To check: gappa red_out_64.g
 # SHA-256 of the script below: b093f7b4e73997a12ead4a03b757dd99fd116eb708d15c8a000eb61beeda84ee
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 65: accepted. To check: gappa red_out_65.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 65: accepted. To check: gappa red_out_65.g
 # SHA-256 of the script below: 1da8f3f1c113afd9e18168eb4b6595b94188fcd1d220b5eb5b8997c1a21238e6
 
 multiplier1_6 = dx * dx;

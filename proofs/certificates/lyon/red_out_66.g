@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 66: accepted. To check: gappa red_out_66.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 66: accepted. To check: gappa red_out_66.g
 # SHA-256 of the script below: 77d7dca0d29b7a5b4fbd6f668d5449a741d258b37ddd67509403558223bddc5b
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 67: accepted. To check: gappa red_out_67.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 67: accepted. To check: gappa red_out_67.g
 # SHA-256 of the script below: 4812466f7cebc9958cb150d0dd2038c196f23529d5c42f5a36774bf5ab0d3767
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 68: accepted. To check: gappa red_out_68.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 68: accepted. To check: gappa red_out_68.g
 # SHA-256 of the script below: da3a1df8c76583e000d3b7bb9f36577557fe14185496ed48a976ec2d234c1c60
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 69: accepted. To check: gappa red_out_69.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 69: accepted. To check: gappa red_out_69.g
 # SHA-256 of the script below: 34f6e86ba0cc9f2e75d6d0bc5e1538b11856885c7c5b5dc2f29a4b128c534b3e
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 7: accepted. To check: gappa red_out_7.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 7: accepted. To check: gappa red_out_7.g
 # SHA-256 of the script below: f62511cf6fb6ea6bcb0dd42d3c463a09f1052e2a2766ad695df32b74f606e6e0
 
 multiplier1_6 = dx * dx;

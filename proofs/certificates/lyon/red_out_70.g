@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 70: accepted. To check: gappa red_out_70.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 70: accepted. To check: gappa red_out_70.g
 # SHA-256 of the script below: 3c60a0ff0b5e6c9247add9df9427bc5ba15331faa866c481546b428a1c1281c1
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 71: accepted. To check: gappa red_out_71.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 71: accepted. To check: gappa red_out_71.g
 # SHA-256 of the script below: f5e68a53fd5d6f2f0dbef1724db2af8c286083fa267d8279fd5b5a718dfcfd25
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 72: accepted. To check: gappa red_out_72.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 72: accepted. To check: gappa red_out_72.g
 # SHA-256 of the script below: babaff7411d3bfa285e043c275c18019555d3625d64d61d96e56ca58b1ffe4a8
 
 multiplier1_6 = dx * dx;

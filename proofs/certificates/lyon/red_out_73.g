@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 73: accepted. To check: gappa red_out_73.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 73: accepted. To check: gappa red_out_73.g
 # SHA-256 of the script below: f9052757919481b0cfb680552b22562f081f7991c26b1bda417bc2dad6429917
 
 multiplier1_6 = dx * dx;

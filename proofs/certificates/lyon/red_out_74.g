@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 74: accepted. To check: gappa red_out_74.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 74: accepted. To check: gappa red_out_74.g
 # SHA-256 of the script below: a5cb804406d9954162f3e97cdc283533ac47265735ff71076d7c257b9a0e0958
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 75: accepted. To check: gappa red_out_75.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 75: accepted. To check: gappa red_out_75.g
 # SHA-256 of the script below: 03f55012e44de37f5627b4725b194e020f8e18aa844aff0dbed3de417c29b0ac
 
 multiplier1_1 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 76: accepted. To check: gappa red_out_76.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 76: accepted. To check: gappa red_out_76.g
 # SHA-256 of the script below: a81704e18b35678d75432c9c090ebcf53dcfa4788eccbf3cff78678c3c5b253a
 
 multiplier1_1 = dx * dx;

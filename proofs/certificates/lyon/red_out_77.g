@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 77: accepted. To check: gappa red_out_77.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 77: accepted. To check: gappa red_out_77.g
 # SHA-256 of the script below: f9649eb2f431f7c7dfac86abb929fb79a0ac850d6ec5ed4c30745e9c1f83b14b
 
 multiplier1_6 = dx * dx;

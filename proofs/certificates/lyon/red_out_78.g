@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 78: accepted. To check: gappa red_out_78.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 78: accepted. To check: gappa red_out_78.g
 # SHA-256 of the script below: ffe9bf945fd1bbfe00ee6b03dde113ea9dc2d93f41360691e2deb627a66aa476
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 79: accepted. To check: gappa red_out_79.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 79: accepted. To check: gappa red_out_79.g
 # SHA-256 of the script below: a1ff6e24e1de9855b3812eeca2a5098c7edfd6a006085ae552fd64b98edb9fea
 
 multiplier1_6 = dx * dx;

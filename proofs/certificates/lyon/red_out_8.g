@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 8: accepted. To check: gappa red_out_8.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 8: accepted. To check: gappa red_out_8.g
 # SHA-256 of the script below: 6d67bc5b59213316081f3237ef9da6e3b5f95aa1aa19c3f3edc2f92223fff94f
 
 multiplier1_6 = dx * dx;

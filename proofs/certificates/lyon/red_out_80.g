@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 80: accepted. To check: gappa red_out_80.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 80: accepted. To check: gappa red_out_80.g
 # SHA-256 of the script below: 4c3942d78b8526b8d59a3bcb99b10aff76ab84bc588b0a9456e5aeedf7656fe4
 
 multiplier1_6 = dx * dx;

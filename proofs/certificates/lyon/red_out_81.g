@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 81: accepted. To check: gappa red_out_81.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 81: accepted. To check: gappa red_out_81.g
 # SHA-256 of the script below: 376eda8956a008ce1e9179f1b6c13cf72462ef65ca0c0e28c8a5e09074fd58f5
 
 multiplier1_6 = dx * dx;

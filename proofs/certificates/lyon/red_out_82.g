@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 82: accepted. To check: gappa red_out_82.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 82: accepted. To check: gappa red_out_82.g
 # SHA-256 of the script below: 08f735bd7a6f65577474fe83d60ff2dc13c916c04ebd0ed9610d9f2c8456422c
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 83: accepted. To check: gappa red_out_83.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 83: accepted. To check: gappa red_out_83.g
 # SHA-256 of the script below: 9ff9d71112badcdc576cb12aec35a1d18ae28ae53d32a5de4e911acea19c76a2
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 84: accepted. To check: gappa red_out_84.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 84: accepted. To check: gappa red_out_84.g
 # SHA-256 of the script below: 73dd6177dbcab82171b4731a900762cbe483dcec94cb5226a2f8fccc749a5797
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 85: accepted. To check: gappa red_out_85.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 85: accepted. To check: gappa red_out_85.g
 # SHA-256 of the script below: 33e8e18281bf15f91186b60c8fa97ecd33dfa221550ba341da3edda536c041c6
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 86: accepted. To check: gappa red_out_86.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 86: accepted. To check: gappa red_out_86.g
 # SHA-256 of the script below: 0ffbba08d2738e311362c52eabf98e27045c184d429e8ab6655b2469cfee318f
 
 multiplier1_6 = dx * dx;

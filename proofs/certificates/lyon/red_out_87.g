@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 87: accepted. To check: gappa red_out_87.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 87: accepted. To check: gappa red_out_87.g
 # SHA-256 of the script below: 1f3d6e740e70d8e130e19b5e2d0c1be25093001df86cd81f0c98a91457454cbb
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 88: accepted. To check: gappa red_out_88.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 88: accepted. To check: gappa red_out_88.g
 # SHA-256 of the script below: 8cd28e135059573ce1496c26e3f83d44fd4413bb7c039966cdc4de600bff9d95
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 89: accepted. To check: gappa red_out_89.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 89: accepted. To check: gappa red_out_89.g
 # SHA-256 of the script below: df14dc99807418f6f9dde17052fe0d3515ed3b9088ea7c25fc38149a74c31028
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 9: accepted. To check: gappa red_out_9.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 9: accepted. To check: gappa red_out_9.g
 # SHA-256 of the script below: 6503738b4d376d81190ce99425a1d8dda8e0319d848c699c56b71d0a6117c05e
 
 multiplier1_1 = dx * dx;

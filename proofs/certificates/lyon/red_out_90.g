@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 90: accepted. To check: gappa red_out_90.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 90: accepted. To check: gappa red_out_90.g
 # SHA-256 of the script below: ffae9f1383977c419a96545e363b038d42cf04ecee78512ffc1c27f6773639c7
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 91: accepted. To check: gappa red_out_91.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 91: accepted. To check: gappa red_out_91.g
 # SHA-256 of the script below: ecef7d8bf93f3cbbbb21dcb03d90777c2ddeb7c1190d84f9b2004535d3f39cec
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 92: accepted. To check: gappa red_out_92.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 92: accepted. To check: gappa red_out_92.g
 # SHA-256 of the script below: af358860b769552ca9e6af39a2abc644c42b8e72b90547e42723d88a6f8b4f33
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 93: accepted. To check: gappa red_out_93.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 93: accepted. To check: gappa red_out_93.g
 # SHA-256 of the script below: 784620e8522dcbf59476743ea53e365f3fa3c9690f2283b1936b92e0009521a7
 
 multiplier1_1 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 94: accepted. To check: gappa red_out_94.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 94: accepted. To check: gappa red_out_94.g
 # SHA-256 of the script below: 79c0e880458800511efb970114b336a6332c063bdbf4cfd288a9d4b60bbe6271
 
 multiplier1_1 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 95: accepted. To check: gappa red_out_95.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 95: accepted. To check: gappa red_out_95.g
 # SHA-256 of the script below: 132434b582d7cab00746a544460122078bb4c44ae4323779d9feb532c31fa8b8
 
 multiplier1_6 = dx * dx;

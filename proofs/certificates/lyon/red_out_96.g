@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 96: accepted. To check: gappa red_out_96.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 96: accepted. To check: gappa red_out_96.g
 # SHA-256 of the script below: 39e0e0238c01c041bfd8d753c85474fce09c313e646ac2626a929270ac9f30a8
 
 multiplier1_6 = dx * dx;

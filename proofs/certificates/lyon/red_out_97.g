@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 97: accepted. To check: gappa red_out_97.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 97: accepted. To check: gappa red_out_97.g
 # SHA-256 of the script below: d466bafef48ed1471f803c688969f9504ec185b1adb3ac2faa01b1b8f56ad5e0
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 98: accepted. To check: gappa red_out_98.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 98: accepted. To check: gappa red_out_98.g
 # SHA-256 of the script below: 68cd217d6b19fae62225ac43e24babcfb2ab67712d66f90237761b494abf2914
 
 multiplier1_6 = dx * dx;

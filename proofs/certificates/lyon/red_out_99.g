@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/lyon.toml, red_out and green_out and blue_out, statement 99: accepted. To check: gappa red_out_99.g
+# Certificate by Glint: lyon.toml, red_out and green_out and blue_out, statement 99: accepted. To check: gappa red_out_99.g
 # SHA-256 of the script below: 1dd53aefd7293b12fa8a5c1e4bcb489f6619095385aba7bd1bad69f8c59981c5
 
 multiplier1_6 = dx * dx;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/quadratic.toml, adder1, statement 1: accepted. To check: gappa adder1_1.g
+# Certificate by Glint: quadratic.toml, adder1, statement 1: accepted. To check: gappa adder1_1.g
 # SHA-256 of the script below: bb87bafbfa27f29ce827cf4444415f00b2a0bc369a64ff2bbfb81f3506a58fe4
 
 multiplier5_1 = cos_gamma * cos_gamma;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/quadratic.toml, red_out and green_out and blue_out, statement 1: accepted. To check: gappa red_out_1.g
+# Certificate by Glint: quadratic.toml, red_out and green_out and blue_out, statement 1: accepted. To check: gappa red_out_1.g
 # SHA-256 of the script below: 2f6ddc84b82b2a0c1d601ee06b972ae7b851c059460f123d860c1487f76f4dde
 
 multiplier5_1 = cos_gamma * cos_gamma;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/quadratic.toml, red_out and green_out and blue_out, statement 2: accepted. To check: gappa red_out_2.g
+# Certificate by Glint: quadratic.toml, red_out and green_out and blue_out, statement 2: accepted. To check: gappa red_out_2.g
 # SHA-256 of the script below: 467104a7f87dd12c87fcd31e94d2a45082a40c0c871ae8389ef31fede614de3c
 
 multiplier5_1 = cos_gamma * cos_gamma;

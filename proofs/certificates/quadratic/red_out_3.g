@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/quadratic.toml, red_out and green_out and blue_out, statement 3: accepted. To check: gappa red_out_3.g
+# Certificate by Glint: quadratic.toml, red_out and green_out and blue_out, statement 3: accepted. To check: gappa red_out_3.g
 # SHA-256 of the script below: 7107cc787be804e8c2be66cc759bcc9378aaa9e34927ca77ebba7d6203469af4
 
 multiplier5_1 = cos_gamma * cos_gamma;

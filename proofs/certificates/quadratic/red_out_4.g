@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/quadratic.toml, red_out and green_out and blue_out, statement 4: accepted. To check: gappa red_out_4.g
+# Certificate by Glint: quadratic.toml, red_out and green_out and blue_out, statement 4: accepted. To check: gappa red_out_4.g
 # SHA-256 of the script below: ebb81d5ef8c8057093ddfcc987bc6ab3c8776ef658a0c07624a6cace0b009c5b
 
 multiplier5_6 = cos_gamma * cos_gamma;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/quadratic.toml, red_out and green_out and blue_out, statement 5: accepted. To check: gappa red_out_5.g
+# Certificate by Glint: quadratic.toml, red_out and green_out and blue_out, statement 5: accepted. To check: gappa red_out_5.g
 # SHA-256 of the script below: aa10bbf177989bb6d63a24d8ded160fae7ad7445c4da30ca01755d0c2253c1a1
 
 multiplier5_6 = cos_gamma * cos_gamma;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/quadratic.toml, red_out and green_out and blue_out, statement 7: accepted. To check: gappa red_out_7.g
+# Certificate by Glint: quadratic.toml, red_out and green_out and blue_out, statement 7: accepted. To check: gappa red_out_7.g
 # SHA-256 of the script below: b967479354ebc398b26cf6970feae7642a58266913c21d4785506ebe7055233e
 
 red_product_2 = 0.9999847412109375 * red;

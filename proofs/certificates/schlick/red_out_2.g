@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/schlick.toml, red_out and green_out and blue_out, statement 2: accepted. To check: gappa red_out_2.g
+# Certificate by Glint: schlick.toml, red_out and green_out and blue_out, statement 2: accepted. To check: gappa red_out_2.g
 # SHA-256 of the script below: 178ad15771b5bb02ce1d274dcfeadb081411cd9e020fa1e9963a0968ca9e26ba
 
 complement_2 = 1 - cos_gamma;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/threshold.toml, red_out and green_out and blue_out, statement 10: accepted. To check: gappa red_out_10.g
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 10: accepted. To check: gappa red_out_10.g
 # SHA-256 of the script below: c841f701a4d7b5ea464572cb2f2e1ac6af78a3e1af011298e4a59377360c7456
 
 adder1_2 = cos_gamma - (-1);

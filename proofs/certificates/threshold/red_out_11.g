@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/threshold.toml, red_out and green_out and blue_out, statement 11: accepted. To check: gappa red_out_11.g
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 11: accepted. To check: gappa red_out_11.g
 # SHA-256 of the script below: a951f086af50a5c7d04dfb6e6ac16916ee000d38b6b601758c6b0e22dd791e6b
 
 adder1_2 = cos_gamma - (-1);

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/threshold.toml, red_out and green_out and blue_out, statement 12: accepted. To check: gappa red_out_12.g
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 12: accepted. To check: gappa red_out_12.g
 # SHA-256 of the script below: 8a08eccf34f4cd67691cd0301377942a127892c94097bd7404f2195a8a716944
 
 adder1_2 = cos_gamma - (-1);

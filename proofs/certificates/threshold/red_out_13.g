@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/threshold.toml, red_out and green_out and blue_out, statement 13: accepted. To check: gappa red_out_13.g
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 13: accepted. To check: gappa red_out_13.g
 # SHA-256 of the script below: 21367c2c0157de94155913da2baf0ccf4ead74d7ec6a101be3505931a580ae06
 
 adder1_7 = cos_gamma - (-1);

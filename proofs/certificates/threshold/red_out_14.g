@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/threshold.toml, red_out and green_out and blue_out, statement 14: accepted. To check: gappa red_out_14.g
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 14: accepted. To check: gappa red_out_14.g
 # SHA-256 of the script below: 4028d85bb3dae7de9c5d7b632b7f0fdd89ef98529b1a42638268c42cddc26bd0
 
 adder1_7 = cos_gamma - (-1);

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/threshold.toml, red_out and green_out and blue_out, statement 15: accepted. To check: gappa red_out_15.g
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 15: accepted. To check: gappa red_out_15.g
 # SHA-256 of the script below: 6e4f07e9145508a2528bb8204e0ab37186b6771114e3205f26e217d89b3bf359
 
 adder1_7 = cos_gamma - (-1);

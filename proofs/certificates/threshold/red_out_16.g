@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/threshold.toml, red_out and green_out and blue_out, statement 16: accepted. To check: gappa red_out_16.g
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 16: accepted. To check: gappa red_out_16.g
 # SHA-256 of the script below: db76da512125bfc15db2ffb736305914ce845206b06d2fef906a938a1b423bda
 
 adder1_7 = cos_gamma - (-1);

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/threshold.toml, red_out and green_out and blue_out, statement 17: accepted. To check: gappa red_out_17.g
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 17: accepted. To check: gappa red_out_17.g
 # SHA-256 of the script below: b9bb7fca72181f6975fb415ff856cd85d8e1b0b28e493f48328bfce443e1d581
 
 adder1_7 = cos_gamma - (-1);

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/threshold.toml, red_out and green_out and blue_out, statement 5: accepted. To check: gappa red_out_5.g
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 5: accepted. To check: gappa red_out_5.g
 # SHA-256 of the script below: 0fa934ff8af3b23fcc51ffefedba0ecfcde072607711141e4746cd67786c7dee
 
 adder1_6 = cos_gamma - (-1);

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/threshold.toml, red_out and green_out and blue_out, statement 7: accepted. To check: gappa red_out_7.g
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 7: accepted. To check: gappa red_out_7.g
 # SHA-256 of the script below: 39d18f82682e3999f312edd301582b4eb29900af0d80879e972c5a26968112f2
 
 multiplier1_5 = (-1) * exponent_over_2;

@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/threshold.toml, red_out and green_out and blue_out, statement 8: accepted. To check: gappa red_out_8.g
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 8: accepted. To check: gappa red_out_8.g
 # SHA-256 of the script below: c29d9f340d5f65d6a6c60772b5328ec2d7a24b4cce508468536c07203a81a96a
 
 adder1_2 = cos_gamma - (-1);

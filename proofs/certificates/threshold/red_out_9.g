@@ -1,4 +1,4 @@
-# Certificate by Glint: configs/threshold.toml, red_out and green_out and blue_out, statement 9: accepted. To check: gappa red_out_9.g
+# Certificate by Glint: threshold.toml, red_out and green_out and blue_out, statement 9: accepted. To check: gappa red_out_9.g
 # SHA-256 of the script below: 355d075ed5b88d4dc66d81f944170faabdc6f21bfba16e73c342a5012f465415
 
 adder1_2 = cos_gamma - (-1);
