@@ -227,7 +227,9 @@ fn write(
     for entry in entries.with_context(|| format!("cannot read `{}`", directory.display()))? {
         let path = entry.context("cannot read a directory")?.path();
         let Some(name) = path.file_name().and_then(|name| name.to_str()) else { continue };
-        let is_old = name.ends_with(".g") && !path.is_symlink() && !names.iter().any(|written| written == name);
+        let is_old = name.ends_with(".g")
+            && !path.is_symlink()
+            && !names.iter().any(|written| written == name);
         let is_own = |text: String| {
             let first = text.lines().next().unwrap_or_default();
             let is_named = first.ends_with(&format!(" gappa {name}"));

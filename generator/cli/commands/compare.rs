@@ -104,6 +104,12 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         let named = load(registry, &arguments.configs)?;
         cores.extend(named.into_iter().map(|one| (one.path, one.core)));
     }
+    let n = f64::from(arguments.exponent);
+    let domains: Vec<(f64, f64)> = cores.iter().filter_map(|(_, core)| domain(core)).collect();
+    if !domains.is_empty() && !domains.iter().any(|(low, high)| (low..=high).contains(&&n)) {
+        let most = domains.iter().fold(0.0, |most: f64, (_, high)| most.max(*high));
+        wrong_usage!("--exponent {n} is in no device's domain; the largest is {most}");
+    }
     let records: Vec<Option<Record>> = cores
         .iter()
         .map(|(_, core)| Record::find(&arguments.figures, &core.core_digest()))
@@ -115,7 +121,6 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     let families = if yosys.is_some() { FAMILIES.len() } else { 0 };
     let steps = cores.len() + missing * families;
     let bar = progress::bar(output, steps as u64, "devices weighed");
-    let n = f64::from(arguments.exponent);
     let figures: Vec<Figures> = cores
         .par_iter()
         .map(|(label, core)| {
@@ -124,14 +129,6 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
             figures.with_context(|| format!("`{label}`"))
         })
         .collect::<Result<_>>()?;
-    if figures.iter().all(|it| it.accuracy.is_none()) {
-        bar.finish_and_clear();
-        let most = cores.iter().filter_map(|(_, core)| domain(core)).map(|(_, high)| high);
-        wrong_usage!(
-            "--exponent {n}: it is not in the domain of any device; the largest n of one is {}",
-            most.fold(0.0, f64::max)
-        );
-    }
     if let Some(yosys) = &yosys {
         let unknown = cores.iter().zip(&mut usage).filter(|(_, usage)| usage.is_empty());
         let (unknown, places): (Vec<_>, Vec<_>) = unknown.unzip();

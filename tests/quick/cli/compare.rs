@@ -127,19 +127,21 @@ fn widths_that_a_device_refuses_are_noted() {
 
 #[test]
 fn an_exponent_outside_the_domain_is_a_dash_and_a_note() {
-    let run = compare(&["--exponent", "1001"]).quiet();
+    let dir = Workspace::with("narrow.toml", "device = \"schlick\"\ndomain.exponent_max = 100\n");
+    let compare = ["compare", "--no-synthesis", "--exponent", "200", "narrow.toml"];
+    let run = dir.glint(compare).quiet();
     let rows: Vec<Vec<&str>> = run
         .out
         .lines()
-        .filter(|line| line.starts_with("| schlick "))
+        .filter(|line| line.starts_with("| narrow.toml "))
         .map(|line| line.split('|').map(str::trim).collect())
         .collect();
     assert_eq!(rows.len(), 2, "{}", run.out);
     assert_eq!(rows[0][2..10], ["-"; 8], "{}", run.out);
-    let note = "Note: schlick: n = 1001 is not in its domain, n = 1 to 1000.";
+    let note = "Note: narrow.toml: n = 200 is not in its domain, n = 1 to 100.";
     assert!(run.out.contains(note), "{}", run.out);
-    let value = compared(&["--exponent", "1001"]);
-    assert_eq!(entry(&value, "schlick")["errors"], Value::Null);
+    let value = dir.glint(compare.iter().chain(&["--json"])).json();
+    assert_eq!(entry(&value, "narrow.toml")["errors"], Value::Null);
 }
 
 /// The record of a device in `synthesis/`; frequency over clocks a point, eight of `cosine-power`, are points a second.
@@ -193,9 +195,11 @@ fn comma_separated() {
     assert!(row.starts_with("\"a, \"\"b\"\".toml\",cosine-power,35,0."), "{row}");
     assert!(row.ends_with(",8,40,\"21x16, 3 of 16x8\""), "{row}");
     // What is to be told beside the rows does not disturb them.
-    let noted = compare(&["--csv", "--exponent", "1001"]);
+    dir.write("narrow.toml", "device = \"schlick\"\ndomain.exponent_max = 100\n");
+    let noted = ["compare", "--no-synthesis", "--csv", "--exponent", "200", "narrow.toml"];
+    let noted = dir.glint(noted);
     assert!(!noted.out.contains("domain"), "{noted:?}");
-    assert!(noted.err.contains("warning: schlick: n = 1001"), "{noted:?}");
+    assert!(noted.err.contains("warning: narrow.toml: n = 200"), "{noted:?}");
 }
 
 #[test]

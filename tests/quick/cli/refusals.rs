@@ -51,7 +51,10 @@ fn wrong_usage() {
             &["render", "core.toml", "--height", "a.png", "--height-depth", "inf"],
             "a number is wanted",
         ),
-        (&["compare", "-n", "5000", "--no-synthesis"], "the largest n of one is 1000"),
+        (
+            &["compare", "-n", "5000", "--no-synthesis"],
+            "--exponent 5000 is in no device's domain; the largest is 1000",
+        ),
         (&["eval"], "required arguments were not provided"),
         (&["new"], "required arguments were not provided"),
     ] {
