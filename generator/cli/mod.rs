@@ -51,6 +51,7 @@ Examples:
   glint cosim my_core.toml --points 20 --vcd wave.vcd
   glint mutate my_core.toml                     are faults noticed? Plants thousands, one at a time
   glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
+  glint setup my_core.toml gamma=8 exponent=20  operands from angles or vectors
   glint describe my_core.toml                   ports, blocks, microprogram, accuracy: a page
   glint datasheet my_core.toml                  the same as a product guide in HTML
   glint synth my_core.toml                      area, frequency and critical path
@@ -79,7 +80,7 @@ macro_rules! commands {
 }
 
 commands! {
-    Generate generate; Cosim cosim; Merge merge; Worst worst; Mutate mutate; Eval eval;
+    Generate generate; Cosim cosim; Merge merge; Worst worst; Mutate mutate; Eval eval; Setup setup;
     Describe describe; Schedule schedule; Synth synth; Tune tune; Certify certify;
     Datasheet datasheet; Compare compare; Render render; Report report; Verify verify;
     List list; New new; Schema schema;

@@ -2,6 +2,7 @@
 
 mod paper;
 mod patent;
+mod rough;
 
 use serde::Serialize;
 
@@ -26,11 +27,23 @@ pub enum Verdict {
     Nearly,
     /// Under none.
     Fails,
+    /// The seed says two things that exclude each other.
+    Contradictory,
     /// It is no matter of this part of the report.
     Elsewhere,
 }
 
 impl Verdict {
+    /// Every verdict, the best first.
+    pub const ALL: [Self; 6] = [
+        Self::Holds,
+        Self::Depends,
+        Self::Nearly,
+        Self::Fails,
+        Self::Contradictory,
+        Self::Elsewhere,
+    ];
+
     /// For the ledger.
     pub fn words(self) -> &'static str {
         match self {
@@ -38,6 +51,7 @@ impl Verdict {
             Self::Depends => "depends on the definition",
             Self::Nearly => "nearly",
             Self::Fails => "does not hold",
+            Self::Contradictory => "contradicts itself",
             Self::Elsewhere => "see there",
         }
     }
@@ -94,6 +108,11 @@ pub fn percent(value: f64) -> String {
     }
 }
 
+/// A figure that is not an error.
+fn plain(key: &str, definition: &str, value: f64, text: String) -> Measured {
+    Measured { key: key.to_owned(), definition: definition.to_owned(), value, text, n: None }
+}
+
 /// The key of a definition.
 fn key(region: Region) -> String {
     match region {
@@ -137,11 +156,9 @@ pub fn quad(delta: f64, n: f64) -> f64 {
     formulas::quad_cosine(delta, n as i64)
 }
 
-/// The ledger: what the paper says, then what the patent says.
+/// The ledger: what the paper says, then what the patents say.
 pub fn ledger() -> Vec<Claim> {
-    let mut claims = paper::claims();
-    claims.extend(patent::claims());
-    claims
+    [paper::claims(), patent::claims(), rough::claims()].concat()
 }
 
 /// `n` as a list of runs: `2…7`.

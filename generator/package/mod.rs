@@ -215,7 +215,10 @@ pub fn emit(design: &Design, inputs: &EmitInputs) -> Result<Vec<OutputFile>> {
         vendor::files(design, inputs, &tops, map.map(|(_, map)| map), &memory_names)?;
     let mut software = if inputs.around.software {
         let latency = design.pipeline.as_ref().map(|pipeline| pipeline.stages.len());
-        software::files(inputs.sequential.as_ref().unwrap_or(design), inputs, latency)?
+        let sequential = inputs.sequential.as_ref().unwrap_or(design);
+        let mut files = software::files(sequential, inputs, latency)?;
+        files.extend(software::of_lines(sequential, inputs)?);
+        files
     } else {
         Vec::new()
     };

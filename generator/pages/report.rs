@@ -99,21 +99,18 @@ fn class(verdict: Verdict) -> &'static str {
         Verdict::Holds => "holds",
         Verdict::Depends => "depends",
         Verdict::Nearly => "nearly",
-        Verdict::Fails => "fails",
+        Verdict::Fails | Verdict::Contradictory => "fails",
         Verdict::Elsewhere => "elsewhere",
     }
 }
 
 /// How many claims have each verdict that occurs.
 fn counts(claims: &[Claim]) -> Vec<(&'static str, &'static str, usize)> {
-    [Verdict::Holds, Verdict::Depends, Verdict::Nearly, Verdict::Fails, Verdict::Elsewhere]
-        .into_iter()
-        .map(|verdict| {
-            let count = claims.iter().filter(|claim| claim.verdict == verdict).count();
-            (class(verdict), verdict.words(), count)
-        })
-        .filter(|(_, _, count)| *count > 0)
-        .collect()
+    let counts = Verdict::ALL.into_iter().map(|verdict| {
+        let count = claims.iter().filter(|claim| claim.verdict == verdict).count();
+        (class(verdict), verdict.words(), count)
+    });
+    counts.filter(|(_, _, count)| *count > 0).collect()
 }
 
 fn claim(claim: &Claim) -> ClaimView<'_> {

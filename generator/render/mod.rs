@@ -28,17 +28,16 @@ use rayon::prelude::*;
 pub use camera::View;
 pub use height::Relief;
 pub use mesh::{CREASE, Mesh};
-pub use operands::{exponents, walks_lines};
+pub use operands::{Feed, Point, exponents, walks_lines};
 pub use picture::{Difference, Picture};
 pub use scene::{BACKGROUND, BuiltIn, COLOUR, Light, Object, Scene, Shape};
-pub use shade::Material;
+pub use shade::{Material, point};
 pub use vector::Vector;
 
 use crate::core::Core;
 use crate::cosim::batch::{Engine, Points};
 use crate::golden::{Contract, nearer};
 use camera::Camera;
-use operands::Feed;
 use shade::{Shaded, Shader};
 use visibility::{Raster, Visibility};
 
@@ -125,7 +124,7 @@ pub fn usual_exponent(contract: &dyn Contract) -> u32 {
 /// Whether a picture has the operands of a device.
 pub fn draws(core: &Core) -> bool {
     let contract = core.contract.as_ref();
-    Feed::new(core.device.name, contract, usual_exponent(contract)).is_ok()
+    Feed::new(core.device.name, contract).is_ok()
 }
 
 /// Checks what is to be rendered.
@@ -184,7 +183,7 @@ pub fn render(
     let aspect = f64::from(width) / f64::from(height);
     let camera = Camera::new(&settings.view, aspect, middle, scene.balls())?;
     let contract = core.contract.as_ref();
-    let feed = Feed::new(core.device.name, contract, settings.material.exponent)?;
+    let feed = Feed::new(core.device.name, contract)?;
     ensure!(
         feed.longest().is_none() || scene.relief.is_none(),
         "the device `{}` walks lines of points, which a height map cannot perturb",

@@ -2,12 +2,14 @@
 //!
 //! Nothing here knows a device; its contract names its operands, and those names are what it is known by.
 
+use std::f64::consts::FRAC_PI_2;
+
 use anyhow::{Result, bail, ensure};
 
+use super::setup::Line;
 use super::vector::Vector;
-use crate::base::fixed::Format;
+use crate::base::fixed::{Format, Overflow, Rounding, exp2};
 use crate::golden::{Contract, Operand};
-use crate::render::setup::{Arc, raw_angle};
 
 /// What is known of a point that a light shines on.
 #[derive(Clone, Copy, Debug)]
@@ -76,7 +78,6 @@ const OF_LINES: [(&str, Quantity); 5] = [
 #[derive(Clone, Debug)]
 pub struct Feed {
     operands: Vec<(Quantity, Format, (i64, i64))>,
-    exponent: u32,
     /// For red, green and blue the place of its output.
     channels: [usize; 3],
     /// For red, green and blue what an output is to be multiplied with, for 255 at full colour.
@@ -102,7 +103,7 @@ impl Feed {
     ///
     /// # Errors
     /// It has operands that are not understood, or not the colours.
-    pub fn new(device: &str, contract: &dyn Contract, exponent: u32) -> Result<Self> {
+    pub fn new(device: &str, contract: &dyn Contract) -> Result<Self> {
         let names: &[(&str, Quantity)] = if walks_lines(contract) { &OF_LINES } else { &OF_POINTS };
         let mut unknown = Vec::new();
         let mut operands = Vec::new();
@@ -116,13 +117,12 @@ impl Feed {
         if !unknown.is_empty() {
             let known: Vec<&str> = names.iter().map(|(name, _)| *name).collect();
             bail!(
-                "a picture cannot supply {} of the device `{device}`; it supplies {}",
+                "a host cannot supply {} of the device `{device}`; it supplies {}",
                 unknown.join(", "),
                 known.join(", ")
             );
         }
-        let mut feed =
-            Self { operands, exponent, channels: [0; 3], scales: [0.0; 3], longest: None };
+        let mut feed = Self { operands, channels: [0; 3], scales: [0.0; 3], longest: None };
         if walks_lines(contract) {
             for (name, quantity) in OF_LINES {
                 ensure!(
@@ -165,6 +165,24 @@ impl Feed {
         self.takes(Quantity::CosDgamma)
     }
 
+    /// Whether n, or its logarithm, is an operand.
+    pub fn takes_exponent(&self) -> bool {
+        self.takes(Quantity::Exponent) || self.takes(Quantity::Shift)
+    }
+
+    /// The first of some operands, not yet quantised, that is beyond its domain. The cosine of a surface that faces away
+    /// is the least that there is, and angles of lines are taken modulo a turn.
+    pub fn outside(&self, values: &[f64]) -> Option<usize> {
+        let mut operands = self.operands.iter().zip(values);
+        operands.position(|(&(quantity, format, domain), &value)| match quantity {
+            Quantity::CosGamma | Quantity::ZetaStart | Quantity::DeltaZeta => false,
+            _ => {
+                (format.to_f64(i128::from(number(value, format, domain))) - value).abs()
+                    >= format.to_f64(1)
+            }
+        })
+    }
+
     /// The most intervals of a line, if the device computes lines.
     pub fn longest(&self) -> Option<usize> {
         self.longest
@@ -179,73 +197,92 @@ impl Feed {
         operands.find(|operand| operand.0 == wanted).copied()
     }
 
-    /// The raw operands of a point, and whether dγ was beyond the device's domain.
-    pub fn raw<'a>(&'a self, point: &'a Point) -> (impl Iterator<Item = i64> + 'a, bool) {
+    /// The operands of a point before they are quantised, each in its own unit.
+    pub fn values<'a>(&'a self, point: &'a Point, exponent: u32) -> impl Iterator<Item = f64> + 'a {
         let split = self.takes_deviation();
-        let value = move |quantity| match quantity {
+        self.operands.iter().map(move |&(quantity, format, (_, high))| match quantity {
             Quantity::CosGamma if split => point.cos_gamma,
             Quantity::CosGamma => point.cos_shaded,
             Quantity::CosDgamma => point.cos_dgamma,
             Quantity::DgammaNegative => f64::from(u8::from(point.dgamma_negative)),
-            Quantity::Exponent => f64::from(self.exponent),
-            Quantity::Shift => libm::log2(f64::from(self.exponent)).round(),
+            Quantity::Exponent => f64::from(exponent),
+            Quantity::Shift => libm::log2(f64::from(exponent)).round(),
             Quantity::Difference(axis) => point.difference.0[axis],
-            // The first follow below, and the others a point does not have.
-            Quantity::Colour(_) | Quantity::Amplitude => 0.0,
-            Quantity::ZetaStart | Quantity::DeltaZeta | Quantity::Length => 0.0,
-        };
-        let raw = move |&(quantity, format, (low, high)): &(Quantity, Format, (i64, i64))| {
-            let raw = match quantity {
-                Quantity::Colour(channel) => {
-                    // From 0 to the largest, which is full colour.
-                    let full = format.to_f64(i128::from(high));
-                    format.quantise(point.colour.0[channel] * full)
-                }
-                _ => format.quantise(value(quantity)),
-            };
-            raw.clamp(i128::from(low), i128::from(high)) as i64
-        };
+            // From 0 to the largest, which is full colour.
+            Quantity::Colour(channel) => point.colour.0[channel] * format.to_f64(i128::from(high)),
+            // Not of a point.
+            Quantity::Amplitude | Quantity::ZetaStart | Quantity::DeltaZeta | Quantity::Length => {
+                0.0
+            }
+        })
+    }
+
+    /// The raw operands of a point, and whether dγ was beyond the device's domain.
+    pub fn raw<'a>(
+        &'a self,
+        point: &'a Point,
+        exponent: u32,
+    ) -> (impl Iterator<Item = i64> + 'a, bool) {
+        let raw = self
+            .operands
+            .iter()
+            .zip(self.values(point, exponent))
+            .map(|(&(_, format, domain), value)| number(value, format, domain));
         let beyond = self.operands.iter().any(|(quantity, format, (low, _))| {
             *quantity == Quantity::CosDgamma && format.quantise(point.cos_dgamma) < i128::from(*low)
         });
-        (self.operands.iter().map(raw), beyond)
+        (raw, beyond)
     }
 
-    /// The raw operands of a line with `intervals` intervals, in a light of the strength `light`, 0 … 1.
-    ///
-    /// A device without an exponent takes the angles times √(n/2).
+    /// The amplitude of full light.
+    pub fn full(&self) -> f64 {
+        let full = self.find(Quantity::Amplitude);
+        full.map_or(0.0, |(_, format, (_, most))| format.to_f64(i128::from(most)))
+    }
+
+    /// By what the device takes the angles of a line: √(n/2), unless it has an exponent.
+    fn stretch(&self, line: &Line) -> f64 {
+        if self.takes(Quantity::Exponent) { 1.0 } else { line.stretch() }
+    }
+
+    /// The operands of a line before they are quantised, each in its own unit.
+    pub fn line_values<'a>(&'a self, line: &'a Line) -> impl Iterator<Item = f64> + 'a {
+        let stretch = self.stretch(line);
+        self.operands.iter().map(move |(quantity, ..)| match quantity {
+            Quantity::ZetaStart => line.zeta_start * stretch / FRAC_PI_2,
+            Quantity::DeltaZeta => line.delta_zeta * stretch / FRAC_PI_2,
+            Quantity::Exponent => f64::from(line.exponent),
+            Quantity::Length => f64::from(line.length),
+            Quantity::Amplitude => line.amplitude,
+            // Not of a line.
+            _ => 0.0,
+        })
+    }
+
+    /// The raw operands of a line. Angles are taken modulo a turn.
     ///
     /// # Errors
-    /// An angle that such a device has no room for.
-    pub fn line(&self, arc: &Arc, light: f64, length: usize) -> Result<Vec<i64>> {
-        let full = self.find(Quantity::Amplitude);
-        let full = full.map_or(0.0, |(_, format, (_, most))| format.to_f64(i128::from(most)));
-        let line = arc.line(full * light, self.exponent, length as u32);
-        let stretch = if self.takes(Quantity::Exponent) { 1.0 } else { line.stretch() };
-        let raw = |&(quantity, format, (low, high)): &(Quantity, Format, (i64, i64))| {
-            let angle = |radians: f64| raw_angle(radians * stretch, format);
-            let number =
-                |value: f64| format.quantise(value).clamp(i128::from(low), i128::from(high)) as i64;
-            match quantity {
-                Quantity::ZetaStart => angle(line.zeta_start),
-                Quantity::DeltaZeta => angle(line.delta_zeta),
-                Quantity::Exponent => number(f64::from(self.exponent)),
-                Quantity::Length => number(length as f64),
-                Quantity::Amplitude => number(line.amplitude),
-                // Not of a line.
-                _ => 0,
-            }
-        };
+    /// An angle times √(n/2) that a device without an exponent has no room for.
+    pub fn line(&self, line: &Line) -> Result<Vec<i64>> {
         if let Some((_, format, _)) = self.find(Quantity::ZetaStart)
             && !self.takes(Quantity::Exponent)
-            && let Some(right_angles) = line.beyond(stretch, format)
         {
-            bail!(
-                "an angle of the picture, times the root of n/2, is {right_angles:.1} right angles, for which the \
-                 device has no room; a smaller --exponent helps"
-            );
+            // A right angle is kept for what rounding may add along the line.
+            let room = exp2(format.int) - 1.0;
+            let ends = [line.zeta_start, line.zeta(line.length)];
+            let mut ends = ends.map(|zeta| self.stretch(line) * zeta / FRAC_PI_2).into_iter();
+            if let Some(right_angles) = ends.find(|right_angles| right_angles.abs() > room) {
+                bail!(
+                    "an angle of the line, times the root of n/2, is {right_angles:.1} right angles, for which the \
+                     device has no room; a smaller exponent helps, or a larger `angle.integer`"
+                );
+            }
         }
-        Ok(self.operands.iter().map(raw).collect())
+        let raw = |(&(quantity, format, domain), value)| match quantity {
+            Quantity::ZetaStart | Quantity::DeltaZeta => raw_angle(value, format),
+            _ => number(value, format, domain),
+        };
+        Ok(self.operands.iter().zip(self.line_values(line)).map(raw).collect())
     }
 
     /// The results of a point as a colour, 255 at full colour: `outputs` gives those in which red, green and
@@ -255,6 +292,17 @@ impl Feed {
         let of = |channel: usize| outputs(channel)[self.channels[channel]] as f64;
         Vector::new(of(0), of(1), of(2)).times(Vector(self.scales))
     }
+}
+
+/// The raw value nearest to a number, in the domain.
+fn number(value: f64, format: Format, (low, high): (i64, i64)) -> i64 {
+    format.quantise(value).clamp(i128::from(low), i128::from(high)) as i64
+}
+
+/// The raw angle nearest to right angles, modulo a turn: what an angle without room for more means.
+fn raw_angle(right_angles: f64, format: Format) -> i64 {
+    let scaled = (right_angles * exp2(format.frac) + 0.5).floor() as i128;
+    format.narrow(scaled, format.frac, Rounding::Truncate, Overflow::Wrap) as i64
 }
 
 fn quantity(operand: &Operand, names: &[(&str, Quantity)]) -> Option<Quantity> {

@@ -146,7 +146,7 @@ impl Shader<'_> {
                 let point = point(surface.smooth, surface.perturbed, half, specular);
                 match &mut shaded.places {
                     None => {
-                        let (raw, beyond) = self.feed.raw(&point);
+                        let (raw, beyond) = self.feed.raw(&point, material.exponent);
                         shaded.points.push(raw, 1);
                         shaded.beyond += usize::from(beyond);
                     }
@@ -180,16 +180,14 @@ impl Shader<'_> {
         for light in &self.scene.lights {
             let mut numbers = [0; 3];
             if surfaces.iter().any(|surface| surface.is_lit(light)) {
-                let arc = Arc::new(
-                    first.smooth.0,
-                    first.half(light).0,
-                    last.smooth.0,
-                    last.half(light).0,
-                )?;
+                let (half_1, half_2) = (first.half(light), last.half(light));
+                let arc = Arc::new(first.smooth, half_1, last.smooth, half_2)?;
                 let strengths = light.colour * self.material.specular;
                 for (number, strength) in numbers.iter_mut().zip(strengths.0) {
                     *number = points.result_count();
-                    points.push(self.feed.line(&arc, strength, count - 1)?, count);
+                    let light = self.feed.full() * strength;
+                    let line = arc.line(light, self.material.exponent, count as u32 - 1);
+                    points.push(self.feed.line(&line)?, count);
                 }
             }
             firsts.push(numbers);
@@ -250,7 +248,7 @@ impl Shader<'_> {
 /// As the patent has it, roughness changes the angle γ between normal and half vector by dγ. With N′ the
 /// perturbed normal and γ′ its angle with H, dγ = γ′ − γ: cos dγ = cos γ·cos γ′ + sin γ·sin γ′, and dγ is
 /// negative when N′ is nearer to H.
-fn point(smooth: Vector, perturbed: Vector, half: Vector, colour: Vector) -> Point {
+pub fn point(smooth: Vector, perturbed: Vector, half: Vector, colour: Vector) -> Point {
     let cosine = |normal: Vector| normal.dot(half).clamp(-1.0, 1.0);
     let (cos_gamma, cos_shaded) = (cosine(smooth), cosine(perturbed));
     let sine = |cosine: f64| (1.0 - cosine * cosine).sqrt();

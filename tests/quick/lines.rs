@@ -8,7 +8,8 @@ use glint::core::Core;
 use glint::golden::formulas;
 use glint::hdl::sim::Simulator;
 use glint::package::Computation;
-use glint::render::setup::{Arc, Line, Operands};
+use glint::render::setup::{Arc, Line};
+use glint::render::{Feed, Vector};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 
@@ -261,8 +262,8 @@ fn set_ups(count: usize) -> impl Iterator<Item = Line> {
     let mut source = ChaCha8Rng::seed_from_u64(3);
     let mut real = move || f64::from(source.next_u32()) / f64::from(u32::MAX) - 0.5;
     std::iter::repeat_with(move || {
-        let mut near = |at: [f64; 3], by: f64| at.map(|x| x + by * real());
-        let normal = [0.0, 0.0, 1.0];
+        let mut near = |at: Vector, by: f64| Vector(at.0.map(|x| x + by * real()));
+        let normal = Vector::new(0.0, 0.0, 1.0);
         let (n1, n2) = (near(normal, 1.0), near(normal, 1.0));
         let (h1, h2) = (near(n1, 1.5), near(n2, 1.5));
         let arc = Arc::new(n1, h1, n2, h2).expect("a set-up");
@@ -273,20 +274,17 @@ fn set_ups(count: usize) -> impl Iterator<Item = Line> {
     .take(count)
 }
 
-/// The largest difference over a line between the outputs that the contract gives for the operands and the
+/// The largest difference over a line between the outputs that the contract gives for its operands and the
 /// unquantised formula.
-fn drift(
-    core: &Core,
-    line: &Line,
-    operands: &Operands,
-    control: &[i64],
-    f: impl Fn(f64) -> f64,
-) -> f64 {
+fn drift(core: &Core, line: &Line, f: impl Fn(f64) -> f64) -> f64 {
     let highlight = core.contract.highlight().expect("a highlight");
+    let feed = Feed::new(core.device.name, core.contract.as_ref()).expect("operands of a line");
+    let operands = feed.line(line).expect("operands");
+    let (amplitude, control) = operands.split_last().expect("an amplitude at the end");
     (0..=line.length)
         .map(|index| {
             let word = highlight.f(&highlight.point(control, u64::from(index)));
-            let out = highlight.colour(word, operands.amplitude) as f64;
+            let out = highlight.colour(word, *amplitude) as f64;
             (out - line.amplitude * f(line.zeta(index))).abs()
         })
         .fold(0.0, f64::max)
@@ -305,15 +303,10 @@ fn the_longest_lines_stay_within_two_units_of_the_unquantised_set_up() {
     let mut worst = [0.0f64; 2];
     for line in set_ups(400) {
         let n = i64::from(line.exponent);
-        let it = line.quad_cosine(&quad.config).expect("operands");
-        let control = [it.delta_zeta, it.zeta_start, n, it.length];
-        let error = drift(&quad, &line, &it, &control, |zeta| formulas::quad_cosine(zeta, n));
+        let error = drift(&quad, &line, |zeta| formulas::quad_cosine(zeta, n));
         worst[0] = worst[0].max(error);
-        let it = line.cosine_squared(&squared.config).expect("operands");
-        let control = [it.delta_zeta, it.zeta_start, it.length];
         let a = (n as f64 / 2.0).sqrt();
-        let error =
-            drift(&squared, &line, &it, &control, |zeta| formulas::cosine_squared(a * zeta));
+        let error = drift(&squared, &line, |zeta| formulas::cosine_squared(a * zeta));
         worst[1] = worst[1].max(error);
     }
     println!("quad-cosine {}, cosine-squared {} units", worst[0], worst[1]);
@@ -340,9 +333,7 @@ fn the_worst_rounding_of_the_longest_line_stays_within_two_units() {
             delta_zeta: delta * ulp,
             zeta_start: end - 4095.0 * delta * ulp,
         };
-        let it = line.quad_cosine(&quad.config).expect("operands");
-        let control = [it.delta_zeta, it.zeta_start, 1000, it.length];
-        let error = drift(&quad, &line, &it, &control, |zeta| formulas::quad_cosine(zeta, 1000));
+        let error = drift(&quad, &line, |zeta| formulas::quad_cosine(zeta, 1000));
         worst = worst.max(error);
     }
     println!("{worst} units");

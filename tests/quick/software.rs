@@ -31,9 +31,11 @@ fn every_core_becomes_a_model_in_c() {
         let manifest = text(&format!("rtl_out/{name}/{name}.json"));
         let manifest: Value = serde_json::from_str(manifest).expect("JSON");
         let listed = manifest["files"]["software"].to_string();
-        for file in ["model.h", "model.c", "model.py"] {
-            assert!(listed.contains(&format!("{name}_{file}")), "{listed}");
-        }
+        let listed = |file: &str| listed.contains(&format!("{name}_{file}"));
+        assert!(["model.h", "model.c", "model.py"].into_iter().all(listed), "{name}");
+        // With what a host computes before a line.
+        let walks = core.contract.length().is_some();
+        assert!(["setup.h", "setup.c", "setup.py"].map(listed) == [walks; 3], "{name}");
         let stated = header.lines().find_map(|line| line.split_once("_LATENCY "));
         let latency = &manifest["pipeline"]["latency"];
         assert_eq!(

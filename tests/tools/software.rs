@@ -7,6 +7,8 @@ use std::path::Path;
 use glint::core::Core;
 use glint::golden::{Contract, Operand};
 use glint::hdl::netlist::{Port, Role};
+use glint::render::setup::Arc;
+use glint::render::{Feed, Vector};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{RngCore, SeedableRng};
 use rayon::prelude::*;
@@ -289,3 +291,145 @@ fn draw(contract: &dyn Contract, random: &mut ChaCha8Rng) -> Vec<i64> {
     }
     operands
 }
+
+/// Random lines through `glint setup`, the C and the Python: raw operands, bit for bit; some vectors are equal, opposite,
+/// long, or almost so, and some lines are refused, by all three.
+#[test]
+fn lines_are_set_up_in_c_and_python_as_by_glint() {
+    ["quad_cosine", "cosine_squared"].par_iter().for_each(|name| {
+        let model = Model::new(&format!("configs/{name}.toml"));
+        let dir = model.dir.path();
+        let mut random = ChaCha8Rng::seed_from_u64(5);
+        let mut unit = || f64::from(random.next_u32()) / f64::from(u32::MAX);
+        let lines: Vec<[f64; 15]> = (0..LINES).map(|at| line(at, &mut unit)).collect();
+
+        let words = |line: &[f64; 15]| line.map(|number| format!("{number:?}")).join(" ");
+        fs::write(dir.join("lines"), lines.iter().map(|it| words(it) + "\n").collect::<String>())
+            .expect("written");
+        fs::write(dir.join("lines.c"), IN_C.replace("NAME", name)).expect("written");
+        let setup = format!("{name}_setup.c");
+        let arguments = FLAGS.split(' ').chain(["-fno-sanitize-recover=all", "-o", "set_up"]);
+        let arguments: Vec<&str> = arguments.chain(["lines.c", &setup, "-lm"]).collect();
+        let compiled = tool("cc").run_to_success(&arguments, dir, LIMIT);
+        assert_eq!(compiled.unwrap_or_else(|error| panic!("{error:#}")), "", "{name}");
+        let in_c = run_program(&dir.join("set_up"), dir);
+        fs::write(dir.join("lines.py"), IN_PYTHON.replace("NAME", name)).expect("written");
+        let in_python = tool("python").run_to_success(["lines.py"], dir, LIMIT);
+        let in_python = in_python.unwrap_or_else(|error| panic!("{error:#}"));
+
+        let contract = model.core.contract.as_ref();
+        let feed = Feed::new(model.core.device.name, contract).expect("operands of a line");
+        let expected = lines.iter().map(|line| set_up(&feed, contract, line) + "\n");
+        let expected: String = expected.collect();
+        let refused = expected.matches("refused").count();
+        assert!((LINES / 50..LINES / 4).contains(&refused), "{refused} are refused");
+        for (what, found) in [("C", in_c), ("Python", in_python)] {
+            let lines = found.lines().zip(expected.lines()).zip(&lines);
+            for ((found, expected), line) in lines {
+                assert_eq!(found, expected, "{name} in {what}: {line:?}");
+            }
+            assert_eq!(found.lines().count(), LINES, "{name} in {what}");
+        }
+    });
+}
+
+/// Lines that are set up.
+const LINES: usize = 20_000;
+
+/// N1, H1, N2, H2, then intensity, exponent and points.
+fn line(at: usize, unit: &mut dyn FnMut() -> f64) -> [f64; 15] {
+    let mut line: [f64; 15] = std::array::from_fn(|_| unit() - 0.5);
+    let copy = |line: &mut [f64; 15], from: usize, to: usize, by: f64| {
+        (0..3).for_each(|axis| line[to + axis] = by * line[from + axis]);
+    };
+    match at % 16 {
+        // A flat surface; seen and lit from afar, but for rounding; far too long; opposite normals.
+        0 => copy(&mut line, 0, 6, 1.0),
+        1 => {
+            copy(&mut line, 0, 6, 1.0);
+            copy(&mut line, 3, 9, 1.0 + unit());
+        }
+        2 => {
+            copy(&mut line, 0, 6, 1.0);
+            copy(&mut line, 3, 9, 1.0);
+            line[9] += 1e-8 * unit();
+        }
+        3 => (0..12).for_each(|at| line[at] *= 1e200),
+        4 => copy(&mut line, 0, 6, -1.0),
+        // Opposite half vectors, no direction.
+        5 if unit() < 0.5 => {
+            copy(&mut line, 0, 6, 1.0);
+            copy(&mut line, 3, 9, -1.0);
+        }
+        5 => copy(&mut line, 0, 3, 0.0),
+        // Highlights.
+        6..=12 => (0..3).for_each(|axis| {
+            line[6 + axis] = line[axis] + 0.3 * line[6 + axis];
+            line[3 + axis] = line[axis] + 0.2 * line[3 + axis];
+            line[9 + axis] = line[6 + axis] + 0.2 * line[9 + axis];
+        }),
+        _ => {}
+    }
+    line[12] = unit();
+    line[13] = (1.0 + 999.0 * unit() * unit()).round();
+    line[14] = (1.0 + 4110.0 * unit() * unit()).round();
+    line
+}
+
+fn set_up(feed: &Feed, contract: &dyn Contract, line: &[f64; 15]) -> String {
+    let v = |at: usize| Vector::new(line[at], line[at + 1], line[at + 2]);
+    let refused = "refused".to_owned();
+    let Ok(arc) = Arc::new(v(0), v(3), v(6), v(9)) else {
+        return refused;
+    };
+    let line = arc.line(feed.full() * line[12], line[13] as u32, line[14] as u32 - 1);
+    let real: Vec<f64> = feed.line_values(&line).collect();
+    let Some(raw) = feed.line(&line).ok().filter(|_| feed.outside(&real).is_none()) else {
+        return refused;
+    };
+    let named = contract.operands().iter().zip(raw);
+    let mut named: Vec<String> =
+        named.map(|(operand, raw)| format!("{} {raw}", operand.name)).collect();
+    named.sort();
+    named.join(" ")
+}
+
+const IN_C: &str = r#"
+#include <stdio.h>
+#include "NAME_setup.h"
+int main(void) {
+    FILE *in = fopen("lines", "r");
+    double v[12], intensity, exponent, points;
+    for (;;) {
+        for (int at = 0; at < 12; ++at)
+            if (fscanf(in, "%lf", &v[at]) != 1) return fclose(in);
+        if (fscanf(in, "%lf %lf %lf", &intensity, &exponent, &points) != 3) return 1;
+        NAME_line line = {intensity, (uint32_t)exponent, (uint32_t)points};
+        NAME_operands of;
+        if (NAME_setup(v, v + 3, v + 6, v + 9, line, &of) != 0) {
+            puts("refused");
+            continue;
+        }
+        printf("amplitude %ld delta_zeta %ld ", (long)of.amplitude, (long)of.delta_zeta);
+#ifdef QUAD_COSINE_EXPONENT_WIDTH
+        printf("exponent %ld ", (long)of.exponent);
+#endif
+        printf("length %ld zeta_start %ld\n", (long)of.length, (long)of.zeta_start);
+    }
+}
+"#;
+
+const IN_PYTHON: &str = r#"
+import NAME_setup as setup
+
+for line in open("lines"):
+    *v, intensity, exponent, points = map(float, line.split())
+    try:
+        operands = setup.from_vectors(
+            v[0:3], v[3:6], v[6:9], v[9:12],
+            intensity=intensity, exponent=int(exponent), points=int(points))
+        assert sorted(operands) == sorted(setup.OPERANDS)
+        print(*(f"{name} {operands[name]}" for name in sorted(operands)))
+    except setup.SetupError:
+        print("refused")
+"#;

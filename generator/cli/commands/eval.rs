@@ -24,6 +24,7 @@ Examples:
   glint eval my_core.toml cos_gamma=0.99 exponent=20 red=255
   glint eval my_core.toml cos_gamma=#1038090     a raw integer, as the port takes it
   glint eval my_core.toml --batch points.csv     a row of results for each row of operands
+  glint setup my_core.toml --batch lines.csv | glint eval my_core.toml --batch -
   glint eval my_core.toml --json                 a typical point, for scripts")]
 pub struct Arguments {
     /// A configuration
@@ -33,7 +34,8 @@ pub struct Arguments {
     #[arg(value_name = "OPERAND=VALUE")]
     operands: Vec<String>,
     /// Compute many points: a CSV file with the names of operands in its first row, or - for standard input. The
-    /// results are CSV, or with --json a list. Operands on the command line hold for all rows
+    /// results are CSV, or with --json a list; of a line, a row for each point. Operands on the command line hold for all
+    /// rows
     #[arg(long, value_name = "FILE.csv")]
     batch: Option<PathBuf>,
 }
@@ -55,11 +57,11 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
     }
 }
 
-/// The formula at raw operands: f of a highlight, and each output. Of several results, the first.
-fn formula(contract: &dyn Contract, raw: &[i64]) -> (Option<f64>, Vec<f64>) {
-    let f = contract.highlight().map(|it| it.reference(&it.point(&raw[..it.control()], 0)));
+/// The formula at raw operands: f of a highlight, and each output, of result number `index`.
+fn formula(contract: &dyn Contract, raw: &[i64], index: u64) -> (Option<f64>, Vec<f64>) {
+    let f = contract.highlight().map(|it| it.reference(&it.point(&raw[..it.control()], index)));
     let mut exact = Vec::new();
-    contract.exact(raw, 0, &mut exact);
+    contract.exact(raw, index, &mut exact);
     (f, exact.into_iter().map(|[value, _]| value).collect())
 }
 

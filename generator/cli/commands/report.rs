@@ -88,18 +88,13 @@ pub fn run(registry: &Registry, output: Output, arguments: &Arguments) -> Result
         ]
     });
     tables::print(&["claim", "the seed", "ours", "verdict"].map(Column::words), rows);
-    let count = |verdict| {
-        let claims = evidence.claims.iter();
-        claims.filter(|claim| claim.verdict == verdict).count()
-    };
-    say!(
-        "{} claims: {} hold, {} depend on the definition, {} nearly hold, {} do not hold.",
-        evidence.claims.len(),
-        count(Verdict::Holds),
-        count(Verdict::Depends),
-        count(Verdict::Nearly),
-        count(Verdict::Fails),
-    );
+    let counts = Verdict::ALL.into_iter().filter_map(|verdict| {
+        let claims = evidence.claims.iter().filter(|claim| claim.verdict == verdict);
+        Some((claims.count(), verdict.words())).filter(|(count, _)| *count > 0)
+    });
+    let counts: Vec<String> =
+        counts.map(|(count, verdict)| format!("{verdict}: {count}")).collect();
+    say!("{} claims. {}.", evidence.claims.len(), counts.join("; "));
     if let Some(timed) = &timed {
         tables::print_line(&timed.words);
     }

@@ -1,7 +1,9 @@
 //! What seed 002, the paper on W, says.
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use super::{
-    Claim, EPICENTRE, Measured, Verdict, error, exceeding, found, key, runs, schlick,
+    Claim, EPICENTRE, Measured, Verdict, error, exceeding, found, key, plain, runs, schlick,
     to_inflection, upper, w,
 };
 use crate::evidence::measure::{self, Function, Region};
@@ -23,6 +25,10 @@ const SCHLICK_BLOOMING: Region = Region::Level(0.19);
 /// The claims, in the order of the paper.
 pub fn claims() -> Vec<Claim> {
     vec![
+        not_negative(),
+        zero(),
+        falling(),
+        better_with_power(),
         before_inflection("w4-epicentre", 4, 0.08, "8.0 %"),
         before_inflection("w8-epicentre", 8, 0.038, "3.8 %"),
         before_inflection("w16-epicentre", 16, 0.01, "1.0 %"),
@@ -48,7 +54,207 @@ pub fn claims() -> Vec<Claim> {
             [BLOOMING, SCHLICK_BLOOMING],
         ),
         multiplications(),
+        ahead_of_schlick(),
     ]
+}
+
+/// The powers of the paper.
+const POWERS: [u32; 4] = [2, 4, 8, 16];
+
+/// Those of its three functions W1, W2 and W3.
+const THREE: [u32; 3] = [4, 8, 16];
+
+/// All exponents of the paper's study: "n \u{2208} [1, 1000]".
+const ALL: std::ops::RangeInclusive<u32> = 1..=1000;
+
+/// Angles at which a sign is looked at.
+const ANGLES: u32 = 512;
+
+/// Angles from 0 to an end.
+fn angles(end: f64) -> impl DoubleEndedIterator<Item = f64> + Clone {
+    (0..=ANGLES).map(move |step| end * f64::from(step) / f64::from(ANGLES))
+}
+
+/// (n/m\u{b7}(cos \u{3b3} \u{2212} 1) + 1)\u{1d50} as the paper writes it, without a clamp: what the devices have is 0 behind its zero.
+fn unclamped(gamma: f64, n: u32, m: u32) -> f64 {
+    let base = f64::from(n) / f64::from(m) * (libm::cos(gamma) - 1.0) + 1.0;
+    (0..m.ilog2()).fold(base, |power, _| power * power)
+}
+
+fn not_negative() -> Claim {
+    let least = |powers: &[u32], end: f64| {
+        let powers = powers.iter().flat_map(|&m| ALL.map(move |n| (m, n)));
+        let values = powers.flat_map(|(m, n)| angles(end).map(move |gamma| unclamped(gamma, n, m)));
+        values.fold(f64::INFINITY, f64::min)
+    };
+    let of = |key: &str, definition: &str, value: f64| {
+        plain(key, definition, value, format!("{value:.1e}"))
+    };
+    let ours = vec![
+        of(
+            "m-2",
+            "the least W, m = 2, \u{3b3} = 0\u{2026}180\u{b0}, n = 1\u{2026}1000",
+            least(&[2], PI),
+        ),
+        of("all-m", "the same, m = 2, 4, 8, 16", least(&POWERS, PI)),
+    ];
+    let holds = ours.iter().all(|one| one.value >= 0.0);
+    Claim {
+        id: "not-negative",
+        source: "seed 002, the paper on W, before the derivative of W",
+        claim: "W, a square, is never below 0".to_owned(),
+        seed: "«є квадратом дійсного числа, то її значення завжди не менше 0»".to_owned(),
+        ours,
+        verdict: if holds { Verdict::Holds } else { Verdict::Fails },
+        words: "It holds for every even power. The paper's list of properties calls W positive, which it is not at its \
+                zero; behind the zero it rises again, so that the devices clamp it there."
+            .to_owned(),
+    }
+}
+
+fn zero() -> Claim {
+    let place = |n: u32| libm::acos((f64::from(n) - 2.0) / f64::from(n));
+    let largest = |m: u32| ALL.map(|n| unclamped(place(n), n, m)).fold(0.0, f64::max);
+    let ours = vec![
+        plain(
+            "m-2",
+            "the largest W there, m = 2, n = 1\u{2026}1000",
+            largest(2),
+            format!("{:.0e}", largest(2)),
+        ),
+        plain("m-16", "the largest W there, m = 16", largest(16), format!("{:.3}", largest(16))),
+    ];
+    let holds = ours[0].value < 1e-20;
+    Claim {
+        id: "zero",
+        source: "seed 002, the paper on W, before the derivative of W",
+        claim: "W is 0 at cos \u{3b3} = (n \u{2212} 2)/n, and least there".to_owned(),
+        seed: "«приймає нульове значення при cos(\u{3b3}) = (n \u{2212} 2)/n»".to_owned(),
+        ours,
+        verdict: if holds { Verdict::Depends } else { Verdict::Fails },
+        words: "It holds for m = 2, of which the paper speaks there, up to rounding; at n = 1 the zero is at 180\u{b0}, beyond the \
+                90\u{b0} to which the paper limits \u{3b3}. With another power it is at (n \u{2212} m)/n, and W is not 0 at (n \u{2212} 2)/n."
+            .to_owned(),
+    }
+}
+
+fn falling() -> Claim {
+    let steepest = |powers: &[u32]| {
+        let all = powers.iter().flat_map(|&m| ALL.map(move |n| (m, n)));
+        let rises = all.flat_map(|(m, n)| {
+            let zero = libm::acos(((f64::from(n) - f64::from(m)) / f64::from(n)).max(-1.0));
+            let before = angles(zero).map(move |gamma| unclamped(gamma, n, m));
+            before.clone().skip(1).zip(before).map(|(next, before)| next - before)
+        });
+        rises.fold(f64::NEG_INFINITY, f64::max)
+    };
+    let of = |key: &str, definition: &str, value: f64| {
+        plain(key, definition, value, format!("{value:.1e}"))
+    };
+    let behind = unclamped(FRAC_PI_2, 100, 2);
+    let ours = vec![
+        of(
+            "m-2",
+            "the largest rise from an angle to the next up to the zero, m = 2, n = 1\u{2026}1000",
+            steepest(&[2]),
+        ),
+        of("all-m", "the same, m = 2, 4, 8, 16, each up to its own zero", steepest(&POWERS)),
+        plain(
+            "behind",
+            "W at 90\u{b0}, n = 100, m = 2, without a clamp",
+            behind,
+            format!("{behind:.0}"),
+        ),
+    ];
+    let holds = ours[..2].iter().all(|one| one.value <= 0.0);
+    Claim {
+        id: "falling",
+        source: "seed 002, the paper on W, the derivative of W",
+        claim: "W falls monotonically from \u{3b3} = 0 to arccos((n \u{2212} 2)/n)".to_owned(),
+        seed: "«на проміжку [0, arccos((n \u{2212} 2)/n)] монотонно спадає»".to_owned(),
+        ours,
+        verdict: if holds { Verdict::Holds } else { Verdict::Fails },
+        words: "It holds up to the zero. Behind it the parabola rises again, which the paper does not say: at 90\u{b0} it is \
+                (n/2 \u{2212} 1)\u{b2}, and would be a bright ring."
+            .to_owned(),
+    }
+}
+
+/// The exponents at which some property of errors in a region fails.
+fn failing(region: Region, holds: impl Fn(&dyn Fn(Function) -> f64) -> bool) -> Vec<u32> {
+    let fails = |n: &u32| {
+        let error = |function: Function| measure::at(function, *n, region).map(|it| it.error);
+        measure::at(&schlick, *n, region).is_some()
+            && !holds(&|function| error(function).unwrap_or(f64::NAN))
+    };
+    ALL.filter(fails).collect()
+}
+
+/// A line of the ledger about all exponents: how many fail in each region.
+fn failures(
+    regions: [Region; 3],
+    holds: &dyn Fn(&dyn Fn(Function) -> f64) -> bool,
+) -> (Vec<Measured>, String) {
+    let failing = regions.map(|region| (region, failing(region, holds)));
+    let ours = failing.iter().map(|(region, failing)| {
+        let text =
+            if failing.is_empty() { "never".to_owned() } else { format!("n = {}", runs(failing)) };
+        let definition = format!("where it fails of n = 1\u{2026}1000, {}", region.name());
+        plain(&key(*region), &definition, failing.len() as f64, text)
+    });
+    let ours: Vec<Measured> = ours.collect();
+    let most = failing.iter().flat_map(|(_, failing)| failing.last()).max();
+    let words = match most {
+        None => "It holds for every n, in every region.".to_owned(),
+        Some(last) => {
+            format!("It holds from n = {} to 1000 in every region, and fails below", last + 1)
+        }
+    };
+    (ours, words)
+}
+
+fn better_with_power() -> Claim {
+    let [first, second, third] = THREE.map(w);
+    let (ours, words) = failures([Region::Inflection, EPICENTRE, BLOOMING], &|error| {
+        error(&first) > error(&second) && error(&second) > error(&third)
+    });
+    Claim {
+        id: "better-with-power",
+        source: "seed 002, the paper on W, before its figure 5 (n = 35)",
+        claim: "The accuracy of W grows with its power, m = 4, 8, 16".to_owned(),
+        seed: "«зі зростанням степені m \u{2026} точність наближення до ДФВЗ \u{2026} зростає»"
+            .to_owned(),
+        verdict: if ours.iter().all(|one| one.value == 0.0) {
+            Verdict::Holds
+        } else {
+            Verdict::Depends
+        },
+        ours,
+        words: format!(
+            "{words}: near n = m a smaller power is exact or nearly so. At n = 35 of its figures it holds."
+        ),
+    }
+}
+
+fn ahead_of_schlick() -> Claim {
+    let three = THREE.map(w);
+    let (ours, words) = failures([Region::Inflection, EPICENTRE, BLOOMING], &|error| {
+        three.iter().all(|w| error(w) < error(&schlick))
+    });
+    Claim {
+        id: "ahead-of-schlick",
+        source: "seed 002, the paper on W, before its conclusions",
+        claim: "All three W approximate better than Schlick's function".to_owned(),
+        seed: "«усі три запропоновані функції забезпечують кращу апроксимацію, ніж функція Шліка»"
+            .to_owned(),
+        verdict: if ours.iter().all(|one| one.value == 0.0) {
+            Verdict::Holds
+        } else {
+            Verdict::Depends
+        },
+        ours,
+        words: format!("{words}: Schlick's function is exact at n = 1."),
+    }
 }
 
 /// The largest relative error of a function over the paper's exponents.
@@ -56,11 +262,6 @@ fn papers(function: Function, region: Region) -> Option<Measured> {
     let worst = measure::over(function, PAPER, region)?;
     let definition = format!("{}, n = 16…250", region.name());
     Some(error(worst, key(region), definition))
-}
-
-/// A figure that is not an error.
-fn plain(key: &str, definition: &str, value: f64, text: String) -> Measured {
-    Measured { key: key.to_owned(), definition: definition.to_owned(), value, text, n: None }
 }
 
 /// W and the paper's error before the inflection point.

@@ -86,6 +86,52 @@ fn five_multiplications() {
     assert_eq!(claim.verdict, Verdict::Fails);
 }
 
+/// By hand: the parabola is a square, 0 where n/2·(1 − cos γ) = 1, and (n/2 − 1)² at 90°; (1 − 2/16)¹⁶ = 0.118.
+#[test]
+fn the_shape_of_w() {
+    for id in ["not-negative", "falling"] {
+        assert_eq!(find(id).verdict, Verdict::Holds, "{id}");
+    }
+    assert_eq!(find("falling").ours[2].text, "2401");
+    let zero = find("zero");
+    assert_eq!(zero.verdict, Verdict::Depends);
+    let at = |key| zero.figure(key).expect("a figure");
+    assert!(at("m-2") < 1e-20 && (at("m-16") - 0.875f64.powi(16)).abs() < 1e-9, "{zero:?}");
+}
+
+#[test]
+fn powers_of_w_against_each_other_and_schlick() {
+    // W with m = 4 is exact at n = 4, and so is m = 8 at n = 8.
+    let power = find("better-with-power");
+    assert_eq!(power.verdict, Verdict::Depends);
+    for key in ["inflection", "level-0.46", "level-0.20"] {
+        let one = power.ours.iter().find(|one| one.key == key).expect("a region");
+        let exact =
+            [4, 8].map(|n: u32| one.text.contains(&n.to_string()) || one.text.contains('…'));
+        assert!(exact[0] && exact[1] && one.value < 20.0, "{one:?}");
+    }
+    // Schlick's function is cos γ at n = 1.
+    let ahead = find("ahead-of-schlick");
+    assert_eq!(ahead.verdict, Verdict::Depends);
+    assert!((1.0..16.0).contains(&ahead.figure("level-0.46").expect("a figure")), "{ahead:?}");
+}
+
+#[test]
+fn the_patent_of_rough() {
+    let code = find("inverse-code");
+    assert_eq!(code.verdict, Verdict::Depends);
+    assert_eq!(code.ours[0].text, "65536 of 65536");
+    assert_eq!((code.figure("ulps"), code.figure("ulps-after-n")), (Some(1.0), Some(500.0)));
+    let second = find("adder-31");
+    assert_eq!(second.verdict, Verdict::Contradictory);
+    assert_eq!((second.figure("ones"), second.figure("zeros")), (Some(1.0), Some(0.0)));
+    // Word 0 is in clock 1, «Кінець» in word 9; then comes the clock of the next start.
+    let clocks = find("ten-clocks");
+    assert_eq!(clocks.verdict, Verdict::Holds);
+    let figures: Vec<f64> = clocks.ours.iter().map(|one| one.value).collect();
+    assert_eq!(figures, [10.0, 10.0, 11.0]);
+}
+
 #[test]
 fn ids_are_unique_and_words_are_plain() {
     let claims = &LEDGER;

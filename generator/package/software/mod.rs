@@ -8,8 +8,10 @@ mod litex;
 mod model;
 mod print;
 mod registers;
+mod setup;
 mod unroll;
 
 pub use litex::file as of_litex;
 pub use model::files;
 pub use registers::files as of_registers;
+pub use setup::files as of_lines;

@@ -14,13 +14,16 @@ use crate::hdl::verilog::text::{Names, ascii, constant_name, statement};
 use crate::package::{EmitInputs, Unfit, WorkedExample, render};
 
 /// An operand or a result in C.
-struct Field {
-    name: String,
+#[derive(Clone)]
+pub struct Field {
+    /// As a structure has it.
+    pub name: String,
     /// The upper-case name with the module's before it.
     constant: String,
     /// The type of the raw integer.
-    kind: &'static str,
-    format: Format,
+    pub kind: &'static str,
+    /// Of the port.
+    pub format: Format,
     doc: String,
 }
 
@@ -62,7 +65,8 @@ struct Example<'a> {
 }
 
 impl Field {
-    fn new(design: &Design, port: &Port) -> Self {
+    /// Of a port.
+    pub fn new(design: &Design, port: &Port) -> Self {
         let net = design.net(port.net);
         Self {
             name: field(&net.name),
@@ -108,7 +112,7 @@ impl Field {
     }
 
     /// The weight of the lowest bit's inverse, as a C double: 2^F exactly.
-    fn scale(&self) -> String {
+    pub fn scale(&self) -> String {
         format!("{:?}", crate::base::fixed::exp2(self.format.frac))
     }
 

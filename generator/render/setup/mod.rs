@@ -1,33 +1,38 @@
-//! What a host computes before it starts a line of `quad-cosine` or `cosine-squared` (seed 000), in f64, and
-//! the raw operands that it then writes.
+//! What a host computes before it starts a line of a device that walks lines (seed 000), in f64.
 //!
 //! Along a line the half vector goes from H₁ to H₂ on a great circle while the normal goes from N₁ to N₂. The
 //! seed turns the second end so that the normals coincide: H₂′ is H₂ turned as N₂ is turned into N₁. What is
 //! left is one half vector on the circle through H₁ and H₂′, and the cosine of its angle to N₁ is
 //! `A·cos(ζ)`, with ζ growing evenly: [`Arc`]. So `I·k_s·cosⁿδ = C·cosⁿζ` with `C = I·k_s·Aⁿ`: [`Line`].
+//! The raw operands are [`Feed::line`](super::Feed::line)'s.
+//!
+//! `templates/setup.c` and `templates/setup.py` compute the same, in the same order.
 //!
 //! ```
-//! use glint::config::Config;
-//! use glint::render::setup::Arc;
+//! use glint::render::{Vector, setup::Arc};
 //!
-//! let config = Config::defaults(&glint::devices::quad_cosine::schema(), "line");
-//! let arc = Arc::new([0.0, 0.0, 1.0], [0.3, 0.0, 1.0], [0.1, 0.0, 1.0], [-0.2, 0.1, 1.0]).unwrap();
-//! let operands = arc.line(240.0, 60, 639).quad_cosine(&config).unwrap();
-//! assert_eq!((operands.length, operands.exponent), (639, Some(60)));
+//! let v = Vector::new;
+//! let arc = Arc::new(v(0.0, 0.0, 1.0), v(0.3, 0.0, 1.0), v(0.1, 0.0, 1.0), v(-0.2, 0.1, 1.0)).unwrap();
+//! assert_eq!(arc.line(240.0, 60, 639).length, 639);
 //! ```
-
-mod operands;
-mod vector;
 
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
-pub use operands::{Operands, raw_angle};
-pub use vector::Vector;
-use vector::{angle, cross, dot, scaled, sum, unit};
+use super::vector::Vector;
 
-/// A cosine below which two directions count as opposite: a rotation of half a turn.
+/// A cosine below which two normals count as opposite: a rotation of half a turn.
 const OPPOSITE: f64 = -1.0 + 1e-12;
+
+/// A larger γ, in radians, is that of opposite half vectors.
+const LARGEST_GAMMA: f64 = PI - 1e-6;
+
+/// Up to this γ, in radians, the half vector stands still: what rounding leaves of its way has no direction, and the angle
+/// changes by less than half an ulp of the usual operand.
+const STILL: f64 = 1e-8;
+
+/// By how much the cosine of the least angle to the normal may exceed 1 through rounding.
+const ROUNDING: f64 = 1e-6;
 
 /// Why a line cannot be set up.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,25 +41,24 @@ pub enum Error {
     NoDirection(&'static str),
     /// H₁ and H₂′ are opposite: no great circle through them is distinguished.
     OppositeHalves,
-    /// An operand does not fit the configuration: its name, its value, and the key to change.
-    Beyond {
-        /// The operand.
-        operand: &'static str,
-        /// Its value.
-        value: f64,
-        /// The configuration key.
-        key: &'static str,
-    },
+    /// No three directions have these angles.
+    NoSuchAngles,
 }
 
 impl fmt::Display for Error {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Self::NoDirection(name) => write!(f, "{name} has no direction"),
-            Self::OppositeHalves => f.write_str("the half vectors are opposite"),
-            Self::Beyond { operand, value, key } => {
-                write!(f, "{operand} is {value}, which {key} has no room for")
-            }
+            Self::NoDirection(name) => write!(
+                f,
+                "{name} has no direction: at least one of its three numbers must differ from 0"
+            ),
+            Self::OppositeHalves => f.write_str(
+                "the half vectors are opposite, and no way between them is the shortest; set up the line in two parts",
+            ),
+            Self::NoSuchAngles => f.write_str(
+                "no directions have these angles: theta_1, theta_2 and gamma are the sides of a spherical triangle, none \
+                 larger than the sum of the others",
+            ),
         }
     }
 }
@@ -75,8 +79,6 @@ pub struct Arc {
     pub theta_2: f64,
     /// γ = ∠(H₁, H₂′), less than π.
     pub gamma: f64,
-    /// H₂′, a unit vector.
-    pub turned_half: Vector,
     /// P·cos θ₁ = (cos θ₂ − cos θ₁·cos γ)/sin γ; 0 for γ = 0.
     pub rise: f64,
     /// λ: how far from H₁ on the circle the point nearest to N₁ lies; `arctan P` for cos θ₁ > 0.
@@ -96,33 +98,50 @@ impl Arc {
         normal_2: Vector,
         half_2: Vector,
     ) -> Result<Self, Error> {
-        let normal_1 = unit(normal_1).ok_or(Error::NoDirection("the first normal"))?;
-        let half_1 = unit(half_1).ok_or(Error::NoDirection("the first half vector"))?;
-        let normal_2 = unit(normal_2).ok_or(Error::NoDirection("the second normal"))?;
-        let half_2 = unit(half_2).ok_or(Error::NoDirection("the second half vector"))?;
+        let normal_1 = direction("normal_1", normal_1)?;
+        let half_1 = direction("half_1", half_1)?;
+        let normal_2 = direction("normal_2", normal_2)?;
+        let half_2 = direction("half_2", half_2)?;
         let turned_half = turned(normal_1, normal_2, half_2);
-        if dot(half_1, turned_half) <= OPPOSITE {
+        // (cos θ₂ − cos θ₁·cos γ)/sin γ is the cosine from N₁ to where H has turned a right angle: without differences of
+        // cosines, in which a small γ would leave little.
+        let aside = half_1.cross(turned_half).cross(half_1).unit();
+        Self::new_of(
+            [angle(normal_1, half_1), angle(normal_1, turned_half)],
+            angle(half_1, turned_half),
+            normal_1.dot(half_1),
+            aside.map_or(0.0, |aside| normal_1.dot(aside)),
+        )
+    }
+
+    /// From θ₁, θ₂ and γ, each from 0 to π.
+    ///
+    /// # Errors
+    /// [`Error::OppositeHalves`] and [`Error::NoSuchAngles`].
+    pub fn of_angles(theta_1: f64, theta_2: f64, gamma: f64) -> Result<Self, Error> {
+        let (cosine_1, cosine_2) = (libm::cos(theta_1), libm::cos(theta_2));
+        let rise = (cosine_2 - cosine_1 * libm::cos(gamma)) / libm::sin(gamma);
+        let arc = Self::new_of([theta_1, theta_2], gamma, cosine_1, rise)?;
+        let still = gamma <= STILL && (theta_1 - theta_2).abs() > ROUNDING;
+        if arc.peak > 1.0 + ROUNDING || still { Err(Error::NoSuchAngles) } else { Ok(arc) }
+    }
+
+    /// From θ₁ and θ₂, γ, cos θ₁ and the rise, which counts only if the half vector moves.
+    fn new_of(
+        [theta_1, theta_2]: [f64; 2],
+        gamma: f64,
+        cosine_1: f64,
+        rise: f64,
+    ) -> Result<Self, Error> {
+        if gamma > LARGEST_GAMMA {
             return Err(Error::OppositeHalves);
         }
-        let gamma = angle(half_1, turned_half);
-        let (cosine_1, cosine_2) = (dot(normal_1, half_1), dot(normal_1, turned_half));
-        let sine = libm::sin(gamma);
-        let rise = if sine == 0.0 { 0.0 } else { (cosine_2 - cosine_1 * libm::cos(gamma)) / sine };
         // cos δ = cos θ₁·cos x + rise·sin x at x from H₁, that is A·cos(x − λ).
-        let (peak, lambda) = if sine == 0.0 {
-            (cosine_1.max(0.0), 0.0)
-        } else {
-            (libm::hypot(cosine_1, rise), libm::atan2(rise, cosine_1))
+        let (rise, peak, lambda) = match gamma > STILL {
+            true => (rise, libm::hypot(cosine_1, rise), libm::atan2(rise, cosine_1)),
+            false => (0.0, cosine_1.max(0.0), 0.0),
         };
-        Ok(Self {
-            theta_1: angle(normal_1, half_1),
-            theta_2: angle(normal_1, turned_half),
-            gamma,
-            turned_half,
-            rise,
-            lambda,
-            peak,
-        })
+        Ok(Self { theta_1, theta_2, gamma, rise, lambda, peak })
     }
 
     /// cos δ at the part `t` of the way, 0 … 1: A·cos ζ. Negative where the surface faces away, but for γ = 0, where
@@ -145,7 +164,7 @@ impl Arc {
     /// The line of `length` intervals with the light `intensity` (I·k_s, in output units) and the exponent n.
     pub fn line(&self, intensity: f64, exponent: u32, length: u32) -> Line {
         Line {
-            amplitude: intensity * libm::pow(self.peak, f64::from(exponent)),
+            amplitude: intensity * libm::pow(self.peak.min(1.0), f64::from(exponent)),
             exponent,
             length,
             delta_zeta: match length {
@@ -157,16 +176,37 @@ impl Arc {
     }
 }
 
+/// The direction of the vector `name`.
+///
+/// # Errors
+/// [`Error::NoDirection`].
+pub fn direction(name: &'static str, vector: Vector) -> Result<Vector, Error> {
+    vector.unit().ok_or(Error::NoDirection(name))
+}
+
+/// The half vector (L + V)/|L + V| of the directions toward the light and the viewer, whose names come first.
+///
+/// # Errors
+/// [`Error::NoDirection`], of the sum too.
+pub fn half(names: [&'static str; 3], light: Vector, view: Vector) -> Result<Vector, Error> {
+    let [of_light, of_view, of_both] = names;
+    direction(of_both, direction(of_light, light)? + direction(of_view, view)?)
+}
+
 /// H₂′: H₂ turned as N₂ is turned into N₁ about the normal of both; all unit vectors.
 fn turned(normal_1: Vector, normal_2: Vector, half_2: Vector) -> Vector {
-    let cosine = dot(normal_1, normal_2);
+    let cosine = normal_1.dot(normal_2);
     if cosine <= OPPOSITE {
-        return scaled(half_2, -1.0);
+        return -half_2;
     }
-    let v = cross(normal_1, normal_2);
-    let once = cross(v, half_2);
-    let twice = scaled(cross(v, once), 1.0 / (1.0 + cosine));
-    sum(sum(half_2, scaled(once, -1.0)), twice)
+    let v = normal_1.cross(normal_2);
+    let once = v.cross(half_2);
+    half_2 - once + v.cross(once) * (1.0 / (1.0 + cosine))
+}
+
+/// The angle between unit vectors; exact for small angles too, where the arc cosine is not.
+fn angle(a: Vector, b: Vector) -> f64 {
+    libm::atan2(a.cross(b).length(), a.dot(b))
 }
 
 /// A line before it is quantised. Angles are in radians.
@@ -188,6 +228,11 @@ impl Line {
     /// ζ of point number `index`.
     pub fn zeta(&self, index: u32) -> f64 {
         self.zeta_start + f64::from(index) * self.delta_zeta
+    }
+
+    /// By what a device without an exponent takes the angles: a = √(n/2).
+    pub fn stretch(&self) -> f64 {
+        (f64::from(self.exponent) / 2.0).sqrt()
     }
 }
 

@@ -19,7 +19,7 @@ const INNER: &str = "inner";
 const NARROW: &str = include_str!("../../../configs/reduced/cosine_squared.toml");
 
 /// The commands, some of them.
-const COMMANDS: &str = "generate cosim merge eval list new describe compare render check";
+const COMMANDS: &str = "generate cosim merge eval setup list new describe compare render check";
 
 /// What else a command line is made of, and some that it is not.
 const PIECES: &str = "

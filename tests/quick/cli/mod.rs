@@ -17,6 +17,7 @@ pub mod refusals;
 mod render;
 mod report;
 mod schedule;
+mod setup;
 mod synth;
 mod tune;
 mod verify;

@@ -240,7 +240,7 @@ fn new_with_wrong_words() {
 #[test]
 fn help_teaches_by_example() {
     let dir = Workspace::new();
-    for command in ["generate", "cosim", "eval", "compare", "list", "new"] {
+    for command in ["generate", "cosim", "eval", "setup", "compare", "list", "new"] {
         let text = dir.done([command, "--help"]);
         let (_, examples) = text.split_once("Example").expect("an example");
         assert!(examples.contains(&format!("  glint {command} ")), "{text}");

@@ -82,7 +82,7 @@ fn nothing_panics() {
     let mut odd: Vec<OsString> = odd.chain([""]).map(OsString::from).collect();
     #[cfg(unix)]
     odd.push(std::os::unix::ffi::OsStringExt::from_vec(vec![0xff, 0xfe, b'=', 0x80]));
-    for command in ["generate", "cosim", "eval", "render", "new", "list", ""] {
+    for command in ["generate", "cosim", "eval", "setup", "render", "new", "list", ""] {
         for argument in &odd {
             for second in ["cos_gamma=1e-400", "--json"] {
                 let arguments = [command.into(), argument.clone(), second.into()];

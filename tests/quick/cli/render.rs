@@ -25,7 +25,7 @@ fn render<'a>(arguments: &[&'a str]) -> Vec<&'a str> {
 }
 
 /// Width, height, and red, green and blue of each pixel.
-fn pixels(png: &[u8]) -> (u32, u32, Vec<[u8; 3]>) {
+pub fn pixels(png: &[u8]) -> (u32, u32, Vec<[u8; 3]>) {
     let mut reader = Decoder::new(Cursor::new(png)).read_info().expect("a PNG");
     let mut bytes = vec![0; reader.output_buffer_size().expect("a size")];
     let info = reader.next_frame(&mut bytes).expect("pixels");

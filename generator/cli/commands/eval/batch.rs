@@ -1,20 +1,20 @@
 //! Many points: operands from CSV, results as CSV.
 
-use std::io;
 use std::path::Path;
 
-use anyhow::{Context, Result, anyhow, bail, ensure};
-use csv::{ReaderBuilder, Trim};
+use anyhow::{Result, anyhow, bail};
 use serde_json::{Map, Value, json};
 
 use super::{formula, operands, outside};
-use crate::base::input;
-use crate::cli::commands::Loaded;
+use crate::cli::commands::setup::REAL;
+use crate::cli::commands::{Loaded, rows};
 use crate::cli::{Output, tables};
 
-/// The result of a row.
+/// The result of a point.
 struct Row {
     operands: Vec<i64>,
+    /// Its number in the line, of a device that walks lines.
+    point: Option<u64>,
     f: Option<i64>,
     outputs: Vec<i64>,
     exact_f: Option<f64>,
@@ -22,25 +22,15 @@ struct Row {
     inside: bool,
 }
 
-/// Computes every row of a CSV file with the golden model's arithmetic and in f64. `given` holds for all rows.
+/// Computes every row of a CSV file with the golden model's arithmetic and in f64; of a line, every point. `given` holds
+/// for all rows.
 pub fn batch(output: Output, one: &Loaded, given: &[Option<i64>], path: &Path) -> Result<bool> {
-    let shown = path.display();
-    let file = input::open(path).with_context(|| format!("cannot read `{shown}`"))?;
-    let text = io::read_to_string(file).with_context(|| format!("cannot read `{shown}`"))?;
-    let mut reader = ReaderBuilder::new().trim(Trim::All).from_reader(text.as_bytes());
-    let headings = reader.headers().with_context(|| format!("cannot read `{shown}`"))?.clone();
-    let columns =
-        columns(one, given, headings.iter()).with_context(|| format!("`{shown}`, first row"))?;
-    let mut rows = Vec::new();
-    for record in reader.records() {
-        let record = record.with_context(|| format!("cannot read `{shown}`"))?;
-        let row = row(one, given, &columns, &record).map_err(|why| {
-            let start = record.position().map_or(0, |it| it.byte() as usize);
-            anyhow!("`{shown}`, line {}: {why}", line(&text, start))
-        });
-        rows.push(row?);
-    }
-    ensure!(!rows.is_empty(), "`{shown}` has no row of operands below the row with their names");
+    let rows = rows::read(
+        path,
+        |headings| columns(one, given, headings.iter()),
+        |columns, record| points(one, given, columns, record),
+    )?;
+    let rows: Vec<Row> = rows.into_iter().flatten().collect();
     if output.json {
         print_json(one, &rows)
     } else {
@@ -49,23 +39,20 @@ pub fn batch(output: Output, one: &Loaded, given: &[Option<i64>], path: &Path) -
     Ok(true)
 }
 
-/// The line of a record that is said to begin here: empty lines before it count as a part of it.
-fn line(text: &str, start: usize) -> usize {
-    let record = text[start..].trim_start_matches(['\r', '\n']);
-    1 + text[..text.len() - record.len()].matches('\n').count()
-}
-
-/// The operand of each column.
+/// The operand of each column; none of one with the real values that `glint setup` writes beside the operands.
 fn columns<'a>(
     one: &Loaded,
     given: &[Option<i64>],
     headings: impl Iterator<Item = &'a str>,
-) -> Result<Vec<usize>> {
+) -> Result<Vec<Option<usize>>> {
     let known = one.core.contract.operands();
-    let mut columns: Vec<usize> = Vec::new();
+    let mut columns = Vec::new();
     for heading in headings {
-        let at = operands::position(known, heading).map_err(|why| anyhow!("{why}"))?;
-        if columns.contains(&at) || given[at].is_some() {
+        let at = match operands::position(known, heading) {
+            Err(_) if heading.starts_with(REAL) => None,
+            other => Some(other.map_err(|why| anyhow!("{why}"))?),
+        };
+        if at.is_some_and(|it| columns.contains(&at) || given[it].is_some()) {
             bail!("operand `{heading}` is given twice");
         }
         columns.push(at);
@@ -73,28 +60,35 @@ fn columns<'a>(
     Ok(columns)
 }
 
-fn row(
+/// The points of a row: those of a line, or one.
+fn points(
     one: &Loaded,
     given: &[Option<i64>],
-    columns: &[usize],
+    columns: &[Option<usize>],
     record: &csv::StringRecord,
-) -> Result<Row, String> {
+) -> Result<Vec<Row>, String> {
     let contract = one.core.contract.as_ref();
     let known = contract.operands();
     let mut given = given.to_vec();
-    for (&at, text) in columns.iter().zip(record) {
+    for (at, text) in columns.iter().zip(record) {
         // An empty cell leaves the operand to its default.
-        if !text.is_empty() {
+        if let (Some(at), false) = (*at, text.is_empty()) {
             given[at] = Some(operands::named_value(&known[at], text)?);
         }
     }
     let raw = operands::completed(contract, &given);
-    let f = contract.highlight().map(|it| it.f(&it.point(&raw[..it.control()], 0)));
-    let mut outputs = Vec::new();
-    contract.results(&raw, 0, &mut outputs);
-    let (exact_f, exact) = formula(contract, &raw);
+    let length = known.iter().position(|operand| Some(operand.name.as_str()) == contract.length());
+    let last = length.map_or(0, |at| raw[at].max(0) as u64);
     let inside = outside(known, &raw).is_empty();
-    Ok(Row { operands: raw, f, outputs, exact_f, exact, inside })
+    let point = |index| {
+        let f = contract.highlight().map(|it| it.f(&it.point(&raw[..it.control()], index)));
+        let mut outputs = Vec::new();
+        contract.results(&raw, index, &mut outputs);
+        let (exact_f, exact) = formula(contract, &raw, index);
+        let point = length.map(|_| index);
+        Row { operands: raw.clone(), point, f, outputs, exact_f, exact, inside }
+    };
+    Ok((0..=last).map(point).collect())
 }
 
 fn print_csv(one: &Loaded, rows: &[Row]) -> Result<()> {
@@ -103,6 +97,7 @@ fn print_csv(one: &Loaded, rows: &[Row]) -> Result<()> {
         contract.operands().iter().map(|operand| operand.name.clone()).collect();
     let highlight = contract.highlight();
     let outputs = || contract.outputs().iter().map(|output| &output.name);
+    headings.extend(contract.length().map(|_| "point".to_owned()));
     headings.extend(highlight.map(|_| "f".to_owned()));
     headings.extend(outputs().cloned());
     headings.extend(highlight.map(|_| "formula_f".to_owned()));
@@ -113,6 +108,7 @@ fn print_csv(one: &Loaded, rows: &[Row]) -> Result<()> {
         let mut cells: Vec<String> = operands
             .map(|(operand, &raw)| operand.format.to_f64(i128::from(raw)).to_string())
             .collect();
+        cells.extend(row.point.map(|index| index.to_string()));
         let f = highlight.zip(row.f);
         cells.extend(f.map(|(it, f)| it.f_format().to_f64(i128::from(f)).to_string()));
         cells.extend(row.outputs.iter().map(i64::to_string));
@@ -139,6 +135,9 @@ fn print_json(one: &Loaded, rows: &[Row]) {
             "outputs": outputs,
             "formula": { "outputs": row.exact },
         });
+        if let Some(index) = row.point {
+            point["point"] = json!(index);
+        }
         if let (Some(f), Some(exact)) = (row.f, row.exact_f) {
             point["f"] = json!(f);
             point["formula"]["f"] = json!(exact);

@@ -1,0 +1,44 @@
+//! Rows of a CSV file, each with its line.
+
+use std::io;
+use std::path::Path;
+
+use anyhow::{Context, Result, anyhow, ensure};
+use csv::{ReaderBuilder, StringRecord, Trim};
+
+use crate::base::input;
+
+/// What `of_row` makes of the rows of a file, or of standard input for `-`; `columns` understands the headings.
+///
+/// # Errors
+/// The file cannot be read, or has no row below the headings; what `columns` and `of_row` refuse, with the place.
+pub fn read<C, T>(
+    path: &Path,
+    columns: impl FnOnce(&StringRecord) -> Result<C>,
+    mut of_row: impl FnMut(&C, &StringRecord) -> Result<T, String>,
+) -> Result<Vec<T>> {
+    let shown = path.display();
+    let cannot = || format!("cannot read `{shown}`");
+    let file = input::open(path).with_context(cannot)?;
+    let text = io::read_to_string(file).with_context(cannot)?;
+    let mut reader = ReaderBuilder::new().trim(Trim::All).from_reader(text.as_bytes());
+    let headings = reader.headers().with_context(cannot)?;
+    let columns = columns(headings).with_context(|| format!("`{shown}`, first row"))?;
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record.with_context(cannot)?;
+        let row = of_row(&columns, &record).map_err(|why| {
+            let start = record.position().map_or(0, |it| it.byte() as usize);
+            anyhow!("`{shown}`, line {}: {why}", line(&text, start))
+        });
+        rows.push(row?);
+    }
+    ensure!(!rows.is_empty(), "`{shown}` has no row of operands below the row with their names");
+    Ok(rows)
+}
+
+/// The line of a record that is said to begin here: empty lines before it count as a part of it.
+fn line(text: &str, start: usize) -> usize {
+    let record = text[start..].trim_start_matches(['\r', '\n']);
+    1 + text[..text.len() - record.len()].matches('\n').count()
+}

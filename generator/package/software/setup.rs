@@ -1,0 +1,101 @@
+//! The host's part of a device that walks lines, in C and Python: its operands from vectors or angles at the ends of a
+//! line. The formulas are those of `render::setup`, against which tests hold these.
+
+use anyhow::Result;
+use askama::Template;
+
+use super::model::Field;
+use crate::base::fixed::exp2;
+use crate::hdl::netlist::{Design, Role};
+use crate::hdl::verilog::text::constant_name;
+use crate::package::{EmitInputs, render};
+
+/// The operands of a line, as far as a set-up knows them; `exponent` may be missing.
+const KNOWN: [&str; 5] = ["delta_zeta", "zeta_start", "exponent", "length", "amplitude"];
+
+/// What the three files say of a configuration.
+struct View<'a> {
+    name: &'a str,
+    prefix: String,
+    regenerate: &'a str,
+    /// `zeta_start` and `delta_zeta`.
+    angles: Vec<Field>,
+    /// The domain of the exponent; without it angles are taken times √(n/2).
+    exponent: Option<(i64, i64)>,
+    /// The most intervals.
+    longest: i64,
+    /// The amplitude of full light, and 2^F of its format.
+    full: f64,
+    amplitude_scale: String,
+    /// The largest stretched angle, in right angles.
+    room: f64,
+    order: Vec<String>,
+}
+
+impl View<'_> {
+    /// Raw angles of a turn.
+    fn turn(&self, angle: &Field) -> String {
+        exp2(angle.format.width() as i32).to_string()
+    }
+}
+
+#[derive(Template)]
+#[template(path = "setup.h")]
+struct Header<'a> {
+    line: View<'a>,
+}
+
+#[derive(Template)]
+#[template(path = "setup.c")]
+struct Source<'a> {
+    line: View<'a>,
+}
+
+#[derive(Template)]
+#[template(path = "setup.py")]
+struct Module<'a> {
+    line: View<'a>,
+}
+
+/// The files, pairs of a plain name and contents: none of a device that walks no line, or takes other operands.
+///
+/// # Errors
+/// A template that fails.
+pub fn files(design: &Design, inputs: &EmitInputs) -> Result<Vec<(String, String)>> {
+    let ports = design.inputs().filter(|port| matches!(port.role, Role::Operand { .. }));
+    let fields: Vec<Field> = ports.map(|port| Field::new(design, port)).collect();
+    let accuracy = inputs.accuracy.as_ref().filter(|accuracy| accuracy.length.is_some());
+    let Some(accuracy) = accuracy else {
+        return Ok(Vec::new());
+    };
+    let field = |name: &str| fields.iter().find(|field| field.name == name);
+    let domain = |name: &str| {
+        let mut domains = accuracy.domain.iter();
+        domains.find(|(operand, _)| operand == name).map(|(_, domain)| *domain)
+    };
+    let known = fields.iter().all(|field| KNOWN.contains(&field.name.as_str()));
+    let all = [field("zeta_start"), field("delta_zeta"), field("amplitude")];
+    let ([Some(start), Some(delta), Some(amplitude)], Some((_, longest)), Some((_, full)), true) =
+        (all, domain("length"), domain("amplitude"), known)
+    else {
+        return Ok(Vec::new());
+    };
+    let name = design.name.as_str();
+    let view = || View {
+        name,
+        prefix: constant_name(name),
+        regenerate: &inputs.config,
+        angles: vec![start.clone(), delta.clone()],
+        exponent: domain("exponent"),
+        longest,
+        full: amplitude.format.to_f64(i128::from(full)),
+        amplitude_scale: amplitude.scale(),
+        room: exp2(start.format.int) - 1.0,
+        order: fields.iter().map(|field| field.name.clone()).collect(),
+    };
+    Ok(vec![
+        (format!("{name}_setup.h"), render(&Header { line: view() })?),
+        (format!("{name}_setup.c"), render(&Source { line: view() })?),
+        (format!("{name}_setup.py"), render(&Module { line: view() })?),
+    ])
+}

@@ -1,0 +1,252 @@
+//! `glint setup`: operands by hand, the way through `eval` to the line of a picture, and what is refused.
+
+use std::fs::{self, File};
+
+use serde_json::{Value, json};
+
+use super::render::pixels;
+use crate::workspace::{Run, Workspace};
+
+const QUAD: &str = "device = \"quad-cosine\"\n";
+
+fn setup(config: &str, inputs: &[&str]) -> Run {
+    let dir = Workspace::with("core.toml", config);
+    dir.glint(["setup", "core.toml"].iter().chain(inputs))
+}
+
+fn raw(run: &Run) -> Vec<i64> {
+    let told = run.json();
+    let operands = told["operands"].as_array().expect("operands");
+    operands.iter().map(|it| it["raw"].as_i64().expect("an integer")).collect()
+}
+
+/// From 30° on one side of N to 60° on the other, through N: λ = 30°, A = 1; 90 intervals of a degree.
+#[test]
+fn a_line_by_hand() {
+    let angles = ["theta_1=30", "theta_2=60", "gamma=90"];
+    let rest = ["points=91", "exponent=8", "intensity=0.8", "--json"];
+    // s1.26: 2²⁶/90 = 745654.04, −2²⁶/3; 0.8 of 255.
+    let wanted = [745_654, -22_369_621, 8, 90, 204];
+    let run = setup(QUAD, &[&angles[..], &rest].concat()).quiet();
+    assert_eq!(raw(&run), wanted);
+    let told = run.json();
+    for (name, value) in [("gamma", 90.0), ("lambda", 30.0), ("a_cosine", 1.0), ("c", 204.0)] {
+        let found = told["quantities"][name].as_f64().expect("a number");
+        assert!((found - value).abs() < 1e-9, "{name}: {found}");
+    }
+    let step = &told["operands"][0];
+    assert!((step["real"].as_f64().expect("a number") - 1.0 / 90.0).abs() < 1e-15, "{step}");
+    // The same in vectors: sin 30° = 1/2, and the square root of 3/4.
+    let vectors = [
+        "normal_1=0,0,2",
+        "half_1=-0.5,0,0.8660254037844386",
+        "normal_2=0,0,1",
+        "half_2_x=0.8660254037844386",
+        "half_2_y=0",
+        "half_2_z=0.5",
+    ];
+    assert_eq!(raw(&setup(QUAD, &[&vectors[..], &rest].concat())), wanted);
+    // H is the middle of L and V; N and H turned together change nothing.
+    let turned = ["normal_1=0,0,1", "light_1=-1,0,0", "view_1=0.5,0,0.8660254037844386"];
+    let turned = [&turned[..], &["normal_2=1,0,0", "half_2=0.5,0,-0.8660254037844386"]].concat();
+    assert_eq!(raw(&setup(QUAD, &[&turned[..], &rest].concat())), wanted);
+    // Without an exponent: s7.22, times √(8/2) = 2.
+    let run = setup("device = \"cosine-squared\"\n", &[&angles[..], &rest].concat());
+    assert_eq!(raw(&run), [93_207, -2_796_203, 90, 204]);
+    // In the formats of the file.
+    let narrow = format!("{QUAD}[angle]\nfraction = 16\n[colour]\nbits = 4\n");
+    assert_eq!(raw(&setup(&narrow, &[&angles[..], &rest].concat())), [728, -21_845, 8, 90, 12]);
+}
+
+#[test]
+fn a_point_by_hand() {
+    let given = ["gamma=60", "dgamma=-29", "exponent=20", "red=0.2", "--json"];
+    // u1.20: 1/2, and cos 29° = 917105.2 of 2²⁰.
+    assert_eq!(
+        raw(&setup("device = \"rough\"\n", &given)),
+        [524_288, 917_105, 20, 1, 51, 255, 255]
+    );
+    let vectors = ["normal=0,0,1", "light=1,0,0.5", "view=0,0,1", "exponent=20", "--json"];
+    // L + V leans by half of 63.4° to the side: 891972.02 of 2²⁰.
+    let run = setup("device = \"cosine-power\"\n", &vectors);
+    assert_eq!(raw(&run)[..2], [891_972, 20]);
+    // The square of the difference is 2(1 − cos γ), from vectors as from the angle.
+    let of = |run: &Run| -> f64 {
+        let told = run.json();
+        let part = |at: usize| told["operands"][at]["value"].as_f64().expect("a number");
+        (0..3).map(|at| part(at) * part(at)).sum()
+    };
+    let lyon = "device = \"lyon\"\n";
+    for inputs in [&["gamma=40"][..], &["normal=1,0,0", "half=0.766044443,0.642787610,0"]] {
+        let square = of(&setup(lyon, &[inputs, &["exponent=16", "--json"]].concat()));
+        assert!((square - 2.0 * (1.0 - 40f64.to_radians().cos())).abs() < 1e-4, "{square}");
+    }
+}
+
+/// CSV in, CSV out, through `eval`: every pixel of a row of a picture, whose vectors are found here from the geometry.
+#[test]
+fn set_up_and_evaluated_it_is_the_line_of_the_picture() {
+    const WIDTH: usize = 31;
+    let mesh = "v -9 -9 0\nv 9 -9 0\nv 0 18 0\nvn 0.3 0.1 1\nvn -0.2 0.05 1\nvn 0.1 -0.3 1\nf 1//1 2//2 3//3\n";
+    for (device, light) in [("quad-cosine", [1.0, 2.0, 3.0]), ("cosine-squared", [0.2, 0.5, 3.0])] {
+        let dir = Workspace::with("core.toml", format!("device = \"{device}\"\n"));
+        dir.write("flat.obj", mesh);
+        let toward = light.map(|it: f64| it.to_string()).join(",");
+        let size = format!("{WIDTH}x1");
+        let picture = "render core.toml --out line.png --mesh flat.obj --samples 1 --fov 4 --camera 0,0,5 --target 0,0,0 \
+                       --ambient 0 --diffuse 0 --specular 0.9 --exponent 37";
+        let more = ["--light", &toward, "--size", &size];
+        dir.done(picture.split(' ').chain(more));
+        let png = fs::read(dir.at("line.png")).expect("a picture");
+        let (_, _, drawn) = pixels(&png);
+
+        // The pixel's place in the plane z = 0, the normal there, and the way to the eye at (0, 0, 5).
+        let end = |column: usize| {
+            let aside = (2.0 * column as f64 + 1.0) / WIDTH as f64 - 1.0;
+            let x = 5.0 * aside * WIDTH as f64 * 2f64.to_radians().tan();
+            // The weights of the corners: a third for the upper, and what is left by the place.
+            let (upper, right) = (1.0 / 3.0, 1.0 / 3.0 + x / 18.0);
+            let weights = [1.0 - upper - right, right, upper];
+            let corners = [[0.3, 0.1, 1.0], [-0.2, 0.05, 1.0], [0.1, -0.3, 1.0]].map(unit);
+            let normal =
+                [0, 1, 2].map(|axis| (0..3).map(|at| weights[at] * corners[at][axis]).sum());
+            (normal, [-x, 0.0, 5.0])
+        };
+        let text = |vector: [f64; 3]| vector.map(|it| it.to_string()).join(" ");
+        let ((n1, v1), (n2, v2)) = (end(0), end(WIDTH - 1));
+        dir.write(
+            "lines.csv",
+            format!(
+                "normal_1,view_1,normal_2,view_2,points\n\n{},{},{},{},{WIDTH}\n",
+                text(n1),
+                text(v1),
+                text(n2),
+                text(v2)
+            ),
+        );
+        let (one, two) = (format!("light_1={toward}"), format!("light_2={toward}"));
+        let command =
+            ["setup", "core.toml", "--batch", "lines.csv", "exponent=37", "intensity=0.9"];
+        let operands = dir.done(command.iter().chain(&[one.as_str(), two.as_str()]));
+        dir.write("operands.csv", &operands);
+        let mut eval = dir.command();
+        let input = File::open(dir.at("operands.csv")).expect("a file");
+        let run = Run::of(
+            eval.args(["eval", "core.toml", "--batch", "-", "--json"]).stdin(input).output(),
+        );
+        let told = run.good().json();
+        let points = told["points"].as_array().expect("points");
+        let computed: Vec<&Value> =
+            points.iter().map(|it| &it["outputs"]["intensity_out"]).collect();
+        let shown: Vec<Value> = drawn.iter().map(|pixel| json!(pixel[0])).collect();
+        assert_eq!(computed, shown.iter().collect::<Vec<_>>(), "{device}");
+        let (least, most) =
+            (drawn.iter().min().expect("pixels"), drawn.iter().max().expect("pixels"));
+        assert!(most[0] - least[0] > 60, "a highlight: {drawn:?}");
+        assert_eq!((&points[30]["point"], points.len()), (&json!(30), WIDTH));
+    }
+}
+
+fn unit(vector: [f64; 3]) -> [f64; 3] {
+    let length = vector.iter().map(|it| it * it).sum::<f64>().sqrt();
+    vector.map(|it| it / length)
+}
+
+#[test]
+fn text_for_people_and_csv_of_one() {
+    let angles = ["theta_1=30", "theta_2=60", "gamma=90", "points=91", "exponent=8"];
+    let run = setup(QUAD, &angles).quiet();
+    for part in ["zeta_start", "(16)", "-22369621", "glint eval core.toml delta_zeta=#745654 "] {
+        assert!(run.out.contains(part), "{part}: {}", run.out);
+    }
+    let run = setup(QUAD, &[&angles[..], &["--csv"]].concat()).quiet();
+    let lines: Vec<&str> = run.out.lines().collect();
+    assert!(
+        lines[0].starts_with("delta_zeta,zeta_start,exponent,length,amplitude,real_delta_zeta,")
+    );
+    assert!(lines[1].starts_with("#745654,#-22369621,#8,#90,#255,0.0111"), "{}", lines[1]);
+}
+
+#[test]
+fn what_is_refused() {
+    let line = |given: &str| format!("theta_1=30 theta_2=60 gamma=90 points=9 exponent=8 {given}");
+    let n1 = "normal_1=0,0,1 half_1=1,0,0 normal_2=0,0,1 points=9 exponent=8";
+    for (given, said) in [
+        (line("points=4"), "input `points` is given twice"),
+        (
+            line("half_1=0,0,1"),
+            "`half_1` and `theta_1` are both given: vectors or angles, not both",
+        ),
+        (
+            line("intensity=1.1"),
+            "input `intensity` is 1.1; it is a share of the full light, 0 to 1",
+        ),
+        (line("gama=3"), "there is no input `gama` of `quad-cosine`; did you mean `gamma`?"),
+        (line("red=1"), "there is no input `red`"),
+        (line("x"), "`x` is not input=value"),
+        (line("half_1=0,0"), "input `half_1`: `0,0` is not three numbers, as 0,0,1"),
+        (line("intensity=bright"), "input `intensity`: `bright` is not a finite number"),
+        (
+            "theta_1=30 theta_2=60 gamma=10 points=9 exponent=8".to_owned(),
+            "no directions have these angles",
+        ),
+        (
+            "theta_1=30 theta_2=190 gamma=10".to_owned(),
+            "`theta_2` is 190 degrees; it lies between 0 and 180",
+        ),
+        ("theta_1=0 theta_2=180 gamma=180".to_owned(), "the half vectors are opposite"),
+        (format!("{n1} half_2=-1,0,0"), "the half vectors are opposite"),
+        (format!("{n1} half_2=0,0,0"), "half_2 has no direction"),
+        (n1.to_owned(), "input `half_2` is missing; give it, or `light_2` and `view_2`, or angles"),
+        (format!("{n1} half_2_x=1"), "input `half_2` lacks its component y"),
+        (format!("{n1} light_2=0,0,1 view_2=0,0,-1"), "the sum of light and view has no direction"),
+        (
+            "theta_1=30 theta_2=60 gamma=90 points=0 exponent=8".to_owned(),
+            "`points` is 0; it is a whole number from 1 on",
+        ),
+        (
+            "theta_1=30 theta_2=60 gamma=90 points=2.5 exponent=8".to_owned(),
+            "`points` is 2.5; it is a whole number",
+        ),
+        ("theta_1=30 theta_2=60 gamma=90 exponent=8".to_owned(), "input `points` is missing"),
+        (
+            "theta_1=30 theta_2=60 gamma=90 points=4097 exponent=8".to_owned(),
+            "operand `length` would be 4096, and core.toml takes 0 to 4095; give other inputs, or a wider",
+        ),
+        (
+            "theta_1=30 theta_2=60 gamma=90 points=4 exponent=1001".to_owned(),
+            "operand `exponent` would be 1001",
+        ),
+    ] {
+        let given: Vec<&str> = given.split(' ').collect();
+        setup(QUAD, &given).refused(2, &[said]);
+    }
+    let rough = "device = \"rough\"\n";
+    setup(rough, &["gamma=10", "dgamma=31", "exponent=4"])
+        .refused(2, &["operand `cos_dgamma` would be 0.857"]);
+    let squared = "device = \"cosine-squared\"\nangle.integer = 3\n";
+    let given = ["theta_1=30", "theta_2=60", "gamma=90", "points=4", "exponent=1000"];
+    setup(squared, &given).refused(2, &["14.9 right angles", "`angle.integer`"]);
+
+    // In a file, with the line.
+    let dir = Workspace::with("core.toml", QUAD);
+    for (text, said) in [
+        ("points,theta_1\n", "has no row of operands"),
+        ("points,zeta\n1,1\n", "`lines.csv`, first row"),
+        (
+            "points,theta_1,theta_2,gamma\n9,30,60,90\n\n0,30,60,90\n",
+            "`lines.csv`, line 4: input `points` is 0",
+        ),
+        (
+            "points,theta_1,theta_2,gamma\n9,30,60,\n",
+            "`lines.csv`, line 2: input `gamma` is missing",
+        ),
+    ] {
+        dir.write("lines.csv", text);
+        let command = ["setup", "core.toml", "exponent=8", "--batch", "lines.csv"];
+        dir.glint(command).refused(1, &[said]);
+        let told = dir.glint(command.iter().chain(&["--json"])).json();
+        assert!(told["problems"][0]["message"].as_str().expect("words").contains(said), "{told}");
+    }
+    dir.glint(["setup", "core.toml", "--batch", "core.toml"]).refused(2, &["are one file"]);
+}
