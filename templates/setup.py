@@ -132,7 +132,7 @@ def _operands(gamma, cosine_1, rise, points, exponent, intensity):
     a = math.sqrt(exponent / 2.0)
     ends = (zeta_start, zeta_start + length * delta_zeta)
     if any(abs(a * zeta / (math.pi / 2.0)) > ${ line.room }$ for zeta in ends):
-        raise SetupError("an angle times the root of n/2 is beyond its format: take a smaller exponent")
+        raise SetupError("an angle times the root of n/2 is beyond its format: reduce exponent")
 <%- endif %>
     return {
 <%- for angle in line.angles %>
